@@ -1,0 +1,42 @@
+// The one exception of Dspace: bad input, named.
+#ifndef DSPACE_ERROR_H
+#define DSPACE_ERROR_H
+
+#include <stdexcept>
+#include <string>
+
+namespace dspace {
+
+// Thrown by every plain class when input is refused or a resource fails. The message names the
+// object, the value and what would be accepted; whoever catches it finds everything as it was.
+class Error : public std::runtime_error {
+public:
+  // What went wrong, as gRPC's status codes and Python's exceptions distinguish it.
+  enum class Kind {
+    InvalidArgument,  // a value outside what is accepted
+    NotFound,         // no such frame, object, file, ...
+    AlreadyExists,    // a name or id that is taken
+    Unsupported,      // a format or feature that is not read or built
+    Corrupt,          // a file that is damaged or not of its type
+    Io,               // the operating system refused a file
+    Resource,         // memory, size or graphics limits
+    DeadlineExceeded, // a wait ran out
+    Internal          // a defect of Dspace
+  };
+
+  // `object` names what the error is about: "frame 'rover/mast'", "file 'a.gltf'", "camera 'left'".
+  Error(Kind kind, const std::string& object, const std::string& message)
+      : std::runtime_error(object.empty() ? message : object + ": " + message), Kind_(kind),
+        Object_(object) {}
+
+  Kind GetKind() const { return this->Kind_; }
+  const std::string& GetObjectName() const { return this->Object_; }
+
+private:
+  Kind Kind_;
+  std::string Object_;
+};
+
+} // namespace dspace
+
+#endif

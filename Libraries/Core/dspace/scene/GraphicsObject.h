@@ -1,0 +1,76 @@
+// Geometry that hangs on a frame.
+#ifndef DSPACE_SCENE_GRAPHICS_OBJECT_H
+#define DSPACE_SCENE_GRAPHICS_OBJECT_H
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <dspace/FrameTree.h>
+#include <dspace/import/Model.h>
+
+namespace dspace {
+
+using ObjectId = std::uint32_t; // 0 means none; never reused within a scene
+
+// Physical: what a real camera would see. Ornamental: what only helps a person.
+enum class Nature { Physical, Ornamental };
+
+// One mesh with its material, placed in the object's frame O. The mesh is shared: every part that
+// names the same Mesh draws the same buffers on the GPU.
+struct Part {
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<const Material> material;
+  Eigen::Affine3d X_OP = Eigen::Affine3d::Identity();
+};
+
+struct DetailLevel {
+  std::vector<Part> parts;
+  double minimumPixels = 0.0; // drawn while the object's projected diameter is at least this
+};
+
+// Changes laid over every part's own material; what is not set stays as imported.
+struct MaterialOverride {
+  std::optional<std::array<double, 3>> color; // sRGB, 0 to 1
+  std::optional<double> opacity;              // 0 to 1
+  std::optional<double> metallic;             // 0 to 1
+  std::optional<double> roughness;            // 0 to 1
+  std::optional<std::shared_ptr<const Image>> texture; // set to null: no texture
+  std::optional<bool> lit;
+  std::optional<bool> wireframe;
+};
+
+struct GraphicsObject {
+  ObjectId id = 0;
+  std::string name; // unique in the scene
+  FrameId frame = 1;
+  Nature nature = Nature::Physical;
+  std::string fragment;                                  // of the same nature
+  Eigen::Affine3d X_FO = Eigen::Affine3d::Identity();    // any affine map with a non-zero determinant
+  std::vector<DetailLevel> levels;                       // finest first, minimumPixels descending
+  MaterialOverride material;
+  bool visible = true;
+  bool pickable = true;
+  // Mesh coordinates are pixels in the image plane (X right, Y up) about the object's origin:
+  // text and markers of constant size that face the camera.
+  bool billboard = false;
+  double lineWidth = 1.0; // pixels, lines
+  double pointSize = 3.0; // pixels, points
+};
+
+// Smallest sphere about the centre of the bounds of a level, in O: what culling and levels use.
+struct BoundingSphere {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+BoundingSphere BoundsOf(const DetailLevel& level);
+
+// The parts of an imported model, sharing its meshes: `model` is kept alive by them.
+// `scale` multiplies coordinates; `rotation` turns the file's axes into the frame's.
+std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scale = 1.0,
+                          const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity());
+
+} // namespace dspace
+
+#endif
