@@ -1,0 +1,59 @@
+/**
+ * @class vtkDspaceRenderContext
+ * @brief The one OpenGL context and render window (the hub) that draws every viewport.
+ *
+ * One a process as a rule, shared by all scenes. Meshes and textures are uploaded once, however
+ * many objects, scenes and viewports show them, and are released when the last one lets go.
+ */
+#ifndef vtkDspaceRenderContext_h
+#define vtkDspaceRenderContext_h
+
+#include <memory>
+#include <string>
+
+#include "vtkDspaceCoreModule.h"
+#include "vtkObject.h"
+
+#ifndef __VTK_WRAP__
+#include <dspace/render/Capture.h>
+#include <dspace/render/GraphicsContext.h>
+#endif
+
+class vtkDspaceHubWindow;
+class vtkDspaceViewport;
+class vtkRenderWindow;
+namespace dspace {
+class GpuStore;
+}
+
+class VTKDSPACECORE_EXPORT vtkDspaceRenderContext : public vtkObject {
+public:
+  static vtkDspaceRenderContext* New();
+  vtkTypeMacro(vtkDspaceRenderContext, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// "llvmpipe (LLVM 15.0.6, 256 bits)", a GPU's name, ...
+  std::string GetRendererName();
+  std::string GetVersion();
+  vtkRenderWindow* GetRenderWindow();
+
+#ifndef __VTK_WRAP__
+  /// Takes the context (default: MakeEglContext()). Called by the first viewport where it was not.
+  void Initialize(std::unique_ptr<dspace::GraphicsContext> context = nullptr);
+  const dspace::RenderStatistics& GetStatistics() const;
+  vtkDspaceHubWindow* GetHub();
+  dspace::GpuStore& GetStore();
+#endif
+
+protected:
+  vtkDspaceRenderContext();
+  ~vtkDspaceRenderContext() override;
+
+private:
+  vtkDspaceRenderContext(const vtkDspaceRenderContext&) = delete;
+  void operator=(const vtkDspaceRenderContext&) = delete;
+  struct Internals;
+  std::unique_ptr<Internals> Impl;
+};
+
+#endif

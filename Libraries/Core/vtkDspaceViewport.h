@@ -1,0 +1,101 @@
+/**
+ * @class vtkDspaceViewport
+ * @brief Where a SceneVantage is drawn: a slot of the render context's one window.
+ *
+ * Any number of viewports may show one scene; its meshes are on the GPU once. Sizes are pixels,
+ * pixel (0, 0) is the centre of the top-left pixel, row 0 the top row. An unchanged viewport is
+ * not drawn again; a hidden one costs nothing. What OpenGL or VTK reports while drawing becomes a
+ * dspace::Error.
+ */
+#ifndef vtkDspaceViewport_h
+#define vtkDspaceViewport_h
+
+#include <memory>
+#include <string>
+
+#include "vtkDspaceCoreModule.h"
+#include "vtkObject.h"
+
+#ifndef __VTK_WRAP__
+#include <functional>
+
+#include <dspace/render/Capture.h>
+#include <dspace/scene/Overlay.h>
+#include <dspace/scene/Scene.h>
+#endif
+
+class vtkDspaceRenderContext;
+class vtkRenderer;
+class vtkRenderWindow;
+
+class VTKDSPACECORE_EXPORT vtkDspaceViewport : public vtkObject {
+public:
+  static vtkDspaceViewport* New();
+  vtkTypeMacro(vtkDspaceViewport, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int GetWidth();
+  int GetHeight();
+  bool GetVisible();
+
+  /// The renderer of the scene, for VTK code of one's own: its world coordinates are the root
+  /// frame's, in single precision on the GPU. Use it inside Run() only.
+  vtkRenderer* GetRenderer();
+  /// The overlay renderer (standard depth, drawn after the scene): 2D actors belong here.
+  vtkRenderer* GetOverlayRenderer();
+  /// Marks the picture as old, after changes made with VTK itself.
+  void Invalidate();
+
+#ifndef __VTK_WRAP__
+  /// Connects the viewport; to be called once, before anything else. Size 1 to 16384 a side.
+  /// Throws Error(InvalidArgument) naming the viewport and the size.
+  void Initialize(vtkDspaceRenderContext* context, std::shared_ptr<dspace::Scene> scene,
+                  const std::string& name, const std::string& vantage, int width, int height);
+  const std::string& GetName() const;
+  std::shared_ptr<dspace::Scene> GetScene() const;
+  const std::string& GetVantage() const;
+
+  /// All of these are checked before anything changes and mark the picture as old if it differs.
+  void SetVantage(const std::string& vantage);
+  void SetCamera(const std::string& camera); // of the vantage; "" follows its active camera
+  const std::string& GetCamera() const;
+  void Resize(int width, int height);
+  void SetVisible(bool visible);
+  /// sRGB, 0 to 1; with `top`, a vertical gradient.
+  void SetBackground(const std::array<double, 3>& bottom, const std::array<double, 3>& top);
+  /// Supersampling: n × n samples a pixel, 1 to 8 (default 2): each sample is shaded.
+  void SetSamples(int samples);
+  int GetSamples() const;
+  void SetOrnamentsVisible(bool visible);
+  void SetFragmentVisible(const std::string& fragment, bool visible); // in this viewport only
+  void SetTextTable(const dspace::TextTable& table); // creates or replaces, by name
+  void RemoveTextTable(const std::string& name);
+  void SetCornerAxes(bool visible);
+
+  /// Draws if something changed; returns whether it did. Nothing is done while hidden.
+  bool Render();
+  /// Draws even if nothing changed (benchmarks).
+  void ForceRender();
+  bool IsOutdated();
+
+  /// The picture, and other planes, of the scene as it is now (rendered if need be).
+  dspace::Capture GetCapture(const dspace::CaptureRequest& request);
+  /// What lies under a pixel; the nearest object within `radius` pixels if none lies right there.
+  dspace::PickResult Pick(double x, double y, int radius = 0);
+  /// Makes this viewport the window's current one and calls `f` with it.
+  void Run(const std::function<void(vtkRenderWindow*)>& f);
+#endif
+
+protected:
+  vtkDspaceViewport();
+  ~vtkDspaceViewport() override;
+
+private:
+  vtkDspaceViewport(const vtkDspaceViewport&) = delete;
+  void operator=(const vtkDspaceViewport&) = delete;
+  friend class vtkDspaceRenderContext;
+  struct Internals;
+  std::unique_ptr<Internals> Impl;
+};
+
+#endif
