@@ -47,7 +47,8 @@ public:
   FrameId Create(FrameId parent, const std::string& name, const Pose& X_PF = {},
                  FrameId id = NoFrame);
 
-  // Removes the frame and its subtree; returns their ids, children before parents.
+  // Removes the frame and its subtree; returns their ids, children before parents. Takes time in
+  // proportion to the slots from the frame's on.
   std::vector<FrameId> Remove(FrameId id);
 
   // Hangs the frame with its subtree under `newParent`, as its last child. With `keepWorldPose` the
@@ -117,6 +118,7 @@ public:
 
 private:
   using SlotIndex = std::uint32_t;
+  static constexpr std::size_t Clean = SIZE_MAX; // FirstDirty_ when nothing is
   // What is not needed to evaluate poses.
   struct Node {
     std::string name;
@@ -142,7 +144,7 @@ private:
   void RefuseTakenName(FrameId parent, const std::string& name) const;
   void DetachFromParent(SlotIndex slot);
   std::vector<char> SubtreeFrom(SlotIndex slot) const;
-  void Reorder(SlotIndex first, const std::vector<SlotIndex>& order);
+  void Reorder(SlotIndex first, SlotIndex last, const std::vector<SlotIndex>& order);
   bool StorePose(SlotIndex slot, const Pose& X_PF);
   void MarkDirty(SlotIndex slot);
   void Evaluate() const;
@@ -162,7 +164,7 @@ private:
   std::unordered_set<FrameId> Retired_; // ids of removed frames
   FrameId LargestId_ = RootFrame;
   std::uint64_t Revision_ = 0;
-  mutable std::size_t FirstDirty_ = 0; // no dirty slot lies before it
+  mutable std::size_t FirstDirty_ = Clean; // no dirty slot lies before it
   mutable std::uint64_t Evaluations_ = 0;
   std::uint64_t ReportedRevision_ = 0; // of the last Update()
   std::vector<FrameId> Changed_;

@@ -1,0 +1,85 @@
+#include <dspace/FrameRules.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <dspace/Error.h>
+
+namespace dspace {
+
+namespace {
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", value);
+  return text;
+}
+
+// For messages: control characters made visible.
+std::string Quoted(const std::string& name) {
+  std::string text = "'";
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 32 || byte == 127) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\x%02x", byte);
+      text += code;
+    } else {
+      text += c;
+    }
+  }
+  return text + "'";
+}
+
+} // namespace
+
+bool IsValidFrameName(const std::string& name) {
+  return !name.empty() && std::none_of(name.begin(), name.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return c == '/' || byte < 32 || byte == 127;
+  });
+}
+
+void RefuseFrameName(const std::string& object, const std::string& name) {
+  throw Error(Error::Kind::InvalidArgument, object,
+              "the name " + Quoted(name) +
+                  " is not accepted: it must not be empty nor hold '/' or control characters");
+}
+
+bool IsValidPose(const Pose& X) {
+  return X.position.allFinite() && std::isfinite(X.scale) && X.scale > 0.0 &&
+         std::abs(X.rotation.norm() - 1.0) <= UnitQuaternionTolerance; // false for NaN
+}
+
+void RefusePose(const std::string& object, const Pose& X) {
+  std::string why;
+  const Eigen::Quaterniond& q = X.rotation;
+  if (!X.position.allFinite()) {
+    why = "position (" + Number(X.position.x()) + ", " + Number(X.position.y()) + ", " +
+          Number(X.position.z()) + ") must be finite";
+  } else if (!(std::isfinite(X.scale) && X.scale > 0.0)) {
+    why = "scale " + Number(X.scale) + " must be finite and greater than 0";
+  } else {
+    why = "quaternion (w " + Number(q.w()) + ", x " + Number(q.x()) + ", y " + Number(q.y()) +
+          ", z " + Number(q.z()) + ") has norm " + Number(q.norm()) +
+          "; it must be unit within 1e-6";
+  }
+  throw Error(Error::Kind::InvalidArgument, object, why);
+}
+
+Pose NormalisedPose(const Pose& X) {
+  const double squared = X.rotation.squaredNorm();
+  Pose result = X;
+  if (std::abs(squared - 1.0) > 8.0 * std::numeric_limits<double>::epsilon()) {
+    result.rotation.coeffs() /= std::sqrt(squared);
+  }
+  return result;
+}
+
+Pose PoseFromRow(const double* row) {
+  return {{row[0], row[1], row[2]}, {row[3], row[4], row[5], row[6]}, row[7]};
+}
+
+} // namespace dspace

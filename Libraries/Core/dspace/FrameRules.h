@@ -1,0 +1,35 @@
+// What names and poses a frame accepts: used wherever one comes from outside.
+#ifndef DSPACE_FRAME_RULES_H
+#define DSPACE_FRAME_RULES_H
+
+#include <string>
+
+#include <dspace/Pose.h>
+
+namespace dspace {
+
+// How far a quaternion's norm may be from 1.
+constexpr double UnitQuaternionTolerance = 1e-6;
+
+// Not empty, holds no '/' and no control character (a byte below 32, or 127).
+bool IsValidFrameName(const std::string& name);
+
+// Throws Error(InvalidArgument) naming `object` and the name.
+[[noreturn]] void RefuseFrameName(const std::string& object, const std::string& name);
+
+// Position and scale finite, scale > 0, quaternion unit within UnitQuaternionTolerance.
+bool IsValidPose(const Pose& X);
+
+// Throws Error(InvalidArgument) naming `object` and the value that makes X invalid.
+[[noreturn]] void RefusePose(const std::string& object, const Pose& X);
+
+// A valid pose with its quaternion normalised. One that is already unit to the rounding of a
+// normalisation is left as it is, so that doing it twice is doing it once.
+Pose NormalisedPose(const Pose& X);
+
+// The pose in px py pz qw qx qy qz scale.
+Pose PoseFromRow(const double* row);
+
+} // namespace dspace
+
+#endif
