@@ -1,0 +1,270 @@
+// The frame tree's structure: names, paths, ids, removal, reparenting, refusals.
+#include <limits>
+
+#include "FrameTestSupport.h"
+
+namespace {
+
+using namespace dspace;
+using dspace::testing::ExpectRefused;
+using dspace::testing::RandomPose;
+using dspace::testing::Shift;
+using Kind = Error::Kind;
+using Ids = std::vector<FrameId>;
+
+} // namespace
+
+TEST(FrameTree, HasItsRootFromTheStart) {
+  const FrameTree tree;
+  EXPECT_EQ(tree.Size(), 1u);
+  EXPECT_TRUE(tree.Contains(RootFrame));
+  EXPECT_FALSE(tree.Contains(NoFrame));
+  EXPECT_EQ(RootFrame, 1u);
+  EXPECT_EQ(tree.Name(RootFrame), "root");
+  EXPECT_EQ(tree.Path(RootFrame), "/");
+  EXPECT_EQ(tree.Find("/"), RootFrame);
+  EXPECT_EQ(tree.Parent(RootFrame), NoFrame);
+  EXPECT_EQ(tree.Slot(RootFrame), 0u);
+  EXPECT_EQ(tree.WorldPose(RootFrame), Pose());
+}
+
+TEST(FrameTree, FindsByPath) {
+  FrameTree tree;
+  const FrameId rover = tree.Create(RootFrame, "rover");
+  const FrameId mast = tree.Create(rover, "mast");
+  const FrameId camera = tree.Create(mast, "camera");
+  const FrameId lander = tree.Create(RootFrame, "lander");
+  const FrameId other = tree.Create(lander, "mast"); // the same name elsewhere
+  const FrameId named = tree.Create(RootFrame, "root");
+  EXPECT_EQ(tree.Path(camera), "rover/mast/camera");
+  EXPECT_EQ(tree.Find("rover/mast/camera"), camera);
+  EXPECT_EQ(tree.Find("lander/mast"), other);
+  EXPECT_EQ(tree.Find("mast/camera", rover), camera);
+  EXPECT_EQ(tree.Find("/", mast), mast);
+  EXPECT_EQ(tree.Find("root"), named);
+  for (const char* absent :
+       {"", "mast", "rover/", "/rover", "rover//mast", "rover/mast/camera/x"}) {
+    EXPECT_EQ(tree.Find(absent), NoFrame) << absent;
+  }
+  EXPECT_EQ(tree.Children(RootFrame), (Ids{rover, lander, named}));
+  EXPECT_EQ(tree.Parent(camera), mast);
+
+  tree.Rename(mast, "pole");
+  EXPECT_EQ(tree.Find("rover/mast/camera"), NoFrame);
+  EXPECT_EQ(tree.Find("rover/pole/camera"), camera);
+  tree.Rename(mast, "pole");                        // no change, no refusal of its own name
+  EXPECT_EQ(tree.Create(rover, "mast"), named + 1); // the old name is free
+}
+
+TEST(FrameTree, NeverReusesAnId) {
+  FrameTree tree;
+  EXPECT_EQ(tree.Create(RootFrame, "a"), 2u);
+  EXPECT_EQ(tree.Create(RootFrame, "b", {}, 100), 100u);
+  EXPECT_EQ(tree.Create(RootFrame, "c"), 101u);
+  EXPECT_EQ(tree.Create(RootFrame, "d", {}, 50), 50u); // below the largest, never used
+  EXPECT_EQ(tree.Create(RootFrame, "e"), 102u);
+  tree.Remove(102);
+  EXPECT_EQ(tree.Create(RootFrame, "f"), 103u);
+  ExpectRefused(tree, Kind::AlreadyExists, {"g", "102", "removed"},
+                [&] { tree.Create(RootFrame, "g", {}, 102); });
+  ExpectRefused(tree, Kind::AlreadyExists, {"g", "50", "'d'"},
+                [&] { tree.Create(RootFrame, "g", {}, 50); });
+  ExpectRefused(tree, Kind::AlreadyExists, {"g", "1 "},
+                [&] { tree.Create(RootFrame, "g", {}, RootFrame); });
+  const FrameId largest = std::numeric_limits<std::int64_t>::max();
+  ExpectRefused(tree, Kind::InvalidArgument, {"g", "9223372036854775808"},
+                [&] { tree.Create(RootFrame, "g", {}, largest + 1); });
+  EXPECT_EQ(tree.Create(RootFrame, "last", {}, largest), largest);
+  ExpectRefused(tree, Kind::InvalidArgument, {"g", "2^63"}, [&] { tree.Create(RootFrame, "g"); });
+}
+
+TEST(FrameTree, RemovesSubtreesChildrenFirst) {
+  FrameTree tree;
+  const FrameId a = tree.Create(RootFrame, "a");
+  const FrameId b = tree.Create(RootFrame, "b", Shift(1));
+  const FrameId aa = tree.Create(a, "aa");
+  const FrameId bb = tree.Create(b, "bb", Shift(2));
+  const FrameId aaa = tree.Create(aa, "aaa");
+  const FrameId bbb = tree.Create(bb, "bbb", Shift(3));
+  EXPECT_EQ(tree.Remove(a), (Ids{aaa, aa, a}));
+  EXPECT_EQ(tree.Size(), 4u);
+  for (const FrameId gone : {a, aa, aaa}) {
+    EXPECT_FALSE(tree.Contains(gone));
+  }
+  EXPECT_EQ(tree.Find("a"), NoFrame);
+  EXPECT_EQ(tree.Find("b/bb/bbb"), bbb);
+  EXPECT_EQ(tree.WorldPose(bbb).position.x(), 6.0);
+  EXPECT_EQ(tree.Slot(bbb), 3u); // compacted
+  EXPECT_EQ(tree.Children(RootFrame), Ids{b});
+  EXPECT_NE(tree.Create(RootFrame, "a"), a);
+}
+
+TEST(FrameTree, ReparentsBehindAYoungerFrame) {
+  FrameTree tree;
+  const FrameId a = tree.Create(RootFrame, "a", Shift(1));
+  const FrameId aa = tree.Create(a, "aa", Shift(1));
+  const FrameId b = tree.Create(RootFrame, "b", Shift(10));
+  const FrameId c = tree.Create(b, "c", Shift(10));
+  const FrameId aaa = tree.Create(aa, "aaa", Shift(1));
+  tree.Update();
+  tree.Reparent(a, c, false);
+  EXPECT_EQ(tree.Path(aaa), "b/c/a/aa/aaa");
+  EXPECT_EQ(tree.Find("b/c/a/aa/aaa"), aaa);
+  EXPECT_EQ(tree.Find("a"), NoFrame);
+  for (std::size_t slot = 1; slot < tree.Size(); ++slot) {
+    const FrameId id = tree.IdAt(slot);
+    EXPECT_EQ(tree.Slot(id), slot);
+    EXPECT_LT(tree.Slot(tree.Parent(id)), slot);
+  }
+  EXPECT_EQ(tree.LocalPose(a), Shift(1));
+  EXPECT_EQ(tree.WorldPose(aaa), Shift(23));
+  tree.Reparent(aa, RootFrame, true); // an older frame: nothing moves in the arrays
+  EXPECT_EQ(tree.LocalPose(aa), Shift(22));
+  EXPECT_EQ(tree.WorldPose(aaa), Shift(23));
+  EXPECT_EQ(tree.Children(RootFrame), (Ids{b, aa}));
+  const std::uint64_t revision = tree.Revision();
+  tree.Reparent(aa, RootFrame, false); // the present parent
+  EXPECT_EQ(tree.Revision(), revision);
+}
+
+TEST(FrameTree, ReparentKeepsTheWorldPoseThroughTheCommonAncestor) {
+  std::mt19937 random(7);
+  FrameTree tree;
+  const FrameId far = tree.Create(RootFrame, "far", Shift(149597870700.0, 1e10, -3e9));
+  const FrameId left = tree.Create(far, "left", RandomPose(random));
+  const FrameId right = tree.Create(far, "right", RandomPose(random));
+  const FrameId part = tree.Create(left, "part", RandomPose(random));
+  const Pose before = tree.RelativePose(far, part);
+  tree.Reparent(part, right, true);
+  const Pose after = tree.RelativePose(far, part);
+  // Through the root it would be off by 1 au * 2^-53 = 17 micrometres.
+  EXPECT_LT((after.Matrix() - before.Matrix()).norm(), 1e-13);
+}
+
+TEST(FrameTree, RefusesWhatIsNotThere) {
+  FrameTree tree;
+  const FrameId a = tree.Create(RootFrame, "a");
+  const FrameId gone = tree.Create(RootFrame, "gone");
+  tree.Remove(gone);
+  std::vector<Pose> out;
+  const double row[8] = {0, 0, 0, 1, 0, 0, 0, 1};
+  for (const FrameId bad : {NoFrame, gone, FrameId(77)}) {
+    const std::vector<std::string> words = {"frame " + std::to_string(bad)};
+    const auto refused = [&](auto change) { ExpectRefused(tree, Kind::NotFound, words, change); };
+    refused([&] { tree.Create(bad, "x"); });
+    refused([&] { tree.Remove(bad); });
+    refused([&] { tree.Reparent(bad, a, true); });
+    refused([&] { tree.Reparent(a, bad, true); });
+    refused([&] { tree.Rename(bad, "x"); });
+    refused([&] { tree.Find("a", bad); });
+    refused([&] { tree.Path(bad); });
+    refused([&] { tree.Name(bad); });
+    refused([&] { tree.Parent(bad); });
+    refused([&] { tree.Children(bad); });
+    refused([&] { tree.SetLocalPose(bad, Pose()); });
+    refused([&] { tree.SetLocalPoses(&bad, row, 1); });
+    refused([&] { tree.LocalPose(bad); });
+    refused([&] { tree.RelativePose(bad, a); });
+    refused([&] { tree.RelativePose(a, bad); });
+    refused([&] { tree.RelativePoses(bad, out); });
+    refused([&] { tree.WorldPose(bad); });
+    refused([&] { tree.ChangedAt(bad); });
+    refused([&] { tree.Slot(bad); });
+  }
+  ExpectRefused(tree, Kind::NotFound, {"slot 2", "2 frames"}, [&] { tree.IdAt(2); });
+}
+
+TEST(FrameTree, RefusesToTouchTheRoot) {
+  FrameTree tree;
+  const FrameId a = tree.Create(RootFrame, "a");
+  const double row[8] = {1, 0, 0, 1, 0, 0, 0, 1};
+  const auto refused = [&](const char* word, auto change) {
+    ExpectRefused(tree, Kind::InvalidArgument, {"frame '/'", word}, change);
+  };
+  refused("removed", [&] { tree.Remove(RootFrame); });
+  refused("renamed", [&] { tree.Rename(RootFrame, "world"); });
+  refused("reparented", [&] { tree.Reparent(RootFrame, a, false); });
+  refused("posed", [&] { tree.SetLocalPose(RootFrame, Shift(1)); });
+  refused("posed", [&] { tree.SetLocalPoses(&RootFrame, row, 1); });
+}
+
+TEST(FrameTree, RefusesBadNames) {
+  FrameTree tree;
+  const FrameId a = tree.Create(RootFrame, "a");
+  const FrameId b = tree.Create(a, "b");
+  tree.Create(a, "c");
+  tree.Create(RootFrame, "b");
+  const std::pair<std::string, std::string> bad[] = {
+      {"", "''"},
+      {"x/y", "'x/y'"},
+      {"/", "'/'"},
+      {"line\nbreak", "'line\\x0abreak'"},
+      {std::string("nul\0byte", 8), "'nul\\x00byte'"},
+      {"\x7f", "'\\x7f'"}};
+  for (const auto& [name, shown] : bad) {
+    ExpectRefused(tree, Kind::InvalidArgument, {"child of frame 'a'", shown},
+                  [&] { tree.Create(a, name); });
+    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a/b'", shown},
+                  [&] { tree.Rename(b, name); });
+  }
+  ExpectRefused(tree, Kind::AlreadyExists, {"frame 'a/b'"}, [&] { tree.Create(a, "b"); });
+  ExpectRefused(tree, Kind::AlreadyExists, {"frame 'a/c'"}, [&] { tree.Rename(b, "c"); });
+  ExpectRefused(tree, Kind::AlreadyExists, {"frame 'b'"},
+                [&] { tree.Reparent(b, RootFrame, false); });
+  for (const char* good : {" ", ".", "..", "mât", "a b", "left\\right"}) {
+    EXPECT_EQ(tree.Find(good), NoFrame);
+    EXPECT_EQ(tree.Name(tree.Create(RootFrame, good)), good);
+  }
+}
+
+TEST(FrameTree, RefusesCycles) {
+  FrameTree tree;
+  const FrameId a = tree.Create(RootFrame, "a");
+  const FrameId b = tree.Create(a, "b");
+  const FrameId c = tree.Create(b, "c");
+  for (const bool keep : {false, true}) {
+    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'"}, [&] { tree.Reparent(a, a, keep); });
+    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'", "'a/b'"},
+                  [&] { tree.Reparent(a, b, keep); });
+    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'", "'a/b/c'"},
+                  [&] { tree.Reparent(a, c, keep); });
+  }
+}
+
+TEST(FrameTree, RefusesAWorldPoseThatDoublesCannotHold) {
+  FrameTree tree;
+  Pose tiny, huge;
+  tiny.scale = 1e-200;
+  huge.scale = 1e200;
+  const FrameId a = tree.Create(RootFrame, "a", tiny);
+  const FrameId b = tree.Create(RootFrame, "b", huge);
+  ExpectRefused(tree, Kind::InvalidArgument, {"frame 'b'", "scale inf"},
+                [&] { tree.Reparent(b, a, true); });
+  tree.Reparent(b, a, false);
+}
+
+TEST(FrameTree, HoldsAHundredThousandFramesAndDeepChains) {
+  FrameTree tree;
+  FrameId tip = RootFrame;
+  for (int i = 0; i < 20000; ++i) {
+    tip = tree.Create(tip, "link", Shift(1));
+  }
+  EXPECT_EQ(tree.WorldPose(tip).position.x(), 20000.0);
+  EXPECT_EQ(tree.RelativePose(tip, RootFrame).position.x(), -20000.0);
+  EXPECT_EQ(tree.Path(tip).size(), 20000u * 5 - 1);
+  EXPECT_EQ(tree.Find(tree.Path(tip)), tip);
+  Ids ids;
+  std::vector<double> rows;
+  for (int i = 0; i < 80000; ++i) {
+    ids.push_back(tree.Create(RootFrame, "leaf" + std::to_string(i)));
+    dspace::testing::AppendRow(rows, Shift(i));
+  }
+  EXPECT_EQ(tree.Size(), 100001u);
+  tree.SetLocalPoses(ids.data(), rows.data(), ids.size());
+  EXPECT_EQ(tree.WorldPose(ids.back()).position.x(), 79999.0);
+  // The whole chain moves behind the youngest frame and back into place.
+  tree.Reparent(tree.Find("link"), ids.back(), true);
+  EXPECT_EQ(tree.WorldPose(tip).position.x(), 20000.0);
+  EXPECT_EQ(tree.Remove(ids.back()).size(), 20001u);
+  EXPECT_EQ(tree.Size(), 80000u);
+}
