@@ -14,16 +14,15 @@ namespace dspace {
 constexpr int MaximumImageSide = 32768;
 constexpr std::size_t MaximumImageBytes = std::size_t(1) << 30;
 
-// Reads an image file of any type that OpenImageIO knows (png, jpeg, webp, tiff, bmp, tga, ...),
-// as 8 bits a channel; channels beyond the fourth are dropped. Row 0 is the top row. Alpha is not
-// premultiplied. Values are those of the file (sRGB-encoded for the usual types).
-// Throws Error: NotFound, Io (not a readable file), Corrupt (damaged or of no known type),
-// Resource (larger than the limits above).
+// Reads a PNG, JPEG, WebP, GIF, BMP, TIFF, PNM or (by its extension) TGA file as 8 bits a channel;
+// channels beyond the fourth are dropped, of several pictures the first is taken. Row 0 is the top
+// row. Alpha is not premultiplied. Values are the file's own (sRGB-encoded for the usual types).
+// Throws Error: NotFound, Io (not a readable file), Unsupported (of none of these types), Corrupt
+// (damaged, truncated), Resource (larger than the limits above).
 std::shared_ptr<const Image> ReadImage(const std::string& path);
 
-// The same from `size` bytes in memory; the type is found by content (png, jpeg, webp, bmp, gif,
-// tiff, hdr, exr, dds, ktx are not guessed beyond their magic bytes). `name` is for messages and
-// Image::name.
+// The same from `size` bytes in memory, the type found by content. `name` is for messages and
+// becomes Image::name; its extension decides where content is silent (TGA).
 std::shared_ptr<const Image> ReadImageMemory(const void* data, std::size_t size,
                                              const std::string& name);
 
