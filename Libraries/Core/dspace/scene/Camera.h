@@ -76,7 +76,13 @@ struct CameraMount {
   Eigen::Vector3d offset = Eigen::Vector3d(-5, 0, 2);
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  double smoothing_s = 0.0; // time constant of the lag behind the offset, in simulation time; 0 none
+  double smoothing_s =
+      0.0; // time constant of the lag behind the offset, in simulation time; 0 none
+
+  // Throws Error(InvalidArgument) naming `camera` and the value: a pose that is no pose or has a
+  // scale, a chase whose offset is its target, an `up` that is zero or always along the line of
+  // sight, a negative smoothing. Whether `frame` exists is for the scene to say.
+  void Check(const std::string& camera) const;
 };
 
 struct Camera {
@@ -86,8 +92,8 @@ struct Camera {
 };
 
 // X_FC of a camera at `eye` looking at `target` (both in F) with `up` towards the image's top.
-// Throws Error(InvalidArgument) naming `camera` when eye and target coincide, up is zero or along
-// the line of sight, or a value is not finite.
+// Throws Error(InvalidArgument) naming `camera` when eye and target coincide, up is zero or within
+// 1e-9 rad of the line of sight, or a value is not finite.
 Pose LookAt(const std::string& camera, const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
             const Eigen::Vector3d& up);
 
@@ -102,11 +108,22 @@ struct CameraPose {
 struct ChaseState {
   bool started = false;
   double time_s = 0.0;
+  FrameId frame = NoFrame;  // the frame followed, and the frame in which the position is:
+  FrameId parent = NoFrame; // the lag starts anew when either is another
   Eigen::Vector3d p_PC = Eigen::Vector3d::Zero(); // smoothed camera position in the parent frame
 };
 
-// Where `camera` stands now. Chase cameras are given in the followed frame's parent. `state` is
-// advanced to simulation time `time_s` (a step back in time starts the lag anew).
+// Where `camera` stands now. Chase cameras are given in the followed frame's parent P, whose metres
+// the offset and the target count. `state` is advanced to simulation time `time_s` (a step back in
+// time starts the lag anew): with d the distance from the place that the offset asks for,
+// d(t + dt) = d(t) exp(-dt / smoothing_s), exact for any dt while that place rests.
+//
+// The heading is the direction of the followed frame's X axis in the parent's XY plane; where X
+// stands upright, that of the axis which pitching brought there. Where `up` falls on the line of
+// sight, the followed frame's X (else Y) axis takes its place; where the lag brings the camera onto
+// its target, it keeps the direction of the offset.
+// Throws Error(NotFound) for a frame that is not in the tree, InvalidArgument for a chase of the
+// root.
 CameraPose PlaceCamera(const Camera& camera, const FrameTree& frames, double time_s,
                        ChaseState& state);
 

@@ -2,6 +2,8 @@
 #ifndef DSPACE_SCENE_GRAPHICS_OBJECT_H
 #define DSPACE_SCENE_GRAPHICS_OBJECT_H
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,10 +20,10 @@ using ObjectId = std::uint32_t; // 0 means none; never reused within a scene
 enum class Nature { Physical, Ornamental };
 
 // One mesh with its material, placed in the object's frame O. The mesh is shared: every part that
-// names the same Mesh draws the same buffers on the GPU.
+// names the same Mesh draws the same buffers on the GPU. A mesh is not changed once a scene has it.
 struct Part {
   std::shared_ptr<const Mesh> mesh;
-  std::shared_ptr<const Material> material;
+  std::shared_ptr<const Material> material; // null: Material's defaults (the scene fills them in)
   Eigen::Affine3d X_OP = Eigen::Affine3d::Identity();
 };
 
@@ -32,13 +34,23 @@ struct DetailLevel {
 
 // Changes laid over every part's own material; what is not set stays as imported.
 struct MaterialOverride {
-  std::optional<std::array<double, 3>> color; // sRGB, 0 to 1
-  std::optional<double> opacity;              // 0 to 1
-  std::optional<double> metallic;             // 0 to 1
-  std::optional<double> roughness;            // 0 to 1
+  std::optional<std::array<double, 3>> color;          // sRGB, 0 to 1
+  std::optional<double> opacity;                       // 0 to 1
+  std::optional<double> metallic;                      // 0 to 1
+  std::optional<double> roughness;                     // 0 to 1
   std::optional<std::shared_ptr<const Image>> texture; // set to null: no texture
   std::optional<bool> lit;
   std::optional<bool> wireframe;
+
+  bool operator==(const MaterialOverride& o) const {
+    return this->color == o.color && this->opacity == o.opacity && this->metallic == o.metallic &&
+           this->roughness == o.roughness && this->texture == o.texture && this->lit == o.lit &&
+           this->wireframe == o.wireframe;
+  }
+  bool operator!=(const MaterialOverride& o) const { return !(*this == o); }
+
+  // Throws Error(InvalidArgument) naming `object` and the value.
+  void Check(const std::string& object) const;
 };
 
 struct GraphicsObject {
@@ -46,9 +58,9 @@ struct GraphicsObject {
   std::string name; // unique in the scene
   FrameId frame = 1;
   Nature nature = Nature::Physical;
-  std::string fragment;                                  // of the same nature
-  Eigen::Affine3d X_FO = Eigen::Affine3d::Identity();    // any affine map with a non-zero determinant
-  std::vector<DetailLevel> levels;                       // finest first, minimumPixels descending
+  std::string fragment;                               // of the same nature
+  Eigen::Affine3d X_FO = Eigen::Affine3d::Identity(); // any affine map with a non-zero determinant
+  std::vector<DetailLevel> levels;                    // finest first, minimumPixels descending
   MaterialOverride material;
   bool visible = true;
   bool pickable = true;
@@ -59,17 +71,30 @@ struct GraphicsObject {
   double pointSize = 3.0; // pixels, points
 };
 
-// Smallest sphere about the centre of the bounds of a level, in O: what culling and levels use.
+// Sphere about the centre of the axis-aligned bounds of a level's vertices, in O; radius 0 at the
+// origin when it has none. What culling and levels use.
 struct BoundingSphere {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0.0;
 };
 BoundingSphere BoundsOf(const DetailLevel& level);
 
+// Index of the level to draw at a projected diameter of `pixels`: the finest whose minimumPixels is
+// no more than that; -1 when there is none.
+int LevelFor(const std::vector<DetailLevel>& levels, double pixels);
+
 // The parts of an imported model, sharing its meshes: `model` is kept alive by them.
 // `scale` multiplies coordinates; `rotation` turns the file's axes into the frame's.
+// Throws Error(InvalidArgument) naming the file: no model, scale zero or not finite, rotation not
+// unit within 1e-6.
 std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scale = 1.0,
                           const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity());
+
+// Throw Error(InvalidArgument) naming `object` and the value: what the scene asks of whatever it is
+// given, so that nothing that is drawn can be out of range. A mesh may be empty (a trail that has
+// not begun).
+void CheckMesh(const Mesh& mesh, const std::string& object);
+void CheckMaterial(const Material& material, const std::string& object);
 
 } // namespace dspace
 

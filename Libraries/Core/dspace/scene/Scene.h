@@ -2,8 +2,12 @@
 #ifndef DSPACE_SCENE_SCENE_H
 #define DSPACE_SCENE_SCENE_H
 
+#include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include <dspace/FrameTree.h>
@@ -17,7 +21,7 @@ namespace dspace {
 struct SceneFragment {
   std::string name;
   Nature nature = Nature::Physical;
-  bool visible = true; // everywhere; a viewport or a request hides it for itself
+  bool visible = true;           // everywhere; a viewport or a request hides it for itself
   std::vector<ObjectId> objects; // in the order they came
 };
 
@@ -66,8 +70,11 @@ private:
   std::vector<Camera> Cameras_;
 };
 
-// Every change goes through the scene (or frames()), is checked whole before it is made, and
-// raises Revision(). Errors name the object, the value and what would be accepted.
+// Every change goes through the scene (or Frames()), is checked whole before it is made, and
+// raises Revision(); setting what an object, a fragment or the time
+// already is, is no change. Errors name the object, the value and
+// what would be accepted. Names are not empty and hold no control characters.
+// Not synchronised.
 class Scene {
 public:
   explicit Scene(std::string name);
@@ -76,13 +83,18 @@ public:
   FrameTree& Frames() { return this->Frames_; }
   const FrameTree& Frames() const { return this->Frames_; }
   // Removes a frame with its subtree, the objects and the lights on it. Refused while a camera
-  // stands on it or follows it.
+  // stands on it or follows it. (Frames().Remove() is for frames on which nothing of the scene
+  // hangs.)
   void RemoveFrame(FrameId frame);
 
-  // Adds an object; id 0 takes the next free one. An empty fragment means the one of its nature.
+  // Adds an object; id 0 takes the one after the largest ever used, another, at most 2^31 - 1, is
+  // taken as it is. An empty fragment means the one of its nature. Throws Error: AlreadyExists
+  // (name; id in use now or ever), NotFound (frame, fragment), InvalidArgument (natures that
+  // differ, numbers out of range, levels without descending minimumPixels, damaged meshes or
+  // materials).
   ObjectId AddObject(GraphicsObject object);
   void RemoveObject(ObjectId id);
-  const GraphicsObject& Object(ObjectId id) const; // throws Error(NotFound)
+  const GraphicsObject& Object(ObjectId id) const;    // throws Error(NotFound)
   ObjectId FindObject(const std::string& name) const; // 0 when there is none
   const std::map<ObjectId, GraphicsObject>& Objects() const { return this->Objects_; }
   void SetObjectVisible(ObjectId id, bool visible);
@@ -107,7 +119,12 @@ public:
   void RemoveCamera(const std::string& vantage, const std::string& camera);
   void SetActiveCamera(const std::string& vantage, const std::string& camera);
 
+  // Where a camera of a vantage stands now ("": the active one): a function of the commands given
+  // so far, however often and from however many viewports it is asked.
+  CameraPose PlaceCamera(const std::string& vantage, const std::string& camera = {}) const;
+
   // Simulation time [s], TDB past J2000 or any other that only grows; smoothing depends on it.
+  // Poses set after SetTime(t) are those of t. A step back starts all lags anew.
   void SetTime(double time_s);
   double Time() const { return this->Time_; }
 
@@ -117,15 +134,34 @@ public:
   std::uint64_t ContentRevision() const { return this->ContentRevision_; }
 
 private:
+  // Meshes that were found good and still live: an instance costs no second look.
+  class MeshRegister {
+  public:
+    void Check(const std::shared_ptr<const Mesh>& mesh, const std::string& object);
+
+  private:
+    std::map<const Mesh*, std::weak_ptr<const Mesh>> Good_;
+    std::size_t PruneAt_ = 256;
+  };
+
   GraphicsObject& Find(ObjectId id);
+  SceneVantage& FindVantage(const std::string& name);
+  void RequireFrame(const std::string& object, FrameId frame) const;
+  void CheckLevels(const std::string& object, std::vector<DetailLevel>& levels);
+  void RefuseWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const;
   void ContentChanged();
+
   std::string Name_;
   FrameTree Frames_;
   SceneFragmentManager Fragments_;
   std::map<ObjectId, GraphicsObject> Objects_;
   std::map<std::string, ObjectId> ObjectNames_;
-  ObjectId NextObject_ = 1;
+  ObjectId LargestObject_ = 0;
+  std::unordered_set<ObjectId> RetiredObjects_; // ids of removed objects
+  MeshRegister Meshes_;
   std::vector<SceneVantage> Vantages_;
+  // Lags of chase cameras at the time before the present one, by vantage and camera.
+  std::map<std::pair<std::string, std::string>, ChaseState> Lags_;
   double Time_ = 0.0;
   std::uint64_t Revision_ = 1;
   std::uint64_t ContentRevision_ = 1;

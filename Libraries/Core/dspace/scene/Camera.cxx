@@ -1,0 +1,162 @@
+#include <dspace/scene/Camera.h>
+
+#include <cmath>
+
+#include <dspace/FrameRules.h>
+#include <dspace/scene/Checks.h>
+
+namespace dspace {
+
+namespace {
+
+constexpr double Parallel = 1e-9; // sine of the angle below which directions count as parallel
+
+// C's axes (X right, Y down, Z forward) as columns; false when `up` is along the line of sight.
+bool AxesLookingAlong(const Eigen::Vector3d& forward, const Eigen::Vector3d& up,
+                      Eigen::Matrix3d& axes) {
+  const Eigen::Vector3d z = forward.stableNormalized();
+  const Eigen::Vector3d right = z.cross(up.stableNormalized());
+  if (!(right.norm() >= Parallel)) {
+    return false;
+  }
+  axes.col(0) = right.normalized();
+  axes.col(1) = z.cross(axes.col(0)).normalized();
+  axes.col(2) = z;
+  return true;
+}
+
+// Rotation about Z by the heading of q_PF (see Camera.h).
+Eigen::Matrix3d HeadingOf(const Eigen::Matrix3d& R_PF) {
+  Eigen::Vector3d x = R_PF.col(0);
+  if (std::hypot(x.x(), x.y()) < Parallel) {
+    x = x.z() > 0.0 ? Eigen::Vector3d(-R_PF.col(2)) : Eigen::Vector3d(R_PF.col(2));
+  }
+  return Eigen::AngleAxisd(std::atan2(x.y(), x.x()), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+Eigen::Matrix3d OffsetAxes(CameraMount::ChaseAxes axes, const Eigen::Matrix3d& R_PF) {
+  switch (axes) {
+  case CameraMount::ChaseAxes::Followed:
+    return R_PF;
+  case CameraMount::ChaseAxes::Heading:
+    return HeadingOf(R_PF);
+  case CameraMount::ChaseAxes::Parent:
+    break;
+  }
+  return Eigen::Matrix3d::Identity();
+}
+
+// Advances the lag to `time_s`, when the camera should be at `wanted`.
+void Advance(ChaseState& state, double time_s, double smoothing_s, FrameId frame, FrameId parent,
+             const Eigen::Vector3d& wanted) {
+  const bool goesOn = state.started && state.frame == frame && state.parent == parent &&
+                      time_s >= state.time_s && smoothing_s > 0.0;
+  if (goesOn) {
+    const double left = std::exp(-(time_s - state.time_s) / smoothing_s);
+    state.p_PC = wanted + left * (state.p_PC - wanted);
+  } else {
+    state.p_PC = wanted;
+  }
+  state.started = true;
+  state.time_s = time_s;
+  state.frame = frame;
+  state.parent = parent;
+}
+
+} // namespace
+
+void CameraMount::Check(const std::string& camera) const {
+  const std::string object = "camera '" + camera + "'";
+  if (this->kind == Kind::Fixed) {
+    if (!IsValidPose(this->X_FC)) {
+      RefusePose(object, this->X_FC);
+    }
+    Require(this->X_FC.scale == 1.0, object, "scale", this->X_FC.scale, "1");
+    return;
+  }
+  RequireFinite(object, "offset", this->offset);
+  RequireFinite(object, "target", this->target);
+  RequireFinite(object, "up", this->up);
+  Require(this->smoothing_s >= 0.0 && std::isfinite(this->smoothing_s), object, "smoothing",
+          this->smoothing_s, "0 seconds and more");
+  if (this->offset == this->target) {
+    Refuse(object, "its offset and its target are both " + VectorText(this->offset) +
+                       "; accepted: an offset away from the target");
+  }
+  if (this->up.isZero(0.0)) {
+    Refuse(object, "up is (0, 0, 0); accepted: a direction");
+  }
+  // Followed axes turn against `up`, and headings against any that is not upright.
+  const Eigen::Vector3d up = this->up.stableNormalized();
+  const bool fixedAxes = this->axes == ChaseAxes::Parent || (this->axes == ChaseAxes::Heading &&
+                                                             std::hypot(up.x(), up.y()) < Parallel);
+  Eigen::Matrix3d unused;
+  if (fixedAxes && !AxesLookingAlong(this->target - this->offset, this->up, unused)) {
+    Refuse(object, "up " + VectorText(this->up) + " is along the line of sight from " +
+                       VectorText(this->offset) + " to " + VectorText(this->target) +
+                       "; accepted: any other direction");
+  }
+}
+
+Pose LookAt(const std::string& camera, const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
+            const Eigen::Vector3d& up) {
+  const std::string object = "camera '" + camera + "'";
+  RequireFinite(object, "eye", eye);
+  RequireFinite(object, "target", target);
+  RequireFinite(object, "up", up);
+  if (eye == target) {
+    Refuse(object,
+           "eye and target are both " + VectorText(eye) + "; accepted: a target away from the eye");
+  }
+  if (up.isZero(0.0)) {
+    Refuse(object, "up is (0, 0, 0); accepted: a direction");
+  }
+  Eigen::Matrix3d axes;
+  if (!AxesLookingAlong(target - eye, up, axes)) {
+    Refuse(object, "up " + VectorText(up) + " is along the line of sight from " + VectorText(eye) +
+                       " to " + VectorText(target) + "; accepted: any other direction");
+  }
+  Pose X_FC;
+  X_FC.position = eye;
+  X_FC.rotation = Eigen::Quaterniond(axes).normalized();
+  return X_FC;
+}
+
+CameraPose PlaceCamera(const Camera& camera, const FrameTree& frames, double time_s,
+                       ChaseState& state) {
+  const CameraMount& mount = camera.mount;
+  if (mount.kind == CameraMount::Kind::Fixed) {
+    if (!frames.Contains(mount.frame)) {
+      throw Error(Error::Kind::NotFound, "camera '" + camera.name + "'",
+                  "frame " + std::to_string(mount.frame) + " is not in the tree");
+    }
+    return {mount.frame, mount.X_FC};
+  }
+  if (mount.frame == RootFrame) {
+    Refuse("camera '" + camera.name + "'",
+           "it follows the root frame, which does not move; accepted: any other frame");
+  }
+  const Pose& X_PF = frames.LocalPose(mount.frame);
+  const FrameId parent = frames.Parent(mount.frame);
+  const Eigen::Matrix3d R_PF = X_PF.rotation.toRotationMatrix();
+  const Eigen::Matrix3d R_PA = OffsetAxes(mount.axes, R_PF);
+  const Eigen::Vector3d wanted = X_PF.position + R_PA * mount.offset;
+  const Eigen::Vector3d target = X_PF.position + R_PA * mount.target;
+  Advance(state, time_s, mount.smoothing_s, mount.frame, parent, wanted);
+
+  Eigen::Vector3d sight = target - state.p_PC;
+  const double asked = (mount.target - mount.offset).norm();
+  if (sight.norm() < Parallel * asked) {
+    sight = R_PA * (mount.target - mount.offset);
+  }
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  if (!AxesLookingAlong(sight, mount.up, axes) && !AxesLookingAlong(sight, R_PF.col(0), axes)) {
+    AxesLookingAlong(sight, R_PF.col(1), axes);
+  }
+  Pose X_PC;
+  X_PC.position = state.p_PC;
+  X_PC.rotation = Eigen::Quaterniond(axes).normalized();
+  return {parent, X_PC};
+}
+
+} // namespace dspace

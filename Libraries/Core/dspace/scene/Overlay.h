@@ -1,0 +1,38 @@
+// What is written over a viewport's picture.
+#ifndef DSPACE_SCENE_OVERLAY_H
+#define DSPACE_SCENE_OVERLAY_H
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dspace {
+
+// A table of labels and values in a corner of a viewport. Overlays are ornaments: no physical-only
+// picture holds them.
+struct TextTable {
+  enum class Anchor { TopLeft, TopRight, BottomLeft, BottomRight };
+  std::string name;                                      // unique in the viewport
+  std::string title;                                     // UTF-8; empty: no title line
+  std::vector<std::pair<std::string, std::string>> rows; // label, value; UTF-8
+  Anchor anchor = Anchor::TopLeft;
+  int margin = 8;                                 // pixels from both edges of the corner, >= 0
+  int fontSize = 14;                              // pixels, 4 to 200
+  std::array<double, 4> textColor = {1, 1, 1, 1}; // sRGB and opacity, 0 to 1
+  std::array<double, 4> backgroundColor = {0, 0, 0, 0.5}; // sRGB and opacity, 0 to 1
+
+  bool operator==(const TextTable& o) const {
+    return this->name == o.name && this->title == o.title && this->rows == o.rows &&
+           this->anchor == o.anchor && this->margin == o.margin && this->fontSize == o.fontSize &&
+           this->textColor == o.textColor && this->backgroundColor == o.backgroundColor;
+  }
+  bool operator!=(const TextTable& o) const { return !(*this == o); }
+
+  // Throws Error(InvalidArgument) naming the table and the value.
+  void Check() const;
+};
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,252 @@
+#include <dspace/scene/Scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <dspace/scene/Checks.h>
+
+namespace dspace {
+
+namespace {
+
+constexpr ObjectId LargestAllowedObject = 0x7fffffff;
+
+std::string Label(const std::string& name) {
+  return "object '" + name + "'";
+}
+
+const char* NatureText(Nature nature) {
+  return nature == Nature::Physical ? "physical" : "ornamental";
+}
+
+void CheckOffset(const std::string& object, const Eigen::Affine3d& X_FO) {
+  const double det = X_FO.matrix().allFinite() ? X_FO.linear().determinant() : 0.0;
+  if (!std::isnormal(det)) {
+    Refuse(object, "its offset is not finite or flattens it; accepted: an affine map with an "
+                   "inverse");
+  }
+}
+
+void EraseValue(std::vector<ObjectId>& ids, ObjectId id) {
+  ids.erase(std::remove(ids.begin(), ids.end(), id), ids.end());
+}
+
+} // namespace
+
+void Scene::MeshRegister::Check(const std::shared_ptr<const Mesh>& mesh,
+                                const std::string& object) {
+  const auto found = this->Good_.find(mesh.get());
+  if (found != this->Good_.end() && !found->second.expired()) {
+    return; // it lived on all the while, so it is the same mesh
+  }
+  CheckMesh(*mesh, object);
+  if (this->Good_.size() >= this->PruneAt_) {
+    for (auto it = this->Good_.begin(); it != this->Good_.end();) {
+      it = it->second.expired() ? this->Good_.erase(it) : std::next(it);
+    }
+    this->PruneAt_ = 2 * this->Good_.size() + 256;
+  }
+  this->Good_[mesh.get()] = mesh;
+}
+
+Scene::Scene(std::string name) : Name_(std::move(name)) {
+  RequireName("scene", this->Name_);
+}
+
+void Scene::ContentChanged() {
+  ++this->Revision_;
+  ++this->ContentRevision_;
+}
+
+GraphicsObject& Scene::Find(ObjectId id) {
+  const auto found = this->Objects_.find(id);
+  if (found == this->Objects_.end()) {
+    throw Error(Error::Kind::NotFound, "object " + std::to_string(id),
+                "scene '" + this->Name_ + "' has none of this id");
+  }
+  return found->second;
+}
+
+const GraphicsObject& Scene::Object(ObjectId id) const {
+  return const_cast<Scene*>(this)->Find(id);
+}
+
+ObjectId Scene::FindObject(const std::string& name) const {
+  const auto found = this->ObjectNames_.find(name);
+  return found == this->ObjectNames_.end() ? 0 : found->second;
+}
+
+void Scene::RequireFrame(const std::string& object, FrameId frame) const {
+  if (!this->Frames_.Contains(frame)) {
+    throw Error(Error::Kind::NotFound, object,
+                "frame " + std::to_string(frame) + " is not in scene '" + this->Name_ + "'");
+  }
+}
+
+// Checks levels and puts the default material where there is none.
+void Scene::CheckLevels(const std::string& object, std::vector<DetailLevel>& levels) {
+  double finer = std::numeric_limits<double>::infinity();
+  for (DetailLevel& level : levels) {
+    Require(level.minimumPixels >= 0.0 && level.minimumPixels < finer, object,
+            "minimumPixels of a level", level.minimumPixels,
+            ("0 and more, less than the finer level's " + NumberText(finer)).c_str());
+    finer = level.minimumPixels;
+    for (Part& part : level.parts) {
+      if (!part.mesh) {
+        Refuse(object, "a part has no mesh");
+      }
+      if (!part.X_OP.matrix().allFinite()) {
+        Refuse(object, "the place of mesh '" + part.mesh->name + "' in it is not finite");
+      }
+      this->Meshes_.Check(part.mesh, object);
+      if (part.material) {
+        CheckMaterial(*part.material, object);
+      } else {
+        part.material = std::make_shared<const Material>();
+      }
+    }
+  }
+}
+
+ObjectId Scene::AddObject(GraphicsObject object) {
+  RequireName("object", object.name);
+  const std::string label = Label(object.name);
+  if (this->ObjectNames_.count(object.name) != 0) {
+    throw Error(Error::Kind::AlreadyExists, label,
+                "scene '" + this->Name_ + "' has one of this name; accepted: another name");
+  }
+  if (object.id == 0) {
+    object.id = this->LargestObject_ + 1;
+  }
+  if (object.id > LargestAllowedObject) {
+    Refuse(label, "its id is " + std::to_string(object.id) + "; accepted: up to " +
+                      std::to_string(LargestAllowedObject));
+  }
+  if (this->Objects_.count(object.id) != 0 || this->RetiredObjects_.count(object.id) != 0) {
+    throw Error(Error::Kind::AlreadyExists, label,
+                "id " + std::to_string(object.id) + " is or was in use; accepted: 0 or a new one");
+  }
+  this->RequireFrame(label, object.frame);
+  if (object.fragment.empty()) {
+    object.fragment = NatureText(object.nature);
+  }
+  SceneFragment& fragment = this->Fragments_.Find(object.fragment);
+  if (fragment.nature != object.nature) {
+    Refuse(label, std::string("it is ") + NatureText(object.nature) + " and fragment '" +
+                      fragment.name + "' " + NatureText(fragment.nature) +
+                      "; accepted: a fragment of its nature");
+  }
+  CheckOffset(label, object.X_FO);
+  Require(object.lineWidth > 0.0 && std::isfinite(object.lineWidth), label, "line width",
+          object.lineWidth, "a positive number of pixels");
+  Require(object.pointSize > 0.0 && std::isfinite(object.pointSize), label, "point size",
+          object.pointSize, "a positive number of pixels");
+  object.material.Check(label);
+  this->CheckLevels(label, object.levels);
+
+  const ObjectId id = object.id;
+  fragment.objects.push_back(id);
+  this->ObjectNames_.emplace(object.name, id);
+  this->Objects_.emplace(id, std::move(object));
+  this->LargestObject_ = std::max(this->LargestObject_, id);
+  this->ContentChanged();
+  return id;
+}
+
+void Scene::RemoveObject(ObjectId id) {
+  const GraphicsObject& object = this->Find(id);
+  EraseValue(this->Fragments_.Find(object.fragment).objects, id);
+  this->ObjectNames_.erase(object.name);
+  this->Objects_.erase(id);
+  this->RetiredObjects_.insert(id);
+  this->ContentChanged();
+}
+
+void Scene::SetObjectVisible(ObjectId id, bool visible) {
+  GraphicsObject& object = this->Find(id);
+  if (object.visible != visible) {
+    object.visible = visible;
+    this->ContentChanged();
+  }
+}
+
+void Scene::SetObjectMaterial(ObjectId id, const MaterialOverride& material) {
+  GraphicsObject& object = this->Find(id);
+  material.Check(Label(object.name));
+  if (object.material != material) {
+    object.material = material;
+    this->ContentChanged();
+  }
+}
+
+void Scene::SetObjectOffset(ObjectId id, const Eigen::Affine3d& X_FO) {
+  GraphicsObject& object = this->Find(id);
+  CheckOffset(Label(object.name), X_FO);
+  if (object.X_FO.matrix() != X_FO.matrix()) {
+    object.X_FO = X_FO;
+    this->ContentChanged();
+  }
+}
+
+void Scene::AttachObject(ObjectId id, FrameId frame) {
+  GraphicsObject& object = this->Find(id);
+  this->RequireFrame(Label(object.name), frame);
+  if (object.frame != frame) {
+    object.frame = frame;
+    this->ContentChanged();
+  }
+}
+
+void Scene::MoveToFragment(ObjectId id, const std::string& name) {
+  GraphicsObject& object = this->Find(id);
+  SceneFragment& fragment = this->Fragments_.Find(name);
+  if (fragment.nature != object.nature) {
+    Refuse(Label(object.name), std::string("it is ") + NatureText(object.nature) +
+                                   " and fragment '" + name + "' " + NatureText(fragment.nature) +
+                                   "; accepted: a fragment of its nature");
+  }
+  if (object.fragment != name) {
+    fragment.objects.push_back(id);
+    EraseValue(this->Fragments_.Find(object.fragment).objects, id);
+    object.fragment = name;
+    this->ContentChanged();
+  }
+}
+
+void Scene::SetObjectLevels(ObjectId id, std::vector<DetailLevel> levels) {
+  GraphicsObject& object = this->Find(id);
+  this->CheckLevels(Label(object.name), levels);
+  object.levels = std::move(levels);
+  this->ContentChanged();
+}
+
+void Scene::CreateFragment(const std::string& name, Nature nature) {
+  this->Fragments_.Create(name, nature);
+  this->ContentChanged();
+}
+
+void Scene::RemoveFragment(const std::string& name) {
+  this->Fragments_.Remove(name);
+  this->ContentChanged();
+}
+
+void Scene::SetFragmentVisible(const std::string& name, bool visible) {
+  if (this->Fragments_.Get(name).visible != visible) {
+    this->Fragments_.SetVisible(name, visible);
+    this->ContentChanged();
+  }
+}
+
+void Scene::SetLight(const Light& light) {
+  this->RequireFrame("light '" + light.name + "'", light.frame);
+  this->Fragments_.SetLight(light);
+  this->ContentChanged();
+}
+
+void Scene::RemoveLight(const std::string& name) {
+  this->Fragments_.RemoveLight(name);
+  this->ContentChanged();
+}
+
+} // namespace dspace

@@ -1,0 +1,121 @@
+#include <dspace/scene/Scene.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <dspace/scene/Checks.h>
+
+namespace dspace {
+
+namespace {
+
+const char* const PhysicalFragment = "physical";
+const char* const OrnamentalFragment = "ornamental";
+
+template<class Named> auto FindNamed(std::vector<Named>& all, const std::string& name) {
+  return std::find_if(all.begin(), all.end(), [&](const Named& n) { return n.name == name; });
+}
+
+void CheckLight(const Light& light) {
+  RequireName("light", light.name);
+  const std::string object = "light '" + light.name + "'";
+  RequireFinite(object, "direction", light.direction);
+  RequireFinite(object, "position", light.position);
+  const bool directed = light.kind == Light::Kind::Directional || light.kind == Light::Kind::Spot;
+  if (directed && light.direction.isZero(0.0)) {
+    Refuse(object, "its direction is (0, 0, 0); accepted: any other");
+  }
+  Require(light.cone_deg > 0.0 && light.cone_deg < 90.0, object, "cone", light.cone_deg,
+          "between 0 and 90 degrees");
+  for (const double c : light.color) {
+    RequireFraction(object, "colour", c);
+  }
+  Require(light.intensity >= 0.0 && std::isfinite(light.intensity), object, "intensity",
+          light.intensity, "0 and more");
+  double sum = 0.0;
+  for (const double a : light.attenuation) {
+    Require(a >= 0.0 && std::isfinite(a), object, "attenuation", a, "0 and more");
+    sum += a;
+  }
+  Require(sum > 0.0, object, "sum of its attenuation", sum, "more than 0");
+}
+
+} // namespace
+
+SceneFragmentManager::SceneFragmentManager() {
+  this->Create(PhysicalFragment, Nature::Physical);
+  this->Create(OrnamentalFragment, Nature::Ornamental);
+}
+
+void SceneFragmentManager::Create(const std::string& name, Nature nature) {
+  RequireName("fragment", name);
+  if (this->Contains(name)) {
+    throw Error(Error::Kind::AlreadyExists, "fragment '" + name + "'",
+                "it exists; accepted: a name that no fragment has");
+  }
+  SceneFragment fragment;
+  fragment.name = name;
+  fragment.nature = nature;
+  this->Fragments_.push_back(std::move(fragment));
+}
+
+void SceneFragmentManager::Remove(const std::string& name) {
+  const SceneFragment& fragment = this->Find(name);
+  if (name == PhysicalFragment || name == OrnamentalFragment) {
+    Refuse("fragment '" + name + "'", "it always exists and cannot be removed");
+  }
+  if (!fragment.objects.empty()) {
+    Refuse("fragment '" + name + "'", "it holds " + std::to_string(fragment.objects.size()) +
+                                          " objects; accepted: an empty fragment");
+  }
+  this->Fragments_.erase(FindNamed(this->Fragments_, name));
+}
+
+void SceneFragmentManager::SetVisible(const std::string& name, bool visible) {
+  this->Find(name).visible = visible;
+}
+
+SceneFragment& SceneFragmentManager::Find(const std::string& name) {
+  const auto found = FindNamed(this->Fragments_, name);
+  if (found == this->Fragments_.end()) {
+    throw Error(Error::Kind::NotFound, "fragment '" + name + "'", "there is none of this name");
+  }
+  return *found;
+}
+
+const SceneFragment& SceneFragmentManager::Get(const std::string& name) const {
+  return const_cast<SceneFragmentManager*>(this)->Find(name);
+}
+
+bool SceneFragmentManager::Contains(const std::string& name) const {
+  return std::any_of(this->Fragments_.begin(), this->Fragments_.end(),
+                     [&](const SceneFragment& f) { return f.name == name; });
+}
+
+std::vector<std::string> SceneFragmentManager::Names() const {
+  std::vector<std::string> names;
+  for (const SceneFragment& fragment : this->Fragments_) {
+    names.push_back(fragment.name);
+  }
+  return names;
+}
+
+void SceneFragmentManager::SetLight(const Light& light) {
+  CheckLight(light);
+  const auto found = FindNamed(this->Lights_, light.name);
+  if (found == this->Lights_.end()) {
+    this->Lights_.push_back(light);
+  } else {
+    *found = light;
+  }
+}
+
+void SceneFragmentManager::RemoveLight(const std::string& name) {
+  const auto found = FindNamed(this->Lights_, name);
+  if (found == this->Lights_.end()) {
+    throw Error(Error::Kind::NotFound, "light '" + name + "'", "there is none of this name");
+  }
+  this->Lights_.erase(found);
+}
+
+} // namespace dspace

@@ -1,0 +1,80 @@
+#include <dspace/scene/Scene.h>
+
+#include <algorithm>
+
+#include <dspace/scene/Checks.h>
+
+namespace dspace {
+
+namespace {
+
+template<class Cameras> auto FindCamera(Cameras& cameras, const std::string& name) {
+  return std::find_if(cameras.begin(), cameras.end(),
+                      [&](const Camera& camera) { return camera.name == name; });
+}
+
+[[noreturn]] void NoSuchCamera(const std::string& vantage, const std::string& camera) {
+  throw Error(Error::Kind::NotFound, "camera '" + camera + "'",
+              "vantage '" + vantage + "' has none of this name");
+}
+
+} // namespace
+
+void SceneVantage::SetCamera(const Camera& camera) {
+  RequireName("camera", camera.name);
+  camera.projection.Check(camera.name);
+  camera.mount.Check(camera.name);
+  const auto found = FindCamera(this->Cameras_, camera.name);
+  if (found != this->Cameras_.end()) {
+    *found = camera;
+    return;
+  }
+  this->Cameras_.push_back(camera);
+  if (this->Cameras_.size() == 1) {
+    this->Active_ = camera.name;
+  }
+}
+
+void SceneVantage::RemoveCamera(const std::string& name) {
+  const auto found = FindCamera(this->Cameras_, name);
+  if (found == this->Cameras_.end()) {
+    NoSuchCamera(this->Name_, name);
+  }
+  if (name == this->Active_ && this->Cameras_.size() > 1) {
+    Refuse("camera '" + name + "'", "it is the active one of vantage '" + this->Name_ +
+                                        "'; accepted: another, or the last one");
+  }
+  if (name == this->Active_) {
+    this->Active_.clear();
+  }
+  this->Cameras_.erase(found);
+}
+
+void SceneVantage::SetActiveCamera(const std::string& name) {
+  this->Active_ = this->GetCamera(name).name;
+}
+
+const Camera& SceneVantage::GetCamera(const std::string& name) const {
+  const auto found = FindCamera(this->Cameras_, name);
+  if (found == this->Cameras_.end()) {
+    NoSuchCamera(this->Name_, name);
+  }
+  return *found;
+}
+
+const Camera& SceneVantage::ActiveCamera() const {
+  if (this->Cameras_.empty()) {
+    throw Error(Error::Kind::NotFound, "vantage '" + this->Name_ + "'", "it has no camera");
+  }
+  return this->GetCamera(this->Active_);
+}
+
+std::vector<std::string> SceneVantage::CameraNames() const {
+  std::vector<std::string> names;
+  for (const Camera& camera : this->Cameras_) {
+    names.push_back(camera.name);
+  }
+  return names;
+}
+
+} // namespace dspace
