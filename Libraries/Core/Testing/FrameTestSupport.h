@@ -39,8 +39,11 @@ inline Eigen::Affine3d ToAffine(const Pose& X) {
 }
 
 inline void AppendRow(std::vector<double>& rows, const Pose& X) {
-  rows.insert(rows.end(), {X.position.x(), X.position.y(), X.position.z(), X.rotation.w(),
-                           X.rotation.x(), X.rotation.y(), X.rotation.z(), X.scale});
+  const Eigen::Quaterniond& q = X.rotation;
+  for (const double value :
+       {X.position.x(), X.position.y(), X.position.z(), q.w(), q.x(), q.y(), q.z(), X.scale}) {
+    rows.push_back(value);
+  }
 }
 
 // Everything that can be asked of a tree, doubles to the bit. It evaluates the tree.

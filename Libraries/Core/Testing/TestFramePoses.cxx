@@ -353,10 +353,13 @@ TEST(FrameEvaluation, HappensOnceAndOnlyWhereSomethingChanged) {
   EXPECT_EQ(tree.Update(), (Ids{b, c}));
   EXPECT_EQ(tree.Evaluations(), 15u);
   tree.SetLocalPose(c, Shift(4));
+  const std::uint64_t before = tree.ChangedAt(e);
+  tree.SetLocalPose(c, Shift(5));
   tree.Remove(a); // moves slots under a change that waits
+  EXPECT_EQ(tree.ChangedAt(e), before);
   EXPECT_EQ(tree.Update(), Ids{c});
-  EXPECT_EQ(tree.Evaluations(), 16u);
-  EXPECT_EQ(tree.WorldPose(c), Shift(9)); // e 2, b 3, c 4
+  EXPECT_EQ(tree.Evaluations(), 17u);      // one for ChangedAt
+  EXPECT_EQ(tree.WorldPose(c), Shift(10)); // e 2, b 3, c 5
 }
 
 TEST(FrameEvaluation, RelativePosesNeedNone) {
