@@ -27,6 +27,13 @@ if(DSPACE_SANITIZE)
   target_link_options(DspaceOptions INTERFACE -fsanitize=address,undefined)
 endif()
 
+# dspace_options(TARGET): the same for a target that is exported (DspaceOptions itself is not).
+function(dspace_options target)
+  target_compile_options(${target} PRIVATE
+    $<TARGET_PROPERTY:DspaceOptions,INTERFACE_COMPILE_OPTIONS>)
+  target_link_options(${target} PRIVATE $<TARGET_PROPERTY:DspaceOptions,INTERFACE_LINK_OPTIONS>)
+endfunction()
+
 # dspace_plain_library(NAME SOURCES ... PUBLIC ... PRIVATE ...): plain C++, no VTK, no OpenGL.
 # Its headers stand under <dspace/...> beside its sources.
 function(dspace_plain_library name)
@@ -36,9 +43,10 @@ function(dspace_plain_library name)
   target_include_directories(${name} PUBLIC
     "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>" "$<BUILD_INTERFACE:${CMAKE_CURRENT_BINARY_DIR}>"
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
-  target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE $<BUILD_INTERFACE:DspaceOptions> ${arg_PRIVATE})
+  target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  dspace_options(${name})
   set_target_properties(${name} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
-  install(TARGETS ${name} EXPORT DspaceTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS ${name} EXPORT Dspace LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   foreach(header IN LISTS arg_HEADERS)
     get_filename_component(dir "${header}" DIRECTORY)
     install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/${dir}")

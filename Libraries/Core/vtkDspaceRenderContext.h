@@ -41,6 +41,7 @@ public:
   /// Takes the context (default: MakeEglContext()). Called by the first viewport where it was not.
   void Initialize(std::unique_ptr<dspace::GraphicsContext> context = nullptr);
   const dspace::RenderStatistics& GetStatistics() const;
+  dspace::RenderStatistics& CountStatistics(); // for those who draw
   vtkDspaceHubWindow* GetHub();
   dspace::GpuStore& GetStore();
 #endif

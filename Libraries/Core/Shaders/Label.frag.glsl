@@ -1,0 +1,21 @@
+//DSPACE::Version
+// Which object a pixel belongs to.
+flat in uint label;
+in vec2 tcoord;
+layout(location = 0) out uint fragLabel;
+
+#ifdef DSPACE_TEXTURE
+uniform sampler2D colorTexture;
+#endif
+
+void main()
+{
+#ifdef DSPACE_TEXTURE
+  // What a texture cuts out (the ground around letters) is not the object.
+  if (texture(colorTexture, tcoord).a <= 0.0)
+  {
+    discard;
+  }
+#endif
+  fragLabel = label;
+}

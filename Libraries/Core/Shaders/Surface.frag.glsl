@@ -1,0 +1,129 @@
+//DSPACE::Version
+// Colour of a surface in linear light: metallic-roughness material (glTF 2.0, appendix B) under
+// the scene's lights; a light of intensity 1 that falls straight on a white matt surface makes 1.
+in vec3 positionVC;
+in vec3 normalVC;
+in vec2 tcoord;
+in vec4 vertexColor;
+flat in vec4 baseColor;
+flat in vec4 surface;
+flat in vec3 emissive;
+
+layout(location = 0) out vec4 fragColor;
+
+const int MAX_LIGHTS = 8;
+uniform int lightCount;
+uniform int lightKind[MAX_LIGHTS]; // 0 directional, 1 point, 2 spot, 3 head
+uniform vec3 lightColor[MAX_LIGHTS];
+uniform vec3 lightDirectionVC[MAX_LIGHTS]; // the way the light travels
+uniform vec3 lightPositionVC[MAX_LIGHTS];
+uniform vec3 lightAttenuation[MAX_LIGHTS];
+uniform float lightCosCone[MAX_LIGHTS];
+uniform vec3 ambientLight;
+uniform int cameraParallel;
+
+#ifdef DSPACE_TEXTURE
+uniform sampler2D colorTexture;
+#endif
+
+#ifdef DSPACE_PEEL
+uniform sampler2D opaqueDepth;
+uniform sampler2D peeledDepth;
+uniform int firstLayer;
+#endif
+
+// sRGB display value to linear light (IEC 61966-2-1).
+vec3 linearFromSrgb(vec3 c)
+{
+  return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+#ifdef DSPACE_LIT
+vec3 lightFrom(vec3 radiance, vec3 L, vec3 N, vec3 V, float NdV, vec3 albedo, vec3 F0, float a2)
+{
+  float NdL = dot(N, L);
+  if (NdL <= 0.0)
+  {
+    return vec3(0.0);
+  }
+  vec3 H = normalize(L + V);
+  float NdH = clamp(dot(N, H), 0.0, 1.0);
+  float HdV = clamp(dot(H, V), 0.0, 1.0);
+  vec3 F = F0 + (1.0 - F0) * pow(1.0 - HdV, 5.0);
+  // Trowbridge-Reitz distribution with Smith's height-correlated visibility; times pi, as the
+  // diffuse term is, so that intensity 1 means "white paper shows 1".
+  float d = NdH * NdH * (a2 - 1.0) + 1.0;
+  float D = a2 / max(d * d, 1e-7);
+  float vis = 0.5 /
+    max(NdL * sqrt(NdV * NdV * (1.0 - a2) + a2) + NdV * sqrt(NdL * NdL * (1.0 - a2) + a2), 1e-5);
+  return radiance * NdL * ((1.0 - F) * albedo + D * vis * F);
+}
+#endif
+
+void main()
+{
+#ifdef DSPACE_PEEL
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  // Reversed depth: larger is nearer.
+  if (gl_FragCoord.z < texelFetch(opaqueDepth, pixel, 0).r ||
+    (firstLayer == 0 && gl_FragCoord.z >= texelFetch(peeledDepth, pixel, 0).r))
+  {
+    discard;
+  }
+#endif
+  vec4 color = baseColor;
+#ifdef DSPACE_VERTEX_COLOR
+  color *= vec4(linearFromSrgb(vertexColor.rgb), vertexColor.a);
+#endif
+#ifdef DSPACE_TEXTURE
+  color *= texture(colorTexture, tcoord);
+#endif
+
+#ifdef DSPACE_LIT
+  vec3 N = normalize(normalVC);
+  if (gl_FrontFacing != (surface.z > 0.0))
+  {
+    N = -N;
+  }
+  vec3 V = cameraParallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
+  float NdV = max(dot(N, V), 1e-4);
+  float alpha = max(surface.y * surface.y, 0.002);
+  float a2 = alpha * alpha;
+  vec3 F0 = mix(vec3(0.04), color.rgb, surface.x);
+  vec3 albedo = color.rgb * (1.0 - surface.x);
+  vec3 light = ambientLight * color.rgb;
+  for (int i = 0; i < lightCount; ++i)
+  {
+    vec3 L = -lightDirectionVC[i];
+    vec3 radiance = lightColor[i];
+    if (lightKind[i] == 1 || lightKind[i] == 2)
+    {
+      vec3 toLight = lightPositionVC[i] - positionVC;
+      float distance = length(toLight);
+      L = toLight / distance;
+      radiance /= dot(lightAttenuation[i], vec3(1.0, distance, distance * distance));
+      if (lightKind[i] == 2 && dot(-L, lightDirectionVC[i]) < lightCosCone[i])
+      {
+        radiance = vec3(0.0);
+      }
+    }
+    else if (lightKind[i] == 3)
+    {
+      L = V;
+    }
+    light += lightFrom(radiance, L, N, V, NdV, albedo, F0, a2);
+  }
+  color.rgb = light;
+#endif
+  color.rgb += emissive;
+
+#ifdef DSPACE_PEEL
+  if (color.a <= 0.0)
+  {
+    discard;
+  }
+  fragColor = vec4(color.rgb * color.a, color.a);
+#else
+  fragColor = vec4(color.rgb, 1.0);
+#endif
+}

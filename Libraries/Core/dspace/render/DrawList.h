@@ -1,0 +1,124 @@
+// A scene as one camera sees it: which meshes, where, in which colours. No OpenGL.
+#ifndef DSPACE_RENDER_DRAW_LIST_H
+#define DSPACE_RENDER_DRAW_LIST_H
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <dspace/scene/Scene.h>
+
+namespace dspace {
+
+// One drawing of a mesh: six texels of four 32-bit words, as the vertex shader reads them.
+// Floats are relative to the camera: rounded after the subtraction in double precision.
+struct DrawInstance {
+  std::array<float, 12> viewFromMesh; // three rows of four; OpenGL's view axes
+  std::array<float, 4> color;         // linear light, and opacity
+  float metallic;
+  float roughness;
+  std::uint32_t label;
+  float mirrored; // -1 where viewFromMesh mirrors, else 1
+  std::array<float, 3> emissive; // linear light
+  float unused;
+};
+static_assert(sizeof(DrawInstance) == 96, "the shader reads six texels an instance");
+
+// Instances that one call draws: consecutive ones of the same mesh and state.
+struct DrawBatch {
+  std::shared_ptr<const Mesh> mesh;
+  std::shared_ptr<const Image> texture;
+  bool repeatTexture = true;
+  bool lit = true;
+  bool wireframe = false;
+  bool billboard = false;
+  bool translucent = false;
+  float lineWidth = 1.0f;
+  float pointSize = 1.0f;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+struct DrawLight {
+  Light::Kind kind;
+  std::array<float, 3> color;     // linear light, times intensity
+  std::array<float, 3> direction; // view axes, unit, the way the light travels
+  std::array<float, 3> position;  // view axes [m]
+  std::array<float, 3> attenuation;
+  float cosCone;
+};
+
+// Which part of a scene is drawn.
+struct DrawFilter {
+  bool physicalOnly = false;
+  bool pickableOnly = false;
+  std::set<std::string> hiddenFragments;
+};
+
+// The view of one camera, ready for OpenGL.
+struct DrawView {
+  CameraPose camera;
+  Projection projection;
+  int width = 0;
+  int height = 0;
+};
+
+// Kept from picture to picture by whoever draws one viewport; what only changes with the scene's
+// content is worked out once.
+class DrawList {
+public:
+  // Makes the list anew for `view`. Objects outside the view's frustum are left out.
+  void Build(const Scene& scene, const DrawView& view, const DrawFilter& filter);
+
+  const std::vector<DrawInstance>& Instances() const { return this->Instances_; }
+  const std::vector<DrawBatch>& Batches() const { return this->Batches_; } // opaque ones first
+  const std::vector<DrawLight>& Lights() const { return this->Lights_; }
+  std::array<float, 3> Ambient() const { return this->Ambient_; } // linear light
+  std::size_t TriangleCount() const { return this->Triangles_; }
+  std::size_t CulledObjects() const { return this->Culled_; }
+
+private:
+  struct FlatPart { // a part of a level of an object, with all that does not depend on the view
+    std::uint32_t batch;
+    Eigen::Affine3d X_FP;
+    DrawInstance instance; // without viewFromMesh
+  };
+  struct FlatLevel {
+    std::vector<FlatPart> parts;
+    BoundingSphere bounds; // in the object's frame F
+    double minimumPixels;
+  };
+  struct FlatObject {
+    const GraphicsObject* object;
+    std::vector<FlatLevel> levels;
+  };
+  void Flatten(const Scene& scene);
+  std::uint32_t BatchOf(const GraphicsObject& object, const Part& part, const DrawInstance& look);
+  void PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, const Pose& X_CA);
+
+  const Scene* Scene_ = nullptr;
+  std::uint64_t ContentRevision_ = 0;
+  std::vector<FlatObject> Objects_;
+  std::vector<DrawBatch> Templates_;
+  std::unordered_map<std::string, std::uint32_t> BatchIndex_;
+  std::vector<std::vector<DrawInstance>> Pending_; // instances of each template
+
+  std::vector<Pose> X_AF_;
+  std::vector<DrawInstance> Instances_;
+  std::vector<DrawBatch> Batches_;
+  std::vector<DrawLight> Lights_;
+  std::array<float, 3> Ambient_ = {0, 0, 0};
+  std::size_t Triangles_ = 0;
+  std::size_t Culled_ = 0;
+};
+
+// sRGB display value to linear light (IEC 61966-2-1), both 0 to 1.
+float LinearFromSrgb(double value);
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,81 @@
+// Draws a DrawList with OpenGL: opaque surfaces, then translucent ones layer by layer.
+#ifndef DSPACE_RENDER_SCENE_DRAWER_H
+#define DSPACE_RENDER_SCENE_DRAWER_H
+
+#include <array>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include <dspace/render/DrawList.h>
+#include <dspace/render/GpuStore.h>
+#include <dspace/render/RenderTarget.h>
+
+class vtkDspaceHubWindow;
+class vtkShaderProgram;
+
+namespace dspace {
+
+// One a viewport: it keeps the viewport's instance buffer, which is uploaded again only where it
+// differs from what is there. Depth is reversed (near 1, far 0, clip control zero-to-one,
+// GL_GEQUAL): float depth then resolves a millionth of the distance from centimetres to infinity.
+// Translucent surfaces are peeled front to back (Everitt 2001) and blended in linear light; after
+// MaximumLayers the rest, which lies behind, is left out.
+class SceneDrawer {
+public:
+  static constexpr int MaximumLayers = 16;
+
+  SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, RenderStatistics& statistics);
+  SceneDrawer(const SceneDrawer&) = delete;
+  SceneDrawer& operator=(const SceneDrawer&) = delete;
+  ~SceneDrawer();
+
+  // Into `target` (Display, with depth), which must be bound. Clears it first: with the background
+  // (sRGB, 0 to 1), and depth with 0.
+  struct Background {
+    std::array<double, 3> bottom = {0.0, 0.0, 0.0};
+    std::array<double, 3> top = {0.0, 0.0, 0.0};
+  };
+  void Clear(const Background& background, int height);
+  // `samples` is the supersampling factor: lines, points and billboards scale with it.
+  void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples);
+  // Into `target` (Label, with depth), cleared first.
+  void DrawLabels(const DrawList& list, const DrawView& view, RenderTarget& target);
+  // Mean of the samples of `source` into `target` (both Display).
+  void Downsample(const RenderTarget& source, RenderTarget& target, int samples);
+
+  void Release();
+
+private:
+  enum Feature : unsigned { Lit = 1, Texture = 2, VertexColor = 4, Billboard = 8, Peel = 16, Label = 32 };
+  vtkShaderProgram* SurfaceProgram(unsigned features);
+  vtkShaderProgram* ScreenProgram(const char* fragmentSource);
+  void DrawTriangleOverScreen();
+  void Upload(const DrawList& list);
+  void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view);
+  void DrawBatches(const DrawList& list, const DrawView& view, bool translucent, unsigned features,
+                   int samples);
+  void PeelTranslucent(const DrawList& list, const DrawView& view, RenderTarget& target,
+                       int samples);
+
+  vtkDspaceHubWindow* Window_;
+  GpuStore& Store_;
+  RenderStatistics& Statistics_;
+  std::map<unsigned, vtkShaderProgram*> Surfaces_;
+  std::map<const char*, vtkShaderProgram*> Screens_;
+  std::vector<DrawInstance> Uploaded_;
+  unsigned int InstanceBuffer_ = 0;
+  unsigned int InstanceTexture_ = 0;
+  std::size_t InstanceCapacity_ = 0;
+  unsigned int EmptyArray_ = 0;
+  unsigned int Query_ = 0;
+  std::unique_ptr<RenderTarget> Layers_[2]; // Linear, with depth: the layer now and the one before
+  std::unique_ptr<RenderTarget> Sum_;       // Linear: layers blended so far, front to back
+  int FirstLayer_ = 0;                      // for the peel uniforms
+  unsigned int OpaqueDepth_ = 0;
+  unsigned int PeeledDepth_ = 0;
+};
+
+} // namespace dspace
+
+#endif

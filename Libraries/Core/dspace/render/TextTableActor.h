@@ -1,0 +1,19 @@
+// A TextTable as VTK draws it.
+#ifndef DSPACE_RENDER_TEXT_TABLE_ACTOR_H
+#define DSPACE_RENDER_TEXT_TABLE_ACTOR_H
+
+#include "vtkSmartPointer.h"
+
+#include <dspace/scene/Overlay.h>
+
+class vtkTextActor;
+
+namespace dspace {
+
+// A monospaced block of text, values aligned in a column, on the table's background, placed in its
+// corner of a picture of the given size.
+vtkSmartPointer<vtkTextActor> MakeTextTableActor(const TextTable& table, int width, int height);
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,70 @@
+#include "vtkDspaceRenderContext.h"
+
+#include "vtk_glew.h"
+
+#include "vtkDspaceHubWindow.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+
+#include <dspace/render/GpuStore.h>
+
+vtkStandardNewMacro(vtkDspaceRenderContext);
+
+struct vtkDspaceRenderContext::Internals {
+  vtkNew<vtkDspaceHubWindow> hub;
+  dspace::RenderStatistics statistics;
+  dspace::GpuStore store{statistics};
+};
+
+vtkDspaceRenderContext::vtkDspaceRenderContext() : Impl(std::make_unique<Internals>()) {}
+
+vtkDspaceRenderContext::~vtkDspaceRenderContext() {
+  if (this->Impl->hub->GetContext()) {
+    this->Impl->hub->MakeCurrent();
+    this->Impl->store.Release();
+  }
+}
+
+void vtkDspaceRenderContext::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "MeshBytes: " << this->Impl->statistics.meshBytes << "\n";
+  os << indent << "FramesDrawn: " << this->Impl->statistics.framesDrawn << "\n";
+}
+
+void vtkDspaceRenderContext::Initialize(std::unique_ptr<dspace::GraphicsContext> context) {
+  if (!this->Impl->hub->GetContext()) {
+    this->Impl->hub->SetContext(context ? std::move(context) : dspace::MakeEglContext());
+  }
+}
+
+std::string vtkDspaceRenderContext::GetRendererName() {
+  this->Initialize();
+  this->Impl->hub->MakeCurrent();
+  return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+}
+
+std::string vtkDspaceRenderContext::GetVersion() {
+  this->Initialize();
+  this->Impl->hub->MakeCurrent();
+  return reinterpret_cast<const char*>(glGetString(GL_VERSION));
+}
+
+vtkRenderWindow* vtkDspaceRenderContext::GetRenderWindow() {
+  return this->Impl->hub;
+}
+
+const dspace::RenderStatistics& vtkDspaceRenderContext::GetStatistics() const {
+  return this->Impl->statistics;
+}
+
+dspace::RenderStatistics& vtkDspaceRenderContext::CountStatistics() {
+  return this->Impl->statistics;
+}
+
+vtkDspaceHubWindow* vtkDspaceRenderContext::GetHub() {
+  return this->Impl->hub;
+}
+
+dspace::GpuStore& vtkDspaceRenderContext::GetStore() {
+  return this->Impl->store;
+}
