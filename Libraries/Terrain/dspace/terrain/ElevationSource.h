@@ -1,0 +1,84 @@
+// Heights in metres from any raster that GDAL opens.
+#ifndef DSPACE_TERRAIN_ELEVATIONSOURCE_H
+#define DSPACE_TERRAIN_ELEVATIONSOURCE_H
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <dspace/terrain/Crs.h>
+#include <dspace/terrain/VerticalDatum.h>
+
+namespace dspace {
+
+// A rectangle of pixels; (0, 0) is the raster's first column and row.
+struct RasterWindow {
+  int column = 0;
+  int row = 0;
+  int width = 0;
+  int height = 0;
+};
+
+// What a file does not say, or says wrongly.
+struct ElevationOptions {
+  int band = 1; // counted from 1, as GDAL does
+  // By hand: metres = value * verticalScale + verticalOffset. Either one replaces the file's own
+  // scale, offset and unit as a whole (the other is then 1 or 0). Scale finite, not 0.
+  std::optional<double> verticalScale;
+  std::optional<double> verticalOffset; // [m]
+  std::optional<VerticalDatum> verticalDatum;
+  std::optional<std::string> crs;     // replaces the file's; see Crs::FromText
+  std::optional<double> pixelSize;    // [map units], for a raster without georeference; default 1
+  std::optional<RasterWindow> window; // only these pixels; must lie within the raster
+};
+
+// What the source is, after options.
+struct ElevationInfo {
+  std::string path;
+  std::string driver;   // GDAL's short name
+  std::string dataType; // GDAL's name of the band's type
+  RasterWindow window;  // the pixels that are read, in the file's own columns and rows
+  Crs crs;
+  VerticalDatum verticalDatum;
+  // (column, row) of the window to map (x, y); (0, 0) is the top-left CORNER of its first pixel,
+  // (0.5, 0.5) the pixel's centre, where its post stands.
+  Eigen::Affine2d pixelToMap = Eigen::Affine2d::Identity();
+  bool georeferenced = true;   // false: pixelToMap is made up from the pixel size
+  double verticalScale = 1.0;  // metres = value * verticalScale + verticalOffset
+  double verticalOffset = 0.0; // [m]; with a Radius datum the heights returned are less its radius
+  std::string unit;            // as the file states it; may be empty
+  int overviews = 0;
+  std::vector<std::string> warnings; // each names what was assumed and how to state it
+};
+
+// An open raster. GDAL's messages become errors and warnings. Reads may come from any thread; they
+// take turns. Nothing is ever written beside the file.
+class ElevationSource {
+public:
+  // Throws Error naming the file: NotFound; Io; Corrupt (damaged, empty); Unsupported (not a
+  // raster, complex values, unit not known, GCPs only with strict georeference asked for by `crs`);
+  // InvalidArgument (an option, a degenerate geotransform, a window outside).
+  explicit ElevationSource(const std::string& path, const ElevationOptions& options = {});
+  ~ElevationSource();
+
+  const ElevationInfo& Info() const { return this->Info_; }
+
+  // Heights [m] above the vertical datum of `window` (columns and rows of Info().window), row by
+  // row from the top; NaN where there is no data. Throws Error(Corrupt) when the file cannot be
+  // read there, Error(InvalidArgument) for a window outside.
+  std::vector<double> Read(const RasterWindow& window) const;
+  std::vector<double> Read() const; // all of Info().window
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> Impl_;
+  ElevationInfo Info_;
+};
+
+} // namespace dspace
+
+#endif

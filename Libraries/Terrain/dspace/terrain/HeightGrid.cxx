@@ -1,0 +1,140 @@
+#include <dspace/terrain/HeightGrid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <dspace/Error.h>
+
+namespace dspace {
+
+namespace {
+
+constexpr double BorderTolerance = 1e-9; // cells; what conversions to grid coordinates round off
+
+} // namespace
+
+HeightGrid::HeightGrid(const std::string& name, int columns, int rows, std::vector<double> heights,
+                       const Eigen::Affine2d& gridToScene)
+    : Columns_(columns), Rows_(rows), Heights_(std::move(heights)), GridToScene_(gridToScene) {
+  if (columns < 2 || rows < 2)
+    throw Error(Error::Kind::InvalidArgument, name,
+                std::to_string(columns) + " x " + std::to_string(rows) +
+                    " posts span no surface; at least 2 x 2 are needed");
+  if (this->Heights_.size() != static_cast<std::size_t>(columns) * rows)
+    throw Error(Error::Kind::InvalidArgument, name,
+                std::to_string(this->Heights_.size()) + " heights given for " +
+                    std::to_string(columns) + " x " + std::to_string(rows) + " posts");
+  this->Minimum_ = std::numeric_limits<double>::infinity();
+  this->Maximum_ = -this->Minimum_;
+  for (double h : this->Heights_) {
+    if (std::isinf(h))
+      throw Error(Error::Kind::InvalidArgument, name,
+                  "a height is infinite; accepted are finite ones, and NaN for no data");
+    if (std::isnan(h)) {
+      ++this->Holes_;
+    } else {
+      this->Minimum_ = std::min(this->Minimum_, h);
+      this->Maximum_ = std::max(this->Maximum_, h);
+    }
+  }
+  if (this->Holes_ == this->Heights_.size())
+    throw Error(Error::Kind::InvalidArgument, name,
+                "all " + std::to_string(this->Holes_) + " posts are without data (no-data or NaN)");
+  const Eigen::Matrix2d m = gridToScene.linear();
+  const double det = m.determinant();
+  if (!m.allFinite() || !gridToScene.translation().allFinite() ||
+      !(std::abs(det) > 1e-9 * m.col(0).norm() * m.col(1).norm()))
+    throw Error(Error::Kind::InvalidArgument, name, "the grid's cells span no area in the scene");
+  this->SceneToGrid_ = gridToScene.inverse();
+}
+
+HeightGrid::Facet HeightGrid::CellFacet(int c, int r, bool below, double u, double v) const {
+  Facet facet;
+  facet.valid = below ? this->HasA(c, r) : this->HasB(c, r);
+  if (!facet.valid)
+    return facet;
+  const double nw = this->At(c, r), se = this->At(c + 1, r + 1);
+  if (below) {
+    const double sw = this->At(c, r + 1);
+    facet.dr = sw - nw;
+    facet.dc = se - sw;
+  } else {
+    const double ne = this->At(c + 1, r);
+    facet.dc = ne - nw;
+    facet.dr = se - ne;
+  }
+  facet.height = nw + u * facet.dc + v * facet.dr;
+  return facet;
+}
+
+HeightGrid::Facet HeightGrid::FacetAt(const Eigen::Vector2d& g) const {
+  const double lastC = this->Columns_ - 1, lastR = this->Rows_ - 1;
+  // Written so that NaN is outside.
+  if (!(g.x() >= -BorderTolerance && g.x() <= lastC + BorderTolerance &&
+        g.y() >= -BorderTolerance && g.y() <= lastR + BorderTolerance))
+    return {};
+  const double x = std::clamp(g.x(), 0.0, lastC), y = std::clamp(g.y(), 0.0, lastR);
+  const int c = std::min(static_cast<int>(x), this->Columns_ - 2);
+  const int r = std::min(static_cast<int>(y), this->Rows_ - 2);
+  const double u = x - c, v = y - r;
+  const Facet facet = this->CellFacet(c, r, v > u, u, v);
+  if (facet.valid)
+    return facet;
+  // On the rim of a hole the triangle across the edge, or another around the post, may exist.
+  const auto on = [](double a) { return std::abs(a) <= BorderTolerance; };
+  for (int dc = on(u) && c > 0 ? -1 : 0; dc <= (on(u - 1.0) && c < this->Columns_ - 2); ++dc)
+    for (int dr = on(v) && r > 0 ? -1 : 0; dr <= (on(v - 1.0) && r < this->Rows_ - 2); ++dr)
+      for (bool below : {true, false}) {
+        const double uu = u - dc, vv = v - dr;
+        if (below ? vv < uu - BorderTolerance : vv > uu + BorderTolerance)
+          continue;
+        const Facet other = this->CellFacet(c + dc, r + dr, below, uu, vv);
+        if (other.valid)
+          return other;
+      }
+  return {};
+}
+
+Eigen::Vector2d HeightGrid::SceneGradient(const Facet& facet) const {
+  return this->SceneToGrid_.linear().transpose() * Eigen::Vector2d(facet.dc, facet.dr);
+}
+
+Eigen::Vector3d HeightGrid::Normal(const Facet& facet) const {
+  const Eigen::Vector2d g = this->SceneGradient(facet);
+  return Eigen::Vector3d(-g.x(), -g.y(), 1.0).normalized();
+}
+
+double HeightGrid::Slope(const Facet& facet) const {
+  return std::atan(this->SceneGradient(facet).norm()) * 180.0 / M_PI;
+}
+
+Eigen::Vector3d HeightGrid::PostNormal(int c, int r) const {
+  // All triangles have the same area in the map, so that the area-weighted mean of their normals
+  // is the mean of their gradients: (-gx, -gy, 1) is a triangle's normal times its area.
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int count = 0;
+  const auto add = [&](int cc, int rr, bool below) {
+    if (cc < 0 || rr < 0 || cc > this->Columns_ - 2 || rr > this->Rows_ - 2)
+      return;
+    const Facet facet = this->CellFacet(cc, rr, below, 0.0, 0.0);
+    if (!facet.valid)
+      return;
+    sum += Eigen::Vector2d(facet.dc, facet.dr);
+    ++count;
+  };
+  add(c, r, true);
+  add(c, r, false);
+  add(c - 1, r, false);
+  add(c, r - 1, true);
+  add(c - 1, r - 1, true);
+  add(c - 1, r - 1, false);
+  if (count == 0)
+    return Eigen::Vector3d::UnitZ();
+  Facet mean;
+  mean.dc = sum.x() / count;
+  mean.dr = sum.y() / count;
+  return this->Normal(mean);
+}
+
+} // namespace dspace
