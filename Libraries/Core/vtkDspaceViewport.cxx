@@ -13,8 +13,10 @@
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLState.h"
 #include "vtkPropCollection.h"
 #include "vtkRendererCollection.h"
+#include "vtkSmartPointer.h"
 #include "vtkTextActor.h"
 
 #include <dspace/Error.h>
@@ -55,7 +57,17 @@ struct CornerAxes {
   CornerAxes() {
     dspace::GraphicsObject axes;
     axes.name = "axes";
-    axes.levels = {{dspace::Axes(1.0), 0.0}};
+    const auto arrow = std::make_shared<const dspace::Mesh>(dspace::MakeArrow(1.0));
+    dspace::DetailLevel level;
+    for (int axis = 0; axis < 3; ++axis) { // X red, Y green, Z blue
+      auto material = std::make_shared<dspace::Material>();
+      material->color = {0.1, 0.1, 0.1};
+      material->color[axis] = 0.9;
+      const Eigen::Quaterniond turn =
+          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), Eigen::Vector3d::Unit(axis));
+      level.parts.push_back({arrow, material, Eigen::Affine3d(turn)});
+    }
+    axes.levels.push_back(std::move(level));
     this->scene.AddObject(axes);
     dspace::Light head;
     head.name = "head";
@@ -113,10 +125,10 @@ struct vtkDspaceViewport::Internals {
   dspace::DrawView View(int factor) const {
     dspace::DrawView view;
     view.camera = this->scene->PlaceCamera(this->vantage, this->camera);
-    view.projection = (this->camera.empty()
-                           ? this->scene->Vantage(this->vantage).ActiveCamera()
-                           : this->scene->Vantage(this->vantage).GetCamera(this->camera))
-                          .projection;
+    view.projection =
+        (this->camera.empty() ? this->scene->Vantage(this->vantage).ActiveCamera()
+                              : this->scene->Vantage(this->vantage).GetCamera(this->camera))
+            .projection;
     view.width = this->width * factor;
     view.height = this->height * factor;
     return view;
@@ -138,8 +150,8 @@ struct vtkDspaceViewport::Internals {
                                        this->sceneTarget->Width(), this->sceneTarget->Height()});
   }
   void ActivateDisplay() {
-    this->context->GetHub()->Activate({this->displayTarget->Framebuffer(), this->overlayRenderers,
-                                       this->width, this->height});
+    this->context->GetHub()->Activate(
+        {this->displayTarget->Framebuffer(), this->overlayRenderers, this->width, this->height});
   }
 
   void PrepareTargets() {
@@ -171,8 +183,7 @@ void vtkDspaceViewport::Internals::PlaceVtkCamera(const dspace::DrawView& view) 
   camera->SetPosition(eye.x(), eye.y(), eye.z());
   camera->SetFocalPoint(at.x(), at.y(), at.z());
   camera->SetViewUp(up.x(), up.y(), up.z());
-  camera->SetParallelProjection(view.projection.kind ==
-                                dspace::Projection::Kind::Orthographic);
+  camera->SetParallelProjection(view.projection.kind == dspace::Projection::Kind::Orthographic);
   const Eigen::Matrix4d clip = view.projection.ClipFromView(view.width, view.height);
   vtkNew<vtkMatrix4x4> matrix;
   for (int r = 0; r < 4; ++r) {
@@ -216,8 +227,8 @@ void vtkDspaceViewport::Internals::DrawCornerAxes(const dspace::DrawView& view) 
   }
   const int size = std::max(std::min(view.width, view.height) / 6, 1);
   // The root's axes as the camera sees them, from three metres away.
-  dspace::Pose X_RC = this->scene->Frames().RelativePose(dspace::RootFrame, view.camera.frame) *
-                      view.camera.X_FC;
+  dspace::Pose X_RC =
+      this->scene->Frames().RelativePose(dspace::RootFrame, view.camera.frame) * view.camera.X_FC;
   X_RC.scale = 1.0;
   X_RC.position = X_RC.rotation * Eigen::Vector3d(0.0, 0.0, -3.0);
   dspace::DrawView corner;
@@ -384,17 +395,39 @@ void vtkDspaceViewport::Initialize(vtkDspaceRenderContext* context,
   self.renderer->GetActiveCamera();
 }
 
-int vtkDspaceViewport::GetWidth() { return this->Impl->width; }
-int vtkDspaceViewport::GetHeight() { return this->Impl->height; }
-bool vtkDspaceViewport::GetVisible() { return this->Impl->visible; }
-vtkRenderer* vtkDspaceViewport::GetRenderer() { return this->Impl->renderer; }
-vtkRenderer* vtkDspaceViewport::GetOverlayRenderer() { return this->Impl->overlay; }
-void vtkDspaceViewport::Invalidate() { this->Impl->stale = true; }
-const std::string& vtkDspaceViewport::GetName() const { return this->Impl->name; }
-std::shared_ptr<dspace::Scene> vtkDspaceViewport::GetScene() const { return this->Impl->scene; }
-const std::string& vtkDspaceViewport::GetVantage() const { return this->Impl->vantage; }
-const std::string& vtkDspaceViewport::GetCamera() const { return this->Impl->camera; }
-int vtkDspaceViewport::GetSamples() const { return this->Impl->samples; }
+int vtkDspaceViewport::GetWidth() {
+  return this->Impl->width;
+}
+int vtkDspaceViewport::GetHeight() {
+  return this->Impl->height;
+}
+bool vtkDspaceViewport::GetVisible() {
+  return this->Impl->visible;
+}
+vtkRenderer* vtkDspaceViewport::GetRenderer() {
+  return this->Impl->renderer;
+}
+vtkRenderer* vtkDspaceViewport::GetOverlayRenderer() {
+  return this->Impl->overlay;
+}
+void vtkDspaceViewport::Invalidate() {
+  this->Impl->stale = true;
+}
+const std::string& vtkDspaceViewport::GetName() const {
+  return this->Impl->name;
+}
+std::shared_ptr<dspace::Scene> vtkDspaceViewport::GetScene() const {
+  return this->Impl->scene;
+}
+const std::string& vtkDspaceViewport::GetVantage() const {
+  return this->Impl->vantage;
+}
+const std::string& vtkDspaceViewport::GetCamera() const {
+  return this->Impl->camera;
+}
+int vtkDspaceViewport::GetSamples() const {
+  return this->Impl->samples;
+}
 
 void vtkDspaceViewport::SetVantage(const std::string& vantage) {
   this->Impl->scene->Vantage(vantage);
@@ -430,7 +463,9 @@ void vtkDspaceViewport::Resize(int width, int height) {
   }
 }
 
-void vtkDspaceViewport::SetVisible(bool visible) { this->Impl->visible = visible; }
+void vtkDspaceViewport::SetVisible(bool visible) {
+  this->Impl->visible = visible;
+}
 
 void vtkDspaceViewport::SetBackground(const std::array<double, 3>& bottom,
                                       const std::array<double, 3>& top) {

@@ -167,8 +167,7 @@ void DrawList::PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, c
     if (light.kind != Light::Kind::Head) {
       const Pose& X_AL = this->X_AF_[scene.Frames().Slot(light.frame)];
       const Eigen::Vector3d d = (q_VA * (X_AL.rotation * light.direction)).normalized();
-      const Eigen::Vector3d p =
-          ViewFromCamera.cwiseProduct(X_CA.Apply(X_AL.Apply(light.position)));
+      const Eigen::Vector3d p = ViewFromCamera.cwiseProduct(X_CA.Apply(X_AL.Apply(light.position)));
       for (int i = 0; i < 3; ++i) {
         placed.direction[i] = static_cast<float>(d[i]);
         placed.position[i] = static_cast<float>(p[i]);
@@ -240,8 +239,7 @@ void DrawList::Build(const Scene& scene, const DrawView& view, const DrawFilter&
       }
     }
     for (const FlatPart& part : level->parts) {
-      const Eigen::Matrix<double, 3, 4> m =
-          (X_VF * part.X_FP).matrix().topRows<3>();
+      const Eigen::Matrix<double, 3, 4> m = (X_VF * part.X_FP).matrix().topRows<3>();
       DrawInstance instance = part.instance;
       for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 4; ++c) {

@@ -22,7 +22,7 @@ struct DrawInstance {
   float metallic;
   float roughness;
   std::uint32_t label;
-  float mirrored; // -1 where viewFromMesh mirrors, else 1
+  float mirrored;                // -1 where viewFromMesh mirrors, else 1
   std::array<float, 3> emissive; // linear light
   float unused;
 };

@@ -96,8 +96,8 @@ std::unique_ptr<GraphicsContext> TryDisplay(EGLDisplay display, const std::strin
     return nullptr;
   }
   return std::make_unique<EglContext>(display, context, surface,
-                                      "EGL " + std::to_string(major) + "." +
-                                          std::to_string(minor) + ", " + name);
+                                      "EGL " + std::to_string(major) + "." + std::to_string(minor) +
+                                          ", " + name);
 }
 
 } // namespace
@@ -116,8 +116,9 @@ std::unique_ptr<GraphicsContext> MakeEglContext() {
   const auto queryDeviceString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(
       eglGetProcAddress("eglQueryDeviceStringEXT"));
   if (!getPlatformDisplay) {
-    throw Error(Error::Kind::Resource, "EGL", "EGL_EXT_platform_base is missing; install Mesa's "
-                                              "or the GPU vendor's EGL library");
+    throw Error(Error::Kind::Resource, "EGL",
+                "EGL_EXT_platform_base is missing; install Mesa's "
+                "or the GPU vendor's EGL library");
   }
   std::string tried;
   if (wanted != "surfaceless" && queryDevices) {
@@ -140,10 +141,9 @@ std::unique_ptr<GraphicsContext> MakeEglContext() {
     }
   }
   if (wanted != "device") {
-    if (auto context =
-            TryDisplay(getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY,
-                                          nullptr),
-                       "surfaceless Mesa", tried)) {
+    if (auto context = TryDisplay(
+            getPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
+            "surfaceless Mesa", tried)) {
       return context;
     }
   }

@@ -99,7 +99,8 @@ void RenderTarget::Resize(int width, int height) {
   state->PopFramebufferBindings();
   if (!complete) {
     this->Release();
-    throw Error(Error::Kind::Resource, object, "OpenGL has no memory for it; ask for a smaller one");
+    throw Error(Error::Kind::Resource, object,
+                "OpenGL has no memory for it; ask for a smaller one");
   }
 }
 
@@ -111,7 +112,7 @@ void RenderTarget::Bind() {
   state->vtkglScissor(0, 0, this->Width_, this->Height_);
 }
 
-template <class T>
+template<class T>
 std::vector<T> RenderTarget::Read(int x, int y, int w, int h, unsigned int format,
                                   unsigned int type, int channels) const {
   vtkOpenGLState* state = this->Window_->GetState();

@@ -36,14 +36,14 @@ public:
   unsigned int Depth() const;
 
   // Rows from the top down.
-  std::vector<std::uint8_t> ReadColor() const;                             // RGBA; Display
-  std::vector<std::uint32_t> ReadLabel(int x, int y, int w, int h) const;  // Label
-  std::vector<float> ReadDepth(int x, int y, int w, int h) const;          // buffer values
+  std::vector<std::uint8_t> ReadColor() const;                            // RGBA; Display
+  std::vector<std::uint32_t> ReadLabel(int x, int y, int w, int h) const; // Label
+  std::vector<float> ReadDepth(int x, int y, int w, int h) const;         // buffer values
 
   void Release();
 
 private:
-  template <class T>
+  template<class T>
   std::vector<T> Read(int x, int y, int w, int h, unsigned int format, unsigned int type,
                       int channels) const;
   vtkDspaceHubWindow* Window_;

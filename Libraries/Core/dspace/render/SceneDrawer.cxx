@@ -6,8 +6,8 @@
 
 #include "vtk_glew.h"
 
-#include "Copy_frag.h"
 #include "Background_frag.h"
+#include "Copy_frag.h"
 #include "Downsample_frag.h"
 #include "Instance_vert.h"
 #include "Label_frag.h"
@@ -168,7 +168,7 @@ void SceneDrawer::Upload(const DrawList& list) {
     glGenTextures(1, &this->InstanceTexture_);
   }
   const bool same =
-      this->Uploaded_.size() == instances.size() &&
+      this->InstanceCapacity_ > 0 && this->Uploaded_.size() == instances.size() &&
       (bytes == 0 || std::memcmp(this->Uploaded_.data(), instances.data(), bytes) == 0);
   if (!same) {
     glBindBuffer(GL_TEXTURE_BUFFER, this->InstanceBuffer_);
@@ -186,8 +186,7 @@ void SceneDrawer::Upload(const DrawList& list) {
 }
 
 void SceneDrawer::SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view) {
-  const Eigen::Matrix4f clip =
-      view.projection.ClipFromView(view.width, view.height).cast<float>();
+  const Eigen::Matrix4f clip = view.projection.ClipFromView(view.width, view.height).cast<float>();
   Eigen::Matrix4f columns = clip; // column-major, as OpenGL reads it
   program->SetUniformMatrix4x4("VCDCMatrix", columns.data());
   program->SetUniformi("instances", InstanceUnit);
@@ -241,11 +240,11 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     }
     const GpuMesh& mesh = this->Store_.MeshOf(batch.mesh);
     unsigned wanted = features;
-    wanted |= batch.billboard ? Billboard : 0;
-    wanted |= batch.texture ? Texture : 0;
+    wanted |= batch.billboard ? Billboard : 0u;
+    wanted |= batch.texture ? Texture : 0u;
     if (!labels) {
-      wanted |= batch.lit ? Lit : 0;
-      wanted |= mesh.hasColors ? VertexColor : 0;
+      wanted |= batch.lit ? Lit : 0u;
+      wanted |= mesh.hasColors ? VertexColor : 0u;
     }
     vtkShaderProgram* program = this->SurfaceProgram(wanted);
     if (!prepared[program]) {
@@ -322,8 +321,7 @@ void SceneDrawer::PeelTranslucent(const DrawList& list, const DrawView& view, Re
     for (auto& layer : this->Layers_) {
       layer = std::make_unique<RenderTarget>(this->Window_, RenderTarget::Format::Linear, true);
     }
-    this->Sum_ =
-        std::make_unique<RenderTarget>(this->Window_, RenderTarget::Format::Linear, false);
+    this->Sum_ = std::make_unique<RenderTarget>(this->Window_, RenderTarget::Format::Linear, false);
     glGenQueries(1, &this->Query_);
   }
   for (auto& layer : this->Layers_) {

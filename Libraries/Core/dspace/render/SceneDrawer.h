@@ -47,7 +47,14 @@ public:
   void Release();
 
 private:
-  enum Feature : unsigned { Lit = 1, Texture = 2, VertexColor = 4, Billboard = 8, Peel = 16, Label = 32 };
+  enum Feature : unsigned {
+    Lit = 1,
+    Texture = 2,
+    VertexColor = 4,
+    Billboard = 8,
+    Peel = 16,
+    Label = 32
+  };
   vtkShaderProgram* SurfaceProgram(unsigned features);
   vtkShaderProgram* ScreenProgram(const char* fragmentSource);
   void DrawTriangleOverScreen();

@@ -11,8 +11,9 @@ namespace {
 
 // Characters, not bytes, of UTF-8.
 std::size_t Length(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
 }
 
 std::string Padded(const std::string& text, std::size_t width, bool right) {
@@ -54,10 +55,10 @@ vtkSmartPointer<vtkTextActor> MakeTextTableActor(const TextTable& table, int wid
   look->SetBackgroundColor(table.backgroundColor[0], table.backgroundColor[1],
                            table.backgroundColor[2]);
   look->SetBackgroundOpacity(table.backgroundColor[3]);
-  const bool left = table.anchor == TextTable::Anchor::TopLeft ||
-                    table.anchor == TextTable::Anchor::BottomLeft;
-  const bool top = table.anchor == TextTable::Anchor::TopLeft ||
-                   table.anchor == TextTable::Anchor::TopRight;
+  const bool left =
+      table.anchor == TextTable::Anchor::TopLeft || table.anchor == TextTable::Anchor::BottomLeft;
+  const bool top =
+      table.anchor == TextTable::Anchor::TopLeft || table.anchor == TextTable::Anchor::TopRight;
   left ? look->SetJustificationToLeft() : look->SetJustificationToRight();
   top ? look->SetVerticalJustificationToTop() : look->SetVerticalJustificationToBottom();
   actor->GetPositionCoordinate()->SetCoordinateSystemToDisplay();

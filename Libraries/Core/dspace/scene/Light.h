@@ -16,17 +16,18 @@ struct Light {
     Directional, // from infinitely far: `direction` only
     Point,       // from `position`, in all directions
     Spot,        // from `position` along `direction` within the cone
-    Head         // from the camera that looks
+    Head,        // from the camera that looks
+    Ambient      // from everywhere alike: what keeps shadowed sides from black
   };
   std::string name;
   Kind kind = Kind::Directional;
-  FrameId frame = 1;                                             // position and direction are in it
-  Eigen::Vector3d direction = Eigen::Vector3d(0, 0, -1);         // the way the light travels
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();            // [m]
-  double cone_deg = 30.0;                                        // Spot: half angle, in (0, 90)
-  std::array<double, 3> color = {1, 1, 1};                       // 0 to 1
-  double intensity = 1.0;                                        // >= 0, multiplies the colour
-  std::array<double, 3> attenuation = {1, 0, 0};                 // 1 / (a + b d + c d²), d in metres
+  FrameId frame = 1;                                     // position and direction are in it
+  Eigen::Vector3d direction = Eigen::Vector3d(0, 0, -1); // the way the light travels
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();    // [m]
+  double cone_deg = 30.0;                                // Spot: half angle, in (0, 90)
+  std::array<double, 3> color = {1, 1, 1};               // 0 to 1
+  double intensity = 1.0;                                // >= 0, multiplies the colour
+  std::array<double, 3> attenuation = {1, 0, 0};         // 1 / (a + b d + c d²), d in metres
   bool enabled = true;
 };
 

@@ -1,0 +1,192 @@
+#include <dspace/render/ImageWriter.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <unistd.h>
+
+#include <OpenImageIO/imageio.h>
+
+#include <dspace/Error.h>
+
+namespace dspace {
+namespace {
+
+std::string Label(const std::string& path) {
+  return "file '" + path + "'";
+}
+
+[[noreturn]] void Refuse(const std::string& path, const std::string& message) {
+  throw Error(Error::Kind::InvalidArgument, Label(path), message);
+}
+
+enum class Type { Png, Jpeg, Tiff, Exr };
+
+Type TypeOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  if (extension == ".png") {
+    return Type::Png;
+  }
+  if (extension == ".jpg" || extension == ".jpeg") {
+    return Type::Jpeg;
+  }
+  if (extension == ".tif" || extension == ".tiff") {
+    return Type::Tiff;
+  }
+  if (extension == ".exr") {
+    return Type::Exr;
+  }
+  Refuse(path, "its extension is '" + extension + "'; accepted: .png .jpg .jpeg .tif .tiff .exr");
+}
+
+// A name beside `path` that keeps the extension, removed again unless the file was kept.
+class Draft {
+public:
+  explicit Draft(const std::string& path) : Path_(path) {
+    const std::filesystem::path target(path);
+    this->Draft_ =
+        (target.parent_path() / ("." + target.stem().string() + "." + std::to_string(::getpid()) +
+                                 ".part" + target.extension().string()))
+            .string();
+  }
+  ~Draft() {
+    std::error_code ignored;
+    std::filesystem::remove(this->Draft_, ignored);
+  }
+  const std::string& Name() const { return this->Draft_; }
+  void Keep() {
+    std::error_code error;
+    std::filesystem::rename(this->Draft_, this->Path_, error);
+    if (error) {
+      throw Error(Error::Kind::Io, Label(this->Path_), "cannot be written: " + error.message());
+    }
+  }
+
+private:
+  std::string Path_;
+  std::string Draft_;
+};
+
+void Write(const std::string& path, OIIO::ImageSpec spec, OIIO::TypeDesc type, const void* data,
+           OIIO::stride_t pixelBytes = OIIO::AutoStride) {
+  Draft draft(path);
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(draft.Name());
+  if (!out) {
+    throw Error(Error::Kind::Io, Label(path), "cannot be written: " + OIIO::geterror());
+  }
+  // A date in the file would make two equal pictures differ.
+  spec.attribute("Software", "Dspace");
+  spec.attribute("DateTime", "2000:01:01 12:00:00");
+  if (!out->open(draft.Name(), spec) || !out->write_image(type, data, pixelBytes) ||
+      !out->close()) {
+    throw Error(Error::Kind::Io, Label(path), "cannot be written: " + out->geterror());
+  }
+  draft.Keep();
+}
+
+void RequireSize(const std::string& path, int width, int height, int channels, std::size_t values) {
+  if (width <= 0 || height <= 0 ||
+      values != std::size_t(width) * std::size_t(height) * std::size_t(channels)) {
+    Refuse(path, std::to_string(values) + " values for a picture of " + std::to_string(width) +
+                     " x " + std::to_string(height) + " pixels with " + std::to_string(channels) +
+                     " channels");
+  }
+}
+
+std::array<float, 256> LinearFromSrgb() {
+  std::array<float, 256> table;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double s = double(i) / 255.0;
+    table[i] = float(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+  }
+  return table;
+}
+
+} // namespace
+
+void CheckImageFile(const std::string& path, ImagePlane plane, const ImageFileOptions& options) {
+  const Type type = TypeOf(path);
+  if (plane == ImagePlane::Depth && type != Type::Tiff && type != Type::Exr) {
+    Refuse(path, "its type holds no 32-bit floats; accepted for depth: .tif .tiff .exr");
+  }
+  if (plane == ImagePlane::Label && type == Type::Jpeg) {
+    Refuse(path, "its type loses values; accepted for labels: .png .tif .tiff .exr");
+  }
+  if (options.jpegQuality < 1 || options.jpegQuality > 100) {
+    Refuse(path, "the quality is " + std::to_string(options.jpegQuality) + "; accepted: 1 to 100");
+  }
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
+    throw Error(Error::Kind::Io, Label(path), "there is no folder '" + folder.string() + "'");
+  }
+  if (std::filesystem::is_directory(path, error)) {
+    throw Error(Error::Kind::Io, Label(path), "it is a folder");
+  }
+}
+
+void WriteColor(const std::string& path, int width, int height,
+                const std::vector<std::uint8_t>& rgba, const ImageFileOptions& options) {
+  CheckImageFile(path, ImagePlane::Color, options);
+  RequireSize(path, width, height, 4, rgba.size());
+  const Type type = TypeOf(path);
+  if (type == Type::Exr) {
+    const std::array<float, 256> linear = LinearFromSrgb();
+    std::vector<float> rgb;
+    rgb.reserve(rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+      rgb.insert(rgb.end(), {linear[rgba[i]], linear[rgba[i + 1]], linear[rgba[i + 2]]});
+    }
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::HALF);
+    spec.attribute("compression", "zip");
+    Write(path, spec, OIIO::TypeDesc::FLOAT, rgb.data());
+    return;
+  }
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  if (type == Type::Jpeg) {
+    spec.attribute("CompressionQuality", options.jpegQuality);
+    spec.attribute("jpeg:subsampling", "4:4:4");
+  } else if (type == Type::Tiff) {
+    spec.attribute("compression", "zip");
+  }
+  Write(path, spec, OIIO::TypeDesc::UINT8, rgba.data(), 4);
+}
+
+void WriteDepth(const std::string& path, int width, int height, const std::vector<float>& depth) {
+  CheckImageFile(path, ImagePlane::Depth);
+  RequireSize(path, width, height, 1, depth.size());
+  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"Z"};
+  spec.attribute("compression", "zip");
+  Write(path, spec, OIIO::TypeDesc::FLOAT, depth.data());
+}
+
+void WriteLabel(const std::string& path, int width, int height,
+                const std::vector<std::uint32_t>& label) {
+  CheckImageFile(path, ImagePlane::Label);
+  RequireSize(path, width, height, 1, label.size());
+  if (TypeOf(path) == Type::Exr) {
+    OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT);
+    spec.channelnames = {"id"};
+    spec.attribute("compression", "zip");
+    Write(path, spec, OIIO::TypeDesc::UINT, label.data());
+    return;
+  }
+  const std::uint32_t largest = *std::max_element(label.begin(), label.end());
+  if (largest > 65535) {
+    Refuse(path, "object id " + std::to_string(largest) +
+                     " needs more than its 16 bits; "
+                     "accepted for it: .exr");
+  }
+  const std::vector<std::uint16_t> narrow(label.begin(), label.end());
+  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT16);
+  Write(path, spec, OIIO::TypeDesc::UINT16, narrow.data());
+}
+
+} // namespace dspace

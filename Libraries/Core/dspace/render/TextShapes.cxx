@@ -1,0 +1,113 @@
+#include <dspace/render/TextShapes.h>
+
+#include <cmath>
+
+#include "vtkFreeTypeTools.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+#include "vtkTextProperty.h"
+#include "vtkTriangleFilter.h"
+#include "vtkVectorText.h"
+
+#include <dspace/Error.h>
+
+namespace dspace {
+namespace {
+
+void RequireText(const std::string& text) {
+  if (text.find_first_not_of(" \t\n") == std::string::npos) {
+    throw Error(Error::Kind::InvalidArgument, "text",
+                "is empty; at least one visible character is needed");
+  }
+}
+
+} // namespace
+
+Mesh MakeTextMesh(const std::string& text, double height) {
+  RequireText(text);
+  if (!(height > 0.0 && height < 1e12)) {
+    throw Error(Error::Kind::InvalidArgument, "text '" + text + "'",
+                "height " + std::to_string(height) + " m is refused; positive metres are accepted");
+  }
+  vtkNew<vtkVectorText> letters;
+  letters->SetText(text.c_str());
+  vtkNew<vtkTriangleFilter> triangles;
+  triangles->SetInputConnection(letters->GetOutputPort());
+  triangles->PassLinesOff();
+  triangles->PassVertsOff();
+  triangles->Update();
+  vtkPolyData* data = triangles->GetOutput();
+  Mesh mesh;
+  mesh.name = text;
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+    const double* p = data->GetPoint(i);
+    for (int k = 0; k < 3; ++k) {
+      mesh.positions.push_back(static_cast<float>(p[k] * height)); // the font's capitals measure 1
+      mesh.normals.push_back(k == 2 ? 1.0f : 0.0f);
+    }
+  }
+  vtkNew<vtkIdList> cell;
+  for (vtkIdType i = 0; i < data->GetNumberOfCells(); ++i) {
+    data->GetCellPoints(i, cell);
+    for (vtkIdType k = 0; k < 3; ++k) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(cell->GetId(k)));
+    }
+  }
+  return mesh;
+}
+
+Part MakeLabel(const std::string& text, const LabelStyle& style) {
+  RequireText(text);
+  if (style.fontSize < 4 || style.fontSize > 200) {
+    throw Error(Error::Kind::InvalidArgument, "label '" + text + "'",
+                "font size " + std::to_string(style.fontSize) + " is refused; 4 to 200 pixels");
+  }
+  vtkNew<vtkTextProperty> look;
+  look->SetFontFamilyToArial();
+  look->SetFontSize(style.fontSize);
+  look->SetColor(style.color[0], style.color[1], style.color[2]);
+  look->SetBackgroundColor(style.background[0], style.background[1], style.background[2]);
+  look->SetBackgroundOpacity(style.backgroundOpacity);
+  vtkNew<vtkImageData> picture;
+  int size[2] = {0, 0};
+  // 72 dots an inch: font sizes are pixels.
+  if (!vtkFreeTypeTools::GetInstance()->RenderString(look, vtkStdString(text), 72, picture, size) ||
+      size[0] < 1 || size[1] < 1 || picture->GetNumberOfScalarComponents() != 4) {
+    throw Error(Error::Kind::InvalidArgument, "label '" + text + "'",
+                "could not be drawn; UTF-8 text is accepted");
+  }
+  const int* extent = picture->GetExtent();
+  const int stored[2] = {extent[1] - extent[0] + 1, extent[3] - extent[2] + 1};
+  auto image = std::make_shared<Image>(); // only the part that was drawn, without padding
+  image->name = "label '" + text + "'";
+  image->width = std::min(size[0], stored[0]);
+  image->height = std::min(size[1], stored[1]);
+  image->channels = 4;
+  image->pixels.reserve(static_cast<std::size_t>(image->width) * image->height * 4);
+  for (int y = image->height - 1; y >= 0; --y) { // VTK's rows go up
+    const auto* row = static_cast<const std::uint8_t*>(
+        picture->GetScalarPointer(extent[0], extent[2] + y, extent[4]));
+    image->pixels.insert(image->pixels.end(), row, row + 4 * image->width);
+  }
+
+  auto mesh = std::make_shared<Mesh>();
+  mesh->name = image->name;
+  const auto left = static_cast<float>(style.offset[0]);
+  const auto bottom = static_cast<float>(style.offset[1]);
+  const float right = left + static_cast<float>(image->width);
+  const float top = bottom + static_cast<float>(image->height);
+  mesh->positions = {left, bottom, 0, right, bottom, 0, right, top, 0, left, top, 0};
+  mesh->normals = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  mesh->tcoords = {0, 0, 1, 0, 1, 1, 0, 1};
+  mesh->indices = {0, 1, 2, 0, 2, 3};
+  auto material = std::make_shared<Material>();
+  material->name = image->name;
+  material->color = {1, 1, 1};
+  material->texture = image;
+  material->repeatTexture = false;
+  material->lit = false;
+  return {mesh, material, Eigen::Affine3d::Identity()};
+}
+
+} // namespace dspace
