@@ -10,7 +10,7 @@ import pytest
 ROOT = File(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "Wrapping" / "Python"))
 
-from dspace.rover import (CarriedModel, GridTerrain, IndependentSuspension, Path, PathPose,  # noqa: E402
+from dspace.rover import (CarriedModel, GridTerrain, IndependentSuspension, Path,  # noqa: E402
                           RockerBogie, load_vehicle)
 
 URDF = ROOT / "Data" / "rover" / "rover.urdf"
@@ -109,8 +109,8 @@ def test_level_ground_leaves_every_angle_zero(rover, heading):
     assert np.allclose(s.quaternion, [np.cos(half), 0, 0, np.sin(half)], atol=1e-9)
     assert max(abs(a) for a in {**s.joints, **s.mimic_joints}.values()) < 1e-7
     assert s.tilt_deg < 1e-6 and s.residual < 1e-9 and not s.beyond_limits
-    for point in s.contacts.values():
-        assert point[2] == pytest.approx(1.5, abs=1e-9)
+    for wheel, point in s.contacts.items():  # below the middle of the tread
+        assert np.allclose(point, s.wheel_centers[wheel] - [0, 0, RADIUS], atol=1e-7)
 
 
 @pytest.mark.parametrize("slope_deg,direction_deg", [(10, 0), (15, 60), (12, 90), (20, 200)])
@@ -136,6 +136,10 @@ def test_both_middle_wheels_on_a_step(rover, height):
     assert s.joints["rocker_left"] == pytest.approx(0, abs=1e-6)
     for side in ("left", "right"):
         assert s.joints[f"bogie_{side}"] == pytest.approx(np.degrees(-a - theta), abs=2e-3)
+    # Nothing has been driven: no wheel has turned against the world, whatever carries it has.
+    assert abs(s.joints["wheel_middle_left"]) > 1
+    for wheel in WHEELS:
+        assert np.allclose(walk(URDF, s)[wheel][0], np.eye(3), atol=1e-5)
 
 
 def test_one_middle_wheel_on_a_small_step(rover):
@@ -317,6 +321,8 @@ def test_bad_input_is_named(rover, tmp_path):
         rover.drive(Path([(0, 0), (1, 0)]), [1.0, 0.5], level)
     with pytest.raises(TypeError, match="terrain"):
         rover.solve((0, 0, 0), 3)
+    with pytest.raises(ValueError, match="no height at"):
+        rover.solve((0, 0, 0), lambda xy: np.where(xy[:, 0] > 0.5, np.nan, 0.0))
 
 
 @real_data

@@ -5,10 +5,21 @@ import numpy as np
 def as_terrain(terrain):
     """(heights, gradients): two functions of xy (n, 2) in metres, giving z (n,) and dz/dx, dz/dy
     (n, 2). `terrain` is a callable, or an object with heights(xy) and, if it can, gradients(xy) or
-    normals(xy). Without either, central differences over 2 mm."""
-    heights = getattr(terrain, "heights", None) or terrain
-    if not callable(heights):
+    normals(xy). Without either, central differences over 2 mm. A height that is not finite (a hole,
+    or beyond the data) is a ValueError that names the place."""
+    source = getattr(terrain, "heights", None) or terrain
+    if not callable(source):
         raise TypeError(f"terrain: expected a callable or an object with heights(xy), got {terrain!r}")
+
+    def heights(xy):
+        z = np.asarray(source(xy), float)
+        if z.shape != (len(xy),):
+            raise ValueError(f"terrain: heights of shape {z.shape} for {len(xy)} points; expected ({len(xy)},)")
+        if not np.isfinite(z).all():
+            x, y = xy[np.argmin(np.isfinite(z))]
+            raise ValueError(f"terrain: no height at ({x:.3f}, {y:.3f})")
+        return z
+
     if hasattr(terrain, "gradients"):
         return heights, terrain.gradients
     if hasattr(terrain, "normals"):
@@ -20,7 +31,7 @@ def as_terrain(terrain):
     def differences(xy, step=0.002):
         n = len(xy)
         at = np.vstack([xy + [step, 0], xy - [step, 0], xy + [0, step], xy - [0, step]])
-        z = np.asarray(heights(at))
+        z = heights(at)
         return np.column_stack([z[:n] - z[n:2 * n], z[2 * n:3 * n] - z[3 * n:]]) / (2 * step)
 
     return heights, differences

@@ -25,7 +25,7 @@ class VehicleState:
     roll_deg: float  # about the vehicle's forward axis, right side down positive
     pitch_deg: float  # about its left axis, nose down positive
     tilt_deg: float  # between the chassis' up and the vertical
-    joints: dict = field(default_factory=dict)  # name -> degrees; what may be set
+    joints: dict = field(default_factory=dict)  # URDF joints that may be set: name -> degrees
     mimic_joints: dict = field(default_factory=dict)  # name -> degrees; follow others by themselves
     frames: dict = field(default_factory=dict)  # frames.json: name -> (position, quaternion) in parent
     contacts: dict = field(default_factory=dict)  # wheel -> point where it rests (3,)
@@ -70,7 +70,7 @@ class CarriedModel:
         g = np.linspace(-0.5, 0.5, 11)
         local = np.column_stack([v.ravel() for v in np.meshgrid(g, g)]) * self.size[:2]
         c, s = np.cos(heading), np.sin(heading)
-        z = np.asarray(heights(np.array([pose.x, pose.y]) + local @ np.array([[c, s], [-s, c]])), float)
+        z = heights(np.array([pose.x, pose.y]) + local @ np.array([[c, s], [-s, c]]))
         fit = np.linalg.lstsq(np.column_stack([np.ones(len(z)), local]), z, rcond=None)[0]
         if (self.size[:2] < 1e-9).any():
             fit = np.array([z.max(), 0.0, 0.0])
