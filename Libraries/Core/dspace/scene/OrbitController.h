@@ -1,0 +1,82 @@
+// A camera moved by hand: orbit, pan, dolly, frame, reset, and clicks that pick.
+#ifndef DSPACE_SCENE_ORBIT_CONTROLLER_H
+#define DSPACE_SCENE_ORBIT_CONTROLLER_H
+
+#include <optional>
+
+#include <dspace/scene/Camera.h>
+#include <dspace/scene/GraphicsObject.h>
+#include <dspace/scene/InputEvent.h>
+
+namespace dspace {
+
+// What the controller has to know of a viewport when an event comes. F is pose.frame.
+struct OrbitView {
+  Camera camera;   // as it is now
+  CameraPose pose; // where it stands (PlaceCamera): X_FC
+  int width = 1;   // pixels
+  int height = 1;
+  std::optional<Eigen::Vector3d> pivot_F; // the point under the pointer; used when NeedsPivot()
+  std::optional<BoundingSphere> bounds_F; // what the F key frames
+};
+
+struct OrbitResult {
+  bool changed = false;
+  Camera camera;       // when changed: the mount is Fixed in F, so that a chase camera comes loose
+  bool picked = false; // a left click (no drag): pick the pixel (x, y)
+  double x = 0.0;
+  double y = 0.0;
+};
+
+// Left drag orbits about the point under the pointer; right is +X of the picture, and the horizon
+// stays level: turns are about F's `up` and the camera's own X axis, and stop at straight up and
+// straight down. Middle drag, or left with Shift, pans: the point grabbed stays under the pointer.
+// Wheel and right drag (up: nearer) go towards the point under the pointer, which keeps its pixel;
+// an orthographic camera changes its height instead. Arrow keys orbit by 5°, + and - go nearer and
+// farther by a fifth, both about the point under the pointer; Frame shows bounds_F whole, Reset
+// returns to the home camera.
+// Where there is no point under the pointer, one on its ray at the depth of the last one used is
+// taken (first: the depth of the bounds' centre, or 10 m).
+class OrbitController {
+public:
+  // `up` in F, any length but 0. Throws Error(InvalidArgument).
+  explicit OrbitController(const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
+
+  // What Reset returns to; without it, the camera that the first event found. A home in another
+  // frame than the camera's takes it there.
+  void SetHome(const Camera& camera);
+
+  // Whether `event` makes use of OrbitView::pivot_F, so that none need be picked when not.
+  static bool NeedsPivot(const InputEvent& event);
+
+  // Throws Error(InvalidArgument) naming the camera for a size below 1 × 1 or a value that is not
+  // finite; nothing has changed then.
+  OrbitResult Handle(const InputEvent& event, const OrbitView& view);
+
+  // The camera moved so that it shows the sphere whole in the middle of its picture, looking the
+  // way it looks now: 5 % smaller than it could be, and behind the near plane. Throws
+  // Error(InvalidArgument) for a radius that is not positive and finite.
+  static Camera FrameSphere(const OrbitView& view, const BoundingSphere& sphere_F);
+
+private:
+  enum class Drag { None, Orbit, Pan, Dolly };
+  Eigen::Vector3d PivotFor(const InputEvent& event, const OrbitView& view);
+  void Press(const InputEvent& event, const OrbitView& view);
+  void Move(const InputEvent& event, const OrbitView& view, OrbitResult& result);
+  void Key(const InputEvent& event, const OrbitView& view, OrbitResult& result);
+
+  Eigen::Vector3d Up_; // unit, in F
+  std::optional<Camera> Home_;
+  double Depth_ = 0.0; // of the last pivot [m]; 0 before the first
+  Drag Drag_ = Drag::None;
+  InputEvent::Button Button_ = InputEvent::Button::None;
+  FrameId Frame_ = NoFrame; // in which the drag's pivot is
+  Eigen::Vector3d Pivot_F_ = Eigen::Vector3d::Zero();
+  double PressX_ = 0.0, PressY_ = 0.0; // where the button went down
+  double LastX_ = 0.0, LastY_ = 0.0;   // where the last event was
+  bool Clicking_ = false;              // the pointer has not left the press point
+};
+
+} // namespace dspace
+
+#endif
