@@ -1,0 +1,124 @@
+#include "vtkDspaceSession.h"
+
+#include <map>
+#include <vector>
+
+#include <dspace/session/ViewportCommands.h>
+
+#include "vtkDataArray.h"
+#include "vtkDspaceRenderContext.h"
+#include "vtkDspaceScene.h"
+#include "vtkDspaceViewport.h"
+#include "vtkFloatArray.h"
+#include "vtkObjectFactory.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnsignedIntArray.h"
+
+vtkStandardNewMacro(vtkDspaceSession);
+
+namespace {
+
+template<class Array, class T>
+vtkSmartPointer<vtkDataArray> ToArray(const char* name, const std::vector<T>& values,
+                                      int channels) {
+  if (values.empty()) {
+    return nullptr;
+  }
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(channels);
+  array->SetNumberOfTuples(vtkIdType(values.size()) / channels);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
+} // namespace
+
+struct vtkDspaceSession::Internals {
+  // In this order: the viewports go before the scenes that they show.
+  dspace::session::Interpreter interpreter;
+  std::map<std::string, vtkSmartPointer<vtkDspaceScene>> scenes;
+  dspace::session::ViewportCommands viewports;
+  dspace::v1::Command command;
+  std::map<std::string, vtkSmartPointer<vtkDataArray>> planes;
+
+  void TakePlanes() {
+    dspace::Capture& capture = this->viewports.LastCapture();
+    this->planes.clear();
+    this->planes["color"] = ToArray<vtkUnsignedCharArray>("color", capture.color, 4);
+    this->planes["depth"] = ToArray<vtkFloatArray>("depth", capture.depth, 1);
+    this->planes["label"] = ToArray<vtkUnsignedIntArray>("label", capture.label, 1);
+    capture = {};
+  }
+};
+
+vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
+  dspace::session::Registry& commands = this->Impl->interpreter.Commands();
+  this->Impl->viewports.AddTo(commands);
+  dspace::session::AddTextCommands(commands);
+}
+
+vtkDspaceSession::~vtkDspaceSession() = default;
+
+std::string vtkDspaceSession::Execute(const std::string& bytes) {
+  dspace::v1::Reply reply;
+  dspace::v1::Command& command = this->Impl->command;
+  if (!command.ParseFromString(bytes)) {
+    command.Clear();
+    reply.mutable_error()->set_kind(dspace::v1::Error::CORRUPT);
+    reply.mutable_error()->set_object("command");
+    reply.mutable_error()->set_message("command: the bytes are not a Command message");
+  } else {
+    reply = this->Impl->interpreter.Execute(command);
+  }
+  if (reply.has_capture()) {
+    this->Impl->TakePlanes();
+  }
+  return reply.SerializeAsString();
+}
+
+std::string vtkDspaceSession::GetCommand() {
+  return this->Impl->command.SerializeAsString();
+}
+
+vtkDataArray* vtkDspaceSession::GetPlane(const std::string& name) {
+  const auto found = this->Impl->planes.find(name);
+  return found == this->Impl->planes.end() ? nullptr : found->second.Get();
+}
+
+vtkDspaceScene* vtkDspaceSession::GetScene(const std::string& name) {
+  const std::shared_ptr<dspace::Scene> scene = this->Impl->interpreter.FindScene(name);
+  if (!scene) {
+    this->Impl->scenes.erase(name);
+    return nullptr;
+  }
+  vtkSmartPointer<vtkDspaceScene>& mirror = this->Impl->scenes[name];
+  if (!mirror || !mirror->Mirrors(*scene)) {
+    mirror = vtkSmartPointer<vtkDspaceScene>::New();
+    mirror->SetScene(scene);
+  }
+  return mirror;
+}
+
+vtkDspaceViewport* vtkDspaceSession::GetViewport(const std::string& name) {
+  return this->Impl->viewports.Find(name);
+}
+
+void vtkDspaceSession::SetRenderContext(vtkDspaceRenderContext* context) {
+  this->Impl->viewports.SetRenderContext(context);
+}
+
+vtkDspaceRenderContext* vtkDspaceSession::GetRenderContext() {
+  return this->Impl->viewports.GetRenderContext();
+}
+
+dspace::session::Interpreter& vtkDspaceSession::GetInterpreter() {
+  return this->Impl->interpreter;
+}
+
+void vtkDspaceSession::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Scenes: " << this->Impl->interpreter.GetState().scenes.size() << "\n"
+     << indent << "Viewports: " << this->Impl->interpreter.GetState().viewports.size() << "\n";
+}

@@ -1,0 +1,66 @@
+/**
+ * @class vtkDspaceSession
+ * @brief A session in process: the interpreter with viewports that draw.
+ *
+ * Commands and replies are the protobuf messages of <dspace/session/commands.proto>. No C++
+ * exception leaves a method that Python calls: errors travel in the reply.
+ */
+#ifndef vtkDspaceSession_h
+#define vtkDspaceSession_h
+
+#include <memory>
+#include <string>
+
+#include "vtkDspaceSessionModule.h"
+#include "vtkObject.h"
+
+#ifndef __VTK_WRAP__
+#include <dspace/session/Interpreter.h>
+#endif
+
+class vtkDataArray;
+class vtkDspaceRenderContext;
+class vtkDspaceScene;
+class vtkDspaceViewport;
+
+class VTKDSPACESESSION_EXPORT vtkDspaceSession : public vtkObject {
+public:
+  static vtkDspaceSession* New();
+  vtkTypeMacro(vtkDspaceSession, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Carries out a serialized Command and returns the serialized Reply. Afterwards GetCommand() is
+  /// the command as recorded, with the ids that were chosen.
+  std::string Execute(const std::string& command);
+  std::string GetCommand();
+
+  /// A plane of the last capture ("color", "depth", "label"): rows from the top, one tuple a pixel.
+  /// Null when the capture did not ask for it. It is the caller's: the next capture makes a new
+  /// one.
+  vtkDataArray* GetPlane(const std::string& name);
+
+  /// The objects behind the names; null when there are none of that name.
+  vtkDspaceScene* GetScene(const std::string& name);
+  vtkDspaceViewport* GetViewport(const std::string& name);
+
+  /// The context that draws, shared by sessions of one process. To be set before the first
+  /// viewport is made; a session without one makes its own then.
+  void SetRenderContext(vtkDspaceRenderContext* context);
+  vtkDspaceRenderContext* GetRenderContext();
+
+#ifndef __VTK_WRAP__
+  dspace::session::Interpreter& GetInterpreter();
+#endif
+
+protected:
+  vtkDspaceSession();
+  ~vtkDspaceSession() override;
+
+private:
+  vtkDspaceSession(const vtkDspaceSession&) = delete;
+  void operator=(const vtkDspaceSession&) = delete;
+  struct Internals;
+  std::unique_ptr<Internals> Impl;
+};
+
+#endif
