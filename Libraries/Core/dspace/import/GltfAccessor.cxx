@@ -197,4 +197,24 @@ std::vector<float> GltfAccessorFloats(const GltfDocument& document, const GltfAc
   return out;
 }
 
+std::uint32_t GltfAccessorMaximum(const GltfDocument& document, const GltfAccessor& accessor) {
+  const Json::Value& json = document.Element("accessors", accessor.index);
+  const GltfDocument::View view =
+      document.BufferView(document.Index(json, "bufferView", "bufferViews", "accessor"));
+  const char* p = view.data + document.Count(json, "byteOffset", 0, "accessor");
+  const std::size_t step = view.stride != 0 ? view.stride : accessor.ComponentSize();
+  double largest = 0.0; // holds every 32-bit integer
+  for (std::size_t i = 0; i < accessor.count; ++i) {
+    largest = std::max(largest, LoadComponent(p + i * step, accessor.componentType, false));
+  }
+  if (accessor.sparse) {
+    const Sparse sparse = CheckSparse(document, accessor);
+    for (std::size_t i = 0; i < sparse.count; ++i) {
+      largest = std::max(largest, LoadComponent(sparse.values + i * accessor.ComponentSize(),
+                                                accessor.componentType, false));
+    }
+  }
+  return static_cast<std::uint32_t>(largest);
+}
+
 } // namespace dspace

@@ -3,6 +3,7 @@
 #define DSPACE_IMPORT_GLTF_ACCESSOR_H
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ GltfAccessor CheckGltfAccessor(const GltfDocument& document, std::size_t index,
 // applied. `components` numbers an element; those beyond the accessor's own are `fill`.
 std::vector<float> GltfAccessorFloats(const GltfDocument& document, const GltfAccessor& accessor,
                                       std::size_t components, float fill);
+
+// Largest value of an accessor of unsigned integers that has a buffer view; exact.
+std::uint32_t GltfAccessorMaximum(const GltfDocument& document, const GltfAccessor& accessor);
 
 } // namespace dspace
 

@@ -80,6 +80,26 @@ struct Primitive {
   std::string where;
   int material = -1;
   bool draco = false;
+  std::size_t mode = 4;     // section 5.24.4: 0 points, ... 4 triangles, ... 6 fan
+  std::size_t vertices = 0; // as the file says
+  std::size_t corners = 0;  // indices, or vertices where there are none
+
+  // Faces, lines or points that the corners make.
+  std::size_t FaceCount() const {
+    switch (this->mode) {
+    case 0:
+    case 2: // a loop has as many lines as corners
+      return this->corners;
+    case 1:
+      return this->corners / 2;
+    case 3:
+      return this->corners > 1 ? this->corners - 1 : 0;
+    case 4:
+      return this->corners / 3;
+    default:
+      return this->corners > 2 ? this->corners - 2 : 0;
+    }
+  }
 };
 
 class GeometryReader {
@@ -87,7 +107,7 @@ public:
   GeometryReader(const GltfDocument& document, const GltfMaterials& materials,
                  const ImportOptions& options, std::vector<std::string>& warnings)
       : Document_(document), Materials_(materials), Warnings_(warnings),
-        Left_(MaximumElements(document, options)) {}
+        Maximum_(MaximumElements(document, options)), Left_(Maximum_) {}
 
   GltfGeometry Read() {
     GltfGeometry out;
@@ -187,12 +207,14 @@ private:
     primitive.draco = draco.isObject();
 
     Json::Value to(Json::objectValue);
-    const std::size_t mode = this->Document_.Count(from, "mode", 4, where);
-    if (mode > 6) {
-      this->Document_.Fail(where + ".mode is " + std::to_string(mode) + "; 0 to 6 are known");
+    primitive.mode = this->Document_.Count(from, "mode", 4, where);
+    if (primitive.mode > 6) {
+      this->Document_.Fail(where + ".mode is " + std::to_string(primitive.mode) +
+                           "; 0 to 6 are known");
     }
-    to["mode"] = static_cast<Json::UInt>(mode);
+    to["mode"] = static_cast<Json::UInt>(primitive.mode);
     this->AddAttributes(from["attributes"], primitive, to);
+    primitive.corners = primitive.vertices;
     if (!from["indices"].isNull()) {
       this->AddIndices(from, primitive, to);
     }
@@ -209,7 +231,7 @@ private:
     this->Primitives_.push_back(std::move(primitive));
   }
 
-  void AddAttributes(const Json::Value& from, const Primitive& primitive, Json::Value& to) {
+  void AddAttributes(const Json::Value& from, Primitive& primitive, Json::Value& to) {
     const std::size_t set =
         primitive.material < 0 ? 0 : this->Materials_.uses[std::size_t(primitive.material)].set;
     struct Wanted {
@@ -221,7 +243,7 @@ private:
                              {"NORMAL", "NORMAL", 3, 3},
                              {"TEXCOORD_" + std::to_string(set), "TEXCOORD_0", 2, 2},
                              {"COLOR_0", "COLOR_0", 3, 4}};
-    std::size_t count = 0;
+    std::size_t& count = primitive.vertices;
     for (const Wanted& attribute : wanted) {
       if (from[attribute.from].isNull()) {
         continue;
@@ -229,7 +251,7 @@ private:
       const std::string where = primitive.where + "." + attribute.from;
       const GltfAccessor accessor = CheckGltfAccessor(
           this->Document_, this->Document_.Index(from, attribute.from.c_str(), "accessors", where),
-          this->Left_);
+          this->Maximum_);
       this->Take(accessor.count, where);
       count = count == 0 ? accessor.count : count;
       if (accessor.count != count) {
@@ -272,10 +294,10 @@ private:
     return this->Converted_[{accessor.index, components}] = this->Json_["accessors"].size() - 1;
   }
 
-  void AddIndices(const Json::Value& from, const Primitive& primitive, Json::Value& to) {
+  void AddIndices(const Json::Value& from, Primitive& primitive, Json::Value& to) {
     const std::string where = primitive.where + ".indices";
     const std::size_t index = this->Document_.Index(from, "indices", "accessors", primitive.where);
-    const GltfAccessor accessor = CheckGltfAccessor(this->Document_, index, this->Left_);
+    const GltfAccessor accessor = CheckGltfAccessor(this->Document_, index, this->Maximum_);
     this->Take(accessor.count, where);
     if (accessor.type != "SCALAR" ||
         (accessor.componentType != 5121 && accessor.componentType != 5123 &&
@@ -286,6 +308,14 @@ private:
     if (!accessor.hasView && !primitive.draco) {
       this->Document_.Fail(where + " has no buffer view");
     }
+    // Assimp drops faces with indices out of range without a word.
+    const std::uint32_t largest =
+        primitive.draco ? 0 : GltfAccessorMaximum(this->Document_, accessor);
+    if (largest >= primitive.vertices) {
+      this->Document_.Fail(where + " has index " + std::to_string(largest) + " of " +
+                           std::to_string(primitive.vertices) + " vertices");
+    }
+    primitive.corners = accessor.count;
     to["indices"] = static_cast<Json::UInt>(index);
   }
 
@@ -432,12 +462,19 @@ private:
     mesh.primitive = corners == 3   ? Mesh::Primitive::Triangles
                      : corners == 2 ? Mesh::Primitive::Lines
                                     : Mesh::Primitive::Points;
+    if (from.mNumVertices != primitive.vertices || from.mNumFaces != primitive.FaceCount()) {
+      this->Document_.Fail(primitive.where + " decodes to " + std::to_string(from.mNumVertices) +
+                           " vertices and " + std::to_string(from.mNumFaces) +
+                           " faces; the file says " + std::to_string(primitive.vertices) + " and " +
+                           std::to_string(primitive.FaceCount()));
+    }
     this->Take(from.mNumFaces, primitive.where);
     mesh.indices.reserve(std::size_t(from.mNumFaces) * corners);
     for (unsigned int f = 0; f < from.mNumFaces; ++f) {
       const aiFace& face = from.mFaces[f];
       if (face.mNumIndices != corners) {
-        continue; // Assimp leaves faces empty where a strip or fan is too short
+        this->Document_.Fail(primitive.where + " has a face of " +
+                             std::to_string(face.mNumIndices) + " corners");
       }
       for (unsigned int k = 0; k < corners; ++k) {
         if (face.mIndices[k] >= from.mNumVertices) {
@@ -452,7 +489,8 @@ private:
   const GltfDocument& Document_;
   const GltfMaterials& Materials_;
   std::vector<std::string>& Warnings_;
-  std::size_t Left_;
+  std::size_t Maximum_; // elements that the file may have in all
+  std::size_t Left_;    // of these, not yet taken
   Json::Value Json_;
   std::vector<Primitive> Primitives_;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> Converted_; // accessor, components

@@ -152,17 +152,27 @@ private:
       }
       joint.axis = axis.normalized();
     }
-    const bool turns = joint.type == UrdfJoint::Type::Revolute;
-    if ((turns || joint.type == UrdfJoint::Type::Prismatic) && from.limits) {
-      joint.hasLimits = true;
-      joint.lower = from.limits->lower * (turns ? DegreesPerRadian : 1.0);
-      joint.upper = from.limits->upper * (turns ? DegreesPerRadian : 1.0);
-      if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower > joint.upper) {
-        this->Fail(where + ": its limits " + std::to_string(from.limits->lower) + " to " +
-                   std::to_string(from.limits->upper) + " are the wrong way round or not finite");
-      }
+    if (from.limits &&
+        (joint.type == UrdfJoint::Type::Revolute || joint.type == UrdfJoint::Type::Prismatic)) {
+      this->ConvertLimits(*from.limits, where, joint);
     }
     return joint;
+  }
+
+  void ConvertLimits(const urdf::JointLimits& from, const std::string& where,
+                     UrdfJoint& joint) const {
+    if (!std::isfinite(from.lower) || !std::isfinite(from.upper) || from.lower > from.upper) {
+      this->Fail(where + ": its limits " + std::to_string(from.lower) + " to " +
+                 std::to_string(from.upper) + " are the wrong way round or not finite");
+    }
+    // Generators write the largest double where there is no limit.
+    constexpr double boundless = 1e300;
+    joint.hasLimits = from.lower > -boundless || from.upper < boundless;
+    if (joint.hasLimits) {
+      const double unit = Turns(joint) ? DegreesPerRadian : 1.0;
+      joint.lower = std::max(from.lower, -boundless) * unit;
+      joint.upper = std::min(from.upper, boundless) * unit;
+    }
   }
 
   UrdfJoint::Type ConvertType(const urdf::Joint& from, const std::string& where) const {
