@@ -109,7 +109,7 @@ Mesh FromPoints(const std::string& name, Mesh::Primitive primitive,
   mesh.name = name;
   mesh.primitive = primitive;
   for (const Eigen::Vector3d& p : points) {
-    if (!(p.cwiseAbs().maxCoeff() <= 1e15)) { // false for NaN too
+    if (!(p.array().abs() <= 1e15).all()) { // false for NaN too
       Refuse(name, "a point is " + VectorText(p) + "; accepted: within 1e15 metres");
     }
     for (int i = 0; i < 3; ++i) {
