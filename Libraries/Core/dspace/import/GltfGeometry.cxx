@@ -1,106 +1,16 @@
-// Geometry of a glTF file through Assimp, which decodes accessors, sparse values, Draco, strips and
-// fans. Assimp is handed a document of our own making: one mesh a primitive, only what a mesh
-// needs, every range checked, and integers that Assimp would misread (it copies their bytes as
-// floats) turned into floats before.
-#include "GltfDocument.h"
-
+// Geometry of a glTF file: what Assimp is asked to decode (accessors, sparse values, Draco, strips
+// and fans). It gets a document of our own making: only what a mesh needs, every range checked, and
+// integers that Assimp would misread (it copies their bytes as floats) turned into floats before.
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <map>
 
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
-#include <assimp/Importer.hpp>
-#include <assimp/scene.h>
-
 #include "GltfAccessor.h"
-#include "MeshRepair.h"
+#include "GltfDecoder.h"
+#include "GltfDocument.h"
 
 namespace dspace {
 
 namespace {
-
-// What Assimp may open: the document and its buffers, in memory; no file at all.
-class MemoryFiles : public Assimp::IOSystem {
-public:
-  void Add(const std::string& name, const std::string* bytes) { this->Files_[name] = bytes; }
-
-  bool Exists(const char* file) const override { return this->Find(file) != nullptr; }
-  char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    const std::string* bytes = mode[0] == 'r' ? this->Find(file) : nullptr;
-    return bytes ? new Stream(*bytes) : nullptr;
-  }
-  void Close(Assimp::IOStream* stream) override { delete stream; }
-
-private:
-  class Stream : public Assimp::IOStream {
-  public:
-    explicit Stream(const std::string& bytes) : Bytes_(bytes) {}
-    size_t Read(void* out, size_t size, size_t count) override {
-      const size_t left = this->Bytes_.size() - this->At_;
-      const size_t n = size == 0 ? 0 : std::min(count, left / size);
-      std::memcpy(out, this->Bytes_.data() + this->At_, n * size);
-      this->At_ += n * size;
-      return n;
-    }
-    size_t Write(const void*, size_t, size_t) override { return 0; }
-    aiReturn Seek(size_t offset, aiOrigin origin) override {
-      const size_t base = origin == aiOrigin_SET   ? 0
-                          : origin == aiOrigin_CUR ? this->At_
-                                                   : this->Bytes_.size();
-      if (offset > this->Bytes_.size() - base) {
-        return aiReturn_FAILURE;
-      }
-      this->At_ = base + offset;
-      return aiReturn_SUCCESS;
-    }
-    size_t Tell() const override { return this->At_; }
-    size_t FileSize() const override { return this->Bytes_.size(); }
-    void Flush() override {}
-
-  private:
-    const std::string& Bytes_;
-    size_t At_ = 0;
-  };
-
-  const std::string* Find(const char* file) const {
-    const char* slash = std::strrchr(file, '/');
-    const auto found = this->Files_.find(slash ? slash + 1 : file);
-    return found == this->Files_.end() ? nullptr : found->second;
-  }
-
-  std::map<std::string, const std::string*> Files_;
-};
-
-// One primitive of the file, as the document for Assimp has it.
-struct Primitive {
-  std::string name;
-  std::string where;
-  int material = -1;
-  bool draco = false;
-  std::size_t mode = 4;     // section 5.24.4: 0 points, ... 4 triangles, ... 6 fan
-  std::size_t vertices = 0; // as the file says
-  std::size_t corners = 0;  // indices, or vertices where there are none
-
-  // Faces, lines or points that the corners make.
-  std::size_t FaceCount() const {
-    switch (this->mode) {
-    case 0:
-    case 2: // a loop has as many lines as corners
-      return this->corners;
-    case 1:
-      return this->corners / 2;
-    case 3:
-      return this->corners > 1 ? this->corners - 1 : 0;
-    case 4:
-      return this->corners / 3;
-    default:
-      return this->corners > 2 ? this->corners - 2 : 0;
-    }
-  }
-};
 
 class GeometryReader {
 public:
@@ -117,8 +27,8 @@ public:
       out.meshesOf.emplace_back();
       this->AddMesh(i, out.meshesOf.back());
     }
-    if (!this->Primitives_.empty()) {
-      this->Decode(out.meshes);
+    if (!this->Request_.primitives.empty()) {
+      out.meshes = DecodeGltf(this->Document_, this->Materials_, this->Request_, this->Warnings_);
     }
     return out;
   }
@@ -136,16 +46,16 @@ private:
   }
 
   void StartDocument() {
-    this->Json_["asset"]["version"] = "2.0";
+    this->Request_.json["asset"]["version"] = "2.0";
     // Index for index as in the file, with nothing but what decoding needs.
     for (std::size_t i = 0; i < this->Document_.Array("bufferViews").size(); ++i) {
       const Json::Value& view = this->Document_.Element("bufferViews", i);
-      this->Json_["bufferViews"].append(
+      this->Request_.json["bufferViews"].append(
           Copy(view, {"buffer", "byteOffset", "byteLength", "byteStride"}));
     }
     for (std::size_t i = 0; i < this->Document_.Array("accessors").size(); ++i) {
       const Json::Value& accessor = this->Document_.Element("accessors", i);
-      this->Json_["accessors"].append(
+      this->Request_.json["accessors"].append(
           Copy(accessor, {"bufferView", "byteOffset", "componentType", "count", "type", "sparse"}));
     }
   }
@@ -190,13 +100,13 @@ private:
         this->Warnings_.push_back(where + " has no positions and is left out");
         continue;
       }
-      members.push_back(static_cast<int>(this->Primitives_.size()));
+      members.push_back(static_cast<int>(this->Request_.primitives.size()));
       this->AddPrimitive(primitives[p], name, where);
     }
   }
 
   void AddPrimitive(const Json::Value& from, const std::string& name, const std::string& where) {
-    Primitive primitive;
+    GltfPrimitive primitive;
     primitive.name = name;
     primitive.where = where;
     if (!from["material"].isNull()) {
@@ -222,16 +132,16 @@ private:
       this->AddDraco(draco, primitive, to);
     }
     Json::Value mesh, node;
-    mesh["name"] = "p" + std::to_string(this->Primitives_.size());
+    mesh["name"] = "p" + std::to_string(this->Request_.primitives.size());
     mesh["primitives"].append(to);
-    node["mesh"] = static_cast<Json::UInt>(this->Primitives_.size());
-    this->Json_["meshes"].append(mesh);
-    this->Json_["nodes"].append(node);
-    this->Json_["scenes"][0]["nodes"].append(node["mesh"]);
-    this->Primitives_.push_back(std::move(primitive));
+    node["mesh"] = static_cast<Json::UInt>(this->Request_.primitives.size());
+    this->Request_.json["meshes"].append(mesh);
+    this->Request_.json["nodes"].append(node);
+    this->Request_.json["scenes"][0]["nodes"].append(node["mesh"]);
+    this->Request_.primitives.push_back(std::move(primitive));
   }
 
-  void AddAttributes(const Json::Value& from, Primitive& primitive, Json::Value& to) {
+  void AddAttributes(const Json::Value& from, GltfPrimitive& primitive, Json::Value& to) {
     const std::size_t set =
         primitive.material < 0 ? 0 : this->Materials_.uses[std::size_t(primitive.material)].set;
     struct Wanted {
@@ -281,20 +191,21 @@ private:
         GltfAccessorFloats(this->Document_, accessor, components, 1.0f);
     Json::Value view, made;
     view["buffer"] = static_cast<Json::UInt64>(this->Document_.Buffers().size());
-    view["byteOffset"] = static_cast<Json::UInt64>(this->Extra_.size());
+    view["byteOffset"] = static_cast<Json::UInt64>(this->Request_.extra.size());
     view["byteLength"] = static_cast<Json::UInt64>(values.size() * sizeof(float));
-    made["bufferView"] = this->Json_["bufferViews"].size();
+    made["bufferView"] = this->Request_.json["bufferViews"].size();
     made["componentType"] = GltfAccessor::Float;
     made["count"] = static_cast<Json::UInt64>(accessor.count);
     made["type"] = "VEC" + std::to_string(components);
-    this->Extra_.append(reinterpret_cast<const char*>(values.data()),
-                        values.size() * sizeof(float));
-    this->Json_["bufferViews"].append(view);
-    this->Json_["accessors"].append(made);
-    return this->Converted_[{accessor.index, components}] = this->Json_["accessors"].size() - 1;
+    this->Request_.extra.append(reinterpret_cast<const char*>(values.data()),
+                                values.size() * sizeof(float));
+    this->Request_.json["bufferViews"].append(view);
+    this->Request_.json["accessors"].append(made);
+    return this->Converted_[{accessor.index, components}] =
+               this->Request_.json["accessors"].size() - 1;
   }
 
-  void AddIndices(const Json::Value& from, Primitive& primitive, Json::Value& to) {
+  void AddIndices(const Json::Value& from, GltfPrimitive& primitive, Json::Value& to) {
     const std::string where = primitive.where + ".indices";
     const std::size_t index = this->Document_.Index(from, "indices", "accessors", primitive.where);
     const GltfAccessor accessor = CheckGltfAccessor(this->Document_, index, this->Maximum_);
@@ -319,7 +230,7 @@ private:
     to["indices"] = static_cast<Json::UInt>(index);
   }
 
-  void AddDraco(const Json::Value& from, const Primitive& primitive, Json::Value& to) {
+  void AddDraco(const Json::Value& from, const GltfPrimitive& primitive, Json::Value& to) {
     const std::string where = primitive.where + ".extensions.KHR_draco_mesh_compression";
     const std::size_t view = this->Document_.Index(from, "bufferView", "bufferViews", where);
     this->Document_.BufferView(view);
@@ -346,144 +257,15 @@ private:
       }
     }
     to["extensions"]["KHR_draco_mesh_compression"] = made;
-    if (!this->Json_.isMember("extensionsRequired")) {
-      this->Json_["extensionsRequired"].append("KHR_draco_mesh_compression");
-      this->Json_["extensionsUsed"].append("KHR_draco_mesh_compression");
+    if (!this->Request_.json.isMember("extensionsRequired")) {
+      this->Request_.json["extensionsRequired"].append("KHR_draco_mesh_compression");
+      this->Request_.json["extensionsUsed"].append("KHR_draco_mesh_compression");
     }
   }
 
-  std::string TextureSet(const Primitive& primitive) const {
+  std::string TextureSet(const GltfPrimitive& primitive) const {
     return std::to_string(
         primitive.material < 0 ? 0 : this->Materials_.uses[std::size_t(primitive.material)].set);
-  }
-
-  void Decode(std::vector<Mesh>& out) {
-    auto* files = new MemoryFiles; // owned by the importer
-    Assimp::Importer importer;
-    importer.SetIOHandler(files);
-    std::vector<const std::string*> buffers;
-    for (const std::string& buffer : this->Document_.Buffers()) {
-      buffers.push_back(&buffer);
-    }
-    buffers.push_back(&this->Extra_);
-    for (std::size_t i = 0; i < buffers.size(); ++i) {
-      Json::Value buffer;
-      buffer["uri"] = "buffer" + std::to_string(i);
-      buffer["byteLength"] = static_cast<Json::UInt64>(buffers[i]->size());
-      this->Json_["buffers"].append(buffer);
-      files->Add("buffer" + std::to_string(i), buffers[i]);
-    }
-    this->Json_["scene"] = 0;
-    Json::StreamWriterBuilder writer;
-    writer["indentation"] = "";
-    const std::string text = Json::writeString(writer, this->Json_);
-    files->Add("document.gltf", &text);
-
-    const aiScene* scene = importer.ReadFile("document.gltf", 0);
-    if (!scene) {
-      this->Document_.Fail(std::string("its geometry cannot be decoded: ") +
-                           importer.GetErrorString());
-    }
-    std::map<std::string, const aiMesh*> byName;
-    for (unsigned int i = 0; i < scene->mNumMeshes; ++i) {
-      byName[scene->mMeshes[i]->mName.C_Str()] = scene->mMeshes[i];
-    }
-    for (std::size_t i = 0; i < this->Primitives_.size(); ++i) {
-      const auto found = byName.find("p" + std::to_string(i));
-      if (found == byName.end()) {
-        this->Document_.Fail(this->Primitives_[i].where + " was not decoded");
-      }
-      out.push_back(this->Convert(*found->second, this->Primitives_[i]));
-    }
-  }
-
-  Mesh Convert(const aiMesh& from, const Primitive& primitive) {
-    Mesh mesh;
-    mesh.name = primitive.name;
-    mesh.material = primitive.material;
-    const std::size_t n = from.mNumVertices;
-    const auto copy = [n](const aiVector3D* v, std::vector<float>& to) {
-      to.reserve(3 * n);
-      for (std::size_t i = 0; v && i < n; ++i) {
-        to.insert(to.end(), {v[i].x, v[i].y, v[i].z});
-      }
-    };
-    copy(from.mVertices, mesh.positions);
-    copy(from.mNormals, mesh.normals);
-    this->ConvertTcoords(from, primitive, mesh);
-    this->ConvertColors(from, primitive, mesh);
-    this->ConvertFaces(from, primitive, mesh);
-    if (!NormalizeNormals(mesh)) {
-      this->Warnings_.push_back(primitive.where +
-                                ": its normals are left out, some have no length");
-    }
-    DropUnusedVertices(mesh);
-    return mesh;
-  }
-
-  void ConvertTcoords(const aiMesh& from, const Primitive& primitive, Mesh& mesh) const {
-    const aiVector3D* t = from.mTextureCoords[0];
-    const Eigen::Affine2d transform =
-        primitive.material < 0 ? Eigen::Affine2d::Identity()
-                               : this->Materials_.uses[std::size_t(primitive.material)].transform;
-    for (std::size_t i = 0; t && i < from.mNumVertices; ++i) {
-      // Assimp has turned v = 0 to the bottom row; the transform is meant for glTF's own v.
-      const Eigen::Vector2d uv = transform * Eigen::Vector2d(t[i].x, 1.0 - double(t[i].y));
-      mesh.tcoords.push_back(static_cast<float>(uv.x()));
-      mesh.tcoords.push_back(static_cast<float>(1.0 - uv.y()));
-    }
-  }
-
-  // Linear to sRGB, as Material has its colours; alpha stays linear.
-  void ConvertColors(const aiMesh& from, const Primitive& primitive, Mesh& mesh) const {
-    const bool opaque =
-        primitive.material < 0 || this->Materials_.opaque[std::size_t(primitive.material)];
-    const auto byte = [](double v) {
-      return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
-    };
-    const auto encode = [&](double v) {
-      return byte(v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055);
-    };
-    for (std::size_t i = 0; from.mColors[0] && i < from.mNumVertices; ++i) {
-      const aiColor4D& c = from.mColors[0][i];
-      if (!std::isfinite(c.r) || !std::isfinite(c.g) || !std::isfinite(c.b) ||
-          !std::isfinite(c.a)) {
-        this->Document_.Fail(primitive.where + ".COLOR_0 has a value that is not finite");
-      }
-      mesh.colors.insert(mesh.colors.end(), {encode(c.r), encode(c.g), encode(c.b),
-                                             opaque ? std::uint8_t(255) : byte(c.a)});
-    }
-  }
-
-  void ConvertFaces(const aiMesh& from, const Primitive& primitive, Mesh& mesh) {
-    const unsigned int corners = from.mPrimitiveTypes & aiPrimitiveType_TRIANGLE ? 3
-                                 : from.mPrimitiveTypes & aiPrimitiveType_LINE   ? 2
-                                                                                 : 1;
-    mesh.primitive = corners == 3   ? Mesh::Primitive::Triangles
-                     : corners == 2 ? Mesh::Primitive::Lines
-                                    : Mesh::Primitive::Points;
-    if (from.mNumVertices != primitive.vertices || from.mNumFaces != primitive.FaceCount()) {
-      this->Document_.Fail(primitive.where + " decodes to " + std::to_string(from.mNumVertices) +
-                           " vertices and " + std::to_string(from.mNumFaces) +
-                           " faces; the file says " + std::to_string(primitive.vertices) + " and " +
-                           std::to_string(primitive.FaceCount()));
-    }
-    this->Take(from.mNumFaces, primitive.where);
-    mesh.indices.reserve(std::size_t(from.mNumFaces) * corners);
-    for (unsigned int f = 0; f < from.mNumFaces; ++f) {
-      const aiFace& face = from.mFaces[f];
-      if (face.mNumIndices != corners) {
-        this->Document_.Fail(primitive.where + " has a face of " +
-                             std::to_string(face.mNumIndices) + " corners");
-      }
-      for (unsigned int k = 0; k < corners; ++k) {
-        if (face.mIndices[k] >= from.mNumVertices) {
-          this->Document_.Fail(primitive.where + " has index " + std::to_string(face.mIndices[k]) +
-                               " of " + std::to_string(from.mNumVertices) + " vertices");
-        }
-        mesh.indices.push_back(face.mIndices[k]);
-      }
-    }
   }
 
   const GltfDocument& Document_;
@@ -491,10 +273,8 @@ private:
   std::vector<std::string>& Warnings_;
   std::size_t Maximum_; // elements that the file may have in all
   std::size_t Left_;    // of these, not yet taken
-  Json::Value Json_;
-  std::vector<Primitive> Primitives_;
+  GltfRequest Request_;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> Converted_; // accessor, components
-  std::string Extra_; // floats made from integers
 };
 
 } // namespace
