@@ -341,11 +341,15 @@ private:
     for (const Eigen::Vector3d& n : this->Vertices_.normals) {
       append(mesh.normals, n.normalized().eval());
     }
+    // Vertex colours are the colours, not a tint of the default grey; what has no normals and no
+    // faces to make them from cannot be lit.
+    Material material;
+    material.lit = primitive == Mesh::Primitive::Triangles || !mesh.normals.empty();
     if (!mesh.colors.empty()) {
-      // Vertex colours are the colours, not a tint of the default grey.
-      mesh.material = static_cast<int>(model.materials.size());
-      Material material;
       material.color = {1.0, 1.0, 1.0};
+    }
+    if (!mesh.colors.empty() || !material.lit) {
+      mesh.material = static_cast<int>(model.materials.size());
       model.materials.push_back(material);
     }
     model.nodes[0].meshes.push_back(static_cast<int>(model.meshes.size()));

@@ -4,8 +4,8 @@
 #include "VrmlFields.h"
 
 #include <Inventor/VRMLnodes/SoVRMLAppearance.h>
-#include <Inventor/VRMLnodes/SoVRMLImageTexture.h>
 #include <Inventor/VRMLnodes/SoVRMLMaterial.h>
+#include <Inventor/VRMLnodes/SoVRMLMovieTexture.h>
 #include <Inventor/VRMLnodes/SoVRMLPixelTexture.h>
 #include <Inventor/VRMLnodes/SoVRMLShape.h>
 #include <Inventor/VRMLnodes/SoVRMLTextureTransform.h>
@@ -31,7 +31,8 @@ struct Texture {
 Texture ReadTexture(VrmlBuilder& builder, const VrmlFile& file,
                     const SoVRMLAppearance& appearance) {
   Texture texture;
-  if (const auto* url = NodeIn<SoVRMLImageTexture>(appearance.texture)) {
+  // The guard's stand-in for ImageTexture.
+  if (const auto* url = NodeIn<SoVRMLMovieTexture>(appearance.texture)) {
     texture.image = builder.Texture(file, ToVector(url->url));
     texture.repeat = url->repeatS.getValue() && url->repeatT.getValue();
   } else if (const auto* pixels = NodeIn<SoVRMLPixelTexture>(appearance.texture)) {

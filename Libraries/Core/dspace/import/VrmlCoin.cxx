@@ -6,7 +6,6 @@
 
 #include <Inventor/SoDB.h>
 #include <Inventor/SoInput.h>
-#include <Inventor/VRMLnodes/SoVRMLImageTexture.h>
 #include <Inventor/VRMLnodes/SoVRMLInline.h>
 #include <Inventor/errors/SoDebugError.h>
 #include <Inventor/errors/SoErrors.h>
@@ -76,7 +75,6 @@ CoinSession::CoinSession() : Lock_(CoinMutex()), Handlers_(std::make_unique<Hand
   SoVRMLInline::setReadAsSoFile(FALSE);
   SoVRMLInline::setFetchURLCallBack(FetchNothing, nullptr);
   SoWWWInline::setReadAsSoFile(FALSE);
-  SoVRMLImageTexture::setDelayFetchURL(TRUE);
 }
 
 CoinSession::~CoinSession() {

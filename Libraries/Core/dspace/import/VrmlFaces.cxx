@@ -128,6 +128,19 @@ std::vector<int> ColorIndices(const VrmlFaces& in, const std::vector<Face>& face
   return result;
 }
 
+// Index of a normal in the pool; `made` are those that the same point has already.
+int Pooled(std::vector<Eigen::Vector3f>& pool, std::vector<int>& made,
+           const Eigen::Vector3f& normal) {
+  for (const int i : made) {
+    if (pool[static_cast<std::size_t>(i)] == normal) {
+      return i;
+    }
+  }
+  made.push_back(static_cast<int>(pool.size()));
+  pool.push_back(normal);
+  return made.back();
+}
+
 // Corner normals of the faces themselves, smooth below the crease angle; appended to `pool`.
 std::vector<int> GeneratedNormals(const VrmlFaces& in, const std::vector<Face>& faces,
                                   const std::vector<Eigen::Vector3d>& areas,
@@ -151,6 +164,7 @@ std::vector<int> GeneratedNormals(const VrmlFaces& in, const std::vector<Face>& 
       }
     }
   }
+  std::unordered_map<int, std::vector<int>> made; // point -> normals in the pool
   // Slightly below, so that an angle of exactly the crease angle is smooth in spite of rounding.
   const double limit = std::cos(std::min(in.creaseAngle, M_PI)) - 1e-6;
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -166,8 +180,8 @@ std::vector<int> GeneratedNormals(const VrmlFaces& in, const std::vector<Face>& 
           }
         }
         if (sum.norm() > 0.0) {
-          normal = static_cast<int>(pool.size());
-          pool.push_back(sum.normalized().cast<float>());
+          normal =
+              Pooled(pool, made[in.coordIndex[faces[f].first + k]], sum.normalized().cast<float>());
         }
       }
       result.push_back(normal);

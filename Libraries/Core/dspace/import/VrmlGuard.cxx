@@ -284,7 +284,7 @@ private:
       this->Result_.names[emitted] = name;
       scope.definitions[name] = {emitted, true, {}};
     }
-    this->Emit(proto ? proto->emitted : type == "File" ? "WWWInline" : type);
+    this->Emit(proto ? proto->emitted : TypeForCoin(type));
     this->Tokens_.Take();
     this->Emit("{");
     ++this->Nesting_;
@@ -307,6 +307,12 @@ private:
       definition.weight = weight;
     }
     return true;
+  }
+
+  // Coin opens what File and ImageTexture name while it parses; their stand-ins, which have the
+  // same fields, only keep the names.
+  static std::string TypeForCoin(const std::string& type) {
+    return type == "File" ? "WWWInline" : type == "ImageTexture" ? "MovieTexture" : type;
   }
 
   void InstanceBody(const Proto& proto, const std::string& type, Scope& scope, Weight& weight) {
