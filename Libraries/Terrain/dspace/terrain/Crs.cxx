@@ -61,6 +61,12 @@ Crs Crs::FromOgr(const OGRSpatialReference& source) {
   if (srs->IsCompound())
     srs->StripVertical();
   srs->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  // The traditional order turns (latitude north, longitude east) only; west-positive longitude of
+  // planetographic systems comes first all the same.
+  OGRAxisOrientation first = OAO_Other;
+  srs->GetAxis(nullptr, 0, &first);
+  if (srs->IsGeographic() && (first == OAO_North || first == OAO_South))
+    srs->SetDataAxisToSRSAxisMapping({2, 1});
   if (srs->IsGeocentric())
     throw Error(Error::Kind::Unsupported, "CRS '" + crs.Name_ + "'",
                 "geocentric coordinates do not georeference a raster; a geographic or projected "

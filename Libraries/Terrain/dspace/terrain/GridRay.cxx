@@ -107,8 +107,10 @@ GridRay::Hit GridRay::Intersect(const Eigen::Vector3d& origin, const Eigen::Vect
     hit.fromBelow = direction.z() > 0.0;
     return hit;
   }
-  if (!Clip(march.o.x(), march.d.x(), 0.0, lastC, t0, t1) ||
-      !Clip(march.o.y(), march.d.y(), 0.0, lastR, t0, t1) ||
+  // The border is as wide as that of HeightGrid::ToGrid: a ray that ends on it meets it.
+  constexpr double border = 1e-9;
+  if (!Clip(march.o.x(), march.d.x(), -border, lastC + border, t0, t1) ||
+      !Clip(march.o.y(), march.d.y(), -border, lastR + border, t0, t1) ||
       !Clip(march.o.z(), march.d.z(), low, high, t0, t1) || !std::isfinite(t1))
     return {};
   // From where it enters the box, so that a far origin costs no digits inside.

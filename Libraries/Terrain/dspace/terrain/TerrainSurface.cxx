@@ -157,7 +157,7 @@ Eigen::Vector3d TerrainSurface::GeographicToMap(const Eigen::Vector3d& lonLatHei
            "latitude " + std::to_string(lonLatHeight.y()) + " given; accepted is -90 to 90");
   Eigen::Vector2d p =
       lonLatHeight.head<2>().cwiseProduct(this->GeographicSigns_) / this->GeographicUnit_;
-  p = this->Geographic_ ? this->Geographic_->ApplyInverse(p) : this->TowardsData(p);
+  p = this->TowardsData(this->Geographic_ ? this->Geographic_->ApplyInverse(p) : p);
   return {p.x(), p.y(), lonLatHeight.z()};
 }
 
@@ -173,15 +173,35 @@ Eigen::Vector3d TerrainSurface::CrsToMap(const Eigen::Vector3d& p, const Crs& cr
   return {map.x(), map.y(), p.z()};
 }
 
-// A grid may run from 0 to 360 or from -180 to 180: whole turns are added until the point is
-// within half a turn of its middle.
-Eigen::Vector2d TerrainSurface::TowardsData(Eigen::Vector2d map) const {
+// A grid may run from 0 to 360 or from -180 to 180, or past the edge of a cylindrical map: whole
+// turns are added until the point is within half a turn of its middle.
+Eigen::Vector2d TerrainSurface::TowardsData(const Eigen::Vector2d& map) const {
   const Eigen::AlignedBox2d box = this->DoGetBounds().map;
-  if (this->Crs_.GetKind() != Crs::Kind::Geographic || box.isEmpty())
+  if (box.isEmpty() || box.contains(map) || !this->Crs_.HasGeographic())
     return map;
-  const double turn = 360.0 / this->Crs_.GetUnit();
-  map.x() -= turn * std::round((map.x() - box.center().x()) / turn);
-  return map;
+  double turn = 360.0 / this->Crs_.GetUnit();
+  if (this->Geographic_) {
+    // How far the map runs a degree of longitude, here; a whole turn is 360 times that if the map
+    // is cylindrical, which is seen by coming back to the same place.
+    const Eigen::Vector2d place = this->Geographic_->Apply(map);
+    const Eigen::Vector2d aside =
+        this->Geographic_->ApplyInverse(place + Eigen::Vector2d(1e-3, 0.0));
+    turn = std::abs((aside - map).x()) * 360e3 / this->GeographicUnit_;
+    const double turns = std::round((map.x() - box.center().x()) / turn);
+    const Eigen::Vector2d there(map.x() - turn * turns, map.y());
+    if (turns == 0.0 || !std::isfinite(there.x()))
+      return map;
+    const Eigen::Vector2d again = this->Geographic_->Apply(there);
+    const bool same =
+        std::abs(again.y() - place.y()) < 1e-9 &&
+        std::abs(std::remainder(again.x() - place.x(), 360.0 / this->GeographicUnit_)) < 1e-6;
+    if (!same)
+      return map;
+    // The turn by differences is good to some 1e-7 of itself; what is left is a small step.
+    const double rest = std::remainder(place.x() - again.x(), 360.0 / this->GeographicUnit_);
+    return {there.x() + rest * (aside - map).x() / 1e-3, there.y()};
+  }
+  return {map.x() - turn * std::round((map.x() - box.center().x()) / turn), map.y()};
 }
 
 Eigen::Vector3d TerrainSurface::Up(const Eigen::Vector3d& p_S) const {

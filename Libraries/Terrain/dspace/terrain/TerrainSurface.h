@@ -140,7 +140,7 @@ protected:
                             Eigen::Ref<Eigen::VectorXd> heights) const;
 
 private:
-  Eigen::Vector2d TowardsData(Eigen::Vector2d map) const;
+  Eigen::Vector2d TowardsData(const Eigen::Vector2d& map) const;
 
   std::string Name_;
   Crs Crs_;
