@@ -1,0 +1,187 @@
+"""A rover drives a curved path over terrain, seen through four viewports of one scene.
+
+Makes, in the folder given by --out: demo.mp4 (the four views tiled), one PNG a viewport, a contact
+sheet and report.txt. The simulation runs at 60 steps a second, the movie at 30 frames a second.
+"""
+import argparse
+import pathlib
+import sys
+import time
+
+import numpy as np
+
+import dspace
+from dspace.rover import Path, load_vehicle
+
+from movie import Movie, save_image, tile
+from vehicle import Ground, PlacedVehicle
+from views import Views
+
+STEPS_PER_SECOND = 60
+STEPS_PER_FRAME = 2
+DATA = pathlib.Path(__file__).resolve().parents[2] / "Data"
+
+
+def read_size(text):
+    try:
+        width, height = (int(v) for v in text.lower().split("x"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is no size; accepted: WIDTHxHEIGHT, as 1280x720")
+    if not (64 <= width <= 7680 and 64 <= height <= 4320) or width % 4 or height % 4:
+        raise argparse.ArgumentTypeError(
+            f"'{text}': accepted are 64x64 to 7680x4320, both multiples of 4")
+    return width, height
+
+
+def read_seconds(text):
+    seconds = float(text)
+    if not 0.1 <= seconds <= 3600:
+        raise argparse.ArgumentTypeError(f"'{text}': accepted are 0.1 to 3600 seconds")
+    return seconds
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--terrain", type=pathlib.Path, default=DATA / "field" / "field.tif",
+                        help="heights: any raster that GDAL opens (default: the cratered field)")
+    parser.add_argument("--image", type=pathlib.Path, help="an image to drape over the terrain")
+    parser.add_argument("--vertical-scale", type=float, default=None,
+                        help="metres a unit of height, where the file does not say")
+    parser.add_argument("--model", type=pathlib.Path, default=DATA / "rover" / "rover.urdf",
+                        help="URDF, frames.json, glTF/GLB, VRML, OBJ, STL or PLY (default: the rover)")
+    parser.add_argument("--scale", type=float, default=1.0,
+                        help="metres a unit of the model; for a URDF keep 1 (default)")
+    parser.add_argument("--up", choices=("y", "z"), default=None,
+                        help="the model file's upward axis (default: the format's own)")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/demo"))
+    parser.add_argument("--seconds", type=read_seconds, default=12.0)
+    parser.add_argument("--size", type=read_size, default=(1280, 720),
+                        help="of the movie, WIDTHxHEIGHT (default 1280x720)")
+    return parser.parse_args()
+
+
+def route(options, terrain, length):
+    """Way points: the shipped route on the shipped field, else an S about the terrain's middle."""
+    if options.terrain.resolve() == (DATA / "field" / "field.tif").resolve():
+        import json
+        with open(DATA / "field" / "route.json") as file:
+            return np.array(json.load(file)["way_points_m"], float)
+    (x0, y0), (x1, y1) = terrain.extent
+    middle = np.array([0.5 * (x0 + x1), 0.5 * (y0 + y1)])
+    reach = min(0.4 * min(x1 - x0, y1 - y0), 6.0 * length)
+    shape = np.array([(-1, -0.35), (-0.5, 0.05), (0, 0), (0.5, -0.05), (1, 0.35)])
+    return middle + reach * shape
+
+
+def main():
+    options = arguments()
+    for path in (options.terrain, options.model):
+        if not path.exists():
+            sys.exit(f"dspace demo: there is no file {path}")
+    options.out.mkdir(parents=True, exist_ok=True)
+    began = time.perf_counter()
+    with dspace.Session() as session:
+        scene = session.scene("demo")
+        terrain = add_terrain(scene, options)
+        description = load(scene, options)
+        length = description.length
+        way_points = route(options, terrain, length)
+        way = Path(way_points, speed=1.0, ramp=1.0)
+        # The whole route in the time asked for, but no faster than a rover's brisk pace.
+        speed = min(way.length / max(options.seconds - 1.0, 0.5), 0.6 * length)
+        way = Path(way_points, speed=speed, ramp=1.0)
+        steps = int(round(options.seconds * STEPS_PER_SECOND))
+        times = np.arange(steps + 1) / STEPS_PER_SECOND
+        route_line = np.column_stack([way.sample(np.linspace(0, way.length, 400))[0]])
+        terrain.focus(route_line[::8], radius=1.5 * length)
+        ground = Ground(terrain)
+        states = description.vehicle.drive(way, times, ground)
+        placed = PlacedVehicle(scene, description)
+        views = Views(scene, placed, terrain, options.size, way_points[-1], route_line, ground)
+        print(f"dspace demo: {description.vehicle!r} on {terrain!r}; "
+              f"set up in {time.perf_counter() - began:.1f} s", flush=True)
+
+        worst = max(state.residual for state in states)
+        with Movie(options.out / "demo.mp4", options.size, STEPS_PER_SECOND / STEPS_PER_FRAME) as movie:
+            sheet = []
+            drawn = time.perf_counter()
+            frames = steps // STEPS_PER_FRAME + 1
+            for step, state in enumerate(states):
+                scene.time = state.time
+                placed.move(state, pan_deg=40.0 * np.sin(2 * np.pi * state.time / 8.0))
+                views.update(state)
+                if step % STEPS_PER_FRAME:
+                    continue
+                pictures = views.pictures()
+                movie.add(tile(pictures))
+                frame = step // STEPS_PER_FRAME
+                if frame in {round(i * (frames - 1) / 8) for i in range(9)}:
+                    sheet.append(tile(pictures))
+                if frame == frames * 2 // 3:
+                    views.save(options.out)
+                if sys.stderr.isatty() and frame % 10 == 0:
+                    print(f"\r  frame {frame} of {frames}", end="", file=sys.stderr, flush=True)
+            drawn = time.perf_counter() - drawn
+        if sys.stderr.isatty():
+            print("\r" + " " * 40 + "\r", end="", file=sys.stderr)
+        save_image(options.out / "contact_sheet.png", contact_sheet(sheet))
+        report(options, session, terrain, description, way, states, frames, drawn, worst)
+
+
+def add_terrain(scene, options):
+    settings = {}
+    if options.image:
+        settings["image"] = options.image
+    elif options.terrain.resolve() == (DATA / "field" / "field.tif").resolve():
+        settings["image"] = DATA / "field" / "field_color.tif"
+    if options.vertical_scale is not None:
+        settings["vertical_scale"] = options.vertical_scale
+    return scene.add_terrain(options.terrain, name="terrain", **settings)
+
+
+def load(scene, options):
+    from vehicle import Described
+    return Described(scene, options.model, options.scale, options.up)
+
+
+def contact_sheet(pictures, columns=3, width=480):
+    small = []
+    for picture in pictures:
+        step = max(picture.shape[1] // width, 1)
+        h, w = picture.shape[0] // step * step, picture.shape[1] // step * step
+        blocks = picture[:h, :w].reshape(h // step, step, w // step, step, 3)
+        small.append(blocks.mean(axis=(1, 3)).astype(np.uint8))
+    while len(small) % columns:
+        small.append(np.zeros_like(small[0]))
+    rows = [np.hstack(small[i:i + columns]) for i in range(0, len(small), columns)]
+    return np.vstack(rows)
+
+
+def report(options, session, terrain, described, way, states, frames, drawn, worst):
+    statistics = session.statistics
+    lines = [
+        f"model       {options.model.name}: {described.vehicle!r}",
+        f"terrain     {options.terrain.name}: {terrain!r}",
+        f"path        {way.length:.1f} m long, {states[-1].time:.1f} s at 60 steps a second",
+        f"tilt        at most {max(s.tilt_deg for s in states):.1f} deg",
+        f"wheels      at most {1000 * worst:.2f} mm from the ground that is drawn"
+        if described.wheeled else "carried     on the ground under its footprint",
+        f"frames      {frames} of four viewports, {options.size[0]} x {options.size[1]} together",
+        f"rate        {frames / drawn:.1f} frames a second, drawing, reading back and encoding",
+        f"renderer    {session.renderer}",
+        f"triangles   {statistics['triangles_drawn']} in the last viewport, terrain "
+        f"{terrain.triangles}",
+    ]
+    (options.out / "report.txt").write_text("\n".join(lines) + "\n")
+    print("\n".join("  " + line for line in lines))
+    print("made:")
+    for path in sorted(options.out.iterdir()):
+        print(f"  {path}")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (dspace.Error, ValueError, OSError) as error:
+        sys.exit(f"dspace demo: {error}")

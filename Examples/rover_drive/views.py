@@ -1,0 +1,95 @@
+"""The four viewports of the demo."""
+import numpy as np
+
+SKY = (0.03, 0.035, 0.05)
+HAZE = (0.16, 0.15, 0.14)
+MAST_CAMERAS = ("mast_camera", "Frame_RNAV", "Body_RSM_EL")
+
+
+class Views:
+    """Chase; mast camera (physical objects only); overhead map; free view with read-outs."""
+
+    def __init__(self, scene, placed, terrain, size, goal, route, ground):
+        self.placed = placed
+        length = placed.length
+        half = (size[0] // 2, size[1] // 2)
+        scene.lights["sun"].set(direction=(0.75, 0.45, -0.5), intensity=1.5)
+        scene.lights["sky"].set(intensity=0.12)
+
+        chase = scene.add_camera("chase", frame=placed.frame, fov_deg=42, near=0.02 * length, chase=dict(
+            offset=(-2.1 * length, -1.2 * length, 1.1 * length), target=(0.3 * length, 0, 0.2 * length),
+            axes="heading", smoothing_s=0.5))
+        mast = self._mast_camera(scene, placed)
+        x, y = route.min(axis=0), route.max(axis=0)
+        span = max((y - x)[1] * 1.3, (y - x)[0] * 1.3 * half[1] / half[0], 6 * length)
+        top = float(np.nanmax(ground.heights(route))) + 50 * length
+        middle = 0.5 * (x + y)
+        overhead = scene.add_camera("overhead", eye=(*middle, top), target=(*middle, top - 1),
+                                    up=(0, 1, 0), height=float(span), near=1.0, far=100.0 * length)
+        far_eye = np.array([*(middle + (-0.45 * span, -0.75 * span)), 0.0])
+        far_eye[2] = np.nan_to_num(float(ground.heights(far_eye[None, :2])[0])) + 0.4 * span
+        look = np.array([*middle, float(ground.heights(middle[None])[0])])
+        free = scene.add_camera("free", eye=far_eye, target=look, fov_deg=40, near=0.05 * length)
+
+        self.views = {name: scene.add_viewport(size=half, camera=camera, name=name, samples=2)
+                      for name, camera in (("chase", chase), ("mast", mast), ("overhead", overhead),
+                                           ("free", free))}
+        for view in self.views.values():
+            view.set_background(HAZE, top=SKY)
+        self.views["mast"].ornaments = False
+        self.views["chase"].hide(self._helpers(scene, placed, goal, route, ground))
+        self.views["free"].corner_axes = True
+
+    @staticmethod
+    def _mast_camera(scene, placed):
+        robot = placed.described.robot
+        for name in MAST_CAMERAS:
+            if robot is not None and name in robot.links:
+                turn = (1, 0, 0, 0) if name == "mast_camera" else (0.5, 0.5, 0.5, 0.5)
+                return scene.add_camera("mast", frame=robot.links[name], fov_deg=45, near=0.05,
+                                        pose=dict(quaternion=turn))
+        length = placed.length
+        return scene.add_camera("mast", frame=placed.frame, fov_deg=55, near=0.05 * length,
+                                eye=(0.6 * length, 0, 0.6 * length), target=(2.5 * length, 0, 0))
+
+    def _helpers(self, scene, placed, goal, route, ground):
+        """Ornaments that the chase view leaves out, as a fragment."""
+        helpers = scene.add_fragment("helpers", ornamental=True)
+        length = placed.length
+        z = lambda xy: ground.heights(np.atleast_2d(xy))
+        scene.add_axes(0.8 * length, frame=placed.frame, name="vehicle axes", fragment=helpers,
+                       position=(0, 0, 0.9 * length))
+        goal_frame = scene.add_frame("goal", position=(*goal, float(z(goal)[0])))
+        scene.add_goal(1.2 * length, frame=goal_frame, name="goal", fragment=helpers)
+        self.tilt = scene.add_tilt_marker(0.35 * length, warn_deg=8, limit_deg=20, frame=placed.frame,
+                                          name="tilt", fragment=helpers, position=(0, 0, 1.1 * length))
+        scene.add_lines(np.column_stack((route, z(route) + 0.04 * length)), name="planned route",
+                        color=(0.35, 0.75, 1.0), line_width=1.5, fragment=helpers)
+        self.trail = scene.add_trail(capacity=5000, minimum_spacing=0.02 * length, name="trail",
+                                     color=(1.0, 0.75, 0.1), line_width=2.5, fragment=helpers)
+        scene.add_label("rover", frame=placed.frame, name="label", fragment=helpers, font_size=14,
+                        position=(0, 0, 1.5 * length))
+        return helpers
+
+    def update(self, state):
+        length = self.placed.length
+        on_ground = (np.mean(list(state.contacts.values()), axis=0) if state.contacts
+                     else np.asarray(state.position))
+        self.trail.append([on_ground + (0, 0, 0.05 * length)])
+        self.tilt.set(state.tilt_deg)
+        rows = [("time", f"{state.time:7.2f} s"),
+                ("x, y", f"{on_ground[0]:8.2f} {on_ground[1]:8.2f} m"),
+                ("height", f"{on_ground[2]:8.3f} m"),
+                ("heading", f"{(90 - state.heading_deg) % 360:7.1f} deg"),
+                ("pitch, roll", f"{state.pitch_deg:6.1f} {state.roll_deg:6.1f} deg"),
+                ("tilt", f"{state.tilt_deg:6.1f} deg")]
+        rows += [(name.replace("wheel_", "").replace("_", " "), f"{height:8.3f} m")
+                 for name, height in state.wheel_heights.items()]
+        self.views["free"].set_table("state", rows, title="ROVER", font_size=11)
+
+    def pictures(self):
+        return [view.image(physical_only=name == "mast") for name, view in self.views.items()]
+
+    def save(self, folder):
+        for name, view in self.views.items():
+            view.save(folder / f"{name}.png", physical_only=name == "mast")
