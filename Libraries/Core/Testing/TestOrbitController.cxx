@@ -346,6 +346,25 @@ TEST(Orbit, FramesASphere) {
       EXPECT_LT(box.max().x(), w - 0.5);
       EXPECT_LT(box.max().y(), h - 0.5);
       EXPECT_GT(std::max(box.sizes().x() / w, box.sizes().y() / h), 0.85);
+      if (kind == Projection::Kind::Orthographic) {
+        continue;
+      }
+      // As far from the left border's plane as from the right one's, and from the top's as from the
+      // bottom's; from the nearer pair by the radius and its margin.
+      const auto corner = [&](double x, double y) {
+        return hand.view.camera.projection.PixelRay(x, y, hand.view.width, hand.view.height)
+            .direction;
+      };
+      const Vector3d corners[] = {corner(-0.5, -0.5), corner(w - 0.5, -0.5),
+                                  corner(w - 0.5, h - 0.5), corner(-0.5, h - 0.5)};
+      const Vector3d center = X_CF.Apply(sphere.center);
+      double away[4]; // top, right, bottom, left
+      for (int k = 0; k < 4; ++k) {
+        away[k] = std::abs(corners[k].cross(corners[(k + 1) % 4]).normalized().dot(center));
+      }
+      EXPECT_NEAR(away[0], away[2], 1e-9);
+      EXPECT_NEAR(away[1], away[3], 1e-9);
+      EXPECT_NEAR(std::min(away[0], away[1]), 1.05 * sphere.radius, 1e-9);
     }
   }
   Hand hand(Projection::Kind::Perspective);

@@ -255,17 +255,17 @@ Camera OrbitController::FrameSphere(const OrbitView& view, const BoundingSphere&
     const double range = projection.farDistance - projection.nearDistance;
     p_C.z() = projection.nearDistance + std::min(2.0 * r, 0.5 * range);
   } else {
-    // Tangents of the borders. A sphere at depth z fits between left and right for x from
-    // z left + r √(1 + left²) to z right - r √(1 + right²), and likewise up and down.
+    // Tangents a < b of opposite borders, at angles with cosines ca, cb from Z. The centre, on
+    // their bisector, is r away from both at z (b - a) = r / ca + r / cb.
     const Eigen::Vector3d low = ray(-0.5, -0.5).direction;
     const Eigen::Vector3d high = ray(view.width - 0.5, view.height - 0.5).direction;
     const Eigen::Array2d a = low.head<2>().array() / low.z();
     const Eigen::Array2d b = high.head<2>().array() / high.z();
-    const Eigen::Array2d marginA = r * (1.0 + a.square()).sqrt();
-    const Eigen::Array2d marginB = r * (1.0 + b.square()).sqrt();
-    const double z = ((marginA + marginB) / (b - a)).maxCoeff();
+    const Eigen::Array2d ca = (1.0 + a.square()).rsqrt();
+    const Eigen::Array2d cb = (1.0 + b.square()).rsqrt();
+    const double z = (r * (1.0 / ca + 1.0 / cb) / (b - a)).maxCoeff();
     p_C.z() = std::max(z, r + projection.nearDistance);
-    p_C.head<2>() = 0.5 * (p_C.z() * (a + b) + marginA - marginB);
+    p_C.head<2>() = p_C.z() * (a * ca + b * cb) / (ca + cb);
   }
   camera.mount = CameraMount();
   camera.mount.frame = view.pose.frame;
