@@ -12,14 +12,26 @@ uniform int firstInstance;
 uniform mat4 VCDCMatrix;
 uniform vec2 pixelNDC; // size of one pixel of the picture in normalised device coordinates
 
+// Each output costs a software renderer time at every vertex: only what is needed is there.
+#ifdef DSPACE_LABEL
+flat out uint label;
+#else
+flat out vec4 baseColor;
+#endif
+#ifdef DSPACE_LIT
 out vec3 positionVC;
 out vec3 normalVC;
-out vec2 tcoord;
-out vec4 vertexColor;
-flat out vec4 baseColor;
-flat out vec4 surface; // metallic, roughness, mirrored, unused
+flat out vec3 surface; // metallic, roughness, mirrored
+#endif
+#ifdef DSPACE_EMISSIVE
 flat out vec3 emissive;
-flat out uint label;
+#endif
+#ifdef DSPACE_TEXTURE
+out vec2 tcoord;
+#endif
+#ifdef DSPACE_VERTEX_COLOR
+out vec4 vertexColor;
+#endif
 
 void main()
 {
@@ -27,31 +39,37 @@ void main()
   vec4 row0 = uintBitsToFloat(texelFetch(instances, base));
   vec4 row1 = uintBitsToFloat(texelFetch(instances, base + 1));
   vec4 row2 = uintBitsToFloat(texelFetch(instances, base + 2));
+#ifdef DSPACE_LABEL
+  label = texelFetch(instances, base + 4).z;
+#else
   baseColor = uintBitsToFloat(texelFetch(instances, base + 3));
-  uvec4 look = texelFetch(instances, base + 4);
-  surface = vec4(uintBitsToFloat(look.x), uintBitsToFloat(look.y), uintBitsToFloat(look.w), 0.0);
-  label = look.z;
+#endif
+#ifdef DSPACE_EMISSIVE
   emissive = uintBitsToFloat(texelFetch(instances, base + 5)).xyz;
+#endif
 
 #ifdef DSPACE_BILLBOARD
-  positionVC = vec3(row0.w, row1.w, row2.w);
-  vec4 positionDC = VCDCMatrix * vec4(positionVC, 1.0);
+  vec4 positionDC = VCDCMatrix * vec4(row0.w, row1.w, row2.w, 1.0);
   positionDC.xy += vertexMC.xy * pixelNDC * positionDC.w;
   gl_Position = positionDC;
 #else
   vec4 p = vec4(vertexMC, 1.0);
-  positionVC = vec3(dot(row0, p), dot(row1, p), dot(row2, p));
-  gl_Position = VCDCMatrix * vec4(positionVC, 1.0);
+  vec3 placedVC = vec3(dot(row0, p), dot(row1, p), dot(row2, p));
+  gl_Position = VCDCMatrix * vec4(placedVC, 1.0);
 #endif
 
 #ifdef DSPACE_LIT
+  positionVC = placedVC;
+  surface = uintBitsToFloat(texelFetch(instances, base + 4)).xyw;
   // The cofactor matrix carries normals through any affine map; mirroring turns them inside out.
-  vec3 n = vec3(dot(cross(row1.xyz, row2.xyz), normalMC), dot(cross(row2.xyz, row0.xyz), normalMC),
-    dot(cross(row0.xyz, row1.xyz), normalMC));
-  normalVC = n * surface.z;
-#else
-  normalVC = vec3(0.0, 0.0, 1.0);
+  normalVC = surface.z *
+    vec3(dot(cross(row1.xyz, row2.xyz), normalMC), dot(cross(row2.xyz, row0.xyz), normalMC),
+      dot(cross(row0.xyz, row1.xyz), normalMC));
 #endif
+#ifdef DSPACE_TEXTURE
   tcoord = tcoordMC;
+#endif
+#ifdef DSPACE_VERTEX_COLOR
   vertexColor = colorMC;
+#endif
 }

@@ -1,10 +1,10 @@
 //DSPACE::Version
 // Which object a pixel belongs to.
 flat in uint label;
-in vec2 tcoord;
 layout(location = 0) out uint fragLabel;
 
 #ifdef DSPACE_TEXTURE
+in vec2 tcoord;
 uniform sampler2D colorTexture;
 #endif
 

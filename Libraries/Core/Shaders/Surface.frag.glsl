@@ -1,13 +1,21 @@
 //DSPACE::Version
 // Colour of a surface in linear light: metallic-roughness material (glTF 2.0, appendix B) under
 // the scene's lights; a light of intensity 1 that falls straight on a white matt surface makes 1.
+flat in vec4 baseColor;
+#ifdef DSPACE_LIT
 in vec3 positionVC;
 in vec3 normalVC;
-in vec2 tcoord;
-in vec4 vertexColor;
-flat in vec4 baseColor;
-flat in vec4 surface;
+flat in vec3 surface; // metallic, roughness, mirrored
+#endif
+#ifdef DSPACE_EMISSIVE
 flat in vec3 emissive;
+#endif
+#ifdef DSPACE_TEXTURE
+in vec2 tcoord;
+#endif
+#ifdef DSPACE_VERTEX_COLOR
+in vec4 vertexColor;
+#endif
 
 layout(location = 0) out vec4 fragColor;
 
@@ -115,7 +123,9 @@ void main()
   }
   color.rgb = light;
 #endif
+#ifdef DSPACE_EMISSIVE
   color.rgb += emissive;
+#endif
 
 #ifdef DSPACE_PEEL
   if (color.a <= 0.0)

@@ -42,10 +42,10 @@ struct Mesh {
   enum class Primitive { Triangles, Lines, Points };
   std::string name;
   Primitive primitive = Primitive::Triangles;
-  std::vector<float> positions;     // x y z a vertex [source units]; finite
-  std::vector<float> normals;       // empty, or x y z a vertex, unit length
-  std::vector<float> tcoords;       // empty, or u v a vertex; v = 0 is the image's BOTTOM row
-  std::vector<std::uint8_t> colors; // empty, or r g b a a vertex, sRGB; multiplies the material
+  std::vector<float> positions;       // x y z a vertex [source units]; finite
+  std::vector<float> normals;         // empty, or x y z a vertex, unit length
+  std::vector<float> tcoords;         // empty, or u v a vertex; v = 0 is the image's BOTTOM row
+  std::vector<std::uint8_t> colors;   // empty, or r g b a a vertex, sRGB; multiplies the material
   std::vector<std::uint32_t> indices; // 3, 2 or 1 a primitive; each < number of vertices
   int material = -1;                  // index into Model::materials, or -1 for the default
 
@@ -61,7 +61,7 @@ struct Mesh {
 // A node of the file's own hierarchy. A mesh may be named by several nodes (instances).
 struct ModelNode {
   std::string name;
-  int parent = -1; // index of an earlier node, or -1 for a root
+  int parent = -1;                                     // index of an earlier node, or -1 for a root
   Eigen::Affine3d local = Eigen::Affine3d::Identity(); // node to parent; any affine map
   std::vector<int> meshes;                             // indices into Model::meshes
 };
@@ -71,7 +71,7 @@ struct Model {
   std::string path;
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
-  std::vector<ModelNode> nodes; // parents come before children
+  std::vector<ModelNode> nodes;      // parents come before children
   std::vector<std::string> warnings; // what was left out or repaired, each naming what and where
 
   // Triangles over all nodes, instances counted each time.
@@ -89,8 +89,9 @@ struct ImportOptions {
 };
 
 // Reads `path` by its content (magic bytes) and, where that is silent, its extension:
-// .gltf .glb .wrl .wrz .iv .obj .stl .ply. URDF is read by ReadUrdf (Urdf.h), since it has joints.
-// Throws Error: NotFound, Io, Unsupported (type), Corrupt (with what is wrong and where).
+// .gltf .glb .wrl .wrz .iv .obj .stl .ply. Triangles that the file gives no normals get them from
+// ComputeNormals with its default crease angle. URDF is read by ReadUrdf (Urdf.h), since it has
+// joints. Throws Error: NotFound, Io, Unsupported (type), Corrupt (with what is wrong and where).
 Model ReadModel(const std::string& path, const ImportOptions& options = {});
 
 // Appends normals to `mesh` when it has none: smooth across edges flatter than the crease angle

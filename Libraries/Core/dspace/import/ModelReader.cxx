@@ -125,6 +125,9 @@ Model ReadModel(const std::string& path, const ImportOptions& options) {
     Model model = ReaderFor(path)(path, options);
     model.path = path;
     CheckResult(model, options);
+    for (Mesh& mesh : model.meshes) {
+      ComputeNormals(mesh);
+    }
     return model;
   } catch (const Error&) {
     throw;

@@ -15,11 +15,11 @@ struct UrdfVisual {
   std::string name;
   Pose X_LV; // pose of the visual in its link's frame
   Shape shape = Shape::Mesh;
-  std::string meshPath;                               // absolute path; Mesh only
-  bool missing = false;                               // the mesh file does not exist
-  Eigen::Vector3d size = Eigen::Vector3d::Ones();     // Mesh: scale an axis. Box: edges [m].
-                                                      // Cylinder: radius, radius, length along Z.
-                                                      // Sphere: radius three times.
+  std::string meshPath;                           // absolute path; Mesh only
+  bool missing = false;                           // the mesh file does not exist
+  Eigen::Vector3d size = Eigen::Vector3d::Ones(); // Mesh: scale an axis. Box: edges [m].
+                                                  // Cylinder: radius, radius, length along Z.
+                                                  // Sphere: radius three times.
   bool hasMaterial = false;
   Material material; // when hasMaterial
 };
@@ -53,7 +53,7 @@ struct UrdfJoint {
 struct Urdf {
   std::string path;
   std::string name;
-  std::vector<UrdfLink> links;   // parents before children; links[0] is the root
+  std::vector<UrdfLink> links; // parents before children; links[0] is the root
   std::vector<UrdfJoint> joints;
   std::vector<std::string> warnings;
 };

@@ -34,6 +34,7 @@ struct DrawBatch {
   std::shared_ptr<const Image> texture;
   bool repeatTexture = true;
   bool lit = true;
+  bool emissive = false;
   bool wireframe = false;
   bool billboard = false;
   bool translucent = false;

@@ -136,6 +136,8 @@ vtkShaderProgram* SceneDrawer::SurfaceProgram(unsigned features) {
   define(VertexColor, "DSPACE_VERTEX_COLOR");
   define(Billboard, "DSPACE_BILLBOARD");
   define(Peel, "DSPACE_PEEL");
+  define(Label, "DSPACE_LABEL");
+  define(Emissive, "DSPACE_EMISSIVE");
   program = Ready(this->Window_, Versioned(Instance_vert, defines),
                   Versioned(features & Label ? Label_frag : Surface_frag, defines));
   return program;
@@ -244,6 +246,7 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     wanted |= batch.texture ? Texture : 0u;
     if (!labels) {
       wanted |= batch.lit ? Lit : 0u;
+      wanted |= batch.emissive ? Emissive : 0u;
       wanted |= mesh.hasColors ? VertexColor : 0u;
     }
     vtkShaderProgram* program = this->SurfaceProgram(wanted);

@@ -53,7 +53,8 @@ private:
     VertexColor = 4,
     Billboard = 8,
     Peel = 16,
-    Label = 32
+    Label = 32,
+    Emissive = 64
   };
   vtkShaderProgram* SurfaceProgram(unsigned features);
   vtkShaderProgram* ScreenProgram(const char* fragmentSource);
