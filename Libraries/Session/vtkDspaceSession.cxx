@@ -5,6 +5,7 @@
 
 #include <dspace/session/ViewportCommands.h>
 
+#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceScene.h"
@@ -103,6 +104,19 @@ vtkDspaceScene* vtkDspaceSession::GetScene(const std::string& name) {
 
 vtkDspaceViewport* vtkDspaceSession::GetViewport(const std::string& name) {
   return this->Impl->viewports.Find(name);
+}
+
+std::string vtkDspaceSession::RunInViewport(const std::string& name) {
+  vtkDspaceViewport* viewport = this->GetViewport(name);
+  if (!viewport) {
+    return "viewport '" + name + "': there is no such viewport";
+  }
+  try {
+    viewport->Run([this](vtkRenderWindow*) { this->InvokeEvent(vtkCommand::UserEvent); });
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
 }
 
 void vtkDspaceSession::SetRenderContext(vtkDspaceRenderContext* context) {

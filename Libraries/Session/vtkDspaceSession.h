@@ -43,6 +43,10 @@ public:
   vtkDspaceScene* GetScene(const std::string& name);
   vtkDspaceViewport* GetViewport(const std::string& name);
 
+  /// Makes a viewport the render window's current one and sends UserEvent to the observers of this
+  /// object, for VTK code of one's own. Returns what went wrong, or an empty string.
+  std::string RunInViewport(const std::string& name);
+
   /// The context that draws, shared by sessions of one process. To be set before the first
   /// viewport is made; a session without one makes its own then.
   void SetRenderContext(vtkDspaceRenderContext* context);

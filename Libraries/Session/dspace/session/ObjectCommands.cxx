@@ -91,6 +91,12 @@ void SetMaterial(const Context& context, v1::SetMaterial& command) {
 
 void SetObjectOffset(const Context& context, v1::SetObjectOffset& command) {
   Scene& scene = context.TheScene();
+  for (const auto& [name, terrain] : context.scene->terrains) {
+    if (terrain->Object() == command.object()) {
+      Refuse(ObjectLabel(scene, command.object()),
+             "terrain '" + name + "' answers in its frame; accepted: move the frame");
+    }
+  }
   scene.SetObjectOffset(command.object(),
                         ToAffine(command.offset(), ObjectLabel(scene, command.object())));
 }

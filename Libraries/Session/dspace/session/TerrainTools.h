@@ -1,0 +1,20 @@
+// What the terrain commands and requests share.
+#ifndef DSPACE_SESSION_TERRAIN_TOOLS_H
+#define DSPACE_SESSION_TERRAIN_TOOLS_H
+
+#include <string>
+
+#include <dspace/session/Registry.h>
+
+namespace dspace::session {
+
+// Throws Error(NotFound).
+TerrainObject& FindTerrain(const Context& context, const std::string& name);
+
+void DescribeTo(const Context& context, const TerrainObject& terrain, v1::TerrainReply* reply);
+
+void AddTerrainRequests(Registry& registry);
+
+} // namespace dspace::session
+
+#endif

@@ -1,0 +1,50 @@
+"""Dspace: 3D visualization and measurement for spacecraft and rover simulations.
+
+    import dspace
+    with dspace.Session() as session:
+        scene = session.scene()
+        rover = scene.load("rover.urdf")
+        camera = scene.add_camera(eye=(4, -4, 3), target=(0, 0, 0))
+        scene.add_viewport(size=(1280, 720), camera=camera).save("rover.png")
+
+Metres, seconds, degrees. Quaternions are unit, scalar first (w, x, y, z). A camera's axes are X
+right, Y down, Z forward; row 0 of an image is its top row.
+
+Every change through these classes is a command, which a session can record and send; changes made
+on the wrapped VTK objects (`frame.vtk`, `dspace.vtk`) are not.
+"""
+import importlib
+
+_HOMES = {
+    "Camera": "cameras", "Vantage": "cameras",
+    "Error": "errors", "InvalidArgument": "errors", "NotFound": "errors",
+    "AlreadyExists": "errors", "Unsupported": "errors", "Corrupt": "errors", "Io": "errors",
+    "Resource": "errors", "DeadlineExceeded": "errors", "Internal": "errors",
+    "DspaceWarning": "errors",
+    "Fragment": "fragments", "Light": "fragments",
+    "Frame": "frames",
+    "GraphicsObject": "objects", "Primitive": "objects", "Text": "objects", "TiltMarker": "objects",
+    "Trail": "objects",
+    "Pose": "poses",
+    "Joint": "robots", "Robot": "robots",
+    "Scene": "scenes",
+    "Session": "sessions",
+    "Terrain": "terrain",
+    "Pick": "viewports", "Viewport": "viewports",
+}
+
+__all__ = sorted(_HOMES)
+__version__ = "0.1.0"
+
+
+def __getattr__(name):
+    # On demand, so that what is plain Python (dspace.rover) works without the compiled part.
+    if name in _HOMES:
+        return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
+    if name in ("rover", "session", "vtk"):
+        return importlib.import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__():
+    return __all__ + ["rover", "session", "vtk"]

@@ -1,0 +1,197 @@
+"""Frames of the kinematic tree."""
+import numpy as np
+
+from dspace import _wire
+from dspace.poses import Pose, multiply, quaternion_of_axis, quaternion_of_matrix, to_pose
+
+
+def put_pose(message, pose):
+    """Writes a Pose into a Pose message."""
+    message.position.x, message.position.y, message.position.z = pose.position
+    q = message.rotation
+    q.w, q.x, q.y, q.z = pose.quaternion
+    message.scale = pose.scale
+
+
+def _locked(array):
+    array = np.array(array, dtype=float)
+    array.setflags(write=False)  # frame.position[0] = 1 would be lost: let it fail
+    return array
+
+
+class Frame:
+    """A frame F of a scene, with its pose in its parent P: X_PF.
+
+    position [m], quaternion (unit, w x y z) and scale (> 0) are read and set as a whole.
+    """
+
+    def __init__(self, scene, id):
+        self._scene = scene
+        self._id = int(id)
+
+    # --- Structure ---------------------------------------------------------------------------
+
+    @property
+    def scene(self):
+        return self._scene
+
+    @property
+    def id(self):
+        """The number that names it in commands."""
+        return self._id
+
+    def _info(self):
+        return self._scene._ask("list_frames", below=self._id, shallow=True).frames.frame[0]
+
+    @property
+    def name(self):
+        return self._info().name
+
+    @name.setter
+    def name(self, name):
+        self._scene._do("rename_frame", frame=self._id, name=name)
+
+    @property
+    def path(self):
+        """Names from below the root, joined by '/'."""
+        return self._info().path
+
+    @property
+    def parent(self):
+        """None for the root."""
+        parent = self._info().parent
+        return Frame(self._scene, parent) if parent else None
+
+    @property
+    def children(self):
+        return [Frame(self._scene, child) for child in self._info().child]
+
+    def add_frame(self, name, position=None, quaternion=None, scale=None, pose=None):
+        """A new child. The pose in this frame is given whole or by its parts."""
+        X = to_pose(position, quaternion, scale, pose)
+        command = self._scene._command()
+        command.create_frame.parent = self._id
+        command.create_frame.name = name
+        put_pose(command.create_frame.pose, X)
+        return Frame(self._scene, self._scene._execute(command).frame.frame)
+
+    def frame(self, path):
+        """The frame at `path` below this one."""
+        return Frame(self._scene,
+                     self._scene._ask("find_frame", path=path, base=self._id).frame.frame)
+
+    __getitem__ = frame
+
+    def remove(self):
+        """Removes it with its subtree and all objects and lights on it."""
+        self._scene._do("remove_frame", frame=self._id)
+
+    def reparent(self, parent, keep="local"):
+        """Hangs it under `parent`, keeping its "local" or its "world" pose."""
+        if keep not in ("local", "world"):
+            raise ValueError(f"keep is {keep!r}; accepted: 'local', 'world'")
+        self._scene._do("reparent_frame", frame=self._id, parent=self._scene._frame_id(parent),
+                        keep_world_pose=keep == "world")
+
+    # --- Pose --------------------------------------------------------------------------------
+
+    @property
+    def pose(self):
+        """X_PF in its parent. May be set to a Pose, a 4 x 4 matrix, or a row of 8 numbers."""
+        return Pose.from_row(self._scene.poses([self])[0])
+
+    @pose.setter
+    def pose(self, pose):
+        self._scene.set_poses([self], to_pose(pose=pose).row)
+
+    def set_pose(self, position=None, quaternion=None, scale=None):
+        """Sets the parts that are given and keeps the others."""
+        old = self.pose
+        self.pose = Pose(old.position if position is None else position,
+                         old.quaternion if quaternion is None else quaternion,
+                         old.scale if scale is None else scale)
+
+    @property
+    def position(self):
+        """p_PF in the parent's axes [m]."""
+        return _locked(self.pose.position)
+
+    @position.setter
+    def position(self, position):
+        self.set_pose(position=position)
+
+    @property
+    def quaternion(self):
+        """q_PF, unit, (w, x, y, z)."""
+        return _locked(self.pose.quaternion)
+
+    @quaternion.setter
+    def quaternion(self, quaternion):
+        self.set_pose(quaternion=quaternion)
+
+    @property
+    def rotation(self):
+        """R_PF as a 3 x 3 matrix."""
+        return _locked(self.pose.rotation)
+
+    @rotation.setter
+    def rotation(self, matrix):
+        self.set_pose(quaternion=quaternion_of_matrix(matrix))
+
+    @property
+    def rpy_deg(self):
+        """Roll, pitch, yaw about the parent's fixed X, Y, Z axes [degrees]."""
+        return _locked(self.pose.rpy_deg)
+
+    @rpy_deg.setter
+    def rpy_deg(self, angles):
+        self.set_pose(quaternion=Pose.from_rpy_deg(*angles).quaternion)
+
+    @property
+    def scale(self):
+        return self.pose.scale
+
+    @scale.setter
+    def scale(self, scale):
+        self.set_pose(scale=scale)
+
+    def rotate(self, axis, angle_deg):
+        """Turns it on by an angle about an axis of its own ("x", "y", "z" or a vector)."""
+        q = multiply(self.pose.quaternion, quaternion_of_axis(axis, angle_deg))
+        self.set_pose(quaternion=q / np.linalg.norm(q))
+
+    def pose_in(self, other):
+        """X_OF in another frame O of the scene, through their nearest common ancestor."""
+        return Pose.from_row(self._scene.poses([self], relative_to=other)[0])
+
+    @property
+    def world_pose(self):
+        """X_WF in the root."""
+        return self.pose_in(self._scene.root)
+
+    @property
+    def vtk(self):
+        """A vtkTransform that follows it (frame to root); for reading only."""
+        return self._scene.vtk.GetFrame(self._id).GetTransform()
+
+    def __eq__(self, other):
+        return isinstance(other, Frame) and (self._scene, self._id) == (other._scene, other._id)
+
+    def __hash__(self):
+        return hash((self._scene, self._id))
+
+    def __repr__(self):
+        try:
+            return f"<dspace.Frame {self.path!r}, {self.pose!r}>"
+        except Exception:  # a repr never raises
+            return f"<dspace.Frame id {self._id}, not in the scene any more>"
+
+
+def put_ids(message, field, scene, frames):
+    """Writes the ids of frames (Frames, paths, ids or an integer array) into a fixed64 field."""
+    if isinstance(frames, np.ndarray):
+        ids = frames.astype(np.uint64).ravel()
+    else:
+        ids = np.fromiter((scene._frame_id(frame) for frame in frames), dtype=np.uint64)
+    _wire.put_array(message, field, ids)
+    return len(ids)

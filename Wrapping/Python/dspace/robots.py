@@ -1,0 +1,170 @@
+"""Articulated models: joints that move frames."""
+from collections.abc import Mapping
+
+from dspace.poses import Pose
+
+TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
+
+
+class Joint:
+    """One joint of a robot. Positions are degrees, or metres for prismatic ones."""
+
+    def __init__(self, robot, index, info):
+        self._robot = robot
+        self._index = index
+        self._info = info
+
+    @property
+    def name(self):
+        return self._info.name
+
+    @property
+    def type(self):
+        """"fixed", "revolute", "continuous", "prismatic", "floating" or "planar"."""
+        return TYPES[self._info.type]
+
+    @property
+    def axis(self):
+        """Unit, in the joint's frame."""
+        axis = self._info.axis
+        return (axis.x, axis.y, axis.z)
+
+    @property
+    def limits(self):
+        """(lower, upper) in degrees or metres; None without limits."""
+        if not self._info.HasField("lower"):
+            return None
+        return (self._info.lower, self._info.upper)
+
+    @property
+    def mimics(self):
+        """The joint that it follows, or None."""
+        if not self._info.HasField("mimic"):
+            return None
+        return self._robot.joints[self._robot._joint_names[self._info.mimic]]
+
+    @property
+    def frame(self):
+        """The frame of the link that it moves."""
+        return self._robot._link_frame(self._info.child_link)
+
+    @property
+    def position(self):
+        """Degrees or metres. Setting it beyond the limits raises."""
+        return self._robot._describe().joint[self._index].position
+
+    @position.setter
+    def position(self, position):
+        self._robot._set([self._index], [position], False)
+
+    def __repr__(self):
+        limits = "" if self.limits is None else f" in {self.limits[0]:g} to {self.limits[1]:g}"
+        unit = " m" if self.type == "prismatic" else " deg"
+        return f"<dspace.Joint {self.name!r}, {self.type}, at {self.position:g}{limits}{unit}>"
+
+
+class Joints(Mapping):
+    """The joints of a robot by name."""
+
+    def __init__(self, joints):
+        self._joints = joints
+
+    def __getitem__(self, name):
+        try:
+            return self._joints[name]
+        except KeyError:
+            raise KeyError(f"there is no joint {name!r}; there are: {', '.join(self._joints)}"
+                           ) from None
+
+    def __iter__(self):
+        return iter(self._joints)
+
+    def __len__(self):
+        return len(self._joints)
+
+    def __repr__(self):
+        return f"<dspace.Joints {list(self._joints)}>"
+
+
+class Robot:
+    """A robot of a scene: a frame a link, moved by joints."""
+
+    def __init__(self, scene, info):
+        self._scene = scene
+        self._name = info.name
+        self._base = info.base
+        self._links = {link.name: link for link in info.link}
+        self._link_list = list(info.link)
+        self._joint_names = [joint.name for joint in info.joint]
+        self._joint_index = {name: i for i, name in enumerate(self._joint_names)}
+        self.joints = Joints({joint.name: Joint(self, i, joint)
+                              for i, joint in enumerate(info.joint)})
+
+    def _describe(self):
+        return self._scene._ask("describe_robot", robot=self._name).robot
+
+    def _link_frame(self, index):
+        return self._scene._frame_of(self._link_list[index].frame)
+
+    def _set(self, indices, positions, clamp):
+        command = self._scene._command()
+        command.set_joints.robot = self._name
+        command.set_joints.joint.extend(indices)
+        command.set_joints.position.extend(positions)
+        command.set_joints.clamp = clamp
+        self._scene._execute(command)
+
+    @property
+    def name(self):
+        return self._name
+
+    @property
+    def scene(self):
+        return self._scene
+
+    @property
+    def frame(self):
+        """The base frame, by which the whole robot is placed."""
+        return self._scene._frame_of(self._base)
+
+    @property
+    def pose(self):
+        """Of the base frame in its parent; may be set."""
+        return self.frame.pose
+
+    @pose.setter
+    def pose(self, pose):
+        self.frame.pose = pose
+
+    @property
+    def links(self):
+        """The frame of each link, by name."""
+        return {name: self._scene._frame_of(link.frame) for name, link in self._links.items()}
+
+    @property
+    def objects(self):
+        """All its graphics objects."""
+        return [self._scene._object(id) for link in self._link_list for id in link.object]
+
+    def set_joints(self, positions, clamp=False):
+        """Many joints at once, {name: degrees or metres}; all are checked before any moves.
+
+        clamp: what lies beyond a limit is set to it; else it raises."""
+        names = list(positions)
+        self._set([self.joints[name]._index for name in names],
+                  [float(positions[name]) for name in names], clamp)
+
+    def joint_positions(self):
+        """{name: degrees or metres} of all joints."""
+        return {joint.name: joint.position for joint in self._describe().joint}
+
+    def link_pose(self, link):
+        """X_BL of a link in the base frame."""
+        return Pose.from_row(self._scene.poses([self.links[link]], relative_to=self.frame)[0])
+
+    def remove(self):
+        self._scene._do("remove_robot", robot=self._name)
+
+    def __repr__(self):
+        return (f"<dspace.Robot {self._name!r}, {len(self._links)} links, "
+                f"{len(self._joint_names)} joints>")

@@ -1,0 +1,84 @@
+"""Sessions own scenes and viewports."""
+from dspace._client import LocalClient
+from dspace.errors import AlreadyExists
+from dspace.scenes import Scene
+from dspace.session import commands_pb2 as pb
+from dspace.viewports import Viewport
+
+
+class Session:
+    """Scenes and viewports in this process. Use it in a `with` statement, or close() it.
+
+        with dspace.Session() as session:
+            scene = session.scene()
+    """
+
+    def __init__(self):
+        self._client = LocalClient()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.close()
+
+    def close(self):
+        """Releases all scenes, viewports and the graphics context. Twice is no error."""
+        self._client.close()
+
+    def execute(self, command):
+        """Carries out a message of dspace.session.commands_pb2.Command; returns the Reply."""
+        return self._client.execute(command)
+
+    def scene(self, name="scene", lights=True):
+        """The scene of that name, made now if there is none.
+
+        lights: whether a new one begins with the lights "sun" and "sky".
+        """
+        command = pb.Command(scene=name)
+        command.create_scene.no_lights = not lights
+        try:
+            self._client.execute(command)
+        except AlreadyExists:
+            pass
+        return Scene(self._client, name)
+
+    @property
+    def scenes(self):
+        """All scenes, by name."""
+        command = pb.Command()
+        command.list_scenes.SetInParent()
+        names = self._client.execute(command).scenes.name
+        return {name: Scene(self._client, name) for name in names}
+
+    @property
+    def viewports(self):
+        """All viewports, by name."""
+        command = pb.Command()
+        command.list_viewports.SetInParent()
+        names = self._client.execute(command).viewports.name
+        return {name: Viewport(self._client, name) for name in names}
+
+    def render(self):
+        """Draws every visible viewport in which something changed; returns how many."""
+        command = pb.Command()
+        command.render.SetInParent()
+        return self._client.execute(command).render.drawn
+
+    @property
+    def statistics(self):
+        """Counters of the render context: what reached the GPU, by whom."""
+        command = pb.Command()
+        command.get_statistics.SetInParent()
+        reply = self._client.execute(command).statistics
+        return {field.name: getattr(reply, field.name) for field in reply.DESCRIPTOR.fields}
+
+    @property
+    def vtk(self):
+        """The vtkDspaceSession behind it."""
+        return self._client.vtk
+
+    def __repr__(self):
+        if self._client.vtk is None:
+            return "<dspace.Session, closed>"
+        return f"<dspace.Session with scenes {sorted(self.scenes)}>"

@@ -1,0 +1,326 @@
+"""Viewports: where a vantage is drawn, captured and picked in."""
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from dspace.poses import vector
+from dspace.session import commands_pb2 as pb
+
+ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
+PLANES = {"color": 0, "depth": 1, "label": 2}
+EVENTS = {"move": 0, "press": 1, "release": 2, "wheel": 3, "key": 4}
+BUTTONS = {None: 0, "left": 1, "middle": 2, "right": 3}
+TYPES = {0: np.uint8, 1: np.uint32, 2: np.float32}
+
+
+def _point(message):
+    return np.array([message.x, message.y, message.z])
+
+
+@dataclass(frozen=True)
+class Pick:
+    """What lies under a pixel. Points in metres."""
+    object: object  # GraphicsObject
+    frame: object  # the frame that it hangs on
+    depth: float  # along the camera's Z
+    in_camera: np.ndarray  # in the camera's axes: X right, Y down, Z forward
+    in_frame: np.ndarray  # in `frame`
+    in_root: np.ndarray
+    in_given: object = None  # in the frame that was asked for
+    terrain: object = None  # Terrain, where one was hit
+    map: object = None  # its map x, y and height
+
+
+class Viewport:
+    """A picture of a scene. Pixel (0, 0) is the centre of the top-left pixel."""
+
+    def __init__(self, client, name):
+        self._client = client
+        self._name = name
+
+    def _do(self, kind, **fields):
+        command = pb.Command()
+        message = getattr(command, kind)
+        message.viewport = self._name
+        for field, value in fields.items():
+            setattr(message, field, value)
+        return self._client.execute(command)
+
+    def _info(self):
+        return self._do("describe_viewport").viewport_info
+
+    @property
+    def name(self):
+        return self._name
+
+    @property
+    def scene(self):
+        from dspace.scenes import Scene
+        return Scene(self._client, self._info().scene)
+
+    # --- Pictures ------------------------------------------------------------------------------
+
+    def capture(self, color=True, depth=False, label=False, physical_only=False, hide=()):
+        """Planes of one picture as a dict of arrays, row 0 on top.
+
+        "color": (h, w, 4) uint8, sRGB and alpha 255. "depth": (h, w) float32, metres along the
+        camera's Z, +infinity where nothing was hit. "label": (h, w) uint32, GraphicsObject.id, 0
+        where nothing was hit.
+        physical_only: no ornamental object and no overlay. hide: fragments left out of this one."""
+        command = pb.Command()
+        message = command.capture
+        message.viewport = self._name
+        message.color, message.depth, message.label = color, depth, label
+        message.physical_only = physical_only
+        message.hidden_fragment.extend(f if isinstance(f, str) else f.name for f in hide)
+        reply = self._client.execute(command).capture
+        return {plane.name: self._plane(plane, reply) for plane in reply.plane}
+
+    def _plane(self, plane, reply):
+        shape = (reply.height, reply.width) + ((plane.channels,) if plane.channels > 1 else ())
+        if plane.data:
+            return np.frombuffer(plane.data, TYPES[plane.type]).reshape(shape)
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        return vtk_to_numpy(self._client.vtk.GetPlane(plane.name)).reshape(shape)
+
+    def image(self, alpha=False, physical_only=False, hide=()):
+        """The picture, (h, w, 3) uint8, sRGB; with alpha (h, w, 4)."""
+        image = self.capture(physical_only=physical_only, hide=hide)["color"]
+        return image if alpha else image[..., :3]
+
+    def depth(self, physical_only=True, hide=()):
+        """(h, w) float32: metres along the camera's Z, +infinity where nothing was hit."""
+        return self.capture(False, depth=True, physical_only=physical_only, hide=hide)["depth"]
+
+    def labels(self, physical_only=True, hide=()):
+        """(h, w) uint32: GraphicsObject.id, 0 where nothing was hit."""
+        return self.capture(False, label=True, physical_only=physical_only, hide=hide)["label"]
+
+    def save(self, path, plane="color", physical_only=False, hide=(), quality=None):
+        """Writes the picture to .png, .jpg, .tif or .exr; plane "depth" [m] to .tif or .exr, "label"
+        to .png, .tif or .exr. quality: 1 to 100, JPEG."""
+        if plane not in PLANES:
+            raise ValueError(f"plane is {plane!r}; accepted: {', '.join(PLANES)}")
+        command = pb.Command()
+        message = command.save_image
+        message.viewport = self._name
+        message.path = os.fspath(path)
+        message.plane = PLANES[plane]
+        message.physical_only = physical_only
+        message.hidden_fragment.extend(f if isinstance(f, str) else f.name for f in hide)
+        if quality is not None:
+            message.quality = quality
+        self._client.execute(command)
+
+    def render(self):
+        """Draws it if something changed; returns whether it did."""
+        return bool(self._do("render").render.drawn)
+
+    def pick(self, x, y, radius=0, frame=None):
+        """What lies under a pixel, or the nearest object within `radius` pixels: a Pick, or None.
+
+        frame: a frame in which the point is given as well (Pick.in_given)."""
+        scene = self.scene
+        in_frame = 0 if frame is None else scene._frame_id(frame)
+        reply = self._do("pick", x=x, y=y, radius=radius, in_frame=in_frame).pick
+        if not reply.object:
+            return None
+        terrain = scene.terrains.get(reply.terrain) if reply.terrain else None
+        return Pick(scene._object(reply.object), scene._frame_of(reply.frame), reply.depth,
+                    _point(reply.in_camera), _point(reply.in_object_frame), _point(reply.in_root),
+                    _point(reply.in_frame) if in_frame else None, terrain,
+                    _point(reply.map) if terrain else None)
+
+    # --- What it shows -------------------------------------------------------------------------
+
+    @property
+    def size(self):
+        """(width, height) in pixels; may be set, 1 to 16384 a side."""
+        info = self._info()
+        return (info.width, info.height)
+
+    @size.setter
+    def size(self, size):
+        width, height = size
+        self._do("resize_viewport", width=width, height=height)
+
+    @property
+    def position(self):
+        """(x, y) in a window or a sheet of several, pixels from the top left; may be set."""
+        info = self._info()
+        return (info.x, info.y)
+
+    @position.setter
+    def position(self, position):
+        x, y = position
+        self._do("move_viewport", x=x, y=y)
+
+    @property
+    def camera(self):
+        """The camera that it looks through; set to None for its vantage's active one."""
+        from dspace.cameras import Camera
+        info = self._info()
+        return Camera(self.scene, info.vantage, info.camera) if info.camera else None
+
+    @camera.setter
+    def camera(self, camera):
+        self._do("set_viewport",
+                 camera="" if camera is None else camera if isinstance(camera, str) else camera.name)
+
+    @property
+    def vantage(self):
+        """The name of its vantage; may be set."""
+        return self._info().vantage
+
+    @vantage.setter
+    def vantage(self, vantage):
+        self._do("set_viewport", vantage=vantage if isinstance(vantage, str) else vantage.name)
+
+    @property
+    def visible(self):
+        """A hidden viewport costs nothing."""
+        return self._info().visible
+
+    @visible.setter
+    def visible(self, visible):
+        self._do("set_viewport", visible=bool(visible))
+
+    @property
+    def samples(self):
+        """n x n a pixel, 1 to 8."""
+        return self._info().samples
+
+    @samples.setter
+    def samples(self, samples):
+        self._do("set_viewport", samples=samples)
+
+    @property
+    def ornaments(self):
+        """Whether ornamental objects are drawn."""
+        return self._info().ornaments
+
+    @ornaments.setter
+    def ornaments(self, ornaments):
+        self._do("set_viewport", ornaments=bool(ornaments))
+
+    @property
+    def corner_axes(self):
+        """Whether the axes of the root are drawn in the corner."""
+        return self._info().corner_axes
+
+    @corner_axes.setter
+    def corner_axes(self, corner_axes):
+        self._do("set_viewport", corner_axes=bool(corner_axes))
+
+    def set_background(self, color, top=None):
+        """sRGB, 0 to 1; with `top` a vertical gradient."""
+        command = pb.Command()
+        message = command.set_viewport
+        message.viewport = self._name
+        b = message.background
+        b.r, b.g, b.b = vector(color, "the colour")
+        if top is not None:
+            t = message.background_top
+            t.r, t.g, t.b = vector(top, "the colour")
+        self._client.execute(command)
+
+    def hide(self, fragment):
+        """Hides a fragment in this viewport only."""
+        self._do("set_viewport_fragment", visible=False,
+                 fragment=fragment if isinstance(fragment, str) else fragment.name)
+
+    def show(self, fragment):
+        """Takes hide() back."""
+        self._do("set_viewport_fragment", visible=True,
+                 fragment=fragment if isinstance(fragment, str) else fragment.name)
+
+    def set_table(self, name, rows, title="", anchor="top left", font_size=None, margin=None,
+                  color=None, background=None, background_opacity=None):
+        """Labels and values over the picture: rows is a dict or pairs of anything with a str.
+
+        Creates the table or replaces the one of that name. font_size and margin in pixels."""
+        if anchor not in ANCHORS:
+            raise ValueError(f"anchor is {anchor!r}; accepted: {', '.join(ANCHORS)}")
+        command = pb.Command()
+        message = command.set_text_table
+        message.viewport = self._name
+        message.name = name
+        message.title = title
+        message.anchor = ANCHORS[anchor]
+        for label, value in (rows.items() if hasattr(rows, "items") else rows):
+            message.row.add(label=str(label), value=str(value))
+        for field, value in (("font_size", font_size), ("margin", margin),
+                             ("background_opacity", background_opacity)):
+            if value is not None:
+                setattr(message, field, value)
+        for field, value in (("color", color), ("background", background)):
+            if value is not None:
+                c = getattr(message, field)
+                c.r, c.g, c.b = vector(value, field)
+        self._client.execute(command)
+
+    def remove_table(self, name):
+        self._do("remove_text_table", name=name)
+
+    def event(self, type, x=0.0, y=0.0, button=None, wheel=0.0, key="", shift=False, control=False,
+              alt=False):
+        """What a person does: type "move", "press", "release", "wheel" or "key"; pixels.
+
+        Drags, the wheel and keys move the camera; a left click picks and returns a Pick's numbers.
+        See ViewportEvent in viewports.proto."""
+        if type not in EVENTS or button not in BUTTONS:
+            raise ValueError(f"type is {type!r}, button {button!r}; accepted: "
+                             f"{', '.join(EVENTS)}; left, middle, right")
+        reply = self._do("viewport_event", type=EVENTS[type], x=x, y=y, button=BUTTONS[button],
+                         wheel=wheel, key=key, shift=shift, control=control, alt=alt)
+        return reply.pick if reply.HasField("pick") else None
+
+    def remove(self):
+        self._do("remove_viewport")
+
+    # --- VTK -----------------------------------------------------------------------------------
+
+    @property
+    def vtk(self):
+        """The vtkDspaceViewport behind it."""
+        return self._client.vtk.GetViewport(self._name)
+
+    def run(self, function):
+        """Makes it the render window's current viewport and calls function(window, renderer)."""
+        result = []
+
+        def call(*_):
+            try:
+                window = self._client.vtk.GetRenderContext().GetRenderWindow()
+                result.append((function(window, self.vtk.GetRenderer()), None))
+            except BaseException as error:  # VTK would print it and go on
+                result.append((None, error))
+
+        session = self._client.vtk
+        tag = session.AddObserver("UserEvent", call)
+        try:
+            message = session.RunInViewport(self._name)
+        finally:
+            session.RemoveObserver(tag)
+        if result and result[0][1] is not None:
+            raise result[0][1]
+        if message:
+            from dspace.errors import Internal
+            raise Internal(message, self._name)
+        return result[0][0]
+
+    def __eq__(self, other):
+        return (isinstance(other, Viewport)
+                and (self._client, self._name) == (other._client, other._name))
+
+    def __hash__(self):
+        return hash((id(self._client), self._name))
+
+    def __repr__(self):
+        try:
+            info = self._info()
+            return (f"<dspace.Viewport {self._name!r}, {info.width} x {info.height}, of scene "
+                    f"{info.scene!r}>")
+        except Exception:  # a repr never raises
+            return f"<dspace.Viewport {self._name!r}, removed>"
