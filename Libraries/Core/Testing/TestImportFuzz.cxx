@@ -4,6 +4,7 @@
 #include "BinaryBytes.h"
 #include "FuzzMutator.h"
 #include "ImportTestSupport.h"
+#include "TestData.h"
 
 #include <dspace/import/Urdf.h>
 
@@ -232,7 +233,8 @@ void FuzzRange(const Format& format, int first, int last, Progress& progress) {
   }
 }
 
-void Fuzz(const Format& format) {
+// `share`: one in so many of the mutants asked for.
+void Fuzz(const Format& format, int share = 1) {
   void* shared =
       mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(shared, MAP_FAILED);
@@ -240,7 +242,7 @@ void Fuzz(const Format& format) {
   FuzzRange(format, -1, 0, progress);
   EXPECT_EQ(progress.models, 1) << "the seed itself is not read";
   const int first = Number("DSPACE_FUZZ_FIRST", 0);
-  const int runs = Number("DSPACE_FUZZ_RUNS", 300);
+  const int runs = Number("DSPACE_FUZZ_RUNS", 300) / share;
   FuzzRange(format, first, first + runs, progress);
   std::cout << "  " << format.name << ": " << progress.models << " models, " << progress.errors
             << " errors\n";
@@ -253,6 +255,63 @@ void Fuzz(const Format& format) {
 }
 
 } // namespace
+
+// The runner itself: what it says of children that end badly.
+TEST(ImportFuzz, RunnerSeesCrashesAndExceptions) {
+  void* shared =
+      mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(shared, MAP_FAILED);
+  Progress& progress = *static_cast<Progress*>(shared);
+  const auto run = [&progress](auto&& action) {
+    const pid_t child = fork();
+    if (child == 0) {
+      action();
+      _exit(0);
+    }
+    return WaitFor(child, progress);
+  };
+  EXPECT_EQ(run([] {}), "");
+  EXPECT_EQ(run([] { raise(SIGKILL); }), "dies of signal 9");
+  EXPECT_EQ(run([&progress] {
+              std::strcpy(progress.message, "oops");
+              _exit(2);
+            }),
+            "exits with 2: oops");
+  munmap(shared, sizeof(Progress));
+}
+
+// A tenth of the mutants for each of some real files, which are larger and have other exporters.
+TEST(ImportFuzz, RealFiles) {
+  DSPACE_REAL_DATA(folder, "models");
+  const auto real = [&folder](const char* name) { return testing::ReadBytes(folder + "/" + name); };
+  for (const Format& format : {
+           Format{"Rocky7Body", "mutant.wrl", real("rocky7_vrml/Rocky7Body.wrl"), {}, "", false},
+           Format{"lander2", "mutant.wrl", real("pathfinder_vrml/lander2.wrl"), {}, "", false},
+           Format{"HelloWorld",
+                  "mutant.wrl",
+                  real("vrml97_samples/HelloWorld.wrl"),
+                  {{"earth-topo.png", real("vrml97_samples/earth-topo.png")}},
+                  "earth-topo.png",
+                  false},
+           Format{"viper suspension",
+                  "mutant.obj",
+                  real("viper_obj/viper_L_bt_sus.obj"),
+                  {},
+                  "",
+                  false},
+           Format{"m2020 bit",
+                  "mutant.gltf",
+                  real("m2020_rover/meshes/LaunchBitInTurretAtZeroFeed.gltf"),
+                  {{"LaunchBitInTurretAtZeroFeed.bin",
+                    real("m2020_rover/meshes/LaunchBitInTurretAtZeroFeed.bin")}},
+                  "LaunchBitInTurretAtZeroFeed.bin",
+                  false},
+           Format{"m2020", "mutant.urdf", real("m2020_rover/m2020.urdf"), {}, "", false},
+           Format{"parker", "mutant.glb", real("spacecraft_glb/parker.glb"), {}, "", false},
+       }) {
+    Fuzz(format, 10);
+  }
+}
 
 TEST(ImportFuzz, Vrml2) {
   Fuzz({"VRML 2.0", "mutant.wrl", Seed("vrml2.wrl"), {}, "", false});

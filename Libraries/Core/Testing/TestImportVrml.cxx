@@ -634,6 +634,12 @@ TEST(ImportVrml, CirclesAndBombsAreRefusedBeforeParsing) {
   bad(Error::Kind::Resource, "multiply its nodes beyond", uses);
   bad(Error::Kind::Resource, "multiply its nodes beyond", protos);
   bad(Error::Kind::Resource, "", fields + "N399 { x " + Shape("Box { }") + "}");
+  // The default of an image field may be unusable.
+  const Model image = Read(folder, Head2 + "PROTO P [ field SFImage i 9 9 3 1 ] { Shape { geometry "
+                                           "Box { } appearance Appearance { texture PixelTexture { "
+                                           "image IS i } } } } P { }");
+  EXPECT_TRUE(HasWarning(image.warnings, "9 x 9 x 3 that has 1 pixels"));
+  bad(Error::Kind::Corrupt, "no type of a field", Head2 + "PROTO P [ field SFEnum e A ] { }");
   // A PROTO inside its own body is no node at that place.
   const Model own =
       Read(folder, Head2 + "PROTO P [ ] { Group { children [ P { } ] } } P { }" + Shape("Box { }"));

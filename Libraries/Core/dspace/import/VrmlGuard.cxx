@@ -2,12 +2,13 @@
 
 #include "ImportFile.h"
 #include "VrmlNodeTable.h"
+#include "VrmlScope.h"
 #include "VrmlTokens.h"
+#include "VrmlValues.h"
 
 #include <dspace/Error.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <memory>
 
@@ -21,57 +22,6 @@ using Base = VrmlFieldType::Base;
 constexpr int MaximumDepth = 256;
 constexpr double MaximumNodes = 1e6;
 constexpr double MaximumCopies = 2e5;
-constexpr long long MaximumPixelTextureSide = 16384;
-
-// How many nodes a node stands for once every USE and PROTO is followed, and how deep they nest.
-struct Weight {
-  double nodes = 0.0;
-  int depth = 0;
-  std::map<std::string, double> references; // interface field -> how often its value appears
-
-  void Add(const Weight& child, double times = 1.0) {
-    this->nodes += times * child.nodes;
-    this->depth = std::max(this->depth, child.depth);
-    for (const auto& [field, count] : child.references) {
-      this->references[field] += times * count;
-    }
-  }
-};
-
-struct InterfaceField {
-  VrmlFieldType type;
-  std::string emitted; // empty: an event, which nothing is made of
-};
-
-struct Proto {
-  std::string emitted; // empty: external, instances are left out
-  std::unordered_map<std::string, InterfaceField> interface;
-  Weight weight;
-};
-
-struct Definition {
-  std::string emitted; // empty: a node that was left out
-  bool open = true;    // its closing brace was not reached yet
-  Weight weight;
-};
-
-// Names of a file or of one PROTO's body.
-struct Scope {
-  std::unordered_map<std::string, Definition> definitions;
-  std::unordered_map<std::string, std::shared_ptr<Proto>> protos;
-  Scope* outer = nullptr;
-  Proto* proto = nullptr; // whose body this is
-
-  std::shared_ptr<Proto> FindProto(const std::string& name) const {
-    for (const Scope* scope = this; scope; scope = scope->outer) {
-      const auto found = scope->protos.find(name);
-      if (found != scope->protos.end()) {
-        return found->second;
-      }
-    }
-    return nullptr;
-  }
-};
 
 class Guard {
 public:
@@ -82,27 +32,20 @@ public:
   }
 
   GuardedVrml Run(std::vector<std::string>& warnings) {
-    Scope scope;
-    const Weight weight = this->Statements(scope, Kind::End);
+    VrmlScope scope;
+    const VrmlWeight weight = this->Statements(scope, Kind::End);
     this->CheckWeight(weight);
-    for (const auto& [message, where] : this->Warnings_) {
-      const std::string times =
-          where.second > 1 ? ", " + std::to_string(where.second) + " times" : "";
-      warnings.push_back(message + " (" + FileObject(this->Path_) + ", line " +
-                         std::to_string(where.first) + times + ")");
-    }
+    this->Warnings_.AppendTo(warnings, this->Path_);
     this->Result_.text = std::move(this->Out_);
     return std::move(this->Result_);
   }
 
 private:
-  void Warn(const std::string& message, int line) {
-    ++this->Warnings_.emplace(message, std::pair(line, 0)).first->second.second;
-  }
+  void Warn(const std::string& message, int line) { this->Warnings_.Add(message, line); }
 
   void Emit(std::string_view text) { this->Out_.append(text).push_back(' '); }
 
-  void CheckWeight(const Weight& weight) {
+  void CheckWeight(const VrmlWeight& weight) {
     if (weight.depth > MaximumDepth || this->Nesting_ > MaximumDepth) {
       throw Error(Error::Kind::Resource, FileObject(this->Path_),
                   "line " + std::to_string(this->Tokens_.Peek().line) +
@@ -118,8 +61,8 @@ private:
   }
 
   // Nodes, PROTOs and ROUTEs up to `end`, which is taken. `first`: whether the first node was kept.
-  Weight Statements(Scope& scope, Kind end, bool* first = nullptr) {
-    Weight weight;
+  VrmlWeight Statements(VrmlScope& scope, Kind end, bool* first = nullptr) {
+    VrmlWeight weight;
     int count = 0;
     while (!this->Tokens_.At(end)) {
       if (!this->Declaration(scope)) {
@@ -137,7 +80,7 @@ private:
   }
 
   // PROTO, EXTERNPROTO or ROUTE; false when something else comes.
-  bool Declaration(Scope& scope) {
+  bool Declaration(VrmlScope& scope) {
     if (this->Dialect_ != VrmlDialect::Vrml2) {
       return false;
     }
@@ -165,16 +108,16 @@ private:
       } else {
         this->Tokens_.Expect(Kind::String, "the URL of an EXTERNPROTO");
       }
-      scope.protos[name] = std::make_shared<Proto>();
+      scope.protos[name] = std::make_shared<VrmlProto>();
       return true;
     }
     return false;
   }
 
-  void ProtoDeclaration(Scope& scope) {
+  void ProtoDeclaration(VrmlScope& scope) {
     this->Tokens_.Take();
     const std::string name(this->Tokens_.Expect(Kind::Word, "the name of a PROTO").text);
-    auto proto = std::make_shared<Proto>();
+    auto proto = std::make_shared<VrmlProto>();
     proto->emitted = "P" + std::to_string(this->Serial_++);
     this->Tokens_.Expect(Kind::OpenBracket, "'[' of a PROTO's interface");
     this->Emit("PROTO " + proto->emitted + " [");
@@ -185,17 +128,19 @@ private:
         this->Tokens_.Fail("found '" + std::string(access.text) +
                            "' where field, exposedField, eventIn or eventOut is expected");
       }
-      InterfaceField field;
+      VrmlInterfaceField field;
       const std::string type(this->Tokens_.Expect(Kind::Word, "the type of a field").text);
       const std::string fieldName(this->Tokens_.Expect(Kind::Word, "the name of a field").text);
-      if (!FindVrmlFieldType(type, field.type)) {
+      if (!FindVrmlFieldType(type, field.type) || field.type.base == Base::Enum) {
         this->Tokens_.Fail("'" + type + "' is no type of a field");
       }
       if (!event) {
         field.emitted = "f" + std::to_string(this->Serial_++);
         this->Emit("field " + type + " " + field.emitted);
-        Weight weight;
-        this->Value(field.type, scope, weight);
+        VrmlWeight weight;
+        if (!this->Value(field.type, scope, weight)) {
+          this->Emit("0 0 0"); // an image, the one value that may be left out
+        }
         proto->weight.Add(weight);
         this->CheckWeight(weight);
       }
@@ -204,7 +149,7 @@ private:
     this->Tokens_.Take();
     this->Tokens_.Expect(Kind::OpenBrace, "'{' of a PROTO's body");
     this->Emit("] {");
-    Scope body;
+    VrmlScope body;
     body.outer = &scope;
     body.proto = proto.get();
     ++this->ProtoNesting_;
@@ -212,7 +157,7 @@ private:
     this->CheckWeight({});
     bool first = false;
     const std::size_t before = this->Out_.size();
-    Weight weight = this->Statements(body, Kind::CloseBrace, &first);
+    VrmlWeight weight = this->Statements(body, Kind::CloseBrace, &first);
     if (this->Out_.size() == before) {
       this->Emit("Group { }");
     }
@@ -227,7 +172,7 @@ private:
   }
 
   // A node, with DEF, or USE. Adds its weight to the parent's; false when it was left out.
-  bool NodeStatement(Scope& scope, Weight& parent) {
+  bool NodeStatement(VrmlScope& scope, VrmlWeight& parent) {
     if (this->Tokens_.AtWord("USE")) {
       const int line = this->Tokens_.Take().line;
       const std::string name(this->Tokens_.Expect(Kind::Word, "a name to USE").text);
@@ -259,9 +204,9 @@ private:
     return this->Node(std::string(type.text), name, type.line, scope, parent);
   }
 
-  bool Node(const std::string& type, const std::string& name, int line, Scope& scope,
-            Weight& parent) {
-    const std::shared_ptr<Proto> proto = scope.FindProto(type);
+  bool Node(const std::string& type, const std::string& name, int line, VrmlScope& scope,
+            VrmlWeight& parent) {
+    const std::shared_ptr<VrmlProto> proto = scope.FindProto(type);
     const VrmlNodeType* known = proto ? nullptr : FindVrmlNodeType(this->Dialect_, type);
     if ((proto && proto->emitted.empty()) ||
         (!proto && (!known || known->use != VrmlNodeType::Use::Kept))) {
@@ -288,7 +233,7 @@ private:
     this->Tokens_.Take();
     this->Emit("{");
     ++this->Nesting_;
-    Weight weight;
+    VrmlWeight weight;
     if (proto) {
       this->InstanceBody(*proto, type, scope, weight);
     } else {
@@ -301,7 +246,7 @@ private:
     this->CheckWeight(weight);
     parent.Add(weight);
     if (!name.empty()) {
-      Definition& definition = scope.definitions[name];
+      VrmlDefinition& definition = scope.definitions[name];
       definition.open = false;
       definition.emitted = emitted;
       definition.weight = weight;
@@ -315,8 +260,9 @@ private:
     return type == "File" ? "WWWInline" : type == "ImageTexture" ? "MovieTexture" : type;
   }
 
-  void InstanceBody(const Proto& proto, const std::string& type, Scope& scope, Weight& weight) {
-    std::map<std::string, Weight> values;
+  void InstanceBody(const VrmlProto& proto, const std::string& type, VrmlScope& scope,
+                    VrmlWeight& weight) {
+    std::map<std::string, VrmlWeight> values;
     while (!this->Tokens_.At(Kind::CloseBrace)) {
       const VrmlToken name = this->Tokens_.Expect(Kind::Word, "a field or '}'");
       const auto found = proto.interface.find(std::string(name.text));
@@ -334,7 +280,7 @@ private:
     weight.depth = proto.weight.depth;
     for (const auto& [field, value] : values) {
       const auto count = proto.weight.references.find(field);
-      Weight inserted = value;
+      VrmlWeight inserted = value;
       inserted.depth += proto.weight.depth;
       // Coin keeps a value once even where the body does not refer to it.
       weight.Add(inserted,
@@ -346,7 +292,7 @@ private:
   }
 
   void NodeBody(const VrmlNodeType& known, const std::string& type, const std::string& emitted,
-                Scope& scope, Weight& weight) {
+                VrmlScope& scope, VrmlWeight& weight) {
     while (!this->Tokens_.At(Kind::CloseBrace)) {
       this->CheckWeight({});
       if (this->Declaration(scope)) {
@@ -395,7 +341,7 @@ private:
 
   // A field after its name: IS and an interface field, or a value.
   void Field(const VrmlFieldType& type, const std::string& emitted, const std::string& node,
-             Scope& scope, Weight& weight) {
+             VrmlScope& scope, VrmlWeight& weight) {
     const int line = this->Tokens_.Peek().line;
     if (!this->Tokens_.AtWord("IS")) {
       const std::size_t before = this->Out_.size();
@@ -423,39 +369,14 @@ private:
   }
 
   // Takes a value of that type; false, with nothing emitted, when it is to be left to its default.
-  bool Value(const VrmlFieldType& type, Scope& scope, Weight& weight) {
+  bool Value(const VrmlFieldType& type, VrmlScope& scope, VrmlWeight& weight) {
     if (type.base == Base::Node) {
       return this->NodeValue(type, scope, weight);
     }
-    if (!type.many || !this->Tokens_.At(Kind::OpenBracket)) {
-      return this->Single(type);
-    }
-    this->Tokens_.Take();
-    this->Emit("[");
-    const int line = this->Tokens_.Peek().line;
-    std::size_t complete = this->Out_.size();
-    for (long count = 1; !this->Tokens_.At(Kind::CloseBracket); ++count) {
-      for (int i = 0; i < type.arity; ++i) {
-        if (this->Tokens_.At(Kind::CloseBracket)) {
-          this->Warn("a list whose length is no multiple of " + std::to_string(type.arity) +
-                         " loses its incomplete last value",
-                     line);
-          this->Out_.resize(complete);
-          break;
-        }
-        this->Scalar(type);
-      }
-      complete = this->Out_.size();
-      if (count % 16 == 0) {
-        this->Out_.push_back('\n'); // Coin counts lines, and long ones are slow to report
-      }
-    }
-    this->Tokens_.Take();
-    this->Emit("]");
-    return true;
+    return WriteVrmlValue(type, this->Tokens_, this->Out_, this->Warnings_);
   }
 
-  bool NodeValue(const VrmlFieldType& type, Scope& scope, Weight& weight) {
+  bool NodeValue(const VrmlFieldType& type, VrmlScope& scope, VrmlWeight& weight) {
     if (type.many) {
       this->Emit("[");
       if (this->Tokens_.At(Kind::OpenBracket)) {
@@ -481,118 +402,6 @@ private:
       this->Emit("NULL");
     } else if (!this->NodeStatement(scope, weight)) {
       this->Emit("NULL");
-    }
-    return true;
-  }
-
-  bool Single(const VrmlFieldType& type) {
-    if (type.base == Base::Image) {
-      return this->ImageValue();
-    }
-    for (int i = 0; i < type.arity; ++i) {
-      this->Scalar(type);
-    }
-    return true;
-  }
-
-  void Scalar(const VrmlFieldType& type) {
-    double number = 0.0;
-    long long integer = 0;
-    const VrmlToken& token = this->Tokens_.Peek();
-    const bool word = token.kind == Kind::Word;
-    std::string_view text = token.text;
-    switch (type.base) {
-    case Base::Number:
-      if (!word || !ParseVrmlNumber(text, number)) {
-        this->Expected("a finite number");
-      }
-      text.remove_prefix(text[0] == '+');
-      break;
-    case Base::Integer:
-      if (!word || !ParseVrmlInteger(text, integer) || integer > 2147483647LL) {
-        this->Expected("an integer of 32 bits");
-      }
-      this->Emit(std::to_string(integer));
-      this->Tokens_.Take();
-      return;
-    case Base::Boolean:
-      if (text != "TRUE" && text != "FALSE" && text != "0" && text != "1") {
-        this->Expected("TRUE or FALSE");
-      }
-      text = text == "1" ? "TRUE" : text == "0" ? "FALSE" : text;
-      break;
-    case Base::Enum:
-      this->EnumValue();
-      return;
-    case Base::String:
-      if (token.kind != Kind::String) {
-        this->Expected("a string in quotes");
-      }
-      break;
-    default:
-      this->Expected("a value");
-    }
-    this->Emit(text);
-    this->Tokens_.Take();
-  }
-
-  [[noreturn]] void Expected(const std::string& what) {
-    const VrmlToken& token = this->Tokens_.Peek();
-    this->Tokens_.Fail("found '" + std::string(token.text.substr(0, 60)) + "' where " + what +
-                       " is expected");
-  }
-
-  // A word, or words in parentheses joined by '|'.
-  void EnumValue() {
-    bool inside = false;
-    do {
-      const VrmlToken token = this->Tokens_.Expect(Kind::Word, "a word");
-      inside = inside || token.text.front() == '(';
-      if (!std::all_of(token.text.begin(), token.text.end(), [](unsigned char c) {
-            return std::isalnum(c) || c == '_' || c == '(' || c == ')' || c == '|';
-          })) {
-        this->Tokens_.Fail("'" + std::string(token.text.substr(0, 60)) + "' is not a word");
-      }
-      this->Emit(token.text);
-      inside = inside && token.text.back() != ')';
-    } while (inside);
-  }
-
-  bool ImageValue() {
-    const std::size_t before = this->Out_.size();
-    const int line = this->Tokens_.Peek().line;
-    long long header[3] = {};
-    for (long long& value : header) {
-      if (!this->Tokens_.At(Kind::Word) || !ParseVrmlInteger(this->Tokens_.Peek().text, value)) {
-        this->Expected("width, height and components of an image");
-      }
-      this->Emit(std::to_string(value));
-      this->Tokens_.Take();
-    }
-    long long expected = 0;
-    const bool sensible = header[0] >= 0 && header[0] <= MaximumPixelTextureSide &&
-                          header[1] >= 0 && header[1] <= MaximumPixelTextureSide &&
-                          header[2] >= 0 && header[2] <= 4;
-    if (sensible) {
-      expected = header[0] * header[1];
-    }
-    long long found = 0;
-    for (long long pixel = 0;
-         this->Tokens_.At(Kind::Word) && ParseVrmlInteger(this->Tokens_.Peek().text, pixel);
-         ++found) {
-      if (pixel < 0) {
-        this->Expected("a pixel");
-      }
-      this->Emit(std::to_string(pixel));
-      this->Tokens_.Take();
-    }
-    if (!sensible || found != expected || (expected > 0 && header[2] == 0)) {
-      this->Warn("an image of " + std::to_string(header[0]) + " x " + std::to_string(header[1]) +
-                     " x " + std::to_string(header[2]) + " that has " + std::to_string(found) +
-                     " pixels is left out",
-                 line);
-      this->Out_.resize(before);
-      return false;
     }
     return true;
   }
@@ -640,7 +449,7 @@ private:
   VrmlTokens Tokens_;
   std::string Out_;
   GuardedVrml Result_;
-  std::map<std::string, std::pair<int, int>> Warnings_; // message -> first line, times
+  VrmlWarnings Warnings_;
   long Serial_ = 0;
   int Nesting_ = 0;
   int ProtoNesting_ = 0;
