@@ -196,10 +196,11 @@ TEST(RealTerrain, California) {
   ExpectPosts(path, *terrain, 1.0, 0.0);
   EXPECT_NEAR(terrain->Grid().GetMinimum(), 65.0, 1.0); // the file's own statistics are stale
   EXPECT_NEAR(terrain->Grid().GetMaximum(), 318.0, 1.0);
-  // One arc second at 38 N on GRS 80: 24.39 m by 30.83 m.
+  // One arc second at 37.98375 N on GRS 80, by the formulae of the ellipsoid: 24.4033 m by
+  // 30.8323 m.
   const Eigen::Vector3d size = terrain->GetBounds().scene.sizes() / 128.0;
-  EXPECT_NEAR(size.x(), 24.39, 0.01);
-  EXPECT_NEAR(size.y(), 30.83, 0.01);
+  EXPECT_NEAR(size.x(), 24.4033, 1e-4);
+  EXPECT_NEAR(size.y(), 30.8323, 1e-4);
 }
 
 TEST(RealTerrain, SanFranciscoBayHasOblongPixels) {

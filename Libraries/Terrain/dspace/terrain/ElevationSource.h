@@ -60,7 +60,7 @@ struct ElevationInfo {
 class ElevationSource {
 public:
   // Throws Error naming the file: NotFound; Io; Corrupt (damaged, empty); Unsupported (not a
-  // raster, complex values, unit not known, GCPs only with strict georeference asked for by `crs`);
+  // raster, complex values, unit not known, a geocentric CRS);
   // InvalidArgument (an option, a degenerate geotransform, a window outside).
   explicit ElevationSource(const std::string& path, const ElevationOptions& options = {});
   ~ElevationSource();

@@ -105,6 +105,8 @@ double TerrainMesh::ToleranceFor(std::size_t budget) {
 
 std::vector<TerrainMesh::Disc> TerrainMesh::Discs(const std::vector<TerrainZone>& zones) const {
   std::vector<Disc> discs;
+  const Eigen::Matrix2d m = this->Terrain_->Grid().GetGridToScene().linear();
+  const double cell = std::min(m.col(0).norm(), m.col(1).norm());
   for (const TerrainZone& zone : zones) {
     if (zone.path_S.empty())
       Refuse("a zone's path is empty; at least one point is needed");
@@ -115,7 +117,7 @@ std::vector<TerrainMesh::Disc> TerrainMesh::Discs(const std::vector<TerrainZone>
     for (const Eigen::Vector2d& p : zone.path_S)
       if (!p.allFinite())
         Refuse("a point of a zone's path is not finite");
-    const double pitch = 0.5 * zone.radius;
+    const double pitch = std::max(0.5 * zone.radius, cell);
     // A point stands up to pitch/sqrt(2) from its snapped place, and up to pitch/2 from the next
     // point that is looked at on its path.
     const double radius = zone.radius + pitch * (M_SQRT1_2 + 0.5);

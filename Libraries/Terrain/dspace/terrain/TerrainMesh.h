@@ -53,7 +53,8 @@ public:
                        const TerrainMeshOptions& options = {});
 
   // Replaces all zones; returns the indices of the tiles whose content changed. A zone moves in
-  // steps of half its radius (and is larger by as much), so that most small moves change nothing.
+  // steps of half its radius, or of a cell where that is more, and is larger by as much, so that
+  // most small moves change nothing.
   // Throws Error(InvalidArgument) for a path that is empty or not finite, or a radius that is not
   // positive; the mesh is then as before.
   std::vector<std::size_t> SetZones(const std::vector<TerrainZone>& zones);
