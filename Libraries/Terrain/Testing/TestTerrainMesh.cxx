@@ -380,3 +380,17 @@ TEST(TerrainMesh, AWheelOnApolloGroundStandsWhereItIsDrawn) {
   EXPECT_LT(mesh.Report().roundingZ, 1e-4);
   EXPECT_EQ(ExpectZoneIsExact(mesh, {{Eigen::Vector2d(40.0, -30.0)}, 15.0}), 300);
 }
+
+TEST(MeshQuadtree, ErrorOfAFanByHand) {
+  // 3 x 3 posts as one square of level 1: west and south middles 1, all else 0. A fan with both as
+  // vertices meets every post; in the south-western cell its spoke runs across the grid's diagonal,
+  // on 0 where the grid is at 1.
+  const std::vector<double> heights = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  const HeightGrid grid("fan", 3, 3, heights, Eigen::Affine2d::Identity());
+  const dspace::MeshQuadtree tree(grid, 1);
+  EXPECT_DOUBLE_EQ(tree.LeafError({1, 0, 0, 1 | 2}), 1.0);
+  EXPECT_DOUBLE_EQ(tree.LeafError({1, 0, 0, 2}), 1.0); // the west middle itself is missed
+  EXPECT_DOUBLE_EQ(tree.LeafError({1, 0, 0, 0}), 1.0);
+  EXPECT_DOUBLE_EQ(tree.LeafError({0, 0, 0, 0}), 0.0);
+  EXPECT_GE(tree.GetGreatestError(), 1.0);
+}
