@@ -256,7 +256,7 @@ TEST(ImportPly, UnusableAttributesAreLeftOut) {
        at = text.find("0 0 2 0.25")) {
     text.replace(at, 10, "0 0 0 0.25");
   }
-  const Model model = ReadPly(folder.Write("a.ply", text));
+  const Model model = ReadPly(folder.Write("a.ply", text), {});
   EXPECT_TRUE(model.meshes.at(0).normals.empty());
   EXPECT_TRUE(HasWarning(model.warnings, "a normal is null"));
 }
