@@ -47,7 +47,7 @@ TEST_F(CameraCommands, WhatIsNotGivenStays) {
   describe.mutable_describe_camera()->set_name("down");
   const v1::CameraInfo info = this->Accept(describe).camera();
   EXPECT_EQ(info.projection().orthographic().height(), 30);
-  EXPECT_EQ(info.projection().far(), 1e6);
+  EXPECT_EQ(info.projection().far(), 1e4);
   EXPECT_EQ(info.mount().pose().position().z(), 10);
 }
 

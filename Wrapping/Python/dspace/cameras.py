@@ -90,7 +90,8 @@ class Camera:
     def set_projection(self, fov_deg=None, height=None, tangents=None, near=None, far=None):
         """One of: fov_deg, the vertical full angle (perspective); height, metres from top to bottom
         (orthographic); tangents (left, right, top, bottom) of half angles (off-axis frustum).
-        near and far: metres along Z (default: 0.05 and infinity, 1e6 for orthographic)."""
+        near and far: metres along Z (default: 0.05 and infinity; 1e4 for orthographic,
+        whose depth is resolved to a ten-millionth of far)."""
         command = self._command()
         put_projection(command.set_camera.projection, fov_deg, height, tangents, near, far)
         self._scene._execute(command)

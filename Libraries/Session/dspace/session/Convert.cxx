@@ -8,7 +8,7 @@
 namespace dspace::session {
 namespace {
 
-constexpr double OrthographicFar = 1e6; // [m]; an orthographic camera's far plane must be finite
+constexpr double OrthographicFar = 1e4; // [m]; finite, and near enough for depth to a millimetre
 
 } // namespace
 

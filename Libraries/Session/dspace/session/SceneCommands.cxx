@@ -1,5 +1,6 @@
 // Scenes and time.
 #include <algorithm>
+#include <cmath>
 
 #include <dspace/scene/Checks.h>
 #include <dspace/session/Convert.h>
@@ -11,7 +12,8 @@ namespace {
 void AddDefaultLights(Scene& scene) {
   Light sun;
   sun.name = "sun";
-  sun.direction = Eigen::Vector3d(-0.5, 0.4, -0.75).normalized();
+  // From the north-west, 45 degrees high, as shaded relief is lit by default.
+  sun.direction = Eigen::Vector3d(0.5, -0.5, -std::sqrt(0.5));
   sun.intensity = 0.9;
   scene.SetLight(sun);
   Light sky;

@@ -1,4 +1,6 @@
 // What a person does in a viewport moves its camera.
+#include <Eigen/Eigenvalues> // operatorNorm
+
 #include <dspace/scene/Checks.h>
 #include <dspace/session/ViewportCommands.h>
 
