@@ -174,7 +174,7 @@ def write_geotiff(path, bands, spacing, options, field=Field, point=False):
     data.SetProjection(projection(field).ExportToWkt())
     if point:
         data.SetMetadataItem("AREA_OR_POINT", "Point")
-        data.SetMetadataItem("VERTICAL_DATUM", f"sphere of radius {field.moon_radius:.0f} m")
+        data.SetMetadataItem("VERTICAL_DATUM", f"sphere:{field.moon_radius:.0f}")
         data.GetRasterBand(1).SetUnitType("m")
         data.GetRasterBand(1).SetDescription("height")
     for k, band in enumerate(bands):

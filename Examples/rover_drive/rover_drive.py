@@ -93,7 +93,7 @@ def main():
         way = Path(way_points, speed=speed, ramp=1.0)
         steps = int(round(options.seconds * STEPS_PER_SECOND))
         times = np.arange(steps + 1) / STEPS_PER_SECOND
-        route_line = np.column_stack([way.sample(np.linspace(0, way.length, 400))[0]])
+        route_line = np.column_stack(way.sample(np.linspace(0, way.length, 400))[:2])
         terrain.focus(route_line[::8], radius=1.5 * length)
         ground = Ground(terrain)
         states = description.vehicle.drive(way, times, ground)
@@ -130,7 +130,7 @@ def main():
 
 
 def add_terrain(scene, options):
-    settings = {}
+    settings = {"triangles": 60000}  # a software renderer draws them twenty times a second
     if options.image:
         settings["image"] = options.image
     elif options.terrain.resolve() == (DATA / "field" / "field.tif").resolve():
@@ -169,7 +169,7 @@ def report(options, session, terrain, described, way, states, frames, drawn, wor
         if described.wheeled else "carried     on the ground under its footprint",
         f"frames      {frames} of four viewports, {options.size[0]} x {options.size[1]} together",
         f"rate        {frames / drawn:.1f} frames a second, drawing, reading back and encoding",
-        f"renderer    {session.renderer}",
+        f"renderer    {statistics['renderer']}",
         f"triangles   {statistics['triangles_drawn']} in the last viewport, terrain "
         f"{terrain.triangles}",
     ]

@@ -1,6 +1,8 @@
 """The four viewports of the demo."""
 import numpy as np
 
+from dspace import Pose
+
 SKY = (0.03, 0.035, 0.05)
 HAZE = (0.16, 0.15, 0.14)
 MAST_CAMERAS = ("mast_camera", "Frame_RNAV", "Body_RSM_EL")
@@ -26,12 +28,11 @@ class Views:
         middle = 0.5 * (x + y)
         overhead = scene.add_camera("overhead", eye=(*middle, top), target=(*middle, top - 1),
                                     up=(0, 1, 0), height=float(span), near=1.0, far=100.0 * length)
-        far_eye = np.array([*(middle + (-0.45 * span, -0.75 * span)), 0.0])
-        far_eye[2] = np.nan_to_num(float(ground.heights(far_eye[None, :2])[0])) + 0.4 * span
-        look = np.array([*middle, float(ground.heights(middle[None])[0])])
-        free = scene.add_camera("free", eye=far_eye, target=look, fov_deg=40, near=0.05 * length)
+        free = scene.add_camera("free", frame=placed.frame, fov_deg=40, near=0.02 * length, chase=dict(
+            offset=(1.6 * length, -4.2 * length, 2.4 * length), target=(0, 0, 0.5 * length),
+            axes="parent", smoothing_s=1.0))
 
-        self.views = {name: scene.add_viewport(size=half, camera=camera, name=name, samples=2)
+        self.views = {name: scene.add_viewport(size=half, camera=camera, name=name, samples=1)
                       for name, camera in (("chase", chase), ("mast", mast), ("overhead", overhead),
                                            ("free", free))}
         for view in self.views.values():
@@ -47,7 +48,7 @@ class Views:
             if robot is not None and name in robot.links:
                 turn = (1, 0, 0, 0) if name == "mast_camera" else (0.5, 0.5, 0.5, 0.5)
                 return scene.add_camera("mast", frame=robot.links[name], fov_deg=45, near=0.05,
-                                        pose=dict(quaternion=turn))
+                                        pose=Pose(quaternion=turn))
         length = placed.length
         return scene.add_camera("mast", frame=placed.frame, fov_deg=55, near=0.05 * length,
                                 eye=(0.6 * length, 0, 0.6 * length), target=(2.5 * length, 0, 0))
@@ -92,4 +93,6 @@ class Views:
 
     def save(self, folder):
         for name, view in self.views.items():
+            view.samples = 3  # a still may take its time
             view.save(folder / f"{name}.png", physical_only=name == "mast")
+            view.samples = 1

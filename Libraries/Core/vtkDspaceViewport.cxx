@@ -280,14 +280,15 @@ void vtkDspaceViewport::Internals::Draw(const dspace::DrawFilter& filter, bool o
   std::exception_ptr failure; // must not pass through VTK's frames
   this->renderer->ClearPicture = [&] {
     try {
-      this->drawer->Clear(this->background, view.height);
+      this->drawer->Clear(this->background);
     } catch (...) {
       failure = std::current_exception();
     }
   };
   this->renderer->DrawScene = [&] {
     try {
-      this->drawer->DrawColor(this->list, view, *this->sceneTarget, this->samples);
+      this->drawer->DrawColor(this->list, view, *this->sceneTarget, this->samples,
+                              &this->background);
       if (overlays) {
         this->DrawCornerAxes(view);
       }

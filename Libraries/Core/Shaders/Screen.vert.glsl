@@ -1,7 +1,7 @@
 //DSPACE::Version
-// One triangle that covers the picture; no buffers.
+// One triangle that covers the picture, at reversed depth's far end; no buffers.
 void main()
 {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  gl_Position = vec4(corner, 0.5, 1.0);
+  gl_Position = vec4(corner, 0.0, 1.0);
 }

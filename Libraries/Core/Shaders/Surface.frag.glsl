@@ -1,6 +1,8 @@
 //DSPACE::Version
 // Colour of a surface in linear light: metallic-roughness material (glTF 2.0, appendix B) under
 // the scene's lights; a light of intensity 1 that falls straight on a white matt surface makes 1.
+// A surface without DSPACE_SPECULAR is Lambertian. The number of lights and whether all of them are
+// directional are known when this is compiled: a software renderer pays for every branch.
 flat in vec4 baseColor;
 #ifdef DSPACE_LIT
 in vec3 positionVC;
@@ -19,14 +21,14 @@ in vec4 vertexColor;
 
 layout(location = 0) out vec4 fragColor;
 
-const int MAX_LIGHTS = 8;
-uniform int lightCount;
-uniform int lightKind[MAX_LIGHTS]; // 0 directional, 1 point, 2 spot, 3 head
-uniform vec3 lightColor[MAX_LIGHTS];
-uniform vec3 lightDirectionVC[MAX_LIGHTS]; // the way the light travels
-uniform vec3 lightPositionVC[MAX_LIGHTS];
-uniform vec3 lightAttenuation[MAX_LIGHTS];
-uniform float lightCosCone[MAX_LIGHTS];
+#if DSPACE_LIGHT_COUNT > 0
+uniform int lightKind[DSPACE_LIGHT_COUNT]; // 0 directional, 1 point, 2 spot, 3 head
+uniform vec3 lightColor[DSPACE_LIGHT_COUNT];
+uniform vec3 lightDirectionVC[DSPACE_LIGHT_COUNT]; // the way the light travels
+uniform vec3 lightPositionVC[DSPACE_LIGHT_COUNT];
+uniform vec3 lightAttenuation[DSPACE_LIGHT_COUNT];
+uniform float lightCosCone[DSPACE_LIGHT_COUNT];
+#endif
 uniform vec3 ambientLight;
 uniform int cameraParallel;
 
@@ -46,25 +48,21 @@ vec3 linearFromSrgb(vec3 c)
   return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
-#ifdef DSPACE_LIT
-vec3 lightFrom(vec3 radiance, vec3 L, vec3 N, vec3 V, float NdV, vec3 albedo, vec3 F0, float a2)
+#ifdef DSPACE_SPECULAR
+// What comes back of light from L: Trowbridge-Reitz distribution with Smith's height-correlated
+// visibility over a Lambertian base; times pi, so that intensity 1 means "white paper shows 1".
+vec3 reflected(vec3 L, vec3 N, vec3 V, float NdL, float NdV, vec3 albedo, vec3 F0, float a2)
 {
-  float NdL = dot(N, L);
-  if (NdL <= 0.0)
-  {
-    return vec3(0.0);
-  }
   vec3 H = normalize(L + V);
   float NdH = clamp(dot(N, H), 0.0, 1.0);
-  float HdV = clamp(dot(H, V), 0.0, 1.0);
-  vec3 F = F0 + (1.0 - F0) * pow(1.0 - HdV, 5.0);
-  // Trowbridge-Reitz distribution with Smith's height-correlated visibility; times pi, as the
-  // diffuse term is, so that intensity 1 means "white paper shows 1".
+  float m = 1.0 - clamp(dot(H, V), 0.0, 1.0);
+  float m2 = m * m;
+  vec3 F = F0 + (1.0 - F0) * (m2 * m2 * m);
   float d = NdH * NdH * (a2 - 1.0) + 1.0;
   float D = a2 / max(d * d, 1e-7);
   float vis = 0.5 /
     max(NdL * sqrt(NdV * NdV * (1.0 - a2) + a2) + NdV * sqrt(NdL * NdL * (1.0 - a2) + a2), 1e-5);
-  return radiance * NdL * ((1.0 - F) * albedo + D * vis * F);
+  return (1.0 - F) * albedo + D * vis * F;
 }
 #endif
 
@@ -93,17 +91,21 @@ void main()
   {
     N = -N;
   }
+  vec3 light = ambientLight * color.rgb;
+#if defined(DSPACE_SPECULAR) || defined(DSPACE_PLACED_LIGHTS)
   vec3 V = cameraParallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
+#endif
+#ifdef DSPACE_SPECULAR
   float NdV = max(dot(N, V), 1e-4);
   float alpha = max(surface.y * surface.y, 0.002);
-  float a2 = alpha * alpha;
   vec3 F0 = mix(vec3(0.04), color.rgb, surface.x);
   vec3 albedo = color.rgb * (1.0 - surface.x);
-  vec3 light = ambientLight * color.rgb;
-  for (int i = 0; i < lightCount; ++i)
+#endif
+  for (int i = 0; i < DSPACE_LIGHT_COUNT; ++i)
   {
     vec3 L = -lightDirectionVC[i];
     vec3 radiance = lightColor[i];
+#ifdef DSPACE_PLACED_LIGHTS
     if (lightKind[i] == 1 || lightKind[i] == 2)
     {
       vec3 toLight = lightPositionVC[i] - positionVC;
@@ -119,7 +121,13 @@ void main()
     {
       L = V;
     }
-    light += lightFrom(radiance, L, N, V, NdV, albedo, F0, a2);
+#endif
+    float NdL = max(dot(N, L), 0.0);
+#ifdef DSPACE_SPECULAR
+    light += radiance * NdL * reflected(L, N, V, NdL, NdV, albedo, F0, alpha * alpha);
+#else
+    light += radiance * NdL * color.rgb;
+#endif
   }
   color.rgb = light;
 #endif

@@ -81,6 +81,7 @@ std::uint32_t DrawList::BatchOf(const GraphicsObject& object, const Part& part,
   batch.lit = object.material.lit.value_or(material.lit) &&
               part.mesh->primitive == Mesh::Primitive::Triangles && !object.billboard &&
               !part.mesh->normals.empty();
+  batch.specular = look.metallic > 0.0f || look.roughness < 1.0f;
   batch.emissive = look.emissive != std::array<float, 3>{0.0f, 0.0f, 0.0f};
   batch.wireframe = object.material.wireframe.value_or(false);
   batch.billboard = object.billboard;
@@ -102,6 +103,7 @@ std::uint32_t DrawList::BatchOf(const GraphicsObject& object, const Part& part,
   append(batch.repeatTexture);
   append(batch.lit);
   append(batch.emissive);
+  append(batch.specular);
   append(batch.wireframe);
   append(batch.billboard);
   append(batch.translucent);

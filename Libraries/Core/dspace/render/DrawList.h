@@ -35,6 +35,7 @@ struct DrawBatch {
   bool repeatTexture = true;
   bool lit = true;
   bool emissive = false;
+  bool specular = true; // false: no metal and of roughness 1, hence Lambertian
   bool wireframe = false;
   bool billboard = false;
   bool translucent = false;

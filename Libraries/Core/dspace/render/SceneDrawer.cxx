@@ -138,6 +138,9 @@ vtkShaderProgram* SceneDrawer::SurfaceProgram(unsigned features) {
   define(Peel, "DSPACE_PEEL");
   define(Label, "DSPACE_LABEL");
   define(Emissive, "DSPACE_EMISSIVE");
+  define(Specular, "DSPACE_SPECULAR");
+  define(PlacedLights, "DSPACE_PLACED_LIGHTS");
+  defines += "#define DSPACE_LIGHT_COUNT " + std::to_string(features >> LightShift) + "\n";
   program = Ready(this->Window_, Versioned(Instance_vert, defines),
                   Versioned(features & Label ? Label_frag : Surface_frag, defines));
   return program;
@@ -204,8 +207,7 @@ void SceneDrawer::SetView(vtkShaderProgram* program, const DrawList& list, const
   program->SetUniform3f("ambientLight", list.Ambient().data());
 
   const int count = std::min<int>(static_cast<int>(list.Lights().size()), MaximumLights);
-  program->SetUniformi("lightCount", count);
-  if (count == 0 || !program->IsUniformUsed("lightKind")) {
+  if (count == 0 || !program->IsUniformUsed("lightColor")) {
     return;
   }
   int kind[MaximumLights] = {};
@@ -223,12 +225,12 @@ void SceneDrawer::SetView(vtkShaderProgram* program, const DrawList& list, const
     std::copy(light.position.begin(), light.position.end(), position[i]);
     std::copy(light.attenuation.begin(), light.attenuation.end(), attenuation[i]);
   }
-  program->SetUniform1iv("lightKind", MaximumLights, kind);
-  program->SetUniform3fv("lightColor", MaximumLights, color);
-  program->SetUniform3fv("lightDirectionVC", MaximumLights, direction);
-  program->SetUniform3fv("lightPositionVC", MaximumLights, position);
-  program->SetUniform3fv("lightAttenuation", MaximumLights, attenuation);
-  program->SetUniform1fv("lightCosCone", MaximumLights, cosCone);
+  program->SetUniform1iv("lightKind", count, kind);
+  program->SetUniform3fv("lightColor", count, color);
+  program->SetUniform3fv("lightDirectionVC", count, direction);
+  program->SetUniform3fv("lightPositionVC", count, position);
+  program->SetUniform3fv("lightAttenuation", count, attenuation);
+  program->SetUniform1fv("lightCosCone", count, cosCone);
 }
 
 void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool translucent,
@@ -236,6 +238,11 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
   vtkOpenGLState* state = this->Window_->GetState();
   std::map<vtkShaderProgram*, bool> prepared;
   const bool labels = (features & Label) != 0;
+  const auto lights = std::min<std::size_t>(list.Lights().size(), MaximumLights);
+  unsigned lighting = Lit | static_cast<unsigned>(lights << LightShift);
+  for (std::size_t i = 0; i < lights; ++i) {
+    lighting |= list.Lights()[i].kind == Light::Kind::Directional ? 0u : PlacedLights;
+  }
   for (const DrawBatch& batch : list.Batches()) {
     if (!labels && batch.translucent != translucent) {
       continue;
@@ -245,7 +252,8 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     wanted |= batch.billboard ? Billboard : 0u;
     wanted |= batch.texture ? Texture : 0u;
     if (!labels) {
-      wanted |= batch.lit ? Lit : 0u;
+      wanted |= batch.lit ? lighting : 0u;
+      wanted |= batch.lit && batch.specular ? Specular : 0u;
       wanted |= batch.emissive ? Emissive : 0u;
       wanted |= mesh.hasColors ? VertexColor : 0u;
     }
@@ -279,28 +287,32 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
   glBindVertexArray(0);
 }
 
-void SceneDrawer::Clear(const Background& background, int height) {
+void SceneDrawer::Clear(const Background& background) {
   vtkOpenGLState* state = this->Window_->GetState();
   state->vtkglDepthMask(GL_TRUE);
   state->vtkglColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   state->vtkglClearDepth(0.0);
-  state->vtkglClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+  // Without sRGB encoding a clear colour is the display value itself.
+  state->vtkglClearColor(static_cast<float>(background.bottom[0]),
+                         static_cast<float>(background.bottom[1]),
+                         static_cast<float>(background.bottom[2]), 1.0f);
   state->vtkglClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   state->vtkglClearDepth(1.0);
-  const EncodeSrgb encode;
-  state->vtkglDisable(GL_DEPTH_TEST);
-  state->vtkglDisable(GL_BLEND);
+}
+
+void SceneDrawer::DrawBackground(const Background& background, int height) {
+  if (background.bottom == background.top) {
+    return; // the clear colour is it
+  }
   vtkShaderProgram* program = this->ScreenProgram(Background_frag);
   program->SetUniform3f("bottomColor", background.bottom.data());
   program->SetUniform3f("topColor", background.top.data());
   program->SetUniformf("height", static_cast<float>(height));
-  this->DrawTriangleOverScreen();
-  state->vtkglEnable(GL_DEPTH_TEST);
-  state->vtkglEnable(GL_BLEND);
+  this->DrawTriangleOverScreen(); // at depth 0: only where nothing was drawn
 }
 
 void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target,
-                            int samples) {
+                            int samples, const Background* background) {
   vtkOpenGLState* state = this->Window_->GetState();
   const EncodeSrgb encode;
   const ReversedDepth reversed(state);
@@ -310,6 +322,9 @@ void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTa
   this->Upload(list);
   state->vtkglDisable(GL_BLEND);
   this->DrawBatches(list, view, false, 0, samples);
+  if (background) {
+    this->DrawBackground(*background, target.Height());
+  }
   const auto& batches = list.Batches();
   if (!batches.empty() && batches.back().translucent) { // they stand last
     this->PeelTranslucent(list, view, target, samples);

@@ -30,15 +30,16 @@ public:
   SceneDrawer& operator=(const SceneDrawer&) = delete;
   ~SceneDrawer();
 
-  // Into `target` (Display, with depth), which must be bound. Clears it first: with the background
-  // (sRGB, 0 to 1), and depth with 0.
+  // Into `target` (Display, with depth), which must be bound and cleared. The background (sRGB, 0
+  // to 1; a vertical gradient) is drawn where nothing opaque is.
   struct Background {
     std::array<double, 3> bottom = {0.0, 0.0, 0.0};
     std::array<double, 3> top = {0.0, 0.0, 0.0};
   };
-  void Clear(const Background& background, int height);
+  void Clear(const Background& background);
   // `samples` is the supersampling factor: lines, points and billboards scale with it.
-  void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples);
+  void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples,
+                 const Background* background = nullptr);
   // Into `target` (Label, with depth), cleared first.
   void DrawLabels(const DrawList& list, const DrawView& view, RenderTarget& target);
   // Mean of the samples of `source` into `target` (both Display).
@@ -54,9 +55,13 @@ private:
     Billboard = 8,
     Peel = 16,
     Label = 32,
-    Emissive = 64
+    Emissive = 64,
+    Specular = 128,
+    PlacedLights = 256 // some light is not directional
   };
+  static constexpr unsigned LightShift = 16; // above the features: the number of lights
   vtkShaderProgram* SurfaceProgram(unsigned features);
+  void DrawBackground(const Background& background, int height);
   vtkShaderProgram* ScreenProgram(const char* fragmentSource);
   void DrawTriangleOverScreen();
   void Upload(const DrawList& list);

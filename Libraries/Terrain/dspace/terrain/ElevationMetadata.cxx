@@ -161,8 +161,19 @@ void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, Elevati
   }
 
   const double a = info.crs.GetAxes().semiMajor;
+  GDALDataset* dataset = band.GetDataset();
+  const char* stated = dataset ? dataset->GetMetadataItem("VERTICAL_DATUM") : nullptr;
   if (options.verticalDatum) {
     info.verticalDatum = *options.verticalDatum;
+  } else if (stated) {
+    // Our own item, written as VerticalDatum::Text(). Others' words there are no such text.
+    try {
+      info.verticalDatum = VerticalDatum::FromText(stated);
+    } catch (const Error&) {
+      info.verticalDatum.name = stated;
+      info.warnings.push_back("its metadata item VERTICAL_DATUM says '" + std::string(stated) +
+                              "', which is not understood; give the vertical datum by hand");
+    }
   } else if (!info.crs.GetVerticalName().empty()) {
     // A compound CRS names its vertical part; all registered ones but ellipsoidal heights are
     // tied to a geoid or areoid.

@@ -23,7 +23,9 @@ struct RasterWindow {
   int height = 0;
 };
 
-// What a file does not say, or says wrongly.
+// What a file does not say, or says wrongly. A file states its vertical datum by a compound CRS, by
+// an offset of a body's radius (ISIS), or by a metadata item VERTICAL_DATUM with the text of
+// VerticalDatum::Text(), such as "sphere:1737400".
 struct ElevationOptions {
   int band = 1; // counted from 1, as GDAL does
   // By hand: metres = value * verticalScale + verticalOffset. Either one replaces the file's own
