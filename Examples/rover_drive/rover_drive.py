@@ -7,6 +7,7 @@ import argparse
 import pathlib
 import sys
 import time
+import warnings
 
 import numpy as np
 
@@ -67,15 +68,23 @@ def route(options, terrain, length):
         import json
         with open(DATA / "field" / "route.json") as file:
             return np.array(json.load(file)["way_points_m"], float)
-    (x0, y0), (x1, y1) = terrain.extent
-    middle = np.array([0.5 * (x0 + x1), 0.5 * (y0 + y1)])
-    reach = min(0.4 * min(x1 - x0, y1 - y0), 6.0 * length)
-    shape = np.array([(-1, -0.35), (-0.5, 0.05), (0, 0), (0.5, -0.05), (1, 0.35)])
-    return middle + reach * shape
+    west, east, south, north = terrain.extent
+    reach = min(0.2 * min(east - west, north - south), 6.0 * length)
+    shape = reach * np.array([(-1, -0.35), (-0.5, 0.05), (0, 0), (0.5, -0.05), (1, 0.35)])
+    # Of places about the middle the nearest that a rover climbs, else the most level one.
+    steps = np.linspace(-0.25, 0.25, 11)
+    places = np.array([(0.5 * (west + east) + u * (east - west), 0.5 * (south + north) + v * (north - south))
+                       for u in steps for v in steps])
+    line = places[:, None, :] + shape[None, :, :]
+    slopes = np.nan_to_num(terrain.slope_deg(line[..., 0], line[..., 1]), nan=90.0).max(axis=1)
+    distance = np.hypot(*(places - 0.5 * np.array([west + east, south + north])).T)
+    order = np.lexsort((distance, np.maximum(slopes, 12.0)))
+    return places[order[0]] + shape
 
 
 def main():
     options = arguments()
+    warnings.showwarning = lambda message, *_: print(f"dspace demo: note: {message}", file=sys.stderr)
     for path in (options.terrain, options.model):
         if not path.exists():
             sys.exit(f"dspace demo: there is no file {path}")

@@ -45,7 +45,7 @@ class Described:
             # In the file's own axes: CarriedModel turns and scales.
             carried = scene.load(path, frame=self.base, name="carried", scale=scale)
             self.objects.append(carried)
-            low, high = carried.bounds
+            low, high = carried.box
             self.vehicle = load_vehicle(path, bounds=(low / scale, high / scale), scale=scale,
                                         up=vehicle_up)
             size = float(max(self.vehicle.size))
@@ -65,10 +65,15 @@ class Described:
                                            name=f"part {i}", position=position,
                                            quaternion=quaternion, stretch=stretch))
 
-    @staticmethod
-    def _bounds(objects):
-        bounds = np.array([o.bounds for o in objects])
-        return bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)
+    def _bounds(self, objects):
+        """Of a robot at rest, in its base frame."""
+        corners = []
+        for thing in objects:
+            X_BO = thing.frame.pose_in(self.robot.frame).matrix @ thing.offset
+            low, high = thing.box
+            for mask in np.ndindex(2, 2, 2):
+                corners.append((X_BO @ [*np.where(mask, high, low), 1.0])[:3])
+        return np.min(corners, axis=0), np.max(corners, axis=0)
 
 
 class PlacedVehicle:

@@ -86,7 +86,8 @@ class Views:
                 ("tilt", f"{state.tilt_deg:6.1f} deg")]
         rows += [(name.replace("wheel_", "").replace("_", " "), f"{height:8.3f} m")
                  for name, height in state.wheel_heights.items()]
-        self.views["free"].set_table("state", rows, title="ROVER", font_size=11)
+        self.views["free"].set_table("state", rows, title="ROVER",
+                                     font_size=max(round(self.views["free"].size[1] * 0.031), 6))
 
     def pictures(self):
         return [view.image(physical_only=name == "mast") for name, view in self.views.items()]

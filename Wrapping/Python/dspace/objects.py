@@ -178,6 +178,12 @@ class GraphicsObject:
         c = info.bounds_center
         return np.array([c.x, c.y, c.z]), info.bounds_radius
 
+    @property
+    def box(self):
+        """Least and greatest corner of the box along its own axes [m], an array (2, 3)."""
+        info = self._info()
+        return np.array([[c.x, c.y, c.z] for c in (info.box_minimum, info.box_maximum)])
+
     def remove(self):
         self._scene._do("remove_object", object=self._id)
 

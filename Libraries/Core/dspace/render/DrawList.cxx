@@ -127,7 +127,7 @@ void DrawList::Flatten(const Scene& scene) {
     for (const DetailLevel& level : object.levels) {
       FlatLevel flatLevel;
       flatLevel.minimumPixels = level.minimumPixels;
-      flatLevel.bounds = BoundsOf(level);
+      flatLevel.bounds = level.sphere;
       flatLevel.bounds.center = object.X_FO * flatLevel.bounds.center;
       flatLevel.bounds.radius *= LargestScale(object.X_FO);
       for (const Part& part : level.parts) {

@@ -100,13 +100,18 @@ void CheckMesh(const Mesh& mesh, const std::string& object) {
   }
 }
 
-BoundingSphere BoundsOf(const DetailLevel& level) {
+Eigen::AlignedBox3d BoxOf(const DetailLevel& level) {
   Eigen::AlignedBox3d box;
   for (const Part& part : level.parts) {
     for (std::size_t i = 0; i < part.mesh->VertexCount(); ++i) {
       box.extend(Vertex(part, i));
     }
   }
+  return box;
+}
+
+BoundingSphere BoundsOf(const DetailLevel& level) {
+  const Eigen::AlignedBox3d box = BoxOf(level);
   BoundingSphere sphere;
   if (box.isEmpty()) {
     return sphere;

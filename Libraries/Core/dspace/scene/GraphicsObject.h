@@ -27,9 +27,19 @@ struct Part {
   Eigen::Affine3d X_OP = Eigen::Affine3d::Identity();
 };
 
+// Sphere about the centre of the axis-aligned bounds of a level's vertices, in O; radius 0 at the
+// origin when it has none. What culling and levels use.
+struct BoundingSphere {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+
 struct DetailLevel {
   std::vector<Part> parts;
   double minimumPixels = 0.0; // drawn while the object's projected diameter is at least this
+  // Measured by the scene when the level comes to it, in O.
+  BoundingSphere sphere = {};
+  Eigen::AlignedBox3d box = {};
 };
 
 // Changes laid over every part's own material; what is not set stays as imported.
@@ -71,13 +81,9 @@ struct GraphicsObject {
   double pointSize = 3.0; // pixels, points
 };
 
-// Sphere about the centre of the axis-aligned bounds of a level's vertices, in O; radius 0 at the
-// origin when it has none. What culling and levels use.
-struct BoundingSphere {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double radius = 0.0;
-};
+// From the vertices of its parts, in O.
 BoundingSphere BoundsOf(const DetailLevel& level);
+Eigen::AlignedBox3d BoxOf(const DetailLevel& level); // empty without vertices
 
 // Index of the level to draw at a projected diameter of `pixels`: the finest whose minimumPixels is
 // no more than that; -1 when there is none.

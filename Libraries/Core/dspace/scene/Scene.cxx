@@ -107,6 +107,10 @@ void Scene::CheckLevels(const std::string& object, std::vector<DetailLevel>& lev
       }
     }
   }
+  for (DetailLevel& level : levels) {
+    level.box = BoxOf(level);
+    level.sphere = BoundsOf(level);
+  }
 }
 
 ObjectId Scene::AddObject(GraphicsObject object) {

@@ -32,10 +32,14 @@ void Describe(const GraphicsObject& object, v1::ObjectInfo* info) {
     info->add_level(level.minimumPixels);
   }
   if (!object.levels.empty()) {
-    const BoundingSphere bounds = BoundsOf(object.levels.front());
+    const BoundingSphere& bounds = object.levels.front().sphere;
     info->set_triangles(TrianglesOf(object.levels.front()));
     Put(bounds.center, info->mutable_bounds_center());
     info->set_bounds_radius(bounds.radius);
+    if (const Eigen::AlignedBox3d& box = object.levels.front().box; !box.isEmpty()) {
+      Put(Eigen::Vector3d(box.min()), info->mutable_box_minimum());
+      Put(Eigen::Vector3d(box.max()), info->mutable_box_maximum());
+    }
   }
 }
 

@@ -53,7 +53,7 @@ std::optional<BoundingSphere> SceneBounds(const Scene& scene, FrameId F) {
     if (object.levels.empty() || object.nature != Nature::Physical || !object.visible) {
       continue;
     }
-    const BoundingSphere sphere = BoundsOf(object.levels.front());
+    const BoundingSphere& sphere = object.levels.front().sphere;
     const Pose X = scene.Frames().RelativePose(F, object.frame);
     const double stretch = object.X_FO.linear().operatorNorm() * X.scale;
     const Eigen::Vector3d center = X.Apply(object.X_FO * sphere.center);
