@@ -1,0 +1,29 @@
+# cmake -DBUILD= -DPREFIX= -DSOURCE= -DMODEL= -DPYTHON= -DPACKAGES= -P run.cmake
+# Installs the build tree into an empty folder, builds the consumer against it, runs it, and draws
+# with the installed Python package.
+set(consumer "${PREFIX}-consumer")
+file(REMOVE_RECURSE "${PREFIX}" "${consumer}")
+
+function(step)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${ARGN}\nended with ${result}:\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+step("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${PREFIX}")
+step("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}" -B "${consumer}" "-DDspace_ROOT=${PREFIX}"
+  -DCMAKE_BUILD_TYPE=Debug)
+step("${CMAKE_COMMAND}" --build "${consumer}")
+step("${consumer}/consumer" "${MODEL}")
+message(STATUS "${output}")
+if(NOT output MATCHES "^[1-9][0-9]* triangles, picked model at ")
+  message(FATAL_ERROR "the consumer printed: ${output}")
+endif()
+if(PYTHON)
+  set(ENV{PYTHONPATH} "${PREFIX}/${PACKAGES}")
+  set(ENV{PYTHONDONTWRITEBYTECODE} 1)
+  step("${PYTHON}" "${SOURCE}/consumer.py" "${PREFIX}" "${MODEL}")
+  message(STATUS "${output}")
+endif()
