@@ -107,6 +107,7 @@ def main():
         ground = Ground(terrain)
         states = description.vehicle.drive(way, times, ground)
         placed = PlacedVehicle(scene, description)
+        placed.move(states[0], pan_deg=0.0)
         views = Views(scene, placed, terrain, options.size, way_points[-1], route_line, ground)
         print(f"dspace demo: {description.vehicle!r} on {terrain!r}; "
               f"set up in {time.perf_counter() - began:.1f} s", flush=True)

@@ -85,6 +85,8 @@ class PlacedVehicle:
         self.vehicle = described.vehicle
         self.length = described.length
         self.frame = scene.add_frame("vehicle")
+        mast = getattr(self.vehicle, "mast_joints", None)
+        self.head = mast.tilt.child if mast else None
 
     def move(self, state, pan_deg):
         described = self.described

@@ -5,7 +5,6 @@ from dspace import Pose
 
 SKY = (0.03, 0.035, 0.05)
 HAZE = (0.16, 0.15, 0.14)
-MAST_CAMERAS = ("mast_camera", "Frame_RNAV", "Body_RSM_EL")
 
 
 class Views:
@@ -43,12 +42,17 @@ class Views:
 
     @staticmethod
     def _mast_camera(scene, placed):
+        """On the vehicle's mast camera, or on its mast's head, or where a driver would sit."""
         robot = placed.described.robot
-        for name in MAST_CAMERAS:
-            if robot is not None and name in robot.links:
-                turn = (1, 0, 0, 0) if name == "mast_camera" else (0.5, 0.5, 0.5, 0.5)
-                return scene.add_camera("mast", frame=robot.links[name], fov_deg=45, near=0.05,
-                                        pose=Pose(quaternion=turn))
+        if robot is not None and "mast_camera" in robot.links:
+            return scene.add_camera("mast", frame=robot.links["mast_camera"], fov_deg=45, near=0.05)
+        head = placed.head
+        if robot is not None and head in robot.links:
+            # The head's X axis looks; its Z axis may be up or down.
+            up = robot.links[head].world_pose.rotation[2, 2] > 0
+            turn = (0.5, -0.5, 0.5, -0.5) if up else (0.5, 0.5, 0.5, 0.5)
+            return scene.add_camera("mast", frame=robot.links[head], fov_deg=45, near=0.05,
+                                    pose=Pose(position=(0.35, 0, 0), quaternion=turn))
         length = placed.length
         return scene.add_camera("mast", frame=placed.frame, fov_deg=55, near=0.05 * length,
                                 eye=(0.6 * length, 0, 0.6 * length), target=(2.5 * length, 0, 0))
