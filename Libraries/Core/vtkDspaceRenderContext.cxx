@@ -37,16 +37,24 @@ void vtkDspaceRenderContext::Initialize(std::unique_ptr<dspace::GraphicsContext>
   }
 }
 
+// These two are wrapped for Python, which no C++ exception may reach.
 std::string vtkDspaceRenderContext::GetRendererName() {
-  this->Initialize();
-  this->Impl->hub->MakeCurrent();
-  return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return this->AskOpenGL(GL_RENDERER);
 }
 
 std::string vtkDspaceRenderContext::GetVersion() {
-  this->Initialize();
-  this->Impl->hub->MakeCurrent();
-  return reinterpret_cast<const char*>(glGetString(GL_VERSION));
+  return this->AskOpenGL(GL_VERSION);
+}
+
+std::string vtkDspaceRenderContext::AskOpenGL(unsigned int what) {
+  try {
+    this->Initialize();
+    this->Impl->hub->MakeCurrent();
+    return reinterpret_cast<const char*>(glGetString(what));
+  } catch (const std::exception& error) {
+    vtkErrorMacro(<< error.what());
+    return {};
+  }
 }
 
 vtkRenderWindow* vtkDspaceRenderContext::GetRenderWindow() {

@@ -32,7 +32,8 @@ public:
   vtkTypeMacro(vtkDspaceRenderContext, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// "llvmpipe (LLVM 15.0.6, 256 bits)", a GPU's name, ...
+  /// "llvmpipe (LLVM 15.0.6, 256 bits)", a GPU's name, ...; empty, with a VTK error, where no
+  /// context can be had.
   std::string GetRendererName();
   std::string GetVersion();
   vtkRenderWindow* GetRenderWindow();
@@ -53,6 +54,7 @@ protected:
 private:
   vtkDspaceRenderContext(const vtkDspaceRenderContext&) = delete;
   void operator=(const vtkDspaceRenderContext&) = delete;
+  std::string AskOpenGL(unsigned int what);
   struct Internals;
   std::unique_ptr<Internals> Impl;
 };

@@ -34,9 +34,9 @@ std::vector<std::shared_ptr<const Mesh>> MakeMeshes() {
   std::vector<std::shared_ptr<const Mesh>> meshes;
   for (int i = 0; i < Meshes; ++i) {
     const double size = 0.2 + 0.002 * i;
-    meshes.push_back(std::make_shared<const Mesh>(
-        i % 3 == 0 ? MakeSphere(size, 10) : i % 3 == 1 ? MakeBox({size, 2 * size, size})
-                                                       : MakeCylinder(size, 2 * size, 16)));
+    meshes.push_back(std::make_shared<const Mesh>(i % 3 == 0   ? MakeSphere(size, 10)
+                                                  : i % 3 == 1 ? MakeBox({size, 2 * size, size})
+                                                               : MakeCylinder(size, 2 * size, 16)));
   }
   return meshes;
 }
@@ -67,8 +67,7 @@ Pose PoseAt(int i, int count, int t) {
   Pose pose;
   pose.position = {40.0, 1.2 * (i % side - side / 2) + 0.3 * std::sin(0.1 * t + i),
                    0.7 * (i / side - side / 2) + 0.3 * std::cos(0.13 * t + i)};
-  pose.rotation =
-      Eigen::AngleAxisd(0.02 * t + i, Eigen::Vector3d(1, i % 7 - 3.0, 2).normalized());
+  pose.rotation = Eigen::AngleAxisd(0.02 * t + i, Eigen::Vector3d(1, i % 7 - 3.0, 2).normalized());
   return pose;
 }
 
@@ -175,8 +174,7 @@ void BenchViewports(vtkDspaceRenderContext* context, int pairs) {
   auto scene = std::make_shared<Scene>("views");
   AddCamera(*scene);
   for (int i = 0; i < 400; ++i) {
-    const FrameId frame =
-        scene->Frames().Create(RootFrame, std::to_string(i), PoseAt(i, 400, 0));
+    const FrameId frame = scene->Frames().Create(RootFrame, std::to_string(i), PoseAt(i, 400, 0));
     GraphicsObject object;
     object.name = std::to_string(i);
     object.frame = frame;
@@ -217,10 +215,9 @@ void BenchViewports(vtkDspaceRenderContext* context, int pairs) {
                 "mesh memory %llu B with one, %llu B with four more; uploaded by a frame: %llu B",
                 static_cast<unsigned long long>(alone.meshBytes),
                 static_cast<unsigned long long>(together.meshBytes),
-                static_cast<unsigned long long>(after.meshBytesUploaded -
-                                                together.meshBytesUploaded +
-                                                after.instanceBytesUploaded -
-                                                together.instanceBytesUploaded));
+                static_cast<unsigned long long>(
+                    after.meshBytesUploaded - together.meshBytesUploaded +
+                    after.instanceBytesUploaded - together.instanceBytesUploaded));
   bench::Print("four viewports against one of the same pixels", turns, 1, behind);
 }
 
