@@ -45,6 +45,7 @@ struct RasterFile {
   std::optional<double> scale;
   std::optional<double> offset;
   std::string unit;
+  std::string verticalDatum; // the metadata item
 
   std::string Write(const std::string& path) const {
     GDALAllRegister();
@@ -60,6 +61,8 @@ struct RasterFile {
       EXPECT_EQ(srs.SetFromUserInput(this->crs.c_str()), OGRERR_NONE) << this->crs;
       dataset->SetSpatialRef(&srs);
     }
+    if (!this->verticalDatum.empty())
+      dataset->SetMetadataItem("VERTICAL_DATUM", this->verticalDatum.c_str());
     for (int b = 0; b < this->bands; ++b) {
       GDALRasterBand* band = dataset->GetRasterBand(b + 1);
       if (this->noData)

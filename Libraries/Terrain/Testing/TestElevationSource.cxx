@@ -253,6 +253,26 @@ TEST_F(Raster, CompoundCrsNamesTheGeoid) {
   EXPECT_EQ(source.Info().crs.GetKind(), Crs::Kind::Projected);
 }
 
+TEST_F(Raster, MetadataStateTheVerticalDatum) {
+  RasterFile file = this->File();
+  file.verticalDatum = "sphere:1737400";
+  const ElevationSource stated(file.Write(this->Folder / "a.tif"));
+  EXPECT_EQ(stated.Info().verticalDatum.kind, VerticalDatum::Kind::Sphere);
+  EXPECT_EQ(stated.Info().verticalDatum.radius, 1737400.0);
+  ElevationOptions options; // what is given by hand comes first
+  options.verticalDatum = VerticalDatum::FromText("areoid");
+  const ElevationSource given(this->Folder / "a.tif", options);
+  EXPECT_EQ(given.Info().verticalDatum.kind, VerticalDatum::Kind::Areoid);
+
+  file.verticalDatum = "mean sea level, roughly";
+  const ElevationSource unclear(file.Write(this->Folder / "b.tif"));
+  EXPECT_EQ(unclear.Info().verticalDatum.kind, VerticalDatum::Kind::Unknown);
+  bool named = false;
+  for (const std::string& warning : unclear.Info().warnings)
+    named = named || warning.find("mean sea level, roughly") != std::string::npos;
+  EXPECT_TRUE(named);
+}
+
 TEST_F(Raster, IsisCubeHoldsRadii) {
   DSPACE_REAL_DATA(path, "terrain/moon_lola_ldem4_reduced.cub");
   const ElevationSource source(path);
