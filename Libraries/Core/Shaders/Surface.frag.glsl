@@ -101,6 +101,7 @@ void main()
   vec3 F0 = mix(vec3(0.04), color.rgb, surface.x);
   vec3 albedo = color.rgb * (1.0 - surface.x);
 #endif
+#if DSPACE_LIGHT_COUNT > 0
   for (int i = 0; i < DSPACE_LIGHT_COUNT; ++i)
   {
     vec3 L = -lightDirectionVC[i];
@@ -129,6 +130,7 @@ void main()
     light += radiance * NdL * color.rgb;
 #endif
   }
+#endif
   color.rgb = light;
 #endif
 #ifdef DSPACE_EMISSIVE

@@ -30,6 +30,12 @@ Mesh MakeTextMesh(const std::string& text, double height) {
     throw Error(Error::Kind::InvalidArgument, "text '" + text + "'",
                 "height " + std::to_string(height) + " m is refused; positive metres are accepted");
   }
+  for (const char letter : text) { // the font's outlines end with ASCII; others would be left out
+    if (letter != '\n' && (letter < ' ' || letter > '~')) {
+      throw Error(Error::Kind::InvalidArgument, "text '" + text + "'",
+                  "has letters without an outline; accepted: those of ASCII (labels take any)");
+    }
+  }
   vtkNew<vtkVectorText> letters;
   letters->SetText(text.c_str());
   vtkNew<vtkTriangleFilter> triangles;
