@@ -28,11 +28,15 @@ class LocalClient:
     def __init__(self):
         self.vtk = _vtk.vtkDspaceSession()
 
-    def execute(self, command):
-        """The Reply to a Command; raises what its error says."""
+    def local(self):
+        """The vtkDspaceSession; raises when it is closed."""
         if self.vtk is None:
             raise RuntimeError("the session is closed")
-        answer = self.vtk.Execute(command.SerializeToString())
+        return self.vtk
+
+    def execute(self, command):
+        """The Reply to a Command; raises what its error says."""
+        answer = self.local().Execute(command.SerializeToString())
         # VTK makes a str of bytes that happen to be UTF-8.
         reply = pb.Reply.FromString(answer.encode() if isinstance(answer, str) else answer)
         if reply.HasField("error"):

@@ -89,7 +89,8 @@ class Camera:
 
     def set_projection(self, fov_deg=None, height=None, tangents=None, near=None, far=None):
         """One of: fov_deg, the vertical full angle (perspective); height, metres from top to bottom
-        (orthographic); tangents (left, right, top, bottom) of half angles (off-axis frustum).
+        (orthographic); tangents X / Z and Y / Z of the edges (left, right, top, bottom), left and
+        top negative about the axis since Y is down (off-axis frustum).
         near and far: metres along Z (default: 0.05 and infinity; 1e4 for orthographic,
         whose depth is resolved to a ten-millionth of far)."""
         command = self._command()
@@ -187,6 +188,8 @@ def put_projection(message, fov_deg=None, height=None, tangents=None, near=None,
     if height is not None:
         message.orthographic.height = height
     elif tangents is not None:
+        if np.shape(tangents) != (4,):
+            raise ValueError(f"tangents is {tangents!r}; accepted: left, right, top, bottom")
         f = message.frustum
         f.left, f.right, f.top, f.bottom = np.asarray(tangents, dtype=float)
     else:

@@ -83,7 +83,9 @@ class Frame:
     __getitem__ = frame
 
     def remove(self):
-        """Removes it with its subtree and all objects and lights on it."""
+        """Removes it with its subtree and all objects and lights on it.
+
+        Refused while a camera stands on or follows a frame of it."""
         self._scene._do("remove_frame", frame=self._id)
 
     def reparent(self, parent, keep="local"):
@@ -190,6 +192,8 @@ class Frame:
 def put_ids(message, field, scene, frames):
     """Writes the ids of frames (Frames, paths, ids or an integer array) into a fixed64 field."""
     if isinstance(frames, np.ndarray):
+        if frames.size and not np.issubdtype(frames.dtype, np.integer):
+            raise ValueError(f"the ids are of type {frames.dtype}; accepted: integers")
         ids = frames.astype(np.uint64).ravel()
     else:
         ids = np.fromiter((scene._frame_id(frame) for frame in frames), dtype=np.uint64)

@@ -13,7 +13,10 @@ def vector(value, what="a vector"):
 def quaternion_of_axis(axis, angle_deg):
     """The rotation by `angle_deg` about `axis` ("x", "y", "z" or 3 numbers)."""
     if isinstance(axis, str):
-        axis = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}[axis]
+        axes = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
+        if axis not in axes:
+            raise ValueError(f"the axis is {axis!r}; accepted: x, y, z or 3 numbers")
+        axis = axes[axis]
     axis = vector(axis, "the axis")
     length = np.linalg.norm(axis)
     if not length > 0:

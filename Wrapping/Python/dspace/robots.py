@@ -58,9 +58,13 @@ class Joint:
         self._robot._set([self._index], [position], False)
 
     def __repr__(self):
+        try:
+            position = f"{self.position:g}"
+        except Exception:  # a repr never raises
+            return f"<dspace.Joint {self.name!r}, not in the scene any more>"
         limits = "" if self.limits is None else f" in {self.limits[0]:g} to {self.limits[1]:g}"
         unit = " m" if self.type == "prismatic" else " deg"
-        return f"<dspace.Joint {self.name!r}, {self.type}, at {self.position:g}{limits}{unit}>"
+        return f"<dspace.Joint {self.name!r}, {self.type}, at {position}{limits}{unit}>"
 
 
 class Joints(Mapping):

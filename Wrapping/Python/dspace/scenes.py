@@ -22,6 +22,13 @@ _TURNS = {"z": (1, 0, 0, 0), "y": tuple(quaternion_of_axis("x", 90)),
           "x": tuple(quaternion_of_axis("y", -90)), "-z": (0, 1, 0, 0)}
 
 
+def _points(points):
+    array = np.asarray(points, dtype=float)
+    if array.size and (array.ndim != 2 or array.shape[1] != 3):
+        raise ValueError(f"the points have shape {array.shape}; accepted: (n, 3)")
+    return array
+
+
 class Scene:
     """One scene of a session.
 
@@ -250,7 +257,7 @@ class Scene:
     def add_lines(self, points, closed=False, ornamental=True, **settings):
         """One polyline through an array (n, 3), or a list of several such [m]."""
         several = isinstance(points, (list, tuple)) and len(points) and np.ndim(points[0]) == 2
-        lines = [np.asarray(line, dtype=float) for line in (points if several else [points])]
+        lines = [_points(line) for line in (points if several else [points])]
         command = self._primitive({**settings, "ornamental": ornamental}, "lines", closed=closed)
         message = command.create_primitive.lines
         _wire.put_array(message, "point", np.concatenate([line.ravel() for line in lines]))
@@ -261,7 +268,7 @@ class Scene:
     def add_points(self, points, ornamental=True, **settings):
         """Points of an array (n, 3) [m], `point_size` pixels large."""
         command = self._primitive({**settings, "ornamental": ornamental}, "points")
-        _wire.put_array(command.create_primitive.points, "point", np.asarray(points, dtype=float))
+        _wire.put_array(command.create_primitive.points, "point", _points(points))
         return self._make(command)
 
     def add_frustum(self, length, size, fov_deg=None, height=None, tangents=None, near=None,
@@ -462,7 +469,10 @@ class Scene:
             message.color.r, message.color.g, message.color.b = vector(color, "the colour")
         elif relief is not None:
             message.relief.SetInParent()
+            known = [field.name for field in message.relief.DESCRIPTOR.fields]
             for field, value in relief.items():
+                if field not in known:
+                    raise ValueError(f"relief has {field!r}; accepted: {', '.join(known)}")
                 setattr(message.relief, field, value)
         if origin is not None:
             values = tuple(origin) + (0.0,) * (3 - len(tuple(origin)))
@@ -484,7 +494,7 @@ class Scene:
     @property
     def vtk(self):
         """The vtkDspaceScene that mirrors it."""
-        return self._client.vtk.GetScene(self._name_)
+        return self._client.local().GetScene(self._name_)
 
     def __eq__(self, other):
         return (isinstance(other, Scene)

@@ -35,6 +35,8 @@ class Session:
 
         lights: whether a new one begins with the lights "sun" and "sky".
         """
+        if not name:
+            raise ValueError("the scene's name is empty; accepted: any other")
         command = pb.Command(scene=name)
         command.create_scene.no_lights = not lights
         try:

@@ -284,7 +284,7 @@ class Viewport:
     @property
     def vtk(self):
         """The vtkDspaceViewport behind it."""
-        return self._client.vtk.GetViewport(self._name)
+        return self._client.local().GetViewport(self._name)
 
     def run(self, function):
         """Makes it the render window's current viewport and calls function(window, renderer)."""
@@ -297,7 +297,7 @@ class Viewport:
             except BaseException as error:  # VTK would print it and go on
                 result.append((None, error))
 
-        session = self._client.vtk
+        session = self._client.local()
         tag = session.AddObserver("UserEvent", call)
         try:
             message = session.RunInViewport(self._name)

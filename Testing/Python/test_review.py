@@ -1,0 +1,80 @@
+"""What a user's session may run into: no lights, letters beyond ASCII, things of a closed session."""
+import numpy as np
+import pytest
+
+import dspace
+
+SIZE = (64, 48)
+
+
+@pytest.fixture
+def view(scene):
+    camera = scene.add_camera(eye=(0, 0, 5), target=(0, 0, 0), up=(0, 1, 0))
+    return scene.add_viewport(SIZE, camera)
+
+
+@pytest.mark.parametrize("material", [{}, {"metallic": 1.0, "roughness": 0.3}, {"opacity": 0.5}])
+def test_without_lights_a_lit_surface_is_black(scene, view, material):
+    cube = scene.add_box((2, 2, 2), color=(1, 1, 1), **material)
+    seen = view.labels() == cube.id
+    scene.lights["sun"].enabled = False
+    assert view.image()[seen].any()  # what the sky leaves
+    scene.lights["sky"].enabled = False
+    assert seen.any() and not view.image()[seen].any()
+
+
+def test_outlined_letters_are_not_left_out_silently(scene, refused):
+    with refused(dspace.InvalidArgument, "café"):
+        scene.add_text("café", 1)
+    text = scene.add_text("a b\nc", 1)
+    with refused(dspace.InvalidArgument, "°"):
+        text.set("3°")
+
+
+def test_points_have_three_numbers_each(scene, refused):
+    for add in (scene.add_points, scene.add_lines):
+        for shape in ((3, 2), (6,), (2, 3, 1)):
+            with refused(ValueError, "shape"):
+                add(np.zeros(shape))
+
+
+def test_ids_are_integers(scene, refused):
+    frame = scene.add_frame("f")
+    with refused(ValueError, "integers"):
+        scene.poses(np.array([frame.id + 0.7]))
+
+
+def test_bad_words_and_names(session, scene, field, refused):
+    frame = scene.add_frame("f")
+    with refused(ValueError, "axis"):
+        frame.rotate("k", 10)
+    with refused(ValueError, "sun_azimuth_deg"):
+        scene.add_terrain(field, relief={"azimuth": 3})
+    with refused(ValueError, "tangents"):
+        scene.add_camera(tangents=(-1, 1, 1))
+    with refused(ValueError, "empty"):
+        session.scene("")
+
+
+def test_a_closed_session_says_so():
+    with dspace.Session() as session:
+        scene = session.scene()
+        frame = scene.add_frame("f")
+        viewport = scene.add_viewport(SIZE, scene.add_camera(eye=(5, 0, 0), target=(0, 0, 0)))
+    for use in (lambda: scene.vtk, lambda: frame.vtk, lambda: viewport.vtk, viewport.image,
+                lambda: viewport.run(lambda window, renderer: None), session.scene):
+        with pytest.raises(RuntimeError, match="closed"):
+            use()
+    assert "not in the scene" in repr(frame) and repr(session) and repr(scene) and repr(viewport)
+
+
+def test_a_joint_of_a_removed_robot_has_a_repr(scene, tmp_path):
+    path = tmp_path / "r.urdf"
+    path.write_text('<robot name="r"><link name="a"/><link name="b"/><joint name="j" '
+                    'type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
+                    '</joint></robot>')
+    robot = scene.load(path)
+    joint = robot.joints["j"]
+    assert "continuous" in repr(joint)
+    robot.remove()
+    assert "not in the scene" in repr(joint)
