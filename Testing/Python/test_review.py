@@ -78,3 +78,20 @@ def test_a_joint_of_a_removed_robot_has_a_repr(scene, tmp_path):
     assert "continuous" in repr(joint)
     robot.remove()
     assert "not in the scene" in repr(joint)
+
+
+def label_size(scene, view, text):
+    """Columns and rows of a label's red ground in the picture."""
+    label = scene.add_label(text, position=(-2, 0, 0), font_size=10, color=(1, 0, 0), background=(1, 0, 0),
+                            background_opacity=1)
+    rows, columns = np.nonzero(view.image()[..., 0] > 127)
+    label.remove()
+    return np.ptp(columns) + 1, np.ptp(rows) + 1
+
+
+def test_a_label_has_its_pixels_at_any_number_of_samples(scene, view):
+    view.samples = 1
+    size = label_size(scene, view, "abc")
+    for view.samples in (2, 4):
+        assert label_size(scene, view, "abc") == pytest.approx(size, abs=1)
+    assert label_size(scene, view, "abc\u00e9")[0] > size[0] + 3  # letters beyond ASCII are drawn

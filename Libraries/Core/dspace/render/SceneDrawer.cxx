@@ -190,13 +190,15 @@ void SceneDrawer::Upload(const DrawList& list) {
   glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32UI, this->InstanceBuffer_);
 }
 
-void SceneDrawer::SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view) {
+void SceneDrawer::SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view,
+                          int samples) {
   const Eigen::Matrix4f clip = view.projection.ClipFromView(view.width, view.height).cast<float>();
   Eigen::Matrix4f columns = clip; // column-major, as OpenGL reads it
   program->SetUniformMatrix4x4("VCDCMatrix", columns.data());
   program->SetUniformi("instances", InstanceUnit);
-  const float pixel[2] = {2.0f / static_cast<float>(view.width),
-                          2.0f / static_cast<float>(view.height)};
+  // Of the picture, not of the n x n samples that are drawn of it.
+  const float pixel[2] = {2.0f * static_cast<float>(samples) / static_cast<float>(view.width),
+                          2.0f * static_cast<float>(samples) / static_cast<float>(view.height)};
   program->SetUniform2f("pixelNDC", pixel);
   program->SetUniformi("colorTexture", ColorUnit);
   program->SetUniformi("opaqueDepth", OpaqueDepthUnit);
@@ -259,7 +261,7 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     }
     vtkShaderProgram* program = this->SurfaceProgram(wanted);
     if (!prepared[program]) {
-      this->SetView(program, list, view);
+      this->SetView(program, list, view, samples);
       prepared[program] = true;
     }
     program->SetUniformi("firstInstance", static_cast<int>(batch.first));

@@ -65,7 +65,7 @@ private:
   vtkShaderProgram* ScreenProgram(const char* fragmentSource);
   void DrawTriangleOverScreen();
   void Upload(const DrawList& list);
-  void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view);
+  void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view, int samples);
   void DrawBatches(const DrawList& list, const DrawView& view, bool translucent, unsigned features,
                    int samples);
   void PeelTranslucent(const DrawList& list, const DrawView& view, RenderTarget& target,

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "vtkFreeTypeTools.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
 #include "vtkTextProperty.h"
+#include "vtkTextRenderer.h"
 #include "vtkTriangleFilter.h"
 #include "vtkVectorText.h"
 
@@ -77,8 +77,9 @@ Part MakeLabel(const std::string& text, const LabelStyle& style) {
   look->SetBackgroundOpacity(style.backgroundOpacity);
   vtkNew<vtkImageData> picture;
   int size[2] = {0, 0};
-  // 72 dots an inch: font sizes are pixels.
-  if (!vtkFreeTypeTools::GetInstance()->RenderString(look, vtkStdString(text), 72, picture, size) ||
+  // 72 dots an inch: font sizes are pixels. (vtkFreeTypeTools itself leaves out what is not ASCII.)
+  if (!vtkTextRenderer::GetInstance()->RenderString(look, vtkStdString(text), picture, size, 72,
+                                                    vtkTextRenderer::FreeType) ||
       size[0] < 1 || size[1] < 1 || picture->GetNumberOfScalarComponents() != 4) {
     throw Error(Error::Kind::InvalidArgument, "label '" + text + "'",
                 "could not be drawn; UTF-8 text is accepted");
