@@ -156,7 +156,7 @@ def test_field_georeference(field):
     assert srs.IsProjected() and srs.GetLinearUnits() == 1.0
     assert srs.GetSemiMajor() == 1737400.0 and srs.GetInvFlattening() == 0.0
     assert "Moon" in srs.GetAttrValue("GEOGCS")
-    assert data.GetMetadataItem("VERTICAL_DATUM") == "sphere of radius 1737400 m"
+    assert data.GetMetadataItem("VERTICAL_DATUM") == "sphere:1737400"
 
 
 def test_crater_sizes_follow_the_stated_power_law():

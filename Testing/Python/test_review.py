@@ -82,8 +82,8 @@ def test_a_joint_of_a_removed_robot_has_a_repr(scene, tmp_path):
 
 def label_size(scene, view, text):
     """Columns and rows of a label's red ground in the picture."""
-    label = scene.add_label(text, position=(-2, 0, 0), font_size=10, color=(1, 0, 0), background=(1, 0, 0),
-                            background_opacity=1)
+    label = scene.add_label(text, position=(-2, 0, 0), font_size=10, color=(1, 0, 0),
+                            background=(1, 0, 0), background_opacity=1)
     rows, columns = np.nonzero(view.image()[..., 0] > 127)
     label.remove()
     return np.ptp(columns) + 1, np.ptp(rows) + 1
