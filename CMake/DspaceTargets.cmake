@@ -25,7 +25,7 @@ add_library(DspaceOptions INTERFACE)
 target_compile_options(DspaceOptions INTERFACE -Wall -Wextra -Werror -ffp-contract=off)
 if(DSPACE_SANITIZE)
   target_compile_options(DspaceOptions INTERFACE
-    -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -O1)
+    -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -Og -g1)
   target_link_options(DspaceOptions INTERFACE -fsanitize=address,undefined)
 endif()
 
