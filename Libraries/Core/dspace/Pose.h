@@ -11,7 +11,7 @@ namespace dspace {
 // the poses of a tree are closed under composition (shear cannot arise). Stretching along one axis
 // belongs to the geometry's own offset, not to a frame.
 struct Pose {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero(); // p_WG [m]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();           // p_WG [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity(); // q_WG, scalar first when listed
   double scale = 1.0;
 
