@@ -47,7 +47,7 @@ def main():
         demo("m2020_gale", 1, "--terrain", f"{data}/terrain/mars_gale_mola_128ppd_m.tif", "--model",
              f"{data}/models/m2020_rover/m2020.urdf")
         demo("rocky7_apollo15", 2, "--terrain", f"{data}/terrain/moon_apollo15_nac_dtm_257.png",
-             "--vertical-scale", "0.19216", "--model", f"{data}/models/rocky7_vrml")
+             "--vertical-scale", "0.19216", "--pixel-size", "2", "--model", f"{data}/models/rocky7_vrml")
         demo("viper_north_pole", 2, "--terrain", f"{data}/terrain/moon_npole_stereo_33.tif", "--model",
              f"{data}/models/viper_obj")
 

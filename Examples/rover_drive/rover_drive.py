@@ -49,6 +49,8 @@ def arguments():
     parser.add_argument("--image", type=pathlib.Path, help="an image to drape over the terrain")
     parser.add_argument("--vertical-scale", type=float, default=None,
                         help="metres a unit of height, where the file does not say")
+    parser.add_argument("--pixel-size", type=float, default=None,
+                        help="metres a pixel, where the file has no georeference (else 1 is taken)")
     parser.add_argument("--model", type=pathlib.Path, default=DATA / "rover" / "rover.urdf",
                         help="URDF, frames.json, glTF/GLB, VRML, OBJ, STL or PLY (default: the rover)")
     parser.add_argument("--scale", type=float, default=1.0,
@@ -147,6 +149,8 @@ def add_terrain(scene, options):
         settings["image"] = DATA / "field" / "field_color.tif"
     if options.vertical_scale is not None:
         settings["vertical_scale"] = options.vertical_scale
+    if options.pixel_size is not None:
+        settings["pixel_size"] = options.pixel_size
     return scene.add_terrain(options.terrain, name="terrain", **settings)
 
 
