@@ -380,6 +380,7 @@ TEST(ImportGltf, BadFilesAreTypedErrors) {
   expect(corrupt, "'meshes' is not an array", "\"meshes\": [", "\"meshes\": 3, \"x\": [");
   expect(corrupt, "has no primitives", "\"primitives\"", "\"primitive\"");
   expect(corrupt, "nothing to draw", "\"scenes\": [{\"nodes\": [0]}]", "\"scenes\": [{}]");
+  expect(corrupt, "mesh 'quad' has 8 vertices and no faces", "\"indices\": 2,", "\"mode\": 0,");
   expect(corrupt, "no glTF", "\"asset\"", "asset");
   ExpectReadError(corrupt, "no glTF",
                   folder.Write("deep.gltf", "{\"a\":" + std::string(1000000, '[')));

@@ -105,6 +105,26 @@ TEST(ImportObj, ColorsLinesAndPoints) {
   EXPECT_EQ(model.TriangleCount(), 1u);
 }
 
+TEST(ImportObj, VerticesAloneAreAPointCloudWhenAskedFor) {
+  const TempFolder folder;
+  const std::string vertices = "v 0 0 0 1 0 0\nv 1 2 3 0 1 0\nv 4 5 6 0 0 1\n";
+  ImportOptions cloud;
+  cloud.pointCloud = true;
+  for (const std::string& content : {vertices, vertices + "p 1 2 3\n"}) {
+    const std::string file = folder.Write("p.obj", content);
+    ExpectReadError(Error::Kind::Corrupt, "p.obj': has 3 vertices and no faces", file);
+    const Model model = ReadModel(file, cloud);
+    ASSERT_EQ(model.meshes.size(), 1u);
+    EXPECT_EQ(model.meshes[0].primitive, Mesh::Primitive::Points);
+    EXPECT_EQ(model.meshes[0].positions, (std::vector<float>{0, 0, 0, 1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(model.meshes[0].indices, (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_EQ(model.meshes[0].colors,
+              (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255}));
+  }
+  ExpectReadError(Error::Kind::Corrupt, "has no vertices", folder.Write("n.obj", "o thing\n"),
+                  cloud);
+}
+
 TEST(ImportObj, MissingPartsAreWarnings) {
   const TempFolder folder;
   const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl x\nf 1 2 3\n";

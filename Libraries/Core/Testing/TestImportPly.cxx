@@ -171,7 +171,12 @@ TEST(ImportPly, ConcavePolygon) {
 
 TEST(ImportPly, PointCloudEdgesAndStrips) {
   const TempFolder folder;
-  const Model points = ReadModel(folder.Write("points.ply", Square(SquareRows, "", 4, 0)));
+  const std::string file = folder.Write("points.ply", Square(SquareRows, "", 4, 0));
+  ExpectReadError(Error::Kind::Corrupt, "points.ply': has 4 vertices and no faces", file);
+  ExpectReadError(Error::Kind::Corrupt, "point_cloud=True", file);
+  ImportOptions cloud;
+  cloud.pointCloud = true;
+  const Model points = ReadModel(file, cloud);
   ASSERT_EQ(points.meshes.size(), 1u);
   EXPECT_EQ(points.meshes[0].primitive, Mesh::Primitive::Points);
   EXPECT_EQ(points.meshes[0].PrimitiveCount(), 4u);

@@ -155,6 +155,8 @@ TEST(ImportStl, BadInput) {
                   folder.Write("cut.stl", good.substr(0, good.size() - 1)));
   ExpectReadError(Error::Kind::Corrupt, "is no STL", folder.Write("short.stl", "hello"));
   ExpectReadError(Error::Kind::Corrupt, "has no triangles", folder.Write("none.stl", Binary({})));
+  ExpectReadError(Error::Kind::Corrupt, "no-facets.stl': has no triangles",
+                  folder.Write("no-facets.stl", "solid a\nendsolid a\n"));
   std::string many = good;
   many.replace(80, 4, "\xff\xff\xff\xff");
   ExpectReadError(Error::Kind::Corrupt, "says it has 4294967295", folder.Write("many.stl", many));

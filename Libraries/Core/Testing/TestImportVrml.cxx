@@ -446,10 +446,15 @@ TEST(ImportVrml, LinesAndPoints) {
   EXPECT_EQ(Color(lines.meshes[1], lines.meshes[1].indices[0]),
             (std::array<int, 4>{0, 0, 255, 255}));
   EXPECT_FALSE(MaterialOf(lines).lit);
-  const Model points = Read(
-      folder, Head2 + Shape("PointSet { " + data + "}") +
-                  Shape("PointSet { coord Coordinate { point 5 5 5 } }",
-                        "appearance Appearance { material Material { emissiveColor 1 0.5 0 } }"));
+  const std::string file = folder.Write(
+      "points.wrl",
+      Head2 + Shape("PointSet { " + data + "}") +
+          Shape("PointSet { coord Coordinate { point 5 5 5 } }",
+                "appearance Appearance { material Material { emissiveColor 1 0.5 0 } }"));
+  ExpectReadError(Error::Kind::Corrupt, "has 5 vertices and no faces", file);
+  ImportOptions cloud;
+  cloud.pointCloud = true;
+  const Model points = ReadModel(file, cloud);
   EXPECT_EQ(points.meshes.at(0).PrimitiveCount(), 4u);
   EXPECT_EQ(points.meshes.at(1).primitive, Mesh::Primitive::Points);
   EXPECT_EQ(MaterialOf(points, 1).color, (std::array<double, 3>{1, 0.5, 0}));

@@ -94,20 +94,36 @@ Reader ReaderFor(const std::string& path) {
   throw Error(Error::Kind::Unsupported, object, std::string("is of no known type; ") + Accepted);
 }
 
-void CheckResult(const Model& model, const ImportOptions& options) {
-  const std::string object = FileObject(model.path);
-  CheckModel(model);
-  bool anything = false;
+// Something must be there to draw, and more than points unless they are what is asked for.
+void CheckFaces(const Model& model, const ImportOptions& options) {
+  bool more = false;
+  const Mesh* points = nullptr; // the first of them
+  std::size_t vertices = 0;
   for (const ModelNode& node : model.nodes) {
-    for (const int mesh : node.meshes) {
-      anything = anything || !model.meshes[static_cast<std::size_t>(mesh)].indices.empty();
+    for (const int index : node.meshes) {
+      const Mesh& mesh = model.meshes[static_cast<std::size_t>(index)];
+      if (mesh.primitive != Mesh::Primitive::Points) {
+        more = more || !mesh.indices.empty();
+      } else if (!mesh.indices.empty()) {
+        points = points ? points : &mesh;
+        vertices += mesh.VertexCount();
+      }
     }
   }
-  if (!anything) {
-    throw Error(Error::Kind::Corrupt, object,
+  if (!more && points && !options.pointCloud) {
+    RefusePointCloud(model.path, points->name, vertices);
+  }
+  if (!more && !points) {
+    throw Error(Error::Kind::Corrupt, FileObject(model.path),
                 "has nothing to draw: no faces, lines or points" +
                     (model.warnings.empty() ? "" : " (" + model.warnings.front() + ")"));
   }
+}
+
+void CheckResult(const Model& model, const ImportOptions& options) {
+  const std::string object = FileObject(model.path);
+  CheckModel(model);
+  CheckFaces(model, options);
   if (model.TriangleCount() > options.maximumTriangles) {
     throw Error(Error::Kind::Resource, object,
                 "has " + std::to_string(model.TriangleCount()) + " triangles; at most " +

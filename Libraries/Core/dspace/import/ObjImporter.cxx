@@ -77,6 +77,14 @@ public:
     }
   }
 
+  // Every vertex as a point.
+  void AddAllPoints() {
+    Part& part = this->PartFor({}, Mesh::Primitive::Points);
+    for (std::size_t i = 0; 3 * i < this->Attrib_.vertices.size(); ++i) {
+      this->AddCorner(part, {static_cast<int>(i), -1, -1});
+    }
+  }
+
   // The meshes in the order in which their first faces stand in the file.
   std::vector<Mesh> Finish() {
     std::vector<Mesh> meshes;
@@ -194,8 +202,11 @@ Model ReadObj(const std::string& path, const ImportOptions& options) {
   Model model;
   model.path = path;
   ObjText text = CheckObjText(path, ReadFileBytes(path), options.maximumTriangles);
-  if (text.sections.empty()) {
-    throw Error(Error::Kind::Corrupt, FileObject(path), "has no faces, lines or points");
+  if (text.sections.empty() && text.vertices == 0) {
+    throw Error(Error::Kind::Corrupt, FileObject(path), "has no vertices and no faces");
+  }
+  if (text.sections.empty() && !options.pointCloud) {
+    RefusePointCloud(path, "", text.vertices);
   }
   model.warnings = text.warnings;
   const ObjMaterials materials = ReadObjMaterials(path, text.libraries, model.warnings);
@@ -212,6 +223,9 @@ Model ReadObj(const std::string& path, const ImportOptions& options) {
   ObjBuilder builder(text, materials, attrib, model.warnings);
   for (const tinyobj::shape_t& shape : shapes) {
     builder.Add(shape);
+  }
+  if (text.sections.empty()) {
+    builder.AddAllPoints();
   }
   model.meshes = builder.Finish();
   model.materials = materials.materials;

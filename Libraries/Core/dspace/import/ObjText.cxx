@@ -48,6 +48,7 @@ public:
     this->CheckLargest(this->Vertices_);
     this->CheckLargest(this->Tcoords_);
     this->CheckLargest(this->Normals_);
+    this->Out_.vertices = this->Vertices_.size;
     return std::move(this->Out_);
   }
 

@@ -21,6 +21,7 @@ struct ObjText {
   };
   std::string text;
   std::vector<Section> sections;
+  std::size_t vertices = 0;
   std::vector<std::string> libraries; // what mtllib names, each the rest of its line
   std::vector<std::string> warnings;
 };

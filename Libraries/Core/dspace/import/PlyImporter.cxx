@@ -303,7 +303,8 @@ private:
       origin = box.center();
       model.nodes[0].local.translate(origin);
     }
-    // A file with faces and edges shows both; one with neither is a cloud of points.
+    // A file with faces and edges shows both; one with neither is a cloud of points, which
+    // ReadModel refuses unless it is asked for.
     if (!this->Primitives_.triangles.empty()) {
       this->AddMesh(model, Mesh::Primitive::Triangles, this->Primitives_.triangles, origin);
     }
