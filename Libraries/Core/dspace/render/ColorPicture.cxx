@@ -1,0 +1,146 @@
+#include <dspace/render/ColorPicture.h>
+
+#include <exception>
+
+#include "vtk_glew.h"
+
+#include "vtkDspaceHubWindow.h"
+#include "vtkDspaceRenderContext.h"
+#include "vtkDspaceRenderer.h"
+#include "vtkOpenGLRenderer.h"
+#include "vtkPropCollection.h"
+#include "vtkRendererCollection.h"
+
+#include <dspace/Error.h>
+#include <dspace/render/CornerAxes.h>
+#include <dspace/render/VtkErrors.h>
+#include <dspace/render/VtkMirror.h>
+
+namespace dspace {
+
+ColorPicture::ColorPicture() = default;
+
+ColorPicture::~ColorPicture() {
+  if (!this->Context_) {
+    return;
+  }
+  vtkDspaceHubWindow* hub = this->Context_->GetHub();
+  if (hub->GetContext()) {
+    hub->MakeCurrent();
+    hub->Deactivate();
+    // Not RemoveRenderer: it would release the resources of props that other viewports show.
+    this->Renderer_->RemoveAllViewProps();
+    this->Overlay_->RemoveAllViewProps();
+    this->Renderer_->SetRenderWindow(nullptr);
+    this->Overlay_->SetRenderWindow(nullptr);
+  }
+}
+
+void ColorPicture::Connect(vtkDspaceRenderContext* context) {
+  this->Context_ = context;
+  this->SceneRenderers_->AddItem(this->Renderer_);
+  this->OverlayRenderers_->AddItem(this->Overlay_);
+  this->Renderer_->SetRenderWindow(context->GetHub());
+  this->Overlay_->SetRenderWindow(context->GetHub());
+  this->Renderer_->AutomaticLightCreationOff();
+  this->Overlay_->SetPreserveColorBuffer(1);
+  this->Overlay_->GetActiveCamera(); // else VTK resets it at the first picture
+  this->Renderer_->GetActiveCamera();
+}
+
+void ColorPicture::PrepareTargets(int width, int height, int samples) {
+  vtkDspaceHubWindow* hub = this->Context_->GetHub();
+  if (!this->SceneTarget_) {
+    using Format = RenderTarget::Format;
+    this->SceneTarget_ = std::make_unique<RenderTarget>(hub, Format::Display, true);
+    this->DisplayTarget_ = std::make_unique<RenderTarget>(hub, Format::Display, true);
+  }
+  this->SceneTarget_->Resize(width * samples, height * samples);
+  this->DisplayTarget_->Resize(width, height);
+}
+
+void ColorPicture::ActivateScene() {
+  const RenderTarget& target = *this->SceneTarget_;
+  this->Context_->GetHub()->Activate(
+      {target.Framebuffer(), this->SceneRenderers_, target.Width(), target.Height()});
+}
+
+void ColorPicture::ActivateDisplay() {
+  const RenderTarget& target = *this->DisplayTarget_;
+  this->Context_->GetHub()->Activate(
+      {target.Framebuffer(), this->OverlayRenderers_, target.Width(), target.Height()});
+}
+
+void ColorPicture::Activate(int width, int height, int samples) {
+  this->Context_->GetHub()->MakeCurrent();
+  this->PrepareTargets(width, height, samples);
+  this->ActivateScene();
+}
+
+void ColorPicture::Draw(const std::string& object, const Scene& scene, const Request& request) {
+  const DrawView& view = request.view;
+  const int samples = request.samples;
+  vtkDspaceHubWindow* hub = this->Context_->GetHub();
+  VtkErrorTrap trap;
+  hub->MakeCurrent();
+  this->PrepareTargets(view.width / samples, view.height / samples, samples);
+  RenderStatistics& statistics = this->Context_->CountStatistics();
+  if (!this->Drawer_) {
+    this->Drawer_ = std::make_unique<SceneDrawer>(hub, this->Context_->GetStore(), statistics);
+  }
+  this->List_.Build(scene, view, request.filter);
+  this->ActivateScene();
+  if (this->Renderer_->GetViewProps()->GetNumberOfItems() > 0) {
+    MirrorCamera(scene, view, this->Renderer_);
+    MirrorLights(scene, this->Renderer_);
+  }
+  std::exception_ptr failure; // must not pass through VTK's frames
+  this->Renderer_->ClearPicture = [&] {
+    try {
+      this->Drawer_->Clear(request.background);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  };
+  this->Renderer_->DrawScene = [&] {
+    try {
+      this->Drawer_->DrawColor(this->List_, view, *this->SceneTarget_, samples,
+                               &request.background);
+      if (request.axes) {
+        request.axes->Draw(scene, view, *this->SceneTarget_, samples);
+      }
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  };
+  hub->Render();
+  if (!failure) {
+    this->Drawer_->Downsample(*this->SceneTarget_, *this->DisplayTarget_, samples);
+    if (request.overlays && this->Overlay_->GetViewProps()->GetNumberOfItems() > 0) {
+      this->ActivateDisplay();
+      hub->Render();
+    }
+  }
+  this->Context_->GetStore().Collect();
+  ++statistics.framesDrawn;
+  if (failure) {
+    std::rethrow_exception(failure);
+  }
+  const GLenum error = glGetError();
+  if (error != GL_NO_ERROR) {
+    throw Error(Error::Kind::Resource, object,
+                "OpenGL reported error " + std::to_string(error) + " while drawing");
+  }
+  trap.Check(object);
+}
+
+std::vector<std::uint8_t> ColorPicture::Read() const {
+  this->Context_->GetHub()->MakeCurrent();
+  std::vector<std::uint8_t> color = this->DisplayTarget_->ReadColor();
+  for (std::size_t i = 3; i < color.size(); i += 4) {
+    color[i] = 255;
+  }
+  return color;
+}
+
+} // namespace dspace

@@ -1,0 +1,71 @@
+// The colour picture of a viewport: its framebuffers, VTK's renderers, and how one is drawn.
+#ifndef DSPACE_RENDER_COLOR_PICTURE_H
+#define DSPACE_RENDER_COLOR_PICTURE_H
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include <dspace/render/DrawList.h>
+#include <dspace/render/SceneDrawer.h>
+
+class vtkDspaceRenderContext;
+class vtkDspaceRenderer;
+class vtkOpenGLRenderer;
+class vtkRendererCollection;
+
+namespace dspace {
+
+class CornerAxes;
+
+// Drawn supersampled, averaged into the picture that is shown, and overlays drawn on that.
+class ColorPicture {
+public:
+  ColorPicture();
+  ColorPicture(const ColorPicture&) = delete;
+  ColorPicture& operator=(const ColorPicture&) = delete;
+  ~ColorPicture();
+  // Once, before anything below but the renderers.
+  void Connect(vtkDspaceRenderContext* context);
+
+  vtkDspaceRenderer* Renderer() const { return this->Renderer_; }
+  vtkOpenGLRenderer* Overlay() const { return this->Overlay_; }
+
+  struct Request {
+    DrawView view; // its size counts samples
+    int samples = 1;
+    DrawFilter filter;
+    SceneDrawer::Background background;
+    bool overlays = true;       // props of the overlay renderer
+    CornerAxes* axes = nullptr; // none: not drawn
+  };
+  // Errors, OpenGL's and VTK's among them, become dspace::Error about `object`.
+  void Draw(const std::string& object, const Scene& scene, const Request& request);
+  // The window's current framebuffer and renderers, as while the scene is drawn.
+  void Activate(int width, int height, int samples);
+
+  std::vector<std::uint8_t> Read() const; // RGBA, rows from the top down, alpha 255; after Draw()
+
+private:
+  void PrepareTargets(int width, int height, int samples);
+  void ActivateScene();
+  void ActivateDisplay();
+
+  vtkSmartPointer<vtkDspaceRenderContext> Context_;
+  std::unique_ptr<RenderTarget> SceneTarget_;   // supersampled
+  std::unique_ptr<RenderTarget> DisplayTarget_; // what is shown
+  std::unique_ptr<SceneDrawer> Drawer_;
+  DrawList List_;
+  vtkNew<vtkDspaceRenderer> Renderer_;
+  vtkNew<vtkOpenGLRenderer> Overlay_;
+  vtkNew<vtkRendererCollection> SceneRenderers_;
+  vtkNew<vtkRendererCollection> OverlayRenderers_;
+};
+
+} // namespace dspace
+
+#endif

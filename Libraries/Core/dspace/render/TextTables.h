@@ -1,0 +1,37 @@
+// The text tables of one viewport, on its overlay renderer.
+#ifndef DSPACE_RENDER_TEXT_TABLES_H
+#define DSPACE_RENDER_TEXT_TABLES_H
+
+#include <map>
+#include <string>
+
+#include "vtkSmartPointer.h"
+
+#include <dspace/scene/Overlay.h>
+
+class vtkRenderer;
+class vtkTextActor;
+
+namespace dspace {
+
+// Each stands in a corner of the picture. What changes is answered: the picture is old then.
+class TextTables {
+public:
+  // Creates or replaces, by name; false where the same table was there. `width` and `height` are
+  // the picture's. Throws Error(InvalidArgument) naming the table and the value.
+  bool Set(const TextTable& table, vtkRenderer* overlay, int width, int height);
+  bool Remove(const std::string& name, vtkRenderer* overlay); // false where there is none
+  // All of them anew, in the corners of a picture of another size.
+  void Resize(vtkRenderer* overlay, int width, int height);
+
+private:
+  struct Placed {
+    TextTable table;
+    vtkSmartPointer<vtkTextActor> actor;
+  };
+  std::map<std::string, Placed> Placed_;
+};
+
+} // namespace dspace
+
+#endif
