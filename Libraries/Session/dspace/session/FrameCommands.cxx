@@ -117,6 +117,15 @@ void ListFrames(const Context& context, v1::ListFrames& command) {
   }
 }
 
+void FollowFrames(const Context& context, v1::FollowFrames& command) {
+  std::unique_ptr<FrameFollower>& follower = context.scene->follower;
+  if (command.stop()) {
+    follower.reset();
+  } else if (!follower) {
+    follower = std::make_unique<FrameFollower>(context.scene->scene, context.state.frameEvents);
+  }
+}
+
 } // namespace
 
 void AddFrameCommands(Registry& registry) {
@@ -129,6 +138,7 @@ void AddFrameCommands(Registry& registry) {
   registry.Add(C::kFindFrame, &C::mutable_find_frame, Effect::Request, FindFrame);
   registry.Add(C::kGetPoses, &C::mutable_get_poses, Effect::Request, GetPoses);
   registry.Add(C::kListFrames, &C::mutable_list_frames, Effect::Request, ListFrames);
+  registry.Add(C::kFollowFrames, &C::mutable_follow_frames, Effect::Request, FollowFrames);
 }
 
 } // namespace dspace::session

@@ -17,6 +17,17 @@ void PutError(v1::Reply& reply, v1::Error::Kind kind, const std::string& object,
   reply.mutable_error()->set_message(message);
 }
 
+class Nesting {
+public:
+  explicit Nesting(int& depth) : Depth_(++depth) {}
+  ~Nesting() { --this->Depth_; }
+  Nesting(const Nesting&) = delete;
+  Nesting& operator=(const Nesting&) = delete;
+
+private:
+  int& Depth_;
+};
+
 } // namespace
 
 std::string CommandName(const v1::Command& command) {
@@ -44,7 +55,10 @@ Interpreter::Interpreter() {
 
 v1::Reply Interpreter::Execute(v1::Command& command) {
   v1::Reply reply;
+  FrameEventLog& events = this->State_.frameEvents;
+  const std::size_t before = events.Size();
   try {
+    const Nesting nesting(this->Depth_);
     this->Run(command, reply);
   } catch (const Error& error) {
     PutError(reply, FromKind(error.GetKind()), error.GetObjectName(), error.what());
@@ -52,6 +66,11 @@ v1::Reply Interpreter::Execute(v1::Command& command) {
     PutError(reply, v1::Error::RESOURCE, "command " + CommandName(command), "out of memory");
   } catch (const std::exception& error) {
     PutError(reply, v1::Error::INTERNAL, "command " + CommandName(command), error.what());
+  }
+  if (reply.has_error()) {
+    events.ForgetUndone(before);
+  } else if (this->Depth_ == 0) {
+    events.MoveTo(reply); // what listeners caused
   }
   return reply;
 }
@@ -65,6 +84,9 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   const std::string name = command.scene().empty() ? DefaultScene : command.scene();
   SceneState* scene = entry->needs == Needs::Scene ? &this->State_.FindScene(name) : nullptr;
   entry->run(Context{this->State_, scene, name, reply}, command);
+  if (this->Depth_ == 1) {
+    this->State_.frameEvents.MoveTo(reply); // before it is told: listeners pass the reply on
+  }
   if (entry->effect == Effect::Change) {
     this->Tell(command, reply);
   }

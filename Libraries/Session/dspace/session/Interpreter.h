@@ -47,6 +47,7 @@ private:
   Registry Registry_;
   std::vector<std::pair<Token, Listener>> Listeners_;
   Token LastToken_ = 0;
+  int Depth_ = 0; // commands under way: listeners may give some too
 };
 
 // "create_frame": the name of the command in the .proto, or "number 999" for one that is unknown.

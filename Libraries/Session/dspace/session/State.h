@@ -11,6 +11,7 @@
 
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/Trail.h>
+#include <dspace/session/FrameEventLog.h>
 #include <dspace/session/ModelCache.h>
 #include <dspace/session/Robot.h>
 #include <dspace/session/TerrainObject.h>
@@ -30,6 +31,7 @@ struct SceneState {
   std::set<ObjectId> primitives;                       // objects whose shape may be replaced
   std::map<ObjectId, std::pair<double, double>> tilts; // warning and limit of tilt markers [deg]
   std::map<ObjectId, v1::CreateText> texts;            // with their style
+  std::unique_ptr<FrameFollower> follower;             // null while nobody follows the frames
 
   // Drops the robots, terrains, trails and primitives whose frames or objects are gone.
   void ForgetRemoved();
@@ -50,6 +52,7 @@ struct ViewportPlace {
 };
 
 struct State {
+  FrameEventLog frameEvents; // before the scenes, whose followers write into it
   std::map<std::string, SceneState> scenes;
   std::map<std::string, ViewportPlace> viewports;
   ModelCache models;

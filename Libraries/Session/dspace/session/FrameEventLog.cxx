@@ -1,0 +1,88 @@
+#include <dspace/session/FrameEventLog.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <dspace/session/commands.pb.h>
+
+namespace dspace::session {
+namespace {
+
+v1::FrameEvent::Type FromType(FrameEvent::Type type) {
+  switch (type) {
+  case FrameEvent::Type::Created:
+    return v1::FrameEvent::CREATED;
+  case FrameEvent::Type::Removed:
+    return v1::FrameEvent::REMOVED;
+  case FrameEvent::Type::Reparented:
+    return v1::FrameEvent::REPARENTED;
+  case FrameEvent::Type::Renamed:
+    return v1::FrameEvent::RENAMED;
+  case FrameEvent::Type::PosesChanged:
+    break;
+  }
+  return v1::FrameEvent::POSES_CHANGED;
+}
+
+} // namespace
+
+void FrameEventLog::Add(const std::string& scene, const FrameEvent& event) {
+  v1::FrameEvent message;
+  message.set_type(FromType(event.type));
+  message.mutable_frame()->Add(event.ids.begin(), event.ids.end());
+  message.set_revision(event.revision);
+  message.set_scene(scene);
+  this->Events_.push_back(std::move(message));
+}
+
+void FrameEventLog::ForgetUndone(std::size_t first) {
+  using Key = std::pair<std::string, FrameId>; // ids are a scene's own
+  std::set<Key> made;
+  std::set<Key> undone;
+  for (std::size_t i = first; i < this->Events_.size(); ++i) {
+    const v1::FrameEvent& event = this->Events_[i];
+    for (const FrameId id : event.frame()) {
+      const Key key(event.scene(), id);
+      if (event.type() == v1::FrameEvent::CREATED) {
+        made.insert(key);
+      } else if (event.type() == v1::FrameEvent::REMOVED && made.count(key)) {
+        undone.insert(key);
+      }
+    }
+  }
+  if (undone.empty()) {
+    return;
+  }
+  for (std::size_t i = first; i < this->Events_.size(); ++i) {
+    v1::FrameEvent& event = this->Events_[i];
+    auto* frames = event.mutable_frame();
+    frames->erase(std::remove_if(frames->begin(), frames->end(),
+                                 [&](FrameId id) {
+                                   return undone.count({event.scene(), id}) != 0;
+                                 }),
+                  frames->end());
+  }
+  this->Events_.erase(
+      std::remove_if(this->Events_.begin() + std::ptrdiff_t(first), this->Events_.end(),
+                     [](const v1::FrameEvent& event) { return event.frame().empty(); }),
+      this->Events_.end());
+}
+
+void FrameEventLog::MoveTo(v1::Reply& reply) {
+  for (v1::FrameEvent& event : this->Events_) {
+    *reply.add_frame_event() = std::move(event);
+  }
+  this->Events_.clear();
+}
+
+FrameFollower::FrameFollower(std::shared_ptr<Scene> scene, FrameEventLog& log)
+    : Scene_(std::move(scene)),
+      Token_(Scene_->Frames().AddListener(
+          [name = Scene_->Name(), &log](const FrameEvent& event) { log.Add(name, event); })) {}
+
+FrameFollower::~FrameFollower() {
+  this->Scene_->Frames().RemoveListener(this->Token_);
+}
+
+} // namespace dspace::session
