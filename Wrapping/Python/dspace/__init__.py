@@ -21,6 +21,7 @@ _HOMES = {
     "AlreadyExists": "errors", "Unsupported": "errors", "Corrupt": "errors", "Io": "errors",
     "Resource": "errors", "DeadlineExceeded": "errors", "Internal": "errors",
     "DspaceWarning": "errors",
+    "FrameEvent": "events",
     "Fragment": "fragments", "Light": "fragments",
     "Frame": "frames",
     "GraphicsObject": "objects", "Primitive": "objects", "Text": "objects", "TiltMarker": "objects",

@@ -4,7 +4,10 @@ import warnings
 
 from dspace import vtk as _vtk
 from dspace.errors import KINDS, DspaceWarning, Internal
+from dspace.events import FrameListeners
 from dspace.session import commands_pb2 as pb
+
+DEFAULT_SCENE = "scene"  # what a command means that names no scene
 
 
 def make_error(error):
@@ -27,6 +30,7 @@ class LocalClient:
 
     def __init__(self):
         self.vtk = _vtk.vtkDspaceSession()
+        self.frame_listeners = FrameListeners()
 
     def local(self):
         """The vtkDspaceSession; raises when it is closed."""
@@ -35,15 +39,24 @@ class LocalClient:
         return self.vtk
 
     def execute(self, command):
-        """The Reply to a Command; raises what its error says."""
+        """The Reply to a Command; raises what its error says, or, with the change made, what a
+        callback raised that heard of it."""
         answer = self.local().Execute(command.SerializeToString())
         # VTK makes a str of bytes that happen to be UTF-8.
         reply = pb.Reply.FromString(answer.encode() if isinstance(answer, str) else answer)
         if reply.HasField("error"):
             raise make_error(reply.error)
-        for warning in reply.warning:
-            _warn(warning)
+        listeners = self.frame_listeners
+        if listeners and command.HasField("remove_scene"):
+            listeners.forget_scene(command.scene or DEFAULT_SCENE)
+        listeners.put(reply.frame_event)
+        try:
+            for warning in reply.warning:
+                _warn(warning)
+        finally:  # a warning may be turned into an exception
+            listeners.deliver()
         return reply
 
     def close(self):
         self.vtk = None
+        self.frame_listeners.clear()

@@ -149,10 +149,37 @@ class Scene:
             command.get_poses.relative_to = self._frame_id(relative_to)
         return _wire.get_array(self._execute(command).poses, "pose").reshape(-1, 8)
 
+    def on_frame_change(self, callback):
+        """Calls `callback` with a FrameEvent for every later change of the frames; returns a token
+        for remove_listener.
+
+        The tree itself tells of its changes, whatever causes them: frames made, moved and removed,
+        robots loaded, joints set. Callbacks run in the thread that gave the command, when it has
+        succeeded, in the order in which they were added. They may give commands: those take effect
+        at once, and their events follow when the present one has reached everybody. When a callback
+        raises, the change stays made and the others are called; the first exception is then raised
+        to whoever gave the command. What C++ code changes on the scene itself comes with the next
+        command, and commands given to `session.vtk` keep their events in their own replies. A scene
+        that is removed and a session that is closed forget their listeners; without any, nothing is
+        noted."""
+        if not callable(callback):
+            raise TypeError(f"the callback is {callback!r}; accepted: a function of one FrameEvent")
+        self._do("follow_frames")
+        return self._client.frame_listeners.add(self, callback)
+
+    def remove_listener(self, token):
+        """Ends what on_frame_change began. False when there is no such listener (any more)."""
+        listeners = self._client.frame_listeners
+        if not listeners.remove(self, token):
+            return False
+        if not listeners.follows(self):
+            self._do("follow_frames", stop=True)
+        return True
+
     # --- Objects -------------------------------------------------------------------------------
 
     def load(self, path, frame=None, ornamental=False, scale=1.0, up="z", rotation=None,
-             levels=(), strict=False, **settings):
+             levels=(), strict=False, point_cloud=False, **settings):
         """A model file (glTF, GLB, VRML, OBJ, STL, PLY) as a GraphicsObject, or a URDF as a Robot.
 
         scale: metres a unit of the file. up: the file's axis that becomes Z ("z", "y", "x", "-z");
@@ -160,6 +187,7 @@ class Scene:
         each drawn while the object is seen larger than `pixels`; the last one should have 0, and
         `path` then needs its own number: (path, pixels) too.
         strict: a missing texture or mesh raises; else it is a warning (and, in a URDF, a stand-in).
+        point_cloud: a file of points is shown, `point_size` pixels large; else no faces, no object.
         A URDF takes position, quaternion, name, fragment, and `pose` of its base frame only."""
         if up not in UP:
             raise ValueError(f"up is {up!r}; accepted: {', '.join(UP)}")
@@ -178,6 +206,7 @@ class Scene:
             q = message.rotation
             q.w, q.x, q.y, q.z = (float(v) for v in rotation)
         message.strict = strict
+        message.point_cloud = point_cloud
         return GraphicsObject(self, self._execute(command).object.object)
 
     def _load_robot(self, path, frame, ornamental, strict, scale, up, rotation, name=None,
