@@ -159,14 +159,16 @@ def test_listeners_come_and_go_while_they_are_called(scene):
 
     def once(event):
         calls.append("once")
+        event.frames[0].name = "b"
         scene.remove_listener(tokens[0])
         scene.remove_listener(tokens[1])
         scene.on_frame_change(added)
 
     tokens = [scene.on_frame_change(once), scene.on_frame_change(lambda event: calls.append("no"))]
     a = scene.add_frame("a")
-    assert calls == ["once"] and added == []  # the event is older than the listener
-    a.name = "b"
+    assert a.name == "b" and calls == ["once"]
+    assert added == []  # both events are older than the listener
+    a.name = "c"
     assert calls == ["once"] and added == [("renamed", [a.id])]
 
 
