@@ -234,6 +234,17 @@ TEST_F(Raster, RefusesAWrongPlace) {
   EXPECT_THROW(GridTerrain::Load(this->Folder / "a.tif", options), Error);
 }
 
+TEST_F(Raster, RefusesHeightsThatNothingHas) {
+  RasterFile file = this->File();
+  const auto value = file.value;
+  file.value = [value](int c, int r, int b) { return c == 3 && r == 2 ? 1e30 : value(c, r, b); };
+  const std::string path = file.Write(this->Folder / "high.tif");
+  this->Refused(path, Error::Kind::InvalidArgument, "high.tif");
+  this->Refused(path, Error::Kind::InvalidArgument, "column 3, row 2 has the height");
+  file.noData = 1e30; // where the file says what it means, it is a hole
+  EXPECT_NO_THROW(GridTerrain::Load(file.Write(this->Folder / "hole.tif")));
+}
+
 TEST_F(Raster, WritesNothingBesideTheFile) {
   const std::string path = this->File().Write(this->Folder / "only.tif");
   GridTerrain::Load(path);

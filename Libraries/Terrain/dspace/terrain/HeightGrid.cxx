@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include <dspace/Error.h>
@@ -11,6 +12,14 @@ namespace dspace {
 namespace {
 
 constexpr double BorderTolerance = 1e-9; // cells; what conversions to grid coordinates round off
+constexpr double MaximumHeight = 1e9;    // [m] more than the Sun's radius, were heights radii
+constexpr double MaximumExtent = 1e15;   // [m]
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
 
 } // namespace
 
@@ -27,10 +36,17 @@ HeightGrid::HeightGrid(const std::string& name, int columns, int rows, std::vect
                     std::to_string(columns) + " x " + std::to_string(rows) + " posts");
   this->Minimum_ = std::numeric_limits<double>::infinity();
   this->Maximum_ = -this->Minimum_;
-  for (double h : this->Heights_) {
+  for (std::size_t i = 0; i < this->Heights_.size(); ++i) {
+    const double h = this->Heights_[i];
     if (std::isinf(h))
       throw Error(Error::Kind::InvalidArgument, name,
                   "a height is infinite; accepted are finite ones, and NaN for no data");
+    if (std::abs(h) > MaximumHeight)
+      throw Error(Error::Kind::InvalidArgument, name,
+                  "the post of column " + std::to_string(i % columns) + ", row " +
+                      std::to_string(i / columns) + " has the height " + Number(h) +
+                      " m; accepted are -1e9 to 1e9 m; if the value marks posts without data, the "
+                      "file must say so");
     if (std::isnan(h)) {
       ++this->Holes_;
     } else {
@@ -46,6 +62,14 @@ HeightGrid::HeightGrid(const std::string& name, int columns, int rows, std::vect
   if (!m.allFinite() || !gridToScene.translation().allFinite() ||
       !(std::abs(det) > 1e-9 * m.col(0).norm() * m.col(1).norm()))
     throw Error(Error::Kind::InvalidArgument, name, "the grid's cells span no area in the scene");
+  for (const double c : {0.0, columns - 1.0})
+    for (const double r : {0.0, rows - 1.0}) {
+      const Eigen::Vector2d corner = gridToScene * Eigen::Vector2d(c, r);
+      if (!(corner.cwiseAbs().maxCoeff() <= MaximumExtent))
+        throw Error(Error::Kind::InvalidArgument, name,
+                    "a corner is at (" + Number(corner.x()) + ", " + Number(corner.y()) +
+                        ") m from the scene's origin; accepted are places within 1e15 m");
+    }
   this->SceneToGrid_ = gridToScene.inverse();
 }
 

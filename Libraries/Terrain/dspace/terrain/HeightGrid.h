@@ -33,8 +33,8 @@ public:
   };
 
   // `gridToScene` takes (c, r) to scene (x, y) [m]. `name` is for messages. Throws
-  // Error(InvalidArgument) for fewer than 2 x 2 posts, a count that does not match, an infinite
-  // height, no post with data, or a map that is not invertible.
+  // Error(InvalidArgument) for fewer than 2 x 2 posts, a count that does not match, a height
+  // beyond 1e9 m, no post with data, or a map that is not invertible or leaves 1e15 m.
   HeightGrid(const std::string& name, int columns, int rows, std::vector<double> heights,
              const Eigen::Affine2d& gridToScene);
 

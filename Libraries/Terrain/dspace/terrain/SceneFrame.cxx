@@ -10,6 +10,9 @@ SceneFrame::SceneFrame(const Crs& crs, const Eigen::Vector2d& origin, double ori
     : Origin_(origin), OriginHeight_(originHeight) {
   if (!origin.allFinite() || !std::isfinite(originHeight))
     throw Error(Error::Kind::InvalidArgument, "scene origin", "its coordinates must be finite");
+  if (std::abs(originHeight) > 1e9)
+    throw Error(Error::Kind::InvalidArgument, "scene origin",
+                "its height is " + std::to_string(originHeight) + " m; accepted is -1e9 to 1e9 m");
   Eigen::Vector2d metres(crs.GetUnit(), crs.GetUnit());
   if (crs.GetKind() == Crs::Kind::Geographic) {
     const double latitude_deg = origin.y() * crs.GetUnit();
