@@ -183,10 +183,16 @@ TEST(Projection, RefusesWhatCannotBeProjected) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Projection p;
   EXPECT_NO_THROW(p.Check("left eye"));
-  for (const double fov : {0.0, -1.0, 180.0, nan}) {
+  for (const double fov : {0.0, -1.0, 180.0, 1e-300, nan}) {
     p.verticalFov_deg = fov;
     refused(p, "fov");
   }
+  // Finite, and beyond what a float of the GPU holds.
+  refused(Perspective(1e300, Infinity), "near distance is 1e+300; accepted: 1e-9 to 1e18 metres");
+  refused(Perspective(1e-300, 1.0), "near");
+  refused(Perspective(1.0, 1e300), "far distance is 1e+300; accepted: up to 1e18 metres");
+  EXPECT_NO_THROW(Perspective(1e-9, 1e18).Check("left eye"));
+  EXPECT_TRUE(Perspective(1e-9, 1e18).ClipFromView(4, 3).cast<float>().allFinite());
   refused(Perspective(0.0, 1.0), "near");
   refused(Perspective(nan, 1.0), "near");
   refused(Perspective(2.0, 2.0), "far");
@@ -197,10 +203,15 @@ TEST(Projection, RefusesWhatCannotBeProjected) {
   p.farDistance = Infinity;
   refused(p, "far");
   p = Orthographic();
-  for (const double height : {0.0, -2.0, Infinity, nan}) {
+  for (const double height : {0.0, -2.0, 1e300, 1e-300, Infinity, nan}) {
     p.height = height;
     refused(p, "height");
   }
+  p = Orthographic();
+  p.nearDistance = -1e300;
+  refused(p, "near");
+  p.nearDistance = p.farDistance - 1e-10;
+  refused(p, "far");
   p = OffAxis();
   EXPECT_NO_THROW(p.Check("left eye"));
   p.right = p.left;
@@ -210,6 +221,9 @@ TEST(Projection, RefusesWhatCannotBeProjected) {
   refused(p, "top");
   p.top = nan;
   refused(p, "top");
+  p = OffAxis();
+  p.right = 1e300;
+  refused(p, "right is 1e+300; accepted: -1e6 to 1e6");
   EXPECT_REFUSED(OffAxis().ClipFromView(0, 10), "0 x 10");
   EXPECT_REFUSED(OffAxis().Project({0, 0, 1}, 10, -1), "10 x -1");
   EXPECT_REFUSED(Orthographic().MetresPerPixel(1.0, 0), "0");
@@ -418,6 +432,9 @@ TEST(Mount, Refusals) {
   mount.smoothing_s = std::nan("");
   EXPECT_REFUSED(mount.Check("c"), "smoothing");
   mount.smoothing_s = 1.0;
+  mount.target.x() = 1e300;
+  EXPECT_REFUSED(mount.Check("c"), "target is (1e+300, 0, 0); accepted: within 1e18 metres");
+  EXPECT_REFUSED(dspace::LookAt("c", {0, 1e300, 0}, {0, 0, 0}, {0, 0, 1}), "eye");
   mount.target = mount.offset;
   EXPECT_REFUSED(mount.Check("c"), "target");
   mount.target = mount.offset + Vector3d(0, 0, 3);

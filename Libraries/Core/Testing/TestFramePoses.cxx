@@ -212,6 +212,18 @@ TEST(FramePoses, DoNotFeelAnAncestorsAstronomicalUnit) {
   EXPECT_NE(detour.position, tree.RelativePose(camera, wheel).position);
 }
 
+TEST(FramePoses, HoldLightYearsAndNanometres) {
+  FrameTree tree;
+  Pose X = Shift(1e18);
+  X.scale = 1e-12;
+  const FrameId a = tree.Create(RootFrame, "a", X);
+  X.position.x() = -1e18;
+  X.scale = 1e12;
+  const FrameId b = tree.Create(a, "b", X);
+  EXPECT_EQ(tree.WorldPose(b).position.x(), 1e18 - 1e6);
+  EXPECT_DOUBLE_EQ(tree.WorldPose(b).scale, 1.0);
+}
+
 TEST(FramePoses, AreRefusedWhenInvalid) {
   FrameTree tree;
   const FrameId a = tree.Create(RootFrame, "a", Shift(1));
@@ -233,7 +245,12 @@ TEST(FramePoses, AreRefusedWhenInvalid) {
                         {3, 0.0, "norm 0"},
                         {5, 0.5, "0.5"},
                         {6, 1e300, "1e+300"},
+                        {0, 1e300, "1e+300"},
+                        {1, -1.000001e18, "within 1e18 m"},
                         {7, 0.0, "scale 0"},
+                        {7, 1e-300, "scale 1e-300"},
+                        {7, 0.999e-12, "from 1e-12 to 1e12"},
+                        {7, 1.001e12, "from 1e-12 to 1e12"},
                         {7, -1.0, "scale -1"},
                         {7, inf, "scale inf"},
                         {7, nan, "scale nan"}};

@@ -165,6 +165,13 @@ TEST_F(SceneTest, RefusesBadObjects) {
   refused(Invalid, "ornamental", [](GraphicsObject& o) { o.fragment = "ornamental"; });
   refused(Invalid, "offset", [](GraphicsObject& o) { o.X_FO(0, 3) = NaN; });
   refused(Invalid, "offset", [](GraphicsObject& o) { o.X_FO.linear().row(1).setZero(); });
+  refused(Invalid, "its offset is (1e+300, 0, 0)", [](GraphicsObject& o) { o.X_FO(0, 3) = 1e300; });
+  refused(Invalid, "scale of its offset is 1e-300; accepted: 1e-12 to 1e12",
+          [](GraphicsObject& o) { o.X_FO.linear() *= 1e-300; });
+  refused(Invalid, "scale of its offset is 1e+300",
+          [](GraphicsObject& o) { o.X_FO.linear() *= 1e300; });
+  refused(Invalid, "corner of its bounds",
+          [](GraphicsObject& o) { o.levels.at(0).parts.at(0).X_OP.linear() *= 1e19; });
   refused(Invalid, "line width", [](GraphicsObject& o) { o.lineWidth = 0; });
   refused(Invalid, "point size", [](GraphicsObject& o) { o.pointSize = NaN; });
   refused(Invalid, "opacity", [](GraphicsObject& o) { o.material.opacity = 1.5; });
@@ -252,6 +259,11 @@ TEST_F(SceneTest, RefusesBadLights) {
   refused(Invalid, "name", [](Light& l) { l.name = ""; });
   refused(NotFound, "frame 99", [](Light& l) { l.frame = 99; });
   refused(Invalid, "direction", [](Light& l) { l.direction.setZero(); });
+  refused(Invalid, "direction", [](Light& l) { l.direction *= 1e300; });
+  refused(Invalid, "direction", [](Light& l) { l.direction *= 1e-300; });
+  refused(Invalid, "intensity is 1e+300; accepted: 0 to 1e12",
+          [](Light& l) { l.intensity = 1e300; });
+  refused(Invalid, "position", [](Light& l) { l.position.y() = 1e300; });
   refused(Invalid, "direction", [](Light& l) { l.direction.x() = NaN; });
   refused(Invalid, "position", [](Light& l) { l.position.x() = NaN; });
   refused(Invalid, "cone", [](Light& l) { l.cone_deg = 90; });
@@ -424,6 +436,34 @@ TEST_F(SceneTest, ChaseLagDependsOnCommandsOnly) {
   }
   EXPECT_NEAR(p.x(), x, 1e-12);
   EXPECT_EQ(p.z(), 2.0);
+}
+
+TEST_F(SceneTest, ChaseLagBeginsWhenTheCameraIsSet) {
+  Camera chase = Fixed("chase", this->Rover);
+  chase.mount.kind = CameraMount::Kind::Chase;
+  chase.mount.axes = CameraMount::ChaseAxes::Parent;
+  chase.mount.offset = {-5, 0, 2};
+  chase.mount.smoothing_s = 2.0;
+  this->S.SetCamera("main", chase);
+  const auto place = [&] { return this->S.PlaceCamera("main", "chase").X_FC.position.x(); };
+  // A move before any time step: no time has passed, so the camera has not moved.
+  dspace::Pose X;
+  X.position = {10, 0, 0};
+  this->S.Frames().SetLocalPose(this->Rover, X);
+  EXPECT_EQ(place(), -5.0);
+  EXPECT_EQ(place(), -5.0);
+  // In its place at 5 it is 10 late, which decays by exp(-dt / tau), in one step or in several.
+  this->S.SetTime(0.5);
+  EXPECT_NEAR(place(), 5.0 - 10.0 * std::exp(-0.25), 1e-12);
+  this->S.SetTime(3.0);
+  EXPECT_NEAR(place(), 5.0 - 10.0 * std::exp(-1.5), 1e-12);
+  // Without smoothing it forgets where it was.
+  chase.mount.smoothing_s = 0.0;
+  this->S.SetCamera("main", chase);
+  EXPECT_EQ(place(), 5.0);
+  chase.mount.smoothing_s = 2.0;
+  this->S.SetCamera("main", chase);
+  EXPECT_EQ(place(), 5.0);
 }
 
 TEST_F(SceneTest, ChaseLagOutlivesAChangeOfLensNotOfFrame) {

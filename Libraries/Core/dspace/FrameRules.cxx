@@ -48,19 +48,23 @@ void RefuseFrameName(const std::string& object, const std::string& name) {
                   " is not accepted: it must not be empty nor hold '/' or control characters");
 }
 
+bool IsValidPosition(const Eigen::Vector3d& p) {
+  return (p.array().abs() <= MaximumCoordinate).all(); // false for NaN
+}
+
 bool IsValidPose(const Pose& X) {
-  return X.position.allFinite() && std::isfinite(X.scale) && X.scale > 0.0 &&
+  return IsValidPosition(X.position) && X.scale >= MinimumScale && X.scale <= MaximumScale &&
          std::abs(X.rotation.norm() - 1.0) <= UnitQuaternionTolerance; // false for NaN
 }
 
 void RefusePose(const std::string& object, const Pose& X) {
   std::string why;
   const Eigen::Quaterniond& q = X.rotation;
-  if (!X.position.allFinite()) {
+  if (!IsValidPosition(X.position)) {
     why = "position (" + Number(X.position.x()) + ", " + Number(X.position.y()) + ", " +
-          Number(X.position.z()) + ") must be finite";
-  } else if (!(std::isfinite(X.scale) && X.scale > 0.0)) {
-    why = "scale " + Number(X.scale) + " must be finite and greater than 0";
+          Number(X.position.z()) + ") must be finite and within 1e18 m on each axis";
+  } else if (!(X.scale >= MinimumScale && X.scale <= MaximumScale)) {
+    why = "scale " + Number(X.scale) + " must be from 1e-12 to 1e12";
   } else {
     why = "quaternion (w " + Number(q.w()) + ", x " + Number(q.x()) + ", y " + Number(q.y()) +
           ", z " + Number(q.z()) + ") has norm " + Number(q.norm()) +

@@ -11,13 +11,23 @@ namespace dspace {
 // How far a quaternion's norm may be from 1.
 constexpr double UnitQuaternionTolerance = 1e-6;
 
+// Positions are within 1e18 m (106 light-years) on each axis, so that squares of what reaches the
+// GPU stay inside a float; scales are 1e-12 to 1e12.
+constexpr double MaximumCoordinate = 1e18;
+constexpr double MinimumScale = 1e-12;
+constexpr double MaximumScale = 1e12;
+
 // Not empty, holds no '/' and no control character (a byte below 32, or 127).
 bool IsValidFrameName(const std::string& name);
 
 // Throws Error(InvalidArgument) naming `object` and the name.
 [[noreturn]] void RefuseFrameName(const std::string& object, const std::string& name);
 
-// Position and scale finite, scale > 0, quaternion unit within UnitQuaternionTolerance.
+// Within MaximumCoordinate on each axis; false for NaN.
+bool IsValidPosition(const Eigen::Vector3d& p);
+
+// Position valid, scale in [MinimumScale, MaximumScale], quaternion unit within
+// UnitQuaternionTolerance.
 bool IsValidPose(const Pose& X);
 
 // Throws Error(InvalidArgument) naming `object` and the value that makes X invalid.

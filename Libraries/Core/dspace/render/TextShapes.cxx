@@ -11,6 +11,8 @@
 #include "vtkVectorText.h"
 
 #include <dspace/Error.h>
+#include <dspace/scene/MeshBuilder.h>
+#include <dspace/scene/TextLimits.h>
 
 namespace dspace {
 namespace {
@@ -20,16 +22,14 @@ void RequireText(const std::string& text) {
     throw Error(Error::Kind::InvalidArgument, "text",
                 "is empty; at least one visible character is needed");
   }
+  RequireTextLength("text '" + text.substr(0, 40) + "...'", "it", text);
 }
 
 } // namespace
 
 Mesh MakeTextMesh(const std::string& text, double height) {
   RequireText(text);
-  if (!(height > 0.0 && height < 1e12)) {
-    throw Error(Error::Kind::InvalidArgument, "text '" + text + "'",
-                "height " + std::to_string(height) + " m is refused; positive metres are accepted");
-  }
+  RequireLength("text '" + text + "'", "height", height);
   for (const char letter : text) { // the font's outlines end with ASCII; others would be left out
     if (letter != '\n' && (letter < ' ' || letter > '~')) {
       throw Error(Error::Kind::InvalidArgument, "text '" + text + "'",
@@ -75,6 +75,10 @@ Part MakeLabel(const std::string& text, const LabelStyle& style) {
   look->SetColor(style.color[0], style.color[1], style.color[2]);
   look->SetBackgroundColor(style.background[0], style.background[1], style.background[2]);
   look->SetBackgroundOpacity(style.backgroundOpacity);
+  int box[4] = {0, -1, 0, -1};
+  vtkTextRenderer::GetInstance()->GetBoundingBox(look, vtkStdString(text), box, 72,
+                                                 vtkTextRenderer::FreeType);
+  RequireTextPicture("label '" + text + "'", box[1] - box[0] + 1.0, box[3] - box[2] + 1.0);
   vtkNew<vtkImageData> picture;
   int size[2] = {0, 0};
   // 72 dots an inch: font sizes are pixels. (vtkFreeTypeTools itself leaves out what is not ASCII.)

@@ -6,18 +6,13 @@
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
 
+#include <dspace/scene/TextLimits.h>
+
 namespace dspace {
 namespace {
 
-// Characters, not bytes, of UTF-8.
-std::size_t Length(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }));
-}
-
 std::string Padded(const std::string& text, std::size_t width, bool right) {
-  const std::string blanks(width - Length(text), ' ');
+  const std::string blanks(width - CharacterCount(text), ' ');
   return right ? blanks + text : text + blanks;
 }
 
@@ -25,10 +20,10 @@ std::string TextOf(const TextTable& table) {
   std::size_t label = 0;
   std::size_t value = 0;
   for (const auto& row : table.rows) {
-    label = std::max(label, Length(row.first));
-    value = std::max(value, Length(row.second));
+    label = std::max(label, CharacterCount(row.first));
+    value = std::max(value, CharacterCount(row.second));
   }
-  const std::size_t line = std::max(label + 2 + value, Length(table.title));
+  const std::size_t line = std::max(label + 2 + value, CharacterCount(table.title));
   std::string text;
   if (!table.title.empty()) {
     text = " " + Padded(table.title, line, false) + " ";

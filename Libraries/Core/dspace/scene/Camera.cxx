@@ -74,8 +74,8 @@ void CameraMount::Check(const std::string& camera) const {
     Require(this->X_FC.scale == 1.0, object, "scale", this->X_FC.scale, "1");
     return;
   }
-  RequireFinite(object, "offset", this->offset);
-  RequireFinite(object, "target", this->target);
+  RequirePosition(object, "offset", this->offset);
+  RequirePosition(object, "target", this->target);
   RequireFinite(object, "up", this->up);
   Require(this->smoothing_s >= 0.0 && std::isfinite(this->smoothing_s), object, "smoothing",
           this->smoothing_s, "0 seconds and more");
@@ -101,8 +101,8 @@ void CameraMount::Check(const std::string& camera) const {
 Pose LookAt(const std::string& camera, const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
             const Eigen::Vector3d& up) {
   const std::string object = "camera '" + camera + "'";
-  RequireFinite(object, "eye", eye);
-  RequireFinite(object, "target", target);
+  RequirePosition(object, "eye", eye);
+  RequirePosition(object, "target", target);
   RequireFinite(object, "up", up);
   if (eye == target) {
     Refuse(object,

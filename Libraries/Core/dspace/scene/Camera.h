@@ -18,14 +18,14 @@ namespace dspace {
 struct Projection {
   enum class Kind { Perspective, Orthographic, Frustum };
   Kind kind = Kind::Perspective;
-  double verticalFov_deg = 45.0; // Perspective: full angle top to bottom, in (0, 180)
-  double height = 10.0;          // Orthographic: metres from top to bottom, > 0
+  double verticalFov_deg = 45.0; // Perspective: full angle top to bottom, 1e-6 to 180 - 1e-6
+  double height = 10.0;          // Orthographic: metres from top to bottom, 1e-9 to 1e18
   // Frustum (off-axis): tangents of the half angles, right and bottom positive along X and Y;
-  // left < right, top < bottom.
+  // left < right, top < bottom, by 1e-9 and more; up to 1e6.
   double left = -0.5, right = 0.5, top = -0.5, bottom = 0.5;
-  double nearDistance = 0.05; // metres along Z, > 0 (any finite value for Orthographic)
-  double farDistance = std::numeric_limits<double>::infinity(); // > nearDistance; finite for
-                                                                // Orthographic
+  double nearDistance = 0.05; // metres along Z, 1e-9 to 1e18 (-1e18 to 1e18 for Orthographic)
+  // > nearDistance, up to 1e18 or (but for Orthographic) infinite.
+  double farDistance = std::numeric_limits<double>::infinity();
   // Throws Error(InvalidArgument) naming `camera` and the value (fov, height, near >= far, ...).
   void Check(const std::string& camera) const;
 

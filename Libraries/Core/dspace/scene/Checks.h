@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <dspace/Error.h>
+#include <dspace/FrameRules.h>
 
 namespace dspace {
 
@@ -41,6 +42,13 @@ inline void RequireFinite(const std::string& object, const char* what, double va
 inline void RequireFinite(const std::string& object, const char* what, const Eigen::Vector3d& v) {
   if (!v.allFinite()) {
     Refuse(object, std::string(what) + " is " + VectorText(v) + "; accepted: finite numbers");
+  }
+}
+
+inline void RequirePosition(const std::string& object, const char* what, const Eigen::Vector3d& p) {
+  if (!IsValidPosition(p)) {
+    Refuse(object, std::string(what) + " is " + VectorText(p) +
+                       "; accepted: within 1e18 metres on each axis");
   }
 }
 

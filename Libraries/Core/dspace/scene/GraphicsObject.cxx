@@ -140,7 +140,8 @@ std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scal
     Refuse("model", "there is none; accepted: what ReadModel returns");
   }
   const std::string object = "file '" + model->path + "'";
-  Require(scale != 0.0 && std::isfinite(scale), object, "scale", scale, "finite and not 0");
+  Require(std::abs(scale) >= MinimumScale && std::abs(scale) <= MaximumScale, object, "scale",
+          scale, "1e-12 to 1e12, or the negative of it");
   Pose turn;
   turn.rotation = rotation;
   if (!IsValidPose(turn)) {

@@ -68,9 +68,10 @@ struct GraphicsObject {
   std::string name; // unique in the scene
   FrameId frame = 1;
   Nature nature = Nature::Physical;
-  std::string fragment;                               // of the same nature
-  Eigen::Affine3d X_FO = Eigen::Affine3d::Identity(); // any affine map with a non-zero determinant
-  std::vector<DetailLevel> levels;                    // finest first, minimumPixels descending
+  std::string fragment; // of the same nature
+  Eigen::Affine3d X_FO =
+      Eigen::Affine3d::Identity(); // within 1e18 m; axes stretched by 1e-12 to 1e12
+  std::vector<DetailLevel> levels; // finest first, minimumPixels descending
   MaterialOverride material;
   bool visible = true;
   bool pickable = true;
@@ -91,8 +92,8 @@ int LevelFor(const std::vector<DetailLevel>& levels, double pixels);
 
 // The parts of an imported model, sharing its meshes: `model` is kept alive by them.
 // `scale` multiplies coordinates; `rotation` turns the file's axes into the frame's.
-// Throws Error(InvalidArgument) naming the file: no model, scale zero or not finite, rotation not
-// unit within 1e-6.
+// Throws Error(InvalidArgument) naming the file: no model, a scale not of 1e-12 to 1e12 (or the
+// negative of it), rotation not unit within 1e-6.
 std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scale = 1.0,
                           const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity());
 

@@ -26,8 +26,8 @@ struct Light {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();    // [m]
   double cone_deg = 30.0;                                // Spot: half angle, in (0, 90)
   std::array<double, 3> color = {1, 1, 1};               // 0 to 1
-  double intensity = 1.0;                                // >= 0, multiplies the colour
-  std::array<double, 3> attenuation = {1, 0, 0};         // 1 / (a + b d + c d²), d in metres
+  double intensity = 1.0;                                // 0 to 1e12, multiplies the colour
+  std::array<double, 3> attenuation = {1, 0, 0}; // 1 / (a + b d + c d²), d in metres; 0 to 1e12
   bool enabled = true;
 };
 

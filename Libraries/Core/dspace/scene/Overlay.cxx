@@ -1,6 +1,6 @@
 #include <dspace/scene/Overlay.h>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/scene/TextLimits.h>
 
 namespace dspace {
 
@@ -10,6 +10,23 @@ void TextTable::Check() const {
   Require(this->margin >= 0, object, "margin", this->margin, "0 pixels and more");
   Require(this->fontSize >= 4 && this->fontSize <= 200, object, "font size", this->fontSize,
           "4 to 200 pixels");
+  if (2 * this->rows.size() > MaximumTableCells) {
+    Refuse(object, "it has " + std::to_string(2 * this->rows.size()) + " cells; accepted: up to " +
+                       std::to_string(MaximumTableCells));
+  }
+  RequireTextLength(object, "its title", this->title);
+  std::size_t label = 0;
+  std::size_t value = 0;
+  for (const auto& row : this->rows) {
+    RequireTextLength(object, "a label", row.first);
+    RequireTextLength(object, "a value", row.second);
+    label = std::max(label, CharacterCount(row.first));
+    value = std::max(value, CharacterCount(row.second));
+  }
+  // Courier: a letter is 0.6 of the font size wide, a line about 1.2 high.
+  const std::size_t line = std::max(label + value + 2, CharacterCount(this->title)) + 2;
+  RequireTextPicture(object, 0.6 * this->fontSize * double(line),
+                     1.2 * this->fontSize * double(this->rows.size() + 1));
   for (std::size_t i = 0; i < 4; ++i) {
     RequireFraction(object, "text colour", this->textColor[i]);
     RequireFraction(object, "background colour", this->backgroundColor[i]);

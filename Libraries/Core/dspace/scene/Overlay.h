@@ -13,9 +13,10 @@ namespace dspace {
 // picture holds them.
 struct TextTable {
   enum class Anchor { TopLeft, TopRight, BottomLeft, BottomRight };
-  std::string name;                                      // unique in the viewport
-  std::string title;                                     // UTF-8; empty: no title line
-  std::vector<std::pair<std::string, std::string>> rows; // label, value; UTF-8
+  std::string name; // unique in the viewport
+  // UTF-8, up to 4,096 characters a text and 1,000 cells; see TextLimits.h.
+  std::string title;                                     // empty: no title line
+  std::vector<std::pair<std::string, std::string>> rows; // label, value
   Anchor anchor = Anchor::TopLeft;
   int margin = 8;                                 // pixels from both edges of the corner, >= 0
   int fontSize = 14;                              // pixels, 4 to 200

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <dspace/FrameRules.h>
 #include <dspace/scene/Checks.h>
 
 namespace dspace {
@@ -9,6 +10,9 @@ namespace dspace {
 namespace {
 
 constexpr double RadiansPerDegree = 3.14159265358979323846 / 180.0;
+constexpr double Smallest = 1e-9; // metres, or a tangent
+constexpr double SmallestFov_deg = 1e-6;
+constexpr double LargestTangent = 1e6;
 
 void CheckSize(int width, int height) {
   if (width < 1 || height < 1) {
@@ -53,28 +57,40 @@ void Projection::Check(const std::string& camera) const {
   const std::string object = "camera '" + camera + "'";
   const bool orthographic = this->kind == Kind::Orthographic;
   if (this->kind == Kind::Perspective) {
-    Require(this->verticalFov_deg > 0.0 && this->verticalFov_deg < 180.0, object, "vertical fov",
-            this->verticalFov_deg, "between 0 and 180 degrees");
+    Require(this->verticalFov_deg >= SmallestFov_deg &&
+                this->verticalFov_deg <= 180.0 - SmallestFov_deg,
+            object, "vertical fov", this->verticalFov_deg, "1e-6 to 180 - 1e-6 degrees");
   } else if (orthographic) {
-    Require(this->height > 0.0 && std::isfinite(this->height), object, "height", this->height,
-            "a positive number of metres");
+    Require(this->height >= Smallest && this->height <= MaximumCoordinate, object, "height",
+            this->height, "1e-9 to 1e18 metres");
   } else {
-    RequireFinite(object, "left", this->left);
-    RequireFinite(object, "right", this->right);
-    RequireFinite(object, "top", this->top);
-    RequireFinite(object, "bottom", this->bottom);
-    Require(this->left < this->right, object, "left", this->left,
-            ("less than right (" + NumberText(this->right) + ")").c_str());
-    Require(this->top < this->bottom, object, "top", this->top,
-            ("less than bottom (" + NumberText(this->bottom) + ")").c_str());
+    const auto tangent = [&object](const char* side, double value) {
+      Require(std::abs(value) <= LargestTangent, object, side, value, "-1e6 to 1e6");
+    };
+    tangent("left", this->left);
+    tangent("right", this->right);
+    tangent("top", this->top);
+    tangent("bottom", this->bottom);
+    Require(this->right - this->left >= Smallest, object, "left", this->left,
+            ("less than right (" + NumberText(this->right) + ") by 1e-9 and more").c_str());
+    Require(this->bottom - this->top >= Smallest, object, "top", this->top,
+            ("less than bottom (" + NumberText(this->bottom) + ") by 1e-9 and more").c_str());
   }
-  RequireFinite(object, "near distance", this->nearDistance);
-  Require(orthographic || this->nearDistance > 0.0, object, "near distance", this->nearDistance,
-          "a positive number of metres");
+  Require(this->nearDistance >= (orthographic ? -MaximumCoordinate : Smallest) &&
+              this->nearDistance <= MaximumCoordinate,
+          object, "near distance", this->nearDistance,
+          orthographic ? "-1e18 to 1e18 metres" : "1e-9 to 1e18 metres");
   Require(this->farDistance > this->nearDistance, object, "far distance", this->farDistance,
           ("more than near (" + NumberText(this->nearDistance) + ")").c_str());
-  Require(!orthographic || std::isfinite(this->farDistance), object, "far distance",
-          this->farDistance, "a finite number of metres for an orthographic camera");
+  if (orthographic) {
+    Require(this->farDistance - this->nearDistance >= Smallest &&
+                this->farDistance <= MaximumCoordinate,
+            object, "far distance", this->farDistance,
+            "1e-9 metres and more beyond near, up to 1e18 metres, for an orthographic camera");
+  } else {
+    Require(this->farDistance <= MaximumCoordinate || std::isinf(this->farDistance), object,
+            "far distance", this->farDistance, "up to 1e18 metres, or infinite");
+  }
 }
 
 Eigen::Matrix4d Projection::ClipFromView(int width, int height) const {

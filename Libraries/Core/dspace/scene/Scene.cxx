@@ -21,7 +21,13 @@ const char* NatureText(Nature nature) {
 }
 
 void CheckOffset(const std::string& object, const Eigen::Affine3d& X_FO) {
-  const double det = X_FO.matrix().allFinite() ? X_FO.linear().determinant() : 0.0;
+  RequirePosition(object, "its offset", X_FO.translation());
+  for (int i = 0; i < 3; ++i) {
+    const double stretch = X_FO.linear().col(i).stableNorm();
+    Require(stretch >= MinimumScale && stretch <= MaximumScale, object, "the scale of its offset",
+            stretch, "1e-12 to 1e12");
+  }
+  const double det = X_FO.linear().determinant();
   if (!std::isnormal(det)) {
     Refuse(object, "its offset is not finite or flattens it; accepted: an affine map with an "
                    "inverse");
@@ -109,6 +115,10 @@ void Scene::CheckLevels(const std::string& object, std::vector<DetailLevel>& lev
   }
   for (DetailLevel& level : levels) {
     level.box = BoxOf(level);
+    if (!level.box.isEmpty()) {
+      RequirePosition(object, "a corner of its bounds", level.box.min());
+      RequirePosition(object, "a corner of its bounds", level.box.max());
+    }
     level.sphere = BoundsOf(level);
   }
 }

@@ -19,25 +19,26 @@ template<class Named> auto FindNamed(std::vector<Named>& all, const std::string&
 void CheckLight(const Light& light) {
   RequireName("light", light.name);
   const std::string object = "light '" + light.name + "'";
-  RequireFinite(object, "direction", light.direction);
-  RequireFinite(object, "position", light.position);
+  RequirePosition(object, "direction", light.direction);
+  RequirePosition(object, "position", light.position);
   const bool directed = light.kind == Light::Kind::Directional || light.kind == Light::Kind::Spot;
-  if (directed && light.direction.isZero(0.0)) {
-    Refuse(object, "its direction is (0, 0, 0); accepted: any other");
+  if (directed && light.direction.norm() < 1e-12) {
+    Refuse(object, "its direction is " + VectorText(light.direction) +
+                       "; accepted: any of length 1e-12 and more");
   }
   Require(light.cone_deg > 0.0 && light.cone_deg < 90.0, object, "cone", light.cone_deg,
           "between 0 and 90 degrees");
   for (const double c : light.color) {
     RequireFraction(object, "colour", c);
   }
-  Require(light.intensity >= 0.0 && std::isfinite(light.intensity), object, "intensity",
-          light.intensity, "0 and more");
+  Require(light.intensity >= 0.0 && light.intensity <= 1e12, object, "intensity", light.intensity,
+          "0 to 1e12");
   double sum = 0.0;
   for (const double a : light.attenuation) {
-    Require(a >= 0.0 && std::isfinite(a), object, "attenuation", a, "0 and more");
+    Require(a >= 0.0 && a <= 1e12, object, "attenuation", a, "0 to 1e12");
     sum += a;
   }
-  Require(sum > 0.0, object, "sum of its attenuation", sum, "more than 0");
+  Require(sum >= 1e-12, object, "sum of its attenuation", sum, "1e-12 and more");
 }
 
 } // namespace

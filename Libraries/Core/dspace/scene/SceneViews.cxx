@@ -135,8 +135,14 @@ void Scene::SetCamera(const std::string& vantage, const Camera& camera) {
   const bool isNew = std::find(names.begin(), names.end(), camera.name) == names.end();
   const CameraMount old = isNew ? CameraMount() : views.GetCamera(camera.name).mount;
   views.SetCamera(camera);
-  if (isNew || !FollowsTheSame(old, camera.mount)) {
-    this->Lags_.erase({vantage, camera.name});
+  const std::pair<std::string, std::string> key(vantage, camera.name);
+  if (isNew || !FollowsTheSame(old, camera.mount) || camera.mount.smoothing_s == 0.0) {
+    this->Lags_.erase(key);
+  }
+  // In place from now on: what moves before the next time step is lagged behind like all else.
+  if (camera.mount.kind == CameraMount::Kind::Chase && camera.mount.smoothing_s > 0.0 &&
+      this->Lags_.count(key) == 0) {
+    dspace::PlaceCamera(camera, this->Frames_, this->Time_, this->Lags_[key]);
   }
   ++this->Revision_;
 }

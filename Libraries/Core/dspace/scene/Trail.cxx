@@ -16,7 +16,7 @@ Trail::Trail(std::size_t capacity, double minimumSpacing, bool fade)
 }
 
 bool Trail::Add(const Eigen::Vector3d& p_F) {
-  RequireFinite("trail", "position", p_F);
+  RequirePosition("trail", "position", p_F);
   this->End_ = p_F;
   this->EndKept_ =
       this->Size_ == 0 || (p_F - this->Position(this->Size_ - 1)).norm() >= this->MinimumSpacing_;
@@ -46,7 +46,7 @@ const Eigen::Vector3d& Trail::Position(std::size_t i) const {
 }
 
 Mesh Trail::LineMesh(const Eigen::Vector3d& origin_F) const {
-  RequireFinite("trail", "origin", origin_F);
+  RequirePosition("trail", "origin", origin_F);
   const std::size_t n = this->Size_ + (this->EndKept_ ? 0 : 1);
   Mesh mesh;
   mesh.name = "trail";

@@ -22,7 +22,7 @@ public:
   // Throws Error(InvalidArgument) naming the trail and the value.
   Trail(std::size_t capacity, double minimumSpacing, bool fade = false);
 
-  // Returns whether the position was kept. Throws Error(InvalidArgument) when it is not finite.
+  // Returns whether the position was kept. Throws Error(InvalidArgument) beyond 1e18 m.
   bool Add(const Eigen::Vector3d& p_F);
   void Clear();
 

@@ -43,10 +43,10 @@ Eigen::Affine3d ToAffine(const v1::Offset& offset, const std::string& object) {
   const Eigen::Vector3d position = ToVector(offset.position());
   const Eigen::Vector3d scale =
       offset.has_scale() ? ToVector(offset.scale()) : Eigen::Vector3d::Ones();
-  RequireFinite(object, "the position", position);
-  if (!scale.allFinite() || (scale.array() == 0.0).any()) {
-    Refuse(object,
-           "the scale is " + VectorText(scale) + "; accepted: finite numbers, none of them 0");
+  RequirePosition(object, "the position", position);
+  if (!((scale.array().abs() >= MinimumScale) && (scale.array().abs() <= MaximumScale)).all()) {
+    Refuse(object, "the scale is " + VectorText(scale) +
+                       "; accepted: 1e-12 to 1e12, or the negative of it, on each axis");
   }
   Eigen::Affine3d X = Eigen::Affine3d::Identity();
   X.linear() = scale.asDiagonal();

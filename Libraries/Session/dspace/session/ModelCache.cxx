@@ -30,7 +30,8 @@ template<class T> void DropExpired(std::map<std::string, std::weak_ptr<const T>>
 std::shared_ptr<const Model> ModelCache::LoadModel(const std::string& path,
                                                    const ImportOptions& options) {
   const std::string key = FileKey(path) + "\n" + std::to_string(options.strict) + "\n" +
-                          std::to_string(options.maximumTriangles);
+                          std::to_string(options.maximumTriangles) + "\n" +
+                          std::to_string(options.pointCloud);
   const auto found = this->Models_.find(key);
   if (found != this->Models_.end()) {
     if (auto model = found->second.lock()) {

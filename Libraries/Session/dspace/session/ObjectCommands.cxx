@@ -26,6 +26,7 @@ DetailLevel LoadLevel(const Context& context, v1::ImportObject& command,
   const double scale = command.has_scale() ? command.scale() : 1.0;
   ImportOptions options;
   options.strict = command.strict();
+  options.pointCloud = command.point_cloud();
   const std::shared_ptr<const Model> model = context.state.models.LoadModel(level.path(), options);
   for (const std::string& warning : model->warnings) {
     context.reply.add_warning(warning);
@@ -43,7 +44,8 @@ void ImportObject(const Context& context, v1::ImportObject& command) {
   }
   const std::string file = "file '" + command.level(0).path() + "'";
   const double scale = command.has_scale() ? command.scale() : 1.0;
-  Require(std::isfinite(scale) && scale > 0, file, "the scale", scale, "a finite number above 0");
+  Require(scale >= MinimumScale && scale <= MaximumScale, file, "the scale", scale,
+          "1e-12 to 1e12");
   Eigen::Quaterniond rotation = RotationToZUp(command.up(), file);
   if (command.has_rotation()) {
     rotation = ToRotation(command.rotation(), file) * rotation;

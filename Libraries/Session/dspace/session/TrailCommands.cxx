@@ -39,8 +39,8 @@ void AppendTrail(const Context& context, v1::AppendTrail& command) {
   Trail& trail = FindTrail(context, command.object());
   const std::string label = ObjectLabel(context.TheScene(), command.object());
   const std::size_t n = RowsOf(command.point_size(), 3, label, "point");
-  for (const double value : command.point()) {
-    RequireFinite(label, "a coordinate", value);
+  for (std::size_t i = 0; i < n; ++i) {
+    RequirePosition(label, "a point", Eigen::Vector3d(command.point().data() + 3 * i));
   }
   for (std::size_t i = 0; i < n; ++i) {
     trail.Add(Eigen::Vector3d(command.point().data() + 3 * i));
