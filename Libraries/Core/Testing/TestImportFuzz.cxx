@@ -1,6 +1,7 @@
 // Every mutant of a good file ends in a dspace::Error or in a model that passes CheckModel: never
 // in a crash, a hang, another exception or too much memory. DSPACE_FUZZ_RUNS mutants a format
-// (300), from number DSPACE_FUZZ_FIRST (0); a failure names the format and the number.
+// (300), from number DSPACE_FUZZ_FIRST (0); with DSPACE_LONG 5,000 others (from 100,000). A failure
+// names the format and the number.
 #include "BinaryBytes.h"
 #include "FuzzMutator.h"
 #include "ImportTestSupport.h"
@@ -241,11 +242,13 @@ void Fuzz(const Format& format, int share = 1) {
   Progress& progress = *static_cast<Progress*>(shared);
   FuzzRange(format, -1, 0, progress);
   EXPECT_EQ(progress.models, 1) << "the seed itself is not read";
-  const int first = Number("DSPACE_FUZZ_FIRST", 0);
-  const int runs = Number("DSPACE_FUZZ_RUNS", 300) / share;
+  const char* given = std::getenv("DSPACE_LONG");
+  const bool isLong = given && *given;
+  const int first = Number("DSPACE_FUZZ_FIRST", isLong ? 100000 : 0);
+  const int runs = Number("DSPACE_FUZZ_RUNS", isLong ? 5000 : 300) / share;
   FuzzRange(format, first, first + runs, progress);
-  std::cout << "  " << format.name << ": " << progress.models << " models, " << progress.errors
-            << " errors\n";
+  std::cout << "  " << format.name << ": " << runs << " mutants from " << first << ", "
+            << progress.models << " models, " << progress.errors << " errors\n";
   if (runs >= 100) {
     // Mutants that all fail, or all pass, would test little.
     EXPECT_GT(progress.models, 1);
