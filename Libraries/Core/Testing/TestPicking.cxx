@@ -132,7 +132,9 @@ TEST_F(PickingTest, LeavesOutWhatIsHiddenOrNotToBePicked) {
   EXPECT_EQ(viewport->Pick(80, 50).object, markerId);
   EXPECT_EQ(labelAt({false, false, true, false, {}}), markerId);
   EXPECT_EQ(labelAt({false, false, true, true, {}}), back); // physical only
-  EXPECT_EQ(viewport->Pick(80, 50).object, markerId);       // the request was for one picture
+  CaptureRequest without{false, false, true, false, {"ornamental"}};
+  EXPECT_EQ(labelAt(without), back);
+  EXPECT_EQ(viewport->Pick(80, 50).object, markerId); // the requests were for one picture each
   viewport->SetOrnamentsVisible(false);
   EXPECT_EQ(viewport->Pick(80, 50).object, back);
   viewport->SetOrnamentsVisible(true);

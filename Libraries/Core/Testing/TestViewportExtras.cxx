@@ -87,11 +87,27 @@ TEST_F(ViewportExtrasTest, TheCornerShowsTheRootsAxesAndNothingElseChanges) {
   EXPECT_GT(pixel(24, 263)[2], pixel(24, 263)[0] + 40);
   EXPECT_GT(pixel(24, 263)[2], pixel(24, 263)[1] + 40);
 
+  CaptureRequest physical;
+  physical.physicalOnly = true;
+  EXPECT_EQ(viewport->GetCapture(physical).color, without.color);
+  EXPECT_EQ(viewport->GetCapture({}).color, with.color); // the request was for one picture
   viewport->SetOrnamentsVisible(false);
   EXPECT_EQ(viewport->GetCapture({}).color, without.color);
   viewport->SetOrnamentsVisible(true);
   viewport->SetCornerAxes(false);
   EXPECT_EQ(viewport->GetCapture({}).color, without.color);
+}
+
+TEST_F(ViewportExtrasTest, NothingHidesTheCornersAxes) {
+  Look({});
+  const FrameId frame = scene->Frames().Create(RootFrame, "f", At(0.06, 0, 0)); // near is at 0.05
+  scene->AddObject(Object("wall", frame, PlaneTowardsCamera(1, 1), Unlit({0, 0, 0})));
+  auto viewport = View(300, 300, 2);
+  const Capture wall = viewport->GetCapture({});
+  viewport->SetCornerAxes(true);
+  const Extent axes = Changed(wall, viewport->GetCapture({}));
+  EXPECT_NEAR(axes.left, 24.5 - 19.2, 1.5);
+  EXPECT_NEAR(axes.top, 274.5 - 19.2, 1.5);
 }
 
 TEST_F(ViewportExtrasTest, TablesStandInTheirCornersAlsoAfterAResize) {
@@ -128,6 +144,10 @@ TEST_F(ViewportExtrasTest, TablesStandInTheirCornersAlsoAfterAResize) {
   table.rows[0].second = "1.6 m";
   viewport->SetTextTable(table);
   EXPECT_TRUE(viewport->Render());
+  CaptureRequest physical; // overlays are ornaments
+  physical.physicalOnly = true;
+  EXPECT_EQ(viewport->GetCapture(physical).color, bare->GetCapture({}).color);
+  EXPECT_NE(viewport->GetCapture({}).color, bare->GetCapture({}).color);
   viewport->RemoveTextTable("table");
   EXPECT_EQ(viewport->GetCapture({}).color, bare->GetCapture({}).color);
   EXPECT_THROW(viewport->RemoveTextTable("table"), Error);
@@ -160,6 +180,11 @@ TEST_F(ViewportExtrasTest, PropsOfVtkCodeStandInTheSceneUnderItsLights) {
   EXPECT_EQ(changed.right, 99);
   EXPECT_EQ(changed.top, 30);
   EXPECT_EQ(changed.bottom, 49);
+  viewport->SetCornerAxes(true); // drawn before the props, elsewhere
+  const Capture beside = viewport->GetCapture({});
+  EXPECT_TRUE(
+      std::equal(with.color.begin(), with.color.begin() + 4 * 200 * 80, beside.color.begin()));
+  viewport->SetCornerAxes(false);
   // VTK's light is the scene's: Lambert's law, in display values as VTK has it.
   EXPECT_NEAR(with.color[4 * (40 * 200 + 95)], 255 * 0.5 * std::cos(angle), 2);
   sun.enabled = false;
