@@ -176,29 +176,6 @@ TEST_F(RenderingTest, APhysicalPictureKnowsNothingOfOrnaments) {
   EXPECT_GT(std::count(full.label.begin(), full.label.end(), arrow), 0);
 }
 
-TEST_F(RenderingTest, LambertsLawHoldsUnderADirectionalLight) {
-  Look({});
-  const FrameId frame = scene->Frames().Create(RootFrame, "f", At(10, 0, 0));
-  auto material = std::make_shared<Material>();
-  material->color = {1, 1, 1};
-  material->roughness = 1.0;
-  scene->AddObject(Object("wall", frame, PlaneTowardsCamera(20, 20), material));
-  Light sun;
-  sun.name = "sun";
-  sun.intensity = 0.5;
-  for (const double angle_deg : {0.0, 30.0, 60.0, 80.0, 100.0}) {
-    const double angle = angle_deg * M_PI / 180;
-    sun.direction = {std::cos(angle), 0, -std::sin(angle)};
-    scene->SetLight(sun);
-    auto viewport = View(21, 21);
-    const double measured =
-        LinearFromSrgb(viewport->GetCapture({}).color[4 * (10 * 21 + 10)] / 255.0);
-    // A white matt dielectric: 0.96 diffuse at most, plus a faint lobe below 0.04 / 4 pi * pi.
-    const double lambert = std::max(0.0, 0.5 * std::cos(angle));
-    EXPECT_NEAR(measured, lambert, 0.04 * 0.5 + 0.01) << angle_deg;
-  }
-}
-
 TEST_F(RenderingTest, RefusesBadSizesAndRepeatsItselfToTheByte) {
   Look({});
   scene->AddObject(Object("ball", scene->Frames().Create(RootFrame, "f", At(5, 0, 0)),
