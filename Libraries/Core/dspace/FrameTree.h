@@ -14,7 +14,7 @@
 
 namespace dspace {
 
-// A frame F has a name, a parent P and a local pose X_PF (metres, unit quaternion, scale > 0).
+// A frame F has a name, a parent P and a local pose X_PF (metres, unit quaternion, scale).
 // The root frame (id 1, name "root") always exists; its axes are the world's, it has no pose of its
 // own and cannot be removed, renamed, reparented or posed.
 //
@@ -22,9 +22,10 @@ namespace dspace {
 // among siblings. A path joins names by '/', beginning below the root: "rover/mast/camera". The
 // root's own path is "/".
 //
-// Poses: position and scale finite, scale > 0, quaternion unit within 1e-6. A quaternion is stored
-// normalised; one that is already unit to rounding is stored as it is, so that a pose that is read
-// and set again stays the same to the bit. A pose equal to the stored one is no change.
+// Poses: position within 1e18 m on each axis, scale 1e-12 to 1e12, quaternion unit within 1e-6
+// (FrameRules.h). A quaternion is stored normalised; one that is already unit to rounding is stored
+// as it is, so that a pose that is read and set again stays the same to the bit. A pose equal to
+// the stored one is no change.
 //
 // Every function that takes an id throws Error(NotFound) for one that is not in the tree. A
 // function that throws an Error leaves the tree as it was. Exceptions of listeners (FrameEvents.h)

@@ -22,7 +22,8 @@ def _locked(array):
 class Frame:
     """A frame F of a scene, with its pose in its parent P: X_PF.
 
-    position [m], quaternion (unit, w x y z) and scale (> 0) are read and set as a whole.
+    position [m, within 1e18], quaternion (unit, w x y z) and scale (1e-12 to 1e12) are read and set
+    as a whole.
     """
 
     def __init__(self, scene, id):

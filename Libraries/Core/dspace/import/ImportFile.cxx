@@ -42,12 +42,4 @@ std::string ReadFileBytes(const std::string& path, std::size_t maximum) {
   return bytes;
 }
 
-void RefusePointCloud(const std::string& path, const std::string& mesh, std::size_t vertices) {
-  throw Error(
-      Error::Kind::Corrupt, FileObject(path),
-      (mesh.empty() ? "" : "mesh '" + mesh + "' ") + "has " + std::to_string(vertices) +
-          " vertices and no faces or lines; accepted: a mesh with faces, or point_cloud=True "
-          "to show its vertices as points");
-}
-
 } // namespace dspace

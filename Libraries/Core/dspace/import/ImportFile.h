@@ -14,11 +14,6 @@ std::string FileObject(const std::string& path);
 // (empty), Resource (more than `maximum` bytes).
 std::string ReadFileBytes(const std::string& path, std::size_t maximum = std::size_t(1) << 32);
 
-// Throws the Error of a file that has vertices and no faces or lines, when no point cloud is asked
-// for. `mesh` is named unless empty.
-[[noreturn]] void RefusePointCloud(const std::string& path, const std::string& mesh,
-                                   std::size_t vertices);
-
 } // namespace dspace
 
 #endif

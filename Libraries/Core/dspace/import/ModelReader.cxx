@@ -111,7 +111,11 @@ void CheckFaces(const Model& model, const ImportOptions& options) {
     }
   }
   if (!more && points && !options.pointCloud) {
-    RefusePointCloud(model.path, points->name, vertices);
+    throw Error(Error::Kind::Corrupt, FileObject(model.path),
+                (points->name.empty() ? "" : "mesh '" + points->name + "' ") + "has " +
+                    std::to_string(vertices) +
+                    " vertices and no faces or lines; accepted: a mesh with faces, or "
+                    "point_cloud=True to show its vertices as points");
   }
   if (!more && !points) {
     throw Error(Error::Kind::Corrupt, FileObject(model.path),

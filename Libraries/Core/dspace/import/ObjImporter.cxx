@@ -205,9 +205,6 @@ Model ReadObj(const std::string& path, const ImportOptions& options) {
   if (text.sections.empty() && text.vertices == 0) {
     throw Error(Error::Kind::Corrupt, FileObject(path), "has no vertices and no faces");
   }
-  if (text.sections.empty() && !options.pointCloud) {
-    RefusePointCloud(path, "", text.vertices);
-  }
   model.warnings = text.warnings;
   const ObjMaterials materials = ReadObjMaterials(path, text.libraries, model.warnings);
 
@@ -224,7 +221,7 @@ Model ReadObj(const std::string& path, const ImportOptions& options) {
   for (const tinyobj::shape_t& shape : shapes) {
     builder.Add(shape);
   }
-  if (text.sections.empty()) {
+  if (text.sections.empty()) { // ReadModel refuses them unless a point cloud is asked for
     builder.AddAllPoints();
   }
   model.meshes = builder.Finish();
