@@ -199,3 +199,16 @@ TEST_F(ViewportExtrasTest, PropsOfVtkCodeStandInTheSceneUnderItsLights) {
   viewport->Invalidate();
   EXPECT_EQ(viewport->GetCapture({}).color, without.color);
 }
+
+TEST_F(ViewportExtrasTest, VtkCodeMayRenderTheWindowItself) {
+  Look({});
+  scene->AddObject(Object("ball", scene->Frames().Create(RootFrame, "f", At(10, 0, 0)),
+                          MakeSphere(2), Unlit({1, 1, 1})));
+  auto viewport = View(50, 40);
+  const auto render = [](vtkRenderWindow* window) { window->Render(); };
+  EXPECT_NO_THROW(viewport->Run(render)); // before there is a picture
+  const Capture picture = viewport->GetCapture({});
+  EXPECT_NO_THROW(viewport->Run(render));
+  EXPECT_TRUE(viewport->IsOutdated());
+  EXPECT_EQ(viewport->GetCapture({}).color, picture.color);
+}

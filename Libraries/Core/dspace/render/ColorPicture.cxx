@@ -46,6 +46,13 @@ void ColorPicture::Connect(vtkDspaceRenderContext* context) {
   this->Overlay_->SetPreserveColorBuffer(1);
   this->Overlay_->GetActiveCamera(); // else VTK resets it at the first picture
   this->Renderer_->GetActiveCamera();
+  this->DrawNothing();
+}
+
+// VTK code may render the window itself: its props are drawn on what is there.
+void ColorPicture::DrawNothing() {
+  this->Renderer_->ClearPicture = [] {};
+  this->Renderer_->DrawScene = [] {};
 }
 
 void ColorPicture::PrepareTargets(int width, int height, int samples) {
@@ -114,6 +121,7 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
     }
   };
   hub->Render();
+  this->DrawNothing();
   if (!failure) {
     this->Drawer_->Downsample(*this->SceneTarget_, *this->DisplayTarget_, samples);
     if (request.overlays && this->Overlay_->GetViewProps()->GetNumberOfItems() > 0) {

@@ -51,6 +51,7 @@ public:
   std::vector<std::uint8_t> Read() const; // RGBA, rows from the top down, alpha 255; after Draw()
 
 private:
+  void DrawNothing();
   void PrepareTargets(int width, int height, int samples);
   void ActivateScene();
   void ActivateDisplay();
