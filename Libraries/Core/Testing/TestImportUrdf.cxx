@@ -211,8 +211,15 @@ TEST(ImportUrdf, BadJointsAreTypedErrors) {
   ExpectBad(folder, "mimics joint 'elbow'",
             Changed("mimic joint=\"shoulder\"", "mimic joint=\"elbow\""));
   ExpectBad(folder, "mimics itself", Changed("mimic joint=\"shoulder\"", "mimic joint=\"slider\""));
-  ExpectBad(folder, "size or scale", Changed("1 -2 3", "1 0 3"));
-  ExpectBad(folder, "size or scale", Changed("radius=\"0.25\"", "radius=\"-1\""));
+  const char* const scales = "; accepted: 1e-12 to 1e12, or the negative of it";
+  ExpectBad(folder, scales, Changed("1 -2 3", "1 0 3"));
+  ExpectBad(folder, scales, Changed("1 -2 3", "1 1e-300 3"));
+  ExpectBad(folder, "has the scale 1 1e+300 3", Changed("1 -2 3", "1 1e300 3"));
+  ExpectBad(folder, "; accepted: 1e-9 to 1e15 metres", Changed("radius=\"0.25\"", "radius=\"-1\""));
+  ExpectBad(folder, "; accepted: 1e-9 to 1e15 metres",
+            Changed("radius=\"0.25\"", "radius=\"1e300\""));
+  ExpectBad(folder, "joint 'shoulder': its origin is not finite or beyond 1e18 m",
+            Changed("xyz=\"0 0 1\" rpy=\"0.1", "xyz=\"0 1e300 1\" rpy=\"0.1"));
   // Limits beyond any degree are none.
   const Urdf urdf = ReadText(
       folder, Changed("lower=\"-1\" upper=\"2\"", "lower=\"-1.79769e308\" upper=\"1.79769e308\""));

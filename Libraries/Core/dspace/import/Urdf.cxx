@@ -5,8 +5,10 @@
 #include <deque>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include <dspace/Error.h>
+#include <dspace/FrameRules.h>
 #include <dspace/import/ImageReader.h>
 
 #include "FileNames.h"
@@ -127,9 +129,9 @@ private:
     pose.position = {from.position.x, from.position.y, from.position.z};
     pose.rotation =
         Eigen::Quaterniond(from.rotation.w, from.rotation.x, from.rotation.y, from.rotation.z);
-    if (!pose.position.allFinite() || !pose.rotation.coeffs().allFinite() ||
-        !(pose.rotation.norm() > 1e-6)) {
-      this->Fail(where + ": its origin is not finite");
+    if (!(pose.position.array().abs() <= MaximumCoordinate).all() ||
+        !pose.rotation.coeffs().allFinite() || !(pose.rotation.norm() > 1e-6)) {
+      this->Fail(where + ": its origin is not finite or beyond 1e18 m");
     }
     pose.rotation.normalize();
     return pose;
@@ -271,10 +273,14 @@ private:
     }
     // A mesh may be mirrored; other shapes have sizes.
     const bool isMesh = visual.shape == UrdfVisual::Shape::Mesh;
-    if (!visual.size.allFinite() ||
-        (isMesh ? visual.size.cwiseAbs().minCoeff() == 0.0 : !(visual.size.minCoeff() > 0.0))) {
-      this->Fail(where + ": its geometry has size or scale " + std::to_string(visual.size.x()) +
-                 " " + std::to_string(visual.size.y()) + " " + std::to_string(visual.size.z()));
+    Eigen::Array3d size = visual.size;
+    size = isMesh ? size.abs().eval() : size;
+    if (!(size >= (isMesh ? MinimumScale : 1e-9) && size <= (isMesh ? MaximumScale : 1e15)).all()) {
+      std::ostringstream text;
+      text << where << ": its geometry has the " << (isMesh ? "scale " : "size ") << visual.size.x()
+           << " " << visual.size.y() << " " << visual.size.z() << "; accepted: "
+           << (isMesh ? "1e-12 to 1e12, or the negative of it" : "1e-9 to 1e15 metres");
+      this->Fail(text.str());
     }
     if (from.material) {
       visual.hasMaterial = true;
