@@ -48,6 +48,7 @@ struct Mesh {
   std::vector<std::uint8_t> colors;   // empty, or r g b a a vertex, sRGB; multiplies the material
   std::vector<std::uint32_t> indices; // 3, 2 or 1 a primitive; each < number of vertices
   int material = -1;                  // index into Model::materials, or -1 for the default
+  bool solid = false; // bounds solids (IsSolid): back faces are drawn only from inside
 
   std::size_t VertexCount() const { return this->positions.size() / 3; }
   std::size_t PrimitiveCount() const {

@@ -7,6 +7,7 @@
 #include <new>
 
 #include <dspace/Error.h>
+#include <dspace/import/SolidMesh.h>
 
 #include "FileNames.h"
 #include "ImportFile.h"
@@ -147,6 +148,7 @@ Model ReadModel(const std::string& path, const ImportOptions& options) {
     CheckResult(model, options);
     for (Mesh& mesh : model.meshes) {
       ComputeNormals(mesh);
+      mesh.solid = IsSolid(mesh);
     }
     return model;
   } catch (const Error&) {

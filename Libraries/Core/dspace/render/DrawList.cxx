@@ -69,7 +69,7 @@ float LinearFromSrgb(double value) {
 }
 
 std::uint32_t DrawList::BatchOf(const GraphicsObject& object, const Part& part,
-                                const DrawInstance& look) {
+                                const DrawInstance& look, bool near) {
   const Material& material = *part.material;
   DrawBatch batch;
   batch.mesh = part.mesh;
@@ -94,6 +94,10 @@ std::uint32_t DrawList::BatchOf(const GraphicsObject& object, const Part& part,
   }
   batch.translucent = look.color[3] < 1.0f || alphaTexture || alphaColors;
 
+  batch.solid =
+      part.mesh->solid && !batch.translucent && !batch.wireframe && !batch.billboard && !near;
+  batch.mirrored = batch.solid && look.mirrored < 0.0f;
+
   std::string key;
   const auto append = [&key](const auto& value) {
     key.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -107,6 +111,8 @@ std::uint32_t DrawList::BatchOf(const GraphicsObject& object, const Part& part,
   append(batch.wireframe);
   append(batch.billboard);
   append(batch.translucent);
+  append(batch.solid);
+  append(batch.mirrored);
   append(batch.lineWidth);
   append(batch.pointSize);
   const auto found = this->BatchIndex_.emplace(std::move(key), this->Templates_.size());
@@ -133,9 +139,10 @@ void DrawList::Flatten(const Scene& scene) {
       for (const Part& part : level.parts) {
         FlatPart flatPart;
         flatPart.instance = LookOf(object, *part.material);
-        flatPart.batch = this->BatchOf(object, part, flatPart.instance);
         flatPart.X_FP = object.X_FO * part.X_OP;
         flatPart.instance.mirrored = flatPart.X_FP.linear().determinant() < 0 ? -1.0f : 1.0f;
+        flatPart.batch = this->BatchOf(object, part, flatPart.instance, false);
+        flatPart.nearBatch = this->BatchOf(object, part, flatPart.instance, true);
         flatLevel.parts.push_back(flatPart);
       }
       flat.levels.push_back(std::move(flatLevel));
@@ -242,6 +249,9 @@ void DrawList::Build(const Scene& scene, const DrawView& view, const DrawFilter&
         }
       }
     }
+    // The near plane may cut it open, or the camera be inside it: then its back faces are seen.
+    const double nearest = -(X_VF * level->bounds.center)[2] - level->bounds.radius * X_CF.scale;
+    const bool opened = nearest <= view.projection.nearDistance;
     for (const FlatPart& part : level->parts) {
       const Eigen::Matrix<double, 3, 4> m = (X_VF * part.X_FP).matrix().topRows<3>();
       DrawInstance instance = part.instance;
@@ -250,7 +260,7 @@ void DrawList::Build(const Scene& scene, const DrawView& view, const DrawFilter&
           instance.viewFromMesh[4 * r + c] = static_cast<float>(m(r, c));
         }
       }
-      this->Pending_[part.batch].push_back(instance);
+      this->Pending_[opened ? part.nearBatch : part.batch].push_back(instance);
     }
   }
 

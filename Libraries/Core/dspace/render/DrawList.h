@@ -39,6 +39,8 @@ struct DrawBatch {
   bool wireframe = false;
   bool billboard = false;
   bool translucent = false;
+  bool solid = false;    // only front faces are seen: opaque solids, the camera outside them
+  bool mirrored = false; // of solid ones: their front faces are wound clockwise
   float lineWidth = 1.0f;
   float pointSize = 1.0f;
   std::uint32_t first = 0;
@@ -86,6 +88,7 @@ public:
 private:
   struct FlatPart { // a part of a level of an object, with all that does not depend on the view
     std::uint32_t batch;
+    std::uint32_t nearBatch; // where the near plane may open a solid: both sides are drawn
     Eigen::Affine3d X_FP;
     DrawInstance instance; // without viewFromMesh
   };
@@ -99,7 +102,8 @@ private:
     std::vector<FlatLevel> levels;
   };
   void Flatten(const Scene& scene);
-  std::uint32_t BatchOf(const GraphicsObject& object, const Part& part, const DrawInstance& look);
+  std::uint32_t BatchOf(const GraphicsObject& object, const Part& part, const DrawInstance& look,
+                        bool near);
   void PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, const Pose& X_CA);
 
   const Scene* Scene_ = nullptr;

@@ -278,6 +278,12 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     if (batch.wireframe) {
       glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
     }
+    if (batch.solid) { // half of its triangles need no filling
+      state->vtkglEnable(GL_CULL_FACE);
+      state->vtkglCullFace(batch.mirrored ? GL_FRONT : GL_BACK);
+    } else {
+      state->vtkglDisable(GL_CULL_FACE);
+    }
     glBindVertexArray(mesh.vertexArray);
     glDrawElementsInstanced(mesh.mode, mesh.indexCount, GL_UNSIGNED_INT, nullptr,
                             static_cast<GLsizei>(batch.count));
@@ -286,6 +292,8 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
       glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     }
   }
+  state->vtkglDisable(GL_CULL_FACE);
+  state->vtkglCullFace(GL_BACK);
   glBindVertexArray(0);
 }
 

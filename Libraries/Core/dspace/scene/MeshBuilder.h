@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <dspace/import/Model.h>
+#include <dspace/import/SolidMesh.h>
 #include <dspace/scene/Checks.h>
 
 namespace dspace {
@@ -59,7 +60,10 @@ public:
     }
   }
 
-  Mesh Take() { return std::move(this->Mesh_); }
+  Mesh Take() {
+    this->Mesh_.solid = IsSolid(this->Mesh_);
+    return std::move(this->Mesh_);
+  }
 
 private:
   Mesh Mesh_;
