@@ -1,14 +1,20 @@
 //DSPACE::Version
 // Places one instance of a mesh: MC (mesh) to VC (view, camera at the origin) to DC (clip).
-// Everything that differs between instances is read from a buffer texture, six texels each
-// (DrawInstance in dspace/render/DrawList.h).
+// Everything that differs between instances is an attribute that advances with them
+// (DrawInstance in dspace/render/DrawList.h; laid out by GpuStore).
 layout(location = 0) in vec3 vertexMC;
 layout(location = 1) in vec3 normalMC;
 layout(location = 2) in vec2 tcoordMC;
 layout(location = 3) in vec4 colorMC;
+layout(location = 4) in vec4 row0; // of the matrix from MC to VC
+layout(location = 5) in vec4 row1;
+layout(location = 6) in vec4 row2;
+layout(location = 7) in vec4 instanceColor; // linear light, and opacity
+layout(location = 8) in vec2 metallicRoughness;
+layout(location = 9) in uint instanceLabel;
+layout(location = 10) in float mirrored; // -1 where the matrix mirrors, else 1
+layout(location = 11) in vec3 instanceEmissive; // linear light
 
-uniform usamplerBuffer instances;
-uniform int firstInstance;
 uniform mat4 VCDCMatrix;
 uniform vec2 pixelNDC; // size of one pixel of the picture in normalised device coordinates
 
@@ -35,17 +41,13 @@ out vec4 vertexColor;
 
 void main()
 {
-  int base = (firstInstance + gl_InstanceID) * 6;
-  vec4 row0 = uintBitsToFloat(texelFetch(instances, base));
-  vec4 row1 = uintBitsToFloat(texelFetch(instances, base + 1));
-  vec4 row2 = uintBitsToFloat(texelFetch(instances, base + 2));
 #ifdef DSPACE_LABEL
-  label = texelFetch(instances, base + 4).z;
+  label = instanceLabel;
 #else
-  baseColor = uintBitsToFloat(texelFetch(instances, base + 3));
+  baseColor = instanceColor;
 #endif
 #ifdef DSPACE_EMISSIVE
-  emissive = uintBitsToFloat(texelFetch(instances, base + 5)).xyz;
+  emissive = instanceEmissive;
 #endif
 
 #ifdef DSPACE_BILLBOARD
@@ -60,7 +62,7 @@ void main()
 
 #ifdef DSPACE_LIT
   positionVC = placedVC;
-  surface = uintBitsToFloat(texelFetch(instances, base + 4)).xyw;
+  surface = vec3(metallicRoughness, mirrored);
   // The cofactor matrix carries normals through any affine map; mirroring turns them inside out.
   normalVC = surface.z *
     vec3(dot(cross(row1.xyz, row2.xyz), normalMC), dot(cross(row2.xyz, row0.xyz), normalMC),

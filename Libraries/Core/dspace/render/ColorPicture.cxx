@@ -57,17 +57,27 @@ void ColorPicture::DrawNothing() {
 
 void ColorPicture::PrepareTargets(int width, int height, int samples) {
   vtkDspaceHubWindow* hub = this->Context_->GetHub();
-  if (!this->SceneTarget_) {
-    using Format = RenderTarget::Format;
-    this->SceneTarget_ = std::make_unique<RenderTarget>(hub, Format::Display, true);
+  using Format = RenderTarget::Format;
+  if (!this->DisplayTarget_) {
     this->DisplayTarget_ = std::make_unique<RenderTarget>(hub, Format::Display, true);
   }
-  this->SceneTarget_->Resize(width * samples, height * samples);
   this->DisplayTarget_->Resize(width, height);
+  if (samples == 1) { // the scene is drawn into the picture itself
+    this->SceneTarget_.reset();
+    return;
+  }
+  if (!this->SceneTarget_) {
+    this->SceneTarget_ = std::make_unique<RenderTarget>(hub, Format::Display, true);
+  }
+  this->SceneTarget_->Resize(width * samples, height * samples);
+}
+
+RenderTarget& ColorPicture::DrawnTarget() const {
+  return this->SceneTarget_ ? *this->SceneTarget_ : *this->DisplayTarget_;
 }
 
 void ColorPicture::ActivateScene() {
-  const RenderTarget& target = *this->SceneTarget_;
+  const RenderTarget& target = this->DrawnTarget();
   this->Context_->GetHub()->Activate(
       {target.Framebuffer(), this->SceneRenderers_, target.Width(), target.Height()});
 }
@@ -111,10 +121,10 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   };
   this->Renderer_->DrawScene = [&] {
     try {
-      this->Drawer_->DrawColor(this->List_, view, *this->SceneTarget_, samples,
+      this->Drawer_->DrawColor(this->List_, view, this->DrawnTarget(), samples,
                                &request.background);
       if (request.axes) {
-        request.axes->Draw(scene, view, *this->SceneTarget_, samples);
+        request.axes->Draw(scene, view, this->DrawnTarget(), samples);
       }
     } catch (...) {
       failure = std::current_exception();
@@ -123,7 +133,9 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   hub->Render();
   this->DrawNothing();
   if (!failure) {
-    this->Drawer_->Downsample(*this->SceneTarget_, *this->DisplayTarget_, samples);
+    if (this->SceneTarget_) {
+      this->Drawer_->Downsample(*this->SceneTarget_, *this->DisplayTarget_, samples);
+    }
     if (request.overlays && this->Overlay_->GetViewProps()->GetNumberOfItems() > 0) {
       this->ActivateDisplay();
       hub->Render();

@@ -53,11 +53,12 @@ public:
 private:
   void DrawNothing();
   void PrepareTargets(int width, int height, int samples);
+  RenderTarget& DrawnTarget() const; // what the scene is drawn into
   void ActivateScene();
   void ActivateDisplay();
 
   vtkSmartPointer<vtkDspaceRenderContext> Context_;
-  std::unique_ptr<RenderTarget> SceneTarget_;   // supersampled
+  std::unique_ptr<RenderTarget> SceneTarget_;   // supersampled; none at one sample a pixel
   std::unique_ptr<RenderTarget> DisplayTarget_; // what is shown
   std::unique_ptr<SceneDrawer> Drawer_;
   DrawList List_;

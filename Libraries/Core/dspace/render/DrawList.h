@@ -14,7 +14,7 @@
 
 namespace dspace {
 
-// One drawing of a mesh: six texels of four 32-bit words, as the vertex shader reads them.
+// One drawing of a mesh, as the vertex shader reads it (GpuStore tells OpenGL where what stands).
 // Floats are relative to the camera: rounded after the subtraction in double precision.
 struct DrawInstance {
   std::array<float, 12> viewFromMesh; // three rows of four; OpenGL's view axes
@@ -26,7 +26,7 @@ struct DrawInstance {
   std::array<float, 3> emissive; // linear light
   float unused;
 };
-static_assert(sizeof(DrawInstance) == 96, "the shader reads six texels an instance");
+static_assert(sizeof(DrawInstance) == 96, "tightly packed");
 
 // Instances that one call draws: consecutive ones of the same mesh and state.
 struct DrawBatch {

@@ -3,6 +3,7 @@
 #include "vtk_glew.h"
 
 #include <dspace/Error.h>
+#include <dspace/render/DrawList.h>
 
 namespace dspace {
 namespace {
@@ -39,6 +40,26 @@ void Attribute(unsigned int location, int components, unsigned int type, bool no
   glEnableVertexAttribArray(location);
   glVertexAttribPointer(location, components, type, normalized ? GL_TRUE : GL_FALSE, sizeof(Vertex),
                         reinterpret_cast<const void*>(offset));
+}
+
+// What advances with the instances; the buffer itself is bound when they are drawn.
+void InstanceAttributes() {
+  const auto floats = [](unsigned int location, int components, std::size_t offset) {
+    glVertexAttribFormat(location, components, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
+  };
+  for (unsigned int row = 0; row < 3; ++row) {
+    floats(4 + row, 4, offsetof(DrawInstance, viewFromMesh) + 4 * sizeof(float) * row);
+  }
+  floats(7, 4, offsetof(DrawInstance, color));
+  floats(8, 2, offsetof(DrawInstance, metallic)); // and roughness after it
+  glVertexAttribIFormat(9, 1, GL_UNSIGNED_INT, offsetof(DrawInstance, label));
+  floats(10, 1, offsetof(DrawInstance, mirrored));
+  floats(11, 3, offsetof(DrawInstance, emissive));
+  for (unsigned int location = 4; location < 12; ++location) {
+    glVertexAttribBinding(location, InstanceBinding);
+    glEnableVertexAttribArray(location);
+  }
+  glVertexBindingDivisor(InstanceBinding, 1);
 }
 
 // Rows from the bottom up, as OpenGL wants them, with three or four channels.
@@ -87,6 +108,7 @@ const GpuMesh& GpuStore::MeshOf(const std::shared_ptr<const Mesh>& mesh) {
   Attribute(1, 3, GL_FLOAT, false, offsetof(Vertex, normal));
   Attribute(2, 2, GL_FLOAT, false, offsetof(Vertex, tcoord));
   Attribute(3, 4, GL_UNSIGNED_BYTE, true, offsetof(Vertex, color));
+  InstanceAttributes();
   glBindVertexArray(0);
   glBindBuffer(GL_ARRAY_BUFFER, 0);
   gpu.mode = mesh->primitive == Mesh::Primitive::Triangles ? GL_TRIANGLES

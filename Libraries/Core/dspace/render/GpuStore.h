@@ -10,6 +10,9 @@
 
 namespace dspace {
 
+// Where a vertex array takes its instances from; 0 to 11 belong to attributes bound the old way.
+constexpr unsigned int InstanceBinding = 12;
+
 // Vertex array, buffers and counts of one mesh; interleaving follows Instance.vert.glsl.
 struct GpuMesh {
   unsigned int vertexArray = 0;

@@ -26,7 +26,6 @@ namespace dspace {
 namespace {
 
 // Texture units above those that VTK hands out.
-constexpr int InstanceUnit = 12;
 constexpr int ColorUnit = 13;
 constexpr int OpaqueDepthUnit = 14;
 constexpr int PeeledDepthUnit = 15;
@@ -102,7 +101,6 @@ void SceneDrawer::Release() {
   if (this->Window_->GetContext()) {
     this->Window_->MakeCurrent();
     if (this->InstanceBuffer_) {
-      glDeleteTextures(1, &this->InstanceTexture_);
       glDeleteBuffers(1, &this->InstanceBuffer_);
     }
     if (this->EmptyArray_) {
@@ -112,7 +110,7 @@ void SceneDrawer::Release() {
       glDeleteQueries(1, &this->Query_);
     }
   }
-  this->InstanceBuffer_ = this->InstanceTexture_ = this->EmptyArray_ = this->Query_ = 0;
+  this->InstanceBuffer_ = this->EmptyArray_ = this->Query_ = 0;
   this->Uploaded_.clear();
   this->InstanceCapacity_ = 0;
   this->Surfaces_.clear();
@@ -146,12 +144,13 @@ vtkShaderProgram* SceneDrawer::SurfaceProgram(unsigned features) {
   return program;
 }
 
-vtkShaderProgram* SceneDrawer::ScreenProgram(const char* fragmentSource) {
-  vtkShaderProgram*& program = this->Screens_[fragmentSource];
+vtkShaderProgram* SceneDrawer::ScreenProgram(const char* fragmentSource,
+                                             const std::string& defines) {
+  vtkShaderProgram*& program = this->Screens_[{fragmentSource, defines}];
   if (program) {
     this->Window_->GetShaderCache()->ReadyShaderProgram(program);
   } else {
-    program = Ready(this->Window_, Versioned(Screen_vert, ""), Versioned(fragmentSource, ""));
+    program = Ready(this->Window_, Versioned(Screen_vert, ""), Versioned(fragmentSource, defines));
   }
   return program;
 }
@@ -170,24 +169,21 @@ void SceneDrawer::Upload(const DrawList& list) {
   const std::size_t bytes = instances.size() * sizeof(DrawInstance);
   if (!this->InstanceBuffer_) {
     glGenBuffers(1, &this->InstanceBuffer_);
-    glGenTextures(1, &this->InstanceTexture_);
   }
   const bool same =
       this->InstanceCapacity_ > 0 && this->Uploaded_.size() == instances.size() &&
       (bytes == 0 || std::memcmp(this->Uploaded_.data(), instances.data(), bytes) == 0);
   if (!same) {
-    glBindBuffer(GL_TEXTURE_BUFFER, this->InstanceBuffer_);
+    glBindBuffer(GL_ARRAY_BUFFER, this->InstanceBuffer_);
     // A new store each time lets the driver keep drawing from the old one.
-    this->InstanceCapacity_ = std::max<std::size_t>(bytes, 96);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(this->InstanceCapacity_), nullptr,
+    this->InstanceCapacity_ = std::max(bytes, sizeof(DrawInstance));
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(this->InstanceCapacity_), nullptr,
                  GL_STREAM_DRAW);
-    glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), instances.data());
-    glBindBuffer(GL_TEXTURE_BUFFER, 0);
+    glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(bytes), instances.data());
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
     this->Uploaded_ = instances;
     this->Statistics_.instanceBytesUploaded += bytes;
   }
-  BindTexture(this->Window_, InstanceUnit, GL_TEXTURE_BUFFER, this->InstanceTexture_);
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32UI, this->InstanceBuffer_);
 }
 
 void SceneDrawer::SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view,
@@ -195,7 +191,6 @@ void SceneDrawer::SetView(vtkShaderProgram* program, const DrawList& list, const
   const Eigen::Matrix4f clip = view.projection.ClipFromView(view.width, view.height).cast<float>();
   Eigen::Matrix4f columns = clip; // column-major, as OpenGL reads it
   program->SetUniformMatrix4x4("VCDCMatrix", columns.data());
-  program->SetUniformi("instances", InstanceUnit);
   // Of the picture, not of the n x n samples that are drawn of it.
   const float pixel[2] = {2.0f * static_cast<float>(samples) / static_cast<float>(view.width),
                           2.0f * static_cast<float>(samples) / static_cast<float>(view.height)};
@@ -264,7 +259,6 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
       this->SetView(program, list, view, samples);
       prepared[program] = true;
     }
-    program->SetUniformi("firstInstance", static_cast<int>(batch.first));
     if (batch.texture) {
       const unsigned int texture = this->Store_.TextureOf(batch.texture, batch.repeatTexture);
       BindTexture(this->Window_, ColorUnit, GL_TEXTURE_2D, texture);
@@ -285,6 +279,9 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
       state->vtkglDisable(GL_CULL_FACE);
     }
     glBindVertexArray(mesh.vertexArray);
+    glBindVertexBuffer(InstanceBinding, this->InstanceBuffer_,
+                       static_cast<GLintptr>(batch.first * sizeof(DrawInstance)),
+                       sizeof(DrawInstance));
     glDrawElementsInstanced(mesh.mode, mesh.indexCount, GL_UNSIGNED_INT, nullptr,
                             static_cast<GLsizei>(batch.count));
     ++this->Statistics_.drawCalls;
@@ -437,9 +434,9 @@ void SceneDrawer::Downsample(const RenderTarget& source, RenderTarget& target, i
     state->vtkglDisable(GL_DEPTH_TEST);
     state->vtkglDisable(GL_BLEND);
     BindTexture(this->Window_, ColorUnit, GL_TEXTURE_2D, source.Color());
-    vtkShaderProgram* program = this->ScreenProgram(Downsample_frag);
-    program->SetUniformi("source", ColorUnit);
-    program->SetUniformi("samples", samples);
+    // A number in the source lets a software renderer unroll the loops.
+    const std::string defines = "#define DSPACE_SAMPLES " + std::to_string(samples) + "\n";
+    this->ScreenProgram(Downsample_frag, defines)->SetUniformi("source", ColorUnit);
     this->DrawTriangleOverScreen();
     state->vtkglEnable(GL_DEPTH_TEST);
     state->vtkglEnable(GL_BLEND);

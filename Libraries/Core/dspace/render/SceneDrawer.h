@@ -62,7 +62,7 @@ private:
   static constexpr unsigned LightShift = 16; // above the features: the number of lights
   vtkShaderProgram* SurfaceProgram(unsigned features);
   void DrawBackground(const Background& background, int height);
-  vtkShaderProgram* ScreenProgram(const char* fragmentSource);
+  vtkShaderProgram* ScreenProgram(const char* fragmentSource, const std::string& defines = "");
   void DrawTriangleOverScreen();
   void Upload(const DrawList& list);
   void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view, int samples);
@@ -75,10 +75,9 @@ private:
   GpuStore& Store_;
   RenderStatistics& Statistics_;
   std::map<unsigned, vtkShaderProgram*> Surfaces_;
-  std::map<const char*, vtkShaderProgram*> Screens_;
+  std::map<std::pair<const char*, std::string>, vtkShaderProgram*> Screens_;
   std::vector<DrawInstance> Uploaded_;
   unsigned int InstanceBuffer_ = 0;
-  unsigned int InstanceTexture_ = 0;
   std::size_t InstanceCapacity_ = 0;
   unsigned int EmptyArray_ = 0;
   unsigned int Query_ = 0;
