@@ -94,6 +94,7 @@ void BenchParts(vtkDspaceRenderContext* context, int count, int pairs) {
     frames.push_back(ours->Frames().Create(RootFrame, "part " + std::to_string(i)));
     auto material = std::make_shared<Material>();
     material->color = {0.3 + 0.006 * (i % 100), 0.5, 0.9 - 0.006 * (i % 100)};
+    material->roughness = 1.0; // Lambertian, as a vtkActor is by default
     GraphicsObject object;
     object.name = "part " + std::to_string(i);
     object.frame = frames.back();
