@@ -212,3 +212,18 @@ def test_a_missing_mesh_is_a_warning_and_a_stand_in(scene, refused, tmp_path):
     assert [w.category for w in caught] == [dspace.DspaceWarning]
     assert "absent.glb" in str(caught[0].message) and caught[0].filename == __file__
     assert len(robot.objects) == 1 and robot.objects[0].triangles == 12
+
+
+def test_mistyped_attributes_are_refused(scene):
+    box = scene.add_box((1, 1, 1))
+    camera = scene.add_camera(eye=(5, 0, 0), target=(0, 0, 0))
+    view = scene.add_viewport(size=(16, 9))
+    rover = scene.load(DATA / "rover/rover.urdf")
+    for thing, name in ((scene, "tme"), (box, "colour"), (box.frame, "postion"),
+                        (camera, "fov"), (view, "ornament"), (rover, "joint"),
+                        (rover.joints["mast_pan"], "positon")):
+        with pytest.raises(AttributeError, match=f"'{name}' does not exist; accepted: "):
+            setattr(thing, name, 1.0)
+        assert not hasattr(thing, name)
+    with pytest.raises(AttributeError, match="'hide' is no property"):
+        view.hide = True

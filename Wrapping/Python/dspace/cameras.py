@@ -1,6 +1,7 @@
 """Vantages and the cameras that they are seen through."""
 import numpy as np
 
+from dspace._strict import Strict
 from dspace.frames import put_pose
 from dspace.poses import Pose, to_pose, vector
 
@@ -11,7 +12,7 @@ def _put(message, value, what):
     message.x, message.y, message.z = vector(value, what)
 
 
-class Camera:
+class Camera(Strict):
     """A camera of a vantage. Its axes C are X right, Y down, Z forward."""
 
     def __init__(self, scene, vantage, name):
@@ -200,7 +201,7 @@ def put_projection(message, fov_deg=None, height=None, tangents=None, near=None,
         message.far = far
 
 
-class Vantage:
+class Vantage(Strict):
     """The scene seen through one of its cameras; one is active."""
 
     def __init__(self, scene, name):

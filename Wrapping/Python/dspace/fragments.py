@@ -1,10 +1,11 @@
 """Fragments, which are shown or hidden as one, and lights, which light all of them."""
+from dspace._strict import Strict
 from dspace.poses import vector
 
 KINDS = {"directional": 0, "point": 1, "spot": 2, "head": 3, "ambient": 4}
 
 
-class Fragment:
+class Fragment(Strict):
     """A named group of objects."""
 
     def __init__(self, scene, name):
@@ -46,7 +47,7 @@ class Fragment:
         return f"<dspace.Fragment {self._name!r}>"
 
 
-class Light:
+class Light(Strict):
     """A light of a scene. Its properties are read and set; set() changes several at once."""
 
     def __init__(self, scene, name):

@@ -1,6 +1,7 @@
 """Frames of the kinematic tree."""
 import numpy as np
 
+from dspace._strict import Strict
 from dspace import _wire
 from dspace.poses import Pose, multiply, quaternion_of_axis, quaternion_of_matrix, to_pose
 
@@ -19,7 +20,7 @@ def _locked(array):
     return array
 
 
-class Frame:
+class Frame(Strict):
     """A frame F of a scene, with its pose in its parent P: X_PF.
 
     position [m, within 1e18], quaternion (unit, w x y z) and scale (1e-12 to 1e12) are read and set

@@ -3,6 +3,7 @@ import os
 
 import numpy as np
 
+from dspace._strict import Strict
 from dspace import _wire
 from dspace.poses import vector
 
@@ -72,7 +73,7 @@ def _material_property(key, text):
     return property(get, set, doc=text + " None: as the object came with it.")
 
 
-class GraphicsObject:
+class GraphicsObject(Strict):
     """Geometry on a frame. Physical: what a real camera would see; else ornamental."""
 
     def __init__(self, scene, id):

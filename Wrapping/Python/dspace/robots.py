@@ -1,12 +1,13 @@
 """Articulated models: joints that move frames."""
 from collections.abc import Mapping
 
+from dspace._strict import Strict
 from dspace.poses import Pose
 
 TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
 
 
-class Joint:
+class Joint(Strict):
     """One joint of a robot. Positions are degrees, or metres for prismatic ones."""
 
     def __init__(self, robot, index, info):
@@ -90,8 +91,10 @@ class Joints(Mapping):
         return f"<dspace.Joints {list(self._joints)}>"
 
 
-class Robot:
+class Robot(Strict):
     """A robot of a scene: a frame a link, moved by joints."""
+
+    _own = ("joints",)
 
     def __init__(self, scene, info):
         self._scene = scene

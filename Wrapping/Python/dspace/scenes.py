@@ -3,6 +3,7 @@ import os
 
 import numpy as np
 
+from dspace._strict import Strict
 from dspace import _wire
 from dspace._making import ObjectMaking
 from dspace.cameras import Camera, Vantage, put_chase, put_projection
@@ -18,7 +19,7 @@ from dspace.viewports import Viewport
 MAIN = "main"  # the vantage that always exists
 
 
-class Scene(ObjectMaking):
+class Scene(ObjectMaking, Strict):
     """One scene of a session.
 
     Functions that make an object take, besides their own arguments: frame (a Frame, a path; default

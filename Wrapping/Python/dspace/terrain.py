@@ -1,10 +1,11 @@
 """Terrain: what is drawn of a raster, and what it answers."""
 import numpy as np
 
+from dspace._strict import Strict
 from dspace import _wire
 
 
-class Terrain:
+class Terrain(Strict):
     """A raster of heights in a frame S: X east, Y north, Z up from its origin [m].
 
     Queries are answered from the full-resolution grid, in double precision, on the same triangles

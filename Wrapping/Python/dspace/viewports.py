@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dspace._strict import Strict
 from dspace.poses import vector
 from dspace.session import commands_pb2 as pb
 
@@ -32,7 +33,7 @@ class Pick:
     map: object = None  # its map x, y and height
 
 
-class Viewport:
+class Viewport(Strict):
     """A picture of a scene. Pixel (0, 0) is the centre of the top-left pixel."""
 
     def __init__(self, client, name):

@@ -1,0 +1,21 @@
+"""Objects whose attributes are those that their class has."""
+
+
+class Strict:
+    """Refuses to set an attribute that does not exist: a mistyped name must not pass unnoticed.
+
+    Set are properties, names that begin with an underscore, and what `_own` lists.
+    """
+    _own = ()
+
+    def __setattr__(self, name, value):
+        kind = type(self)
+        if not (name.startswith("_") or name in kind._own
+                or hasattr(getattr(kind, name, None), "__set__")):
+            settable = sorted(
+                other for other in dir(kind) if not other.startswith("_")
+                and getattr(getattr(kind, other), "fset", None) is not None)
+            what = "is no property" if hasattr(kind, name) else "does not exist"
+            raise AttributeError(f"{self!r}: attribute {name!r} {what}; accepted: "
+                                 + (", ".join(settable) or "none can be set"))
+        object.__setattr__(self, name, value)
