@@ -227,3 +227,12 @@ def test_mistyped_attributes_are_refused(scene):
         assert not hasattr(thing, name)
     with pytest.raises(AttributeError, match="'hide' is no property"):
         view.hide = True
+
+
+def test_limits_allow_the_degrees_that_their_rounded_radians_stand_for(scene):
+    joint = scene.load(DATA / "rover/rover.urdf").joints["arm_yaw"]  # -1.570796 to 1.570796 rad
+    joint.position = 90
+    assert joint.position == joint.limits[1] == pytest.approx(np.degrees(1.570796), abs=1e-12)
+    with pytest.raises(dspace.Error, match="90.0001.*accepted: -89.99"):
+        joint.position = 90.0001
+    assert joint.position == joint.limits[1]

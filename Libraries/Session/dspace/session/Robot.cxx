@@ -91,7 +91,9 @@ double Robot::CheckedPosition(std::size_t index, double position, bool clamp) co
   if (!joint.hasLimits) {
     return position;
   }
-  if (!clamp && (position < joint.lower || position > joint.upper)) {
+  // A file's rounded radians must not refuse the round number of degrees that they stand for.
+  const double slack = joint.type == UrdfJoint::Type::Prismatic ? 1e-6 : 1e-6 * 180.0 / M_PI;
+  if (!clamp && (position < joint.lower - slack || position > joint.upper + slack)) {
     Refuse(label, "the position is " + NumberText(position) + "; accepted: " +
                       NumberText(joint.lower) + " to " + NumberText(joint.upper) + UnitOf(joint));
   }

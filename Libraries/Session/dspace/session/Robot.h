@@ -37,7 +37,8 @@ public:
   // Sets n joints and moves the frames of their child links and of those that mimic them. All are
   // checked before any moves. Throws Error(InvalidArgument) naming the joint for one that has no
   // position of its own (fixed, floating, planar, mimic), a value that is not finite, and one
-  // beyond its limits unless `clamp`; NotFound for an index out of range.
+  // beyond its limits unless `clamp` (by less than 1e-6 rad or m: the limit is taken); NotFound for
+  // an index out of range.
   void SetPositions(FrameTree& frames, const std::uint32_t* joints, const double* positions,
                     std::size_t n, bool clamp);
 
