@@ -236,3 +236,13 @@ def test_limits_allow_the_degrees_that_their_rounded_radians_stand_for(scene):
     with pytest.raises(dspace.Error, match="90.0001.*accepted: -89.99"):
         joint.position = 90.0001
     assert joint.position == joint.limits[1]
+
+
+def test_a_urdf_takes_no_levels_and_is_no_point_cloud(scene):
+    path = DATA / "rover/rover.urdf"
+    for wrong in ({"levels": (("coarse.obj", 0),)}, {"point_cloud": True}):
+        with pytest.raises(ValueError, match="rover.urdf.*none of these"):
+            scene.load(path, **wrong)
+    with pytest.raises(ValueError, match="rover.urdf.*50 pixels"):
+        scene.load((path, 50))
+    assert not scene.robots

@@ -1,5 +1,6 @@
 //DSPACE::Version
-// Mean of DSPACE_SAMPLES x DSPACE_SAMPLES texels, in linear light (the source decodes sRGB, the target encodes).
+// Mean of DSPACE_SAMPLES x DSPACE_SAMPLES texels, in linear light (the source decodes sRGB, the
+// target encodes).
 uniform sampler2D source;
 layout(location = 0) out vec4 fragColor;
 

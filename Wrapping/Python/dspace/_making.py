@@ -40,6 +40,9 @@ class ObjectMaking:
             raise ValueError(f"up is {up!r}; accepted: {', '.join(UP)}")
         first, pixels = path if isinstance(path, tuple) else (path, 0.0)
         if os.fspath(first).lower().endswith(".urdf"):
+            if levels or pixels or point_cloud:
+                raise ValueError(f"file '{os.fspath(first)}': levels {levels!r}, {pixels!r} pixels and "
+                                 f"point_cloud={point_cloud!r}; accepted for a URDF: none of these")
             return self._load_robot(first, frame, ornamental, strict, scale, up, rotation, **settings)
         command = self._command()
         message = command.import_object

@@ -142,7 +142,8 @@ void DrawList::Flatten(const Scene& scene) {
         flatPart.X_FP = object.X_FO * part.X_OP;
         flatPart.instance.mirrored = flatPart.X_FP.linear().determinant() < 0 ? -1.0f : 1.0f;
         flatPart.batch = this->BatchOf(object, part, flatPart.instance, false);
-        flatPart.nearBatch = this->BatchOf(object, part, flatPart.instance, true);
+        flatPart.nearBatch = part.mesh->solid ? this->BatchOf(object, part, flatPart.instance, true)
+                                              : flatPart.batch;
         flatLevel.parts.push_back(flatPart);
       }
       flat.levels.push_back(std::move(flatLevel));
