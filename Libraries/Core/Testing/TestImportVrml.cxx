@@ -460,6 +460,46 @@ TEST(ImportVrml, LinesAndPoints) {
   EXPECT_EQ(MaterialOf(points, 1).color, (std::array<double, 3>{1, 0.5, 0}));
 }
 
+TEST(ImportVrml, ManyWarningsOfAKindAreOne) {
+  const TempFolder folder;
+  const auto read = [&folder](int textures) {
+    std::string text = Head2;
+    for (int i = 0; i < textures; ++i) {
+      const std::string name = "t" + std::to_string(i) + ".png";
+      text += Shape(Triangle(),
+                    "appearance Appearance { texture ImageTexture { url \"" + name + "\" } }");
+    }
+    text += "Inline { url \"nowhere.wrl\" }";
+    return Read(folder, text).warnings;
+  };
+  const std::vector<std::string> few = read(3);
+  ASSERT_EQ(few.size(), 4u);
+  EXPECT_TRUE(HasWarning(few, "texture 't2.png' is left out: "));
+  const std::vector<std::string> many = read(4);
+  ASSERT_EQ(many.size(), 2u);
+  EXPECT_EQ(many[0].find("4 textures are left out: 't0.png', 't1.png', 't2.png', ..."), 0u)
+      << many[0];
+  EXPECT_NE(many[0].find("t0.png': does not exist"), std::string::npos) << many[0];
+  EXPECT_NE(many[1].find("Inline of 'nowhere.wrl' is left out"), std::string::npos) << many[1];
+  // Shapes whose flaws differ in numbers only.
+  std::string shapes = Head2;
+  for (int i = 0; i < 5; ++i) {
+    std::string bad;
+    for (int k = 0; k <= i; ++k) {
+      bad += "0 1 " + std::to_string(7 + k) + " -1 ";
+    }
+    shapes += "DEF S" + std::to_string(i) + " " +
+              Shape("IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } "
+                    "coordIndex [ 0 1 2 -1 " +
+                    bad + "] }");
+  }
+  const std::vector<std::string> flaws = Read(folder, shapes).warnings;
+  ASSERT_EQ(flaws.size(), 1u);
+  EXPECT_EQ(flaws[0].find("5 shapes: N faces with an index out of range of N points"), 0u)
+      << flaws[0];
+  EXPECT_NE(flaws[0].find("shape 'S2', ..."), std::string::npos) << flaws[0];
+}
+
 // ---- grouping, PROTO, Inline ------------------------------------------------------------------
 
 TEST(ImportVrml, SwitchAndLodShowOneChild) {
@@ -706,7 +746,8 @@ TEST(ImportVrml, Pathfinder) {
   const Model terrain = ReadModel(folder + "/terrain_full_80k.wrl"); // gzip
   EXPECT_EQ(terrain.meshes.size(), 96u);
   EXPECT_GT(terrain.TriangleCount(), 80000u);
-  EXPECT_EQ(terrain.warnings.size(), 96u); // its textures are absent, each is named
+  ASSERT_EQ(terrain.warnings.size(), 1u); // its textures are absent
+  EXPECT_TRUE(HasWarning(terrain.warnings, "96 textures are left out: "));
   EXPECT_TRUE(HasWarning(terrain.warnings, "i1246924501p.img_0070060390.jpg"));
   for (const Mesh& mesh : terrain.meshes) {
     EXPECT_EQ(mesh.tcoords.size(), 2 * mesh.VertexCount());

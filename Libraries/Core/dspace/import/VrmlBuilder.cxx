@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t MaximumSteps = 2000000;
 constexpr int MaximumDepth = 512;
 constexpr std::size_t MaximumOpenFiles = 16;
+constexpr std::size_t MaximumAlike = 3; // warnings of one kind that are given each by itself
 
 std::string Canonical(const std::string& path) {
   std::error_code error;
@@ -31,6 +32,20 @@ std::string List(const std::vector<std::string>& urls) {
   return list + (urls.size() > 3 ? ", ..." : "");
 }
 
+// "3 faces of 12 corners" as "N faces of N corners": what complaints of one kind share.
+std::string WithoutNumbers(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const bool digit = c >= '0' && c <= '9';
+    if (!digit) {
+      out += c;
+    } else if (out.empty() || out.back() != 'N') {
+      out += 'N';
+    }
+  }
+  return out;
+}
+
 } // namespace
 
 VrmlBuilder::VrmlBuilder(const std::string& path, const ImportOptions& options,
@@ -43,6 +58,7 @@ Model VrmlBuilder::Run() {
   this->AddNode(-1, std::filesystem::path(this->Model_.path).stem().string(),
                 Eigen::Affine3d::Identity());
   this->WalkFile(this->Model_.path, 0, 0);
+  this->AppendWarnings();
   return std::move(this->Model_);
 }
 
@@ -145,7 +161,8 @@ std::shared_ptr<const Image> VrmlBuilder::Texture(const VrmlFile& file,
     }
   }
   if (!urls.empty()) {
-    this->Warn(file, "texture " + List(urls) + " is left out: " + reason);
+    this->Warn(file, "textures are left out", List(urls),
+               "texture " + List(urls) + " is left out: " + reason);
   }
   return nullptr;
 }
@@ -178,21 +195,45 @@ void VrmlBuilder::Inline(const VrmlFile& file, const std::vector<std::string>& u
     return;
   }
   if (!urls.empty()) {
-    this->Warn(file, "Inline of " + List(urls) + " is left out: " + reason);
+    this->Warn(file, "inlined files are left out", List(urls),
+               "Inline of " + List(urls) + " is left out: " + reason);
   }
 }
 
-void VrmlBuilder::Warn(const VrmlFile& file, const std::string& message) {
-  const std::string warning = message + " (" + FileObject(file.path) + ")";
-  if (this->Warned_.insert(warning).second) {
-    this->Model_.warnings.push_back(warning);
+void VrmlBuilder::Warn(const VrmlFile& file, const std::string& kind, const std::string& name,
+                       const std::string& message) {
+  const std::string object = FileObject(file.path);
+  if (!this->Warned_.insert(object + message).second) {
+    return;
+  }
+  auto found = std::find_if(this->Warnings_.begin(), this->Warnings_.end(),
+                            [&](const Warnings& w) { return w.kind == kind && w.file == object; });
+  if (found == this->Warnings_.end()) {
+    found = this->Warnings_.insert(found, Warnings{kind, object, {}, {}, 0});
+  }
+  if (found->count++ < MaximumAlike) {
+    found->names += (found->names.empty() ? "" : ", ") + name;
+    found->messages.push_back(message);
+  }
+}
+
+void VrmlBuilder::AppendWarnings() {
+  for (const Warnings& w : this->Warnings_) {
+    if (w.count > MaximumAlike) {
+      this->Model_.warnings.push_back(std::to_string(w.count) + " " + w.kind + ": " + w.names +
+                                      ", ... (" + w.file + "). The first: " + w.messages.front());
+      continue;
+    }
+    for (const std::string& message : w.messages) {
+      this->Model_.warnings.push_back(message + " (" + w.file + ")");
+    }
   }
 }
 
 void VrmlBuilder::WarnShape(const VrmlFile& file, const std::string& what,
                             const VrmlComplaints& complaints) {
   for (const std::string& complaint : complaints) {
-    this->Warn(file, what + ": " + complaint);
+    this->Warn(file, "shapes: " + WithoutNumbers(complaint), what, what + ": " + complaint);
   }
 }
 

@@ -42,10 +42,21 @@ public:
   // Walks the first of `urls` that exists below the node; otherwise a warning.
   void Inline(const VrmlFile& file, const std::vector<std::string>& urls, int parent, int depth);
 
-  void Warn(const VrmlFile& file, const std::string& message);
+  // Warnings of one kind ("textures are left out") and file become one when there are many.
+  void Warn(const VrmlFile& file, const std::string& kind, const std::string& name,
+            const std::string& message);
   void WarnShape(const VrmlFile& file, const std::string& what, const VrmlComplaints& complaints);
 
 private:
+  struct Warnings {
+    std::string kind;
+    std::string file;
+    std::string names;                 // the first few
+    std::vector<std::string> messages; // the first few
+    std::size_t count = 0;
+  };
+
+  void AppendWarnings();
   void WalkFile(const std::string& path, int parent, int depth);
   const VrmlFile& Open(const std::string& path);
 
@@ -58,6 +69,7 @@ private:
   std::map<Key, int> Meshes_; // -1: empty
   std::map<Key, int> Materials_;
   std::set<std::string> Warned_;
+  std::vector<Warnings> Warnings_; // in the order of each kind's first
   std::size_t Steps_ = 0;
   std::size_t Triangles_ = 0;
 };
