@@ -14,6 +14,7 @@
 #include <dspace/render/CornerAxes.h>
 #include <dspace/render/LabelPicture.h>
 #include <dspace/render/TextTables.h>
+#include <dspace/render/ViewportLimits.h>
 #include <dspace/render/VtkErrors.h>
 
 using dspace::Error;
@@ -21,16 +22,6 @@ using dspace::Error;
 vtkStandardNewMacro(vtkDspaceViewport);
 
 namespace {
-
-constexpr int MaximumSize = 16384;
-
-void CheckSize(const std::string& viewport, int width, int height) {
-  if (width < 1 || height < 1 || width > MaximumSize || height > MaximumSize) {
-    throw Error(Error::Kind::InvalidArgument, viewport,
-                "size " + std::to_string(width) + " x " + std::to_string(height) +
-                    " is refused; 1 to " + std::to_string(MaximumSize) + " pixels a side");
-  }
-}
 
 void CheckColor(const std::string& viewport, const std::array<double, 3>& color) {
   for (const double c : color) {
@@ -127,17 +118,20 @@ void vtkDspaceViewport::PrintSelf(ostream& os, vtkIndent indent) {
 
 void vtkDspaceViewport::Initialize(vtkDspaceRenderContext* context,
                                    std::shared_ptr<dspace::Scene> scene, const std::string& name,
-                                   const std::string& vantage, int width, int height) {
+                                   const std::string& vantage, int width, int height, int samples) {
   Internals& self = *this->Impl;
-  CheckSize("viewport '" + name + "'", width, height);
+  const std::string object = "viewport '" + name + "'";
+  dspace::CheckSize(object, width, height);
   scene->Vantage(vantage); // refuses one that does not exist
   context->Initialize();
+  dspace::CheckSamples(*context->GetHub(), object, width, height, samples);
   self.context = context;
   self.scene = std::move(scene);
   self.name = name;
   self.vantage = vantage;
   self.width = width;
   self.height = height;
+  self.samples = samples;
   self.picture.Connect(context);
 }
 
@@ -192,10 +186,11 @@ void vtkDspaceViewport::SetCamera(const std::string& camera) {
 
 void vtkDspaceViewport::Resize(int width, int height) {
   Internals& self = *this->Impl;
-  CheckSize(self.Object(), width, height);
+  dspace::CheckSize(self.Object(), width, height);
   if (width == self.width && height == self.height) {
     return;
   }
+  dspace::CheckSamples(*self.context->GetHub(), self.Object(), width, height, self.samples);
   self.width = width;
   self.height = height;
   self.ViewChanged();
@@ -214,11 +209,13 @@ void vtkDspaceViewport::SetBackground(const std::array<double, 3>& bottom,
   this->Impl->stale = true;
 }
 
+void vtkDspaceViewport::RequireSamples(int samples) const {
+  const Internals& self = *this->Impl;
+  dspace::CheckSamples(*self.context->GetHub(), self.Object(), self.width, self.height, samples);
+}
+
 void vtkDspaceViewport::SetSamples(int samples) {
-  if (samples < 1 || samples > 8) {
-    throw Error(Error::Kind::InvalidArgument, this->Impl->Object(),
-                "samples " + std::to_string(samples) + " is refused; 1 to 8");
-  }
+  this->RequireSamples(samples);
   this->Impl->samples = samples;
   this->Impl->stale = true;
 }

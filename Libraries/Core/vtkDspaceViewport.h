@@ -47,10 +47,12 @@ public:
   void Invalidate();
 
 #ifndef __VTK_WRAP__
-  /// Connects the viewport; to be called once, before anything else. Size 1 to 16384 a side.
+  /// Connects the viewport; to be called once, before anything else. Size 1 to 16384 a side; size
+  /// times samples as far as OpenGL draws (GL_MAX_TEXTURE_SIZE a side) and up to 2^28 in all.
   /// Throws Error(InvalidArgument) naming the viewport and the size.
   void Initialize(vtkDspaceRenderContext* context, std::shared_ptr<dspace::Scene> scene,
-                  const std::string& name, const std::string& vantage, int width, int height);
+                  const std::string& name, const std::string& vantage, int width, int height,
+                  int samples = 2);
   const std::string& GetName() const;
   std::shared_ptr<dspace::Scene> GetScene() const;
   const std::string& GetVantage() const;
@@ -65,6 +67,7 @@ public:
   void SetBackground(const std::array<double, 3>& bottom, const std::array<double, 3>& top);
   /// Supersampling: n × n samples a pixel, 1 to 8 (default 2): each sample is shaded.
   void SetSamples(int samples);
+  void RequireSamples(int samples) const; // throws as SetSamples() would
   int GetSamples() const;
   void SetOrnamentsVisible(bool visible);
   void SetFragmentVisible(const std::string& fragment, bool visible); // in this viewport only

@@ -2,6 +2,9 @@
 // redrawn.
 #include "RenderingTestSupport.h"
 
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkTextureObject.h"
+
 using namespace dspace;
 
 namespace {
@@ -174,6 +177,55 @@ TEST_F(RenderingTest, APhysicalPictureKnowsNothingOfOrnaments) {
   const Capture full = with.first->GetCapture({true, false, true, false, {}});
   EXPECT_NE(full.color, a.color);
   EXPECT_GT(std::count(full.label.begin(), full.label.end(), arrow), 0);
+}
+
+TEST_F(RenderingTest, RefusesMoreSamplesThanCanBeDrawnBeforeAnythingChanges) {
+  Look({});
+  auto viewport = View(50, 40, 1);
+  int side = 0;
+  viewport->Run([&](vtkRenderWindow* window) {
+    side = vtkTextureObject::GetMaximumTextureSize(vtkOpenGLRenderWindow::SafeDownCast(window));
+  });
+  ASSERT_GE(side, 8192);
+  const int wide = std::min(side, 16384); // at one sample a pixel, not at two
+  const auto refused = [&](const std::string& name, const std::string& size, auto&& f) {
+    try {
+      f();
+      ADD_FAILURE() << "accepted, not refused with " << size;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.GetKind(), Error::Kind::InvalidArgument);
+      for (const std::string& part :
+           {"viewport '" + name + "'", size, std::to_string(side) + " a side",
+            std::string("samples=1, or a smaller size")}) {
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+      }
+    }
+  };
+  const std::string tall = std::to_string(wide) + " x 9";
+  // With as many samples as it takes to pass the limit.
+  const int many = side / wide + 1;
+  const auto fresh = [&](int samples) {
+    auto made = vtkSmartPointer<vtkDspaceViewport>::New();
+    made->Initialize(context, scene, "fresh", "main", wide, 9, samples);
+    return made;
+  };
+  refused("fresh", tall, [&] { fresh(many); });
+  EXPECT_NO_THROW(fresh(1)->GetCapture({}));
+  viewport->SetSamples(many);
+  refused("view", tall, [&] { viewport->Resize(wide, 9); });
+  EXPECT_EQ(viewport->GetWidth(), 50);
+  viewport->SetSamples(1);
+  viewport->Resize(wide, 9);
+  refused("view", tall, [&] { viewport->SetSamples(many); });
+  EXPECT_EQ(viewport->GetSamples(), 1);
+  EXPECT_EQ(viewport->GetCapture({}).width, wide);
+  // Sides that pass, and too many in all.
+  viewport->Resize(16, 16);
+  viewport->SetSamples(8);
+  if (side > 16384) {
+    EXPECT_THROW(viewport->Resize(side / 8, side / 8), Error);
+    EXPECT_EQ(viewport->GetHeight(), 16);
+  }
 }
 
 TEST_F(RenderingTest, RefusesBadSizesAndRepeatsItselfToTheByte) {

@@ -100,7 +100,13 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   vtkDspaceHubWindow* hub = this->Context_->GetHub();
   VtkErrorTrap trap;
   hub->MakeCurrent();
-  this->PrepareTargets(view.width / samples, view.height / samples, samples);
+  try {
+    this->PrepareTargets(view.width / samples, view.height / samples, samples);
+  } catch (const Error& error) { // no memory, as the size itself was checked
+    throw Error(error.GetKind(), object,
+                std::string(error.what()) + " or, with " + std::to_string(samples) + " x " +
+                    std::to_string(samples) + " samples a pixel, for fewer (samples=1)");
+  }
   RenderStatistics& statistics = this->Context_->CountStatistics();
   if (!this->Drawer_) {
     this->Drawer_ = std::make_unique<SceneDrawer>(hub, this->Context_->GetStore(), statistics);

@@ -11,29 +11,31 @@
 #include "vtkVectorText.h"
 
 #include <dspace/Error.h>
-#include <dspace/scene/MeshBuilder.h>
+#include <dspace/render/Fonts.h>
+#include <dspace/scene/Checks.h>
+#include <dspace/scene/TextCharacters.h>
 #include <dspace/scene/TextLimits.h>
 
 namespace dspace {
 namespace {
 
-void RequireText(const std::string& text) {
+void RequireText(const std::string& object, const std::string& text) {
   if (text.find_first_not_of(" \t\n") == std::string::npos) {
-    throw Error(Error::Kind::InvalidArgument, "text",
-                "is empty; at least one visible character is needed");
+    Refuse(object, "is empty; at least one visible character is needed");
   }
-  RequireTextLength("text '" + text.substr(0, 40) + "...'", "it", text);
+  RequireTextLength(object, "it", text);
+  RequirePlainText(object, "it", text, true);
 }
 
 } // namespace
 
 Mesh MakeTextMesh(const std::string& text, double height) {
-  RequireText(text);
-  RequireLength("text '" + text + "'", "height", height);
+  const std::string object = "text " + QuotedText(text);
+  RequireText(object, text);
+  RequireLength(object, "height", height);
   for (const char letter : text) { // the font's outlines end with ASCII; others would be left out
     if (letter != '\n' && (letter < ' ' || letter > '~')) {
-      throw Error(Error::Kind::InvalidArgument, "text '" + text + "'",
-                  "has letters without an outline; accepted: those of ASCII (labels take any)");
+      Refuse(object, "has letters without an outline; accepted: those of ASCII (labels take more)");
     }
   }
   vtkNew<vtkVectorText> letters;
@@ -64,13 +66,14 @@ Mesh MakeTextMesh(const std::string& text, double height) {
 }
 
 Part MakeLabel(const std::string& text, const LabelStyle& style) {
-  RequireText(text);
+  const std::string object = "label " + QuotedText(text);
+  RequireText(object, text);
+  RequireGlyphs(object, "it", text, Font::Sans);
   if (style.fontSize < 4 || style.fontSize > 200) {
-    throw Error(Error::Kind::InvalidArgument, "label '" + text + "'",
-                "font size " + std::to_string(style.fontSize) + " is refused; 4 to 200 pixels");
+    Refuse(object, "font size " + std::to_string(style.fontSize) + " is refused; 4 to 200 pixels");
   }
   vtkNew<vtkTextProperty> look;
-  look->SetFontFamilyToArial();
+  UseFont(look, Font::Sans);
   look->SetFontSize(style.fontSize);
   look->SetColor(style.color[0], style.color[1], style.color[2]);
   look->SetBackgroundColor(style.background[0], style.background[1], style.background[2]);
@@ -78,15 +81,14 @@ Part MakeLabel(const std::string& text, const LabelStyle& style) {
   int box[4] = {0, -1, 0, -1};
   vtkTextRenderer::GetInstance()->GetBoundingBox(look, vtkStdString(text), box, 72,
                                                  vtkTextRenderer::FreeType);
-  RequireTextPicture("label '" + text + "'", box[1] - box[0] + 1.0, box[3] - box[2] + 1.0);
+  RequireTextPicture(object, box[1] - box[0] + 1.0, box[3] - box[2] + 1.0);
   vtkNew<vtkImageData> picture;
   int size[2] = {0, 0};
   // 72 dots an inch: font sizes are pixels. (vtkFreeTypeTools itself leaves out what is not ASCII.)
   if (!vtkTextRenderer::GetInstance()->RenderString(look, vtkStdString(text), picture, size, 72,
                                                     vtkTextRenderer::FreeType) ||
       size[0] < 1 || size[1] < 1 || picture->GetNumberOfScalarComponents() != 4) {
-    throw Error(Error::Kind::InvalidArgument, "label '" + text + "'",
-                "could not be drawn; UTF-8 text is accepted");
+    throw Error(Error::Kind::Internal, object, "could not be drawn");
   }
   const int* extent = picture->GetExtent();
   const int stored[2] = {extent[1] - extent[0] + 1, extent[3] - extent[2] + 1};

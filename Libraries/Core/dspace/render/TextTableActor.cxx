@@ -6,6 +6,7 @@
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
 
+#include <dspace/render/Fonts.h>
 #include <dspace/scene/TextLimits.h>
 
 namespace dspace {
@@ -42,8 +43,7 @@ vtkSmartPointer<vtkTextActor> MakeTextTableActor(const TextTable& table, int wid
   actor->SetInput(TextOf(table).c_str());
   actor->SetTextScaleModeToNone();
   vtkTextProperty* look = actor->GetTextProperty();
-  look->SetFontFamilyToCourier();
-  look->SetBold(1);
+  UseFont(look, Font::Mono);
   look->SetFontSize(table.fontSize);
   look->SetColor(table.textColor[0], table.textColor[1], table.textColor[2]);
   look->SetOpacity(table.textColor[3]);

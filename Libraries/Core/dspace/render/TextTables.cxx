@@ -3,7 +3,9 @@
 #include "vtkRenderer.h"
 #include "vtkTextActor.h"
 
+#include <dspace/render/Fonts.h>
 #include <dspace/render/TextTableActor.h>
+#include <dspace/scene/TextCharacters.h>
 
 namespace dspace {
 
@@ -12,6 +14,13 @@ bool TextTables::Set(const TextTable& table, vtkRenderer* overlay, int width, in
   const auto found = this->Placed_.find(table.name);
   if (found != this->Placed_.end() && found->second.table == table) {
     return false;
+  }
+  const std::string object = "text table '" + table.name + "'";
+  RequireGlyphs(object, "its title", table.title, Font::Mono);
+  for (const auto& row : table.rows) {
+    RequireGlyphs(object, "a label", row.first, Font::Mono);
+    RequireGlyphs(object, ("the value of " + QuotedText(row.first)).c_str(), row.second,
+                  Font::Mono);
   }
   auto actor = MakeTextTableActor(table, width, height);
   if (found != this->Placed_.end()) {

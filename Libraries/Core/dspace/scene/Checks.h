@@ -52,6 +52,11 @@ inline void RequirePosition(const std::string& object, const char* what, const E
   }
 }
 
+// Lengths that stay well inside a float, squares too.
+inline void RequireLength(const std::string& object, const char* what, double value) {
+  Require(value >= 1e-9 && value <= 1e15, object, what, value, "1e-9 to 1e15 metres");
+}
+
 // In [0, 1]: colours, opacities.
 inline void RequireFraction(const std::string& object, const char* what, double value) {
   Require(value >= 0.0 && value <= 1.0, object, what, value, "0 to 1");

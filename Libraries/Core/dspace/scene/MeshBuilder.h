@@ -15,11 +15,6 @@
 
 namespace dspace {
 
-// Lengths that stay well inside a float, squares too.
-inline void RequireLength(const std::string& object, const char* what, double value) {
-  Require(value >= 1e-9 && value <= 1e15, object, what, value, "1e-9 to 1e15 metres");
-}
-
 inline void RequireResolution(const std::string& object, int resolution) {
   Require(resolution >= 3 && resolution <= 1024, object, "resolution", resolution, "3 to 1024");
 }

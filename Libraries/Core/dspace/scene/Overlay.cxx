@@ -1,5 +1,6 @@
 #include <dspace/scene/Overlay.h>
 
+#include <dspace/scene/TextCharacters.h>
 #include <dspace/scene/TextLimits.h>
 
 namespace dspace {
@@ -14,16 +15,21 @@ void TextTable::Check() const {
     Refuse(object, "it has " + std::to_string(2 * this->rows.size()) + " cells; accepted: up to " +
                        std::to_string(MaximumTableCells));
   }
-  RequireTextLength(object, "its title", this->title);
+  // A line break or a tab would push the columns out of line.
+  const auto require = [&](const char* what, const std::string& text) {
+    RequireTextLength(object, what, text);
+    RequirePlainText(object, what, text, false);
+  };
+  require("its title", this->title);
   std::size_t label = 0;
   std::size_t value = 0;
   for (const auto& row : this->rows) {
-    RequireTextLength(object, "a label", row.first);
-    RequireTextLength(object, "a value", row.second);
+    require("a label", row.first);
+    require(("the value of " + QuotedText(row.first)).c_str(), row.second);
     label = std::max(label, CharacterCount(row.first));
     value = std::max(value, CharacterCount(row.second));
   }
-  // Courier: a letter is 0.6 of the font size wide, a line about 1.2 high.
+  // The font is monospaced: a letter is 0.6 of the font size wide, a line about 1.2 high.
   const std::size_t line = std::max(label + value + 2, CharacterCount(this->title)) + 2;
   RequireTextPicture(object, 0.6 * this->fontSize * double(line),
                      1.2 * this->fontSize * double(this->rows.size() + 1));

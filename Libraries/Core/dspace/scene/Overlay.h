@@ -14,7 +14,8 @@ namespace dspace {
 struct TextTable {
   enum class Anchor { TopLeft, TopRight, BottomLeft, BottomRight };
   std::string name; // unique in the viewport
-  // UTF-8, up to 4,096 characters a text and 1,000 cells.
+  // UTF-8 without line breaks, tabs and other control characters, up to 4,096 characters a text and
+  // 1,000 cells.
   std::string title;                                     // empty: no title line
   std::vector<std::pair<std::string, std::string>> rows; // label, value
   Anchor anchor = Anchor::TopLeft;

@@ -35,10 +35,6 @@ void RequireCamera(const Scene& scene, const std::string& vantage, const std::st
   }
 }
 
-void RequireSamples(const std::string& label, std::uint32_t samples) {
-  Require(samples >= 1 && samples <= 8, label, "samples", samples, "1 to 8");
-}
-
 } // namespace
 
 ViewportCommands::ViewportCommands() = default;
@@ -85,17 +81,12 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
                 "there is a viewport of this name already");
   }
   RequireCamera(context.TheScene(), vantage, command.camera());
-  if (command.has_samples()) {
-    RequireSamples(Label(name), command.samples());
-  }
   auto viewport = vtkSmartPointer<vtkDspaceViewport>::New();
+  const int samples = command.has_samples() ? ToSize(command.samples()) : viewport->GetSamples();
   viewport->Initialize(this->GetRenderContext(), context.scene->scene, name, vantage,
-                       ToSize(command.width()), ToSize(command.height()));
+                       ToSize(command.width()), ToSize(command.height()), samples);
   if (!command.camera().empty()) {
     viewport->SetCamera(command.camera());
-  }
-  if (command.has_samples()) {
-    viewport->SetSamples(int(command.samples()));
   }
   viewport->SetVisible(!command.hidden());
   command.set_name(name);
@@ -138,7 +129,7 @@ void ViewportCommands::Set(const Context& context, v1::SetViewport& command) {
   const Scene& scene = *viewport.GetScene();
   RequireCamera(scene, vantage, camera);
   if (command.has_samples()) {
-    RequireSamples(label, command.samples());
+    viewport.RequireSamples(ToSize(command.samples()));
   }
   std::array<double, 3> bottom = place.background;
   std::array<double, 3> top = place.backgroundTop;

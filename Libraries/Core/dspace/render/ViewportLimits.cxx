@@ -1,0 +1,55 @@
+#include <dspace/render/ViewportLimits.h>
+
+#include <algorithm>
+
+#include "vtk_glew.h"
+
+#include "vtkDspaceHubWindow.h"
+
+#include <dspace/scene/Checks.h>
+
+namespace dspace {
+namespace {
+
+constexpr int MaximumSize = 16384;
+constexpr int MaximumSamples = 8;
+constexpr long long MaximumPicture = 1LL << 28; // samples: 2 GiB of colour and depth
+
+template<class T> std::string Times(T a, T b) {
+  return std::to_string(a) + " x " + std::to_string(b);
+}
+
+} // namespace
+
+void CheckSize(const std::string& viewport, int width, int height) {
+  if (width < 1 || height < 1 || width > MaximumSize || height > MaximumSize) {
+    Refuse(viewport, "size " + Times(width, height) + " is refused; 1 to " +
+                         std::to_string(MaximumSize) + " pixels a side");
+  }
+}
+
+void CheckSamples(vtkDspaceHubWindow& window, const std::string& viewport, int width, int height,
+                  int samples) {
+  if (samples < 1 || samples > MaximumSamples) {
+    Refuse(viewport, "samples " + std::to_string(samples) + " is refused; 1 to " +
+                         std::to_string(MaximumSamples));
+  }
+  window.MakeCurrent();
+  GLint texture = 0;
+  GLint area[2] = {0, 0};
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, area);
+  const long long side = std::min({texture, area[0], area[1]});
+  const long long across = static_cast<long long>(width) * samples;
+  const long long down = static_cast<long long>(height) * samples;
+  if (across > side || down > side || across * down > MaximumPicture) {
+    Refuse(viewport,
+           "size " + Times(width, height) + " with " + Times(samples, samples) +
+               " samples a pixel is refused, as that makes " + Times(across, down) +
+               " samples; accepted: up to " + std::to_string(side) +
+               " a side, which is what this OpenGL draws, and " + std::to_string(MaximumPicture) +
+               " in all: " + (samples > 1 ? "samples=1, or a smaller size" : "a smaller size"));
+  }
+}
+
+} // namespace dspace
