@@ -1,7 +1,9 @@
 // Rasters that GDAL opens: scale, offset, unit, no-data, place; and those that are refused.
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <limits>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -293,6 +295,36 @@ TEST_F(Raster, IsisCubeHoldsRadii) {
   // gdalinfo: DN -15622 to 18282; radius = 0.5 DN + 1737400.
   EXPECT_EQ(*std::min_element(h.begin(), h.end()), -7811.0);
   EXPECT_EQ(*std::max_element(h.begin(), h.end()), 9141.0);
+}
+
+TEST_F(Raster, HeightsThatNoGroundHasAreSuspected) {
+  const dspace::testing::TemporaryFolder folder;
+  const auto warned = [&](const std::function<double(int, int, int)>& value,
+                          std::optional<double> scale = {}) {
+    RasterFile file = this->File();
+    file.value = value;
+    GridTerrainOptions options;
+    options.elevation.verticalScale = scale;
+    std::string all;
+    for (const std::string& warning :
+         GridTerrain::Load(file.Write(folder / "steep.tif"), options)->GetWarnings())
+      all += warning;
+    return all.find("vertical_scale (metres a unit)") != std::string::npos;
+  };
+  // Planes on pixels of 2 m, below and above 60 degrees.
+  const auto plane = [](double slope_deg) {
+    const double rise = 2.0 * std::tan(slope_deg * M_PI / 180.0);
+    return [rise](int c, int, int) { return c == 0 ? NaN : rise * c; };
+  };
+  EXPECT_FALSE(warned(plane(59.5)));
+  EXPECT_TRUE(warned(plane(60.5)));
+  EXPECT_FALSE(warned(plane(60.5), 0.9)); // what it asks for cures it
+  // One needle on a plain of 14 x 10 m, below and above twice its length.
+  const auto needle = [](double height) {
+    return [height](int c, int r, int) { return c == 4 && r == 3 ? height : 0.0; };
+  };
+  EXPECT_FALSE(warned(needle(27.0)));
+  EXPECT_TRUE(warned(needle(29.0)));
 }
 
 TEST_F(Raster, KilometresAreGivenByHandOrSuspected) {

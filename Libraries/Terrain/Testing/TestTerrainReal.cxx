@@ -125,6 +125,16 @@ TEST(RealTerrain, GaleByHirise) {
   const Eigen::Vector3d iau = terrain->MapToCrs(map, dspace::Crs::FromText("IAU_2015:49900"));
   EXPECT_NEAR(iau.x(), 137.31 + 1387.0 / 3396190.0 * 180.0 / M_PI, 1e-9);
   EXPECT_LT((terrain->CrsToMap(iau, dspace::Crs::FromText("IAU_2015:49900")) - map).norm(), 1e-6);
+  // Its numbers taken for metres: 65 km over 1 km, said of these and not of the heights by hand.
+  const auto suspected = [](const GridTerrain& t) {
+    bool said = false;
+    for (const std::string& warning : t.GetWarnings())
+      said = said || warning.find("span 6.554e+04 m") != std::string::npos;
+    return said;
+  };
+  EXPECT_TRUE(suspected(*GridTerrain::Load(path)));
+  for (const std::string& warning : terrain->GetWarnings())
+    EXPECT_EQ(warning.find("vertical_scale"), std::string::npos) << warning;
 }
 
 TEST(RealTerrain, LunarNorthPole) {

@@ -75,6 +75,34 @@ void WarnOfFlatness(const GridTerrain& terrain, std::vector<std::string>& warnin
                        "1000");
 }
 
+// Numbers that are no metres stand as needles. Loose ground lies at 35 degrees at most: a wall may
+// stand steeper, but no half of a map at 60.
+void WarnOfSteepness(const GridTerrain& terrain, std::vector<std::string>& warnings) {
+  const HeightGrid& grid = terrain.Grid();
+  const int columns = grid.GetColumns() - 1, rows = grid.GetRows() - 1;
+  const int step = 1 + std::max(columns, rows) / 300; // at most 90,000 of them
+  std::vector<double> slopes;
+  for (int r = 0; r < rows; r += step)
+    for (int c = 0; c < columns; c += step) {
+      const HeightGrid::Facet facet = grid.FacetAt({c + 0.25, r + 0.75});
+      if (facet.valid)
+        slopes.push_back(grid.Slope(facet));
+    }
+  if (slopes.empty())
+    return;
+  const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
+  std::nth_element(slopes.begin(), middle, slopes.end());
+  const Eigen::AlignedBox3d box = terrain.GetBounds().scene;
+  if (*middle <= 60.0 && box.sizes().z() <= 2.0 * box.sizes().head<2>().maxCoeff())
+    return;
+  std::ostringstream out;
+  out.precision(4);
+  out << "its heights span " << box.sizes().z() << " m over " << box.sizes().x() << " x "
+      << box.sizes().y() << " m, and half of its slopes are above " << *middle
+      << " degrees: if its values are no metres, state vertical_scale (metres a unit)";
+  warnings.push_back(out.str());
+}
+
 } // namespace
 
 GridTerrain::GridTerrain(const std::string& name, int columns, int rows,
@@ -114,6 +142,7 @@ std::shared_ptr<const GridTerrain> GridTerrain::Load(const std::string& path,
       info.verticalDatum, options.origin, options.originHeight, std::move(warnings));
   std::vector<std::string> late;
   WarnOfFlatness(*terrain, late);
+  WarnOfSteepness(*terrain, late);
   for (std::string& warning : late)
     terrain->AddWarning(std::move(warning));
   return terrain;
