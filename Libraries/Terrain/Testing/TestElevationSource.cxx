@@ -298,16 +298,15 @@ TEST_F(Raster, IsisCubeHoldsRadii) {
 }
 
 TEST_F(Raster, HeightsThatNoGroundHasAreSuspected) {
-  const dspace::testing::TemporaryFolder folder;
   const auto warned = [&](const std::function<double(int, int, int)>& value,
                           std::optional<double> scale = {}) {
     RasterFile file = this->File();
     file.value = value;
     GridTerrainOptions options;
     options.elevation.verticalScale = scale;
+    const auto terrain = GridTerrain::Load(file.Write(this->Folder / "steep.tif"), options);
     std::string all;
-    for (const std::string& warning :
-         GridTerrain::Load(file.Write(folder / "steep.tif"), options)->GetWarnings())
+    for (const std::string& warning : terrain->GetWarnings())
       all += warning;
     return all.find("vertical_scale (metres a unit)") != std::string::npos;
   };
