@@ -47,13 +47,12 @@ TEST(FrameEvents, TellEachChangeOnce) {
   const FrameId c = tree.Create(RootFrame, "c");
   last();
 
-  const FrameId ids[] = {c, b, a, b};
+  const FrameId ids[] = {c, b, a};
   std::vector<double> rows;
   AppendRow(rows, Shift(1));
   AppendRow(rows, Shift(2));
   AppendRow(rows, Pose()); // as it is already
-  AppendRow(rows, Shift(3));
-  tree.SetLocalPoses(ids, rows.data(), 4);
+  tree.SetLocalPoses(ids, rows.data(), 3);
   EXPECT_EQ(last(), (FrameEvent{Type::PosesChanged, {b, c}, 4}));
   tree.SetLocalPoses(ids, rows.data() + 8, 1);
   EXPECT_EQ(last(), (FrameEvent{Type::PosesChanged, {c}, 5}));
@@ -177,4 +176,50 @@ TEST(FrameEvents, AThrowingListenerHarmsNeitherTreeNorOthers) {
   EXPECT_EQ(after.events.size(), 5u);
   change(tree, [&] { tree.Remove(ids[1]); });
   EXPECT_EQ(tree.Size(), 1u);
+}
+
+TEST(FrameEvents, AListenerThatAlwaysChangesIsStopped) {
+  FrameTree tree;
+  Recorder after;
+  const FrameId a = tree.Create(RootFrame, "a");
+  int calls = 0;
+  const auto token =
+      tree.AddListener([&](const FrameEvent&) { tree.SetLocalPose(a, Shift(++calls)); });
+  tree.AddListener(after.Listener());
+  const auto run = [&](const char* listener) {
+    calls = 0;
+    after.events.clear();
+    try {
+      tree.SetLocalPose(a, Shift(-1));
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.GetKind(), Error::Kind::Resource);
+      EXPECT_NE(std::string(error.what()).find(listener), std::string::npos) << error.what();
+    }
+  };
+  run("frame listener 1: ");
+  EXPECT_EQ(calls, FrameNotifier::MaximumRounds + 1);
+  EXPECT_EQ(after.events.size(), std::size_t(calls) + 1); // who causes nothing hears everything
+  EXPECT_EQ(tree.LocalPose(a), Shift(calls));
+  run("frame listener 1: "); // it is heard again by the next change
+
+  // Two of them double their events each round: a bound on rounds alone would not do.
+  tree.AddListener([&](const FrameEvent&) { tree.SetLocalPose(a, Shift(++calls)); });
+  run("frame listener ");
+  EXPECT_GT(calls, FrameNotifier::MaximumCaused);
+  EXPECT_LT(calls, 3 * FrameNotifier::MaximumCaused);
+  EXPECT_TRUE(tree.RemoveListener(token));
+}
+
+TEST(FrameEvents, AnswersThatComeToAnEndAreLeftAlone) {
+  FrameTree tree;
+  Recorder after;
+  tree.AddListener([&](const FrameEvent& event) {
+    if (tree.Size() < 101) { // a chain, a round each
+      tree.Create(event.ids.front(), "child");
+    }
+  });
+  tree.AddListener(after.Listener());
+  tree.Create(RootFrame, "a");
+  EXPECT_EQ(after.events.size(), 100u);
 }

@@ -307,15 +307,28 @@ TEST(FramePoses, AreStoredNormalisedAndStayTheSameWhenSetAgain) {
   }
 }
 
-TEST(FramePoses, LastRowOfAFrameCounts) {
+TEST(FramePoses, AFrameComesOnce) {
   FrameTree tree;
   const FrameId a = tree.Create(RootFrame, "a");
-  const FrameId ids[] = {a, a};
+  const FrameId b = tree.Create(RootFrame, "b");
+  const FrameId ids[] = {a, b, a};
   std::vector<double> rows;
   AppendRow(rows, Shift(1));
   AppendRow(rows, Shift(2));
+  AppendRow(rows, Shift(3));
+  for (int i = 0; i < 2; ++i) { // a refused call leaves nothing behind for the next one
+    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'", "twice", "rows 0 and 2"},
+                  [&] { tree.SetLocalPoses(ids, rows.data(), 3); });
+  }
+  ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'", "rows 0 and 1"}, [&] {
+    const FrameId same[] = {a, a};
+    tree.SetLocalPoses(same, rows.data(), 2);
+  });
   tree.SetLocalPoses(ids, rows.data(), 2);
-  EXPECT_EQ(tree.LocalPose(a), Shift(2));
+  tree.SetLocalPoses(ids, rows.data(), 1);
+  tree.SetLocalPoses(ids + 1, rows.data() + 8, 2); // frames and slots that other calls had
+  EXPECT_EQ(tree.LocalPose(a), Shift(3));
+  EXPECT_EQ(tree.LocalPose(b), Shift(2));
 }
 
 TEST(FrameEvaluation, HappensOnceAndOnlyWhereSomethingChanged) {

@@ -200,7 +200,20 @@ TEST(FrameTree, RefusesBadNames) {
       {"/", "'/'"},
       {"line\nbreak", "'line\\x0abreak'"},
       {std::string("nul\0byte", 8), "'nul\\x00byte'"},
-      {"\x7f", "'\\x7f'"}};
+      {"\x7f", "'\\x7f'"},
+      {".", "'.'"},
+      {"..", "'..'"},
+      {std::string(256, 'n'), "nnn...', 256 bytes long"},
+      // Sixty bytes would end within a letter: two bytes each, after one of one.
+      {"a" +
+           [] {
+             std::string letters;
+             for (int i = 0; i < 500000; ++i) {
+               letters += "\u00e9";
+             }
+             return letters;
+           }(),
+       "\u00e9...', 1000001 bytes long"}};
   for (const auto& [name, shown] : bad) {
     ExpectRefused(tree, Kind::InvalidArgument, {"child of frame 'a'", shown},
                   [&] { tree.Create(a, name); });
@@ -211,7 +224,8 @@ TEST(FrameTree, RefusesBadNames) {
   ExpectRefused(tree, Kind::AlreadyExists, {"frame 'a/c'"}, [&] { tree.Rename(b, "c"); });
   ExpectRefused(tree, Kind::AlreadyExists, {"frame 'b'"},
                 [&] { tree.Reparent(b, RootFrame, false); });
-  for (const char* good : {" ", ".", "..", "mât", "a b", "left\\right"}) {
+  for (const std::string& good : std::vector<std::string>{" ", "...", ".a", "mât", "a b",
+                                                          "left\\right", std::string(255, 'n')}) {
     EXPECT_EQ(tree.Find(good), NoFrame);
     EXPECT_EQ(tree.Name(tree.Create(RootFrame, good)), good);
   }

@@ -6,8 +6,11 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include <dspace/Error.h>
 
 namespace dspace {
 
@@ -32,14 +35,20 @@ struct FrameEvent {
 // effect at once, and its event follows when the present one has reached everybody.
 // A listener that throws stops neither the others nor the events that wait; the first exception is
 // rethrown to whoever made the change, which stays made.
+// Changes that cause changes come to an end: a listener whose changes answer events for more than
+// MaximumRounds rounds, or whose change is beyond the MaximumCaused-th in one delivery, hears
+// nothing more until the delivery ends, which it then does with Error(Resource). The others hear
+// everything.
 class FrameNotifier {
 public:
   using Listener = std::function<void(const FrameEvent&)>;
   using Token = std::uint64_t; // never 0, never reused
+  static constexpr int MaximumRounds = 100;
+  static constexpr int MaximumCaused = 100000;
 
   // The listener hears every event that is emitted from now on.
   Token Add(Listener listener) {
-    this->Entries_.push_back({++this->LastToken_, std::move(listener), true});
+    this->Entries_.push_back({++this->LastToken_, std::move(listener), true, false});
     return this->LastToken_;
   }
 
@@ -61,21 +70,36 @@ public:
   bool HasListeners() const { return !this->Entries_.empty(); }
 
   void Emit(FrameEvent event) {
-    this->Queue_.push_back({std::move(event), this->LastToken_});
-    if (this->Delivering_) {
-      return; // the delivery that is under way comes to it
+    if (this->Delivering_) { // the delivery that is under way comes to it
+      this->Queue_.push_back(
+          {std::move(event), this->LastToken_, this->Round_ + 1, this->Calling_});
+      ++this->Caused_;
+      return;
     }
+    this->Queue_.push_back({std::move(event), this->LastToken_, 0, 0});
+    this->Caused_ = 0;
     this->Delivering_ = true;
     std::exception_ptr first;
     while (!this->Queue_.empty()) {
       const Pending pending = std::move(this->Queue_.front());
       this->Queue_.pop_front();
+      this->Round_ = pending.round;
+      const bool endless = pending.round > MaximumRounds || this->Caused_ > MaximumCaused;
+      if (endless && pending.cause != 0 && this->Silence(pending.cause) && !first) {
+        first = std::make_exception_ptr(
+            Error(Error::Kind::Resource, "frame listener " + std::to_string(pending.cause),
+                  "its changes cause further ones without end (round " +
+                      std::to_string(pending.round) + ", " + std::to_string(this->Caused_) +
+                      " changes); accepted: up to " + std::to_string(MaximumRounds) +
+                      " rounds and " + std::to_string(MaximumCaused) + " changes"));
+      }
       // By index: push_back leaves references into a deque valid, and nothing is erased meanwhile.
       for (std::size_t i = 0; i < this->Entries_.size(); ++i) {
         Entry& entry = this->Entries_[i];
-        if (!entry.alive || entry.token > pending.lastToken) {
+        if (!entry.alive || entry.silent || entry.token > pending.lastToken) {
           continue;
         }
+        this->Calling_ = entry.token;
         try {
           entry.listener(pending.event);
         } catch (...) {
@@ -87,6 +111,7 @@ public:
     }
     this->Delivering_ = false;
     for (auto it = this->Entries_.begin(); it != this->Entries_.end();) {
+      it->silent = false;
       it = it->alive ? it + 1 : this->Entries_.erase(it);
     }
     if (first) {
@@ -99,15 +124,31 @@ private:
     Token token;
     Listener listener;
     bool alive;
+    bool silent; // until the delivery that is under way ends
   };
   struct Pending {
     FrameEvent event;
     Token lastToken; // listeners that were added after the change do not hear of it
+    int round;       // 0 for the change from outside, else one more than of what it answers
+    Token cause;     // the listener that made the change, or 0
   };
+  // False when it is silent already.
+  bool Silence(Token token) {
+    for (Entry& entry : this->Entries_) {
+      if (entry.token == token && !entry.silent) {
+        entry.silent = true;
+        return true;
+      }
+    }
+    return false;
+  }
   std::deque<Entry> Entries_;
   std::deque<Pending> Queue_;
   Token LastToken_ = 0;
   bool Delivering_ = false;
+  int Round_ = 0;     // of the event that is delivered
+  Token Calling_ = 0; // the listener that hears it
+  int Caused_ = 0;    // events of listeners' changes in this delivery
 };
 
 } // namespace dspace

@@ -17,10 +17,15 @@ std::string Number(double value) {
   return text;
 }
 
-// For messages: control characters made visible.
+// For messages: control characters made visible, and of a long name only the beginning.
 std::string Quoted(const std::string& name) {
+  constexpr std::size_t Shown = 60;
+  std::size_t end = name.size() > MaximumFrameName ? Shown : name.size();
+  while (end < name.size() && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) {
+    --end; // not within a letter of UTF-8
+  }
   std::string text = "'";
-  for (const char c : name) {
+  for (const char c : name.substr(0, end)) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte < 32 || byte == 127) {
       char code[8];
@@ -30,22 +35,24 @@ std::string Quoted(const std::string& name) {
       text += c;
     }
   }
-  return text + "'";
+  return text + (end < name.size() ? "...', " + std::to_string(name.size()) + " bytes long," : "'");
 }
 
 } // namespace
 
 bool IsValidFrameName(const std::string& name) {
-  return !name.empty() && std::none_of(name.begin(), name.end(), [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return c == '/' || byte < 32 || byte == 127;
-  });
+  return !name.empty() && name.size() <= MaximumFrameName && name != "." && name != ".." &&
+         std::none_of(name.begin(), name.end(), [](char c) {
+           const auto byte = static_cast<unsigned char>(c);
+           return c == '/' || byte < 32 || byte == 127;
+         });
 }
 
 void RefuseFrameName(const std::string& object, const std::string& name) {
   throw Error(Error::Kind::InvalidArgument, object,
-              "the name " + Quoted(name) +
-                  " is not accepted: it must not be empty nor hold '/' or control characters");
+              "the name " + Quoted(name) + " is not accepted: it must have 1 to " +
+                  std::to_string(MaximumFrameName) +
+                  " bytes, be neither '.' nor '..', and hold no '/' and no control characters");
 }
 
 bool IsValidPosition(const Eigen::Vector3d& p) {

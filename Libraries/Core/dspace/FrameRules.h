@@ -2,6 +2,7 @@
 #ifndef DSPACE_FRAME_RULES_H
 #define DSPACE_FRAME_RULES_H
 
+#include <cstddef>
 #include <string>
 
 #include <dspace/Pose.h>
@@ -17,7 +18,11 @@ constexpr double MaximumCoordinate = 1e18;
 constexpr double MinimumScale = 1e-12;
 constexpr double MaximumScale = 1e12;
 
-// Not empty, holds no '/' and no control character (a byte below 32, or 127).
+// Names are at most so many bytes of UTF-8, as those of files are.
+constexpr std::size_t MaximumFrameName = 255;
+
+// 1 to MaximumFrameName bytes, neither "." nor "..", no '/' and no control character (a byte below
+// 32, or 127).
 bool IsValidFrameName(const std::string& name);
 
 // Throws Error(InvalidArgument) naming `object` and the name.

@@ -18,9 +18,9 @@ namespace dspace {
 // The root frame (id 1, name "root") always exists; its axes are the world's, it has no pose of its
 // own and cannot be removed, renamed, reparented or posed.
 //
-// Names are non-empty, hold no '/' and no control characters (bytes below 32, and 127), and differ
-// among siblings. A path joins names by '/', beginning below the root: "rover/mast/camera". The
-// root's own path is "/".
+// Names have 1 to 255 bytes, are neither "." nor "..", hold no '/' and no control characters (bytes
+// below 32, and 127), and differ among siblings. A path joins names by '/', beginning below the
+// root: "rover/mast/camera". The root's own path is "/".
 //
 // Poses: position within 1e18 m on each axis, scale 1e-12 to 1e12, quaternion unit within 1e-6
 // (FrameRules.h). A quaternion is stored normalised; one that is already unit to rounding is stored
@@ -77,7 +77,7 @@ public:
 
   void SetLocalPose(FrameId id, const Pose& X_PF);
   // n frames at once; `poses` holds n rows of px py pz qw qx qy qz scale. Every row is checked
-  // before any is applied. Where an id comes twice its last row counts.
+  // before any is applied. Throws InvalidArgument where an id comes twice.
   void SetLocalPoses(const FrameId* ids, const double* poses, std::size_t n);
 
   // X_PF.
@@ -169,7 +169,10 @@ private:
   mutable std::uint64_t Evaluations_ = 0;
   std::uint64_t ReportedRevision_ = 0; // of the last Update()
   std::vector<FrameId> Changed_;
-  std::vector<SlotIndex> BatchSlots_; // scratch of SetLocalPoses
+  // Scratch of SetLocalPoses: slots by row, and by slot in which row of which call it came last.
+  std::vector<SlotIndex> BatchSlots_;
+  std::vector<std::uint64_t> BatchRows_;
+  std::uint64_t BatchStart_ = 1; // what the present call's row 0 is in BatchRows_
   FrameNotifier Notifier_;
 };
 

@@ -26,9 +26,19 @@ void FrameTree::SetLocalPoses(const FrameId* ids, const double* poses, std::size
                 "the array of ids or of poses is missing");
   }
   this->BatchSlots_.resize(n);
+  this->BatchRows_.resize(this->Size(), 0);
+  const std::uint64_t start = this->BatchStart_;
+  this->BatchStart_ += n; // also when this call is refused
   for (std::size_t i = 0; i < n; ++i) {
     this->BatchSlots_[i] = this->FindSlot(ids[i]);
     this->RefuseRoot(ids[i], "posed");
+    std::uint64_t& row = this->BatchRows_[this->BatchSlots_[i]];
+    if (row >= start) {
+      throw Error(Error::Kind::InvalidArgument, this->Label(ids[i]),
+                  "it comes twice, in rows " + std::to_string(row - start) + " and " +
+                      std::to_string(i) + "; accepted: each frame once");
+    }
+    row = start + i;
     const Pose X_PF = PoseFromRow(poses + PoseSize * i);
     if (!IsValidPose(X_PF)) {
       RefusePose(this->Label(ids[i]) + " (row " + std::to_string(i) + ")", X_PF);
