@@ -101,13 +101,20 @@ std::vector<double> ElevationSource::Read() const {
 }
 
 std::vector<double> ElevationSource::Read(const RasterWindow& w) const {
+  return this->ReadReduced(w, 1);
+}
+
+std::vector<double> ElevationSource::ReadReduced(const RasterWindow& w, int factor) const {
   const ElevationInfo& info = this->Info_;
   const std::string object = "raster '" + info.path + "'";
   if (w.column < 0 || w.row < 0 || w.width < 1 || w.height < 1 ||
       w.width > info.window.width - w.column || w.height > info.window.height - w.row)
     throw Error(Error::Kind::InvalidArgument, object, "the window to read does not lie within it");
-  const std::size_t count = static_cast<std::size_t>(w.width) * w.height;
-  const int column = info.window.column + w.column, row = info.window.row + w.row;
+  if (factor < 1)
+    throw Error(Error::Kind::InvalidArgument, object,
+                "factor " + std::to_string(factor) + " is refused; accepted is 1 or more");
+  const int width = 1 + (w.width - 1) / factor, height = 1 + (w.height - 1) / factor;
+  const std::size_t count = static_cast<std::size_t>(width) * height;
   std::vector<double> heights;
   std::vector<std::uint8_t> mask;
   try {
@@ -115,23 +122,25 @@ std::vector<double> ElevationSource::Read(const RasterWindow& w) const {
     mask.resize(count);
   } catch (const std::exception&) {
     throw Error(Error::Kind::Resource, object,
-                "no memory for " + std::to_string(w.width) + " x " + std::to_string(w.height) +
+                "no memory for " + std::to_string(width) + " x " + std::to_string(height) +
                     " posts; give a smaller window");
   }
-  {
-    const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
-    GdalErrors errors;
-    GDALRasterBand& band = *this->Impl_->band;
-    const CPLErr read = band.RasterIO(GF_Read, column, row, w.width, w.height, heights.data(),
-                                      w.width, w.height, GDT_Float64, 0, 0, nullptr);
-    // The mask knows no-data, alpha and the special pixels of each format.
-    const CPLErr masked =
-        band.GetMaskBand()->RasterIO(GF_Read, column, row, w.width, w.height, mask.data(), w.width,
-                                     w.height, GDT_Byte, 0, 0, nullptr);
-    if (read != CE_None || masked != CE_None || errors.Failed())
-      throw Error(Error::Kind::Corrupt, object,
-                  "cannot be read: " + errors.Message("GDAL gave no reason"));
-  }
+  // A last column or row that is narrower than the others is read by itself.
+  const int fullColumns = w.width / factor, fullRows = w.height / factor;
+  for (const bool lastRow : {false, true})
+    for (const bool lastColumn : {false, true}) {
+      const int c = lastColumn ? fullColumns : 0, r = lastRow ? fullRows : 0;
+      const int columns = lastColumn ? width - fullColumns : fullColumns;
+      const int rows = lastRow ? height - fullRows : fullRows;
+      if (columns == 0 || rows == 0)
+        continue;
+      const RasterWindow part{info.window.column + w.column + c * factor,
+                              info.window.row + w.row + r * factor,
+                              lastColumn ? w.width - c * factor : columns * factor,
+                              lastRow ? w.height - r * factor : rows * factor};
+      const std::size_t at = static_cast<std::size_t>(r) * width + c;
+      this->ReadPart(part, columns, rows, width, heights.data() + at, mask.data() + at);
+    }
   const double datum =
       info.verticalDatum.kind == VerticalDatum::Kind::Radius ? info.verticalDatum.radius : 0.0;
   // The offset and the radius cancel before anything is rounded to their size.
@@ -142,6 +151,25 @@ std::vector<double> ElevationSource::Read(const RasterWindow& w) const {
         mask[i] && std::isfinite(height) ? height : std::numeric_limits<double>::quiet_NaN();
   }
   return heights;
+}
+
+// Pixels of the file, `columns` x `rows` of them or of an overview, into rows of `stride`.
+void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, int stride,
+                               double* values, std::uint8_t* mask) const {
+  const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  GdalErrors errors;
+  GDALRasterBand& band = *this->Impl_->band;
+  const auto line = static_cast<GSpacing>(stride);
+  const CPLErr read =
+      band.RasterIO(GF_Read, part.column, part.row, part.width, part.height, values, columns, rows,
+                    GDT_Float64, sizeof(double), line * GSpacing(sizeof(double)), nullptr);
+  // The mask knows no-data, alpha and the special pixels of each format.
+  const CPLErr masked =
+      band.GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width, part.height, mask,
+                                   columns, rows, GDT_Byte, 1, line, nullptr);
+  if (read != CE_None || masked != CE_None || errors.Failed())
+    throw Error(Error::Kind::Corrupt, "raster '" + this->Info_.path + "'",
+                "cannot be read: " + errors.Message("GDAL gave no reason"));
 }
 
 } // namespace dspace

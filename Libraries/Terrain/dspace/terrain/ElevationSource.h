@@ -3,6 +3,7 @@
 #define DSPACE_TERRAIN_ELEVATIONSOURCE_H
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -74,9 +75,15 @@ public:
   // read there, Error(InvalidArgument) for a window outside.
   std::vector<double> Read(const RasterWindow& window) const;
   std::vector<double> Read() const; // all of Info().window
+  // The same with one value for every `factor` x `factor` pixels from the window's first on (fewer
+  // at its right and bottom edge): an overview's where the file has one for it, else the pixel's in
+  // their middle.
+  std::vector<double> ReadReduced(const RasterWindow& window, int factor) const;
 
 private:
   struct Implementation;
+  void ReadPart(const RasterWindow& part, int columns, int rows, int stride, double* values,
+                std::uint8_t* mask) const;
   std::unique_ptr<Implementation> Impl_;
   ElevationInfo Info_;
 };

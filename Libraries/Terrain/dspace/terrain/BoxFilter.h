@@ -1,0 +1,23 @@
+// Means of a raster over boxes of any place and size.
+#ifndef DSPACE_TERRAIN_BOXFILTER_H
+#define DSPACE_TERRAIN_BOXFILTER_H
+
+#include <vector>
+
+namespace dspace {
+
+// One axis of boxes over a row of pixels; pixel i covers [i, i + 1).
+struct BoxSpan {
+  double from = 0.0;
+  double to = 0.0; // greater than `from`
+};
+
+// The mean, weighted by area, of the pixels of `values` (width x height, row by row, NaN for none)
+// under each box columns[i] x rows[j], into columns.size() x rows.size() results, row by row.
+// Pixels outside the raster have no data. NaN where less than half of a box has data.
+std::vector<double> BoxMeans(const std::vector<double>& values, int width, int height,
+                             const std::vector<BoxSpan>& columns, const std::vector<BoxSpan>& rows);
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,36 @@
+// Where a terrain's posts come from: a raster, several of them, or a formula.
+#ifndef DSPACE_TERRAIN_POSTSOURCE_H
+#define DSPACE_TERRAIN_POSTSOURCE_H
+
+#include <cstdint>
+#include <string>
+
+#include <dspace/terrain/PostLattice.h>
+
+namespace dspace {
+
+// A block of posts of one level.
+struct PostBlock {
+  int level = 0;
+  std::int64_t column = 0; // of its first post; may lie outside the lattice
+  std::int64_t row = 0;
+  int width = 0; // posts
+  int height = 0;
+};
+
+// Abstract. Heights are metres above the terrain's vertical datum, floats: a step of 0.5 mm below
+// 8192 m and 1 mm below 16384 m, the same for drawing and for queries.
+class PostSource {
+public:
+  virtual ~PostSource() = default;
+  virtual const std::string& GetName() const = 0; // for messages
+  virtual const PostLattice& GetLattice() const = 0;
+  // Row by row into `heights`; NaN where there is no data and outside the lattice. Level 0 is the
+  // surface itself; a post of a coarser level is the mean over its cell, so that far ground does
+  // not shimmer. Called from several threads at once. Throws Error when the data cannot be read.
+  virtual void Read(const PostBlock& block, float* heights) const = 0;
+};
+
+} // namespace dspace
+
+#endif
