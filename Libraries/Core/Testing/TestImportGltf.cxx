@@ -1,6 +1,7 @@
 // glTF 2.0, text and binary: hand-made files with known answers, bad ones, and real spacecraft.
 #include <dspace/import/Importers.h>
 #include <dspace/import/Model.h>
+#include <dspace/import/StatedBounds.h>
 
 #include <cmath>
 #include <set>
@@ -493,4 +494,31 @@ TEST(ImportGltf, Spacecraft) {
     }
     EXPECT_GT(model.TriangleCount(), 20000u) << name;
   }
+}
+
+// What files state of themselves, against what their buffers hold. No node of these is turned.
+TEST(ImportGltf, StatedBoundsAreTheGeometrys) {
+  int files = 0;
+  std::vector<std::string> folders = {ShippedDataFolder() + "/rover"};
+  if (!RealDataFolder().empty()) {
+    folders.push_back(RealDataFolder() + "/models/m2020_rover/meshes");
+  }
+  for (const std::string& folder : folders) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      const std::string extension = entry.path().extension().string();
+      const std::string name = entry.path().stem().string();
+      if ((extension != ".glb" && extension != ".gltf") || name == "CHASSIS" || name == "Turret") {
+        continue; // the buffers of these two are absent
+      }
+      const Eigen::AlignedBox3d stated = ReadStatedBounds(entry.path().string());
+      const Eigen::AlignedBox3d real = ReadModel(entry.path().string()).Bounds();
+      ASSERT_FALSE(stated.isEmpty()) << entry.path();
+      EXPECT_LT((stated.min() - real.min()).norm(), 1e-5) << entry.path();
+      EXPECT_LT((stated.max() - real.max()).norm(), 1e-5) << entry.path();
+      ++files;
+    }
+  }
+  EXPECT_GE(files, 15);
+  EXPECT_TRUE(ReadStatedBounds("/nowhere/absent.gltf").isEmpty());
+  EXPECT_TRUE(ReadStatedBounds(folders[0] + "/rover.urdf").isEmpty());
 }

@@ -55,7 +55,7 @@ bool DecodeBase64(const char* begin, const char* end, std::string& out) {
 
 } // namespace
 
-GltfDocument::GltfDocument(const std::string& path) : Path_(path) {
+GltfDocument::GltfDocument(const std::string& path, Contents contents) : Path_(path) {
   const std::string bytes = ReadFileBytes(path);
   if (bytes.compare(0, 4, "glTF") == 0) {
     const std::string json = this->SplitContainer(bytes);
@@ -65,7 +65,9 @@ GltfDocument::GltfDocument(const std::string& path) : Path_(path) {
     this->ParseJson(bytes.data() + mark, bytes.data() + bytes.size());
   }
   this->CheckVersionAndExtensions();
-  this->LoadBuffers();
+  if (contents == Contents::All) {
+    this->LoadBuffers();
+  }
 }
 
 void GltfDocument::Fail(const std::string& message, Error::Kind kind) const {

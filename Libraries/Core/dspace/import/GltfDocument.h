@@ -18,8 +18,10 @@ class GltfDocument {
 public:
   // Opens text (.gltf) or binary (.glb) by content, and loads every buffer (data: URIs, files
   // beside the model, the binary chunk). Throws Error: NotFound naming a missing buffer file,
-  // Unsupported (glTF 1, extensions that are required and not known), Corrupt.
-  explicit GltfDocument(const std::string& path);
+  // Unsupported (glTF 1, extensions that are required and not known), Corrupt. With Contents::Json
+  // the buffers are left where they are, and need not exist.
+  enum class Contents { All, Json };
+  explicit GltfDocument(const std::string& path, Contents contents = Contents::All);
 
   const std::string& Path() const { return this->Path_; }
   const Json::Value& Root() const { return this->Root_; }
@@ -88,6 +90,10 @@ struct GltfMaterials {
   std::vector<bool> opaque;         // alpha of vertex colours is to be ignored
 };
 
+// The nodes of the default scene, parents first; `meshesOf` as in GltfGeometry. Throws
+// Error(Corrupt).
+std::vector<ModelNode> ReadGltfNodes(const GltfDocument& document,
+                                     const std::vector<std::vector<int>>& meshesOf);
 GltfMaterials ReadGltfMaterials(const GltfDocument& document, std::vector<std::string>& warnings);
 GltfGeometry ReadGltfGeometry(const GltfDocument& document, const GltfMaterials& materials,
                               const ImportOptions& options, std::vector<std::string>& warnings);

@@ -21,7 +21,7 @@ using Reader = Model (*)(const std::string&, const ImportOptions&);
 
 constexpr const char* Accepted =
     "accepted are glTF 2.0 (.gltf, .glb), VRML and Inventor (.wrl, .wrz, .iv), OBJ (.obj), "
-    "STL (.stl) and PLY (.ply)";
+    "STL (.stl), PLY (.ply), and for robots URDF (.urdf)";
 
 bool StartsWith(const std::string& text, const char* prefix) {
   return text.compare(0, std::strlen(prefix), prefix) == 0;

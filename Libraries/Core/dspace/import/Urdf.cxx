@@ -267,6 +267,7 @@ private:
       visual.missing = !fs::is_regular_file(visual.meshPath, error);
       if (visual.missing) {
         this->Warn(where + ": its mesh '" + visual.meshPath + "' does not exist");
+        visual.warning = this->Out_.warnings.size() - 1;
       }
       break;
     }

@@ -17,6 +17,7 @@ struct UrdfVisual {
   Shape shape = Shape::Mesh;
   std::string meshPath;                           // absolute path; Mesh only
   bool missing = false;                           // the mesh file does not exist
+  std::size_t warning = 0;                        // when missing: its index in Urdf::warnings
   Eigen::Vector3d size = Eigen::Vector3d::Ones(); // Mesh: scale an axis. Box: edges [m].
                                                   // Cylinder: radius, radius, length along Z.
                                                   // Sphere: radius three times.

@@ -193,7 +193,7 @@ void LoadRobot(const Context& context, v1::LoadRobot& command) {
     }
   }
   const Pose X_FB = ToPose(command.pose(), label);
-  for (const std::string& warning : urdf.warnings) {
+  for (const std::string& warning : UrdfWarnings(urdf)) {
     context.reply.add_warning(warning);
   }
   auto geometry = LoadVisuals(context, urdf, options);

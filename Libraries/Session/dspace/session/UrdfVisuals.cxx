@@ -1,28 +1,61 @@
 #include <dspace/session/UrdfVisuals.h>
 
+#include <sstream>
+
 #include <dspace/Error.h>
+#include <dspace/import/StatedBounds.h>
 #include <dspace/scene/Primitives.h>
 #include <dspace/session/PrimitiveParts.h>
 
 namespace dspace::session {
 namespace {
 
-constexpr double StandInSize = 0.1; // [m]
+constexpr double StandInSize = 0.1; // [m], where nothing says how large the part is
+constexpr const char* CubeStandsIn = "; a cube of 0.1 m stands in for it";
 
 Eigen::Affine3d ToAffine(const Pose& X) {
   return Eigen::Affine3d(X.Matrix());
 }
 
 // Orange, so that nobody takes it for the part itself.
-UrdfGeometry StandIn(const UrdfVisual& visual) {
+UrdfGeometry StandIn(const Eigen::Affine3d& X_LO, const Eigen::Vector3d& size) {
   auto material = std::make_shared<Material>();
   material->name = "stand-in";
   material->color = {1.0, 0.45, 0.0};
   UrdfGeometry made;
-  made.X_LO = ToAffine(visual.X_LV);
-  made.parts.push_back(PartOf(MakeBox(Eigen::Vector3d::Constant(StandInSize))));
+  made.X_LO = X_LO;
+  made.parts.push_back(PartOf(MakeBox(size)));
   made.parts.back().material = std::move(material);
   return made;
+}
+
+UrdfGeometry SmallCube(const UrdfVisual& visual) {
+  return StandIn(ToAffine(visual.X_LV), Eigen::Vector3d::Constant(StandInSize));
+}
+
+// For a mesh that cannot be read: a box of the bounds that its file states, or a small cube.
+// `text` ends the warning.
+UrdfGeometry StandInForMesh(const UrdfVisual& visual, std::string& text) {
+  const Eigen::AlignedBox3d bounds = ReadStatedBounds(visual.meshPath);
+  Eigen::Array3d size = Eigen::Array3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  if (!bounds.isEmpty()) {
+    size = bounds.sizes().array() * visual.size.array().abs();
+    center = visual.size.asDiagonal() * bounds.center();
+  }
+  // Beyond that no number is a part's, whoever stated it.
+  if (!(size.maxCoeff() >= 1e-6 && size.maxCoeff() <= 1e9 && center.norm() <= 1e9)) {
+    text = CubeStandsIn;
+    return SmallCube(visual);
+  }
+  std::ostringstream out;
+  out.precision(3);
+  out << "; an orange box of " << size.x() << " x " << size.y() << " x " << size.z()
+      << " m, the bounds that it states, stands in for it";
+  text = out.str();
+  // A flat part has a box all the same.
+  return StandIn(ToAffine(visual.X_LV) * Eigen::Translation3d(center),
+                 size.max(1e-3 * size.maxCoeff()));
 }
 
 UrdfGeometry Shape(const UrdfVisual& visual) {
@@ -68,7 +101,7 @@ UrdfGeometry Load(const Context& context, const UrdfVisual& visual, const Import
     return Shape(visual);
   }
   if (visual.missing) {
-    return StandIn(visual); // ReadUrdf has warned of it
+    return SmallCube(visual); // UrdfWarnings says so
   }
   try {
     return MeshOf(context, visual, options);
@@ -76,12 +109,26 @@ UrdfGeometry Load(const Context& context, const UrdfVisual& visual, const Import
     if (options.strict) {
       throw;
     }
-    context.reply.add_warning(std::string(error.what()) + "; a stand-in takes its place");
-    return StandIn(visual);
+    std::string text;
+    UrdfGeometry made = StandInForMesh(visual, text);
+    context.reply.add_warning(error.what() + text);
+    return made;
   }
 }
 
 } // namespace
+
+std::vector<std::string> UrdfWarnings(const Urdf& urdf) {
+  std::vector<std::string> warnings = urdf.warnings;
+  for (const UrdfLink& link : urdf.links) {
+    for (const UrdfVisual& visual : link.visuals) {
+      if (visual.missing) {
+        warnings[visual.warning] += CubeStandsIn;
+      }
+    }
+  }
+  return warnings;
+}
 
 std::vector<std::vector<UrdfGeometry>> LoadVisuals(const Context& context, const Urdf& urdf,
                                                    const ImportOptions& options) {

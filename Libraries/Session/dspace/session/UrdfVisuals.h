@@ -13,8 +13,12 @@ struct UrdfGeometry {
   Eigen::Affine3d X_LO = Eigen::Affine3d::Identity(); // object in its link's frame
 };
 
-// A list a link, in the order of its visuals. A mesh that is missing or cannot be read becomes an
-// orange box of 0.1 m and a warning in the reply, or an Error when options.strict.
+// Of a URDF that is read, and of what stands in for meshes that do not exist.
+std::vector<std::string> UrdfWarnings(const Urdf& urdf);
+
+// A list a link, in the order of its visuals. A mesh that cannot be read becomes an orange box of
+// the bounds that its file states (ReadStatedBounds), and a warning in the reply with the box's
+// size, or an Error when options.strict; without such bounds, or without the file, a cube of 0.1 m.
 std::vector<std::vector<UrdfGeometry>> LoadVisuals(const Context& context, const Urdf& urdf,
                                                    const ImportOptions& options);
 
