@@ -171,6 +171,44 @@ TEST_F(FrameFollowing, DirectChangesComeWithTheNextReply) {
   EXPECT_EQ(this->Ask().frame_event_size(), 0); // once
 }
 
+// C++ may drive a scene for hours before somebody asks.
+TEST_F(FrameFollowing, DirectPosesThatPileUpAreJoined) {
+  this->Follow();
+  FrameTree& tree = this->Tree();
+  const FrameId a = tree.Create(RootFrame, "a");
+  const FrameId b = tree.Create(RootFrame, "b");
+  const auto move = [&](FrameId id, double x) {
+    tree.SetLocalPose(id, {Eigen::Vector3d(x, 0, 0), Eigen::Quaterniond::Identity(), 1.0});
+  };
+  for (int i = 1; i <= 100000; ++i) {
+    move(i % 2 ? a : b, i);
+  }
+  tree.Rename(b, "c"); // keeps its place
+  move(b, -1);
+  move(b, -2);
+  v1::Command refused = Create("a"); // nothing is lost
+  EXPECT_TRUE(this->Interpreter_.Execute(refused).has_error());
+  move(b, -3);
+  const v1::Reply reply = this->Ask();
+  const Events told = EventsOf(reply);
+  const std::size_t full = session::FrameEventLog::MaximumWaiting;
+  ASSERT_EQ(told.size(), full + 3);
+  EXPECT_EQ(told[full - 2], (Told{v1::FrameEvent::POSES_CHANGED, {a}}));
+  EXPECT_EQ(told[full - 1], (Told{v1::FrameEvent::POSES_CHANGED, {b, a}}));
+  EXPECT_EQ(told[full], (Told{v1::FrameEvent::RENAMED, {b}}));
+  EXPECT_EQ(told[full + 1], (Told{v1::FrameEvent::POSES_CHANGED, {b}}));
+  EXPECT_EQ(told[full + 2], (Told{v1::FrameEvent::POSES_CHANGED, {b}}));
+  for (int i = 1; i < reply.frame_event_size(); ++i) {
+    EXPECT_GT(reply.frame_event(i).revision(), reply.frame_event(i - 1).revision());
+  }
+  EXPECT_EQ(reply.frame_event(int(full) - 1).revision(), 2u + 100000u);
+  EXPECT_EQ(reply.frame_event(int(full) + 2).revision(), tree.Revision());
+  move(a, 0); // what waits next begins anew
+  move(b, 0);
+  EXPECT_EQ(EventsOf(this->Ask()),
+            (Events{{v1::FrameEvent::POSES_CHANGED, {a}}, {v1::FrameEvent::POSES_CHANGED, {b}}}));
+}
+
 TEST_F(FrameFollowing, CommandsOfListenersAreToldInTheOuterReply) {
   this->Follow();
   std::vector<int> heard;

@@ -27,7 +27,37 @@ v1::FrameEvent::Type FromType(FrameEvent::Type type) {
 
 } // namespace
 
+bool FrameEventLog::Joined(const std::string& scene, const FrameEvent& event) {
+  if (this->Events_.size() < std::max(MaximumWaiting, this->Closed_ + 1) ||
+      event.type != FrameEvent::Type::PosesChanged) {
+    return false;
+  }
+  v1::FrameEvent& last = this->Events_.back();
+  if (last.type() != v1::FrameEvent::POSES_CHANGED || last.scene() != scene) {
+    return false;
+  }
+  if (this->JoinedAt_ != this->Events_.size()) {
+    this->JoinedAt_ = this->Events_.size();
+    this->JoinedIds_ = {last.frame().begin(), last.frame().end()};
+  }
+  for (const FrameId id : event.ids) {
+    if (this->JoinedIds_.insert(id).second) {
+      last.add_frame(id);
+    }
+  }
+  last.set_revision(event.revision);
+  return true;
+}
+
+std::size_t FrameEventLog::Close() {
+  this->Closed_ = this->Events_.size();
+  return this->Closed_;
+}
+
 void FrameEventLog::Add(const std::string& scene, const FrameEvent& event) {
+  if (this->Joined(scene, event)) {
+    return;
+  }
   v1::FrameEvent message;
   message.set_type(FromType(event.type));
   message.mutable_frame()->Add(event.ids.begin(), event.ids.end());
@@ -51,6 +81,7 @@ void FrameEventLog::ForgetUndone(std::size_t first) {
       }
     }
   }
+  this->JoinedAt_ = 0;
   if (undone.empty()) {
     return;
   }
@@ -74,6 +105,9 @@ void FrameEventLog::MoveTo(v1::Reply& reply) {
     *reply.add_frame_event() = std::move(event);
   }
   this->Events_.clear();
+  this->Closed_ = 0;
+  this->JoinedAt_ = 0;
+  this->JoinedIds_.clear();
 }
 
 FrameFollower::FrameFollower(std::shared_ptr<Scene> scene, FrameEventLog& log)

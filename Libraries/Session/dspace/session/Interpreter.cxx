@@ -56,7 +56,7 @@ Interpreter::Interpreter() {
 v1::Reply Interpreter::Execute(v1::Command& command) {
   v1::Reply reply;
   FrameEventLog& events = this->State_.frameEvents;
-  const std::size_t before = events.Size();
+  const std::size_t before = events.Close();
   try {
     const Nesting nesting(this->Depth_);
     this->Run(command, reply);

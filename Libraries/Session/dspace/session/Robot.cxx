@@ -89,6 +89,11 @@ double Robot::CheckedPosition(std::size_t index, double position, bool clamp) co
   }
   RequireFinite(label, "the position", position);
   if (!joint.hasLimits) {
+    // Where a ten-thousandth of a degree is lost, a wheel's turn means nothing any more.
+    if (joint.type != UrdfJoint::Type::Prismatic) {
+      Require(std::abs(position) <= 1e12, label, "the position", position,
+              "within 1e12 degrees of 0");
+    }
     return position;
   }
   // A file's rounded radians must not refuse the round number of degrees that they stand for.

@@ -178,6 +178,9 @@ void FocusTerrain(const Context& context, v1::FocusTerrain& command) {
   TerrainObject& terrain = FindTerrain(context, command.terrain());
   const std::string label = "terrain '" + command.terrain() + "'";
   const std::size_t n = RowsOf(command.point_size(), 2, label, "point");
+  RequireFinitePoints(label, command.point().data(), 2, n);
+  Require(command.radius() >= 0 && std::isfinite(command.radius()), label, "the radius",
+          command.radius(), "0 metres or more, finite");
   std::vector<Eigen::Vector2d> points(n);
   for (std::size_t i = 0; i < n; ++i) {
     points[i] = Eigen::Vector2d(command.point().data() + 2 * i);

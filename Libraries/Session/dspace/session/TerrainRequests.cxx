@@ -1,4 +1,7 @@
 // What terrain answers.
+#include <algorithm>
+#include <cmath>
+
 #include <dspace/scene/Checks.h>
 #include <dspace/session/Convert.h>
 #include <dspace/session/TerrainTools.h>
@@ -31,6 +34,19 @@ void DescribeTo(const Context& context, const TerrainObject& terrain, v1::Terrai
   reply->set_vertical_error(terrain.Report().verticalError);
 }
 
+void RequireFinitePoints(const std::string& label, const double* values, int size, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* point = values + i * std::size_t(size);
+    if (!std::all_of(point, point + size, [](double value) { return std::isfinite(value); })) {
+      std::string text;
+      for (int k = 0; k < size; ++k) {
+        text += (k ? ", " : "") + NumberText(point[k]);
+      }
+      Refuse(label, "point " + std::to_string(i) + " is (" + text + "); accepted: finite numbers");
+    }
+  }
+}
+
 namespace {
 
 SurfaceSample SampleAt(const GridTerrain& grid, const double* xy, bool map) {
@@ -45,6 +61,7 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   if (!command.height() && !command.normal() && !command.slope()) {
     Refuse(label, "nothing is asked for; accepted: height, normal, slope");
   }
+  RequireFinitePoints(label, command.point().data(), 2, n);
   v1::TerrainQueryReply* reply = context.reply.mutable_terrain_values();
   for (std::size_t i = 0; i < n; ++i) {
     const SurfaceSample sample = SampleAt(grid, command.point().data() + 2 * i, command.map());
@@ -64,8 +81,9 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
 
 void ConvertTerrain(const Context& context, v1::ConvertTerrain& command) {
   const GridTerrain& grid = FindTerrain(context, command.terrain()).Surface();
-  const std::size_t n =
-      RowsOf(command.point_size(), 3, "terrain '" + command.terrain() + "'", "point");
+  const std::string label = "terrain '" + command.terrain() + "'";
+  const std::size_t n = RowsOf(command.point_size(), 3, label, "point");
+  RequireFinitePoints(label, command.point().data(), 3, n);
   v1::TerrainPoints* reply = context.reply.mutable_terrain_points();
   for (std::size_t i = 0; i < n; ++i) {
     const Eigen::Vector3d point(command.point().data() + 3 * i);

@@ -13,6 +13,10 @@ TerrainObject& FindTerrain(const Context& context, const std::string& name);
 
 void DescribeTo(const Context& context, const TerrainObject& terrain, v1::TerrainReply* reply);
 
+// `values` holds n points of `size` numbers; throws Error(InvalidArgument) for the first that is
+// not finite.
+void RequireFinitePoints(const std::string& label, const double* values, int size, std::size_t n);
+
 void AddTerrainRequests(Registry& registry);
 
 } // namespace dspace::session

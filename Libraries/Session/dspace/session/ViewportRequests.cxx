@@ -1,4 +1,6 @@
 // Pictures and picks.
+#include <algorithm>
+
 #include <dspace/render/ImageWriter.h>
 #include <dspace/scene/Checks.h>
 #include <dspace/session/Convert.h>
@@ -9,6 +11,11 @@
 
 namespace dspace::session {
 namespace {
+
+// What is beyond int's range is refused as the largest int.
+int ToInt(std::uint32_t value) {
+  return int(std::min<std::uint32_t>(value, 0x7fffffffu));
+}
 
 // Takes the same members from a capture and from a save command.
 template<class Command> CaptureRequest ToRequest(const Command& command, const Scene& scene) {
@@ -66,7 +73,7 @@ void ViewportCommands::SaveImage(const Context&, v1::SaveImage& command) {
   CaptureRequest request = ToRequest(command, *viewport.GetScene());
   ImageFileOptions options;
   if (command.has_quality()) {
-    options.jpegQuality = int(std::min<std::uint32_t>(command.quality(), 1000));
+    options.jpegQuality = ToInt(command.quality());
   }
   switch (command.plane()) {
   case v1::SaveImage::COLOR:
@@ -116,7 +123,7 @@ void ViewportCommands::Pick(const Context& context, v1::Pick& command) {
   if (command.in_frame() != NoFrame) {
     scene.Frames().Name(command.in_frame()); // throws where there is none
   }
-  const int radius = int(std::min<std::uint32_t>(command.radius(), 1000));
+  const int radius = ToInt(command.radius());
   const PickResult pick = viewport.Pick(command.x(), command.y(), radius);
   v1::PickReply* reply = context.reply.mutable_pick();
   reply->set_object(pick.object);
