@@ -39,7 +39,7 @@ def test_every_change_is_told_once(scene, heard):
     b.name = "c"
     b.position = (1, 2, 3)
     b.position = (1, 2, 3)  # no change
-    b.reparent(None, keep="world")
+    b.reparent(scene.root, keep="world")
     assert heard.take() == [("renamed", [b.id]), ("poses_changed", [b.id]), ("reparented", [b.id])]
     b.reparent(a)
     a.add_frame("d")

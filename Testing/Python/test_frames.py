@@ -39,7 +39,7 @@ def test_tree(scene):
     np.testing.assert_allclose(rover.pose_in(camera).position, (-0.5, 0, 0), atol=1e-15)
     mast.name = "arm"
     assert camera.path == "rover/arm/camera"
-    camera.reparent(None, keep="world")
+    camera.reparent(scene.root, keep="world")
     np.testing.assert_allclose(camera.position, (0, 2, 3), atol=1e-15)
     camera.reparent(rover)
     np.testing.assert_allclose(camera.position, (0, 2, 3), atol=1e-15)
@@ -119,7 +119,7 @@ def test_bad_input(scene, refused):
     with refused(ValueError, "accepted: 3 numbers"):
         a.position = (1, 2)
     with refused(ValueError, "'sideways'"):
-        a.reparent(None, keep="sideways")
+        a.reparent(scene.root, keep="sideways")
     b.remove()
     with refused(dspace.NotFound):
         b.position
@@ -154,7 +154,7 @@ def test_vtk_follows(scene):
     assert transform.TransformPoint(0, 0, 0) == (1, 1, 0)
     a.position = (5, 0, 0)
     assert transform.TransformPoint(0, 0, 0) == (5, 1, 0)
-    b.reparent(None)
+    b.reparent(scene.root)
     assert transform.TransformPoint(0, 0, 0) == (0, 1, 0)
     frame = scene.vtk.GetFrame(b.id)
     b.remove()

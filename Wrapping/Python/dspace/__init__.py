@@ -10,6 +10,11 @@
 Metres, seconds, degrees. Quaternions are unit, scalar first (w, x, y, z). A camera's axes are X
 right, Y down, Z forward; row 0 of an image is its top row.
 
+What is refused raises a dspace.Error that names the object, the value and what would be accepted, and
+changes nothing. Each is also what Python itself would raise: dspace.InvalidArgument a ValueError (for
+a wrong type, dspace.WrongType, a TypeError as well), dspace.NotFound a KeyError, dspace.Io an OSError;
+see dspace.errors. A session serves the thread that made it; another one gets dspace.WrongThread.
+
 Every change through these classes is a command, which a session can record and send; changes made
 on the wrapped VTK objects (`frame.vtk`, `dspace.vtk`) are not.
 """
@@ -17,10 +22,10 @@ import importlib
 
 _HOMES = {
     "Camera": "cameras", "Vantage": "cameras",
-    "Error": "errors", "InvalidArgument": "errors", "NotFound": "errors",
+    "Error": "errors", "InvalidArgument": "errors", "WrongType": "errors", "NotFound": "errors",
     "AlreadyExists": "errors", "Unsupported": "errors", "Corrupt": "errors", "Io": "errors",
     "Resource": "errors", "DeadlineExceeded": "errors", "Internal": "errors",
-    "DspaceWarning": "errors",
+    "Closed": "errors", "WrongThread": "errors", "DspaceWarning": "errors",
     "FrameEvent": "events",
     "Fragment": "fragments", "Light": "fragments",
     "Frame": "frames",

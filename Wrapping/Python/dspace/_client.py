@@ -1,9 +1,10 @@
 """Where commands go, and what comes back: replies, warnings, exceptions."""
 import sys
+import threading
 import warnings
 
 from dspace import vtk as _vtk
-from dspace.errors import KINDS, DspaceWarning, Internal
+from dspace.errors import KINDS, Closed, DspaceWarning, Internal, WrongThread
 from dspace.events import FrameListeners
 from dspace.session import commands_pb2 as pb
 
@@ -29,14 +30,22 @@ class LocalClient:
     """Hands commands to an interpreter in this process."""
 
     def __init__(self):
+        self._thread = threading.get_ident()
         self.vtk = _vtk.vtkDspaceSession()
         self.frame_listeners = FrameListeners()
 
     def local(self):
         """The vtkDspaceSession; raises when it is closed."""
         if self.vtk is None:
-            raise RuntimeError("the session is closed")
+            raise Closed("the session is closed; accepted: a new dspace.Session()", "session")
+        self._require_thread()
         return self.vtk
+
+    def _require_thread(self):
+        # Its graphics context is current in one thread; elsewhere drawing would crash or go nowhere.
+        if threading.get_ident() != self._thread:
+            raise WrongThread(f"the session is used in thread {threading.current_thread().name!r}; "
+                              "accepted: the thread that made it", "session")
 
     def execute(self, command):
         """The Reply to a Command; raises what its error says, or, with the change made, what a
@@ -58,5 +67,7 @@ class LocalClient:
         return reply
 
     def close(self):
+        if self.vtk is not None:
+            self._require_thread()
         self.vtk = None
         self.frame_listeners.clear()

@@ -1,13 +1,15 @@
 """How a scene makes objects: from files, from numbers, from text."""
-import os
-
 import numpy as np
 
 from dspace import _wire
+from dspace._fields import (about, array_of, flag, integers, keywords, numbers, put, put_color,
+                            put_given, put_vector, shown, word)
 from dspace.cameras import put_projection
+from dspace.errors import InvalidArgument, WrongType
 from dspace.frames import put_pose
-from dspace.objects import UP, GraphicsObject, Primitive, Text, TiltMarker, Trail, put_settings
-from dspace.poses import Pose, quaternion_of_axis, to_pose, vector
+from dspace.objects import (UP, GraphicsObject, Primitive, Text, TiltMarker, Trail, file_path,
+                            put_rotation, put_settings)
+from dspace.poses import Pose, quaternion_of_axis, to_pose
 from dspace.robots import Robot
 
 # What takes a file's axis to Z.
@@ -15,10 +17,14 @@ _TURNS = {"z": (1, 0, 0, 0), "y": tuple(quaternion_of_axis("x", 90)),
           "x": tuple(quaternion_of_axis("y", -90)), "-z": (0, 1, 0, 0)}
 
 
-def _points(points):
-    array = np.asarray(points, dtype=float)
+# What a URDF takes of what objects take.
+_ROBOT = ("name", "fragment", "position", "quaternion", "pose")
+
+
+def _points(points, about):
+    array = array_of(points, "points", "an array (n, 3)", about)
     if array.size and (array.ndim != 2 or array.shape[1] != 3):
-        raise ValueError(f"the points have shape {array.shape}; accepted: (n, 3)")
+        raise InvalidArgument(f"{about}: the points have shape {array.shape}; accepted: (n, 3)")
     return array
 
 
@@ -36,54 +42,52 @@ class ObjectMaking:
         strict: a missing texture or mesh raises; else it is a warning (and, in a URDF, a stand-in).
         point_cloud: a file of points is shown, `point_size` pixels large; else no faces, no object.
         A URDF takes position, quaternion, name, fragment, and `pose` of its base frame only."""
-        if up not in UP:
-            raise ValueError(f"up is {up!r}; accepted: {', '.join(UP)}")
-        first, pixels = path if isinstance(path, tuple) else (path, 0.0)
-        if os.fspath(first).lower().endswith(".urdf"):
+        first, pixels = path if isinstance(path, tuple) and len(path) == 2 else (path, 0.0)
+        first = file_path(first, "the path", "model")
+        label = f"file {first!r}"
+        turn = word(up, UP, "up", label)
+        if first.lower().endswith(".urdf"):
             if levels or pixels or point_cloud:
-                raise ValueError(f"file '{os.fspath(first)}': levels {levels!r}, {pixels!r} pixels and "
-                                 f"point_cloud={point_cloud!r}; accepted for a URDF: none of these")
+                raise InvalidArgument(f"{label}: levels {levels!r}, {pixels!r} pixels and "
+                                      f"point_cloud={point_cloud!r}; accepted for a URDF: none of these")
+            keywords(settings, _ROBOT, label + ", a URDF")
             return self._load_robot(first, frame, ornamental, strict, scale, up, rotation, **settings)
         command = self._command()
         message = command.import_object
-        put_settings(self, message.object, frame=frame, ornamental=ornamental, **settings)
-        message.level.add(path=os.fspath(first), minimum_pixels=pixels)
-        for other, minimum in levels:
-            message.level.add(path=os.fspath(other), minimum_pixels=minimum)
-        message.scale = scale
-        message.up = UP[up]
+        put_settings(self, message.object, label, frame=frame, ornamental=ornamental, **settings)
+        put(message.level.add(), label, path=first, minimum_pixels=pixels)
+        for level in levels:
+            if not isinstance(level, (tuple, list)) or len(level) != 2:
+                raise WrongType(f"{label}: a level is {shown(level)}; accepted: (path, pixels)")
+            put(message.level.add(), label, path=file_path(level[0], "a level's path", label),
+                minimum_pixels=level[1])
+        put(message, label, scale=scale, up=turn, strict=strict, point_cloud=point_cloud)
         if rotation is not None:
-            q = message.rotation
-            q.w, q.x, q.y, q.z = (float(v) for v in rotation)
-        message.strict = strict
-        message.point_cloud = point_cloud
+            put_rotation(message.rotation, rotation, "the rotation", label)
         return GraphicsObject(self, self._execute(command).object.object)
 
     def _load_robot(self, path, frame, ornamental, strict, scale, up, rotation, name=None,
                     fragment=None, position=None, quaternion=None, pose=None):
-        base = to_pose(position, quaternion, None, pose)
-        if up != "z" or rotation is not None or scale != 1.0:
-            turn = Pose(quaternion=_TURNS[up], scale=scale)
-            base = base @ (turn if rotation is None else Pose(quaternion=rotation) @ turn)
+        label = f"file {path!r}"
+        with about(label):
+            base = to_pose(position, quaternion, None, pose)
+            if up != "z" or rotation is not None or scale != 1.0:
+                turn = Pose(quaternion=_TURNS[up], scale=scale)
+                base = base @ (turn if rotation is None else Pose(quaternion=rotation) @ turn)
         command = self._command()
         message = command.load_robot
-        message.path = os.fspath(path)
-        message.name = name or ""
-        message.frame = self._frame_id(frame)
+        put(message, label, path=path, name="" if name is None else name, frame=self._frame_id(frame),
+            fragment=self._fragment_name(fragment), strict=strict)
         put_pose(message.pose, base)
-        message.nature = 1 if ornamental else 0
-        message.fragment = self._name(fragment)
-        message.strict = strict
+        message.nature = 1 if flag(ornamental, "ornamental", label) else 0
         return Robot(self, self._execute(command).robot)
 
     def _primitive(self, settings, shape, **fields):
         command = self._command()
-        put_settings(self, command.create_primitive.object, **settings)
+        label = put_settings(self, command.create_primitive.object, shape, **settings)
         message = getattr(command.create_primitive, shape)
         message.SetInParent()
-        for field, value in fields.items():
-            if value is not None:
-                setattr(message, field, value)
+        put_given(message, label, **fields)
         return command
 
     def _make(self, command, kind=Primitive):
@@ -92,8 +96,7 @@ class ObjectMaking:
     def add_box(self, size, **settings):
         """size: three edges [m]; centred."""
         command = self._primitive(settings, "box")
-        s = command.create_primitive.box.size
-        s.x, s.y, s.z = vector(size, "the size")
+        put_vector(command.create_primitive.box.size, size, "the size", "box")
         return self._make(command)
 
     def add_sphere(self, radius, resolution=None, **settings):
@@ -135,8 +138,10 @@ class ObjectMaking:
 
     def add_lines(self, points, closed=False, ornamental=True, **settings):
         """One polyline through an array (n, 3), or a list of several such [m]."""
-        several = isinstance(points, (list, tuple)) and len(points) and np.ndim(points[0]) == 2
-        lines = [_points(line) for line in (points if several else [points])]
+        several = (isinstance(points, (list, tuple)) and len(points)
+                   and isinstance(points[0], (list, tuple, np.ndarray)) and len(points[0])
+                   and hasattr(points[0][0], "__len__"))
+        lines = [_points(line, "lines") for line in (points if several else [points])]
         command = self._primitive({**settings, "ornamental": ornamental}, "lines", closed=closed)
         message = command.create_primitive.lines
         _wire.put_array(message, "point", np.concatenate([line.ravel() for line in lines]))
@@ -147,16 +152,18 @@ class ObjectMaking:
     def add_points(self, points, ornamental=True, **settings):
         """Points of an array (n, 3) [m], `point_size` pixels large."""
         command = self._primitive({**settings, "ornamental": ornamental}, "points")
-        _wire.put_array(command.create_primitive.points, "point", _points(points))
+        _wire.put_array(command.create_primitive.points, "point", _points(points, "points"))
         return self._make(command)
 
     def add_frustum(self, length, size, fov_deg=None, height=None, tangents=None, near=None,
                     ornamental=True, **settings):
         """What a camera (X right, Y down, Z forward) with an image of `size` (width, height) pixels
         sees up to `length` along Z [m]; the projection as in Camera.set_projection."""
+        width, rows = integers(size, 2, "the size", "frustum", "(width, height), two integers")
         command = self._primitive({**settings, "ornamental": ornamental}, "frustum", length=length,
-                                  width=size[0], height=size[1])
-        put_projection(command.create_primitive.frustum.projection, fov_deg, height, tangents, near)
+                                  width=width, height=rows)
+        put_projection(command.create_primitive.frustum.projection, fov_deg, height, tangents, near,
+                       about="frustum")
         return self._make(command)
 
     def add_goal(self, height, ornamental=True, **settings):
@@ -174,29 +181,25 @@ class ObjectMaking:
     def add_text(self, text, height, ornamental=True, **settings):
         """Flat letters in XY, readable from +Z; a capital letter is `height` metres high."""
         command = self._command()
-        put_settings(self, command.create_text.object, ornamental=ornamental, **settings)
-        command.create_text.text = text
-        command.create_text.solid.height = height
+        put_settings(self, command.create_text.object, "text", ornamental=ornamental, **settings)
+        put(command.create_text, "text", text=text)
+        put(command.create_text.solid, "text", height=height)
         return self._make(command, Text)
 
     def add_label(self, text, font_size=None, color=None, background=None, background_opacity=None,
                   offset=None, ornamental=True, **settings):
         """A label that faces the camera; font_size and offset (right, up) in pixels."""
         command = self._command()
-        put_settings(self, command.create_text.object, ornamental=ornamental, **settings)
-        command.create_text.text = text
+        put_settings(self, command.create_text.object, "label", ornamental=ornamental, **settings)
+        put(command.create_text, "label", text=text)
         label = command.create_text.label
         label.SetInParent()
         for field, value in (("color", color), ("background", background)):
             if value is not None:
-                c = getattr(label, field)
-                c.r, c.g, c.b = vector(value, field)
-        if font_size is not None:
-            label.font_size = font_size
-        if background_opacity is not None:
-            label.background_opacity = background_opacity
+                put_color(getattr(label, field), value, field, "label")
+        put_given(label, "label", font_size=font_size, background_opacity=background_opacity)
         if offset is not None:
-            label.offset_x, label.offset_y = offset
+            label.offset_x, label.offset_y = numbers(offset, 2, "the offset", "label")
         return self._make(command, Text)
 
     def add_trail(self, capacity=10000, minimum_spacing=0.0, fade=False, ornamental=True,
@@ -205,8 +208,6 @@ class ObjectMaking:
         `minimum_spacing` [m] from the one before; fade: older points are fainter."""
         command = self._command()
         message = command.create_trail
-        put_settings(self, message.object, ornamental=ornamental, **settings)
-        message.capacity = capacity
-        message.minimum_spacing = minimum_spacing
-        message.fade = fade
+        label = put_settings(self, message.object, "trail", ornamental=ornamental, **settings)
+        put(message, label, capacity=capacity, minimum_spacing=minimum_spacing, fade=fade)
         return self._make(command, Trail)

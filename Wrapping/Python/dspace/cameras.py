@@ -1,15 +1,12 @@
 """Vantages and the cameras that they are seen through."""
-import numpy as np
-
+from dspace._fields import Named, about, number, numbers, put, put_given, put_vector, refuse, word
 from dspace._strict import Strict
+from dspace.errors import NotFound
 from dspace.frames import put_pose
-from dspace.poses import Pose, to_pose, vector
+from dspace.poses import Pose, to_pose
 
 AXES = {"heading": 0, "followed": 1, "parent": 2}
-
-
-def _put(message, value, what):
-    message.x, message.y, message.z = vector(value, what)
+CHASE = ("offset", "target", "axes", "up", "smoothing_s")
 
 
 class Camera(Strict):
@@ -22,6 +19,9 @@ class Camera(Strict):
 
     def _info(self):
         return self._scene._ask("describe_camera", vantage=self._vantage, name=self._name).camera
+
+    def _label(self):
+        return f"camera {self._name!r}"
 
     def _command(self):
         command = self._scene._command()
@@ -45,16 +45,17 @@ class Camera(Strict):
         command = self._command()
         mount = command.set_camera.mount
         mount.frame = self._scene._frame_id(frame)
-        _put(mount.look_at.eye, eye, "the eye")
-        _put(mount.look_at.target, target, "the target")
-        _put(mount.look_at.up, up, "up")
+        put_vector(mount.look_at.eye, eye, "the eye", self._label)
+        put_vector(mount.look_at.target, target, "the target", self._label)
+        put_vector(mount.look_at.up, up, "up", self._label)
         self._scene._execute(command)
 
     def attach(self, frame, pose=None, position=None, quaternion=None):
         """Stands on `frame` at X_FC, by default at its origin, Z forward and Y down."""
         command = self._command()
         command.set_camera.mount.frame = self._scene._frame_id(frame)
-        put_pose(command.set_camera.mount.pose, to_pose(position, quaternion, None, pose))
+        with about(self._label):
+            put_pose(command.set_camera.mount.pose, to_pose(position, quaternion, None, pose))
         self._scene._execute(command)
 
     def chase(self, frame, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=(0, 0, 1),
@@ -62,10 +63,11 @@ class Camera(Strict):
         """Follows `frame` from `offset` and looks at `target` [m].
 
         Both are in axes that turn with the frame's "heading" only, with the "followed" frame, or
-        not at all ("parent"). smoothing_s: time constant of the lag, in simulation time."""
+        not at all ("parent"). smoothing_s: time constant of the lag, in simulation time; when that
+        goes back (a playback that jumps), the camera is in place at once."""
         command = self._command()
         command.set_camera.mount.frame = self._scene._frame_id(frame)
-        put_chase(command.set_camera.mount.chase, offset, target, axes, up, smoothing_s)
+        put_chase(command.set_camera.mount.chase, offset, target, axes, up, smoothing_s, self._label)
         self._scene._execute(command)
 
     @property
@@ -80,7 +82,7 @@ class Camera(Strict):
         if not mount.HasField("pose"):
             return None
         p, q = mount.pose.position, mount.pose.rotation
-        return Pose((p.x, p.y, p.z), (q.w, q.x, q.y, q.z))
+        return Pose._computed((p.x, p.y, p.z), (q.w, q.x, q.y, q.z), 1.0)
 
     @pose.setter
     def pose(self, pose):
@@ -95,7 +97,7 @@ class Camera(Strict):
         near and far: metres along Z (default: 0.05 and infinity; 1e4 for orthographic,
         whose depth is resolved to a ten-millionth of far)."""
         command = self._command()
-        put_projection(command.set_camera.projection, fov_deg, height, tangents, near, far)
+        put_projection(command.set_camera.projection, fov_deg, height, tangents, near, far, self._label)
         self._scene._execute(command)
 
     @property
@@ -171,34 +173,31 @@ class Camera(Strict):
 
 
 def put_chase(message, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=(0, 0, 1),
-              smoothing_s=0.0):
+              smoothing_s=0.0, about=None):
     """Writes what Camera.chase takes into a Chase message."""
-    if axes not in AXES:
-        raise ValueError(f"axes is {axes!r}; accepted: {', '.join(AXES)}")
-    message.axes = AXES[axes]
-    _put(message.offset, offset, "the offset")
-    _put(message.target, target, "the target")
-    _put(message.up, up, "up")
-    message.smoothing_s = smoothing_s
+    message.axes = word(axes, AXES, "axes", about)
+    put_vector(message.offset, offset, "the offset", about)
+    put_vector(message.target, target, "the target", about)
+    put_vector(message.up, up, "up", about)
+    put(message, about, smoothing_s=smoothing_s)
 
 
-def put_projection(message, fov_deg=None, height=None, tangents=None, near=None, far=None):
+def put_projection(message, fov_deg=None, height=None, tangents=None, near=None, far=None, about=None):
     """Writes what Camera.set_projection takes into a Projection message."""
-    if sum(value is not None for value in (fov_deg, height, tangents)) > 1:
-        raise ValueError("accepted: one of fov_deg, height and tangents")
+    given = {name: value for name, value in
+             (("fov_deg", fov_deg), ("height", height), ("tangents", tangents)) if value is not None}
+    if len(given) > 1:
+        refuse(about, "the projection", given, "one of fov_deg, height and tangents")
     if height is not None:
-        message.orthographic.height = height
+        put(message.orthographic, about, height=height)
     elif tangents is not None:
-        if np.shape(tangents) != (4,):
-            raise ValueError(f"tangents is {tangents!r}; accepted: left, right, top, bottom")
         f = message.frustum
-        f.left, f.right, f.top, f.bottom = np.asarray(tangents, dtype=float)
+        f.left, f.right, f.top, f.bottom = numbers(tangents, 4, "tangents", about,
+                                                   "left, right, top, bottom")
     else:
-        message.perspective.vertical_fov_deg = 45.0 if fov_deg is None else fov_deg
-    if near is not None:
-        message.near = near
-    if far is not None:
-        message.far = far
+        message.perspective.vertical_fov_deg = (45.0 if fov_deg is None
+                                                else number(fov_deg, "fov_deg", about))
+    put_given(message, about, near=near, far=far)
 
 
 class Vantage(Strict):
@@ -216,12 +215,14 @@ class Vantage(Strict):
         for vantage in self._scene._ask("list_vantages").vantages.vantage:
             if vantage.name == self._name:
                 return vantage
-        raise LookupError(f"there is no vantage {self._name!r} any more")
+        raise NotFound(f"vantage {self._name!r}: it is in scene {self._scene.name!r} no more",
+                       f"vantage {self._name!r}")
 
     @property
     def cameras(self):
         """By name."""
-        return {name: Camera(self._scene, self._name, name) for name in self._info().camera}
+        return Named("camera", {name: Camera(self._scene, self._name, name)
+                                for name in self._info().camera})
 
     @property
     def active(self):

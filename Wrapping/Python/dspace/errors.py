@@ -1,4 +1,9 @@
-"""What is raised when a command is refused; nothing of it was done."""
+"""What is raised when a command is refused; nothing of it was done.
+
+`except dspace.Error` catches all of them. Each is also the built-in exception that Python would raise
+for such a thing: a value that is refused is a ValueError, one of a wrong type a TypeError as well, a
+name that there is not a KeyError, what the operating system refuses an OSError.
+"""
 
 
 class Error(Exception):
@@ -8,12 +13,19 @@ class Error(Exception):
         super().__init__(message)
         self.object = object
 
+    def __str__(self):
+        return Exception.__str__(self)  # a KeyError would quote it
+
 
 class InvalidArgument(Error, ValueError):
     """A value outside what is accepted."""
 
 
-class NotFound(Error, LookupError):
+class WrongType(InvalidArgument, TypeError):
+    """A value of a type that is not accepted, or a keyword that there is not."""
+
+
+class NotFound(Error, KeyError):
     """No such frame, object, file, ..."""
 
 
@@ -39,6 +51,14 @@ class Resource(Error, RuntimeError):
 
 class DeadlineExceeded(Error, TimeoutError):
     """A wait ran out."""
+
+
+class Closed(Error, RuntimeError):
+    """The session is closed."""
+
+
+class WrongThread(Error, RuntimeError):
+    """A session serves the thread that made it, as its graphics context does."""
 
 
 class Internal(Error, RuntimeError):

@@ -3,7 +3,12 @@ from collections import deque
 
 import numpy as np
 
+from dspace.errors import Resource
 from dspace.frames import Frame
+
+# As FrameEvents.h has them.
+MAXIMUM_ROUNDS = 100
+MAXIMUM_CAUSED = 100000
 
 TYPES = ("unspecified", "created", "removed", "reparented", "renamed", "poses_changed")
 
@@ -57,9 +62,13 @@ class FrameListeners:
 
     def __init__(self):
         self._entries = {}  # token: (scene, callback), in the order they came
-        self._waiting = deque()  # (message, the last token when it came)
+        # (message, the last token when it came, round, the token of who caused it or 0)
+        self._waiting = deque()
         self._last_token = 0
         self._delivering = False
+        self._round = 0  # of the event that is delivered; 0: from outside
+        self._calling = 0  # the token of the callback that hears it
+        self._caused = 0  # events of callbacks' commands in this delivery
 
     def __bool__(self):
         return bool(self._entries)
@@ -89,25 +98,37 @@ class FrameListeners:
         self._waiting.clear()
 
     def put(self, messages):
-        self._waiting.extend((message, self._last_token) for message in messages)
+        round, cause = (self._round + 1, self._calling) if self._delivering else (0, 0)
+        self._waiting.extend((message, self._last_token, round, cause) for message in messages)
+        if self._delivering:
+            self._caused += len(messages)
 
     def deliver(self):
         """Hands every event that waits to the callbacks of its scene, in order.
 
         A callback may give commands: their events follow when the present one has reached everybody.
         One that raises stops neither the others nor the events that wait; the first exception is
-        raised at the end."""
+        raised at the end. One whose commands cause further ones without end hears nothing more until
+        then."""
         if self._delivering:
             return  # the delivery that is under way comes to them
         self._delivering = True
+        self._caused = 0
         first = None
+        silent = set()
         try:
             while self._waiting:
-                message, last_token = self._waiting.popleft()
+                message, last_token, self._round, cause = self._waiting.popleft()
+                endless = self._round > MAXIMUM_ROUNDS or self._caused > MAXIMUM_CAUSED
+                if endless and cause and cause not in silent:
+                    silent.add(cause)
+                    if first is None:
+                        first = self._endless(cause)
                 for token, (scene, callback) in list(self._entries.items()):
-                    if (token > last_token or token not in self._entries
+                    if (token > last_token or token not in self._entries or token in silent
                             or scene.name != message.scene):
                         continue
+                    self._calling = token
                     try:
                         callback(FrameEvent(scene, message))
                     except Exception as error:
@@ -117,3 +138,9 @@ class FrameListeners:
             self._delivering = False
         if first is not None:
             raise first
+
+    def _endless(self, token):
+        _, callback = self._entries.get(token, (None, "a callback that was removed"))
+        return Resource(f"on_frame_change: the commands of {callback!r} cause further ones without end "
+                        f"(round {self._round}, {self._caused} changes); accepted: up to "
+                        f"{MAXIMUM_ROUNDS} rounds and {MAXIMUM_CAUSED} changes", "on_frame_change")

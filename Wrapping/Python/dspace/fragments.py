@@ -1,8 +1,12 @@
 """Fragments, which are shown or hidden as one, and lights, which light all of them."""
+from dspace._fields import flag, keywords, put_color, put_given, put_vector, word
 from dspace._strict import Strict
-from dspace.poses import vector
+from dspace.errors import NotFound
 
 KINDS = {"directional": 0, "point": 1, "spot": 2, "head": 3, "ambient": 4}
+
+LIGHT = ("kind", "frame", "direction", "position", "cone_deg", "color", "intensity", "attenuation",
+         "enabled")
 
 
 class Fragment(Strict):
@@ -16,7 +20,8 @@ class Fragment(Strict):
         for fragment in self._scene._ask("list_fragments").fragments.fragment:
             if fragment.name == self._name:
                 return fragment
-        raise LookupError(f"there is no fragment {self._name!r} any more")
+        raise NotFound(f"fragment {self._name!r}: it is in scene {self._scene.name!r} no more",
+                       f"fragment {self._name!r}")
 
     @property
     def name(self):
@@ -33,7 +38,8 @@ class Fragment(Strict):
 
     @visible.setter
     def visible(self, visible):
-        self._scene._do("set_fragment_visible", name=self._name, visible=bool(visible))
+        self._scene._do("set_fragment_visible", f"fragment {self._name!r}", name=self._name,
+                        visible=visible)
 
     @property
     def objects(self):
@@ -58,7 +64,8 @@ class Light(Strict):
         for light in self._scene._ask("list_lights").lights.light:
             if light.name == self._name:
                 return light
-        raise LookupError(f"there is no light {self._name!r} any more")
+        raise NotFound(f"light {self._name!r}: it is in scene {self._scene.name!r} no more",
+                       f"light {self._name!r}")
 
     @property
     def name(self):
@@ -68,7 +75,7 @@ class Light(Strict):
         """Of: kind, frame, direction, position, cone_deg, color, intensity, attenuation, enabled."""
         command = self._scene._command()
         command.set_light.CopyFrom(self._info())
-        put_light(self._scene, command.set_light, **values)
+        put_light(self._scene, command.set_light, values)
         self._scene._execute(command)
 
     @property
@@ -120,25 +127,20 @@ class Light(Strict):
         return f"<dspace.Light {self._name!r}>"
 
 
-def put_light(scene, message, kind=None, frame=None, direction=None, position=None, cone_deg=None,
-              color=None, intensity=None, attenuation=None, enabled=None):
-    """Writes what is given into a SetLight message."""
-    if kind is not None:
-        if kind not in KINDS:
-            raise ValueError(f"kind is {kind!r}; accepted: {', '.join(KINDS)}")
-        message.kind = KINDS[kind]
-    if frame is not None:
-        message.frame = scene._frame_id(frame)
-    for field, value in (("direction", direction), ("position", position),
-                         ("attenuation", attenuation)):
-        if value is not None:
-            out = getattr(message, field)
-            out.x, out.y, out.z = vector(value, field)
-    if color is not None:
-        message.color.r, message.color.g, message.color.b = vector(color, "the colour")
-    if cone_deg is not None:
-        message.cone_deg = cone_deg
-    if intensity is not None:
-        message.intensity = intensity
-    if enabled is not None:
-        message.disabled = not enabled
+def put_light(scene, message, values):
+    """Writes what is given into a SetLight message that has its name."""
+    about = f"light {message.name!r}"
+    keywords(values, LIGHT, about)
+    values = {key: value for key, value in values.items() if value is not None}
+    if "kind" in values:
+        message.kind = word(values["kind"], KINDS, "kind", about)
+    if "frame" in values:
+        message.frame = scene._frame_id(values["frame"])
+    for key in ("direction", "position", "attenuation"):
+        if key in values:
+            put_vector(getattr(message, key), values[key], key, about)
+    if "color" in values:
+        put_color(message.color, values["color"], "the colour", about)
+    put_given(message, about, cone_deg=values.get("cone_deg"), intensity=values.get("intensity"))
+    if "enabled" in values:
+        message.disabled = not flag(values["enabled"], "enabled", about)

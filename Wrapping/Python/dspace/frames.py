@@ -1,9 +1,11 @@
 """Frames of the kinematic tree."""
 import numpy as np
 
-from dspace._strict import Strict
 from dspace import _wire
-from dspace.poses import Pose, multiply, quaternion_of_axis, quaternion_of_matrix, to_pose
+from dspace._fields import about, put, refuse, shown, word
+from dspace._strict import Strict
+from dspace.errors import Error, InvalidArgument, WrongType
+from dspace.poses import Pose, multiply, quaternion_of_axis, quaternion_of_matrix, to_pose, vector
 
 
 def put_pose(message, pose):
@@ -24,7 +26,7 @@ class Frame(Strict):
     """A frame F of a scene, with its pose in its parent P: X_PF.
 
     position [m, within 1e18], quaternion (unit, w x y z) and scale (1e-12 to 1e12) are read and set
-    as a whole.
+    as a whole. Names have up to 255 bytes, hold no '/' and are neither "." nor "..".
     """
 
     def __init__(self, scene, id):
@@ -42,6 +44,12 @@ class Frame(Strict):
         """The number that names it in commands."""
         return self._id
 
+    def _label(self):
+        try:
+            return f"frame {self.path!r}"
+        except Error:
+            return f"frame {self._id}"
+
     def _info(self):
         return self._scene._ask("list_frames", below=self._id, shallow=True).frames.frame[0]
 
@@ -51,7 +59,7 @@ class Frame(Strict):
 
     @name.setter
     def name(self, name):
-        self._scene._do("rename_frame", frame=self._id, name=name)
+        self._scene._do("rename_frame", self._label, frame=self._id, name=name)
 
     @property
     def path(self):
@@ -70,17 +78,17 @@ class Frame(Strict):
 
     def add_frame(self, name, position=None, quaternion=None, scale=None, pose=None):
         """A new child. The pose in this frame is given whole or by its parts."""
-        X = to_pose(position, quaternion, scale, pose)
         command = self._scene._command()
-        command.create_frame.parent = self._id
-        command.create_frame.name = name
-        put_pose(command.create_frame.pose, X)
+        put(command.create_frame, lambda: f"new frame in {self._label()}", parent=self._id, name=name)
+        with about(f"frame {shown(name)}"):
+            put_pose(command.create_frame.pose, to_pose(position, quaternion, scale, pose))
         return Frame(self._scene, self._scene._execute(command).frame.frame)
 
     def frame(self, path):
         """The frame at `path` below this one."""
         return Frame(self._scene,
-                     self._scene._ask("find_frame", path=path, base=self._id).frame.frame)
+                     self._scene._ask("find_frame", "a frame", path=path,
+                                      base=self._id).frame.frame)
 
     __getitem__ = frame
 
@@ -91,29 +99,34 @@ class Frame(Strict):
         self._scene._do("remove_frame", frame=self._id)
 
     def reparent(self, parent, keep="local"):
-        """Hangs it under `parent`, keeping its "local" or its "world" pose."""
-        if keep not in ("local", "world"):
-            raise ValueError(f"keep is {keep!r}; accepted: 'local', 'world'")
+        """Hangs it under `parent` (scene.root for none), keeping its "local" or its "world" pose."""
+        keep_world_pose = word(keep, {"local": False, "world": True}, "keep", self._label)
+        if parent is None:
+            refuse(self._label, "the parent", parent, "a frame of its scene; scene.root is the root",
+                   WrongType)
         self._scene._do("reparent_frame", frame=self._id, parent=self._scene._frame_id(parent),
-                        keep_world_pose=keep == "world")
+                        keep_world_pose=keep_world_pose)
 
     # --- Pose --------------------------------------------------------------------------------
 
     @property
     def pose(self):
-        """X_PF in its parent. May be set to a Pose, a 4 x 4 matrix, or a row of 8 numbers."""
-        return Pose.from_row(self._scene.poses([self])[0])
+        """X_PF in its parent. May be set to a Pose, a 4 x 4 matrix, or a row of 8 or 7 numbers."""
+        return Pose._of_row(self._scene.poses([self])[0])
 
     @pose.setter
     def pose(self, pose):
-        self._scene.set_poses([self], to_pose(pose=pose).row)
+        with about(self._label):
+            row = to_pose(pose=pose).row
+        self._scene.set_poses([self], row)
 
     def set_pose(self, position=None, quaternion=None, scale=None):
         """Sets the parts that are given and keeps the others."""
         old = self.pose
-        self.pose = Pose(old.position if position is None else position,
-                         old.quaternion if quaternion is None else quaternion,
-                         old.scale if scale is None else scale)
+        with about(self._label):
+            self.pose = Pose(old.position if position is None else position,
+                             old.quaternion if quaternion is None else quaternion,
+                             old.scale if scale is None else scale)
 
     @property
     def position(self):
@@ -140,7 +153,9 @@ class Frame(Strict):
 
     @rotation.setter
     def rotation(self, matrix):
-        self.set_pose(quaternion=quaternion_of_matrix(matrix))
+        with about(self._label):
+            quaternion = quaternion_of_matrix(matrix)
+        self.set_pose(quaternion=quaternion)
 
     @property
     def rpy_deg(self):
@@ -149,7 +164,9 @@ class Frame(Strict):
 
     @rpy_deg.setter
     def rpy_deg(self, angles):
-        self.set_pose(quaternion=Pose.from_rpy_deg(*angles).quaternion)
+        with about(self._label):
+            quaternion = Pose.from_rpy_deg(*vector(angles, "rpy_deg")).quaternion
+        self.set_pose(quaternion=quaternion)
 
     @property
     def scale(self):
@@ -161,12 +178,14 @@ class Frame(Strict):
 
     def rotate(self, axis, angle_deg):
         """Turns it on by an angle about an axis of its own ("x", "y", "z" or a vector)."""
-        q = multiply(self.pose.quaternion, quaternion_of_axis(axis, angle_deg))
+        with about(self._label):
+            turn = quaternion_of_axis(axis, angle_deg)
+        q = multiply(self.pose.quaternion, turn)
         self.set_pose(quaternion=q / np.linalg.norm(q))
 
     def pose_in(self, other):
         """X_OF in another frame O of the scene, through their nearest common ancestor."""
-        return Pose.from_row(self._scene.poses([self], relative_to=other)[0])
+        return Pose._of_row(self._scene.poses([self], relative_to=other)[0])
 
     @property
     def world_pose(self):
@@ -195,8 +214,13 @@ def put_ids(message, field, scene, frames):
     """Writes the ids of frames (Frames, paths, ids or an integer array) into a fixed64 field."""
     if isinstance(frames, np.ndarray):
         if frames.size and not np.issubdtype(frames.dtype, np.integer):
-            raise ValueError(f"the ids are of type {frames.dtype}; accepted: integers")
+            raise WrongType(f"the ids are of type {frames.dtype}; accepted: integers")
+        if frames.size and frames.min() < 0:
+            raise InvalidArgument(f"an id is {frames.min()}; accepted: ids of frames, from 1 on")
         ids = frames.astype(np.uint64).ravel()
+    elif isinstance(frames, (str, Frame)) or not hasattr(frames, "__iter__"):
+        refuse(f"scene {scene.name!r}", "frames", frames, "a list of frames or paths, or an array of ids",
+               WrongType)
     else:
         ids = np.fromiter((scene._frame_id(frame) for frame in frames), dtype=np.uint64)
     _wire.put_array(message, field, ids)

@@ -3,9 +3,11 @@ import os
 
 import numpy as np
 
-from dspace._strict import Strict
 from dspace import _wire
-from dspace.poses import vector
+from dspace._fields import (array_of, flag, keywords, numbers, put, put_color, put_given, put_vector,
+                            refuse)
+from dspace._strict import Strict
+from dspace.errors import Error, InvalidArgument, WrongType
 
 UP = {"z": 0, "y": 1, "x": 2, "-z": 3}
 MATERIAL = ("color", "opacity", "metallic", "roughness", "texture", "lit", "wireframe")
@@ -13,50 +15,64 @@ SETTINGS = ("frame", "name", "ornamental", "fragment", "position", "quaternion",
             "visible", "pickable", "line_width", "point_size") + MATERIAL
 
 
-def put_material(message, values):
+def put_material(message, values, about=None):
     """Writes the given ones of MATERIAL into a Material message."""
     for key, value in values.items():
         if key == "color":
-            message.color.r, message.color.g, message.color.b = vector(value, "the colour")
+            put_color(message.color, value, "the colour", about)
         elif key == "texture":
-            message.texture = os.fspath(value) if value else ""
+            message.texture = file_path(value, "texture", about) if value else ""
         else:
-            setattr(message, key, value)
+            put(message, about, **{key: value})
 
 
-def put_offset(message, position=None, quaternion=None, stretch=None):
+def file_path(value, what, about=None):
+    """The path of a file as a str."""
+    try:
+        path = os.fspath(value)
+    except TypeError:
+        path = None
+    if not isinstance(path, str):
+        refuse(about, what, value, "a path", WrongType)
+    return path
+
+
+def put_rotation(message, quaternion, what="the quaternion", about=None):
+    """Four numbers into a Quaternion."""
+    q = numbers(quaternion, 4, what, about, "4 numbers w, x, y, z")
+    message.w, message.x, message.y, message.z = q
+
+
+def put_offset(message, position=None, quaternion=None, stretch=None, about=None):
     """Writes an object's place in its frame into an Offset message."""
     if position is not None:
-        p = vector(position, "the position")
-        message.position.x, message.position.y, message.position.z = p
+        put_vector(message.position, position, "the position", about)
     if quaternion is not None:
-        q = message.rotation
-        q.w, q.x, q.y, q.z = (float(v) for v in quaternion)
+        put_rotation(message.rotation, quaternion, about=about)
     if stretch is not None:
-        s = vector(np.broadcast_to(stretch, 3), "the stretch")
-        message.scale.x, message.scale.y, message.scale.z = s
+        accepted = "a number, or 3 numbers"
+        s = array_of(stretch, "the stretch", accepted, about)
+        put_vector(message.scale, np.broadcast_to(s, 3) if s.ndim == 0 else s, "the stretch", about)
 
 
-def put_settings(scene, message, frame=None, name=None, ornamental=False, fragment=None,
+def put_settings(scene, message, about=None, frame=None, name=None, ornamental=False, fragment=None,
                  position=None, quaternion=None, stretch=None, visible=True, pickable=True,
                  line_width=None, point_size=None, **material):
-    """Writes what every object has into an ObjectSettings message."""
-    unknown = set(material) - set(MATERIAL)
-    if unknown:
-        raise TypeError(f"unknown keyword {sorted(unknown)}; accepted: {', '.join(SETTINGS)}")
-    message.frame = scene._frame_id(frame)
-    message.name = name or ""
-    message.nature = 1 if ornamental else 0
-    message.fragment = scene._name(fragment)
+    """Writes what every object has into an ObjectSettings message; about: what is made."""
+    if isinstance(name, str) and name:
+        about = f"{about or 'object'} {name!r}"
+    if set(material) - set(MATERIAL):
+        keywords(material, SETTINGS, about)
+    put(message, about, frame=scene._frame_id(frame), name="" if name is None else name,
+        fragment=scene._fragment_name(fragment))
+    message.nature = 1 if flag(ornamental, "ornamental", about) else 0
     if position is not None or quaternion is not None or stretch is not None:
-        put_offset(message.offset, position, quaternion, stretch)
-    put_material(message.material, {k: v for k, v in material.items() if v is not None})
-    message.hidden = not visible
-    message.unpickable = not pickable
-    if line_width is not None:
-        message.line_width = line_width
-    if point_size is not None:
-        message.point_size = point_size
+        put_offset(message.offset, position, quaternion, stretch, about)
+    put_material(message.material, {k: v for k, v in material.items() if v is not None}, about)
+    message.hidden = not flag(visible, "visible", about)
+    message.unpickable = not flag(pickable, "pickable", about)
+    put_given(message, about, line_width=line_width, point_size=point_size)
+    return about
 
 
 def _material_property(key, text):
@@ -82,6 +98,12 @@ class GraphicsObject(Strict):
 
     def _info(self):
         return self._scene._ask("describe_object", object=self._id).object_info
+
+    def _label(self):
+        try:
+            return f"object {self.name!r}"
+        except Error:
+            return f"object {self._id}"
 
     @property
     def scene(self):
@@ -116,7 +138,8 @@ class GraphicsObject(Strict):
 
     @fragment.setter
     def fragment(self, fragment):
-        self._scene._do("move_to_fragment", object=self._id, fragment=self._scene._name(fragment))
+        self._scene._do("move_to_fragment", object=self._id,
+                        fragment=self._scene._fragment_name(fragment))
 
     @property
     def visible(self):
@@ -124,9 +147,9 @@ class GraphicsObject(Strict):
 
     @visible.setter
     def visible(self, visible):
-        self._scene._do("set_object_visible", object=self._id, visible=bool(visible))
+        self._scene._do("set_object_visible", self._label, object=self._id, visible=visible)
 
-    color = _material_property("color", "sRGB, three numbers from 0 to 1.")
+    color = _material_property("color", "sRGB, three numbers from 0 to 1; set also to '#rrggbb' or a CSS name.")
     opacity = _material_property("opacity", "0 to 1.")
     metallic = _material_property("metallic", "0 to 1.")
     roughness = _material_property("roughness", "0 to 1.")
@@ -136,9 +159,7 @@ class GraphicsObject(Strict):
 
     def set_material(self, **values):
         """Several at once; None takes a change back."""
-        unknown = set(values) - set(MATERIAL)
-        if unknown:
-            raise TypeError(f"unknown keyword {sorted(unknown)}; accepted: {', '.join(MATERIAL)}")
+        keywords(values, MATERIAL, self._label)
         command = self._scene._command()
         change = command.set_material
         change.object = self._id
@@ -148,7 +169,7 @@ class GraphicsObject(Strict):
             for key, value in values.items():
                 if value is None:
                     change.material.ClearField(key)
-        put_material(change.material, {k: v for k, v in values.items() if v is not None})
+        put_material(change.material, {k: v for k, v in values.items() if v is not None}, self._label)
         self._scene._execute(command)
 
     @property
@@ -164,7 +185,7 @@ class GraphicsObject(Strict):
         stretch: one factor, or one an axis (negative ones mirror)."""
         command = self._scene._command()
         command.set_object_offset.object = self._id
-        put_offset(command.set_object_offset.offset, position, quaternion, stretch)
+        put_offset(command.set_object_offset.offset, position, quaternion, stretch, self._label)
         self._scene._execute(command)
 
     @property
@@ -214,7 +235,7 @@ class Text(GraphicsObject):
 
     def set(self, text):
         """Other words in the same style."""
-        self._scene._do("set_text", object=self._id, text=text)
+        self._scene._do("set_text", self._label, object=self._id, text=text)
 
 
 class TiltMarker(GraphicsObject):
@@ -222,17 +243,20 @@ class TiltMarker(GraphicsObject):
 
     def set(self, tilt_deg):
         """The tilt that it shows, from upright, 0 to 180 degrees."""
-        self._scene._do("set_tilt", object=self._id, tilt_deg=tilt_deg)
+        self._scene._do("set_tilt", self._label, object=self._id, tilt_deg=tilt_deg)
 
 
 class Trail(GraphicsObject):
     """The path that something has come."""
 
     def append(self, points):
-        """Points p_F in the frame that it hangs on [m]: 3 numbers or an array (n, 3)."""
-        array = np.atleast_2d(np.asarray(points, dtype=float))
+        """Points p_F in the frame that it hangs on [m]: 3 numbers or an array (n, 3).
+
+        They stay whatever the scene's time does; clear() takes them away."""
+        array = np.atleast_2d(array_of(points, "the points", "(3,) or (n, 3)", self._label))
         if array.ndim != 2 or array.shape[1] != 3:
-            raise ValueError(f"the points have shape {np.shape(points)}; accepted: (3,) or (n, 3)")
+            raise InvalidArgument(f"{self._label()}: the points have shape {np.shape(points)}; "
+                                  "accepted: (3,) or (n, 3)")
         command = self._scene._command()
         command.append_trail.object = self._id
         _wire.put_array(command.append_trail, "point", array)

@@ -1,7 +1,9 @@
 """Articulated models: joints that move frames."""
 from collections.abc import Mapping
 
+from dspace._fields import Named, flag, number, refuse
 from dspace._strict import Strict
+from dspace.errors import WrongType
 from dspace.poses import Pose
 
 TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
@@ -51,12 +53,12 @@ class Joint(Strict):
 
     @property
     def position(self):
-        """Degrees or metres. Setting it beyond the limits raises."""
+        """Degrees or metres. Setting it beyond the limits raises; without limits, beyond 1e12 degrees."""
         return self._robot._describe().joint[self._index].position
 
     @position.setter
     def position(self, position):
-        self._robot._set([self._index], [position], False)
+        self._robot._set({self.name: position}, False)
 
     def __repr__(self):
         try:
@@ -75,11 +77,7 @@ class Joints(Mapping):
         self._joints = joints
 
     def __getitem__(self, name):
-        try:
-            return self._joints[name]
-        except KeyError:
-            raise KeyError(f"there is no joint {name!r}; there are: {', '.join(self._joints)}"
-                           ) from None
+        return self._joints[name]
 
     def __iter__(self):
         return iter(self._joints)
@@ -104,8 +102,8 @@ class Robot(Strict):
         self._link_list = list(info.link)
         self._joint_names = [joint.name for joint in info.joint]
         self._joint_index = {name: i for i, name in enumerate(self._joint_names)}
-        self.joints = Joints({joint.name: Joint(self, i, joint)
-                              for i, joint in enumerate(info.joint)})
+        self.joints = Joints(Named("joint", {joint.name: Joint(self, i, joint)
+                                             for i, joint in enumerate(info.joint)}))
 
     def _describe(self):
         return self._scene._ask("describe_robot", robot=self._name).robot
@@ -113,12 +111,17 @@ class Robot(Strict):
     def _link_frame(self, index):
         return self._scene._frame_of(self._link_list[index].frame)
 
-    def _set(self, indices, positions, clamp):
+    def _label(self):
+        return f"robot {self._name!r}"
+
+    def _set(self, positions, clamp):
         command = self._scene._command()
         command.set_joints.robot = self._name
-        command.set_joints.joint.extend(indices)
-        command.set_joints.position.extend(positions)
-        command.set_joints.clamp = clamp
+        command.set_joints.joint.extend(self.joints[name]._index for name in positions)
+        command.set_joints.position.extend(
+            number(position, "the position", f"joint {name!r} of robot {self._name!r}")
+            for name, position in positions.items())
+        command.set_joints.clamp = flag(clamp, "clamp", self._label)
         self._scene._execute(command)
 
     @property
@@ -146,7 +149,8 @@ class Robot(Strict):
     @property
     def links(self):
         """The frame of each link, by name."""
-        return {name: self._scene._frame_of(link.frame) for name, link in self._links.items()}
+        return Named("link", {name: self._scene._frame_of(link.frame)
+                              for name, link in self._links.items()})
 
     @property
     def objects(self):
@@ -157,9 +161,22 @@ class Robot(Strict):
         """Many joints at once, {name: degrees or metres}; all are checked before any moves.
 
         clamp: what lies beyond a limit is set to it; else it raises."""
-        names = list(positions)
-        self._set([self.joints[name]._index for name in names],
-                  [float(positions[name]) for name in names], clamp)
+        if not hasattr(positions, "items"):
+            refuse(self._label, "positions", positions, "a dict {name: degrees or metres}", WrongType)
+        self._set(positions, clamp)
+
+    def place(self, state):
+        """Stands as a vehicle of dspace.rover that was solved on terrain: its base and all joints.
+
+            vehicle = dspace.rover.load_vehicle("rover.urdf")
+            rover.place(vehicle.solve((x, y, heading_deg), ground))
+
+        The terrain's frame must be the one that the robot hangs on."""
+        for each in ("position", "quaternion", "joints"):
+            if not hasattr(state, each):
+                refuse(self._label, "the state", state, "what dspace.rover's solve() returned", WrongType)
+        self.pose = Pose(state.position, state.quaternion, self.pose.scale)
+        self.set_joints(state.joints, clamp=True)
 
     def joint_positions(self):
         """{name: degrees or metres} of all joints."""
@@ -167,7 +184,7 @@ class Robot(Strict):
 
     def link_pose(self, link):
         """X_BL of a link in the base frame."""
-        return Pose.from_row(self._scene.poses([self.links[link]], relative_to=self.frame)[0])
+        return Pose._of_row(self._scene.poses([self.links[link]], relative_to=self.frame)[0])
 
     def remove(self):
         self._scene._do("remove_robot", robot=self._name)

@@ -1,6 +1,7 @@
 """Sessions own scenes and viewports."""
 from dspace._client import LocalClient
-from dspace.errors import AlreadyExists
+from dspace._fields import Named, flag, refuse
+from dspace.errors import AlreadyExists, WrongType
 from dspace.scenes import Scene
 from dspace.session import commands_pb2 as pb
 from dspace.viewports import Viewport
@@ -11,6 +12,9 @@ class Session:
 
         with dspace.Session() as session:
             scene = session.scene()
+
+    It serves the thread that made it, as its graphics context does: from another one, everything raises
+    dspace.WrongThread. Several sessions may be used side by side, each in its thread.
     """
 
     def __init__(self):
@@ -35,10 +39,12 @@ class Session:
 
         lights: whether a new one begins with the lights "sun" and "sky".
         """
+        if not isinstance(name, str):
+            refuse("session", "the scene's name", name, "a str", WrongType)
         if not name:
-            raise ValueError("the scene's name is empty; accepted: any other")
+            refuse("session", "the scene's name", name, "any that is not empty")
         command = pb.Command(scene=name)
-        command.create_scene.no_lights = not lights
+        command.create_scene.no_lights = not flag(lights, "lights", f"scene {name!r}")
         try:
             self._client.execute(command)
         except AlreadyExists:
@@ -51,7 +57,7 @@ class Session:
         command = pb.Command()
         command.list_scenes.SetInParent()
         names = self._client.execute(command).scenes.name
-        return {name: Scene(self._client, name) for name in names}
+        return Named("scene", {name: Scene(self._client, name) for name in names})
 
     @property
     def viewports(self):
@@ -59,7 +65,7 @@ class Session:
         command = pb.Command()
         command.list_viewports.SetInParent()
         names = self._client.execute(command).viewports.name
-        return {name: Viewport(self._client, name) for name in names}
+        return Named("viewport", {name: Viewport(self._client, name) for name in names})
 
     def render(self):
         """Draws every visible viewport in which something changed; returns how many."""

@@ -1,8 +1,12 @@
 """Terrain: what is drawn of a raster, and what it answers."""
 import numpy as np
 
-from dspace._strict import Strict
 from dspace import _wire
+from dspace._fields import (Named, array_of, flag, keywords, numbers, put, put_color, put_given,
+                            put_vector, refuse, shown)
+from dspace._strict import Strict
+from dspace.errors import InvalidArgument, WrongType
+from dspace.objects import file_path
 
 
 class Terrain(Strict):
@@ -65,12 +69,21 @@ class Terrain(Strict):
         """Drawn now."""
         return self._info().triangles
 
+    def _label(self):
+        return f"terrain {self._name!r}"
+
     def _query(self, x, y, what, map):
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        x, y = (array_of(value, name, "a number or an array of numbers", self._label)
+                for name, value in (("x", x), ("y", y)))
+        try:
+            x, y = np.broadcast_arrays(x, y)
+        except ValueError:
+            raise InvalidArgument(f"{self._label()}: x and y have the shapes {x.shape} and {y.shape}; "
+                                  "accepted: shapes that broadcast", self._label()) from None
         command = self._scene._command()
         message = command.query_terrain
         message.terrain = self._name
-        message.map = map
+        message.map = flag(map, "map", self._label)
         setattr(message, what, True)
         _wire.put_array(message, "point", np.stack((x, y), axis=-1))
         return x.shape, self._scene._execute(command).terrain_values
@@ -88,15 +101,26 @@ class Terrain(Strict):
         shape, values = self._query(x, y, "normal", map)
         return _unpack(values, "normal", shape + (3,))
 
+    def heights(self, xy):
+        """z of points (n, 2) in its frame; with normals() what dspace.rover stands vehicles on."""
+        xy = array_of(xy, "the points", "an array (n, 2)", self._label)
+        return self.height(xy[..., 0], xy[..., 1])
+
+    def normals(self, xy):
+        """Unit normals (n, 3) at points (n, 2)."""
+        xy = array_of(xy, "the points", "an array (n, 2)", self._label)
+        return self.normal(xy[..., 0], xy[..., 1])
+
     def slope_deg(self, x, y, map=False):
         """Degrees from level."""
         shape, values = self._query(x, y, "slope", map)
         return _unpack(values, "slope_deg", shape)
 
     def _convert(self, points, to_map):
-        points = np.asarray(points, dtype=float)
+        points = array_of(points, "the points", "an array (..., 3)", self._label)
         if points.shape[-1:] != (3,):
-            raise ValueError(f"the points have shape {points.shape}; accepted: (..., 3)")
+            raise InvalidArgument(f"{self._label()}: the points have shape {points.shape}; accepted: "
+                                  "(..., 3)", self._label())
         command = self._scene._command()
         command.convert_terrain.terrain = self._name
         command.convert_terrain.to_map = to_map
@@ -116,10 +140,13 @@ class Terrain(Strict):
         """Where every post is drawn: within `radius` metres of x, y points (n, 2) in its frame.
 
         Replaces the earlier ones; only tiles that change are sent to the GPU."""
+        points = array_of(points, "the points", "an array (n, 2)", self._label)
+        if points.size and points.shape[-1:] != (2,):
+            raise InvalidArgument(f"{self._label()}: the points have shape {points.shape}; accepted: "
+                                  "(n, 2)", self._label())
         command = self._scene._command()
-        command.focus_terrain.terrain = self._name
-        command.focus_terrain.radius = radius
-        _wire.put_array(command.focus_terrain, "point", np.asarray(points, dtype=float))
+        put(command.focus_terrain, self._label, terrain=self._name, radius=radius)
+        _wire.put_array(command.focus_terrain, "point", points)
         self._scene._execute(command)
 
     def remove(self):
@@ -137,3 +164,61 @@ class Terrain(Strict):
 def _unpack(values, field, shape):
     array = _wire.get_array(values, field).reshape(shape)
     return float(array) if shape == () else array
+
+
+class TerrainMaking:
+    """The part of Scene that opens terrain."""
+
+    def add_terrain(self, path, name=None, frame=None, image=None, color=None, relief=None,
+                    origin=None, triangles=None, fragment=None, lit=True, image_crs=None,
+                    image_extent=None, band=None, crs=None, vertical_datum=None,
+                    vertical_scale=None, vertical_offset=None, pixel_size=None):
+        """A raster of heights (anything that GDAL opens) as a physical object.
+
+        image: a file to drape over it, with image_crs and image_extent (left, top, right, bottom in
+        map coordinates) where the file does not say; color: one colour; relief: shaded relief (the
+        default), a dict of sun_azimuth_deg, sun_elevation_deg, color_by_height. lit: whether the
+        scene's lights shade it as well. origin: map x, y[, height] that become the frame's origin,
+        by default the raster's middle at height 0. triangles: the budget (200000).
+        band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and
+        vertical_offset [m], pixel_size (map units): what the file does not say, or says wrongly."""
+        path = file_path(path, "the path", "terrain")
+        label = f"terrain {shown(path if name is None else name)}"
+        if sum(value is not None for value in (image, color, relief)) > 1:
+            raise InvalidArgument(f"{label}: several of image, color and relief are given; accepted: one "
+                                  "of them", label)
+        command = self._command()
+        message = command.open_terrain
+        put(message, label, path=path, name="" if name is None else name, frame=self._frame_id(frame))
+        if image is not None:
+            put(message.drape, label, path=file_path(image, "the image", label))
+            put_given(message.drape, label, crs=image_crs)
+            if image_extent is not None:
+                message.drape.extent.extend(numbers(image_extent, 4, "image_extent", label,
+                                                    "left, top, right, bottom"))
+        elif color is not None:
+            put_color(message.color, color, "the colour", label)
+        elif relief is not None:
+            message.relief.SetInParent()
+            known = [field.name for field in message.relief.DESCRIPTOR.fields]
+            if not isinstance(relief, dict):
+                refuse(label, "relief", relief, f"a dict of {', '.join(known)}", WrongType)
+            keywords(relief, known, f"{label}, relief")
+            put(message.relief, label, **relief)
+        if origin is not None:
+            values = array_of(origin, "the origin", "map x, y[, height]", label).ravel()
+            if len(values) not in (2, 3):
+                refuse(label, "the origin", origin, "map x, y[, height]", WrongType)
+            put_vector(message.map_origin, [*values, 0.0][:3], "the origin", label)
+        message.fragment = self._fragment_name(fragment)
+        message.unlit = not flag(lit, "lit", label)
+        put_given(message, label, triangle_budget=triangles, band=band, crs=crs,
+                  vertical_datum=vertical_datum, vertical_scale=vertical_scale,
+                  vertical_offset=vertical_offset, pixel_size=pixel_size)
+        return Terrain(self, self._execute(command).terrain.name)
+
+    @property
+    def terrains(self):
+        """All terrains, by name."""
+        return Named("terrain", {name: Terrain(self, name)
+                                 for name in self._ask("list_terrains").terrains.name})

@@ -1,15 +1,18 @@
 """Viewports: where a vantage is drawn, captured and picked in."""
-import os
 from dataclasses import dataclass
 
 import numpy as np
 
+from dspace._fields import integers, put, put_color, put_given, refuse, word
 from dspace._strict import Strict
-from dspace.poses import vector
+from dspace.errors import Internal, WrongType
+from dspace.fragments import Fragment
+from dspace.objects import file_path
 from dspace.session import commands_pb2 as pb
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 PLANES = {"color": 0, "depth": 1, "label": 2}
+SIZE = "(width, height), two integers from 1 to 16384"
 EVENTS = {"move": 0, "press": 1, "release": 2, "wheel": 3, "key": 4}
 BUTTONS = {None: 0, "left": 1, "middle": 2, "right": 3}
 TYPES = {0: np.uint8, 1: np.uint32, 2: np.float32}
@@ -44,9 +47,20 @@ class Viewport(Strict):
         command = pb.Command()
         message = getattr(command, kind)
         message.viewport = self._name
-        for field, value in fields.items():
-            setattr(message, field, value)
+        put(message, self._label, **fields)
         return self._client.execute(command)
+
+    def _label(self):
+        return f"viewport {self._name!r}"
+
+    def _put_capture(self, message, physical_only, hide):
+        """What captures and saved images have in common."""
+        put(message, self._label, viewport=self._name, physical_only=physical_only)
+        scene = self.scene
+        hide = [hide] if isinstance(hide, (str, Fragment)) else hide
+        if not hasattr(hide, "__iter__"):
+            refuse(self._label, "hide", hide, "fragments or their names", WrongType)
+        message.hidden_fragment.extend(scene._fragment_name(each, None) for each in hide)
 
     def _info(self):
         return self._do("describe_viewport").viewport_info
@@ -68,13 +82,12 @@ class Viewport(Strict):
         "color": (h, w, 4) uint8, sRGB and alpha 255. "depth": (h, w) float32, metres along the
         camera's Z, +infinity where nothing was hit. "label": (h, w) uint32, GraphicsObject.id, 0
         where nothing was hit.
-        physical_only: no ornamental object and no overlay. hide: fragments left out of this one."""
+        physical_only: no ornamental object and no overlay. hide: fragments (or one) left out of this
+        one."""
         command = pb.Command()
         message = command.capture
-        message.viewport = self._name
-        message.color, message.depth, message.label = color, depth, label
-        message.physical_only = physical_only
-        message.hidden_fragment.extend(f if isinstance(f, str) else f.name for f in hide)
+        self._put_capture(message, physical_only, hide)
+        put(message, self._label, color=color, depth=depth, label=label)
         reply = self._client.execute(command).capture
         return {plane.name: self._plane(plane, reply) for plane in reply.plane}
 
@@ -86,32 +99,34 @@ class Viewport(Strict):
         return vtk_to_numpy(self._client.vtk.GetPlane(plane.name)).reshape(shape)
 
     def image(self, alpha=False, physical_only=False, hide=()):
-        """The picture, (h, w, 3) uint8, sRGB; with alpha (h, w, 4)."""
+        """The picture, (h, w, 3) uint8, sRGB; with alpha (h, w, 4).
+
+        It shows all that the viewport does, ornaments too; depth() and labels() leave these out unless
+        they are told not to, for they measure what a real camera sees."""
         image = self.capture(physical_only=physical_only, hide=hide)["color"]
         return image if alpha else image[..., :3]
 
     def depth(self, physical_only=True, hide=()):
-        """(h, w) float32: metres along the camera's Z, +infinity where nothing was hit."""
+        """(h, w) float32: metres along the camera's Z, +infinity where nothing was hit.
+
+        Of physical objects only, unlike image() and pick(); physical_only=False: of all that is drawn."""
         return self.capture(False, depth=True, physical_only=physical_only, hide=hide)["depth"]
 
     def labels(self, physical_only=True, hide=()):
-        """(h, w) uint32: GraphicsObject.id, 0 where nothing was hit."""
+        """(h, w) uint32: GraphicsObject.id, 0 where nothing was hit.
+
+        Of physical objects only, unlike image() and pick(); physical_only=False: of all that is drawn."""
         return self.capture(False, label=True, physical_only=physical_only, hide=hide)["label"]
 
     def save(self, path, plane="color", physical_only=False, hide=(), quality=None):
         """Writes the picture to .png, .jpg, .tif or .exr; plane "depth" [m] to .tif or .exr, "label"
         to .png, .tif or .exr. quality: 1 to 100, JPEG."""
-        if plane not in PLANES:
-            raise ValueError(f"plane is {plane!r}; accepted: {', '.join(PLANES)}")
         command = pb.Command()
         message = command.save_image
-        message.viewport = self._name
-        message.path = os.fspath(path)
-        message.plane = PLANES[plane]
-        message.physical_only = physical_only
-        message.hidden_fragment.extend(f if isinstance(f, str) else f.name for f in hide)
-        if quality is not None:
-            message.quality = quality
+        message.plane = word(plane, PLANES, "plane", self._label)
+        message.path = file_path(path, "the path", self._label)
+        self._put_capture(message, physical_only, hide)
+        put_given(message, self._label, quality=quality)
         self._client.execute(command)
 
     def render(self):
@@ -119,9 +134,11 @@ class Viewport(Strict):
         return bool(self._do("render").render.drawn)
 
     def pick(self, x, y, radius=0, frame=None):
-        """What lies under a pixel, or the nearest object within `radius` pixels: a Pick, or None.
+        """What lies under a pixel, or the nearest object within `radius` (0 to 256) pixels: a Pick, or
+        None where nothing pickable is drawn (the sky), so that it is asked for before it is used.
 
-        frame: a frame in which the point is given as well (Pick.in_given)."""
+        Ornaments that are drawn are picked, too. frame: a frame in which the point is given as well
+        (Pick.in_given)."""
         scene = self.scene
         in_frame = 0 if frame is None else scene._frame_id(frame)
         reply = self._do("pick", x=x, y=y, radius=radius, in_frame=in_frame).pick
@@ -143,7 +160,7 @@ class Viewport(Strict):
 
     @size.setter
     def size(self, size):
-        width, height = size
+        width, height = integers(size, 2, "the size", self._label, SIZE)
         self._do("resize_viewport", width=width, height=height)
 
     @property
@@ -154,20 +171,26 @@ class Viewport(Strict):
 
     @position.setter
     def position(self, position):
-        x, y = position
+        x, y = integers(position, 2, "the position", self._label, "(x, y), two integers, in pixels")
         self._do("move_viewport", x=x, y=y)
 
     @property
     def camera(self):
-        """The camera that it looks through; set to None for its vantage's active one."""
+        """The camera that it looks through, of its scene; set to None for its vantage's active one.
+
+        A Camera brings its vantage with it; a name means one of the present vantage."""
         from dspace.cameras import Camera
         info = self._info()
         return Camera(self.scene, info.vantage, info.camera) if info.camera else None
 
     @camera.setter
     def camera(self, camera):
-        self._do("set_viewport",
-                 camera="" if camera is None else camera if isinstance(camera, str) else camera.name)
+        from dspace.cameras import Camera
+        name = self.scene._name_of(camera, Camera, "camera", self._label)
+        if isinstance(camera, Camera):
+            self._do("set_viewport", camera=name, vantage=camera.vantage)
+        else:
+            self._do("set_viewport", camera=name)
 
     @property
     def vantage(self):
@@ -176,7 +199,7 @@ class Viewport(Strict):
 
     @vantage.setter
     def vantage(self, vantage):
-        self._do("set_viewport", vantage=vantage if isinstance(vantage, str) else vantage.name)
+        self._do("set_viewport", vantage=self.scene._vantage_name(vantage, self._label))
 
     @property
     def visible(self):
@@ -185,7 +208,7 @@ class Viewport(Strict):
 
     @visible.setter
     def visible(self, visible):
-        self._do("set_viewport", visible=bool(visible))
+        self._do("set_viewport", visible=visible)
 
     @property
     def samples(self):
@@ -198,12 +221,13 @@ class Viewport(Strict):
 
     @property
     def ornaments(self):
-        """Whether ornamental objects are drawn."""
+        """Whether ornamental objects are drawn. Text tables and corner axes stay: see remove_table and
+        corner_axes; a capture with physical_only leaves them out as well."""
         return self._info().ornaments
 
     @ornaments.setter
     def ornaments(self, ornaments):
-        self._do("set_viewport", ornaments=bool(ornaments))
+        self._do("set_viewport", ornaments=ornaments)
 
     @property
     def corner_axes(self):
@@ -212,53 +236,49 @@ class Viewport(Strict):
 
     @corner_axes.setter
     def corner_axes(self, corner_axes):
-        self._do("set_viewport", corner_axes=bool(corner_axes))
+        self._do("set_viewport", corner_axes=corner_axes)
 
     def set_background(self, color, top=None):
-        """sRGB, 0 to 1; with `top` a vertical gradient."""
+        """sRGB, 0 to 1, '#rrggbb' or a CSS name; with `top` a vertical gradient."""
         command = pb.Command()
         message = command.set_viewport
         message.viewport = self._name
-        b = message.background
-        b.r, b.g, b.b = vector(color, "the colour")
+        put_color(message.background, color, "the colour", self._label)
         if top is not None:
-            t = message.background_top
-            t.r, t.g, t.b = vector(top, "the colour")
+            put_color(message.background_top, top, "the colour on top", self._label)
         self._client.execute(command)
 
     def hide(self, fragment):
         """Hides a fragment in this viewport only."""
         self._do("set_viewport_fragment", visible=False,
-                 fragment=fragment if isinstance(fragment, str) else fragment.name)
+                 fragment=self.scene._fragment_name(fragment, None))
 
     def show(self, fragment):
         """Takes hide() back."""
         self._do("set_viewport_fragment", visible=True,
-                 fragment=fragment if isinstance(fragment, str) else fragment.name)
+                 fragment=self.scene._fragment_name(fragment, None))
 
     def set_table(self, name, rows, title="", anchor="top left", font_size=None, margin=None,
                   color=None, background=None, background_opacity=None):
         """Labels and values over the picture: rows is a dict or pairs of anything with a str.
 
         Creates the table or replaces the one of that name. font_size and margin in pixels."""
-        if anchor not in ANCHORS:
-            raise ValueError(f"anchor is {anchor!r}; accepted: {', '.join(ANCHORS)}")
+        table = f"text table {name!r}"
         command = pb.Command()
         message = command.set_text_table
-        message.viewport = self._name
-        message.name = name
-        message.title = title
-        message.anchor = ANCHORS[anchor]
-        for label, value in (rows.items() if hasattr(rows, "items") else rows):
-            message.row.add(label=str(label), value=str(value))
-        for field, value in (("font_size", font_size), ("margin", margin),
-                             ("background_opacity", background_opacity)):
-            if value is not None:
-                setattr(message, field, value)
+        put(message, table, viewport=self._name, name=name, title=title)
+        message.anchor = word(anchor, ANCHORS, "anchor", table)
+        rows = list(rows.items() if hasattr(rows, "items") else
+                    rows if hasattr(rows, "__iter__") and not isinstance(rows, str) else [rows])
+        for row in rows:
+            if not isinstance(row, (tuple, list)) or len(row) != 2:
+                refuse(table, "a row", row, "a label and a value; rows: a dict or such pairs", WrongType)
+            message.row.add(label=str(row[0]), value=str(row[1]))
+        put_given(message, table, font_size=font_size, margin=margin,
+                  background_opacity=background_opacity)
         for field, value in (("color", color), ("background", background)):
             if value is not None:
-                c = getattr(message, field)
-                c.r, c.g, c.b = vector(value, field)
+                put_color(getattr(message, field), value, field, table)
         self._client.execute(command)
 
     def remove_table(self, name):
@@ -270,11 +290,9 @@ class Viewport(Strict):
 
         Drags, the wheel and keys move the camera; a left click picks and returns a Pick's numbers.
         See ViewportEvent in viewports.proto."""
-        if type not in EVENTS or button not in BUTTONS:
-            raise ValueError(f"type is {type!r}, button {button!r}; accepted: "
-                             f"{', '.join(EVENTS)}; left, middle, right")
-        reply = self._do("viewport_event", type=EVENTS[type], x=x, y=y, button=BUTTONS[button],
-                         wheel=wheel, key=key, shift=shift, control=control, alt=alt)
+        reply = self._do("viewport_event", type=word(type, EVENTS, "type", self._label), x=x, y=y,
+                         button=word(button, BUTTONS, "button", self._label), wheel=wheel, key=key,
+                         shift=shift, control=control, alt=alt)
         return reply.pick if reply.HasField("pick") else None
 
     def remove(self):
@@ -307,7 +325,6 @@ class Viewport(Strict):
         if result and result[0][1] is not None:
             raise result[0][1]
         if message:
-            from dspace.errors import Internal
             raise Internal(message, self._name)
         return result[0][0]
 

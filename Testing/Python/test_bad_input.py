@@ -1,0 +1,468 @@
+"""What a new user gets wrong: each is refused, naming the object, the value and what is accepted."""
+import threading
+
+import numpy as np
+import pytest
+
+import dspace
+
+SIZE = (64, 48)
+NAN = float("nan")
+EYE = dict(eye=(0, 0, 5), target=(0, 0, 0), up=(0, 1, 0))
+ARM = """<robot name="arm"><link name="base"/><link name="wheel"/>
+<joint name="axle" type="continuous"><parent link="base"/><child link="wheel"/>
+<axis xyz="0 0 1"/></joint></robot>"""
+
+
+@pytest.fixture
+def view(scene):
+    return scene.add_viewport(SIZE, scene.add_camera("camera", **EYE), name="view")
+
+
+@pytest.fixture
+def arm(scene, tmp_path):
+    path = tmp_path / "arm.urdf"
+    path.write_text(ARM)
+    return scene.load(path)
+
+
+# --- Things of other scenes --------------------------------------------------------------------
+
+
+def things_of(scene):
+    """What may be handed about, of a scene in which all have the names that `scene` has, too."""
+    scene.add_fragment("group")
+    return dict(frame=scene.add_frame("frame"), camera=scene.add_camera("camera", **EYE),
+                fragment=scene.fragments["group"], vantage=scene.vantages["main"])
+
+
+def uses_of(scene, view, theirs):
+    """Every way to use `theirs` in another scene: (what is named, call)."""
+    frame, camera = theirs["frame"], theirs["camera"]
+    fragment, vantage = theirs["fragment"], theirs["vantage"]
+    own = scene["own"]
+    box = scene.objects["box"]
+    row = [0, 0, 0, 1, 0, 0, 0, 1]
+
+    def set(thing, name, value):
+        return lambda: setattr(thing, name, value)
+
+    return [
+        ("camera 'camera'", set(view, "camera", camera)),
+        ("camera 'camera'", lambda: scene.add_viewport(SIZE, camera)),
+        ("vantage 'main'", lambda: scene.add_viewport(SIZE, vantage=vantage)),
+        ("vantage 'main'", set(view, "vantage", vantage)),
+        ("vantage 'main'", lambda: scene.add_camera("new", vantage=vantage)),
+        ("fragment 'group'", lambda: view.hide(fragment)),
+        ("fragment 'group'", lambda: view.show(fragment)),
+        ("fragment 'group'", lambda: view.image(hide=[fragment])),
+        ("fragment 'group'", lambda: view.save("no.png", hide=fragment)),
+        ("fragment 'group'", lambda: scene.add_sphere(1, fragment=fragment)),
+        ("fragment 'group'", set(box, "fragment", fragment)),
+        ("frame 'frame'", set(box, "frame", frame)),
+        ("frame 'frame'", lambda: scene.add_sphere(1, frame=frame)),
+        ("frame 'frame'", lambda: scene.add_frame("f", frame)),
+        ("frame 'frame'", lambda: own.reparent(frame)),
+        ("frame 'frame'", lambda: own.pose_in(frame)),
+        ("frame 'frame'", lambda: scene.set_poses([own, frame], [row, row])),
+        ("frame 'frame'", lambda: scene.poses([frame])),
+        ("frame 'frame'", lambda: view.pick(1, 1, frame=frame)),
+        ("frame 'frame'", lambda: scene.cameras["camera"].attach(frame)),
+        ("frame 'frame'", lambda: scene.cameras["camera"].chase(frame)),
+        ("frame 'frame'", lambda: scene.cameras["camera"].look_at((1, 0, 0), (0, 0, 0), frame=frame)),
+        ("frame 'frame'", lambda: scene.add_light("lamp", frame=frame)),
+    ]
+
+
+def check_uses(scene, view, theirs, refused, where):
+    scene.add_frame("own")
+    scene.add_box((1, 1, 1), name="box")
+    for what, use in uses_of(scene, view, theirs):
+        text = f"{what} is in another scene, {where}; accepted: one of scene 'scene'"
+        with refused(dspace.InvalidArgument, text):
+            use()
+
+
+def test_things_of_another_scene(session, scene, view, refused):
+    things_of(scene)
+    check_uses(scene, view, things_of(session.scene("other")), refused, "'other'")
+
+
+def test_things_of_another_session(scene, view, refused):
+    things_of(scene)
+    with dspace.Session() as other:
+        check_uses(scene, view, things_of(other.scene()), refused, "'scene' of another session")
+
+
+def test_a_camera_brings_its_vantage(scene, view, refused):
+    scene.add_vantage("side")
+    above = scene.cameras["camera"]
+    beside = scene.add_camera("camera", vantage="side", eye=(5, 0, 0), target=(0, 0, 0))
+    view.camera = beside
+    assert view.vantage == "side" and view.camera == beside != above
+    view.camera = above
+    assert view.vantage == "main" and view.camera == above
+    with refused(dspace.InvalidArgument, "camera 'camera' is of vantage 'side'; accepted: one of 'main'"):
+        scene.add_viewport(SIZE, beside, vantage="main")
+
+
+def test_what_is_no_camera_frame_or_fragment(scene, view, refused):
+    with refused(dspace.WrongType, "viewport 'view': the camera is 5; accepted: a dspace.Camera"):
+        view.camera = 5
+    for bad in (1.5, True, [1], scene.add_box((1, 1, 1))):
+        with refused(dspace.WrongType, "accepted: a Frame, a Robot, a path or an id"):
+            scene.add_sphere(1, frame=bad)
+    for hide in (5, [5], None):
+        with refused(dspace.WrongType, "fragment"):
+            view.image(hide=hide)
+    assert view.image(hide="ornamental").shape == (48, 64, 3)
+    assert view.image(hide=scene.fragments["ornamental"]).shape == (48, 64, 3)
+    frame = scene.add_frame("f")
+    with refused(dspace.WrongType, "frame 'f': the parent is None; accepted: a frame of its scene"):
+        frame.reparent(None)
+
+
+# --- Values of commands ------------------------------------------------------------------------
+
+
+def test_numbers_and_words(scene, view, refused):
+    for text, use in (
+            ("viewport 'v': width is -1; accepted: an integer from 1 to 16384",
+             lambda: scene.add_viewport((-1, 5), name="v")),
+            ("viewport 'view': width is -1", lambda: setattr(view, "size", (-1, 5))),
+            ("the size is (1.5, 2); accepted: (width, height), two integers from 1 to 16384",
+             lambda: setattr(view, "size", (1.5, 2))),
+            ("the size is 'big'", lambda: setattr(view, "size", "big")),
+            ("the size is None", lambda: scene.add_viewport(None)),
+            ("the position is (1,)", lambda: setattr(view, "position", (1,))),
+            ("sphere 'ball': resolution is -1; accepted: an integer from 3 to 1024",
+             lambda: scene.add_sphere(1, resolution=-1, name="ball")),
+            ("sphere: resolution is 4.5", lambda: scene.add_sphere(1, resolution=4.5)),
+            ("sphere: radius is 'big'; accepted: a number", lambda: scene.add_sphere("big")),
+            ("sphere: radius is 1000000", lambda: scene.add_sphere(10**400)),
+            ("box: the size is 3; accepted: 3 numbers", lambda: scene.add_box(3)),
+            ("trail: capacity is -1; accepted: an integer from 2 to 10000000",
+             lambda: scene.add_trail(capacity=-1)),
+            ("label: font_size is -1; accepted: an integer from 4 to 200",
+             lambda: scene.add_label("a", font_size=-1)),
+            ("text table 't': font_size is -1; accepted: an integer from 4 to 200",
+             lambda: view.set_table("t", {"a": 1}, font_size=-1)),
+            ("text table 't': a row is 5", lambda: view.set_table("t", [5])),
+            ("viewport 'view': quality is -1; accepted: an integer from 1 to 100",
+             lambda: view.save("a.jpg", quality=-1)),
+            ("quality is 1000000000; accepted: 1 to 100", lambda: view.save("a.jpg", quality=10**9)),
+            ("viewport 'view': radius is -1; accepted: an integer from 0 to 256",
+             lambda: view.pick(1, 1, radius=-1)),
+            ("radius 1000000000", lambda: view.pick(1, 1, radius=10**9)),
+            ("viewport 'view': samples is True", lambda: setattr(view, "samples", True)),
+            ("viewport 'view': x is 'left'; accepted: a number", lambda: view.pick("left", 1)),
+            ("viewport 'view': type is 'jump'; accepted: 'move', 'press'", lambda: view.event("jump")),
+            ("camera 'c': the projection is {'fov_deg': 40, 'height': 3}; accepted: one of",
+             lambda: scene.add_camera("c", fov_deg=40, height=3)),
+            ("camera 'c': fov_deg is 'wide'; accepted: a number",
+             lambda: scene.add_camera("c", fov_deg="wide")),
+            ("camera 'camera': the eye is (1, 2); accepted: 3 numbers",
+             lambda: scene.cameras["camera"].look_at((1, 2), (0, 0, 0))),
+            ("scene 'scene': time_s is 'now'", lambda: setattr(scene, "time", "now")),
+            ("name is 5; accepted: a str", lambda: scene.add_frame(5)),
+            ("name is 5; accepted: a str", lambda: scene.add_sphere(1, name=5)),
+            ("name is '\\ud800'; accepted: a str", lambda: scene.add_frame("\ud800")),
+            ("model: the path is 5; accepted: a path", lambda: scene.load(5))):
+        with refused(dspace.InvalidArgument, text):
+            use()
+
+
+def test_wrong_types_are_type_errors_and_bad_values_value_errors(scene):
+    with pytest.raises(TypeError):
+        scene.add_sphere("big")
+    with pytest.raises(ValueError):
+        scene.add_sphere(1, resolution=-1)
+    with pytest.raises(dspace.Error) as caught:
+        scene.add_sphere(1, resolution=-1)
+    assert not isinstance(caught.value, TypeError) and caught.value.object == "sphere"
+
+
+def test_unknown_keywords_show_public_names_only(scene, arm, refused, tmp_path):
+    for text, use in (
+            ("light 'a': unknown keyword 'colour'; accepted: kind, frame",
+             lambda: scene.add_light("a", colour=(1, 1, 1))),
+            ("light 'sun': unknown keyword 'colour'", lambda: scene.lights["sun"].set(colour=1)),
+            ("camera 'c', chase: unknown keyword 'distance'; accepted: offset, target, axes",
+             lambda: scene.add_camera("c", chase=dict(distance=3))),
+            ("a URDF: unknown keyword 'opacity'; accepted: name, fragment, position",
+             lambda: scene.load(tmp_path / "arm.urdf", name="other", opacity=0.5)),
+            ("sphere: unknown keyword 'colour'; accepted: frame, name",
+             lambda: scene.add_sphere(1, colour=(1, 1, 1)))):
+        with refused(dspace.WrongType, text):
+            use()
+
+
+def test_colours(scene, view, refused):
+    box = scene.add_box((1, 1, 1), color="red")
+    assert box.color == (1, 0, 0)
+    for given, want in (("#ff8000", (1, 128 / 255, 0)), ("darkslategrey", (47 / 255, 79 / 255, 79 / 255)),
+                        ("DarkSlateGray", (47 / 255, 79 / 255, 79 / 255)), ((0.1, 0.2, 0.3), (0.1, 0.2, 0.3))):
+        box.color = given
+        assert box.color == pytest.approx(want, abs=1e-12)
+    for bad in ("rot", "#12", "#gg0000", "", 5, (1, 1), (1, 1, 1, 1)):
+        with refused(dspace.InvalidArgument, "accepted: red, green and blue from 0 to 1, '#rrggbb', or"):
+            box.color = bad
+    with refused(dspace.InvalidArgument, "object 'box'"):
+        box.color = "rot"
+    view.set_background("blue")
+    box.remove()
+    assert (view.image() == (0, 0, 255)).all()
+
+
+def test_only_bools_are_true_or_false(scene, view, refused):
+    box = scene.add_box((1, 1, 1), name="box")
+    for text, use in (
+            ("object 'box': visible is 'no'; accepted: True or False",
+             lambda: setattr(box, "visible", "no")),
+            ("visible is 0", lambda: scene.add_box((1, 1, 1), visible=0)),
+            ("viewport 'view': ornaments is 'no'", lambda: setattr(view, "ornaments", "no")),
+            ("viewport 'view': visible is None", lambda: setattr(view, "visible", None)),
+            ("light 'sun': enabled is 'no'", lambda: scene.lights["sun"].set(enabled="no")),
+            ("fragment 'physical': visible is 1",
+             lambda: setattr(scene.fragments["physical"], "visible", 1)),
+            ("physical_only is 'yes'", lambda: view.image(physical_only="yes"))):
+        with refused(dspace.WrongType, text):
+            use()
+    box.visible = np.bool_(False)
+    assert not box.visible
+
+
+# --- Names that there are not ------------------------------------------------------------------
+
+
+def test_what_there_is_is_named(session, scene, view, arm, refused):
+    scene.add_vantage("side")
+    for things, text in ((scene.robots, "robot 'zzz': there is no such robot; there are: 'arm'"),
+                         (arm.links, "link 'zzz': there is no such link; there are: 'base', 'wheel'"),
+                         (arm.joints, "joint 'zzz': there is no such joint; there are: 'axle'"),
+                         (scene.lights, "there are: 'sky', 'sun'"), (scene.frames, "'arm/base'"),
+                         (scene.fragments, "'physical'"), (scene.vantages, "'side'"),
+                         (scene.cameras, "there are: 'camera'"), (scene.terrains, "there are: none"),
+                         (scene.objects, "there are: none"), (session.scenes, "there are: 'scene'"),
+                         (session.viewports, "there are: 'view'")):
+        for kind in (KeyError, dspace.NotFound):
+            with refused(kind, "'zzz'"):
+                things["zzz"]
+        try:
+            things["zzz"]
+        except dspace.Error as error:
+            if "sun" not in text:
+                assert text in str(error)
+        assert "zzz" not in things and things.get("zzz") is None
+    with refused(dspace.NotFound, "link 'zzz'"):
+        arm.link_pose("zzz")
+    fragment = scene.add_fragment("gone")
+    fragment.remove()
+    with refused(dspace.NotFound, "fragment 'gone': it is in scene 'scene' no more"):
+        fragment.ornamental
+
+
+def test_a_closed_session_raises_a_dspace_error(session):
+    session.close()
+    with pytest.raises(dspace.Error, match="closed"):
+        session.scene()
+    with pytest.raises(dspace.Closed):
+        session.render()
+
+
+def test_another_thread_is_refused(session, scene, view):
+    errors = []
+
+    def use():
+        for call in (lambda: scene.add_frame("f"), view.image, session.close, lambda: view.vtk):
+            try:
+                call()
+            except dspace.WrongThread as error:
+                errors.append(str(error))
+
+    thread = threading.Thread(target=use, name="other")
+    thread.start()
+    thread.join()
+    assert len(errors) == 4 and all("'other'; accepted: the thread that made it" in e for e in errors)
+    assert list(scene.frames) == [] and view.image().shape == (48, 64, 3)
+
+
+# --- Poses -------------------------------------------------------------------------------------
+
+
+def test_poses_are_checked_when_they_are_made():
+    for text, values in (("the position is (nan, 0, 0); accepted: 3 finite numbers", dict(position=(NAN, 0, 0))),
+                         ("the position is 'here'", dict(position="here")),
+                         ("the quaternion is (2, 0, 0, 0); accepted: w, x, y, z of length 1 within 1e-6; "
+                          "its length is 2", dict(quaternion=(2, 0, 0, 0))),
+                         ("the quaternion is (nan, 0, 0, 0)", dict(quaternion=(NAN, 0, 0, 0))),
+                         ("the quaternion is (1, 0, 0)", dict(quaternion=(1, 0, 0))),
+                         ("the scale is -1.0; accepted: from 1e-12 to 1e12", dict(scale=-1)),
+                         ("the scale is 'big'", dict(scale="big"))):
+        with pytest.raises(dspace.InvalidArgument) as caught:
+            dspace.Pose(**values)
+        assert text in str(caught.value)
+    assert dspace.Pose(quaternion=(1 + 9e-7, 0, 0, 0))
+    for bad in (lambda: dspace.Pose.from_axis_deg((NAN, 0, 0), 3), lambda: dspace.Pose.from_axis_deg("z", NAN),
+                lambda: dspace.Pose.from_row([1, 2, 3]), lambda: dspace.Pose.from_rpy_deg(0, NAN, 0)):
+        with pytest.raises(dspace.InvalidArgument):
+            bad()
+
+
+def test_what_is_computed_from_poses_may_leave_the_range_of_what_is_set(scene):
+    small = dspace.Pose(position=(1e18, 0, 0), scale=1e-12)
+    assert small.inverse().position[0] == pytest.approx(-1e30)
+    assert (small @ small).scale == pytest.approx(1e-24)
+    frame = scene.add_frame("far", position=(1e18, 0, 0)).add_frame("farther", position=(1e18, 0, 0))
+    assert frame.world_pose.position[0] == 2e18
+
+
+def test_matrices_are_shown_as_they_were_given():
+    sheared = np.diag([2.0, 2.0, 3.0, 1.0])
+    for bad in (sheared, np.diag([1.0, 1, -1, 1]), np.diag([1.0, 1, 1, 2]), np.full((4, 4), NAN)):
+        with pytest.raises(dspace.InvalidArgument) as caught:
+            dspace.Pose.from_matrix(bad)
+        assert str(bad) in str(caught.value)
+    X = dspace.Pose.from_axis_deg("x", 30, (1, 2, 3), 2.5)
+    np.testing.assert_allclose(dspace.Pose.from_matrix(X.matrix).row, X.row, atol=1e-12)
+
+
+def test_poses_of_frames(scene, refused):
+    frame = scene.add_frame("f")
+    frame.pose = [1, 2, 3, 1, 0, 0, 0]
+    assert frame.position.tolist() == [1, 2, 3] and frame.scale == 1
+    for text, use in (
+            ("frame 'f': the pose is [1, 2, 3]; accepted: a dspace.Pose, a 4 x 4 matrix, or 8 numbers",
+             lambda: setattr(frame, "pose", [1, 2, 3])),
+            ("frame 'f': rpy_deg is (1, 2); accepted: 3 numbers", lambda: setattr(frame, "rpy_deg", (1, 2))),
+            ("frame 'f': the axis is 'k'", lambda: frame.rotate("k", 3)),
+            ("frame 'new': the quaternion is (1, 0, 0)", lambda: scene.add_frame("new", quaternion=(1, 0, 0))),
+            ("in scene 'scene': the poses have shape (2, 3)", lambda: scene.set_poses([frame], np.zeros((2, 3)))),
+            ("scene 'scene': frames is 'f'", lambda: scene.set_poses("f", np.zeros((1, 8)))),
+            ("frame 'f': it comes twice, in rows 0 and 1; accepted: each frame once",
+             lambda: scene.set_poses([frame, "f"], [[0, 0, 0, 1, 0, 0, 0]] * 2))):
+        with refused(dspace.InvalidArgument, text):
+            use()
+    with pytest.raises(dspace.InvalidArgument) as caught:
+        frame.position = (NAN, 0, 0)
+    assert str(caught.value) == ("frame 'f': the position is (nan, 0, 0); accepted: 3 finite numbers within "
+                                 "1e18 m")
+
+
+def test_names_of_frames(scene, refused):
+    for name in ("", ".", "..", "a/b", "n" * 256, "\u00e9" * 128, "x" * 10**6):
+        with refused(dspace.InvalidArgument, "1 to 255 bytes, be neither '.' nor '..'"):
+            scene.add_frame(name)
+    try:
+        scene.add_frame("x" * 10**6)
+    except dspace.Error as error:
+        assert len(str(error)) < 1000 and len(error.object) < 1000
+    assert scene.add_frame("\u00e9" * 127).name == "\u00e9" * 127
+
+
+# --- Lights, joints, terrain, time -------------------------------------------------------------
+
+
+def test_a_light_is_not_overwritten(scene, refused):
+    with refused(dspace.AlreadyExists, "scene.lights['sun'].set(...) to change it"):
+        scene.add_light("sun", intensity=3)
+    scene.lights["sun"].set(intensity=3)
+    assert scene.lights["sun"].intensity == 3
+    scene.lights["sun"].remove()
+    assert scene.add_light("sun", intensity=2).intensity == 2
+
+
+def test_joints_without_limits_have_some(scene, arm, refused):
+    arm.joints["axle"].position = 1e12
+    for bad in (1e20, -1.1e12):
+        with refused(dspace.InvalidArgument, "joint 'axle' of robot 'arm': the position is"):
+            arm.joints["axle"].position = bad
+    with refused(dspace.InvalidArgument, "joint 'axle' of robot 'arm': the position is 'up'"):
+        arm.joints["axle"].position = "up"
+    with refused(dspace.WrongType, "robot 'arm': positions is 5"):
+        arm.set_joints(5)
+
+
+def test_terrain_is_named(scene, field, refused):
+    ground = scene.add_terrain(field, name="ground")
+    for text, use in (
+            ("terrain 'ground': point 0 is (nan, 0); accepted: finite numbers", lambda: ground.height(NAN, 0)),
+            ("terrain 'ground': point 1 is (inf, 3)", lambda: ground.normal([1, np.inf], 3)),
+            ("terrain 'ground': point 0 is (nan, 2)", lambda: ground.focus([(NAN, 2)])),
+            ("terrain 'ground': the radius is -1", lambda: ground.focus([(1, 2)], radius=-1)),
+            ("terrain 'ground': the radius is nan", lambda: ground.focus([(1, 2)], radius=NAN)),
+            ("terrain 'ground': radius is 'far'", lambda: ground.focus([(1, 2)], radius="far")),
+            ("terrain 'ground': the points have shape (1, 3); accepted: (n, 2)",
+             lambda: ground.focus([(1, 2, 3)])),
+            ("terrain 'ground': the points have shape (2,); accepted: (..., 3)", lambda: ground.to_map((1, 2))),
+            ("terrain 'ground': the points is 'here'", lambda: ground.to_map("here")),
+            ("terrain 'ground': point 0 is (1, nan, 3)", lambda: ground.from_map((1, NAN, 3))),
+            ("terrain 'ground': x and y have the shapes (2,) and (3,)",
+             lambda: ground.height([1, 2], [1, 2, 3])),
+            ("relief: unknown keyword 'sun'; accepted: ", lambda: scene.add_terrain(field, relief={"sun": 3})),
+            ("triangle_budget is -1; accepted: an integer from 1 on",
+             lambda: scene.add_terrain(field, triangles=-1)),
+            ("the origin is (1,); accepted: map x, y[, height]", lambda: scene.add_terrain(field, origin=(1,)))):
+        with refused(dspace.InvalidArgument, text):
+            use()
+
+
+def test_time_may_go_back(scene):
+    """A chase camera is in place at once then, as a playback that jumps needs it."""
+    frame = scene.add_frame("f")
+    scene.add_camera("chase", frame=frame, chase=dict(offset=(0, 0, 10), up=(0, 1, 0), smoothing_s=5))
+    view = scene.add_viewport(SIZE, scene.cameras["chase"])
+    ball = scene.add_sphere(1, frame=frame)
+    trail = scene.add_trail()
+    trail.append([(0, 0, 0), (1, 0, 0)])
+
+    def distance():
+        assert (view.labels() == ball.id).any()
+        return view.depth().min()
+
+    assert distance() == pytest.approx(9, abs=0.05)
+    for scene.time in (100, 100.1):
+        pass
+    frame.position = (0, 0, -5)
+    assert distance() > 13  # the camera lags
+    scene.time = 50
+    assert distance() == pytest.approx(9, abs=0.05) and scene.time == 50
+    assert np.ptp(trail.box, axis=0)[0] == pytest.approx(1)
+
+
+# --- Callbacks ---------------------------------------------------------------------------------
+
+
+def test_a_callback_that_moves_its_own_frame_is_stopped(scene):
+    frame = scene.add_frame("f")
+    calls, others = [], []
+
+    def restless(event):
+        calls.append(event)
+        frame.position = (len(calls), 0, 0)
+
+    scene.on_frame_change(restless)
+    scene.on_frame_change(others.append)
+    with pytest.raises(dspace.Resource, match="restless.*round 101.*accepted: up to 100 rounds"):
+        frame.position = (-1, 0, 0)
+    assert len(calls) == 101 and len(others) == 102  # who causes nothing hears everything
+    assert frame.position[0] == 101
+    with pytest.raises(dspace.Resource):  # and is heard again by the next change
+        frame.position = (-1, 0, 0)
+    assert len(calls) == 202
+
+
+def test_callbacks_that_double_their_events_are_stopped(scene, monkeypatch):
+    monkeypatch.setattr("dspace.events.MAXIMUM_CAUSED", 500)
+    frame = scene.add_frame("f")
+    calls = []
+
+    def move(event):
+        calls.append(event)
+        frame.position = (len(calls), 0, 0)
+
+    scene.on_frame_change(move)
+    scene.on_frame_change(lambda event: move(event))
+    with pytest.raises(dspace.Resource, match="500 changes"):
+        frame.position = (-1, 0, 0)
+    assert 500 < len(calls) < 2000
