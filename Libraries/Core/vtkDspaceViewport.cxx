@@ -81,9 +81,10 @@ struct vtkDspaceViewport::Internals {
     return filter;
   }
 
-  void Draw(const dspace::DrawFilter& filter, bool overlays) {
+  void Draw(const dspace::DrawFilter& filter, bool overlays, bool complete) {
     dspace::ColorPicture::Request request;
     request.view = this->View(this->samples); // refuses a vantage without camera
+    request.view.complete = complete;
     request.samples = this->samples;
     request.filter = filter;
     request.background = this->background;
@@ -92,10 +93,21 @@ struct vtkDspaceViewport::Internals {
     this->picture.Draw(this->Object(), *this->scene, request);
   }
 
+  // The viewport's own picture.
+  void DrawOwn(bool complete) {
+    // Before: what arrives while it is drawn makes it outdated.
+    const std::uint64_t revision = this->scene->Revision();
+    this->Draw(this->Filter({}), true, complete);
+    this->stale = false;
+    this->drawnRevision = revision;
+  }
+
   void DrawLabels(const dspace::DrawFilter& filter) {
     this->context->GetHub()->MakeCurrent();
     if (!this->labels.Holds(*this->scene, filter)) {
-      this->labels.Draw(this->context, *this->scene, this->View(1), filter);
+      dspace::DrawView view = this->View(1);
+      view.complete = true;
+      this->labels.Draw(this->context, *this->scene, view, filter);
     }
   }
 
@@ -275,10 +287,7 @@ bool vtkDspaceViewport::Render() {
 }
 
 void vtkDspaceViewport::ForceRender() {
-  Internals& self = *this->Impl;
-  self.Draw(self.Filter({}), true);
-  self.stale = false;
-  self.drawnRevision = self.scene->Revision();
+  this->Impl->DrawOwn(false);
 }
 
 dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& request) {
@@ -289,10 +298,10 @@ dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& requ
   const dspace::DrawFilter filter = self.Filter(request);
   if (request.color) {
     if (request.physicalOnly || !request.hiddenFragments.empty()) {
-      self.Draw(filter, !request.physicalOnly);
+      self.Draw(filter, !request.physicalOnly, true);
       self.stale = true; // this picture is the request's, not the viewport's
-    } else if (this->IsOutdated()) {
-      this->ForceRender();
+    } else if (this->IsOutdated() || !self.picture.Complete()) {
+      self.DrawOwn(true);
     }
     capture.color = self.picture.Read();
   }

@@ -48,6 +48,9 @@ vec3 linearFromSrgb(vec3 c)
   return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
+// Functions of a geometry's own, mixedColor() among them.
+//DSPACE::Functions
+
 #ifdef DSPACE_SPECULAR
 // What comes back of light from L: Trowbridge-Reitz distribution with Smith's height-correlated
 // visibility over a Lambertian base; times pi, so that intensity 1 means "white paper shows 1".
@@ -83,6 +86,9 @@ void main()
 #endif
 #ifdef DSPACE_TEXTURE
   color *= texture(colorTexture, tcoord);
+#endif
+#ifdef DSPACE_MIXED
+  color = mixedColor(color);
 #endif
 
 #ifdef DSPACE_LIT

@@ -112,6 +112,7 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
     this->Drawer_ = std::make_unique<SceneDrawer>(hub, this->Context_->GetStore(), statistics);
   }
   this->List_.Build(scene, view, request.filter);
+  this->Complete_ = this->Drawer_->Prepare(this->List_, view, samples);
   this->ActivateScene();
   if (this->Renderer_->GetViewProps()->GetNumberOfItems() > 0) {
     MirrorCamera(scene, view, this->Renderer_);

@@ -45,6 +45,8 @@ public:
   };
   // Errors, OpenGL's and VTK's among them, become dspace::Error about `object`.
   void Draw(const std::string& object, const Scene& scene, const Request& request);
+  // Whether all data were there for the last picture.
+  bool Complete() const { return this->Complete_; }
   // The window's current framebuffer and renderers, as while the scene is drawn.
   void Activate(int width, int height, int samples);
 
@@ -62,6 +64,7 @@ private:
   std::unique_ptr<RenderTarget> DisplayTarget_; // what is shown
   std::unique_ptr<SceneDrawer> Drawer_;
   DrawList List_;
+  bool Complete_ = false;
   vtkNew<vtkDspaceRenderer> Renderer_;
   vtkNew<vtkOpenGLRenderer> Overlay_;
   vtkNew<vtkRendererCollection> SceneRenderers_;

@@ -217,15 +217,27 @@ void DrawList::Build(const Scene& scene, const DrawView& view, const DrawFilter&
   }
   this->Triangles_ = 0;
   this->Culled_ = 0;
+  this->Customs_.clear();
   for (const FlatObject& flat : this->Objects_) {
     const GraphicsObject& object = *flat.object;
-    if (!object.visible || flat.levels.empty() || !shown[object.fragment] ||
+    if (!object.visible || (flat.levels.empty() && !object.custom) || !shown[object.fragment] ||
         (filter.pickableOnly && !object.pickable)) {
       continue;
     }
     const Pose X_CF = X_CA * this->X_AF_[frames.Slot(object.frame)];
     Eigen::Affine3d X_VF(X_CF.Matrix());
     X_VF.matrix().topRows<3>() = ViewFromCamera.asDiagonal() * X_VF.matrix().topRows<3>();
+
+    if (object.custom) {
+      const Eigen::Affine3d X_VO = X_VF * object.X_FO;
+      const BoundingSphere sphere = object.custom->Bounds();
+      if (Outside(planes, X_VO * sphere.center, sphere.radius * LargestScale(X_VO))) {
+        ++this->Culled_;
+      } else {
+        this->Customs_.push_back({&object, X_VO});
+      }
+      continue;
+    }
 
     const FlatLevel* level = &flat.levels.front();
     const Eigen::Vector3d center = X_VF * level->bounds.center;

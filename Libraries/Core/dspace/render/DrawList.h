@@ -56,6 +56,12 @@ struct DrawLight {
   float cosCone;
 };
 
+// One object that draws itself (CustomDrawer.h).
+struct DrawCustom {
+  const GraphicsObject* object = nullptr; // of the scene, as it was when the list was built
+  Eigen::Affine3d X_VO = Eigen::Affine3d::Identity(); // OpenGL's view axes from the object's frame
+};
+
 // Which part of a scene is drawn.
 struct DrawFilter {
   bool physicalOnly = false;
@@ -69,6 +75,9 @@ struct DrawView {
   Projection projection;
   int width = 0;
   int height = 0;
+  // A picture that is kept or measured: what draws itself waits for all of its data. An interactive
+  // one shows what is there.
+  bool complete = false;
 };
 
 // Kept from picture to picture by whoever draws one viewport; what only changes with the scene's
@@ -80,6 +89,7 @@ public:
 
   const std::vector<DrawInstance>& Instances() const { return this->Instances_; }
   const std::vector<DrawBatch>& Batches() const { return this->Batches_; } // opaque ones first
+  const std::vector<DrawCustom>& Customs() const { return this->Customs_; }
   const std::vector<DrawLight>& Lights() const { return this->Lights_; }
   std::array<float, 3> Ambient() const { return this->Ambient_; } // linear light
   std::size_t TriangleCount() const { return this->Triangles_; }
@@ -116,6 +126,7 @@ private:
   std::vector<Pose> X_AF_;
   std::vector<DrawInstance> Instances_;
   std::vector<DrawBatch> Batches_;
+  std::vector<DrawCustom> Customs_;
   std::vector<DrawLight> Lights_;
   std::array<float, 3> Ambient_ = {0, 0, 0};
   std::size_t Triangles_ = 0;

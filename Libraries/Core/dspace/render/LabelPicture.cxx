@@ -28,8 +28,9 @@ void LabelPicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, con
   this->Filter_ = filter;
   this->Target_->Resize(view.width, view.height);
   this->List_.Build(scene, view, filter);
+  const bool complete = this->Drawer_->Prepare(this->List_, view, 1);
   this->Drawer_->DrawLabels(this->List_, view, *this->Target_);
-  this->Revision_ = scene.Revision();
+  this->Revision_ = complete ? scene.Revision() : 0;
 }
 
 std::vector<std::uint32_t> LabelPicture::Labels() const {

@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <cstring>
-#include <string>
 
 #include "vtk_glew.h"
 
 #include "Background_frag.h"
 #include "Copy_frag.h"
 #include "Downsample_frag.h"
-#include "Instance_vert.h"
-#include "Label_frag.h"
-#include "Screen_vert.h"
-#include "Surface_frag.h"
 
 #include "vtkDspaceHubWindow.h"
 #include "vtkOpenGLFramebufferObject.h"
-#include "vtkOpenGLShaderCache.h"
 #include "vtkOpenGLState.h"
 #include "vtkShaderProgram.h"
 
@@ -24,35 +18,6 @@
 
 namespace dspace {
 namespace {
-
-// Texture units above those that VTK hands out.
-constexpr int ColorUnit = 13;
-constexpr int OpaqueDepthUnit = 14;
-constexpr int PeeledDepthUnit = 15;
-constexpr int MaximumLights = 8;
-
-// The GLSL version, and one definition a feature, in place of the marker.
-std::string Versioned(const char* source, const std::string& defines) {
-  const std::string marker = "//DSPACE::Version";
-  std::string text = source;
-  const auto at = text.find(marker);
-  return text.replace(at, marker.size(), "#version 330 core\n" + defines);
-}
-
-vtkShaderProgram* Ready(vtkDspaceHubWindow* window, const std::string& vertex,
-                        const std::string& fragment) {
-  vtkShaderProgram* program =
-      window->GetShaderCache()->ReadyShaderProgram(vertex.c_str(), fragment.c_str(), "");
-  if (!program) {
-    throw Error(Error::Kind::Internal, "shader", "the OpenGL driver refused to compile it");
-  }
-  return program;
-}
-
-void BindTexture(vtkDspaceHubWindow* window, int unit, unsigned int target, unsigned int name) {
-  window->GetState()->vtkglActiveTexture(GL_TEXTURE0 + unit);
-  glBindTexture(target, name);
-}
 
 // Writes through sRGB encoding while it lives; VTK's own drawing expects none.
 class EncodeSrgb {
@@ -87,7 +52,7 @@ private:
 } // namespace
 
 SceneDrawer::SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, RenderStatistics& statistics)
-    : Window_(window), Store_(store), Statistics_(statistics) {}
+    : Window_(window), Store_(store), Statistics_(statistics), Shaders_(window) {}
 
 SceneDrawer::~SceneDrawer() {
   this->Release();
@@ -100,6 +65,7 @@ void SceneDrawer::Release() {
   this->Sum_.reset();
   if (this->Window_->GetContext()) {
     this->Window_->MakeCurrent();
+    this->Customs_.clear();
     if (this->InstanceBuffer_) {
       glDeleteBuffers(1, &this->InstanceBuffer_);
     }
@@ -113,46 +79,7 @@ void SceneDrawer::Release() {
   this->InstanceBuffer_ = this->EmptyArray_ = this->Query_ = 0;
   this->Uploaded_.clear();
   this->InstanceCapacity_ = 0;
-  this->Surfaces_.clear();
-  this->Screens_.clear();
-}
-
-vtkShaderProgram* SceneDrawer::SurfaceProgram(unsigned features) {
-  vtkShaderProgram*& program = this->Surfaces_[features];
-  if (program) {
-    this->Window_->GetShaderCache()->ReadyShaderProgram(program);
-    return program;
-  }
-  std::string defines;
-  const auto define = [&](Feature feature, const char* name) {
-    if (features & feature) {
-      defines += std::string("#define ") + name + "\n";
-    }
-  };
-  define(Lit, "DSPACE_LIT");
-  define(Texture, "DSPACE_TEXTURE");
-  define(VertexColor, "DSPACE_VERTEX_COLOR");
-  define(Billboard, "DSPACE_BILLBOARD");
-  define(Peel, "DSPACE_PEEL");
-  define(Label, "DSPACE_LABEL");
-  define(Emissive, "DSPACE_EMISSIVE");
-  define(Specular, "DSPACE_SPECULAR");
-  define(PlacedLights, "DSPACE_PLACED_LIGHTS");
-  defines += "#define DSPACE_LIGHT_COUNT " + std::to_string(features >> LightShift) + "\n";
-  program = Ready(this->Window_, Versioned(Instance_vert, defines),
-                  Versioned(features & Label ? Label_frag : Surface_frag, defines));
-  return program;
-}
-
-vtkShaderProgram* SceneDrawer::ScreenProgram(const char* fragmentSource,
-                                             const std::string& defines) {
-  vtkShaderProgram*& program = this->Screens_[{fragmentSource, defines}];
-  if (program) {
-    this->Window_->GetShaderCache()->ReadyShaderProgram(program);
-  } else {
-    program = Ready(this->Window_, Versioned(Screen_vert, ""), Versioned(fragmentSource, defines));
-  }
-  return program;
+  this->Shaders_.Release();
 }
 
 void SceneDrawer::DrawTriangleOverScreen() {
@@ -186,82 +113,34 @@ void SceneDrawer::Upload(const DrawList& list) {
   }
 }
 
-void SceneDrawer::SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view,
-                          int samples) {
-  const Eigen::Matrix4f clip = view.projection.ClipFromView(view.width, view.height).cast<float>();
-  Eigen::Matrix4f columns = clip; // column-major, as OpenGL reads it
-  program->SetUniformMatrix4x4("VCDCMatrix", columns.data());
-  // Of the picture, not of the n x n samples that are drawn of it.
-  const float pixel[2] = {2.0f * static_cast<float>(samples) / static_cast<float>(view.width),
-                          2.0f * static_cast<float>(samples) / static_cast<float>(view.height)};
-  program->SetUniform2f("pixelNDC", pixel);
-  program->SetUniformi("colorTexture", ColorUnit);
-  program->SetUniformi("opaqueDepth", OpaqueDepthUnit);
-  program->SetUniformi("peeledDepth", PeeledDepthUnit);
-  program->SetUniformi("firstLayer", this->FirstLayer_);
-  program->SetUniformi("cameraParallel",
-                       view.projection.kind == Projection::Kind::Orthographic ? 1 : 0);
-  program->SetUniform3f("ambientLight", list.Ambient().data());
-
-  const int count = std::min<int>(static_cast<int>(list.Lights().size()), MaximumLights);
-  if (count == 0 || !program->IsUniformUsed("lightColor")) {
-    return;
-  }
-  int kind[MaximumLights] = {};
-  float color[MaximumLights][3] = {};
-  float direction[MaximumLights][3] = {};
-  float position[MaximumLights][3] = {};
-  float attenuation[MaximumLights][3] = {};
-  float cosCone[MaximumLights] = {};
-  for (int i = 0; i < count; ++i) {
-    const DrawLight& light = list.Lights()[i];
-    kind[i] = static_cast<int>(light.kind);
-    cosCone[i] = light.cosCone;
-    std::copy(light.color.begin(), light.color.end(), color[i]);
-    std::copy(light.direction.begin(), light.direction.end(), direction[i]);
-    std::copy(light.position.begin(), light.position.end(), position[i]);
-    std::copy(light.attenuation.begin(), light.attenuation.end(), attenuation[i]);
-  }
-  program->SetUniform1iv("lightKind", count, kind);
-  program->SetUniform3fv("lightColor", count, color);
-  program->SetUniform3fv("lightDirectionVC", count, direction);
-  program->SetUniform3fv("lightPositionVC", count, position);
-  program->SetUniform3fv("lightAttenuation", count, attenuation);
-  program->SetUniform1fv("lightCosCone", count, cosCone);
-}
-
 void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool translucent,
                               unsigned features, int samples) {
   vtkOpenGLState* state = this->Window_->GetState();
   std::map<vtkShaderProgram*, bool> prepared;
-  const bool labels = (features & Label) != 0;
-  const auto lights = std::min<std::size_t>(list.Lights().size(), MaximumLights);
-  unsigned lighting = Lit | static_cast<unsigned>(lights << LightShift);
-  for (std::size_t i = 0; i < lights; ++i) {
-    lighting |= list.Lights()[i].kind == Light::Kind::Directional ? 0u : PlacedLights;
-  }
+  const bool labels = (features & SurfaceShaders::Label) != 0;
+  const unsigned lighting = SurfaceShaders::LightFeatures(list);
   for (const DrawBatch& batch : list.Batches()) {
     if (!labels && batch.translucent != translucent) {
       continue;
     }
     const GpuMesh& mesh = this->Store_.MeshOf(batch.mesh);
     unsigned wanted = features;
-    wanted |= batch.billboard ? Billboard : 0u;
-    wanted |= batch.texture ? Texture : 0u;
+    wanted |= batch.billboard ? SurfaceShaders::Billboard : 0u;
+    wanted |= batch.texture ? SurfaceShaders::Texture : 0u;
     if (!labels) {
       wanted |= batch.lit ? lighting : 0u;
-      wanted |= batch.lit && batch.specular ? Specular : 0u;
-      wanted |= batch.emissive ? Emissive : 0u;
-      wanted |= mesh.hasColors ? VertexColor : 0u;
+      wanted |= batch.lit && batch.specular ? SurfaceShaders::Specular : 0u;
+      wanted |= batch.emissive ? SurfaceShaders::Emissive : 0u;
+      wanted |= mesh.hasColors ? SurfaceShaders::VertexColor : 0u;
     }
-    vtkShaderProgram* program = this->SurfaceProgram(wanted);
+    vtkShaderProgram* program = this->Shaders_.Surface(wanted);
     if (!prepared[program]) {
-      this->SetView(program, list, view, samples);
+      this->Shaders_.SetView(program, list, view, samples, this->FirstLayer_);
       prepared[program] = true;
     }
     if (batch.texture) {
       const unsigned int texture = this->Store_.TextureOf(batch.texture, batch.repeatTexture);
-      BindTexture(this->Window_, ColorUnit, GL_TEXTURE_2D, texture);
+      BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, texture);
     }
     if (mesh.mode == GL_LINES || batch.wireframe) {
       state->vtkglLineWidth(batch.lineWidth * static_cast<float>(samples));
@@ -307,11 +186,32 @@ void SceneDrawer::Clear(const Background& background) {
   state->vtkglClearDepth(1.0);
 }
 
+CustomDrawing SceneDrawer::Drawing(const DrawCustom& object, const DrawList& list,
+                                   const DrawView& view, int samples) {
+  return {object,        list,           view,         samples,
+          this->Window_, this->Shaders_, this->Store_, this->Statistics_};
+}
+
+bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int samples) {
+  for (auto it = this->Customs_.begin(); it != this->Customs_.end();) {
+    it = it->second.geometry.expired() ? this->Customs_.erase(it) : std::next(it);
+  }
+  bool complete = true;
+  for (const DrawCustom& object : list.Customs()) {
+    Custom& custom = this->Customs_[object.object->custom.get()];
+    if (!custom.drawer) {
+      custom = {object.object->custom, MakeCustomDrawer(object.object->custom)};
+    }
+    complete &= custom.drawer->Prepare(this->Drawing(object, list, view, samples));
+  }
+  return complete;
+}
+
 void SceneDrawer::DrawBackground(const Background& background, int height) {
   if (background.bottom == background.top) {
     return; // the clear colour is it
   }
-  vtkShaderProgram* program = this->ScreenProgram(Background_frag);
+  vtkShaderProgram* program = this->Shaders_.Screen(Background_frag);
   program->SetUniform3f("bottomColor", background.bottom.data());
   program->SetUniform3f("topColor", background.top.data());
   program->SetUniformf("height", static_cast<float>(height));
@@ -329,6 +229,10 @@ void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTa
   this->Upload(list);
   state->vtkglDisable(GL_BLEND);
   this->DrawBatches(list, view, false, 0, samples);
+  for (const DrawCustom& object : list.Customs()) {
+    this->Customs_[object.object->custom.get()].drawer->DrawColor(
+        this->Drawing(object, list, view, samples));
+  }
   if (background) {
     this->DrawBackground(*background, target.Height());
   }
@@ -358,13 +262,13 @@ void SceneDrawer::PeelTranslucent(const DrawList& list, const DrawView& view, Re
   this->Sum_->Bind();
   state->vtkglClearColor(0.0f, 0.0f, 0.0f, 0.0f);
   state->vtkglClear(GL_COLOR_BUFFER_BIT);
-  BindTexture(this->Window_, OpaqueDepthUnit, GL_TEXTURE_2D, target.Depth());
+  BindTextureUnit(this->Window_, OpaqueDepthUnit, GL_TEXTURE_2D, target.Depth());
   int layers = 0;
   for (; layers < MaximumLayers; ++layers) {
     RenderTarget& layer = *this->Layers_[layers % 2];
-    BindTexture(this->Window_, PeeledDepthUnit, GL_TEXTURE_2D,
-                this->Layers_[(layers + 1) % 2]->Depth());
-    this->FirstLayer_ = layers == 0 ? 1 : 0;
+    BindTextureUnit(this->Window_, PeeledDepthUnit, GL_TEXTURE_2D,
+                    this->Layers_[(layers + 1) % 2]->Depth());
+    this->FirstLayer_ = layers == 0;
     layer.Bind();
     state->vtkglDepthMask(GL_TRUE);
     state->vtkglEnable(GL_DEPTH_TEST);
@@ -372,7 +276,7 @@ void SceneDrawer::PeelTranslucent(const DrawList& list, const DrawView& view, Re
     state->vtkglClearDepth(0.0);
     state->vtkglClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glBeginQuery(GL_ANY_SAMPLES_PASSED, this->Query_);
-    this->DrawBatches(list, view, true, Peel, samples);
+    this->DrawBatches(list, view, true, SurfaceShaders::Peel, samples);
     glEndQuery(GL_ANY_SAMPLES_PASSED);
     GLuint any = 0;
     glGetQueryObjectuiv(this->Query_, GL_QUERY_RESULT, &any);
@@ -384,8 +288,8 @@ void SceneDrawer::PeelTranslucent(const DrawList& list, const DrawView& view, Re
     state->vtkglDisable(GL_DEPTH_TEST);
     state->vtkglEnable(GL_BLEND);
     state->vtkglBlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_ONE, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
-    BindTexture(this->Window_, ColorUnit, GL_TEXTURE_2D, layer.Color());
-    this->ScreenProgram(Copy_frag)->SetUniformi("source", ColorUnit);
+    BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, layer.Color());
+    this->Shaders_.Screen(Copy_frag)->SetUniformi("source", ColorUnit);
     this->DrawTriangleOverScreen();
   }
   this->Statistics_.translucentLayers = layers;
@@ -397,8 +301,8 @@ void SceneDrawer::PeelTranslucent(const DrawList& list, const DrawView& view, Re
     state->vtkglDisable(GL_DEPTH_TEST);
     state->vtkglEnable(GL_BLEND);
     state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-    BindTexture(this->Window_, ColorUnit, GL_TEXTURE_2D, this->Sum_->Color());
-    this->ScreenProgram(Copy_frag)->SetUniformi("source", ColorUnit);
+    BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, this->Sum_->Color());
+    this->Shaders_.Screen(Copy_frag)->SetUniformi("source", ColorUnit);
     this->DrawTriangleOverScreen();
     state->vtkglEnable(GL_DEPTH_TEST);
   }
@@ -419,7 +323,11 @@ void SceneDrawer::DrawLabels(const DrawList& list, const DrawView& view, RenderT
     state->vtkglClear(GL_DEPTH_BUFFER_BIT);
     state->vtkglClearDepth(1.0);
     this->Upload(list);
-    this->DrawBatches(list, view, false, Label, 1);
+    this->DrawBatches(list, view, false, SurfaceShaders::Label, 1);
+    for (const DrawCustom& object : list.Customs()) {
+      this->Customs_[object.object->custom.get()].drawer->DrawLabels(
+          this->Drawing(object, list, view, 1));
+    }
     state->vtkglEnable(GL_BLEND);
   }
   state->PopFramebufferBindings();
@@ -433,10 +341,10 @@ void SceneDrawer::Downsample(const RenderTarget& source, RenderTarget& target, i
     const EncodeSrgb encode;
     state->vtkglDisable(GL_DEPTH_TEST);
     state->vtkglDisable(GL_BLEND);
-    BindTexture(this->Window_, ColorUnit, GL_TEXTURE_2D, source.Color());
+    BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, source.Color());
     // A number in the source lets a software renderer unroll the loops.
     const std::string defines = "#define DSPACE_SAMPLES " + std::to_string(samples) + "\n";
-    this->ScreenProgram(Downsample_frag, defines)->SetUniformi("source", ColorUnit);
+    this->Shaders_.Screen(Downsample_frag, defines)->SetUniformi("source", ColorUnit);
     this->DrawTriangleOverScreen();
     state->vtkglEnable(GL_DEPTH_TEST);
     state->vtkglEnable(GL_BLEND);

@@ -7,12 +7,13 @@
 #include <memory>
 #include <vector>
 
+#include <dspace/render/CustomDrawer.h>
 #include <dspace/render/DrawList.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/RenderTarget.h>
+#include <dspace/render/SurfaceShaders.h>
 
 class vtkDspaceHubWindow;
-class vtkShaderProgram;
 
 namespace dspace {
 
@@ -37,6 +38,9 @@ public:
     std::array<double, 3> top = {0.0, 0.0, 0.0};
   };
   void Clear(const Background& background);
+  // Uploads what objects that draw themselves need for the pictures that follow; before any target
+  // is bound. False where some of it is not there yet.
+  bool Prepare(const DrawList& list, const DrawView& view, int samples);
   // `samples` is the supersampling factor: lines, points and billboards scale with it.
   void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples,
                  const Background* background = nullptr);
@@ -48,24 +52,11 @@ public:
   void Release();
 
 private:
-  enum Feature : unsigned {
-    Lit = 1,
-    Texture = 2,
-    VertexColor = 4,
-    Billboard = 8,
-    Peel = 16,
-    Label = 32,
-    Emissive = 64,
-    Specular = 128,
-    PlacedLights = 256 // some light is not directional
-  };
-  static constexpr unsigned LightShift = 16; // above the features: the number of lights
-  vtkShaderProgram* SurfaceProgram(unsigned features);
+  CustomDrawing Drawing(const DrawCustom& object, const DrawList& list, const DrawView& view,
+                        int samples);
   void DrawBackground(const Background& background, int height);
-  vtkShaderProgram* ScreenProgram(const char* fragmentSource, const std::string& defines = "");
   void DrawTriangleOverScreen();
   void Upload(const DrawList& list);
-  void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view, int samples);
   void DrawBatches(const DrawList& list, const DrawView& view, bool translucent, unsigned features,
                    int samples);
   void PeelTranslucent(const DrawList& list, const DrawView& view, RenderTarget& target,
@@ -74,8 +65,12 @@ private:
   vtkDspaceHubWindow* Window_;
   GpuStore& Store_;
   RenderStatistics& Statistics_;
-  std::map<unsigned, vtkShaderProgram*> Surfaces_;
-  std::map<std::pair<const char*, std::string>, vtkShaderProgram*> Screens_;
+  SurfaceShaders Shaders_;
+  struct Custom {
+    std::weak_ptr<const CustomGeometry> geometry;
+    std::unique_ptr<CustomDrawer> drawer;
+  };
+  std::map<const CustomGeometry*, Custom> Customs_;
   std::vector<DrawInstance> Uploaded_;
   unsigned int InstanceBuffer_ = 0;
   std::size_t InstanceCapacity_ = 0;
@@ -83,7 +78,7 @@ private:
   unsigned int Query_ = 0;
   std::unique_ptr<RenderTarget> Layers_[2]; // Linear, with depth: the layer now and the one before
   std::unique_ptr<RenderTarget> Sum_;       // Linear: layers blended so far, front to back
-  int FirstLayer_ = 0;                      // for the peel uniforms
+  bool FirstLayer_ = false;                 // for the peel uniforms
   unsigned int OpaqueDepth_ = 0;
   unsigned int PeeledDepth_ = 0;
 };

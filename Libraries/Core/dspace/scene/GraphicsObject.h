@@ -11,6 +11,7 @@
 
 #include <dspace/FrameTree.h>
 #include <dspace/import/Model.h>
+#include <dspace/scene/CustomGeometry.h>
 
 namespace dspace {
 
@@ -72,6 +73,7 @@ struct GraphicsObject {
   Eigen::Affine3d X_FO =
       Eigen::Affine3d::Identity(); // within 1e18 m; axes stretched by 1e-12 to 1e12
   std::vector<DetailLevel> levels; // finest first, minimumPixels descending
+  std::shared_ptr<const CustomGeometry> custom; // drawn instead of levels, of which there are none
   MaterialOverride material;
   bool visible = true;
   bool pickable = true;

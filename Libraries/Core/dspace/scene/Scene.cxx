@@ -34,8 +34,8 @@ void CheckOffset(const std::string& object, const Eigen::Affine3d& X_FO) {
   }
 }
 
-void EraseValue(std::vector<ObjectId>& ids, ObjectId id) {
-  ids.erase(std::remove(ids.begin(), ids.end(), id), ids.end());
+template <typename Value> void EraseValue(std::vector<Value>& values, const Value& value) {
+  values.erase(std::find(values.begin(), values.end(), value));
 }
 
 } // namespace
@@ -123,6 +123,14 @@ void Scene::CheckLevels(const std::string& object, std::vector<DetailLevel>& lev
   }
 }
 
+std::uint64_t Scene::Revision() const {
+  std::uint64_t revision = this->Revision_ + this->Frames_.Revision();
+  for (const auto& custom : this->Customs_) {
+    revision += custom->Revision();
+  }
+  return revision;
+}
+
 ObjectId Scene::AddObject(GraphicsObject object) {
   RequireName("object", object.name);
   const std::string label = Label(object.name);
@@ -158,8 +166,14 @@ ObjectId Scene::AddObject(GraphicsObject object) {
           object.pointSize, "a positive number of pixels");
   object.material.Check(label);
   this->CheckLevels(label, object.levels);
+  if (object.custom && (!object.levels.empty() || object.billboard)) {
+    Refuse(label, "geometry that draws itself has no levels and is no billboard");
+  }
 
   const ObjectId id = object.id;
+  if (object.custom) {
+    this->Customs_.push_back(object.custom);
+  }
   fragment.objects.push_back(id);
   this->ObjectNames_.emplace(object.name, id);
   this->Objects_.emplace(id, std::move(object));
@@ -170,6 +184,11 @@ ObjectId Scene::AddObject(GraphicsObject object) {
 
 void Scene::RemoveObject(ObjectId id) {
   const GraphicsObject& object = this->Find(id);
+  if (object.custom) {
+    // Its revisions are counted no more: what they raised must not be taken back.
+    this->Revision_ += object.custom->Revision();
+    EraseValue(this->Customs_, object.custom);
+  }
   EraseValue(this->Fragments_.Find(object.fragment).objects, id);
   this->ObjectNames_.erase(object.name);
   this->Objects_.erase(id);
@@ -230,6 +249,9 @@ void Scene::MoveToFragment(ObjectId id, const std::string& name) {
 
 void Scene::SetObjectLevels(ObjectId id, std::vector<DetailLevel> levels) {
   GraphicsObject& object = this->Find(id);
+  if (object.custom) {
+    Refuse(Label(object.name), "geometry that draws itself has no levels");
+  }
   this->CheckLevels(Label(object.name), levels);
   object.levels = std::move(levels);
   this->ContentChanged();

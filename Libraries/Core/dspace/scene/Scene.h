@@ -129,7 +129,7 @@ public:
   double Time() const { return this->Time_; }
 
   // Raised by every change of anything above, poses included.
-  std::uint64_t Revision() const { return this->Revision_ + this->Frames_.Revision(); }
+  std::uint64_t Revision() const;
   // Raised by changes of objects, fragments and lights only (not poses, cameras or time).
   std::uint64_t ContentRevision() const { return this->ContentRevision_; }
 
@@ -159,6 +159,7 @@ private:
   ObjectId LargestObject_ = 0;
   std::unordered_set<ObjectId> RetiredObjects_; // ids of removed objects
   MeshRegister Meshes_;
+  std::vector<std::shared_ptr<const CustomGeometry>> Customs_; // of the objects
   std::vector<SceneVantage> Vantages_;
   // Lags of chase cameras at the time before the present one, by vantage and camera.
   std::map<std::pair<std::string, std::string>, ChaseState> Lags_;

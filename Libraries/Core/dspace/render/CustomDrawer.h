@@ -1,0 +1,56 @@
+// How geometry that is not made of meshes is drawn, beside a DrawList's batches.
+#ifndef DSPACE_RENDER_CUSTOM_DRAWER_H
+#define DSPACE_RENDER_CUSTOM_DRAWER_H
+
+#include <functional>
+#include <memory>
+#include <typeindex>
+
+#include <dspace/render/DrawList.h>
+#include <dspace/scene/CustomGeometry.h>
+
+class vtkDspaceHubWindow;
+
+namespace dspace {
+
+class GpuStore;
+class SurfaceShaders;
+struct RenderStatistics;
+
+// One drawing of one object.
+struct CustomDrawing {
+  const DrawCustom& object;
+  const DrawList& list; // its lights
+  const DrawView& view;
+  int samples; // supersampling: pixels are this much larger
+  vtkDspaceHubWindow* window;
+  SurfaceShaders& shaders;
+  GpuStore& store;
+  RenderStatistics& statistics;
+};
+
+// One a picture and geometry; made, used and destroyed with the window's context current. Depth is
+// reversed and tested, culling and blending are off, and the target is bound while it draws.
+class CustomDrawer {
+public:
+  virtual ~CustomDrawer() = default;
+  // Uploads what the view needs, before its target is bound. False where some of it is not there
+  // yet; with view.complete it waits instead (Error(DeadlineExceeded)).
+  virtual bool Prepare(const CustomDrawing& drawing) = 0;
+  virtual void DrawColor(const CustomDrawing& drawing) = 0;
+  virtual void DrawLabels(const CustomDrawing& drawing) = 0;
+};
+
+// Makes the drawer of a geometry of the class that it is registered for. The geometry outlives it.
+using CustomDrawerMaker =
+    std::function<std::unique_ptr<CustomDrawer>(std::shared_ptr<const CustomGeometry>)>;
+
+// For objects whose geometry is of exactly this class; the latest registration counts.
+void RegisterCustomDrawer(std::type_index geometry, CustomDrawerMaker maker);
+// Throws Error(Unsupported) for a class that nobody registered.
+std::unique_ptr<CustomDrawer>
+MakeCustomDrawer(const std::shared_ptr<const CustomGeometry>& geometry);
+
+} // namespace dspace
+
+#endif
