@@ -19,14 +19,14 @@ protected:
     const Scene& scene = *this->Interpreter_.FindScene("scene");
     std::map<std::string, Eigen::AlignedBox3d> boxes;
     for (const auto& [id, object] : scene.Objects()) {
-      const Part& part = object.levels.at(0).parts.at(0);
-      if (!part.material || part.material->name != "stand-in") {
-        continue;
-      }
-      Eigen::AlignedBox3d& box = boxes[scene.Frames().Name(object.frame)];
-      for (std::size_t i = 0; i < part.mesh->VertexCount(); ++i) {
-        const Eigen::Vector3f p(&part.mesh->positions[3 * i]);
-        box.extend(object.X_FO * part.X_OP * p.cast<double>());
+      for (const Part& part : object.levels.at(0).parts) {
+        for (std::size_t i = 0; i < part.mesh->VertexCount(); ++i) {
+          if (part.material && part.material->name == "stand-in") {
+            const Eigen::Vector3f p(&part.mesh->positions[3 * i]);
+            boxes[scene.Frames().Name(object.frame)].extend(object.X_FO * part.X_OP *
+                                                            p.cast<double>());
+          }
+        }
       }
     }
     return boxes;
@@ -74,8 +74,8 @@ TEST_F(StandIns, HaveTheBoundsThatTheFileStates) {
   // -0.5 0 -3 to 5 4 4; its turn and origin follow.
   ExpectBox(this->Boxes()["body"], {1 - 4, 2 - 0.5, 3 - 3}, {1 - 0, 2 + 5, 3 + 4});
   ASSERT_EQ(reply.warning_size(), 1);
-  for (const char* part :
-       {"absent.bin", "an orange box of 5.5 x 4 x 7 m", "stands in for it", "part.gltf"}) {
+  for (const char* part : {"absent.bin", "the edges of an orange box of 5.5 x 4 x 7 m",
+                           "stand in for it", "part.gltf"}) {
     EXPECT_NE(reply.warning(0).find(part), std::string::npos) << reply.warning(0);
   }
 }

@@ -17,23 +17,48 @@ Eigen::Affine3d ToAffine(const Pose& X) {
   return Eigen::Affine3d(X.Matrix());
 }
 
+constexpr double BeamWidth = 0.02; // of the longest edge of a box of beams
+
 // Orange, so that nobody takes it for the part itself.
-UrdfGeometry StandIn(const Eigen::Affine3d& X_LO, const Eigen::Vector3d& size) {
+std::shared_ptr<const Material> StandInMaterial() {
   auto material = std::make_shared<Material>();
   material->name = "stand-in";
   material->color = {1.0, 0.45, 0.0};
-  UrdfGeometry made;
-  made.X_LO = X_LO;
-  made.parts.push_back(PartOf(MakeBox(size)));
-  made.parts.back().material = std::move(material);
-  return made;
+  return material;
 }
 
 UrdfGeometry SmallCube(const UrdfVisual& visual) {
-  return StandIn(ToAffine(visual.X_LV), Eigen::Vector3d::Constant(StandInSize));
+  UrdfGeometry made;
+  made.X_LO = ToAffine(visual.X_LV);
+  made.parts.push_back(PartOf(MakeBox(Eigen::Vector3d::Constant(StandInSize))));
+  made.parts.back().material = StandInMaterial();
+  return made;
 }
 
-// For a mesh that cannot be read: a box of the bounds that its file states, or a small cube.
+// The twelve edges of a box, centred: its faces would hide what is mounted on the part, and blind
+// a camera there.
+std::vector<Part> Beams(const Eigen::Array3d& size) {
+  const auto material = StandInMaterial();
+  const Eigen::Array3d width = size.min(BeamWidth * size.maxCoeff());
+  std::vector<Part> parts;
+  for (int along = 0; along < 3; ++along) {
+    Eigen::Array3d edges = width;
+    edges[along] = size[along];
+    Part beam = PartOf(MakeBox(edges));
+    beam.material = material;
+    for (int corner = 0; corner < 4; ++corner) {
+      Eigen::Array3d side = Eigen::Array3d::Zero();
+      side[(along + 1) % 3] = corner % 2 ? 0.5 : -0.5;
+      side[(along + 2) % 3] = corner / 2 ? 0.5 : -0.5;
+      beam.X_OP = Eigen::Translation3d(side * (size - width));
+      parts.push_back(beam);
+    }
+  }
+  return parts;
+}
+
+// For a mesh that cannot be read: a box of beams about the bounds that its file states, or a small
+// cube.
 // `text` ends the warning.
 UrdfGeometry StandInForMesh(const UrdfVisual& visual, std::string& text) {
   const Eigen::AlignedBox3d bounds = ReadStatedBounds(visual.meshPath);
@@ -50,12 +75,13 @@ UrdfGeometry StandInForMesh(const UrdfVisual& visual, std::string& text) {
   }
   std::ostringstream out;
   out.precision(3);
-  out << "; an orange box of " << size.x() << " x " << size.y() << " x " << size.z()
-      << " m, the bounds that it states, stands in for it";
+  out << "; the edges of an orange box of " << size.x() << " x " << size.y() << " x " << size.z()
+      << " m, the bounds that it states, stand in for it";
   text = out.str();
-  // A flat part has a box all the same.
-  return StandIn(ToAffine(visual.X_LV) * Eigen::Translation3d(center),
-                 size.max(1e-3 * size.maxCoeff()));
+  UrdfGeometry made;
+  made.X_LO = ToAffine(visual.X_LV) * Eigen::Translation3d(center);
+  made.parts = Beams(size.max(1e-3 * size.maxCoeff())); // a flat part has a box all the same
+  return made;
 }
 
 UrdfGeometry Shape(const UrdfVisual& visual) {
