@@ -56,7 +56,7 @@ def test_long_texts(scene, refused):
         label.set("x" * 4097)
     with refused(dspace.InvalidArgument, "pixels large"):  # one line of a hundred thousand pixels
         scene.add_label("W" * 4096, font_size=200)
-    with refused(dspace.InvalidArgument, "text table 'values': a value has 200000 characters"):
+    with refused(dspace.InvalidArgument, "text table 'values': the value of 'a' has 200000 characters"):
         view.set_table("values", {"a": "x" * 200000})
     with refused(dspace.InvalidArgument, "text table 'values': it has 1002 cells"):
         view.set_table("values", [("a", "b")] * 501)

@@ -61,9 +61,9 @@ int Pieces(Ink ink) {
   return pieces;
 }
 
-Ink LabelInk(const std::string& text) {
+Ink LabelInk(const std::string& text, int size = 80) {
   LabelStyle style;
-  style.fontSize = 80;
+  style.fontSize = size;
   style.backgroundOpacity = 0;
   const Part label = MakeLabel(text, style);
   const Image& image = *label.material->texture;
@@ -72,6 +72,78 @@ Ink LabelInk(const std::string& text) {
     ink.there.push_back(image.pixels[i] > 127);
   }
   return ink;
+}
+
+// The part of a picture that holds ink.
+Ink Cropped(const Ink& ink) {
+  Extent at;
+  for (int y = 0; y < ink.height; ++y) {
+    for (int x = 0; x < ink.width; ++x) {
+      if (ink(x, y)) {
+        at = {std::min(at.left, x), std::max(at.right, x), std::min(at.top, y),
+              std::max(at.bottom, y)};
+      }
+    }
+  }
+  Ink part{at.right - at.left + 1, at.bottom - at.top + 1, {}};
+  for (int y = at.top; y <= at.bottom; ++y) {
+    for (int x = at.left; x <= at.right; ++x) {
+      part.there.push_back(ink(x, y));
+    }
+  }
+  return part;
+}
+
+// Pixels whose centres lie in a mesh's triangles, the mesh filling the picture.
+Ink MeshInk(const Mesh& mesh, int width, int height) {
+  Eigen::AlignedBox2d box;
+  const auto at = [&](std::uint32_t i) {
+    return Eigen::Vector2d(mesh.positions[3 * i], mesh.positions[3 * i + 1]);
+  };
+  for (const std::uint32_t i : mesh.indices) {
+    box.extend(at(i));
+  }
+  Ink ink{width, height, std::vector<bool>(std::size_t(width) * height)};
+  const auto left = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                       const Eigen::Vector2d& p) {
+    return (b - a).x() * (p - a).y() - (b - a).y() * (p - a).x() >= 0;
+  };
+  for (int i = 0; i < width * height; ++i) {
+    const Eigen::Vector2d p(box.min().x() + box.sizes().x() * (i % width + 0.5) / width,
+                            box.max().y() - box.sizes().y() * (int(i / width) + 0.5) / height);
+    for (std::size_t k = 0; k < mesh.indices.size() && !ink.there[i]; k += 3) {
+      const Eigen::Vector2d a = at(mesh.indices[k]);
+      const Eigen::Vector2d b = at(mesh.indices[k + 1]);
+      const Eigen::Vector2d c = at(mesh.indices[k + 2]);
+      ink.there[i] = left(a, b, p) && left(b, c, p) && left(c, a, p);
+    }
+  }
+  return ink;
+}
+
+double MeshArea(const Mesh& mesh) {
+  double area = 0;
+  for (std::size_t k = 0; k < mesh.indices.size(); k += 3) {
+    Eigen::Vector2d p[3];
+    for (int i = 0; i < 3; ++i) {
+      p[i] = {mesh.positions[3 * mesh.indices[k + i]], mesh.positions[3 * mesh.indices[k + i] + 1]};
+    }
+    const double twice =
+        (p[1] - p[0]).x() * (p[2] - p[0]).y() - (p[1] - p[0]).y() * (p[2] - p[0]).x();
+    EXPECT_GT(twice, 0.0); // it faces +Z
+    area += twice / 2;
+  }
+  return area;
+}
+
+// UTF-8 of one character.
+std::string Utf8(int c) {
+  std::string text;
+  for (int shift = c < 0x80 ? 0 : c < 0x800 ? 6 : c < 0x10000 ? 12 : 18; shift >= 0; shift -= 6) {
+    const int first = c < 0x80 ? 0 : c < 0x800 ? 0xC0 : c < 0x10000 ? 0xE0 : 0xF0;
+    text += char(text.empty() ? first | (c >> shift) : 0x80 | ((c >> shift) & 0x3F));
+  }
+  return text;
 }
 
 void ExpectRefused(const std::vector<std::string>& parts, const std::function<void()>& f) {
@@ -143,11 +215,7 @@ TEST(LabelText, WhateverIsAcceptedIsDrawn) {
   const std::set<int> blanks = {0xA0, 0x202F, 0x205F, 0x2800, 0x3000};
   int accepted = 0;
   for (int c = 0x21; c < 0x20000; ++c) {
-    std::string text;
-    for (int shift = c < 0x80 ? 0 : c < 0x800 ? 6 : c < 0x10000 ? 12 : 18; shift >= 0; shift -= 6) {
-      const int first = c < 0x80 ? 0 : c < 0x800 ? 0xC0 : c < 0x10000 ? 0xE0 : 0xF0;
-      text += char(text.empty() ? first | (c >> shift) : 0x80 | ((c >> shift) & 0x3F));
-    }
+    const std::string text = Utf8(c);
     try {
       const Part label = MakeLabel(text, {40, {1, 1, 1}, {0, 0, 0}, 0.0});
       ++accepted;
@@ -179,6 +247,69 @@ TEST(LabelText, WhatTheFontLacksIsRefusedByName) {
   }
   ExpectRefused({"λλλ...'", "5000"}, [&] { MakeLabel(greek); });
   ExpectRefused({"λλλ...'", "5000"}, [&] { MakeTextMesh("a" + greek.substr(2), 1); });
+}
+
+TEST(SolidText, LettersAreThoseOfLabels) {
+  // FreeType's own pixels against our triangles: form, holes, crossing outlines (Ф is two).
+  for (const std::string text : {"a", "B", "8", "Ф", "й", "Ξ", "∞", "♖", "Δv 3 м/с"}) {
+    const Ink label = Cropped(LabelInk(text, 200));
+    const Ink mesh = MeshInk(MakeTextMesh(text, 1), label.width, label.height);
+    int both = 0;
+    int either = 0;
+    for (std::size_t i = 0; i < label.there.size(); ++i) {
+      both += label.there[i] && mesh.there[i];
+      either += label.there[i] || mesh.there[i];
+    }
+    EXPECT_GT(both, 0.93 * either) << text;
+    EXPECT_EQ(Pieces(mesh), Pieces(label)) << text;
+  }
+}
+
+TEST(SolidText, EachLetterCoversItsArea) {
+  // A capital of DejaVu Sans is 1493 of 2048 units high. FreeType fits stems to whole pixels.
+  const double capital = 200 * 1493 / 2048.0;
+  int compared = 0;
+  for (int c = 0x21; c < 0x10000; ++c) {
+    try {
+      const Part label = MakeLabel(Utf8(c), {200, {1, 1, 1}, {0, 0, 0}, 0.0});
+      double ink = 0;
+      for (std::size_t i = 3; i < label.material->texture->pixels.size(); i += 4) {
+        ink += label.material->texture->pixels[i] / 255.0;
+      }
+      const double area = ink / (capital * capital);
+      if (area > 0) {
+        EXPECT_NEAR(MeshArea(MakeTextMesh(Utf8(c), 1)), area, 0.01 + 0.07 * area) << std::hex << c;
+        ++compared;
+      }
+    } catch (const Error&) {
+    }
+  }
+  EXPECT_GT(compared, 4000);
+}
+
+TEST(SolidText, CapitalsAreAsHighAsAskedAndLinesFollow) {
+  const auto bounds = [](const Mesh& mesh) {
+    Eigen::AlignedBox3f box;
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 3) {
+      box.extend(Eigen::Vector3f(mesh.positions[i], mesh.positions[i + 1], mesh.positions[i + 2]));
+    }
+    return box;
+  };
+  const auto one = bounds(MakeTextMesh("H", 2));
+  EXPECT_NEAR(one.min().y(), 0.0, 1e-5);
+  EXPECT_NEAR(one.max().y(), 2.0, 1e-5);
+  EXPECT_EQ(one.sizes().z(), 0.0f);
+  // From baseline to baseline 2384 of 2048 units, a capital's 1493.
+  EXPECT_NEAR(bounds(MakeTextMesh("H\nH", 2)).min().y(), -2.0 * 2384 / 1493, 1e-5);
+  // H is 1540 units wide to the next letter's origin.
+  EXPECT_NEAR(bounds(MakeTextMesh("HH", 2)).max().x(), one.max().x() + 2.0 * 1540 / 1493, 1e-5);
+}
+
+TEST(SolidText, WhatTheFontLacksIsRefusedByName) {
+  ExpectRefused({"text 'Ziel 中国'", "U+4E2D '中'", "accepted"},
+                [] { MakeTextMesh("Ziel 中国", 1); });
+  ExpectRefused({"U+0009"}, [] { MakeTextMesh("a\tb", 1); });
+  ExpectRefused({"blank"}, [] { MakeTextMesh("\xC2\xA0", 1); });
 }
 
 TEST_F(TextTableTest, EachLetterOfAnyAlphabetIsInk) {

@@ -39,8 +39,7 @@ std::vector<char32_t> ReadCharacters(Font font) {
     FT_Done_FreeType(library);
   }
   if (characters.empty()) {
-    throw Error(Error::Kind::Resource, "font '" + std::string(FontFile(font)) + "'",
-                "cannot be read; text needs this file (Debian's package fonts-dejavu-core)");
+    RefuseFont(font);
   }
   return characters;
 }
@@ -66,6 +65,11 @@ bool IsRightToLeft(char32_t c) {
 
 const char* FontFile(Font font) {
   return font == Font::Sans ? DSPACE_FONT_SANS : DSPACE_FONT_MONO;
+}
+
+void RefuseFont(Font font) {
+  throw Error(Error::Kind::Resource, "font '" + std::string(FontFile(font)) + "'",
+              "cannot be read; text needs this file (Debian's package fonts-dejavu-core)");
 }
 
 void RequireGlyphs(const std::string& object, const char* what, const std::string& text,

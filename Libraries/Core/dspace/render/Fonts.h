@@ -22,6 +22,9 @@ const char* FontFile(Font font);
 // Error(Resource) where the font's file cannot be read.
 void RequireGlyphs(const std::string& object, const char* what, const std::string& text, Font font);
 
+// Throws Error(Resource): the font's file cannot be read.
+[[noreturn]] void RefuseFont(Font font);
+
 // Text of this property is drawn in the font.
 void UseFont(vtkTextProperty* look, Font font);
 

@@ -1,17 +1,16 @@
 #include <dspace/render/TextShapes.h>
 
-#include <cmath>
+#include <map>
 
 #include "vtkImageData.h"
 #include "vtkNew.h"
-#include "vtkPolyData.h"
+#include "vtkStdString.h"
 #include "vtkTextProperty.h"
 #include "vtkTextRenderer.h"
-#include "vtkTriangleFilter.h"
-#include "vtkVectorText.h"
 
 #include <dspace/Error.h>
 #include <dspace/render/Fonts.h>
+#include <dspace/render/TextOutlines.h>
 #include <dspace/scene/Checks.h>
 #include <dspace/scene/TextCharacters.h>
 #include <dspace/scene/TextLimits.h>
@@ -33,34 +32,35 @@ Mesh MakeTextMesh(const std::string& text, double height) {
   const std::string object = "text " + QuotedText(text);
   RequireText(object, text);
   RequireLength(object, "height", height);
-  for (const char letter : text) { // the font's outlines end with ASCII; others would be left out
-    if (letter != '\n' && (letter < ' ' || letter > '~')) {
-      Refuse(object, "has letters without an outline; accepted: those of ASCII (labels take more)");
-    }
-  }
-  vtkNew<vtkVectorText> letters;
-  letters->SetText(text.c_str());
-  vtkNew<vtkTriangleFilter> triangles;
-  triangles->SetInputConnection(letters->GetOutputPort());
-  triangles->PassLinesOff();
-  triangles->PassVertsOff();
-  triangles->Update();
-  vtkPolyData* data = triangles->GetOutput();
+  RequireGlyphs(object, "it", text, Font::Sans);
+  OutlineFont font(Font::Sans);
+  std::map<char32_t, OutlineFont::Letter> letters;
   Mesh mesh;
   mesh.name = text;
-  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
-    const double* p = data->GetPoint(i);
-    for (int k = 0; k < 3; ++k) {
-      mesh.positions.push_back(static_cast<float>(p[k] * height)); // the font's capitals measure 1
-      mesh.normals.push_back(k == 2 ? 1.0f : 0.0f);
+  double x = 0.0;
+  double y = 0.0;
+  for (const char32_t character : Characters(object, "it", text)) {
+    if (character == U'\n') {
+      x = 0.0;
+      y -= font.LineHeight();
+      continue;
     }
+    const auto known = letters.find(character);
+    const OutlineFont::Letter& letter =
+        known != letters.end() ? known->second : letters[character] = font.Read(character);
+    const auto first = static_cast<std::uint32_t>(mesh.VertexCount());
+    for (const Eigen::Vector2d& p : letter.area.points) {
+      mesh.positions.insert(mesh.positions.end(),
+                            {float((x + p.x()) * height), float((y + p.y()) * height), 0.0f});
+      mesh.normals.insert(mesh.normals.end(), {0.0f, 0.0f, 1.0f});
+    }
+    for (const std::uint32_t index : letter.area.triangles) {
+      mesh.indices.push_back(first + index);
+    }
+    x += letter.advance;
   }
-  vtkNew<vtkIdList> cell;
-  for (vtkIdType i = 0; i < data->GetNumberOfCells(); ++i) {
-    data->GetCellPoints(i, cell);
-    for (vtkIdType k = 0; k < 3; ++k) {
-      mesh.indices.push_back(static_cast<std::uint32_t>(cell->GetId(k)));
-    }
+  if (mesh.indices.empty()) {
+    Refuse(object, "is blank; at least one visible character is needed");
   }
   return mesh;
 }

@@ -11,13 +11,13 @@
 namespace dspace {
 
 // Letters as flat triangles in XY, facing +Z, the baseline along X from the origin; a capital
-// letter is `height` metres high. Latin letters, digits and punctuation (VTK's vector font).
-// Throws Error(InvalidArgument) for an empty text, one of more than 4,096 characters, or a height
-// outside 1e-9 to 1e15 m.
+// letter is `height` metres high. UTF-8 of the characters that the font has (Fonts.h); lines broken
+// by '\n'. Throws Error(InvalidArgument) for an empty text, one of more than 4,096 characters, a
+// character that cannot be drawn, or a height outside 1e-9 to 1e15 m.
 Mesh MakeTextMesh(const std::string& text, double height);
 
 // A billboard (GraphicsObject::billboard): a textured rectangle in pixels whose lower left corner
-// stands `offset` pixels right of and above the object's origin. UTF-8; lines broken by '\n'.
+// stands `offset` pixels right of and above the object's origin. Characters as in MakeTextMesh().
 // Size is the font's in pixels, 4 to 200; up to 4,096 characters, and a picture of up to 16,384
 // pixels a side and 64 Mi pixels in all. Colours are sRGB with opacity, 0 to 1.
 struct LabelStyle {
