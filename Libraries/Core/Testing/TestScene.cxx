@@ -1,126 +1,12 @@
-// Objects, fragments, lights, vantages: what is accepted, and that a refusal leaves no trace.
+// Objects, fragments, lights, levels of detail, text tables: what is accepted, and that a refusal
+// leaves no trace.
+#include "SceneTestSupport.h"
+
 #include <cmath>
-#include <functional>
-#include <limits>
 
-#include <gtest/gtest.h>
-
-#include <dspace/Error.h>
 #include <dspace/scene/Overlay.h>
-#include <dspace/scene/Scene.h>
 
-namespace {
-
-using dspace::Camera;
-using dspace::CameraMount;
-using dspace::Error;
-using dspace::FrameId;
-using dspace::GraphicsObject;
-using dspace::Light;
-using dspace::Material;
-using dspace::Mesh;
-using dspace::Nature;
-using dspace::ObjectId;
-using dspace::Scene;
-
-std::shared_ptr<Mesh> Triangle() {
-  auto mesh = std::make_shared<Mesh>();
-  mesh->name = "triangle";
-  mesh->positions = {0, 0, 0, 2, 0, 0, 0, 2, 0};
-  mesh->indices = {0, 1, 2};
-  return mesh;
-}
-
-GraphicsObject Object(const std::string& name, Nature nature = Nature::Physical) {
-  GraphicsObject object;
-  object.name = name;
-  object.nature = nature;
-  object.levels = {{{{Triangle(), nullptr, Eigen::Affine3d::Identity()}}, 0.0}};
-  return object;
-}
-
-Camera Fixed(const std::string& name, FrameId frame) {
-  Camera camera;
-  camera.name = name;
-  camera.mount.frame = frame;
-  return camera;
-}
-
-Light Lamp(const std::string& name, FrameId frame) {
-  Light light;
-  light.name = name;
-  light.frame = frame;
-  return light;
-}
-
-// All that can be seen of a scene, as text.
-std::string Describe(const Scene& scene) {
-  std::string text;
-  const auto add = [&](const auto& part) { text += part + std::string(" "); };
-  for (const auto& entry : scene.Objects()) {
-    const GraphicsObject& object = entry.second;
-    add(std::to_string(entry.first) + object.name + std::to_string(object.frame) + object.fragment +
-        std::to_string(object.levels.size()) + std::to_string(object.visible) +
-        std::to_string(object.material.opacity.value_or(-1)) + std::to_string(object.X_FO(0, 3)));
-  }
-  for (const std::string& name : scene.Fragments().Names()) {
-    const dspace::SceneFragment& fragment = scene.Fragments().Get(name);
-    add(name + std::to_string(int(fragment.nature)) + std::to_string(fragment.visible));
-    for (const ObjectId id : fragment.objects) {
-      add(std::to_string(id));
-    }
-  }
-  for (const Light& light : scene.Fragments().Lights()) {
-    add(light.name + std::to_string(light.frame) + std::to_string(light.intensity));
-  }
-  for (const std::string& name : scene.VantageNames()) {
-    add(name);
-    for (const std::string& camera : scene.Vantage(name).CameraNames()) {
-      const Camera& c = scene.Vantage(name).GetCamera(camera);
-      add(camera + std::to_string(c.mount.frame) + std::to_string(c.projection.verticalFov_deg) +
-          (scene.Vantage(name).ActiveCamera().name == camera ? "!" : ""));
-    }
-  }
-  return text + std::to_string(scene.Frames().Size()) + " " + std::to_string(scene.Time()) + " " +
-         std::to_string(scene.Revision()) + " " + std::to_string(scene.ContentRevision());
-}
-
-// `f` must throw `kind` with `word` in its message and change nothing.
-void ExpectRefused(Scene& scene, Error::Kind kind, const std::string& word,
-                   const std::function<void()>& f) {
-  const std::string before = Describe(scene);
-  try {
-    f();
-    ADD_FAILURE() << "accepted; expected an error with '" << word << "'";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.GetKind(), kind) << e.what();
-    EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
-  }
-  EXPECT_EQ(Describe(scene), before);
-}
-
-constexpr auto Invalid = Error::Kind::InvalidArgument;
-constexpr auto NotFound = Error::Kind::NotFound;
-constexpr auto Exists = Error::Kind::AlreadyExists;
-const double NaN = std::numeric_limits<double>::quiet_NaN();
-
-class SceneTest : public testing::Test {
-protected:
-  void SetUp() override {
-    this->Rover = this->S.Frames().Create(dspace::RootFrame, "rover");
-    this->Mast = this->S.Frames().Create(this->Rover, "mast");
-    GraphicsObject body = Object("body");
-    body.frame = this->Rover;
-    this->Body = this->S.AddObject(body);
-    this->S.CreateVantage("main");
-    this->S.SetCamera("main", Fixed("first", dspace::RootFrame));
-  }
-  Scene S{"mission"};
-  FrameId Rover = 0, Mast = 0;
-  ObjectId Body = 0;
-};
-
-} // namespace
+using namespace dspace;
 
 TEST_F(SceneTest, AnObjectGoesIntoTheFragmentOfItsNature) {
   const ObjectId axes = this->S.AddObject(Object("axes", Nature::Ornamental));
@@ -187,7 +73,7 @@ TEST_F(SceneTest, RefusesBadObjects) {
     o.levels[0].parts[0].material = material;
   });
   refused(Invalid, "texture", [](GraphicsObject& o) {
-    auto image = std::make_shared<dspace::Image>();
+    auto image = std::make_shared<Image>();
     image->width = image->height = 2;
     image->channels = 3;
     image->pixels.resize(11);
@@ -281,73 +167,6 @@ TEST_F(SceneTest, RefusesBadLights) {
   EXPECT_TRUE(this->S.Fragments().Lights().empty());
 }
 
-TEST_F(SceneTest, OneCameraOfAVantageIsActive) {
-  const auto& main = this->S.Vantage("main");
-  EXPECT_EQ(main.ActiveCamera().name, "first");
-  this->S.SetCamera("main", Fixed("second", this->Mast));
-  EXPECT_EQ(main.ActiveCamera().name, "first");
-  this->S.SetActiveCamera("main", "second");
-  EXPECT_EQ(main.ActiveCamera().name, "second");
-  EXPECT_EQ(this->S.PlaceCamera("main").frame, this->Mast);
-  EXPECT_EQ(this->S.PlaceCamera("main", "first").frame, dspace::RootFrame);
-  ExpectRefused(this->S, Invalid, "active", [&] { this->S.RemoveCamera("main", "second"); });
-  ExpectRefused(this->S, NotFound, "third", [&] { this->S.SetActiveCamera("main", "third"); });
-  ExpectRefused(this->S, NotFound, "third", [&] { this->S.RemoveCamera("main", "third"); });
-  ExpectRefused(this->S, NotFound, "side", [&] { this->S.SetCamera("side", Fixed("c", 1)); });
-  ExpectRefused(this->S, Exists, "main", [&] { this->S.CreateVantage("main"); });
-  ExpectRefused(this->S, NotFound, "side", [&] { this->S.RemoveVantage("side"); });
-  ExpectRefused(this->S, NotFound, "frame 99",
-                [&] { this->S.SetCamera("main", Fixed("first", 99)); });
-  Camera bad = Fixed("first", 1);
-  bad.projection.verticalFov_deg = 200;
-  ExpectRefused(this->S, Invalid, "200", [&] { this->S.SetCamera("main", bad); });
-  bad = Fixed("first", 1);
-  bad.mount.kind = CameraMount::Kind::Chase;
-  ExpectRefused(this->S, Invalid, "root", [&] { this->S.SetCamera("main", bad); });
-
-  this->S.RemoveCamera("main", "first");
-  this->S.RemoveCamera("main", "second"); // the last one may go
-  EXPECT_THROW(this->S.PlaceCamera("main"), Error);
-  this->S.SetCamera("main", Fixed("new", 1));
-  EXPECT_EQ(main.ActiveCamera().name, "new");
-  this->S.RemoveVantage("main");
-  EXPECT_TRUE(this->S.VantageNames().empty());
-}
-
-TEST_F(SceneTest, AFrameTakesItsObjectsAndLightsAlong) {
-  GraphicsObject camera = Object("camera box");
-  camera.frame = this->Mast;
-  this->S.AddObject(camera);
-  const ObjectId rock = this->S.AddObject(Object("rock"));
-  this->S.SetLight(Lamp("headlight", this->Mast));
-  this->S.SetLight(Lamp("sun", dspace::RootFrame));
-  this->S.RemoveFrame(this->Rover);
-  EXPECT_FALSE(this->S.Frames().Contains(this->Rover));
-  EXPECT_FALSE(this->S.Frames().Contains(this->Mast));
-  EXPECT_EQ(this->S.Objects().size(), 1u);
-  EXPECT_EQ(this->S.Fragments().Get("physical").objects, std::vector<ObjectId>{rock});
-  ASSERT_EQ(this->S.Fragments().Lights().size(), 1u);
-  EXPECT_EQ(this->S.Fragments().Lights()[0].name, "sun");
-  EXPECT_EQ(this->S.FindObject("body"), 0u);
-  GraphicsObject again = Object("body");
-  again.id = this->Body;
-  ExpectRefused(this->S, Exists, "in use", [&] { this->S.AddObject(again); });
-}
-
-TEST_F(SceneTest, AFrameUnderACameraStays) {
-  this->S.SetLight(Lamp("headlight", this->Mast));
-  this->S.SetCamera("main", Fixed("mastcam", this->Mast));
-  ExpectRefused(this->S, Invalid, "mastcam", [&] { this->S.RemoveFrame(this->Rover); });
-  Camera chase = Fixed("mastcam", this->Rover);
-  chase.mount.kind = CameraMount::Kind::Chase;
-  this->S.SetCamera("main", chase);
-  ExpectRefused(this->S, Invalid, "follows", [&] { this->S.RemoveFrame(this->Rover); });
-  ExpectRefused(this->S, Invalid, "root", [&] { this->S.RemoveFrame(dspace::RootFrame); });
-  ExpectRefused(this->S, NotFound, "frame 99", [&] { this->S.RemoveFrame(99); });
-  this->S.RemoveFrame(this->Mast); // the camera's frame is above it
-  EXPECT_EQ(this->S.Frames().Size(), 2u);
-}
-
 TEST_F(SceneTest, RevisionsTellWhatChanged) {
   const auto changes = [&](const std::function<void()>& f) {
     const auto revision = this->S.Revision();
@@ -360,7 +179,7 @@ TEST_F(SceneTest, RevisionsTellWhatChanged) {
   const auto Content = std::make_pair(true, true);
   EXPECT_EQ(changes([&] { this->S.SetObjectVisible(this->Body, false); }), Content);
   EXPECT_EQ(changes([&] { this->S.SetObjectVisible(this->Body, false); }), None);
-  dspace::MaterialOverride red;
+  MaterialOverride red;
   red.color = {{1, 0, 0}};
   EXPECT_EQ(changes([&] { this->S.SetObjectMaterial(this->Body, red); }), Content);
   EXPECT_EQ(changes([&] { this->S.SetObjectMaterial(this->Body, red); }), None);
@@ -378,14 +197,14 @@ TEST_F(SceneTest, RevisionsTellWhatChanged) {
   EXPECT_EQ(changes([&] { this->S.SetCamera("main", Fixed("b", 1)); }), View);
   EXPECT_EQ(changes([&] { this->S.SetActiveCamera("main", "b"); }), View);
   EXPECT_EQ(changes([&] { this->S.SetActiveCamera("main", "b"); }), None);
-  dspace::Pose X;
+  Pose X;
   X.position = {1, 2, 3};
   EXPECT_EQ(changes([&] { this->S.Frames().SetLocalPose(this->Rover, X); }), View);
   EXPECT_EQ(changes([&] { this->S.RemoveFrame(this->Mast); }), Content);
 }
 
 TEST_F(SceneTest, RefusesBadChangesOfObjects) {
-  dspace::MaterialOverride bad;
+  MaterialOverride bad;
   bad.roughness = NaN;
   ExpectRefused(this->S, Invalid, "roughness", [&] { this->S.SetObjectMaterial(this->Body, bad); });
   Eigen::Affine3d flat = Eigen::Affine3d::Identity();
@@ -394,130 +213,44 @@ TEST_F(SceneTest, RefusesBadChangesOfObjects) {
   ExpectRefused(this->S, NotFound, "99", [&] { this->S.AttachObject(this->Body, 99); });
   ExpectRefused(this->S, NotFound, "99", [&] { this->S.RemoveObject(99); });
   ExpectRefused(this->S, NotFound, "99", [&] { this->S.SetObjectVisible(99, true); });
-  dspace::DetailLevel empty;
+  DetailLevel empty;
   empty.parts.resize(1);
   ExpectRefused(this->S, Invalid, "no mesh", [&] { this->S.SetObjectLevels(this->Body, {empty}); });
   ExpectRefused(this->S, Invalid, "time", [&] { this->S.SetTime(NaN); });
   EXPECT_THROW(Scene(""), Error);
 }
 
-TEST_F(SceneTest, ChaseLagDependsOnCommandsOnly) {
-  Camera chase = Fixed("chase", this->Rover);
-  chase.mount.kind = CameraMount::Kind::Chase;
-  chase.mount.axes = CameraMount::ChaseAxes::Parent;
-  chase.mount.offset = {-5, 0, 2};
-  chase.mount.smoothing_s = 0.5;
-  // The same commands, with the camera asked for never, once a step, or often.
-  const auto run = [&](int asks) {
-    Scene scene("s");
-    const FrameId rover = scene.Frames().Create(dspace::RootFrame, "rover");
-    scene.CreateVantage("v");
-    chase.mount.frame = rover;
-    scene.SetCamera("v", chase);
-    for (int step = 1; step <= 10; ++step) {
-      scene.SetTime(0.1 * step);
-      dspace::Pose X;
-      X.position.x() = 0.3 * step;
-      scene.Frames().SetLocalPose(rover, X);
-      for (int i = 0; i < asks; ++i) {
-        scene.PlaceCamera("v");
-      }
-    }
-    return scene.PlaceCamera("v").X_FC.position;
-  };
-  const Eigen::Vector3d p = run(0);
-  EXPECT_EQ(p, run(1));
-  EXPECT_EQ(p, run(3));
-  // By hand: in place at time 0, then x' = w + (x - w) e^-0.2 with w = 0.3 step - 5.
-  double x = -5.0;
-  for (int step = 1; step <= 10; ++step) {
-    const double wanted = 0.3 * step - 5.0;
-    x = wanted + (x - wanted) * std::exp(-0.2);
-  }
-  EXPECT_NEAR(p.x(), x, 1e-12);
-  EXPECT_EQ(p.z(), 2.0);
-}
-
-TEST_F(SceneTest, ChaseLagBeginsWhenTheCameraIsSet) {
-  Camera chase = Fixed("chase", this->Rover);
-  chase.mount.kind = CameraMount::Kind::Chase;
-  chase.mount.axes = CameraMount::ChaseAxes::Parent;
-  chase.mount.offset = {-5, 0, 2};
-  chase.mount.smoothing_s = 2.0;
-  this->S.SetCamera("main", chase);
-  const auto place = [&] { return this->S.PlaceCamera("main", "chase").X_FC.position.x(); };
-  // A move before any time step: no time has passed, so the camera has not moved.
-  dspace::Pose X;
-  X.position = {10, 0, 0};
-  this->S.Frames().SetLocalPose(this->Rover, X);
-  EXPECT_EQ(place(), -5.0);
-  EXPECT_EQ(place(), -5.0);
-  // In its place at 5 it is 10 late, which decays by exp(-dt / tau), in one step or in several.
-  this->S.SetTime(0.5);
-  EXPECT_NEAR(place(), 5.0 - 10.0 * std::exp(-0.25), 1e-12);
-  this->S.SetTime(3.0);
-  EXPECT_NEAR(place(), 5.0 - 10.0 * std::exp(-1.5), 1e-12);
-  // Without smoothing it forgets where it was.
-  chase.mount.smoothing_s = 0.0;
-  this->S.SetCamera("main", chase);
-  EXPECT_EQ(place(), 5.0);
-  chase.mount.smoothing_s = 2.0;
-  this->S.SetCamera("main", chase);
-  EXPECT_EQ(place(), 5.0);
-}
-
-TEST_F(SceneTest, ChaseLagOutlivesAChangeOfLensNotOfFrame) {
-  Camera chase = Fixed("chase", this->Rover);
-  chase.mount.kind = CameraMount::Kind::Chase;
-  chase.mount.smoothing_s = 1e6;
-  this->S.SetCamera("main", chase);
-  this->S.SetTime(1.0);
-  dspace::Pose X;
-  X.position = {100, 0, 0};
-  this->S.Frames().SetLocalPose(this->Rover, X);
-  chase.projection.verticalFov_deg = 20;
-  this->S.SetCamera("main", chase);
-  EXPECT_NEAR(this->S.PlaceCamera("main", "chase").X_FC.position.x(), -5.0, 1e-3);
-  this->S.SetTime(0.5); // back: anew
-  EXPECT_NEAR(this->S.PlaceCamera("main", "chase").X_FC.position.x(), 95.0, 1e-9);
-  this->S.SetTime(2.0);
-  chase.mount.frame = this->Mast;
-  this->S.SetCamera("main", chase);
-  EXPECT_EQ(this->S.PlaceCamera("main", "chase").frame, this->Rover);
-  EXPECT_NEAR(this->S.PlaceCamera("main", "chase").X_FC.position.x(), -5.0, 1e-9);
-}
-
 TEST(Levels, FinestThatIsLargeEnough) {
-  std::vector<dspace::DetailLevel> levels(3);
+  std::vector<DetailLevel> levels(3);
   levels[0].minimumPixels = 100;
   levels[1].minimumPixels = 10;
   levels[2].minimumPixels = 2;
-  EXPECT_EQ(dspace::LevelFor(levels, 100), 0);
-  EXPECT_EQ(dspace::LevelFor(levels, 99.9), 1);
-  EXPECT_EQ(dspace::LevelFor(levels, 2), 2);
-  EXPECT_EQ(dspace::LevelFor(levels, 1), -1);
-  EXPECT_EQ(dspace::LevelFor({}, 1), -1);
+  EXPECT_EQ(LevelFor(levels, 100), 0);
+  EXPECT_EQ(LevelFor(levels, 99.9), 1);
+  EXPECT_EQ(LevelFor(levels, 2), 2);
+  EXPECT_EQ(LevelFor(levels, 1), -1);
+  EXPECT_EQ(LevelFor({}, 1), -1);
 }
 
 TEST(Levels, BoundsByHand) {
-  dspace::DetailLevel level;
-  EXPECT_EQ(dspace::BoundsOf(level).radius, 0.0);
+  DetailLevel level;
+  EXPECT_EQ(BoundsOf(level).radius, 0.0);
   // The triangle spans (0,0)-(2,2); at the second part's place (10,0)-(14,4).
   Eigen::Affine3d X = Eigen::Affine3d::Identity();
   level.parts.push_back({Triangle(), nullptr, X});
-  const dspace::BoundingSphere one = dspace::BoundsOf(level);
+  const BoundingSphere one = BoundsOf(level);
   EXPECT_EQ(one.center, Eigen::Vector3d(1, 1, 0));
   EXPECT_DOUBLE_EQ(one.radius, std::sqrt(2.0));
   X.translation().x() = 10;
   X.linear() *= 2;
   level.parts.push_back({Triangle(), nullptr, X});
-  const dspace::BoundingSphere both = dspace::BoundsOf(level);
+  const BoundingSphere both = BoundsOf(level);
   EXPECT_EQ(both.center, Eigen::Vector3d(7, 2, 0));
   EXPECT_DOUBLE_EQ(both.radius, std::hypot(7, 2)); // to (0,0); (14,0) is as far
 }
 
 TEST(Parts, OfAModelShareItsMeshes) {
-  auto model = std::make_shared<dspace::Model>();
+  auto model = std::make_shared<Model>();
   model->path = "m.obj";
   model->meshes = {*Triangle(), *Triangle()};
   model->meshes[1].material = 0;
@@ -530,7 +263,7 @@ TEST(Parts, OfAModelShareItsMeshes) {
   model->nodes[1].local = Eigen::Translation3d(0, 5, 0);
   model->nodes[1].meshes = {0, 1};
   const Eigen::Quaterniond quarter(Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()));
-  const auto parts = dspace::PartsOf(model, 10.0, quarter);
+  const auto parts = PartsOf(model, 10.0, quarter);
   ASSERT_EQ(parts.size(), 3u);
   EXPECT_EQ(parts[0].mesh.get(), &model->meshes[1]);
   EXPECT_EQ(parts[2].mesh, parts[0].mesh);
@@ -540,16 +273,16 @@ TEST(Parts, OfAModelShareItsMeshes) {
   // (1, 1, 0): + (0, 5, 0), then y doubled, x + 1: (2, 12, 0); turned and tenfold: (-120, 20, 0).
   EXPECT_LT((parts[1].X_OP * Eigen::Vector3d(1, 1, 0) - Eigen::Vector3d(-120, 20, 0)).norm(),
             1e-12);
-  const std::weak_ptr<dspace::Model> watch = model;
+  const std::weak_ptr<Model> watch = model;
   model.reset();
   EXPECT_FALSE(watch.expired()); // the parts keep it
-  EXPECT_THROW(dspace::PartsOf(nullptr), Error);
-  EXPECT_THROW(dspace::PartsOf(watch.lock(), 0.0), Error);
-  EXPECT_THROW(dspace::PartsOf(watch.lock(), 1.0, Eigen::Quaterniond(2, 0, 0, 0)), Error);
+  EXPECT_THROW(PartsOf(nullptr), Error);
+  EXPECT_THROW(PartsOf(watch.lock(), 0.0), Error);
+  EXPECT_THROW(PartsOf(watch.lock(), 1.0, Eigen::Quaterniond(2, 0, 0, 0)), Error);
 }
 
 TEST(TextTable, Refusals) {
-  dspace::TextTable table;
+  TextTable table;
   EXPECT_THROW(table.Check(), Error); // no name
   table.name = "readings";
   EXPECT_NO_THROW(table.Check());
