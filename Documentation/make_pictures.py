@@ -20,8 +20,10 @@ def first_picture():
         scene = session.scene()
         ground = scene.add_terrain(ROOT / "Data/field/field.tif",
                                    image=ROOT / "Data/field/field_color.tif")
-        scene.load(ROOT / "Data/rover/rover.urdf", position=(0, 0, ground.height(0, 0)))
-        scene.add_camera(eye=(5, -5, ground.height(5, -5) + 2.5),
+        ground.focus([(0, 0)])
+        rover = scene.load(ROOT / "Data/rover/rover.urdf")
+        rover.place(dspace.rover.load_vehicle(ROOT / "Data/rover/rover.urdf").solve((0, 0, 0), ground))
+        scene.add_camera(eye=(3, -3, ground.height(3, -3) + 1),
                          target=(0, 0, ground.height(0, 0) + 0.5))
         scene.add_viewport(size=(720, 405), samples=3).save(IMAGES / "first.png")
 

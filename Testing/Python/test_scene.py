@@ -130,6 +130,40 @@ def test_fragments_and_lights(scene):
     assert scene.time == 12.5
 
 
+def test_a_rover_stands_on_the_ground_that_is_drawn(scene, tmp_path):
+    ground = scene.add_terrain(DATA / "field" / "field.tif")
+    ground.focus([(3, -2)])
+    rover = scene.load(DATA / "rover" / "rover.urdf")
+    vehicle = dspace.rover.load_vehicle(DATA / "rover" / "rover.urdf")
+    state = vehicle.solve((3, -2, 25), ground)
+    rover.place(state)
+    radius = {wheel.name: wheel.radius for wheel in vehicle.suspension.wheels}
+    for thing in rover.objects:
+        thing.visible = False
+    scene.add_camera(eye=(3, -2, 10), target=(3, -2, 0), up=(0, 1, 0), height=4, near=1, far=100)
+    depth = scene.add_viewport((800, 800)).depth()
+    assert len(state.contacts) == 6
+    for name, contact in state.contacts.items():
+        hub = rover.links[name].world_pose
+        axis = hub.rotation[:, 1]
+        off_axis = np.cross(contact - hub.position, axis)
+        assert np.linalg.norm(off_axis) == pytest.approx(radius[name], abs=1e-5)
+        column, row = 399.5 + (contact[0] - 3) * 200, 399.5 - (contact[1] + 2) * 200
+        assert 10 - depth[round(row), round(column)] == pytest.approx(contact[2], abs=2e-3)
+    with pytest.raises(dspace.WrongType, match="accepted: what dspace.rover's solve"):
+        rover.place((0, 0, 0))
+
+
+def test_the_readmes_first_picture(tmp_path, monkeypatch):
+    readme = (DATA.parent / "README.md").read_text()
+    code = readme.split("```python\n")[1].split("```")[0]
+    assert len([line for line in code.splitlines() if line]) <= 10
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "Data").symlink_to(DATA)
+    exec(compile(code, "README.md", "exec"), {})
+    assert (tmp_path / "first.png").stat().st_size > 50000
+
+
 def test_terrain(scene, field):
     terrain = scene.add_terrain(field, origin=(116, 216))
     assert terrain.size == (33, 33)
