@@ -4,7 +4,6 @@ import warnings
 import numpy as np
 
 from dspace import Pose
-from dspace.kinematics.rotations import to_quaternion
 from dspace.rover import CarriedModel, load_vehicle
 
 
@@ -39,11 +38,12 @@ class Described:
                 self.vehicle = load_vehicle(path, bounds=self._bounds(self.robot.objects))
         elif suffix == ".json" or path.is_dir():
             self.vehicle = load_vehicle(path)
-            self._place_parts(scene)
+            assembly = scene.load(path, frame=self.base)
+            self.frames, self.objects = assembly.frames, assembly.objects
         else:
             vehicle_up = up or ("y" if suffix in (".gltf", ".glb", ".wrl", ".wrz") else "z")
             # In the file's own axes: CarriedModel turns and scales.
-            carried = scene.load(path, frame=self.base, name="carried", scale=scale)
+            carried = scene.load(path, frame=self.base, name="carried", scale=scale, up="z")
             self.objects.append(carried)
             low, high = carried.box
             self.vehicle = load_vehicle(path, bounds=(low / scale, high / scale), scale=scale,
@@ -54,16 +54,6 @@ class Described:
         self.wheeled = not isinstance(self.vehicle, CarriedModel)
         self.length = (1.7 * float(self.vehicle.wheel_base) if self.wheeled
                        else float(max(self.vehicle.size)))
-
-    def _place_parts(self, scene):
-        for i, part in enumerate(self.vehicle.parts):
-            if part.frame not in self.frames:
-                parent = self.frames.get(part.parent, self.base)
-                self.frames[part.frame] = parent.add_frame(part.frame)
-            position, quaternion, stretch = offset_of(np.asarray(part.matrix, float))
-            self.objects.append(scene.load(part.path, frame=self.frames[part.frame],
-                                           name=f"part {i}", position=position,
-                                           quaternion=quaternion, stretch=stretch))
 
     def _bounds(self, objects):
         """Of a robot at rest, in its base frame."""
@@ -107,15 +97,6 @@ class PlacedVehicle:
         if not state.contacts:
             return state.position
         return np.mean(list(state.contacts.values()), axis=0)
-
-
-def offset_of(matrix):
-    """Position, quaternion and stretch of a 4 x 4 matrix whose columns are at right angles; it may
-    mirror, which becomes a negative stretch along X."""
-    stretch = np.linalg.norm(matrix[:3, :3], axis=0)
-    if np.linalg.det(matrix[:3, :3]) < 0:
-        stretch[0] = -stretch[0]
-    return matrix[:3, 3], to_quaternion(matrix[:3, :3] / stretch), stretch
 
 
 def attitude(state):

@@ -21,6 +21,7 @@ on the wrapped VTK objects (`frame.vtk`, `dspace.vtk`) are not.
 import importlib
 
 _HOMES = {
+    "Assembly": "assemblies",
     "Camera": "cameras", "Vantage": "cameras",
     "Error": "errors", "InvalidArgument": "errors", "WrongType": "errors", "NotFound": "errors",
     "AlreadyExists": "errors", "Unsupported": "errors", "Corrupt": "errors", "Io": "errors",

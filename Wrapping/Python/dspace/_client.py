@@ -16,7 +16,7 @@ def make_error(error):
     return KINDS.get(error.kind, Internal)(error.message, error.object)
 
 
-def _warn(message):
+def warn(message):
     # Points at the first caller outside this package, however deep it was called.
     level = 1
     frame = sys._getframe()
@@ -61,7 +61,7 @@ class LocalClient:
         listeners.put(reply.frame_event)
         try:
             for warning in reply.warning:
-                _warn(warning)
+                warn(warning)
         finally:  # a warning may be turned into an exception
             listeners.deliver()
         return reply

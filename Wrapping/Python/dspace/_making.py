@@ -2,8 +2,10 @@
 import numpy as np
 
 from dspace import _wire
+from dspace._client import warn
 from dspace._fields import (about, array_of, flag, integers, keywords, numbers, put, put_color,
                             put_given, put_vector, shown, word)
+from dspace.assemblies import is_assembly, load_assembly
 from dspace.cameras import put_projection
 from dspace.errors import InvalidArgument, WrongType
 from dspace.frames import put_pose
@@ -31,27 +33,35 @@ def _points(points, about):
 class ObjectMaking:
     """The part of Scene that makes objects; Scene says what all of its functions take."""
 
-    def load(self, path, frame=None, ornamental=False, scale=1.0, up="z", rotation=None,
+    def load(self, path, frame=None, ornamental=False, scale=1.0, up=None, rotation=None,
              levels=(), strict=False, point_cloud=False, **settings):
-        """A model file (glTF, GLB, VRML, OBJ, STL, PLY) as a GraphicsObject, or a URDF as a Robot.
+        """A model file (glTF, GLB, VRML, OBJ, STL, PLY) as a GraphicsObject; a URDF as a Robot; the
+        folder of a frames.json, or that file, as an Assembly.
 
         scale: metres a unit of the file. up: the file's axis that becomes Z ("z", "y", "x", "-z");
-        rotation: a quaternion that turns it further. levels: coarser files as (path, pixels) pairs,
+        without it the file is taken as it is ("z"), which glTF seldom means: its Y is up. rotation: a quaternion that turns it further. levels: coarser files as (path, pixels) pairs,
         each drawn while the object is seen larger than `pixels`; the last one should have 0, and
         `path` then needs its own number: (path, pixels) too.
-        strict: a missing texture or mesh raises; else it is a warning (and, in a URDF, a stand-in).
+        strict: a missing texture or mesh raises; else it is a warning, and what stands in for a
+        URDF's mesh is an orange cube, or the edges of a box as large as its glTF says it is.
         point_cloud: a file of points is shown, `point_size` pixels large; else no faces, no object.
-        A URDF takes position, quaternion, name, fragment, and `pose` of its base frame only."""
+        A URDF (links to frames, joints as `robot.joints[name].position` in degrees or metres, meshes
+        from beside it) and a frames.json take frame, scale, up, rotation, ornamental, strict, name,
+        fragment, and position, quaternion or `pose` of their base frame."""
         first, pixels = path if isinstance(path, tuple) and len(path) == 2 else (path, 0.0)
         first = file_path(first, "the path", "model")
         label = f"file {first!r}"
-        turn = word(up, UP, "up", label)
-        if first.lower().endswith(".urdf"):
+        turn = word("z" if up is None else up, UP, "up", label)
+        kind = ("URDF" if first.lower().endswith(".urdf")
+                else "frames.json" if is_assembly(first) else None)
+        if kind:
             if levels or pixels or point_cloud:
                 raise InvalidArgument(f"{label}: levels {levels!r}, {pixels!r} pixels and "
-                                      f"point_cloud={point_cloud!r}; accepted for a URDF: none of these")
-            keywords(settings, _ROBOT, label + ", a URDF")
-            return self._load_robot(first, frame, ornamental, strict, scale, up, rotation, **settings)
+                                      f"point_cloud={point_cloud!r}; accepted for a {kind}: none of these")
+            keywords(settings, _ROBOT, f"{label}, a {kind}")
+            load = self._load_robot if kind == "URDF" else self._load_assembly
+            base = self._base_pose(label, scale, up or "z", rotation, settings)
+            return load(first, base, frame, ornamental, strict, **settings)
         command = self._command()
         message = command.import_object
         put_settings(self, message.object, label, frame=frame, ornamental=ornamental, **settings)
@@ -64,16 +74,28 @@ class ObjectMaking:
         put(message, label, scale=scale, up=turn, strict=strict, point_cloud=point_cloud)
         if rotation is not None:
             put_rotation(message.rotation, rotation, "the rotation", label)
-        return GraphicsObject(self, self._execute(command).object.object)
+        made = GraphicsObject(self, self._execute(command).object.object)
+        if up is None and first.lower().endswith((".gltf", ".glb")):
+            warn(f"{label}: in glTF Y is up, and nothing is turned unasked; if it lies on its side give "
+                 "up='y', else up='z'")
+        return made
 
-    def _load_robot(self, path, frame, ornamental, strict, scale, up, rotation, name=None,
-                    fragment=None, position=None, quaternion=None, pose=None):
-        label = f"file {path!r}"
+    @staticmethod
+    def _base_pose(label, scale, up, rotation, settings):
+        """Takes what places a base frame out of the settings."""
         with about(label):
-            base = to_pose(position, quaternion, None, pose)
+            base = to_pose(settings.pop("position", None), settings.pop("quaternion", None), None,
+                           settings.pop("pose", None))
             if up != "z" or rotation is not None or scale != 1.0:
                 turn = Pose(quaternion=_TURNS[up], scale=scale)
                 base = base @ (turn if rotation is None else Pose(quaternion=rotation) @ turn)
+        return base
+
+    def _load_assembly(self, path, base, frame, ornamental, strict, **settings):
+        return load_assembly(self, path, base, frame, ornamental=ornamental, strict=strict, **settings)
+
+    def _load_robot(self, path, base, frame, ornamental, strict, name=None, fragment=None):
+        label = f"file {path!r}"
         command = self._command()
         message = command.load_robot
         put(message, label, path=path, name="" if name is None else name, frame=self._frame_id(frame),

@@ -1,9 +1,4 @@
-"""A vehicle's tree of links and joints, read from a URDF or from a frames.json.
-
-frames.json (as used for single-part vehicle models) lists frames with name, parent, translation_m,
-joint_axis (x, y, z or null), mesh, and for wheels wheel_radius_m; axes X forward, Y left, Z up.
-"""
-import json
+"""A vehicle's tree of links and joints, read from a URDF or from a frames.json (see frames_file)."""
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from . import meshes
+from .frames_file import read_frames_file
 from .rotations import from_rpy
 
 
@@ -147,32 +143,21 @@ def read_urdf(path):
 
 
 def read_frames(path):
-    """Description of a frames.json vehicle. Raises ValueError naming the file and the frame."""
+    """Description of a frames.json vehicle. Raises ValueError naming the file, the frame and the key."""
     path = Path(path)
-    try:
-        document = json.loads(path.read_text())
-        frames = document["frames"]
-        root = next(f["name"] for f in frames if f["parent"] is None)
-    except (ValueError, KeyError, TypeError, StopIteration) as e:
-        raise ValueError(f"{path}: expected a 'frames' list with one frame whose parent is null") from e
-    d = Description(path, document.get("vehicle", path.parent.name), root, [])
+    name, frames = read_frames_file(path)
+    d = Description(path, name, frames[0].name, [])
     for f in frames:
-        matrix = np.eye(4)
-        if f.get("mirror"):
-            matrix[1, 1] = -1.0
-        if f.get("mesh_rotated_180_about_z"):
-            matrix[0, 0] = matrix[1, 1] = -1.0
-        if f.get("mesh"):
-            d.parts.append(Part(f["name"], f["parent"], path.parent / f["mesh"], matrix))
-            d.meshes[f["name"]] = [(path.parent / f["mesh"], matrix, np.ones(3))]
-        if f["parent"] is None:
+        if f.mesh is not None:
+            d.parts.append(Part(f.name, f.parent, f.mesh, f.matrix))
+            d.meshes[f.name] = [(f.mesh, f.matrix, np.ones(3))]
+        if f.parent is None:
             continue
-        axis = f.get("joint_axis")
-        d.joints.append(Joint(f["name"], "continuous" if axis else "fixed", f["parent"], f["name"],
-                              np.array(f["translation_m"], float), np.eye(3),
-                              np.eye(3)["xyz".index(axis)] if axis else np.array([1.0, 0, 0])))
-        if "wheel_radius_m" in f:
-            v = d.link_vertices(f["name"])
-            width = float(np.ptp(v[:, 1])) if len(v) else 1.0 * f["wheel_radius_m"]
-            d.cylinders[f["name"]] = (float(f["wheel_radius_m"]), width)
+        d.joints.append(Joint(f.name, "continuous" if f.axis else "fixed", f.parent, f.name,
+                              f.translation, np.eye(3),
+                              np.eye(3)["xyz".index(f.axis)] if f.axis else np.array([1.0, 0, 0])))
+        if f.wheel_radius is not None:
+            v = d.link_vertices(f.name)
+            width = float(np.ptp(v[:, 1])) if len(v) else f.wheel_radius
+            d.cylinders[f.name] = (f.wheel_radius, width)
     return d
