@@ -3,8 +3,8 @@ import numpy as np
 
 from dspace import _wire
 from dspace._client import warn
-from dspace._fields import (about, array_of, flag, integers, keywords, numbers, put, put_color,
-                            put_given, put_vector, shown, word)
+from dspace._fields import (about, array_of, flag, integers, keywords, number, numbers, put,
+                            put_color, put_given, put_vector, refuse, shown, word)
 from dspace.assemblies import is_assembly, load_assembly
 from dspace.cameras import put_projection
 from dspace.errors import InvalidArgument, WrongType
@@ -39,9 +39,10 @@ class ObjectMaking:
         folder of a frames.json, or that file, as an Assembly.
 
         scale: metres a unit of the file. up: the file's axis that becomes Z ("z", "y", "x", "-z");
-        without it the file is taken as it is ("z"), which glTF seldom means: its Y is up. rotation: a quaternion that turns it further. levels: coarser files as (path, pixels) pairs,
-        each drawn while the object is seen larger than `pixels`; the last one should have 0, and
-        `path` then needs its own number: (path, pixels) too.
+        without it the file is taken as it is ("z"), which glTF seldom means: its Y is up. rotation: a
+        quaternion that turns it further. levels: coarser files as (path, pixels) pairs, each drawn
+        while the object is seen larger than `pixels`; the last one should have 0, and `path` then
+        needs its own number: (path, pixels) too.
         strict: a missing texture or mesh raises; else it is a warning, and what stands in for a
         URDF's mesh is an orange cube, or the edges of a box as large as its glTF says it is.
         point_cloud: a file of points is shown, `point_size` pixels large; else no faces, no object.
@@ -52,10 +53,14 @@ class ObjectMaking:
         first = file_path(first, "the path", "model")
         label = f"file {first!r}"
         turn = word("z" if up is None else up, UP, "up", label)
+        if not isinstance(levels, (list, tuple)):
+            refuse(label, "levels", levels, "a list of (path, pixels)", WrongType)
         kind = ("URDF" if first.lower().endswith(".urdf")
                 else "frames.json" if is_assembly(first) else None)
         if kind:
-            if levels or pixels or point_cloud:
+            pixels, scale = (number(value, name, label)
+                             for name, value in (("pixels", pixels), ("the scale", scale)))
+            if len(levels) or pixels or flag(point_cloud, "point_cloud", label):
                 raise InvalidArgument(f"{label}: levels {levels!r}, {pixels!r} pixels and "
                                       f"point_cloud={point_cloud!r}; accepted for a {kind}: none of these")
             keywords(settings, _ROBOT, f"{label}, a {kind}")
