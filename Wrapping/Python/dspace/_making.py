@@ -61,7 +61,7 @@ class ObjectMaking:
             pixels, scale = (number(value, name, label)
                              for name, value in (("pixels", pixels), ("the scale", scale)))
             if len(levels) or pixels or flag(point_cloud, "point_cloud", label):
-                raise InvalidArgument(f"{label}: levels {levels!r}, {pixels!r} pixels and "
+                raise InvalidArgument(f"{label}: levels {levels!r}, {pixels:g} pixels and "
                                       f"point_cloud={point_cloud!r}; accepted for a {kind}: none of these")
             keywords(settings, _ROBOT, f"{label}, a {kind}")
             load = self._load_robot if kind == "URDF" else self._load_assembly
