@@ -1,4 +1,6 @@
 """What a user's session may run into: no lights, letters beyond ASCII, things of a closed session."""
+import inspect
+
 import numpy as np
 import pytest
 
@@ -95,3 +97,66 @@ def test_a_label_has_its_pixels_at_any_number_of_samples(scene, view):
     for view.samples in (2, 4):
         assert label_size(scene, view, "abc") == pytest.approx(size, abs=1)
     assert label_size(scene, view, "abc\u00e9")[0] > size[0] + 3  # letters beyond ASCII are drawn
+
+
+# --- Anything for anything ---------------------------------------------------------------------
+
+JUNK = [None, 5, -1, 1.5, float("nan"), float("inf"), 10**400, "", "zzz", "\ud800", "a\0b", b"x", [], [1],
+        (1, 2, 3), {}, {"a": 1}, object(), np.zeros((2, 3)), np.zeros(()), np.array(["a"]), True,
+        [[1, 2], [3]], lambda: 1, 1e300, "x" * 100000]
+# What takes no value, ends the session or the thing, or is the user's own code.
+LEFT_OUT = ("close", "remove", "execute", "run", "vtk")
+
+
+def uses(thing, given):
+    """Every (name, call) that hands junk to a settable property or an argument of a method."""
+    for name in dir(type(thing)):
+        if name.startswith("_") or name in LEFT_OUT:
+            continue
+        member = inspect.getattr_static(type(thing), name)
+        if isinstance(member, property):
+            if member.fset:
+                for junk in JUNK:
+                    yield name, lambda: setattr(thing, name, junk)
+            continue
+        method = getattr(thing, name)
+        parameters = inspect.signature(method).parameters.values() if callable(method) else ()
+        needed = {p.name: given.get(p.name) for p in parameters
+                  if p.default is p.empty and p.kind is p.POSITIONAL_OR_KEYWORD}
+        keys = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
+        if name.startswith("add_") and any(p.kind is p.VAR_KEYWORD for p in parameters):
+            keys += ["name", "frame", "fragment", "position", "quaternion", "stretch", "visible",
+                     "color", "texture", "opacity", "lit", "line_width"]
+        for key in keys:
+            for junk in JUNK:
+                yield f"{name}({key})", lambda: method(**{**needed, key: junk})
+
+
+def test_anything_for_anything_is_accepted_or_a_dspace_error(session, scene, field, tmp_path,
+                                                             monkeypatch):
+    monkeypatch.chdir(tmp_path)  # "zzz" is a path, too
+    (tmp_path / "r.urdf").write_text(
+        '<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="continuous">'
+        '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>')
+    frame, robot = scene.add_frame("f"), scene.load("r.urdf")
+    camera = scene.add_camera("c", eye=(5, 0, 0), target=(0, 0, 0))
+    given = dict(path="r.urdf", name="n", size=(64, 48), frames=[frame], poses=[[0, 0, 0, 1, 0, 0, 0, 1]],
+                 points=[(0, 0, 0), (1, 1, 1)], x=1, y=1, xy=[(0, 0)], text="a", height=1.0, radius=1.0,
+                 length=1.0, tube=0.1, width=1.0, eye=(1, 0, 0), target=(0, 0, 0), frame=frame,
+                 parent=scene.root, axis="x", angle_deg=3, other=scene.root, callback=len, token=0,
+                 rows={"a": 1}, fragment="physical", color=(1, 0, 0), positions={"j": 1}, link="a",
+                 type="move", tilt_deg=3)
+    calls = 0
+    for thing in (session, scene, frame, camera, scene.add_viewport(SIZE, camera), scene.add_box((1, 1, 1)),
+                  scene.fragments["physical"], scene.lights["sun"], scene.add_trail(), robot,
+                  scene.add_text("a", 1), scene.add_tilt_marker(1), robot.joints["j"],
+                  scene.add_terrain(field), scene.vantages["main"]):
+        for name, use in uses(thing, given):
+            calls += 1
+            try:
+                use()
+            except dspace.Error as error:
+                assert len(str(error)) < 3000 and str(error), (thing, name)
+            except Exception as error:
+                pytest.fail(f"{type(thing).__name__}.{name}: {error!r}")
+    assert calls > 5000

@@ -1,7 +1,7 @@
 """What may be handed to a scene: things of its own, or their names."""
 import numpy as np
 
-from dspace._fields import named, refuse
+from dspace._fields import named, refuse, text
 from dspace.cameras import Vantage
 from dspace.errors import InvalidArgument, WrongType
 from dspace.fragments import Fragment
@@ -34,9 +34,9 @@ class Belonging:
         if isinstance(frame, str):
             return self._ask("find_frame", path=frame).frame.frame
         if isinstance(frame, (int, np.integer)) and not isinstance(frame, bool):
-            if frame > 0:
+            if 0 < frame < 2**63:
                 return int(frame)
-            refuse(f"scene {self._name_!r}", "the frame's id", frame, "an id, from 1 on")
+            refuse(f"scene {self._name_!r}", "the frame's id", frame, "an id, from 1 to 2^63 - 1")
         refuse(f"scene {self._name_!r}", "the frame", frame, "a Frame, a Robot, a path or an id",
                WrongType)
 
@@ -45,7 +45,7 @@ class Belonging:
         if thing is None:
             return ""
         if isinstance(thing, str):
-            return thing
+            return text(thing, f"the {what}", about or f"scene {self._name_!r}", "a name")
         if not isinstance(thing, kind):
             refuse(about or f"scene {self._name_!r}", f"the {what}", thing,
                    f"a dspace.{kind.__name__} of scene {self._name_!r} or its name", WrongType)

@@ -20,14 +20,14 @@ _OTHERS = {_Field.TYPE_BOOL: "True or False", _Field.TYPE_STRING: "a str",
 
 def shown(value):
     """A value in a message: its repr, cut where it is long."""
-    text = repr(value)
-    return text if len(text) <= 80 else f"{text[:77]}..."
+    full = repr(value)
+    return full if len(full) <= 80 else f"{full[:77]}..."
 
 
-def named(about, text):
-    """`text` about an object: a name, a function that gives one, or None."""
+def named(about, message):
+    """`message` about an object: a name, a function that gives one, or None."""
     about = about() if callable(about) else about
-    return f"{about}: {text}" if about else text
+    return f"{about}: {message}" if about else message
 
 
 def refuse(about, what, value, accepted, kind=InvalidArgument):
@@ -50,6 +50,17 @@ class about:
             name = self._name() if callable(self._name) else self._name
             raise type(error)(f"{name}: {error}", name) from None
         return False
+
+
+def text(value, what, about=None, accepted="a str"):
+    """A str that can be sent: of whole characters."""
+    try:
+        if isinstance(value, str):
+            value.encode()
+            return value
+    except UnicodeEncodeError:
+        refuse(about, what, value, f"{accepted} of whole characters")
+    refuse(about, what, value, accepted, WrongType)
 
 
 def flag(value, what, about=None):
@@ -100,9 +111,19 @@ def integers(value, count, what, about=None, accepted=None):
     return [int(v) for v in values]
 
 
+def items(value, what, about, accepted):
+    """What it holds, as a list; letters of a str are no items."""
+    try:
+        if hasattr(value, "__iter__") and not isinstance(value, (str, bytes)):
+            return list(value)
+    except TypeError:
+        pass
+    refuse(about, what, value, accepted, WrongType)
+
+
 def word(value, words, what, about=None):
     """What one of the words, keys of a dict, stands for."""
-    try:
+    try:  # a value that cannot be a key is no word either
         return words[value]
     except (KeyError, TypeError):
         refuse(about, what, value, ", ".join(map(repr, words)))
@@ -127,8 +148,9 @@ def color(value, what="the colour", about=None):
             except ValueError:
                 refuse(about, what, value, accepted)
         names = vtkNamedColors()
-        # CSS has both spellings of grey, VTK one each.
-        for name in (value, value.replace("grey", "gray"), value.replace("gray", "grey")):
+        # CSS has both spellings of grey, VTK one each. VTK ends the process for a str that is no UTF-8.
+        plain = value.isascii() and value.replace("_", "").isalnum()
+        for name in () if not plain else (value, value.replace("grey", "gray"), value.replace("gray", "grey")):
             if names.ColorExists(name):
                 c = names.GetColor3d(name)
                 return np.array([c.GetRed(), c.GetGreen(), c.GetBlue()])

@@ -6,12 +6,17 @@ name that there is not a KeyError, what the operating system refuses an OSError.
 """
 
 
+def _cut(text):
+    # Whoever passes a book for a name need not read it twice; what is accepted stands at the end.
+    return text if len(text) <= 2000 else f"{text[:1200]} ... {text[-600:]}"
+
+
 class Error(Exception):
     """Base of all of them. `object` names what it is about."""
 
     def __init__(self, message, object=""):
-        super().__init__(message)
-        self.object = object
+        super().__init__(_cut(message))
+        self.object = _cut(object)
 
     def __str__(self):
         return Exception.__str__(self)  # a KeyError would quote it

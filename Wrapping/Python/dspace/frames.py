@@ -2,7 +2,7 @@
 import numpy as np
 
 from dspace import _wire
-from dspace._fields import about, put, refuse, shown, word
+from dspace._fields import about, items, put, refuse, shown, word
 from dspace._strict import Strict
 from dspace.errors import Error, InvalidArgument, WrongType
 from dspace.poses import Pose, multiply, quaternion_of_axis, quaternion_of_matrix, to_pose, vector
@@ -218,10 +218,9 @@ def put_ids(message, field, scene, frames):
         if frames.size and frames.min() < 0:
             raise InvalidArgument(f"an id is {frames.min()}; accepted: ids of frames, from 1 on")
         ids = frames.astype(np.uint64).ravel()
-    elif isinstance(frames, (str, Frame)) or not hasattr(frames, "__iter__"):
-        refuse(f"scene {scene.name!r}", "frames", frames, "a list of frames or paths, or an array of ids",
-               WrongType)
     else:
-        ids = np.fromiter((scene._frame_id(frame) for frame in frames), dtype=np.uint64)
+        each = items(frames, "frames", f"scene {scene.name!r}",
+                     "a list of frames or paths, or an array of ids")
+        ids = np.fromiter((scene._frame_id(frame) for frame in each), dtype=np.uint64)
     _wire.put_array(message, field, ids)
     return len(ids)

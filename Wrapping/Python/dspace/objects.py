@@ -5,7 +5,7 @@ import numpy as np
 
 from dspace import _wire
 from dspace._fields import (array_of, flag, keywords, numbers, put, put_color, put_given, put_vector,
-                            refuse)
+                            refuse, text)
 from dspace._strict import Strict
 from dspace.errors import Error, InvalidArgument, WrongType
 
@@ -21,7 +21,8 @@ def put_material(message, values, about=None):
         if key == "color":
             put_color(message.color, value, "the colour", about)
         elif key == "texture":
-            message.texture = file_path(value, "texture", about) if value else ""
+            none = isinstance(value, str) and value == ""
+            message.texture = "" if none else file_path(value, "texture", about)
         else:
             put(message, about, **{key: value})
 
@@ -34,7 +35,7 @@ def file_path(value, what, about=None):
         path = None
     if not isinstance(path, str):
         refuse(about, what, value, "a path", WrongType)
-    return path
+    return text(path, what, about, "a path")
 
 
 def put_rotation(message, quaternion, what="the quaternion", about=None):

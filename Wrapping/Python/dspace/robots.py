@@ -1,7 +1,7 @@
 """Articulated models: joints that move frames."""
 from collections.abc import Mapping
 
-from dspace._fields import Named, flag, number, refuse
+from dspace._fields import Named, flag, number, refuse, text
 from dspace._strict import Strict
 from dspace.errors import WrongType
 from dspace.poses import Pose
@@ -184,6 +184,7 @@ class Robot(Strict):
 
     def link_pose(self, link):
         """X_BL of a link in the base frame."""
+        text(link, "the link", self._label, "the name of a link")
         return Pose._of_row(self._scene.poses([self.links[link]], relative_to=self.frame)[0])
 
     def remove(self):

@@ -108,7 +108,7 @@ class Scene(Belonging, ObjectMaking, TerrainMaking, Strict):
         px py pz qw qx qy qz scale, or (n, 7) without the scale, which then is 1."""
         accepted = "an array (n, 8) of px py pz qw qx qy qz scale, or (n, 7) without the scale"
         array = array_of(poses, "poses", accepted, f"set_poses in scene {self._name_!r}")
-        if array.size and (array.ndim > 2 or array.shape[-1] not in (7, 8)):
+        if array.size and (array.ndim not in (1, 2) or array.shape[-1] not in (7, 8)):
             raise InvalidArgument(f"set_poses in scene {self._name_!r}: the poses have shape "
                                   f"{array.shape}; accepted: {accepted}")
         if array.size and array.shape[-1] == 7:
@@ -156,6 +156,9 @@ class Scene(Belonging, ObjectMaking, TerrainMaking, Strict):
 
     def remove_listener(self, token):
         """Ends what on_frame_change began. False when there is no such listener (any more)."""
+        if not isinstance(token, int):
+            refuse(f"scene {self._name_!r}", "the token", token, "what on_frame_change returned",
+                   WrongType)
         listeners = self._client.frame_listeners
         if not listeners.remove(self, token):
             return False

@@ -1,7 +1,7 @@
 """Sessions own scenes and viewports."""
 from dspace._client import LocalClient
-from dspace._fields import Named, flag, refuse
-from dspace.errors import AlreadyExists, WrongType
+from dspace._fields import Named, flag, refuse, text
+from dspace.errors import AlreadyExists
 from dspace.scenes import Scene
 from dspace.session import commands_pb2 as pb
 from dspace.viewports import Viewport
@@ -39,8 +39,7 @@ class Session:
 
         lights: whether a new one begins with the lights "sun" and "sky".
         """
-        if not isinstance(name, str):
-            refuse("session", "the scene's name", name, "a str", WrongType)
+        text(name, "the scene's name", "session")
         if not name:
             refuse("session", "the scene's name", name, "any that is not empty")
         command = pb.Command(scene=name)

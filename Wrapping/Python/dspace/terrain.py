@@ -101,14 +101,21 @@ class Terrain(Strict):
         shape, values = self._query(x, y, "normal", map)
         return _unpack(values, "normal", shape + (3,))
 
+    def _xy(self, points):
+        array = array_of(points, "the points", "an array (n, 2)", self._label)
+        if array.shape[-1:] != (2,):
+            raise InvalidArgument(f"{self._label()}: the points have shape {array.shape}; accepted: "
+                                  "(n, 2)", self._label())
+        return array
+
     def heights(self, xy):
         """z of points (n, 2) in its frame; with normals() what dspace.rover stands vehicles on."""
-        xy = array_of(xy, "the points", "an array (n, 2)", self._label)
+        xy = self._xy(xy)
         return self.height(xy[..., 0], xy[..., 1])
 
     def normals(self, xy):
         """Unit normals (n, 3) at points (n, 2)."""
-        xy = array_of(xy, "the points", "an array (n, 2)", self._label)
+        xy = self._xy(xy)
         return self.normal(xy[..., 0], xy[..., 1])
 
     def slope_deg(self, x, y, map=False):
@@ -140,10 +147,7 @@ class Terrain(Strict):
         """Where every post is drawn: within `radius` metres of x, y points (n, 2) in its frame.
 
         Replaces the earlier ones; only tiles that change are sent to the GPU."""
-        points = array_of(points, "the points", "an array (n, 2)", self._label)
-        if points.size and points.shape[-1:] != (2,):
-            raise InvalidArgument(f"{self._label()}: the points have shape {points.shape}; accepted: "
-                                  "(n, 2)", self._label())
+        points = np.empty((0, 2)) if isinstance(points, (list, tuple)) and not points else self._xy(points)
         command = self._scene._command()
         put(command.focus_terrain, self._label, terrain=self._name, radius=radius)
         _wire.put_array(command.focus_terrain, "point", points)

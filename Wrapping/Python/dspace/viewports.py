@@ -3,7 +3,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dspace._fields import integers, put, put_color, put_given, refuse, word
+from dspace._fields import flag, integers, items, put, put_color, put_given, refuse, word
 from dspace._strict import Strict
 from dspace.errors import Internal, WrongType
 from dspace.fragments import Fragment
@@ -58,9 +58,9 @@ class Viewport(Strict):
         put(message, self._label, viewport=self._name, physical_only=physical_only)
         scene = self.scene
         hide = [hide] if isinstance(hide, (str, Fragment)) else hide
-        if not hasattr(hide, "__iter__"):
-            refuse(self._label, "hide", hide, "fragments or their names", WrongType)
-        message.hidden_fragment.extend(scene._fragment_name(each, None) for each in hide)
+        message.hidden_fragment.extend(
+            scene._fragment_name(each, None)
+            for each in items(hide, "hide", self._label, "fragments or their names"))
 
     def _info(self):
         return self._do("describe_viewport").viewport_info
@@ -103,6 +103,7 @@ class Viewport(Strict):
 
         It shows all that the viewport does, ornaments too; depth() and labels() leave these out unless
         they are told not to, for they measure what a real camera sees."""
+        alpha = flag(alpha, "alpha", self._label)
         image = self.capture(physical_only=physical_only, hide=hide)["color"]
         return image if alpha else image[..., :3]
 
@@ -199,6 +200,8 @@ class Viewport(Strict):
 
     @vantage.setter
     def vantage(self, vantage):
+        if vantage is None:
+            refuse(self._label, "the vantage", None, "a dspace.Vantage or its name", WrongType)
         self._do("set_viewport", vantage=self.scene._vantage_name(vantage, self._label))
 
     @property
@@ -268,11 +271,10 @@ class Viewport(Strict):
         message = command.set_text_table
         put(message, table, viewport=self._name, name=name, title=title)
         message.anchor = word(anchor, ANCHORS, "anchor", table)
-        rows = list(rows.items() if hasattr(rows, "items") else
-                    rows if hasattr(rows, "__iter__") and not isinstance(rows, str) else [rows])
-        for row in rows:
+        rows = rows.items() if hasattr(rows, "items") else rows
+        for row in items(rows, "rows", table, "a dict or pairs of a label and a value"):
             if not isinstance(row, (tuple, list)) or len(row) != 2:
-                refuse(table, "a row", row, "a label and a value; rows: a dict or such pairs", WrongType)
+                refuse(table, "a row", row, "a label and a value", WrongType)
             message.row.add(label=str(row[0]), value=str(row[1]))
         put_given(message, table, font_size=font_size, margin=margin,
                   background_opacity=background_opacity)
