@@ -137,8 +137,12 @@ TEST(ImportObj, MissingPartsAreWarnings) {
   EXPECT_TRUE(
       HasWarning(ReadModel(folder.Write("b.obj", "mtllib x.mtl\n" + faces)).warnings, "gone.png"));
   folder.Write("y.mtl", "newmtl y\n");
+  for (const std::string& warning : ReadModel(folder / "b.obj").warnings) {
+    EXPECT_NE(warning.find("file '"), std::string::npos) << warning; // each names one
+  }
   EXPECT_TRUE(HasWarning(ReadModel(folder.Write("c.obj", "mtllib y.mtl\n" + faces)).warnings,
                          "'x' is in none"));
+  EXPECT_TRUE(HasWarning(ReadModel(folder / "c.obj").warnings, "c.obj': "));
   EXPECT_TRUE(
       HasWarning(ReadModel(folder.Write("d.obj", "mtllib ../../../etc/passwd\n" + faces)).warnings,
                  "more than one folder above"));

@@ -83,6 +83,41 @@ TEST(SolidMesh, OpenOrEmptyOrOtherThingsAreNot) {
   EXPECT_FALSE(IsSolid(FromCorners({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {0, 1, 2})));
 }
 
+// Its integrals are those of a closed surface, and all its faces look outwards: only its edges
+// tell.
+TEST(SolidMesh, ACubeWithAWindowInEachFaceIsOpen) {
+  const auto cube = [](bool windows) {
+    std::vector<std::array<float, 3>> points;
+    std::vector<std::uint32_t> indices;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const float side : {-1.0f, 1.0f}) {
+        const auto first = static_cast<std::uint32_t>(points.size());
+        for (const float reach : {1.0f, 0.5f}) {
+          for (const auto& uv : {std::array<float, 2>{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+            std::array<float, 3> p = {};
+            p[axis] = side;
+            p[(axis + 1) % 3] = side * reach * uv[0]; // the order turns with the side
+            p[(axis + 2) % 3] = reach * uv[1];
+            points.push_back(p);
+          }
+        }
+        for (std::uint32_t i = 0; i < 4; ++i) {
+          const std::uint32_t a = first + i;
+          const std::uint32_t b = first + (i + 1) % 4;
+          indices.insert(indices.end(), {a, b, b + 4, a, b + 4, a + 4});
+        }
+        if (!windows) {
+          indices.insert(indices.end(), {first + 4, first + 5, first + 6});
+          indices.insert(indices.end(), {first + 4, first + 6, first + 7});
+        }
+      }
+    }
+    return FromCorners(points, indices);
+  };
+  EXPECT_TRUE(IsSolid(cube(false)));
+  EXPECT_FALSE(IsSolid(cube(true)));
+}
+
 TEST(SolidMesh, WindingDecidesWhatIsInside) {
   EXPECT_FALSE(IsSolid(Reversed(MakeBox({1, 1, 1}))));
   const Mesh tetrahedron = FromCorners({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},

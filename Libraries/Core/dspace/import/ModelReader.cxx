@@ -146,6 +146,11 @@ Model ReadModel(const std::string& path, const ImportOptions& options) {
     Model model = ReaderFor(path)(path, options);
     model.path = path;
     CheckResult(model, options);
+    for (std::string& warning : model.warnings) {
+      if (warning.find("file '") == std::string::npos) { // as some readers leave it
+        warning = FileObject(path) + ": " + warning;
+      }
+    }
     for (Mesh& mesh : model.meshes) {
       ComputeNormals(mesh);
       mesh.solid = IsSolid(mesh);

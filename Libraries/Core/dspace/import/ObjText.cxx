@@ -124,7 +124,7 @@ private:
     double value = 0.0;
     const auto [stop, error] = std::from_chars(begin, end, value);
     if (error == std::errc::result_out_of_range && word.find_first_of("eE") != std::string::npos &&
-        word.find("-", 1) != std::string::npos) {
+        word.find('-', 1) != std::string::npos) {
       word = "0"; // too small for a double
       return;
     }
