@@ -110,7 +110,7 @@ def test_what_is_no_camera_frame_or_fragment(scene, view, refused):
     with refused(dspace.WrongType, "viewport 'view': the camera is 5; accepted: a dspace.Camera"):
         view.camera = 5
     for bad in (1.5, True, [1], scene.add_box((1, 1, 1))):
-        with refused(dspace.WrongType, "accepted: a Frame, a Robot, a path or an id"):
+        with refused(dspace.WrongType, "accepted: a Frame, a Robot, an Assembly, a path or an id"):
             scene.add_sphere(1, frame=bad)
     for hide in (5, [5], None):
         with refused(dspace.WrongType, "fragment"):

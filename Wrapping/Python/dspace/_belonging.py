@@ -2,6 +2,7 @@
 import numpy as np
 
 from dspace._fields import named, refuse, text
+from dspace.assemblies import Assembly
 from dspace.cameras import Vantage
 from dspace.errors import InvalidArgument, WrongType
 from dspace.fragments import Fragment
@@ -31,13 +32,15 @@ class Belonging:
         if isinstance(frame, Robot):
             self._require_own(frame, f"robot {frame.name!r}")
             return frame._base
+        if isinstance(frame, Assembly):
+            return self._frame_id(frame.frame)
         if isinstance(frame, str):
             return self._ask("find_frame", path=frame).frame.frame
         if isinstance(frame, (int, np.integer)) and not isinstance(frame, bool):
             if 0 < frame < 2**63:
                 return int(frame)
             refuse(f"scene {self._name_!r}", "the frame's id", frame, "an id, from 1 to 2^63 - 1")
-        refuse(f"scene {self._name_!r}", "the frame", frame, "a Frame, a Robot, a path or an id",
+        refuse(f"scene {self._name_!r}", "the frame", frame, "a Frame, a Robot, an Assembly, a path or an id",
                WrongType)
 
     def _name_of(self, thing, kind, what, about=None):

@@ -2,7 +2,8 @@
 
 `except dspace.Error` catches all of them. Each is also the built-in exception that Python would raise
 for such a thing: a value that is refused is a ValueError, one of a wrong type a TypeError as well, a
-name that there is not a KeyError, what the operating system refuses an OSError.
+name that there is not a KeyError, what the operating system refuses an OSError. dspace.rover, which
+works without the compiled part, raises these themselves.
 """
 
 
