@@ -39,8 +39,9 @@ std::array<double, 3> MeanColor(const Image& image, bool linear) {
       sum[c] += table[image.pixels[p + (n >= 3 ? c : 0)]];
     }
   }
+  const std::size_t pixels = image.pixels.size() / n;
   for (double& s : sum) {
-    s /= static_cast<double>(image.pixels.size() / n);
+    s /= static_cast<double>(pixels);
   }
   return sum;
 }

@@ -33,6 +33,7 @@ std::string TypeOf(const std::uint8_t* data, std::size_t size, const std::string
   if (starts("GIF8", 4)) {
     return "gif";
   }
+  // NOLINTNEXTLINE(bugprone-string-literal-with-embedded-nul): TIFF's number 42 has a zero byte
   if (starts("II*\0", 4) || starts("MM\0*", 4)) {
     return "tiff";
   }

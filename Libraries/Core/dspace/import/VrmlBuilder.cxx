@@ -233,7 +233,10 @@ void VrmlBuilder::AppendWarnings() {
 void VrmlBuilder::WarnShape(const VrmlFile& file, const std::string& what,
                             const VrmlComplaints& complaints) {
   for (const std::string& complaint : complaints) {
-    this->Warn(file, "shapes: " + WithoutNumbers(complaint), what, what + ": " + complaint);
+    std::string message = what;
+    message += ": ";
+    message += complaint;
+    this->Warn(file, "shapes: " + WithoutNumbers(complaint), what, message);
   }
 }
 

@@ -88,7 +88,7 @@ long long ValueIndex(const VrmlAttribute<Value>& attribute, const VrmlFaces& in,
   case VrmlBinding::PerFaceIndexed:
     return indexed(face.serial);
   case VrmlBinding::PerCorner:
-    return static_cast<long long>(face.firstCorner + k);
+    return static_cast<long long>(face.firstCorner) + static_cast<long long>(k);
   case VrmlBinding::PerCornerIndexed:
     return attribute.indices.empty() ? in.coordIndex[face.first + k] : indexed(face.first + k);
   default:

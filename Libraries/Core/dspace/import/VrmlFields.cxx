@@ -63,6 +63,7 @@ std::vector<Eigen::Vector2f> ToVector(const SoMFVec2f& field) {
 
 std::vector<std::array<std::uint8_t, 4>> ToVector(const SoMFColor& field) {
   std::vector<std::array<std::uint8_t, 4>> result;
+  result.reserve(static_cast<std::size_t>(field.getNum()));
   for (int i = 0; i < field.getNum(); ++i) {
     result.push_back(ToBytes(field[i]));
   }
@@ -76,6 +77,7 @@ std::vector<int> ToVector(const SoMFInt32& field) {
 
 std::vector<std::string> ToVector(const SoMFString& field) {
   std::vector<std::string> result;
+  result.reserve(static_cast<std::size_t>(field.getNum()));
   for (int i = 0; i < field.getNum(); ++i) {
     result.emplace_back(field[i].getString());
   }

@@ -173,10 +173,17 @@ private:
 
 void VrmlWarnings::AppendTo(std::vector<std::string>& warnings, const std::string& path) const {
   for (const auto& [message, where] : this->Warnings_) {
-    const std::string times =
-        where.second > 1 ? ", " + std::to_string(where.second) + " times" : "";
-    warnings.push_back(message + " (" + FileObject(path) + ", line " + std::to_string(where.first) +
-                       times + ")");
+    std::string place = " (";
+    place += FileObject(path);
+    place += ", line ";
+    place += std::to_string(where.first);
+    if (where.second > 1) {
+      place += ", ";
+      place += std::to_string(where.second);
+      place += " times";
+    }
+    place += ")";
+    warnings.push_back(message + place);
   }
 }
 
