@@ -93,13 +93,16 @@ void WarnOfSteepness(const GridTerrain& terrain, std::vector<std::string>& warni
   const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
   std::nth_element(slopes.begin(), middle, slopes.end());
   const Eigen::AlignedBox3d box = terrain.GetBounds().scene;
-  if (*middle <= 60.0 && box.sizes().z() <= 2.0 * box.sizes().head<2>().maxCoeff())
+  const bool steep = *middle > 60.0;
+  if (!steep && box.sizes().z() <= 2.0 * box.sizes().head<2>().maxCoeff())
     return;
   std::ostringstream out;
-  out.precision(4);
+  out.precision(5);
   out << "its heights span " << box.sizes().z() << " m over " << box.sizes().x() << " x "
-      << box.sizes().y() << " m, and half of its slopes are above " << *middle
-      << " degrees: if its values are no metres, state vertical_scale (metres a unit)";
+      << box.sizes().y() << " m";
+  if (steep)
+    out << ", and half of its slopes are above " << *middle << " degrees";
+  out << ": if its values are no metres, state vertical_scale (metres a unit)";
   warnings.push_back(out.str());
 }
 
