@@ -17,7 +17,7 @@ Eigen::Affine3d ToAffine(const Pose& X) {
   return Eigen::Affine3d(X.Matrix());
 }
 
-constexpr double BeamWidth = 0.02; // of the longest edge of a box of beams
+constexpr double BeamWidth = 0.01; // of the longest edge of a box of beams
 
 // Orange, so that nobody takes it for the part itself.
 std::shared_ptr<const Material> StandInMaterial() {
