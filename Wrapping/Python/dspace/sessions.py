@@ -88,4 +88,7 @@ class Session:
     def __repr__(self):
         if self._client.vtk is None:
             return "<dspace.Session, closed>"
-        return f"<dspace.Session with scenes {sorted(self.scenes)}>"
+        try:
+            return f"<dspace.Session with scenes {sorted(self.scenes)}>"
+        except Exception:  # a repr never raises
+            return "<dspace.Session of another thread>"
