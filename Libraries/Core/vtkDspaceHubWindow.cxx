@@ -84,9 +84,9 @@ int vtkDspaceHubWindow::GetColorBufferSizes(int* rgba) {
 }
 
 void vtkDspaceHubWindow::Render() {
-  // Not the generic window's: it queries the whole OpenGL state again for each picture.
   this->MakeCurrent();
-  this->vtkOpenGLRenderWindow::Render();
+  // Not the generic window's, which queries the whole OpenGL state again for each picture.
+  this->vtkOpenGLRenderWindow::Render(); // NOLINT(bugprone-parent-virtual-call)
 }
 
 void vtkDspaceHubWindow::Activate(const Slot& slot) {

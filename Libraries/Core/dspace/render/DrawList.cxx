@@ -100,7 +100,9 @@ std::uint32_t DrawList::BatchOf(const GraphicsObject& object, const Part& part,
 
   std::string key;
   const auto append = [&key](const auto& value) {
-    key.append(reinterpret_cast<const char*>(&value), sizeof value);
+    // Of a pointer the address itself is meant: what is shared is the same.
+    const std::size_t size = sizeof value; // NOLINT(bugprone-sizeof-expression)
+    key.append(reinterpret_cast<const char*>(&value), size);
   };
   append(batch.mesh.get());
   append(batch.texture.get());

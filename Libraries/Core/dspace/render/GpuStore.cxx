@@ -38,8 +38,10 @@ std::vector<Vertex> Interleave(const Mesh& mesh) {
 void Attribute(unsigned int location, int components, unsigned int type, bool normalized,
                std::size_t offset) {
   glEnableVertexAttribArray(location);
+  // OpenGL takes the offset as a pointer.
+  const auto* at = reinterpret_cast<const void*>(offset); // NOLINT(performance-no-int-to-ptr)
   glVertexAttribPointer(location, components, type, normalized ? GL_TRUE : GL_FALSE, sizeof(Vertex),
-                        reinterpret_cast<const void*>(offset));
+                        at);
 }
 
 // What advances with the instances; the buffer itself is bound when they are drawn.

@@ -73,8 +73,8 @@ PickResult LabelPicture::Pick(const Scene& scene, double x, double y, int radius
   result.frame = scene.Object(result.object).frame;
   result.depth = view.projection.DepthFromBuffer(depths[best]);
   // The pixel's own centre is what was drawn: the depth belongs to that ray.
-  const Projection::Ray ray =
-      view.projection.PixelRay(x0 + best % w, y0 + best / w, view.width, view.height);
+  const int row = y0 + best / w;
+  const Projection::Ray ray = view.projection.PixelRay(x0 + best % w, row, view.width, view.height);
   result.p_camera =
       ray.origin + ray.direction * ((result.depth - ray.origin.z()) / ray.direction.z());
   result.cameraFrame = view.camera.frame;

@@ -79,8 +79,6 @@ private:
   std::unique_ptr<RenderTarget> Layers_[2]; // Linear, with depth: the layer now and the one before
   std::unique_ptr<RenderTarget> Sum_;       // Linear: layers blended so far, front to back
   bool FirstLayer_ = false;                 // for the peel uniforms
-  unsigned int OpaqueDepth_ = 0;
-  unsigned int PeeledDepth_ = 0;
 };
 
 } // namespace dspace

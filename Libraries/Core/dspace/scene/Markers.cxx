@@ -48,6 +48,7 @@ std::vector<Part> MakeAxes(double length) {
   const Color colors[] = {{0.9, 0.1, 0.1}, {0.1, 0.75, 0.1}, {0.15, 0.3, 1.0}};
   const auto arrow = std::make_shared<const Mesh>(MakeArrow(length));
   std::vector<Part> parts;
+  parts.reserve(3);
   for (int axis = 0; axis < 3; ++axis) {
     parts.push_back({arrow, Unlit(colors[axis]), AlongAxis(axis)});
   }

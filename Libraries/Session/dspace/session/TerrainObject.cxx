@@ -54,6 +54,7 @@ std::vector<DetailLevel> TerrainObject::Levels() const {
 
 bool TerrainObject::Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) {
   std::vector<TerrainZone> zones;
+  zones.reserve(points_S.size());
   for (const Eigen::Vector2d& point : points_S) {
     zones.push_back({{point}, radius});
   }

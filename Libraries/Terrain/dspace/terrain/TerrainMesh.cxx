@@ -27,8 +27,8 @@ int TopOf(const GridTerrain& terrain, const TerrainMeshOptions& options) {
   if (!(options.zoneShare >= 0.0 && options.zoneShare < 1.0))
     Refuse("zone share " + std::to_string(options.zoneShare) + " given; accepted is 0 to below 1");
   const auto tiles = [&](int cells) {
-    const auto across = [&](int posts) { return (posts - 2) / cells + 1.0; };
-    return across(terrain.Grid().GetColumns()) * across(terrain.Grid().GetRows());
+    const auto across = [&](int posts) { return (posts - 2) / cells + 1; }; // whole tiles
+    return 1.0 * across(terrain.Grid().GetColumns()) * across(terrain.Grid().GetRows());
   };
   int top = 5;
   while (given == 0 && top < 10 && tiles(1 << top) > 400.0)

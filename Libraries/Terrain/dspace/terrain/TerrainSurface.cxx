@@ -71,6 +71,8 @@ SurfaceSample TerrainSurface::SampleMap(const Eigen::Vector2d& map) const {
   return this->DoSampleMap(map);
 }
 
+// A Ref is a view that is written through, and is passed by value.
+// NOLINTBEGIN(performance-unnecessary-value-param)
 void TerrainSurface::Heights(const Eigen::Ref<const Rows3>& points_S,
                              Eigen::Ref<Eigen::VectorXd> heights) const {
   CheckRows(this->Name_, "points", points_S, heights.size());
@@ -82,6 +84,7 @@ void TerrainSurface::HeightsMap(const Eigen::Ref<const Rows2>& map,
   CheckRows(this->Name_, "map points", map, heights.size());
   this->DoHeightsMap(map, heights);
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 void TerrainSurface::Normals(const Eigen::Ref<const Rows3>& points_S,
                              Eigen::Ref<Rows3> normals_S) const {

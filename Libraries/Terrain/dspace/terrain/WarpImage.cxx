@@ -35,7 +35,7 @@ DatasetPointer Memory(int width, int height, int bands, const Eigen::Affine2d& p
                                 : nullptr);
   if (!dataset)
     throw Error(Error::Kind::Resource, object, errors.Message("no memory for its image"));
-  const auto m = pixelToMap.matrix();
+  const auto& m = pixelToMap.matrix();
   double g[6] = {m(0, 2), m(0, 0), m(0, 1), m(1, 2), m(1, 0), m(1, 1)};
   dataset->SetGeoTransform(g);
   if (crs.Ogr())
@@ -269,9 +269,10 @@ DrapeImage WarpImage(const GridTerrain& terrain, const DrapeSource& source,
                                              image.coverage.data(), image.width, image.height,
                                              GDT_Byte, 0, 0, nullptr) == CE_None;
   for (int k = 0; k < 3; ++k)
-    read = read && to->GetRasterBand(k + 1)->RasterIO(
-                       GF_Read, 0, 0, image.width, image.height, image.pixels.data() + k,
-                       image.width, image.height, GDT_Byte, 3, 3 * image.width, nullptr) == CE_None;
+    read =
+        read && to->GetRasterBand(k + 1)->RasterIO(
+                    GF_Read, 0, 0, image.width, image.height, image.pixels.data() + k, image.width,
+                    image.height, GDT_Byte, 3, GSpacing(3) * image.width, nullptr) == CE_None;
   if (!read)
     throw Error(Error::Kind::Internal, object, errors.Message("the warped image is lost"));
   if (std::none_of(image.coverage.begin(), image.coverage.end(), [](auto v) { return v != 0; }))
