@@ -148,7 +148,7 @@ Model ReadModel(const std::string& path, const ImportOptions& options) {
     CheckResult(model, options);
     for (std::string& warning : model.warnings) {
       if (warning.find("file '") == std::string::npos) { // as some readers leave it
-        warning = FileObject(path) + ": " + warning;
+        warning.insert(0, FileObject(path) + ": ");
       }
     }
     for (Mesh& mesh : model.meshes) {

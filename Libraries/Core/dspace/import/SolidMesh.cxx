@@ -104,6 +104,7 @@ WeldedMesh Weld(const Mesh& mesh, const Eigen::AlignedBox3d& box) {
     const Eigen::Vector3d p = Position(mesh, i);
     std::uint64_t key = 0;
     for (int k = 0; k < 3; ++k) {
+      // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative, and lround is a call
       key = key << 21 | static_cast<std::uint64_t>((p[k] - box.min()[k]) * cells + 0.5);
     }
     const auto [at, isNew] = found.Insert(key, static_cast<std::uint32_t>(welded.points.size()));

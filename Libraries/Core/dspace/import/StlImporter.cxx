@@ -43,8 +43,8 @@ public:
 
   void AddTriangle(const std::array<float, 9>& p, std::size_t serial) {
     std::uint32_t v[3];
-    for (int i = 0; i < 3; ++i) {
-      v[i] = this->Vertex(&p[static_cast<std::size_t>(3 * i)], serial);
+    for (std::size_t i = 0; i < 3; ++i) {
+      v[i] = this->Vertex(&p[3 * i], serial);
     }
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
       ++this->Degenerate_;

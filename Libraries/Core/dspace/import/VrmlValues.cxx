@@ -183,7 +183,7 @@ void VrmlWarnings::AppendTo(std::vector<std::string>& warnings, const std::strin
       place += " times";
     }
     place += ")";
-    warnings.push_back(message + place);
+    warnings.emplace_back(message) += place;
   }
 }
 
