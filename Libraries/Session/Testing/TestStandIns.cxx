@@ -1,4 +1,6 @@
 // What stands in for a robot's meshes that cannot be read, against bounds worked out by hand.
+#include <map>
+
 #include "CommandTestSupport.h"
 #include "TestData.h"
 
