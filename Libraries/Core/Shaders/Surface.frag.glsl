@@ -18,6 +18,9 @@ in vec2 tcoord;
 #ifdef DSPACE_VERTEX_COLOR
 in vec4 vertexColor;
 #endif
+#ifdef DSPACE_HOLES
+in float hole; // 0 in what is to be seen
+#endif
 
 layout(location = 0) out vec4 fragColor;
 
@@ -71,6 +74,12 @@ vec3 reflected(vec3 L, vec3 N, vec3 V, float NdL, float NdV, vec3 albedo, vec3 F
 
 void main()
 {
+#ifdef DSPACE_HOLES
+  if (hole > 0.0)
+  {
+    discard;
+  }
+#endif
 #ifdef DSPACE_PEEL
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   // Reversed depth: larger is nearer.

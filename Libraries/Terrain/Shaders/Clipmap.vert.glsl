@@ -1,0 +1,145 @@
+//DSPACE::Version
+// Places the posts of one clipmap level: heights are fetched, and near the level's outline turned
+// into the next coarser level's (Losasso and Hoppe 2004). Everything is relative to the camera.
+layout(location = 0) in vec2 cell; // post of the window, 0 to cells
+
+uniform sampler2DArray posts; // height, slopes a level-0 column and row, hole
+uniform int texelMask;
+uniform int level;
+uniform ivec2 windowTexel; // texel of the window's first post, here and in the coarser level
+uniform ivec2 coarseTexel;
+uniform vec2 firstPost; // of the lattice, in the window's posts: those outside collapse into it
+uniform vec2 lastPost;
+uniform vec2 lastPlace; // where the last one stands: the lattice may end between two
+uniform vec2 cameraPost;
+uniform vec3 blend; // distance where blending begins, 1 / its width, the camera's distance [posts]
+uniform float heightHigh; // of the camera, as two floats
+uniform float heightLow;
+
+#ifdef DSPACE_SPHERE
+// Longitude and latitude of the window's first post less the camera's, and their steps [rad].
+uniform vec2 originAngles;
+uniform vec2 stepAngles;
+uniform vec2 stepBase; // of level 0
+uniform vec2 cameraLatitude; // sine, cosine
+uniform float cameraLatitudeAngle;
+uniform float radius; // [m]
+uniform vec3 eastVC; // of the place below the camera
+uniform vec3 northVC;
+#else
+uniform vec3 originVC; // first post, at the camera's height
+uniform vec3 columnVC; // a post
+uniform vec3 rowVC;
+uniform vec3 slopeColumnVC; // what a slope of 1 a level-0 post takes from the normal
+uniform vec3 slopeRowVC;
+#endif
+uniform vec3 upVC;
+uniform vec3 upNormalVC;
+uniform mat4 VCDCMatrix;
+
+#ifdef DSPACE_LABEL
+uniform int objectLabel;
+flat out uint label;
+#else
+uniform vec4 objectColor;
+flat out vec4 baseColor;
+#endif
+#ifdef DSPACE_LIT
+uniform vec3 objectSurface; // metallic, roughness, mirrored
+out vec3 positionVC;
+out vec3 normalVC;
+flat out vec3 surface;
+#endif
+#ifdef DSPACE_EMISSIVE
+uniform vec3 objectEmissive;
+flat out vec3 emissive;
+#endif
+#ifdef DSPACE_TEXTURE
+uniform vec2 originTexture;
+uniform mat2 postTexture;
+out vec2 tcoord;
+#endif
+#ifdef DSPACE_HOLES
+out float hole;
+#endif
+
+vec4 postAt(ivec2 texel, int layer)
+{
+  return texelFetch(posts, ivec3(texel & texelMask, layer), 0);
+}
+
+void main()
+{
+  vec2 at = clamp(cell, firstPost, lastPost);
+  ivec2 post = ivec2(at);
+  vec4 here = postAt(windowTexel + post, level);
+  vec2 away = abs(at - cameraPost);
+  float coarser = clamp((max(max(away.x, away.y), blend.z) - blend.x) * blend.y, 0.0, 1.0);
+  if (coarser > 0.0)
+  {
+    // The coarser surface at this place: a post of it, or the middle of an edge or a diagonal. The
+    // lattice's last post is one of every level.
+    ivec2 before = (post + ivec2(equal(at, lastPost))) >> 1;
+    ivec2 after = (post + 1) >> 1;
+    vec4 there = 0.5 * (postAt(coarseTexel + before, level + 1) + postAt(coarseTexel + after, level + 1));
+    if (there.w == 0.0)
+    {
+      here = mix(here, there, coarser);
+    }
+  }
+  vec2 place = min(at, lastPlace);
+  float above = (here.x - heightHigh) - heightLow;
+
+#ifdef DSPACE_SPHERE
+  // Differences from the place below the camera, small where the ground is near.
+  vec2 d = originAngles + place * stepAngles;
+  float latitude = cameraLatitudeAngle + d.y;
+  float cosLatitude = cos(latitude);
+  float halfEast = sin(0.5 * d.x);
+  float halfNorth = sin(0.5 * d.y);
+  float fall = 2.0 * cosLatitude * halfEast * halfEast;
+  vec3 direction = vec3(cosLatitude * sin(d.x), sin(d.y) + fall * cameraLatitude.x,
+    -2.0 * halfNorth * halfNorth - fall * cameraLatitude.y); // less the camera's vertical
+  float distance = radius + here.x;
+  vec3 placedVC = distance * (direction.x * eastVC + direction.y * northVC + direction.z * upVC) +
+    above * upVC;
+#ifdef DSPACE_LIT
+  float sinEast = sin(d.x);
+  float cosEast = cos(d.x);
+  float sinLatitude = sin(latitude);
+  vec3 east = vec3(cosEast, cameraLatitude.x * sinEast, -cameraLatitude.y * sinEast);
+  vec3 north = vec3(-sinLatitude * sinEast,
+    cosLatitude * cameraLatitude.y + sinLatitude * cameraLatitude.x * cosEast,
+    cosLatitude * cameraLatitude.x - sinLatitude * cameraLatitude.y * cosEast);
+  vec3 n = direction + vec3(0.0, 0.0, 1.0) -
+    here.y / (distance * max(cosLatitude, 1e-6) * stepBase.x) * east -
+    here.z / (distance * stepBase.y) * north;
+  normalVC = n.x * eastVC + n.y * northVC + n.z * upVC;
+#endif
+#else
+  vec3 placedVC = originVC + place.x * columnVC + place.y * rowVC + above * upVC;
+#ifdef DSPACE_LIT
+  normalVC = upNormalVC - here.y * slopeColumnVC - here.z * slopeRowVC;
+#endif
+#endif
+  gl_Position = VCDCMatrix * vec4(placedVC, 1.0);
+
+#ifdef DSPACE_LABEL
+  label = uint(objectLabel);
+#else
+  baseColor = objectColor;
+#endif
+#ifdef DSPACE_LIT
+  positionVC = placedVC;
+  surface = objectSurface;
+#endif
+#ifdef DSPACE_EMISSIVE
+  emissive = objectEmissive;
+#endif
+#ifdef DSPACE_TEXTURE
+  tcoord = originTexture + postTexture * place;
+#endif
+#ifdef DSPACE_HOLES
+  hole = here.w > 0.0 ? 1.0 : 0.0;
+#endif
+}

@@ -1,0 +1,179 @@
+#include <dspace/terrain/ClipmapLevels.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <dspace/Error.h>
+
+namespace dspace {
+
+int CoarsestFor(int cells) {
+  return cells / 2 - 2; // from any place in it, all of it is within the window
+}
+
+double ClipmapLevels::InPosts(double distance, double cellSize, int level) {
+  return std::ldexp(distance / cellSize, -level);
+}
+
+ClipmapLevels::ClipmapLevels(std::shared_ptr<ElevationPyramid> pyramid, int cells)
+    : Pyramid_(std::move(pyramid)), Geometry_(cells), Levels_(this->Pyramid_->Lattice().levels) {
+  const PostLattice& lattice = this->Lattice();
+  const int top = lattice.levels - 1;
+  // Around a body half of the columns lie to either side.
+  const std::int64_t columns =
+      lattice.periodic ? (lattice.ColumnsAt(top) + 1) / 2 : lattice.ColumnsAt(top) - 1;
+  const std::int64_t most = std::max(columns, lattice.RowsAt(top) - 1);
+  if (most > CoarsestFor(cells)) {
+    throw Error(Error::Kind::InvalidArgument, this->Pyramid_->Source().GetName(),
+                "its coarsest level has " + std::to_string(most) +
+                    " cells to one side; a clipmap of level size " + std::to_string(cells) +
+                    " shows " + std::to_string(CoarsestFor(cells)));
+  }
+}
+
+const ClipmapTexel& ClipmapLevels::Texel(int level, std::int64_t column, std::int64_t row) const {
+  const std::size_t at = std::size_t(this->Geometry_.Texel(row)) * this->Geometry_.Texels() +
+                         std::size_t(this->Geometry_.Texel(column));
+  return this->Levels_[level].texels[at];
+}
+
+// `heights` has one post of border around the update.
+bool ClipmapLevels::ToTexels(int level, const ClipmapUpdate& update,
+                             const std::vector<float>& heights,
+                             std::vector<ClipmapTexel>& texels) const {
+  const PostLattice& lattice = this->Lattice();
+  const int stride = update.width + 2;
+  // Difference of neighbours over their distance in level-0 posts; one-sided at an edge.
+  const auto slope = [](float before, float here, float after, std::int64_t back,
+                        std::int64_t ahead) {
+    const bool hasBefore = !std::isnan(before) && back > 0;
+    const bool hasAfter = !std::isnan(after) && ahead > 0;
+    if (!hasBefore && !hasAfter) {
+      return 0.0f;
+    }
+    const double from = hasBefore ? before : here;
+    const double to = hasAfter ? after : here;
+    return float((to - from) / double((hasBefore ? back : 0) + (hasAfter ? ahead : 0)));
+  };
+  bool holes = false;
+  texels.assign(std::size_t(update.width) * update.height, ClipmapTexel());
+  for (int j = 0; j < update.height; ++j) {
+    const std::int64_t r = update.row + j;
+    const std::int64_t up = lattice.RowPlace(level, r) - lattice.RowPlace(level, r - 1);
+    const std::int64_t down = lattice.RowPlace(level, r + 1) - lattice.RowPlace(level, r);
+    for (int i = 0; i < update.width; ++i) {
+      const std::int64_t c = update.column + i;
+      const float* at = heights.data() + std::size_t(j + 1) * stride + i + 1;
+      ClipmapTexel& texel = texels[std::size_t(j) * update.width + i];
+      if (std::isnan(*at)) {
+        texel.hole = 1.0f;
+        holes |= r >= 0 && r < lattice.RowsAt(level) &&
+                 (lattice.periodic || (c >= 0 && c < lattice.ColumnsAt(level)));
+        continue;
+      }
+      texel.height = *at;
+      texel.slopeColumn = slope(at[-1], *at, at[1],
+                                lattice.ColumnPlace(level, c) - lattice.ColumnPlace(level, c - 1),
+                                lattice.ColumnPlace(level, c + 1) - lattice.ColumnPlace(level, c));
+      texel.slopeRow = slope(at[-stride], *at, at[stride], up, down);
+    }
+  }
+  return holes;
+}
+
+bool ClipmapLevels::Fill(int index, const ClipmapWindow& window, const std::optional<double>& wait,
+                         const Upload& upload) {
+  Level& level = this->Levels_[index];
+  if (level.window == window) {
+    return true;
+  }
+  const std::vector<ClipmapUpdate> updates = this->Geometry_.Updates(level.window, window);
+  // All of it is there before any of it goes up: the level stays what it was otherwise.
+  std::vector<std::vector<float>> heights(updates.size());
+  bool complete = true;
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    const ClipmapUpdate& u = updates[i];
+    const PostBlock block{index, u.column - 1, u.row - 1, u.width + 2, u.height + 2};
+    heights[i].resize(std::size_t(block.width) * block.height);
+    if (wait) {
+      this->Pyramid_->Read(block, heights[i].data(), *wait);
+    } else { // go on after the first that is missing: all of them are then asked for
+      complete &= this->Pyramid_->TryRead(block, heights[i].data());
+    }
+  }
+  if (!complete) {
+    return false;
+  }
+  const int side = this->Geometry_.Texels();
+  level.texels.resize(std::size_t(side) * side);
+  std::vector<ClipmapTexel> texels;
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    const ClipmapUpdate& u = updates[i];
+    level.holes |= this->ToTexels(index, u, heights[i], texels);
+    for (int j = 0; j < u.height; ++j) {
+      std::copy_n(texels.begin() + std::ptrdiff_t(j) * u.width, u.width,
+                  level.texels.begin() + std::ptrdiff_t(u.y + j) * side + u.x);
+    }
+    upload(index, u, texels.data());
+  }
+  level.window = window;
+  return true;
+}
+
+double ClipmapLevels::GroundAt(int level, const Eigen::Vector2d& place) const {
+  const double x = std::ldexp(place.x(), -level);
+  const double y = std::ldexp(place.y(), -level);
+  const auto c = static_cast<std::int64_t>(std::floor(x));
+  const auto r = static_cast<std::int64_t>(std::floor(y));
+  double sum = 0.0;
+  double weight = 0.0;
+  for (const int j : {0, 1}) {
+    for (const int i : {0, 1}) {
+      const ClipmapTexel& texel = this->Texel(level, c + i, r + j);
+      const double w = (1.0 - std::abs(x - double(c + i))) * (1.0 - std::abs(y - double(r + j)));
+      if (texel.hole == 0.0f) {
+        sum += w * texel.height;
+        weight += w;
+      }
+    }
+  }
+  return weight > 0.0 ? sum / weight : 0.0;
+}
+
+ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& upload) {
+  const PostLattice& lattice = this->Lattice();
+  State state;
+  state.place = view.place;
+  if (lattice.periodic) {
+    const auto turn = double(lattice.columns);
+    state.place.x() += turn * std::round((this->LastColumn_ - view.place.x()) / turn);
+    this->LastColumn_ = state.place.x();
+  } else {
+    state.place.x() = std::clamp(view.place.x(), 0.0, double(lattice.columns - 1));
+  }
+  state.place.y() = std::clamp(view.place.y(), 0.0, double(lattice.rows - 1));
+  // What lies between the camera and the lattice's nearest place counts as height.
+  const double outside = lattice.periodic
+                             ? std::abs(view.place.y() - state.place.y()) * view.cellSize
+                             : (view.place - state.place).norm() * view.cellSize;
+  state.finest = this->Count();
+  for (int level = this->Count() - 1; level >= 0; --level) {
+    const double posts = InPosts(state.distance, view.cellSize, level);
+    if (level < this->Count() - 1 && posts >= this->Geometry_.BlendTo()) {
+      break; // too far away to tell it from the coarser one
+    }
+    const ClipmapWindow window = this->Geometry_.WindowAt(state.place * std::ldexp(1.0, -level));
+    if (!this->Fill(level, window, view.wait, upload)) {
+      state.complete = false;
+      break;
+    }
+    state.finest = level;
+    state.groundHeight = this->GroundAt(level, state.place);
+    state.distance = std::max(std::abs(view.height - state.groundHeight), outside);
+  }
+  return state;
+}
+
+} // namespace dspace

@@ -1,0 +1,89 @@
+// What the levels of one view's clipmap hold: filled from a pyramid, uploaded piece by piece.
+#ifndef DSPACE_TERRAIN_CLIPMAPLEVELS_H
+#define DSPACE_TERRAIN_CLIPMAPLEVELS_H
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <dspace/terrain/ClipmapWindow.h>
+#include <dspace/terrain/ElevationPyramid.h>
+
+namespace dspace {
+
+// A post as the GPU reads it.
+struct ClipmapTexel {
+  float height = 0.0f;      // [m]
+  float slopeColumn = 0.0f; // rise a level-0 post along the columns [m]
+  float slopeRow = 0.0f;
+  float hole = 0.0f; // 1: no data; the rest is then 0
+};
+static_assert(sizeof(ClipmapTexel) == 16, "tightly packed");
+
+// Levels are filled from the coarsest down, as far as the view can resolve them and their data is
+// there. What a texel holds depends on its post alone, not on how the view came there. No OpenGL.
+class ClipmapLevels {
+public:
+  // Where the camera is.
+  struct View {
+    Eigen::Vector2d place = Eigen::Vector2d::Zero(); // level-0 posts; may lie outside the lattice
+    double height = 0.0;                             // [m] above the vertical datum
+    double cellSize = 1.0;                           // [m] of a level-0 cell below it
+    std::optional<double> wait; // [s] for data that is missing; none: take what is there
+  };
+  struct State {
+    int finest = 0;       // levels finest..Count()-1 are filled and drawn
+    bool complete = true; // as fine as the view can resolve
+    Eigen::Vector2d place = Eigen::Vector2d::Zero(); // level-0 posts; within the lattice, and near
+                                                     // the last one where that is periodic
+    double groundHeight = 0.0; // [m] below the camera, as the finest level has it
+    double distance = 0.0;     // [m] from the camera to that place on the ground
+  };
+  using Upload = std::function<void(int level, const ClipmapUpdate& update, const ClipmapTexel*)>;
+
+  // Throws what ClipmapGeometry throws, and Error(InvalidArgument) when the pyramid's coarsest
+  // level is larger than a window.
+  ClipmapLevels(std::shared_ptr<ElevationPyramid> pyramid, int cells);
+
+  // Throws what the pyramid's Read() throws when the view waits.
+  State Update(const View& view, const Upload& upload);
+
+  int Count() const { return static_cast<int>(this->Levels_.size()); }
+  const ClipmapGeometry& Geometry() const { return this->Geometry_; }
+  const PostLattice& Lattice() const { return this->Pyramid_->Lattice(); }
+  const ClipmapWindow& Window(int level) const { return *this->Levels_[level].window; }
+  // Of a filled level; texels() squared, row by row.
+  const std::vector<ClipmapTexel>& Texels(int level) const { return this->Levels_[level].texels; }
+  // Whether it holds, or held, a post of the lattice without data.
+  bool HasHoles(int level) const { return this->Levels_[level].holes; }
+  const ClipmapTexel& Texel(int level, std::int64_t column, std::int64_t row) const;
+
+  // The height distance of a level: `distance` in its posts.
+  static double InPosts(double distance, double cellSize, int level);
+
+private:
+  struct Level {
+    std::optional<ClipmapWindow> window; // none: nothing in it is valid
+    std::vector<ClipmapTexel> texels;
+    bool holes = false;
+  };
+  bool Fill(int level, const ClipmapWindow& window, const std::optional<double>& wait,
+            const Upload& upload);
+  // Whether a post of the lattice has no data.
+  bool ToTexels(int level, const ClipmapUpdate& update, const std::vector<float>& heights,
+                std::vector<ClipmapTexel>& texels) const;
+  double GroundAt(int level, const Eigen::Vector2d& place) const;
+
+  std::shared_ptr<ElevationPyramid> Pyramid_;
+  ClipmapGeometry Geometry_;
+  std::vector<Level> Levels_;
+  double LastColumn_ = 0.0;
+};
+
+// The most cells a side that the coarsest level may have: then one window shows all of it.
+int CoarsestFor(int cells);
+
+} // namespace dspace
+
+#endif

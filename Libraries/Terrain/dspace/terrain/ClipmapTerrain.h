@@ -1,0 +1,47 @@
+// Terrain that is drawn as a clipmap: its posts, where they stand, and how they look.
+#ifndef DSPACE_TERRAIN_CLIPMAPTERRAIN_H
+#define DSPACE_TERRAIN_CLIPMAPTERRAIN_H
+
+#include <array>
+#include <memory>
+
+#include <dspace/scene/CustomGeometry.h>
+#include <dspace/scene/GraphicsObject.h>
+#include <dspace/terrain/ElevationPyramid.h>
+#include <dspace/terrain/PostPlacement.h>
+
+namespace dspace {
+
+struct ClipmapOptions {
+  int cells = 124;                          // a side of each level: a multiple of 4 from 12 to 252
+  std::array<double, 2> heights = {0, 0};   // [m] that the posts stay within
+  std::shared_ptr<const Material> material; // null: Material's defaults
+  // From level-0 posts (c, r) to the texture coordinates of the material's texture; (0, 0) is its
+  // bottom-left corner.
+  Eigen::Affine2d postToTexture = Eigen::Affine2d::Identity();
+  double deadline = 60.0; // [s] that a picture that is kept waits for its data
+};
+
+class ClipmapTerrain : public CustomGeometry {
+public:
+  // Throws Error(InvalidArgument) for an option out of range.
+  ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid, const PostPlacement& placement,
+                 const ClipmapOptions& options);
+
+  BoundingSphere Bounds() const override { return this->Bounds_; }
+  std::uint64_t Revision() const override { return this->Pyramid_->Arrivals(); }
+
+  const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
+  const PostPlacement& Placement() const { return this->Placement_; }
+  const ClipmapOptions& Options() const { return this->Options_; }
+
+private:
+  std::shared_ptr<ElevationPyramid> Pyramid_;
+  PostPlacement Placement_;
+  ClipmapOptions Options_;
+  BoundingSphere Bounds_;
+};
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,54 @@
+// Where the posts of a lattice stand in the scene: on a plane, or on a body.
+#ifndef DSPACE_TERRAIN_POSTPLACEMENT_H
+#define DSPACE_TERRAIN_POSTPLACEMENT_H
+
+#include <Eigen/Geometry>
+
+namespace dspace {
+
+// Post coordinates (c, r) count level-0 posts; height is metres above the vertical datum.
+class PostPlacement {
+public:
+  enum class Kind {
+    Plane, // scene: X east, Y north, Z up; z = height - originHeight
+    Sphere // scene: the body-fixed frame, Z to the north pole, X to longitude 0
+  };
+
+  // `postToScene` takes (c, r) to scene (x, y) [m]; invertible.
+  static PostPlacement OnPlane(const Eigen::Affine2d& postToScene, double originHeight = 0.0);
+  // Longitude (east) and latitude of post (0, 0), and their steps a column and a row [deg];
+  // `radius` [m] is where height is 0.
+  static PostPlacement OnSphere(const Eigen::Vector2d& first_deg, const Eigen::Vector2d& step_deg,
+                                double radius);
+
+  Kind GetKind() const { return this->Kind_; }
+  // Plane: its map; its origin's height.
+  const Eigen::Affine2d& PostToScene() const { return this->PostToScene_; }
+  double OriginHeight() const { return this->OriginHeight_; }
+  // Sphere [rad].
+  const Eigen::Vector2d& First() const { return this->First_; }
+  const Eigen::Vector2d& Step() const { return this->Step_; }
+  double Radius() const { return this->Radius_; }
+
+  Eigen::Vector3d ToScene(const Eigen::Vector2d& post, double height) const;
+  // (c, r, height) of a point. On a sphere c is within half a turn of the first column; any at the
+  // poles, and (first column, first row, -radius) at the centre.
+  Eigen::Vector3d ToPosts(const Eigen::Vector3d& p_S) const;
+  // The local vertical, unit; Z at the body's centre.
+  Eigen::Vector3d Up(const Eigen::Vector3d& p_S) const;
+  // The greater of a cell's two sides there [m], at height 0.
+  double CellSize(const Eigen::Vector2d& post) const;
+
+private:
+  Kind Kind_ = Kind::Plane;
+  Eigen::Affine2d PostToScene_ = Eigen::Affine2d::Identity();
+  Eigen::Affine2d SceneToPost_ = Eigen::Affine2d::Identity();
+  double OriginHeight_ = 0.0;
+  Eigen::Vector2d First_ = Eigen::Vector2d::Zero(); // [rad]
+  Eigen::Vector2d Step_ = Eigen::Vector2d::Ones();
+  double Radius_ = 0.0;
+};
+
+} // namespace dspace
+
+#endif
