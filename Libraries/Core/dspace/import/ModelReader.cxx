@@ -80,7 +80,8 @@ Reader ReaderFor(const std::string& path) {
   const std::string start = FileStart(path);
   if (start.find("<robot") != std::string::npos || LowerExtension(path) == ".urdf") {
     throw Error(Error::Kind::Unsupported, object,
-                "is a URDF, which has joints: read it as a robot, not as a model");
+                "is a URDF, which has joints: read it as a robot (in Python under a name that ends "
+                "in .urdf)");
   }
   if (const Reader reader = ReaderByContent(start)) {
     return reader;
