@@ -72,8 +72,8 @@ private:
   std::string Draft_;
 };
 
-void Write(const std::string& path, OIIO::ImageSpec spec, OIIO::TypeDesc type, const void* data,
-           OIIO::stride_t pixelBytes = OIIO::AutoStride) {
+void Write(const std::string& path, OIIO::ImageSpec spec, const OIIO::TypeDesc& type,
+           const void* data, OIIO::stride_t pixelBytes = OIIO::AutoStride) {
   Draft draft(path);
   const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(draft.Name());
   if (!out) {

@@ -101,7 +101,7 @@ Part MakeLabel(const std::string& text, const LabelStyle& style) {
   for (int y = image->height - 1; y >= 0; --y) { // VTK's rows go up
     const auto* row = static_cast<const std::uint8_t*>(
         picture->GetScalarPointer(extent[0], extent[2] + y, extent[4]));
-    image->pixels.insert(image->pixels.end(), row, row + 4 * image->width);
+    image->pixels.insert(image->pixels.end(), row, row + std::size_t(4) * image->width);
   }
 
   auto mesh = std::make_shared<Mesh>();
