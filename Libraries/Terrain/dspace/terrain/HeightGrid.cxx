@@ -7,13 +7,14 @@
 
 #include <dspace/Error.h>
 
+#include "PostFacets.h"
+
 namespace dspace {
 
 namespace {
 
-constexpr double BorderTolerance = 1e-9; // cells; what conversions to grid coordinates round off
-constexpr double MaximumHeight = 1e9;    // [m] more than the Sun's radius, were heights radii
-constexpr double MaximumExtent = 1e15;   // [m]
+constexpr double MaximumHeight = 1e9;  // [m] more than the Sun's radius, were heights radii
+constexpr double MaximumExtent = 1e15; // [m]
 
 std::string Number(double value) {
   char text[32];
@@ -74,50 +75,16 @@ HeightGrid::HeightGrid(const std::string& name, int columns, int rows, std::vect
 }
 
 HeightGrid::Facet HeightGrid::CellFacet(int c, int r, bool below, double u, double v) const {
-  Facet facet;
-  facet.valid = below ? this->HasA(c, r) : this->HasB(c, r);
-  if (!facet.valid)
-    return facet;
-  const double nw = this->At(c, r), se = this->At(c + 1, r + 1);
-  if (below) {
-    const double sw = this->At(c, r + 1);
-    facet.dr = sw - nw;
-    facet.dc = se - sw;
-  } else {
-    const double ne = this->At(c + 1, r);
-    facet.dc = ne - nw;
-    facet.dr = se - ne;
-  }
-  facet.height = nw + u * facet.dc + v * facet.dr;
-  return facet;
+  return FacetOfCell(
+      [this](std::int64_t cc, std::int64_t rr) { return this->At(int(cc), int(rr)); }, c, r, below,
+      u, v);
 }
 
 HeightGrid::Facet HeightGrid::FacetAt(const Eigen::Vector2d& g) const {
-  const double lastC = this->Columns_ - 1, lastR = this->Rows_ - 1;
-  // Written so that NaN is outside.
-  if (!(g.x() >= -BorderTolerance && g.x() <= lastC + BorderTolerance &&
-        g.y() >= -BorderTolerance && g.y() <= lastR + BorderTolerance))
-    return {};
-  const double x = std::clamp(g.x(), 0.0, lastC), y = std::clamp(g.y(), 0.0, lastR);
-  const int c = std::min(static_cast<int>(x), this->Columns_ - 2);
-  const int r = std::min(static_cast<int>(y), this->Rows_ - 2);
-  const double u = x - c, v = y - r;
-  const Facet facet = this->CellFacet(c, r, v > u, u, v);
-  if (facet.valid)
-    return facet;
-  // On the rim of a hole the triangle across the edge, or another around the post, may exist.
-  const auto on = [](double a) { return std::abs(a) <= BorderTolerance; };
-  for (int dc = on(u) && c > 0 ? -1 : 0; dc <= (on(u - 1.0) && c < this->Columns_ - 2); ++dc)
-    for (int dr = on(v) && r > 0 ? -1 : 0; dr <= (on(v - 1.0) && r < this->Rows_ - 2); ++dr)
-      for (bool below : {true, false}) {
-        const double uu = u - dc, vv = v - dr;
-        if (below ? vv < uu - BorderTolerance : vv > uu + BorderTolerance)
-          continue;
-        const Facet other = this->CellFacet(c + dc, r + dr, below, uu, vv);
-        if (other.valid)
-          return other;
-      }
-  return {};
+  return FacetNear({0, this->Columns_ - 2, 0, this->Rows_ - 2}, g,
+                   [this](std::int64_t c, std::int64_t r, bool below, double u, double v) {
+                     return this->CellFacet(int(c), int(r), below, u, v);
+                   });
 }
 
 Eigen::Vector2d HeightGrid::SceneGradient(const Facet& facet) const {

@@ -26,9 +26,10 @@ PostPlacement PostPlacement::OnPlane(const Eigen::Affine2d& postToScene, double 
 }
 
 PostPlacement PostPlacement::OnSphere(const Eigen::Vector2d& first_deg,
-                                      const Eigen::Vector2d& step_deg, double radius) {
+                                      const Eigen::Vector2d& step_deg, double radius,
+                                      double middleColumn) {
   if (!first_deg.allFinite() || !step_deg.allFinite() || step_deg.x() == 0.0 ||
-      step_deg.y() == 0.0 || !(radius > 0.0 && radius <= 1e12)) {
+      step_deg.y() == 0.0 || !(radius > 0.0 && radius <= 1e12) || !std::isfinite(middleColumn)) {
     throw Error(Error::Kind::InvalidArgument, "terrain",
                 "steps of a degree grid that are not 0 and a radius in (0, 1e12] m are accepted");
   }
@@ -37,6 +38,7 @@ PostPlacement PostPlacement::OnSphere(const Eigen::Vector2d& first_deg,
   placement.First_ = first_deg * Degree;
   placement.Step_ = step_deg * Degree;
   placement.Radius_ = radius;
+  placement.MiddleColumn_ = middleColumn;
   return placement;
 }
 
@@ -61,7 +63,9 @@ Eigen::Vector3d PostPlacement::ToPosts(const Eigen::Vector3d& p_S) const {
     return {0.0, 0.0, -this->Radius_};
   }
   const double latitude = std::atan2(p_S.z(), p_S.head<2>().norm());
-  const double east = std::remainder(std::atan2(p_S.y(), p_S.x()) - this->First_.x(), 2.0 * M_PI);
+  const double middle = this->MiddleColumn_ * this->Step_.x();
+  const double east =
+      middle + std::remainder(std::atan2(p_S.y(), p_S.x()) - this->First_.x() - middle, 2.0 * M_PI);
   return {east / this->Step_.x(), (latitude - this->First_.y()) / this->Step_.y(),
           distance - this->Radius_};
 }

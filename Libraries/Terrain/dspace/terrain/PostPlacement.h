@@ -17,9 +17,10 @@ public:
   // `postToScene` takes (c, r) to scene (x, y) [m]; invertible.
   static PostPlacement OnPlane(const Eigen::Affine2d& postToScene, double originHeight = 0.0);
   // Longitude (east) and latitude of post (0, 0), and their steps a column and a row [deg];
-  // `radius` [m] is where height is 0.
+  // `radius` [m] is where height is 0; places are told as columns within half a turn of
+  // `middleColumn`.
   static PostPlacement OnSphere(const Eigen::Vector2d& first_deg, const Eigen::Vector2d& step_deg,
-                                double radius);
+                                double radius, double middleColumn = 0.0);
 
   Kind GetKind() const { return this->Kind_; }
   // Plane: its map; its origin's height.
@@ -31,8 +32,8 @@ public:
   double Radius() const { return this->Radius_; }
 
   Eigen::Vector3d ToScene(const Eigen::Vector2d& post, double height) const;
-  // (c, r, height) of a point. On a sphere c is within half a turn of the first column; any at the
-  // poles, and (first column, first row, -radius) at the centre.
+  // (c, r, height) of a point. On a sphere c is within half a turn of the middle column; any at the
+  // poles, and (0, 0, -radius) at the centre.
   Eigen::Vector3d ToPosts(const Eigen::Vector3d& p_S) const;
   // The local vertical, unit; Z at the body's centre.
   Eigen::Vector3d Up(const Eigen::Vector3d& p_S) const;
@@ -47,6 +48,7 @@ private:
   Eigen::Vector2d First_ = Eigen::Vector2d::Zero(); // [rad]
   Eigen::Vector2d Step_ = Eigen::Vector2d::Ones();
   double Radius_ = 0.0;
+  double MiddleColumn_ = 0.0;
 };
 
 } // namespace dspace

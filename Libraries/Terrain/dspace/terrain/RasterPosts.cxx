@@ -31,11 +31,15 @@ PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& optio
                 "subdivisions " + std::to_string(options.subdivisions) +
                     " is refused; accepted is 0 to 24");
   }
+  if (options.poles && (!options.periodic || options.subdivisions < 1)) {
+    throw Error(Error::Kind::InvalidArgument, object,
+                "poles need a raster that goes once around and subdivisions of 1 or more");
+  }
   PostLattice lattice;
   const std::int64_t parts = std::int64_t(1) << options.subdivisions;
   lattice.periodic = options.periodic;
   lattice.columns = options.periodic ? width * parts : (width - 1) * parts + 1;
-  lattice.rows = (height - 1) * parts + 1;
+  lattice.rows = (options.poles ? height : height - 1) * parts + 1;
   lattice.levels = options.levels > 0 ? options.levels : LevelsFor(lattice, options.coarsest);
   const bool halved = lattice.periodic
                           ? lattice.columns % (std::int64_t(1) << (lattice.levels - 1)) == 0
@@ -84,7 +88,8 @@ int LevelsFor(const PostLattice& lattice, int coarsest) {
 RasterPosts::RasterPosts(std::shared_ptr<const ElevationSource> source,
                          const RasterPostsOptions& options)
     : Source_(std::move(source)), Name_("raster '" + Source_->Info().path + "'"),
-      Lattice_(LatticeOf(Source_->Info(), options)), Subdivisions_(options.subdivisions) {}
+      Lattice_(LatticeOf(Source_->Info(), options)), Subdivisions_(options.subdivisions),
+      Poles_(options.poles) {}
 
 // Pixels of any window of the raster reduced by `factor`; NaN outside it, wrapped where periodic.
 std::vector<double> RasterPosts::ReadPixels(std::int64_t column, std::int64_t row, int width,
@@ -119,16 +124,63 @@ std::vector<double> RasterPosts::ReadPixels(std::int64_t column, std::int64_t ro
   return pixels;
 }
 
+// Of all that a level's boxes about a pole reach; up to the raster's own posts, of the row next to
+// it.
+double RasterPosts::PoleHeight(int level, bool last) const {
+  const std::pair<int, bool> key(std::max(level, this->Subdivisions_), last);
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    const auto known = this->PoleHeights_.find(key);
+    if (known != this->PoleHeights_.end()) {
+      return known->second;
+    }
+  }
+  const RasterWindow all = this->Source_->Info().window;
+  const int above = key.first - this->Subdivisions_;
+  const int factor = 1 << std::max(0, above - FullReads);
+  const int columns = 1 + (all.width - 1) / factor;
+  const int rows = 1 + (all.height - 1) / factor;
+  // In reduced pixels; a row of pixels is the least that is taken.
+  const double reach = std::min(double(all.height), std::max(1.0, std::ldexp(0.5, above))) / factor;
+  const double to = double(all.height) / factor;
+  const int height = std::min(rows, int(std::ceil(reach)) + 1);
+  const int top = last ? rows - height : 0;
+  const std::vector<double> pixels = this->ReadPixels(0, top, columns, height, factor);
+  const BoxSpan span = last ? BoxSpan{to - reach - top, to - top} : BoxSpan{0.0, reach};
+  const double mean =
+      BoxMeans(pixels, columns, height, {{0.0, double(all.width) / factor}}, {span}).front();
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  return this->PoleHeights_[key] = mean;
+}
+
 void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {
   const int step = 1 << (this->Subdivisions_ - block.level); // parts a pixel
+  const std::int64_t shift = this->Poles_ ? step / 2 : 0;    // rows from the pole to the pixels
+  const std::int64_t first = block.row - shift;
   const std::int64_t column = FloorDiv(block.column, step);
-  const std::int64_t row = FloorDiv(block.row, step);
+  const std::int64_t row = FloorDiv(first, step);
   const int width = int(FloorDiv(block.column + block.width - 1, step) - column) + 2;
-  const int height = int(FloorDiv(block.row + block.height - 1, step) - row) + 2;
+  const int height = int(FloorDiv(first + block.height - 1, step) - row) + 2;
   const std::vector<double> pixels = this->ReadPixels(column, row, width, height, 1);
+  const std::int64_t lastRow = this->Source_->Info().window.height - 1;
   for (int j = 0; j < block.height; ++j) {
-    const std::int64_t r = FloorDiv(block.row + j, step) - row;
-    const double v = double(block.row + j - (r + row) * step) / step;
+    const std::int64_t r = FloorDiv(first + j, step) - row;
+    const double v = double(first + j - (r + row) * step) / step;
+    const bool north = r + row == -1;
+    const bool south = r + row == lastRow && v > 0.0;
+    if (this->Poles_ && (north || south)) {
+      const double pole = this->PoleHeight(block.level, south);
+      const double share = north ? 2.0 * v - 1.0 : 1.0 - 2.0 * v; // of the row of pixels
+      for (int i = 0; i < block.width; ++i) {
+        const std::int64_t c = FloorDiv(block.column + i, step) - column;
+        const double u = double(block.column + i - (c + column) * step) / step;
+        const double* p = pixels.data() + (r + (north ? 1 : 0)) * width + c;
+        const double along = u == 0.0 ? p[0] : p[0] + u * (p[1] - p[0]);
+        heights[std::size_t(j) * block.width + i] =
+            float(share == 0.0 ? pole : pole + share * (along - pole));
+      }
+      continue;
+    }
     for (int i = 0; i < block.width; ++i) {
       const std::int64_t c = FloorDiv(block.column + i, step) - column;
       const double u = double(block.column + i - (c + column) * step) / step;
@@ -145,11 +197,14 @@ void RasterPosts::ReadMeans(const PostBlock& block, float* heights) const {
   const double half = std::ldexp(0.5, above); // of a box [pixels]
   // Pixels are taken `factor` together where the means would read too many of them.
   const int factor = 1 << std::max(0, above - FullReads);
-  const auto spans = [&](std::int64_t first, int count, bool periodic, std::int64_t pixels) {
+  // `offset` is the first post's place, in pixels from the raster's edge.
+  const auto spans = [&](std::int64_t first, int count, bool periodic, std::int64_t pixels,
+                         double offset) {
+    const std::int64_t last = offset > 0.0 ? pixels - 1 : pixels;
     std::vector<BoxSpan> result(count);
     for (int i = 0; i < count; ++i) {
       const std::int64_t k = (first + i) * (std::int64_t(1) << above);
-      const double center = 0.5 + double(periodic ? k : std::clamp<std::int64_t>(k, 0, pixels - 1));
+      const double center = offset + double(periodic ? k : std::clamp<std::int64_t>(k, 0, last));
       result[i] = {center - half, center + half};
       if (!periodic) {
         result[i].from = std::max(result[i].from, 0.0);
@@ -159,8 +214,9 @@ void RasterPosts::ReadMeans(const PostBlock& block, float* heights) const {
     return result;
   };
   std::vector<BoxSpan> columns =
-      spans(block.column, block.width, this->Lattice_.periodic, all.width);
-  std::vector<BoxSpan> rows = spans(block.row, block.height, false, all.height);
+      spans(block.column, block.width, this->Lattice_.periodic, all.width, 0.5);
+  std::vector<BoxSpan> rows =
+      spans(block.row, block.height, false, all.height, this->Poles_ ? 0.0 : 0.5);
   const std::int64_t left = FloorDiv(std::int64_t(std::floor(columns.front().from)), factor);
   const std::int64_t right = FloorDiv(std::int64_t(std::ceil(columns.back().to)) - 1, factor) + 1;
   const std::int64_t top = FloorDiv(std::int64_t(std::floor(rows.front().from)), factor);
@@ -176,10 +232,18 @@ void RasterPosts::ReadMeans(const PostBlock& block, float* heights) const {
   }
   const std::vector<double> means = BoxMeans(pixels, width, height, columns, rows);
   std::transform(means.begin(), means.end(), heights, [](double h) { return float(h); });
+  const std::int64_t last = this->Lattice_.RowsAt(block.level) - 1;
+  for (int j = 0; this->Poles_ && j < block.height; ++j) {
+    if (block.row + j == 0 || block.row + j == last) {
+      std::fill_n(heights + std::size_t(j) * block.width, block.width,
+                  float(this->PoleHeight(block.level, block.row + j == last)));
+    }
+  }
 }
 
 void RasterPosts::Read(const PostBlock& block, float* heights) const {
-  if (block.level <= this->Subdivisions_) {
+  // With poles, the rows of level `subdivisions` already stand between those of pixels.
+  if (block.level <= this->Subdivisions_ - (this->Poles_ ? 1 : 0)) {
     this->ReadSubdivided(block, heights);
   } else {
     this->ReadMeans(block, heights);

@@ -2,8 +2,11 @@
 #ifndef DSPACE_TERRAIN_RASTERPOSTS_H
 #define DSPACE_TERRAIN_RASTERPOSTS_H
 
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <dspace/terrain/ElevationSource.h>
@@ -16,13 +19,21 @@ struct RasterPostsOptions {
   // triangles that HeightGrid states: the surface is the same, its posts are closer. 0 to 24.
   int subdivisions = 0;
   bool periodic = false; // the raster goes once around a body
-  int levels = 0;        // 0: until a level has at most `coarsest` cells a side
+  // Its first and last rows of pixels lie half a pixel from the poles, where the lattice then ends:
+  // needs `periodic` and subdivisions of 1 or more. A pole's height is the mean of the row next to
+  // it; along each meridian the surface is straight between the two.
+  bool poles = false;
+  int levels = 0; // 0: until a level has at most `coarsest` cells a side
   int coarsest = 96;
 };
 
 // Level `subdivisions` has a post at each pixel's centre. Coarser levels are means over boxes as
 // wide as their posts are apart, from the raster's overviews where it has them; without overviews,
 // beyond 8 pixels a post, of every n-th pixel (8 x 8 a post).
+// With poles, rows count from the pole: the raster's first row of pixels is row
+// 2^(subdivisions - 1) of level 0, and rows of level `subdivisions` and coarser ones stand between
+// rows of pixels. All posts of a pole have one height, at coarser levels the mean of the cap that
+// their boxes reach.
 class RasterPosts : public PostSource {
 public:
   // Throws Error(InvalidArgument) for an option out of range, fewer than 2 x 2 pixels, or a
@@ -36,17 +47,22 @@ public:
 
   const ElevationSource& Source() const { return *this->Source_; }
   int Subdivisions() const { return this->Subdivisions_; }
+  bool Poles() const { return this->Poles_; }
 
 private:
   std::vector<double> ReadPixels(std::int64_t column, std::int64_t row, int width, int height,
                                  int factor) const;
   void ReadSubdivided(const PostBlock& block, float* heights) const;
   void ReadMeans(const PostBlock& block, float* heights) const;
+  double PoleHeight(int level, bool last) const;
 
   std::shared_ptr<const ElevationSource> Source_;
   std::string Name_;
   PostLattice Lattice_;
   int Subdivisions_;
+  bool Poles_;
+  mutable std::mutex Mutex_; // of what follows
+  mutable std::map<std::pair<int, bool>, double> PoleHeights_;
 };
 
 // Levels until the coarsest has at most `coarsest` cells a side; for a periodic lattice at most as

@@ -32,4 +32,12 @@ SceneFrame::SceneFrame(const Crs& crs, const Eigen::Vector2d& origin, double ori
   this->Metres_ = metres.cwiseProduct(crs.GetAxisSigns());
 }
 
+Eigen::Affine2d SceneFrame::PostToScene(const Eigen::Affine2d& pixelToMap) const {
+  const Eigen::Vector2d first = pixelToMap * Eigen::Vector2d(0.5, 0.5);
+  Eigen::Affine2d m = Eigen::Affine2d::Identity();
+  m.linear() = this->Metres_.asDiagonal() * pixelToMap.linear();
+  m.translation() = (first - this->Origin_).cwiseProduct(this->Metres_);
+  return m;
+}
+
 } // namespace dspace

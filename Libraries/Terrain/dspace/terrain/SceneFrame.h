@@ -2,7 +2,7 @@
 #ifndef DSPACE_TERRAIN_SCENEFRAME_H
 #define DSPACE_TERRAIN_SCENEFRAME_H
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <dspace/terrain/Crs.h>
 
@@ -42,6 +42,9 @@ public:
     return {p_S.x() / this->Metres_.x() + this->Origin_.x(),
             p_S.y() / this->Metres_.y() + this->Origin_.y(), p_S.z() + this->OriginHeight_};
   }
+
+  // Where the posts of a raster stand: post (c, r) at pixel coordinates (c + 0.5, r + 0.5).
+  Eigen::Affine2d PostToScene(const Eigen::Affine2d& pixelToMap) const;
 
 private:
   Eigen::Vector2d Origin_;

@@ -1,0 +1,101 @@
+#include "PostSurface.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+namespace dspace {
+namespace {
+
+constexpr int Size = ElevationPyramid::TileSize;
+
+// Posts with one of margin, so that the rims of holes can look around.
+struct Block {
+  PostBlock place;
+  std::vector<float> heights;
+
+  double operator()(std::int64_t c, std::int64_t r) const {
+    const std::int64_t i = c - this->place.column;
+    const std::int64_t j = r - this->place.row;
+    return i < 0 || j < 0 || i >= this->place.width || j >= this->place.height
+               ? std::numeric_limits<double>::quiet_NaN()
+               : double(this->heights[std::size_t(j) * this->place.width + i]);
+  }
+};
+
+CellRange CellsOf(const PostLattice& lattice) {
+  constexpr std::int64_t Around = std::int64_t(1) << 60;
+  return {lattice.periodic ? -Around : 0, lattice.periodic ? Around : lattice.columns - 2, 0,
+          lattice.rows - 2};
+}
+
+} // namespace
+
+HeightGrid::Facet PostSurface::At(const Eigen::Vector2d& post) const {
+  Facet result;
+  this->At(std::vector<Eigen::Vector2d>{post},
+           [&result](std::size_t, const Facet& facet) { result = facet; });
+  return result;
+}
+
+void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
+                     const std::function<void(std::size_t, const Facet&)>& take) const {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const PostLattice& lattice = this->Lattice();
+  const CellRange cells = CellsOf(lattice);
+  struct Item {
+    std::int64_t tileRow;
+    std::int64_t tileColumn;
+    std::size_t index;
+  };
+  std::vector<Item> items;
+  items.reserve(posts.size());
+  const auto cellOf = [&](const Eigen::Vector2d& p) {
+    return std::array<std::int64_t, 2>{
+        std::clamp(std::int64_t(std::floor(p.x())), cells.firstColumn, cells.lastColumn),
+        std::clamp(std::int64_t(std::floor(p.y())), cells.firstRow, cells.lastRow)};
+  };
+  for (std::size_t i = 0; i < posts.size(); ++i) {
+    const Eigen::Vector2d& p = posts[i];
+    const bool inside = p.x() >= double(cells.firstColumn) - 1.0 &&
+                        p.x() <= double(cells.lastColumn) + 2.0 && p.y() >= -1.0 &&
+                        p.y() <= double(lattice.rows);
+    if (!inside) {
+      take(i, {});
+      continue;
+    }
+    const auto [c, r] = cellOf(p);
+    items.push_back({r / Size, (c - (c < 0 ? Size - 1 : 0)) / Size, i});
+  }
+  const auto before = [](const Item& a, const Item& b) {
+    return a.tileRow != b.tileRow ? a.tileRow < b.tileRow : a.tileColumn < b.tileColumn;
+  };
+  std::sort(items.begin(), items.end(), before);
+  Block block;
+  for (std::size_t from = 0; from < items.size();) {
+    std::size_t to = from;
+    std::array<std::int64_t, 2> low = cellOf(posts[items[from].index]);
+    std::array<std::int64_t, 2> high = low;
+    for (; to < items.size() && !before(items[from], items[to]); ++to) {
+      const auto cell = cellOf(posts[items[to].index]);
+      for (const int k : {0, 1}) {
+        low[k] = std::min(low[k], cell[k]);
+        high[k] = std::max(high[k], cell[k]);
+      }
+    }
+    block.place = {0, low[0] - 1, low[1] - 1, int(high[0] - low[0]) + 4, int(high[1] - low[1]) + 4};
+    block.heights.resize(std::size_t(block.place.width) * block.place.height);
+    const double spent = std::chrono::duration<double>(Clock::now() - start).count();
+    this->Pyramid_->Read(block.place, block.heights.data(), std::max(0.0, this->Deadline_ - spent));
+    const auto cell = [&](std::int64_t c, std::int64_t r, bool below, double u, double v) {
+      return this->OfCell(block, c, r, below, u, v);
+    };
+    for (; from < to; ++from) {
+      const std::size_t i = items[from].index;
+      take(i, FacetNear(cells, posts[i], cell));
+    }
+  }
+}
+
+} // namespace dspace

@@ -1,0 +1,181 @@
+#include <dspace/terrain/StreamedTerrain.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <dspace/Error.h>
+#include <dspace/terrain/ClipmapLevels.h>
+#include <dspace/terrain/RasterPosts.h>
+
+#include "PostSurface.h"
+
+namespace dspace {
+namespace {
+
+constexpr double Degree = M_PI / 180.0;
+
+} // namespace
+
+StreamedTerrain::StreamedTerrain(const std::string& name,
+                                 std::shared_ptr<const ElevationSource> source,
+                                 std::vector<std::string> warnings)
+    : TerrainSurface(name, source->Info().crs, source->Info().verticalDatum, std::move(warnings)),
+      Source_(std::move(source)) {}
+
+StreamedTerrain::~StreamedTerrain() = default;
+
+const ElevationInfo& StreamedTerrain::Info() const {
+  return this->Source_->Info();
+}
+
+const SceneFrame& StreamedTerrain::Frame() const {
+  if (!this->Frame_) {
+    throw Error(Error::Kind::Unsupported, this->GetName(),
+                "it stands on a body; only one on a plane has such a frame");
+  }
+  return *this->Frame_;
+}
+
+Eigen::Vector2d StreamedTerrain::MapToPost(const Eigen::Vector2d& map) const {
+  Eigen::Vector2d post = this->MapToPost_ * map;
+  if (this->OnBody()) { // towards the data
+    const double turn = 2.0 * M_PI / std::abs(this->Placement_.Step().x());
+    const double last = double(this->Pyramid_->Lattice().columns) - 1.0;
+    if (this->Pyramid_->Lattice().periodic) {
+      post.x() -= turn * std::floor(post.x() / turn);
+    } else if (post.x() < 0.0 || post.x() > last) {
+      post.x() -= turn * std::round((post.x() - 0.5 * last) / turn);
+    }
+  }
+  return post;
+}
+
+Eigen::Vector3d StreamedTerrain::ToPosts(const Eigen::Vector3d& p_S) const {
+  Eigen::Vector3d post = this->Placement_.ToPosts(p_S);
+  const PostLattice& lattice = this->Pyramid_->Lattice();
+  if (lattice.periodic) {
+    const auto turn = double(lattice.columns);
+    post.x() -= turn * std::floor(post.x() / turn);
+  }
+  return post;
+}
+
+// The surface at a place; `vertical_S` is the point of space that was asked for, whose vertical it
+// is found on.
+SurfaceSample StreamedTerrain::SampleAt(const Eigen::Vector2d& post,
+                                        const Eigen::Vector3d& vertical_S) const {
+  const HeightGrid::Facet facet = this->Surface_->At(post);
+  SurfaceSample sample;
+  if (!facet.valid) {
+    return sample;
+  }
+  sample.valid = true;
+  sample.level = 0;
+  sample.height = facet.height;
+  const Eigen::Vector2d rise(facet.dc, facet.dr);
+  if (!this->OnBody()) {
+    const Eigen::Vector2d g = this->Placement_.PostToScene().linear().inverse().transpose() * rise;
+    sample.position_S << vertical_S.head<2>(), facet.height - this->Placement_.OriginHeight();
+    sample.normal_S = Eigen::Vector3d(-g.x(), -g.y(), 1.0).normalized();
+    sample.slope_deg = std::atan(g.norm()) / Degree;
+    return sample;
+  }
+  // p = (R + h(c, r)) up(c, r): its derivatives by c and r span the tangent plane.
+  const double distance = this->Placement_.Radius() + facet.height;
+  const Eigen::Vector3d up = this->Placement_.Up(vertical_S);
+  const double parallel = std::max(up.head<2>().norm(), 1e-12); // cosine of the latitude
+  const double longitude = std::atan2(up.y(), up.x());
+  const Eigen::Vector3d east(-std::sin(longitude), std::cos(longitude), 0.0);
+  const Eigen::Vector3d north = up.cross(east);
+  const Eigen::Vector2d& step = this->Placement_.Step();
+  const double toEast = rise.x() == 0.0 ? 0.0 : rise.x() / (distance * parallel * step.x());
+  const double toNorth = rise.y() / (distance * step.y());
+  sample.position_S = distance * up;
+  sample.normal_S = (up - toEast * east - toNorth * north).normalized();
+  sample.slope_deg = std::atan(std::hypot(toEast, toNorth)) / Degree;
+  return sample;
+}
+
+SurfaceSample StreamedTerrain::DoSample(const Eigen::Vector3d& p_S) const {
+  if (this->OnBody() && p_S.isZero(0.0)) {
+    return {}; // its centre lies under no place
+  }
+  return this->SampleAt(this->ToPosts(p_S).head<2>(), p_S);
+}
+
+SurfaceSample StreamedTerrain::DoSampleMap(const Eigen::Vector2d& map) const {
+  const Eigen::Vector2d post = this->MapToPost(map);
+  return this->SampleAt(post, this->OnBody() ? this->Placement_.ToScene(post, 0.0)
+                                             : this->DoMapToScene({map.x(), map.y(), 0.0}));
+}
+
+void StreamedTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
+                                Eigen::Ref<Eigen::VectorXd> heights) const {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Eigen::Vector2d> posts(points_S.rows());
+  for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
+    const Eigen::Vector3d p_S = points_S.row(i);
+    posts[i] = this->OnBody() && p_S.isZero(0.0) ? Eigen::Vector2d(none, none)
+                                                 : Eigen::Vector2d(this->ToPosts(p_S).head<2>());
+  }
+  this->Surface_->At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
+    heights[Eigen::Index(i)] = facet.valid ? facet.height : none;
+  });
+}
+
+void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,
+                                   Eigen::Ref<Eigen::VectorXd> heights) const {
+  std::vector<Eigen::Vector2d> posts(map.rows());
+  for (Eigen::Index i = 0; i < map.rows(); ++i) {
+    posts[i] = this->MapToPost(map.row(i));
+  }
+  this->Surface_->At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
+    heights[Eigen::Index(i)] =
+        facet.valid ? facet.height : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
+RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d&, const Eigen::Vector3d&, double) const {
+  throw Error(Error::Kind::Unsupported, this->GetName(), "rays are not there yet");
+}
+
+Eigen::Vector3d StreamedTerrain::DoMapToScene(const Eigen::Vector3d& map) const {
+  return this->OnBody() ? this->Placement_.ToScene(this->MapToPost_ * map.head<2>(), map.z())
+                        : this->Frame_->MapToScene(map);
+}
+
+Eigen::Vector3d StreamedTerrain::DoSceneToMap(const Eigen::Vector3d& p_S) const {
+  if (!this->OnBody()) {
+    return this->Frame_->SceneToMap(p_S);
+  }
+  const Eigen::Vector3d post = this->Placement_.ToPosts(p_S);
+  const Eigen::Vector2d map = this->MapToPost_.inverse() * Eigen::Vector2d(post.head<2>());
+  return {map.x(), map.y(), post.z()};
+}
+
+Eigen::Vector3d StreamedTerrain::DoUp(const Eigen::Vector3d& p_S) const {
+  return this->Placement_.Up(p_S);
+}
+
+int StreamedTerrain::DoResidentLevel(const Eigen::Vector2d& map) const {
+  const PostLattice& lattice = this->Pyramid_->Lattice();
+  const Eigen::Vector2d post = this->MapToPost(map);
+  const double edge = 1e-9;
+  if (!(lattice.periodic ||
+        (post.x() >= -edge && post.x() <= double(lattice.columns - 1) + edge)) ||
+      !(post.y() >= -edge && post.y() <= double(lattice.rows - 1) + edge)) {
+    return -1;
+  }
+  std::array<float, 4> heights = {};
+  for (int level = 0; level < lattice.levels; ++level) {
+    const Eigen::Vector2d place = post.cwiseMax(0.0) * std::ldexp(1.0, -level);
+    const auto c = std::int64_t(std::floor(place.x()));
+    const auto r = std::int64_t(std::floor(place.y()));
+    if (this->Pyramid_->TryRead({level, c, r, 2, 2}, heights.data())) {
+      return level;
+    }
+  }
+  return -1;
+}
+
+} // namespace dspace

@@ -1,0 +1,106 @@
+// A raster of any size as a TerrainSurface: heights come from a pyramid of tiles.
+#ifndef DSPACE_TERRAIN_STREAMEDTERRAIN_H
+#define DSPACE_TERRAIN_STREAMEDTERRAIN_H
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <dspace/terrain/ElevationPyramid.h>
+#include <dspace/terrain/ElevationSource.h>
+#include <dspace/terrain/PostPlacement.h>
+#include <dspace/terrain/SceneFrame.h>
+#include <dspace/terrain/TerrainSurface.h>
+
+namespace dspace {
+
+class PostSurface;
+
+struct StreamedTerrainOptions {
+  ElevationOptions elevation;
+  // On a plane (SceneFrame): scene origin in map coordinates; the raster's middle by default.
+  std::optional<Eigen::Vector2d> origin;
+  double originHeight = 0.0; // [m] above the vertical datum, where scene z = 0
+  // On the body: the scene is the body-fixed frame (Z to the north pole, X to longitude 0), and
+  // height 0 the sphere of the CRS's semi-major axis. A degree grid on a sphere is needed. One that
+  // goes once around is closed across its edge, and where it reaches the poles over them.
+  bool onBody = false;
+  int cells = 124; // of a clipmap level that it will be drawn with: how far it is halved
+  ElevationPyramidOptions pyramid;
+  double deadline = 60.0; // [s] that a query waits for tiles
+};
+
+// Posts stand at pixel centres; on a body they are divided until a chord departs from the sphere by
+// at most a millimetre. Between the posts of level 0 are the triangles of HeightGrid: heights are
+// linear in post coordinates. Queries read what is missing, hence wait, and are the same whatever
+// was drawn before; they are for any thread but a drawing one.
+class StreamedTerrain : public TerrainSurface {
+public:
+  // Reads the raster's header and its coarsest level only. Throws what ElevationSource throws, and
+  // Error(Unsupported) for a raster that cannot stand on a body.
+  static std::shared_ptr<const StreamedTerrain> Open(const std::string& path,
+                                                     const StreamedTerrainOptions& options = {});
+  ~StreamedTerrain() override;
+
+  const ElevationInfo& Info() const;
+  const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
+  const PostPlacement& Placement() const { return this->Placement_; }
+  // Least and greatest height [m]: exact where the raster has at most 4 million pixels, else that
+  // of the coarsest level widened by half its range, a guess that only culling uses.
+  const std::array<double, 2>& HeightRange() const { return this->HeightRange_; }
+  bool HeightRangeIsExact() const { return this->HeightRangeIsExact_; }
+  // Map coordinates to level-0 posts; without meaning outside a plane's map or the body.
+  Eigen::Vector2d MapToPost(const Eigen::Vector2d& map) const;
+  // Level-0 posts from pixels of the raster's corners: the place of an image that lies on it.
+  const Eigen::Affine2d& PixelToPost() const { return this->PixelToPost_; }
+  // On a plane only.
+  const SceneFrame& Frame() const;
+  std::uint64_t GetVersion() const override { return this->Pyramid_->Arrivals(); }
+  // How often cells between pixels are halved: 2^n posts of level 0 a pixel.
+  int Subdivisions() const { return this->Subdivisions_; }
+
+protected:
+  TerrainBounds DoGetBounds() const override;
+  SurfaceSample DoSample(const Eigen::Vector3d& p_S) const override;
+  SurfaceSample DoSampleMap(const Eigen::Vector2d& map) const override;
+  RayHit DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,
+                     double maximumDistance) const override;
+  Eigen::Vector3d DoMapToScene(const Eigen::Vector3d& map) const override;
+  Eigen::Vector3d DoSceneToMap(const Eigen::Vector3d& p_S) const override;
+  Eigen::Vector3d DoUp(const Eigen::Vector3d& p_S) const override;
+  int DoResidentLevel(const Eigen::Vector2d& map) const override;
+  void DoHeights(const Eigen::Ref<const Rows3>& points_S,
+                 Eigen::Ref<Eigen::VectorXd> heights) const override;
+  void DoHeightsMap(const Eigen::Ref<const Rows2>& map,
+                    Eigen::Ref<Eigen::VectorXd> heights) const override;
+
+private:
+  StreamedTerrain(const std::string& name, std::shared_ptr<const ElevationSource> source,
+                  std::vector<std::string> warnings);
+  void StandOnPlane(const StreamedTerrainOptions& options);
+  void StandOnBody(const StreamedTerrainOptions& options);
+  void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
+  void FindHeightRange();
+  SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
+  // (c, r, height), c within the lattice where that is periodic.
+  Eigen::Vector3d ToPosts(const Eigen::Vector3d& p_S) const;
+  bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
+
+  std::shared_ptr<const ElevationSource> Source_;
+  std::shared_ptr<ElevationPyramid> Pyramid_;
+  std::unique_ptr<PostSurface> Surface_;
+  PostPlacement Placement_;
+  std::optional<SceneFrame> Frame_;
+  Eigen::Affine2d PixelToPost_ = Eigen::Affine2d::Identity();
+  Eigen::Affine2d MapToPost_ = Eigen::Affine2d::Identity();
+  bool Poles_ = false;
+  int Subdivisions_ = 0;
+  double Deadline_ = 60.0;
+  std::array<double, 2> HeightRange_ = {0.0, 0.0};
+  bool HeightRangeIsExact_ = false;
+};
+
+} // namespace dspace
+
+#endif

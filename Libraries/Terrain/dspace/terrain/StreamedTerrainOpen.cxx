@@ -1,0 +1,220 @@
+// How a StreamedTerrain comes about: place, posts, range of heights and warnings.
+#include <dspace/terrain/StreamedTerrain.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <dspace/Error.h>
+#include <dspace/terrain/ClipmapLevels.h>
+#include <dspace/terrain/RasterPosts.h>
+
+#include "DegreeGrid.h"
+#include "PostSurface.h"
+#include "TerrainWarnings.h"
+
+namespace dspace {
+namespace {
+
+constexpr double Degree = M_PI / 180.0;
+constexpr double Departure = 1e-3;          // [m] of a flat cell's middle from the sphere, at most
+constexpr std::int64_t ReadWhole = 4000000; // pixels whose heights are all looked at
+
+Eigen::Vector2d MiddleOf(const ElevationInfo& info) {
+  return info.pixelToMap * Eigen::Vector2d(0.5 * info.window.width, 0.5 * info.window.height);
+}
+
+// A square of side s departs from the sphere most in its middle, by (s sqrt 2)^2 / 8R.
+int SubdivisionsFor(const DegreeGrid& grid) {
+  const double side = grid.radius * grid.step_deg.cwiseAbs().maxCoeff() * Degree;
+  const double allowed = std::sqrt(4.0 * grid.radius * Departure);
+  const int needed = int(std::ceil(std::log2(std::max(1.0, side / allowed))));
+  return std::max(needed, grid.poles ? 1 : 0);
+}
+
+} // namespace
+
+std::shared_ptr<const StreamedTerrain>
+StreamedTerrain::Open(const std::string& path, const StreamedTerrainOptions& options) {
+  const std::string name = "terrain '" + path + "'";
+  if (options.onBody && (options.origin || options.originHeight != 0.0)) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "an origin was given, but on a body the scene's origin is its centre");
+  }
+  if (!(options.deadline > 0.0)) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "deadline " + std::to_string(options.deadline) +
+                    " s given; accepted is a positive number");
+  }
+  ClipmapGeometry geometry(options.cells); // refuses what is out of range
+  auto source = std::make_shared<const ElevationSource>(path, options.elevation);
+  if (options.onBody && DegreeGridOf(source->Info()).repeats) {
+    ElevationOptions once = options.elevation;
+    once.window = source->Info().window;
+    --once.window->width;
+    source = std::make_shared<const ElevationSource>(path, once);
+  }
+  std::vector<std::string> warnings = WarningsOfPlace(source->Info(), !options.onBody);
+  const std::shared_ptr<StreamedTerrain> terrain(
+      new StreamedTerrain(name, std::move(source), std::move(warnings)));
+  terrain->Deadline_ = options.deadline;
+  if (options.onBody) {
+    terrain->StandOnBody(options);
+  } else {
+    terrain->StandOnPlane(options);
+  }
+  terrain->FindHeightRange();
+  return terrain;
+}
+
+void StreamedTerrain::StandOnPlane(const StreamedTerrainOptions& options) {
+  const ElevationInfo& info = this->Info();
+  this->Frame_.emplace(info.crs, options.origin.value_or(MiddleOf(info)), options.originHeight);
+  this->MakePyramid(options, false, false);
+  this->Placement_ =
+      PostPlacement::OnPlane(this->Frame_->PostToScene(info.pixelToMap), options.originHeight);
+}
+
+void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
+  const DegreeGrid grid = DegreeGridOf(this->Info());
+  this->Subdivisions_ = SubdivisionsFor(grid);
+  this->MakePyramid(options, grid.periodic, grid.poles);
+  const double parts = std::ldexp(1.0, this->Subdivisions_);
+  const Eigen::Vector2d step = grid.step_deg / parts;
+  Eigen::Vector2d first = grid.first_deg;
+  if (grid.poles) {
+    first.y() = 90.0;
+  }
+  const PostLattice& lattice = this->Pyramid_->Lattice();
+  this->Placement_ =
+      PostPlacement::OnSphere(first, step, grid.radius, 0.5 * double(lattice.columns - 1));
+}
+
+void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool periodic,
+                                  bool poles) {
+  const ElevationInfo& info = this->Info();
+  RasterPostsOptions posts;
+  posts.subdivisions = this->Subdivisions_;
+  posts.periodic = periodic;
+  posts.poles = poles;
+  posts.coarsest = CoarsestFor(options.cells);
+  auto raster = std::make_shared<const RasterPosts>(this->Source_, posts);
+  const PostLattice& lattice = raster->GetLattice();
+  const int top = lattice.levels - 1;
+  if (periodic && (lattice.ColumnsAt(top) + 1) / 2 > posts.coarsest) {
+    throw Error(Error::Kind::Unsupported, this->GetName(),
+                "its " + std::to_string(info.window.width) +
+                    " columns around the body can be halved only until " +
+                    std::to_string(lattice.ColumnsAt(top)) +
+                    " are left; a count is accepted that halves to at most " +
+                    std::to_string(2 * posts.coarsest) + ": resample it, as to " +
+                    std::to_string(1 << int(std::lround(std::log2(info.window.width)))) +
+                    " columns");
+  }
+  this->Poles_ = poles;
+  this->Pyramid_ = std::make_shared<ElevationPyramid>(raster, options.pyramid);
+  this->Surface_ = std::make_unique<PostSurface>(this->Pyramid_, poles, options.deadline);
+  const double parts = std::ldexp(1.0, this->Subdivisions_);
+  this->PixelToPost_.linear() = parts * Eigen::Matrix2d::Identity();
+  this->PixelToPost_.translation() << -0.5 * parts, poles ? 0.0 : -0.5 * parts;
+  this->MapToPost_ = this->PixelToPost_ * info.pixelToMap.inverse();
+}
+
+void StreamedTerrain::FindHeightRange() {
+  const RasterWindow window = this->Info().window;
+  this->HeightRangeIsExact_ = std::int64_t(window.width) * window.height <= ReadWhole;
+  // As a grid on a plane, which on a body is the one of longitudes and latitudes.
+  Eigen::Affine2d postToScene = this->Placement_.PostToScene();
+  if (this->OnBody()) {
+    postToScene.linear() = (this->Placement_.Radius() * this->Placement_.Step()).asDiagonal();
+  }
+  std::vector<double> heights;
+  int columns = window.width;
+  int rows = window.height;
+  int level = this->Subdivisions_;
+  if (this->HeightRangeIsExact_) {
+    heights = this->Source_->Read();
+  } else {
+    const PostLattice& lattice = this->Pyramid_->Lattice();
+    level = lattice.levels - 1;
+    columns = int(lattice.ColumnsAt(level));
+    rows = int(lattice.RowsAt(level));
+    std::vector<float> posts(std::size_t(columns) * rows);
+    this->Pyramid_->Read({level, 0, 0, columns, rows}, posts.data(), this->Deadline_);
+    heights.assign(posts.begin(), posts.end());
+    if (std::all_of(heights.begin(), heights.end(), [](double h) { return std::isnan(h); })) {
+      return; // there may be heights between
+    }
+  }
+  postToScene.linear() *= std::ldexp(1.0, level);
+  const HeightGrid grid(this->GetName(), columns, rows, std::move(heights), postToScene);
+  this->HeightRange_ = {grid.GetMinimum(), grid.GetMaximum()};
+  Eigen::AlignedBox3d box;
+  for (const double c : {0.0, columns - 1.0}) {
+    for (const double r : {0.0, rows - 1.0}) {
+      const Eigen::Vector2d p = grid.ToScene({c, r});
+      for (const double h : this->HeightRange_) {
+        box.extend(Eigen::Vector3d(p.x(), p.y(), h));
+      }
+    }
+  }
+  for (std::string& warning : WarningsOfRelief(grid, box)) {
+    this->AddWarning(std::move(warning));
+  }
+  if (!this->HeightRangeIsExact_) {
+    const double half = 0.5 * (this->HeightRange_[1] - this->HeightRange_[0]);
+    this->HeightRange_ = {this->HeightRange_[0] - half, this->HeightRange_[1] + half};
+  }
+  if (this->OnBody() && !(this->HeightRange_[0] > -this->Placement_.Radius()) &&
+      this->HeightRangeIsExact_) {
+    throw Error(Error::Kind::InvalidArgument, this->GetName(),
+                "a height of " + std::to_string(this->HeightRange_[0]) +
+                    " m lies below the body's centre");
+  }
+}
+
+TerrainBounds StreamedTerrain::DoGetBounds() const {
+  const PostLattice& lattice = this->Pyramid_->Lattice();
+  TerrainBounds bounds;
+  // A lattice that goes around has no last post: its map ends a column further.
+  const Eigen::Vector2d end(double(lattice.columns - (lattice.periodic ? 0 : 1)),
+                            double(lattice.rows - 1));
+  const Eigen::Affine2d postToMap = this->MapToPost_.inverse();
+  for (const double c : {0.0, end.x()}) {
+    for (const double r : {0.0, end.y()}) {
+      const Eigen::Vector2d map = postToMap * Eigen::Vector2d(c, r);
+      bounds.map.extend(map);
+      for (const double h : this->HeightRange_) {
+        if (!this->OnBody()) {
+          bounds.scene.extend(this->Placement_.ToScene({c, r}, h));
+        }
+      }
+    }
+  }
+  if (!this->OnBody()) {
+    return bounds;
+  }
+  // Sines and cosines have their extremes at the ends and at whole quarters of a turn between.
+  const auto places = [](double first, double last) {
+    std::vector<double> angles = {first, last};
+    const double low = std::min(first, last);
+    for (double a = std::ceil(low / (0.5 * M_PI)) * 0.5 * M_PI; a < std::max(first, last);
+         a += 0.5 * M_PI) {
+      angles.push_back(a);
+    }
+    return angles;
+  };
+  const Eigen::Vector2d& first = this->Placement_.First();
+  const Eigen::Vector2d last = first + end.cwiseProduct(this->Placement_.Step());
+  for (const double longitude : places(first.x(), last.x())) {
+    for (const double latitude : places(first.y(), last.y())) {
+      const Eigen::Vector2d post =
+          (Eigen::Vector2d(longitude, latitude) - first).cwiseQuotient(this->Placement_.Step());
+      for (const double h : this->HeightRange_) {
+        bounds.scene.extend(this->Placement_.ToScene(post, h));
+      }
+    }
+  }
+  return bounds;
+}
+
+} // namespace dspace
