@@ -55,8 +55,12 @@ uniform vec3 objectEmissive;
 flat out vec3 emissive;
 #endif
 #ifdef DSPACE_TEXTURE
+#ifdef DSPACE_HEIGHT_RAMP
+uniform vec2 heightRamp; // height of the left edge, 1 / range
+#else
 uniform vec2 originTexture;
 uniform mat2 postTexture;
+#endif
 out vec2 tcoord;
 #endif
 #ifdef DSPACE_HOLES
@@ -137,7 +141,11 @@ void main()
   emissive = objectEmissive;
 #endif
 #ifdef DSPACE_TEXTURE
+#ifdef DSPACE_HEIGHT_RAMP
+  tcoord = vec2((here.x - heightRamp.x) * heightRamp.y, 0.5);
+#else
   tcoord = originTexture + postTexture * place;
+#endif
 #endif
 #ifdef DSPACE_HOLES
   hole = here.w > 0.0 ? 1.0 : 0.0;

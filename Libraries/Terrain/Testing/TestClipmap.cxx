@@ -78,15 +78,15 @@ struct ClipmapFixture : RenderingFixture {
       scene->SetLight(sun);
     }
   }
-  void LookFrom(const Eigen::Vector3d& eye, const Eigen::Vector3d& at, double fov = 60.0) {
+  void LookFrom(const Eigen::Vector3d& eye, const Eigen::Vector3d& at, double fov = 60.0,
+                const Eigen::Vector3d& vertical = Eigen::Vector3d::UnitZ()) {
     Camera camera;
     camera.name = "camera";
     camera.projection.verticalFov_deg = fov;
     camera.projection.nearDistance = 0.05;
     camera.projection.farDistance = 1e9;
-    const Eigen::Vector3d up = std::abs((at - eye).normalized().z()) > 0.99
-                                   ? Eigen::Vector3d(0, 1, 0)
-                                   : Eigen::Vector3d(0, 0, 1);
+    const Eigen::Vector3d up =
+        (at - eye).normalized().cross(vertical).norm() < 0.1 ? vertical.unitOrthogonal() : vertical;
     camera.mount.X_FC = LookAt("camera", eye, at, up);
     scene->SetCamera("main", camera);
   }
@@ -331,6 +331,146 @@ TEST_F(ClipmapFixture, ADeadlineIsAnErrorAndAnInteractivePictureIsNot) {
     FAIL() << "the picture was taken without its data";
   } catch (const Error& error) {
     EXPECT_EQ(error.GetKind(), Error::Kind::DeadlineExceeded) << error.what();
+  }
+}
+
+// A body of rows from pole to pole whose first column is at the date line.
+struct BodyFixture : ClipmapFixture {
+  static constexpr double Radius = 1e6; // [m]
+  static constexpr int Columns = 23040;
+  static constexpr int Rows = Columns / 2 + 1;
+  static constexpr double Step = 2.0 * M_PI / Columns; // [rad]
+
+  static double Relief(double c, double r) {
+    const double longitude = c * Step - M_PI;
+    const double latitude = M_PI / 2 - r * Step;
+    const double w = std::cos(latitude);
+    return 2000.0 * w * w * std::sin(3.0 * longitude) * std::sin(5.0 * latitude) +
+           30.0 * w * w * std::sin(900.0 * longitude) * std::sin(800.0 * latitude);
+  }
+  void SetUp() override {
+    ClipmapFixture::SetUp();
+    posts = std::make_shared<FormulaPosts>(Columns, Rows, true, Relief);
+    Add(PostPlacement::OnSphere({-180.0, 90.0}, {360.0 / Columns, -360.0 / Columns}, Radius),
+        {-2030.0, 2030.0}, false);
+  }
+  static Eigen::Vector3d Place(double longitude_deg, double latitude_deg, double height) {
+    const double l = longitude_deg * M_PI / 180.0;
+    const double p = latitude_deg * M_PI / 180.0;
+    return (Radius + height) *
+           Eigen::Vector3d(std::cos(p) * std::cos(l), std::cos(p) * std::sin(l), std::sin(p));
+  }
+  static Eigen::Vector2d PostOf(const Eigen::Vector3d& p) {
+    return {(std::atan2(p.y(), p.x()) + M_PI) / Step,
+            (M_PI / 2 - std::asin(p.z() / p.norm())) / Step};
+  }
+  // On the triangles between the posts, by their corners.
+  static double OnTriangles(const Eigen::Vector2d& post) {
+    const double c = std::floor(post.x());
+    const double r = std::floor(post.y());
+    const double u = post.x() - c;
+    const double v = post.y() - r;
+    const double a = Relief(c, r);
+    const double d = Relief(c + 1, r + 1);
+    return v > u ? a + v * (Relief(c, r + 1) - a) + u * (d - Relief(c, r + 1))
+                 : a + u * (Relief(c + 1, r) - a) + v * (d - Relief(c + 1, r));
+  }
+};
+
+TEST_F(BodyFixture, TheFinestRingIsTheStatedSurface) {
+  auto view = View(160, 120);
+  const ClipmapGeometry geometry(124);
+  // Chords lie below the sphere by at most this; heights between posts are linear either way.
+  const double chord = std::pow(Radius * Step, 2) / (8.0 * Radius) * 2.0;
+  int compared = 0;
+  for (const Eigen::Vector2d& place : {Eigen::Vector2d(12.0, 3.0),
+                                       {179.999, -20.0},
+                                       {-180.0, 41.0},
+                                       {77.0, 78.5},
+                                       {-33.0, -60.0}}) {
+    for (const double above : {0.3, 30.0, 2000.0}) {
+      const Eigen::Vector3d ground = Place(place.x(), place.y(), 0.0);
+      const double height = OnTriangles(PostOf(ground));
+      const Eigen::Vector3d eye = Place(place.x(), place.y(), height + above);
+      const Eigen::Vector3d up = eye.normalized();
+      const Eigen::Vector3d east = Eigen::Vector3d::UnitZ().cross(up).normalized();
+      LookFrom(eye, eye + east + 0.5 * up.cross(east) - 0.8 * up, 60.0, up);
+      const Capture capture = Shoot(view);
+      for (int y = 0; y < capture.height; ++y) {
+        for (int x = 0; x < capture.width; ++x) {
+          const Hit hit = HitAt(*scene, capture, x, y);
+          if (!hit.hit && above >= 1.0) {
+            Keep(capture, "miss");
+          }
+          ASSERT_TRUE(hit.hit || above < 1.0)
+              << "pixel " << x << ", " << y << "place " << place.transpose() << " above " << above;
+          if (!hit.hit) {
+            continue;
+          }
+          const Eigen::Vector2d post = PostOf(hit.p);
+          Eigen::Vector2d away = (post - PostOf(eye)).cwiseAbs();
+          away.x() = std::min(away.x(), Columns - away.x());
+          const double most = std::max(away.maxCoeff(), above / (Radius * Step));
+          if (most > geometry.BlendFrom() - 1.0) {
+            continue;
+          }
+          const double range = (hit.p - eye).norm();
+          const double moved = std::sqrt(2.0) / 512.0 * 2.0 * std::tan(M_PI / 6.0) / 120.0 * range;
+          ASSERT_NEAR(hit.p.norm() - Radius, OnTriangles(post),
+                      1e-3 + 1e-6 * 4060.0 + chord + 1.5 * moved)
+              << "place " << place.transpose() << " above " << above << ", range " << range;
+          ++compared;
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 50000);
+}
+
+// From orbit to the ground in one flight: where a ray meets the ball below the lowest ground there
+// is ground, and beyond the ball above the highest there is none.
+TEST_F(BodyFixture, NoGapOpensFromOrbitToTheGround) {
+  auto view = View(160, 120);
+  for (const Eigen::Vector2d& place : // the date line, a pole, somewhere
+       {Eigen::Vector2d(180.0, 10.0), {20.0, 89.97}, {100.0, -45.0}}) {
+    for (int step = 0; step < 40; ++step) {
+      const double above = 1e7 * std::pow(3e-8, step / 39.0); // 1e7 to 0.3 m
+      const Eigen::Vector3d ground = Place(place.x(), place.y(), 0.0);
+      const double height = OnTriangles(PostOf(ground));
+      const Eigen::Vector3d eye = Place(place.x(), place.y(), height + above);
+      const Eigen::Vector3d up = eye.normalized();
+      const Eigen::Vector3d east = Eigen::Vector3d::UnitZ().cross(up).normalized();
+      const double tilt = above > 1e6 ? 0.1 : 0.8;
+      LookFrom(eye, eye + tilt * east - up, 60.0, up);
+      CaptureRequest request;
+      request.label = true;
+      const Capture capture = view->GetCapture(request);
+      if (step % 13 == 0) {
+        Keep(capture, "orbit" + std::to_string(int(place.y())) + "_" + std::to_string(step));
+      }
+      const Projection& projection = scene->Vantage("main").ActiveCamera().projection;
+      const Pose X_FC = scene->PlaceCamera("main").X_FC;
+      for (int y = 0; y < capture.height; ++y) {
+        for (int x = 0; x < capture.width; ++x) {
+          const Projection::Ray ray = projection.PixelRay(x, y, capture.width, capture.height);
+          const Eigen::Vector3d d = (X_FC.rotation * ray.direction).normalized();
+          const double nearest = (eye - eye.dot(d) * d).norm(); // of the line to the centre
+          const bool forward = eye.dot(d) < 0.0;
+          const bool hit = capture.label[std::size_t(y) * capture.width + x] != 0;
+          if (forward && nearest < Radius - 2030.0 - 1e-3 * above) {
+            if (!hit) {
+              Keep(capture, "missorbit");
+            }
+            ASSERT_TRUE(hit) << place.transpose() << ", " << above << " m above, pixel " << x
+                             << ", " << y;
+          }
+          if (nearest > Radius + 2030.0 + 1e-3 * above && eye.norm() > Radius + 2030.0) {
+            ASSERT_FALSE(hit) << place.transpose() << ", " << above << " m above, pixel " << x
+                              << ", " << y;
+          }
+        }
+      }
+    }
   }
 }
 

@@ -263,13 +263,69 @@ std::vector<Eigen::Vector4d> PlanesIn(const Eigen::Affine3d& X_VS, const DrawVie
 
 } // namespace
 
+// Of a block's cells, in level-0 posts of the lattice.
+Eigen::AlignedBox2d ClipmapDrawer::BlockPosts(int level, int column, int row) const {
+  const ClipmapWindow& window = this->Levels_.Window(level);
+  const int cells = this->Levels_.Geometry().Cells();
+  const double step = std::ldexp(1.0, level);
+  const auto post = [&](std::int64_t first, int block) {
+    return double(first + std::min(block * ClipmapIndices::BlockCells, cells)) * step;
+  };
+  Eigen::AlignedBox2d box(
+      Eigen::Vector2d(post(window.column, column), post(window.row, row)),
+      Eigen::Vector2d(post(window.column, column + 1), post(window.row, row + 1)));
+  const double last = double(this->Levels_.Lattice().rows - 1);
+  box.min().y() = std::clamp(box.min().y(), 0.0, last);
+  box.max().y() = std::clamp(box.max().y(), 0.0, last);
+  return box;
+}
+
+// The hull of its corners at the least and the greatest height.
+bool ClipmapDrawer::OutsideOnPlane(const std::vector<Eigen::Vector4d>& planes,
+                                   const Eigen::AlignedBox2d& block) const {
+  Eigen::Matrix<double, 4, 8> corners;
+  for (int i = 0; i < 4; ++i) {
+    for (const int j : {0, 1}) {
+      corners.col(2 * i + j) = this->Terrain_->Placement()
+                                   .ToScene(block.corner(Eigen::AlignedBox2d::CornerType(i)),
+                                            this->Terrain_->Options().heights[j])
+                                   .homogeneous();
+    }
+  }
+  return std::any_of(planes.begin(), planes.end(), [&corners](const Eigen::Vector4d& plane) {
+    return (plane.transpose() * corners).maxCoeff() < 0.0;
+  });
+}
+
+// A ball about the block, or the horizon before it.
+bool ClipmapDrawer::HiddenOnBody(const Placed& placed, const std::vector<Eigen::Vector4d>& planes,
+                                 const Eigen::AlignedBox2d& block) const {
+  const PostPlacement& placement = this->Terrain_->Placement();
+  const std::array<double, 2>& heights = this->Terrain_->Options().heights;
+  const double middle = 0.5 * (heights[0] + heights[1]);
+  const Eigen::Vector3d center = placement.ToScene(block.center(), middle);
+  // No two places of it are further apart along the body than its two sides together.
+  const double angle = 0.5 * block.sizes().cwiseProduct(placement.Step().cwiseAbs()).sum();
+  const double radius = (placement.Radius() + heights[1]) * angle + 0.5 * (heights[1] - heights[0]);
+  for (const Eigen::Vector4d& plane : planes) {
+    if (plane.head<3>().dot(center) + plane[3] < -radius * plane.head<3>().norm()) {
+      return true;
+    }
+  }
+  const double least = placement.Radius() + heights[0];
+  const double seen = std::acos(least / std::max(placed.camera.norm(), least)) +
+                      std::acos(least / std::max(placement.Radius() + heights[1], least));
+  const double apart =
+      std::acos(std::clamp(center.normalized().dot(placed.camera.normalized()), -1.0, 1.0));
+  return apart - angle > seen;
+}
+
 void ClipmapDrawer::ChooseBlocks(const Placed& placed, const std::vector<Eigen::Vector4d>& planes,
                                  int level, std::vector<ClipmapIndices::Run>& runs) const {
   const ClipmapGeometry& geometry = this->Levels_.Geometry();
   const PostPlacement& placement = this->Terrain_->Placement();
   const ClipmapWindow& window = this->Levels_.Window(level);
   const double step = std::ldexp(1.0, level);
-  const std::array<double, 2>& heights = this->Terrain_->Options().heights;
   std::optional<Eigen::Vector2i> inner;
   if (level > this->State_.finest) {
     inner = geometry.InnerCell(this->Levels_.Window(level - 1), window);
@@ -284,41 +340,9 @@ void ClipmapDrawer::ChooseBlocks(const Placed& placed, const std::vector<Eigen::
       if (run.count == 0) {
         continue;
       }
-      bool outside = false;
-      if (blockAngle < 0.5) {
-        // The hull of a block's corners at its least and greatest height; on a sphere lowered and
-        // raised by what its middle departs from it.
-        const double bulge =
-            sphere ? 0.5 * blockAngle * blockAngle * (placement.Radius() + heights[1]) : 0.0;
-        Eigen::Matrix<double, 4, 8> corners;
-        int n = 0;
-        for (const int j : {0, 1}) {
-          for (const int i : {0, 1}) {
-            const Eigen::Vector2d post(
-                double(window.column +
-                       std::min((column + i) * ClipmapIndices::BlockCells, geometry.Cells())) *
-                    step,
-                double(window.row +
-                       std::min((row + j) * ClipmapIndices::BlockCells, geometry.Cells())) *
-                    step);
-            corners.col(n++) = placement.ToScene(post, heights[0] - bulge).homogeneous();
-            corners.col(n++) = placement.ToScene(post, heights[1] + bulge).homogeneous();
-          }
-        }
-        for (const Eigen::Vector4d& plane : planes) {
-          outside = outside || (plane.transpose() * corners).maxCoeff() < 0.0;
-        }
-        if (sphere && !outside) { // below the horizon
-          const double least = placement.Radius() + std::min(heights[0], 0.0);
-          const double away = placed.camera.norm();
-          const double seen = std::acos(std::min(1.0, least / std::max(away, least))) +
-                              std::acos(least / (placement.Radius() + heights[1] + bulge));
-          const Eigen::Vector3d center = corners.topRows<3>().rowwise().mean();
-          const double apart =
-              std::acos(std::clamp(center.normalized().dot(placed.camera.normalized()), -1.0, 1.0));
-          outside = apart - blockAngle > seen;
-        }
-      }
+      const Eigen::AlignedBox2d block = this->BlockPosts(level, column, row);
+      const bool outside = sphere ? blockAngle < 0.5 && this->HiddenOnBody(placed, planes, block)
+                                  : this->OutsideOnPlane(planes, block);
       if (outside) {
         continue;
       }
@@ -343,6 +367,10 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
       pages.defines = "#define DSPACE_HOLES\n";
     }
   }
+  const auto& ramp = this->Terrain_->Options().textureByHeight;
+  if (ramp) {
+    pages.defines += "#define DSPACE_HEIGHT_RAMP\n";
+  }
   if (sphere) {
     pages.defines += "#define DSPACE_SPHERE\n";
   }
@@ -363,6 +391,10 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     const float surface[3] = {float(over.metallic.value_or(material.metallic)),
                               float(over.roughness.value_or(material.roughness)), placed.mirrored};
     program->SetUniform3f("objectSurface", surface);
+  }
+  if (ramp) {
+    const double range = std::max((*ramp)[1] - (*ramp)[0], 1e-9);
+    SetVector(program, "heightRamp", Eigen::Vector2d((*ramp)[0], 1.0 / range));
   }
   const double cameraHeight = placed.posts.z();
   const auto high = static_cast<float>(cameraHeight);

@@ -39,6 +39,11 @@ private:
   void Create();
   void Draw(const CustomDrawing& drawing, unsigned features);
   void SetLevel(vtkShaderProgram* program, const Placed& placed, int level, bool sphere) const;
+  Eigen::AlignedBox2d BlockPosts(int level, int column, int row) const;
+  bool OutsideOnPlane(const std::vector<Eigen::Vector4d>& planes,
+                      const Eigen::AlignedBox2d& block) const;
+  bool HiddenOnBody(const Placed& placed, const std::vector<Eigen::Vector4d>& planes,
+                    const Eigen::AlignedBox2d& block) const;
   void ChooseBlocks(const Placed& placed, const std::vector<Eigen::Vector4d>& planes, int level,
                     std::vector<ClipmapIndices::Run>& runs) const;
 

@@ -164,7 +164,7 @@ ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& uploa
     if (level < this->Count() - 1 && posts >= this->Geometry_.BlendTo()) {
       break; // too far away to tell it from the coarser one
     }
-    const ClipmapWindow window = this->Geometry_.WindowAt(state.place * std::ldexp(1.0, -level));
+    const ClipmapWindow window = this->Geometry_.WindowAt(state.place, level);
     if (!this->Fill(level, window, view.wait, upload)) {
       state.complete = false;
       break;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include <dspace/scene/CustomGeometry.h>
 #include <dspace/scene/GraphicsObject.h>
@@ -19,6 +20,8 @@ struct ClipmapOptions {
   // From level-0 posts (c, r) to the texture coordinates of the material's texture; (0, 0) is its
   // bottom-left corner.
   Eigen::Affine2d postToTexture = Eigen::Affine2d::Identity();
+  // Else the texture is a ramp: its left edge is the first height [m], its right edge the second.
+  std::optional<std::array<double, 2>> textureByHeight;
   double deadline = 60.0; // [s] that a picture that is kept waits for its data
 };
 

@@ -19,10 +19,13 @@ ClipmapGeometry::ClipmapGeometry(int cells) : Cells_(cells), Texels_(1) {
   }
 }
 
-ClipmapWindow ClipmapGeometry::WindowAt(const Eigen::Vector2d& place) const {
-  // Rounded down, not to the nearest: then windows nest in only two ways an axis.
-  const auto first = [this](double x) {
-    return 2 * static_cast<std::int64_t>(std::floor((x - this->Cells_ / 2) / 2.0));
+ClipmapWindow ClipmapGeometry::WindowAt(const Eigen::Vector2d& place, int level) const {
+  // Rounded down, not to the nearest: then windows nest in only two ways an axis. In integers,
+  // since a place on a post must be rounded the same way in every level. Shifts round down, below 0
+  // too.
+  const auto first = [&](double x) {
+    const std::int64_t post = static_cast<std::int64_t>(std::floor(x)) >> level;
+    return ((post - this->Cells_ / 2) >> 1) * 2;
   };
   return {first(place.x()), first(place.y())};
 }

@@ -43,9 +43,10 @@ public:
   int Cells() const { return this->Cells_; }
   int Texels() const { return this->Texels_; } // the power of two that holds cells + 3 posts
 
-  // The window of a level about a place given in posts of that level. Windows about one place nest:
-  // that of level l lies within that of level l + 1, at least cells / 4 - 1 cells from its outline.
-  ClipmapWindow WindowAt(const Eigen::Vector2d& place) const;
+  // The window of a level about a place given in posts of level 0, below 2^62 in size. Windows
+  // about one place nest: that of level l lies within that of level l + 1, at least cells / 4 - 1
+  // cells from its outline.
+  ClipmapWindow WindowAt(const Eigen::Vector2d& place, int level) const;
 
   // First cell, in the window of level l + 1 about the same place, that that of level l covers:
   // cells / 4 or one more, along c and r. It covers cells / 2 cells from there.
