@@ -226,6 +226,95 @@ TEST(RasterPosts, APeriodicRasterGoesOnAcrossItsEdge) {
   EXPECT_NEAR(level1[r * 32], sum / 4.0, 1e-4);
 }
 
+// A whole body: rows of pixels at half pixels from the poles; levels 0 to 2 divide pixels by 8
+// to 2.
+TEST(RasterPosts, PolesCloseTheLattice) {
+  const TemporaryFolder folder;
+  const int width = 32;
+  const int height = 16;
+  const auto source = Write(folder, width, height, Bumps);
+  RasterPostsOptions options;
+  options.periodic = true;
+  options.poles = true;
+  options.subdivisions = 3;
+  options.levels = 7;
+  const RasterPosts posts(source, options);
+  ASSERT_EQ(posts.GetLattice().rows, height * 8 + 1);
+  ASSERT_EQ(posts.GetLattice().columns, width * 8);
+  const auto rowMean = [&](int from, int to) {
+    double sum = 0.0;
+    for (int r = from; r < to; ++r) {
+      for (int c = 0; c < width; ++c) {
+        sum += Bumps(c, r);
+      }
+    }
+    return sum / ((to - from) * width);
+  };
+  // By pixel coordinates: along rows first within the triangle, or from the pole.
+  const auto expected = [&](double x, double y) {
+    const auto pixel = [&](int c, int r) { return Bumps(c % width, r); };
+    const int c = int(x);
+    const double u = x - c;
+    if (y < 0.0 || y > height - 1.0) {
+      const int row = y < 0.0 ? 0 : height - 1;
+      const double pole = rowMean(row, row + 1);
+      const double along = (1.0 - u) * pixel(c, row) + u * pixel(c + 1, row);
+      const double away = y < 0.0 ? (y + 0.5) / 0.5 : (height - 0.5 - y) / 0.5;
+      return (1.0 - away) * pole + away * along;
+    }
+    const int r = std::min(int(y), height - 2);
+    const double v = y - r;
+    const double corner = u > v ? pixel(c + 1, r) : pixel(c, r + 1);
+    return (1.0 - std::max(u, v)) * pixel(c, r) + std::min(u, v) * pixel(c + 1, r + 1) +
+           std::abs(u - v) * corner;
+  };
+  for (int level = 0; level < 3; ++level) {
+    const std::vector<float> heights = ReadAll(posts, level);
+    const auto columns = int(posts.GetLattice().ColumnsAt(level));
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      const double x = double(i % columns) * (1 << level) / 8.0;
+      const double y = double(i / columns) * (1 << level) / 8.0 - 0.5;
+      ASSERT_NEAR(heights[i], expected(x, y), 2e-5) << level << ": " << x << ", " << y;
+    }
+  }
+  // Coarser ones are means over boxes that end at the raster; those of a pole are of a whole cap.
+  for (int level = 3; level < 7; ++level) {
+    const std::vector<float> heights = ReadAll(posts, level);
+    const auto columns = int(posts.GetLattice().ColumnsAt(level));
+    const auto rows = int(posts.GetLattice().RowsAt(level));
+    const double box = (1 << level) / 8.0;
+    for (int j = 0; j < rows; ++j) {
+      for (int i = 0; i < columns; ++i) {
+        const double y = std::min(j * box, double(height));
+        double sum = 0.0;
+        double area = 0.0;
+        for (int r = 0; r < height; ++r) {
+          for (int c = -width; c < 2 * width; ++c) {
+            const double x = i * box + 0.5;
+            const double w = std::min(x + box / 2, c + 1.0) - std::max(x - box / 2, double(c));
+            const double h = std::min(y + box / 2, r + 1.0) - std::max(y - box / 2, double(r));
+            if (w > 0.0 && h > 0.0) {
+              sum += w * h * Bumps((c + width) % width, r);
+              area += w * h;
+            }
+          }
+        }
+        const int reach = std::max(1, int(box / 2));
+        const double mean = j == 0          ? rowMean(0, reach)
+                            : j == rows - 1 ? rowMean(height - reach, height)
+                                            : sum / area;
+        ASSERT_NEAR(heights[std::size_t(j) * columns + i], mean, 1e-4)
+            << level << ": " << i << ", " << j;
+      }
+    }
+  }
+  options.subdivisions = 0;
+  EXPECT_THROW(RasterPosts(source, options), Error);
+  options.subdivisions = 1;
+  options.periodic = false;
+  EXPECT_THROW(RasterPosts(source, options), Error);
+}
+
 TEST(RasterPosts, WhatCannotBeHalvedIsRefused) {
   const TemporaryFolder folder;
   const auto source = Write(folder, 36, 20, Bumps);

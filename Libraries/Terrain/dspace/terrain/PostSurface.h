@@ -40,7 +40,7 @@ public:
     return this->Poles_ && (cellRow == 0 || cellRow == this->Lattice().rows - 2);
   }
   const PostLattice& Lattice() const { return this->Pyramid_->Lattice(); }
-  ElevationPyramid& Pyramid() const { return *this->Pyramid_; }
+  const std::shared_ptr<ElevationPyramid>& SharedPyramid() const { return this->Pyramid_; }
   double Deadline() const { return this->Deadline_; }
 
 private:

@@ -8,6 +8,7 @@
 #include <dspace/terrain/RasterPosts.h>
 
 #include "PostSurface.h"
+#include "SurfaceRay.h"
 
 namespace dspace {
 namespace {
@@ -60,6 +61,27 @@ Eigen::Vector3d StreamedTerrain::ToPosts(const Eigen::Vector3d& p_S) const {
   return post;
 }
 
+// Unit, upward, of the facet at a place of the surface.
+Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
+                                          const Eigen::Vector3d& p_S) const {
+  const Eigen::Vector2d rise(facet.dc, facet.dr);
+  if (!this->OnBody()) {
+    const Eigen::Vector2d g = this->Placement_.PostToScene().linear().inverse().transpose() * rise;
+    return Eigen::Vector3d(-g.x(), -g.y(), 1.0).normalized();
+  }
+  // p = (R + h(c, r)) up(c, r): its derivatives by c and r span the tangent plane.
+  const double distance = this->Placement_.Radius() + facet.height;
+  const Eigen::Vector3d up = this->Placement_.Up(p_S);
+  const double parallel = std::max(up.head<2>().norm(), 1e-12); // cosine of the latitude
+  const double longitude = std::atan2(up.y(), up.x());
+  const Eigen::Vector3d east(-std::sin(longitude), std::cos(longitude), 0.0);
+  const Eigen::Vector3d north = up.cross(east);
+  const Eigen::Vector2d& step = this->Placement_.Step();
+  const double toEast = rise.x() == 0.0 ? 0.0 : rise.x() / (distance * parallel * step.x());
+  const double toNorth = rise.y() / (distance * step.y());
+  return (up - toEast * east - toNorth * north).normalized();
+}
+
 // The surface at a place; `vertical_S` is the point of space that was asked for, whose vertical it
 // is found on.
 SurfaceSample StreamedTerrain::SampleAt(const Eigen::Vector2d& post,
@@ -72,27 +94,14 @@ SurfaceSample StreamedTerrain::SampleAt(const Eigen::Vector2d& post,
   sample.valid = true;
   sample.level = 0;
   sample.height = facet.height;
-  const Eigen::Vector2d rise(facet.dc, facet.dr);
-  if (!this->OnBody()) {
-    const Eigen::Vector2d g = this->Placement_.PostToScene().linear().inverse().transpose() * rise;
-    sample.position_S << vertical_S.head<2>(), facet.height - this->Placement_.OriginHeight();
-    sample.normal_S = Eigen::Vector3d(-g.x(), -g.y(), 1.0).normalized();
-    sample.slope_deg = std::atan(g.norm()) / Degree;
-    return sample;
-  }
-  // p = (R + h(c, r)) up(c, r): its derivatives by c and r span the tangent plane.
-  const double distance = this->Placement_.Radius() + facet.height;
   const Eigen::Vector3d up = this->Placement_.Up(vertical_S);
-  const double parallel = std::max(up.head<2>().norm(), 1e-12); // cosine of the latitude
-  const double longitude = std::atan2(up.y(), up.x());
-  const Eigen::Vector3d east(-std::sin(longitude), std::cos(longitude), 0.0);
-  const Eigen::Vector3d north = up.cross(east);
-  const Eigen::Vector2d& step = this->Placement_.Step();
-  const double toEast = rise.x() == 0.0 ? 0.0 : rise.x() / (distance * parallel * step.x());
-  const double toNorth = rise.y() / (distance * step.y());
-  sample.position_S = distance * up;
-  sample.normal_S = (up - toEast * east - toNorth * north).normalized();
-  sample.slope_deg = std::atan(std::hypot(toEast, toNorth)) / Degree;
+  if (this->OnBody()) {
+    sample.position_S = (this->Placement_.Radius() + facet.height) * up;
+  } else {
+    sample.position_S << vertical_S.head<2>(), facet.height - this->Placement_.OriginHeight();
+  }
+  sample.normal_S = this->NormalAt(facet, vertical_S);
+  sample.slope_deg = std::atan2(sample.normal_S.cross(up).norm(), sample.normal_S.dot(up)) / Degree;
   return sample;
 }
 
@@ -135,8 +144,23 @@ void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,
   });
 }
 
-RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d&, const Eigen::Vector3d&, double) const {
-  throw Error(Error::Kind::Unsupported, this->GetName(), "rays are not there yet");
+RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,
+                                    double maximumDistance) const {
+  const double most = 1e9; // [m] that heights are within
+  const RayPath path(this->Placement_, this->Pyramid_->Lattice(), origin_S, unit_S, maximumDistance,
+                     this->HeightRangeIsExact_ ? this->HeightRange_[0] : -most,
+                     this->HeightRangeIsExact_ ? this->HeightRange_[1] : most);
+  const SurfaceRay::Hit found = this->Ray_->Intersect(path);
+  RayHit hit;
+  if (!found.hit || found.distance > maximumDistance) {
+    return hit;
+  }
+  hit.hit = true;
+  hit.fromBelow = found.fromBelow;
+  hit.distance = found.distance;
+  hit.position_S = origin_S + found.distance * unit_S;
+  hit.normal_S = this->NormalAt(found.facet, hit.position_S);
+  return hit;
 }
 
 Eigen::Vector3d StreamedTerrain::DoMapToScene(const Eigen::Vector3d& map) const {

@@ -9,6 +9,7 @@
 
 #include <dspace/terrain/ElevationPyramid.h>
 #include <dspace/terrain/ElevationSource.h>
+#include <dspace/terrain/HeightGrid.h>
 #include <dspace/terrain/PostPlacement.h>
 #include <dspace/terrain/SceneFrame.h>
 #include <dspace/terrain/TerrainSurface.h>
@@ -16,6 +17,7 @@
 namespace dspace {
 
 class PostSurface;
+class SurfaceRay;
 
 struct StreamedTerrainOptions {
   ElevationOptions elevation;
@@ -83,6 +85,7 @@ private:
   void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
   void FindHeightRange();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
+  Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;
   // (c, r, height), c within the lattice where that is periodic.
   Eigen::Vector3d ToPosts(const Eigen::Vector3d& p_S) const;
   bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
@@ -90,6 +93,7 @@ private:
   std::shared_ptr<const ElevationSource> Source_;
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
+  std::unique_ptr<SurfaceRay> Ray_;
   PostPlacement Placement_;
   std::optional<SceneFrame> Frame_;
   Eigen::Affine2d PixelToPost_ = Eigen::Affine2d::Identity();

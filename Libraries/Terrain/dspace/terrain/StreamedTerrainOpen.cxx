@@ -10,6 +10,7 @@
 
 #include "DegreeGrid.h"
 #include "PostSurface.h"
+#include "SurfaceRay.h"
 #include "TerrainWarnings.h"
 
 namespace dspace {
@@ -113,6 +114,8 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   this->Poles_ = poles;
   this->Pyramid_ = std::make_shared<ElevationPyramid>(raster, options.pyramid);
   this->Surface_ = std::make_unique<PostSurface>(this->Pyramid_, poles, options.deadline);
+  // With poles, level `subdivisions` has its rows between those of the pixels.
+  this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_, this->Subdivisions_ - (poles ? 1 : 0));
   const double parts = std::ldexp(1.0, this->Subdivisions_);
   this->PixelToPost_.linear() = parts * Eigen::Matrix2d::Identity();
   this->PixelToPost_.translation() << -0.5 * parts, poles ? 0.0 : -0.5 * parts;

@@ -1,0 +1,91 @@
+#include "RayTiles.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dspace {
+namespace {
+
+constexpr std::size_t Kept = 256; // tiles; 110 kB each
+
+void Widen(RayTile::Range& range, const RayTile::Range& by) {
+  range.least = std::min(range.least, by.least);
+  range.greatest = std::max(range.greatest, by.greatest);
+}
+
+std::shared_ptr<RayTile> ReadTile(ElevationPyramid& pyramid, const RayTiles::Key& key,
+                                  double seconds) {
+  auto tile = std::make_shared<RayTile>();
+  tile->column = key[1] * RayTile::Cells;
+  tile->row = key[2] * RayTile::Cells;
+  tile->heights.resize(std::size_t(RayTile::Posts) * RayTile::Posts);
+  pyramid.Read({int(key[0]), tile->column, tile->row, RayTile::Posts, RayTile::Posts},
+               tile->heights.data(), seconds);
+  for (int k = 0; k < RayTile::Bits; ++k) {
+    const int side = RayTile::Cells >> (k + 1);
+    tile->ranges[k].resize(std::size_t(side) * side);
+    for (int r = 0; r < side; ++r) {
+      for (int c = 0; c < side; ++c) {
+        RayTile::Range& range = tile->ranges[k][std::size_t(r) * side + c];
+        for (int j = 2 * r; j <= 2 * r + (k == 0 ? 2 : 1); ++j) {
+          for (int i = 2 * c; i <= 2 * c + (k == 0 ? 2 : 1); ++i) {
+            if (k > 0) {
+              Widen(range, tile->ranges[k - 1][std::size_t(j) * (2 * side) + i]);
+              continue;
+            }
+            const float h = tile->heights[std::size_t(j) * RayTile::Posts + i];
+            if (!std::isnan(h)) {
+              Widen(range, {h, h});
+            }
+          }
+        }
+      }
+    }
+  }
+  return tile;
+}
+
+} // namespace
+
+RayTile::Range RayTile::Of(int bits, std::int64_t c, std::int64_t r) const {
+  const int side = Cells >> bits;
+  const std::int64_t i = c - (this->column >> bits);
+  const std::int64_t j = r - (this->row >> bits);
+  return this->ranges[bits - 1][std::size_t(j) * side + i];
+}
+
+std::shared_ptr<const RayTile> RayTiles::Get(const Key& key, double seconds) {
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    const auto found = this->Tiles_.find(key);
+    if (found != this->Tiles_.end()) {
+      this->Uses_.splice(this->Uses_.begin(), this->Uses_, found->second.use);
+      return found->second.tile;
+    }
+  }
+  std::shared_ptr<const RayTile> tile = ReadTile(*this->Pyramid_, key, seconds);
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  this->Ranges_[key] = tile->ranges.back().front();
+  if (this->Tiles_.count(key) == 0) { // another thread may have been here
+    this->Uses_.push_front(key);
+    this->Tiles_[key] = {tile, this->Uses_.begin()};
+    if (this->Uses_.size() > Kept) {
+      this->Tiles_.erase(this->Uses_.back());
+      this->Uses_.pop_back();
+    }
+  }
+  return tile;
+}
+
+RayTile::Range RayTiles::RangeOf(const Key& key, double seconds) {
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    const auto found = this->Ranges_.find(key);
+    if (found != this->Ranges_.end()) {
+      return found->second;
+    }
+  }
+  return this->Get(key, seconds)->ranges.back().front();
+}
+
+} // namespace dspace

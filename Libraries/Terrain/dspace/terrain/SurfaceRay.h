@@ -1,0 +1,46 @@
+// Exact rays against the surface between the posts of a pyramid.
+#ifndef DSPACE_TERRAIN_SURFACERAY_H
+#define DSPACE_TERRAIN_SURFACERAY_H
+
+#include <memory>
+
+#include "PostSurface.h"
+#include "RayPath.h"
+#include "RayTiles.h"
+
+namespace dspace {
+
+// As GridRay, with posts that are read where the ray needs them: blocks of cells that it passes
+// wholly above or below are skipped by their least and greatest heights, and in the cells that
+// remain the sign of its height over the ground is followed from place to place, so that no ray
+// slips through an edge. On a sphere heights along a cell are curved: they are looked at in its
+// middle and where a parabola through three places has its extreme, and crossings are bracketed.
+class SurfaceRay {
+public:
+  struct Hit {
+    bool hit = false;
+    bool fromBelow = false;
+    double distance = 0.0;
+    HeightGrid::Facet facet;
+  };
+
+  // `boundsLevel` is the coarsest level whose posts bound those of level 0 between them.
+  SurfaceRay(const PostSurface& surface, int boundsLevel);
+
+  Hit Intersect(const RayPath& path) const;
+
+private:
+  struct March;
+  bool Visit(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1) const;
+  bool VisitCell(March& march, std::int64_t c, std::int64_t r, double t0, double t1) const;
+  RayTile::Range RangeOf(March& march, int bits, std::int64_t c, std::int64_t r) const;
+  const RayTile& TileOf(March& march, int level, std::int64_t c, std::int64_t r) const;
+
+  const PostSurface& Surface_;
+  int BoundsLevel_;
+  std::unique_ptr<RayTiles> Tiles_;
+};
+
+} // namespace dspace
+
+#endif
