@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <dspace/session/ViewportCommands.h>
+#include <dspace/terrain/ClipmapDrawer.h>
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
@@ -58,6 +59,7 @@ vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
   dspace::session::Registry& commands = this->Impl->interpreter.Commands();
   this->Impl->viewports.AddTo(commands);
   dspace::session::AddTextCommands(commands);
+  dspace::RegisterClipmapDrawer();
 }
 
 vtkDspaceSession::~vtkDspaceSession() = default;

@@ -148,7 +148,7 @@ TEST_F(Drape, TheSameGridIsCopied) {
   file.crs = "+proj=eqc +R=1737400 +type=crs";
   const std::string path = file.Write(this->Folder / "same.tif");
   const auto terrain = Flat(16, 12, NorthUp(100.0, 500.0, 2.0), Crs::FromText(file.crs));
-  const DrapeImage image = WarpImage(*terrain, {path, {}, {}});
+  const DrapeImage image = WarpImage(PlaceOf(*terrain), {path, {}, {}});
   ASSERT_EQ(image.width, 16);
   ASSERT_EQ(image.height, 12);
   int wrong = 0;
@@ -165,7 +165,7 @@ TEST_F(Drape, AnotherProjectionByProj) {
   // Around the north pole, across every meridian.
   const Crs polar = Crs::FromText("+proj=stere +lat_0=90 +lon_0=0 +R=1737400 +type=crs");
   const auto pole = Flat(60, 60, NorthUp(-600000.0, 600000.0, 20000.0), polar);
-  const DrapeImage image = WarpImage(*pole, {path, {}, {}});
+  const DrapeImage image = WarpImage(PlaceOf(*pole), {path, {}, {}});
   ASSERT_EQ(image.width, 60);
   // At the pole itself 180 columns meet, which bilinear interpolation does not follow: looked at
   // away from it.
@@ -192,13 +192,13 @@ TEST_F(Drape, AGlobeWhoseLeftEdgeIsElsewhere) {
       m.linear() << 4.0, 0.0, 0.0, -4.0;
       m.translation() << west, 88.0;
       const auto globe = Flat(90, 44, m, mars);
-      this->ExpectGlobe(*globe, WarpImage(*globe, {path, {}, {}}), 1.6);
+      this->ExpectGlobe(*globe, WarpImage(PlaceOf(*globe), {path, {}, {}}), 1.6);
     }
     Eigen::Affine2d m = Eigen::Affine2d::Identity(); // a window across the seam
     m.linear() << 0.5, 0.0, 0.0, -0.5;
     m.translation() << left - 10.0, 10.0;
     const auto window = Flat(40, 40, m, mars);
-    this->ExpectGlobe(*window, WarpImage(*window, {path, {}, {}}), 1.6);
+    this->ExpectGlobe(*window, WarpImage(PlaceOf(*window), {path, {}, {}}), 1.6);
   }
 }
 
@@ -207,7 +207,7 @@ TEST_F(Drape, PartialImagesAreMarkedAndLaidOver) {
   const Crs mars = Crs::FromText("IAU_2015:49900");
   const auto terrain = Flat(40, 20, NorthUp(0.0, 10.0, 1.0), mars);
   DrapeSource source{path, {}, {{20.0, 10.0, 60.0, -10.0}}}; // only the eastern half
-  const DrapeImage part = WarpImage(*terrain, source);
+  const DrapeImage part = WarpImage(PlaceOf(*terrain), source);
   ShadedReliefOptions relief;
   relief.ramp = {{0.0, 0.0, 1.0}};
   relief.sunElevation_deg = 90.0;
@@ -234,7 +234,7 @@ TEST_F(Drape, RefusesWhatDoesNotFit) {
     testing::internal::CaptureStderr();
     dspace::WarpOptions options;
     options.maximumSize = size;
-    const Error::Kind kind = KindOf([&] { WarpImage(terrain, source, options); });
+    const Error::Kind kind = KindOf([&] { WarpImage(PlaceOf(terrain), source, options); });
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     return kind;
   };
@@ -267,7 +267,7 @@ TEST_F(Drape, RealImagesOnRealGround) {
   dspace::WarpOptions options;
   options.maximumSize = 900;
   const auto terrain = GridTerrain::Load(gale);
-  const DrapeImage part = WarpImage(*terrain, source, options);
+  const DrapeImage part = WarpImage(PlaceOf(*terrain), source, options);
   double covered = 0.0;
   for (std::uint8_t v : part.coverage)
     covered += v / 255.0;
@@ -281,7 +281,7 @@ TEST_F(Drape, RealImagesOnRealGround) {
   whole.extent = {{-180.0, 90.0, 180.0, -90.0}};
   const auto mars = GridTerrain::Load(mola);
   options.maximumSize = 1440;
-  const DrapeImage all = WarpImage(*mars, whole, options);
+  const DrapeImage all = WarpImage(PlaceOf(*mars), whole, options);
   EXPECT_EQ(std::count(all.coverage.begin(), all.coverage.end(), 255),
             static_cast<long>(all.coverage.size()));
   // Syrtis Major at 69 E, 9 N is dark; Arabia at 20 E, 20 N is bright; the grid starts at 0 E.

@@ -206,7 +206,9 @@ class ObjectMaking:
         return self._make(command, TiltMarker)
 
     def add_text(self, text, height, ornamental=True, **settings):
-        """Flat letters in XY, readable from +Z; a capital letter is `height` metres high."""
+        """Flat letters in XY, readable from +Z; a capital letter is `height` metres high.
+
+        Letters of any alphabet that DejaVu Sans has and that is written from left to right."""
         command = self._command()
         put_settings(self, command.create_text.object, "text", ornamental=ornamental, **settings)
         put(command.create_text, "text", text=text)
@@ -215,7 +217,9 @@ class ObjectMaking:
 
     def add_label(self, text, font_size=None, color=None, background=None, background_opacity=None,
                   offset=None, ornamental=True, **settings):
-        """A label that faces the camera; font_size and offset (right, up) in pixels."""
+        """A label that faces the camera; font_size and offset (right, up) in pixels.
+
+        Letters as for add_text."""
         command = self._command()
         put_settings(self, command.create_text.object, "label", ornamental=ornamental, **settings)
         put(command.create_text, "label", text=text)

@@ -8,12 +8,16 @@ from dspace._strict import Strict
 from dspace.errors import InvalidArgument, WrongType
 from dspace.objects import file_path
 
+_MODES = ("auto", "triangles", "clipmap")  # in the order of OpenTerrain.Mode
+
 
 class Terrain(Strict):
-    """A raster of heights in a frame S: X east, Y north, Z up from its origin [m].
+    """A raster of heights in a frame S: X east, Y north, Z up from its origin [m]; on its body, the
+    body-fixed frame (Z to the north pole, X to longitude 0).
 
-    Queries are answered from the full-resolution grid, in double precision, on the same triangles
-    between posts that are drawn where the focus is.
+    Queries are answered from the full-resolution posts, in double precision, on the same triangles
+    between them that are drawn near the camera (of a clipmap) or the focus. Those of a clipmap read
+    the tiles that they need.
     """
 
     def __init__(self, scene, name):
@@ -66,39 +70,64 @@ class Terrain(Strict):
 
     @property
     def triangles(self):
-        """Drawn now."""
+        """Drawn now, of mode "triangles"; 0 of a clipmap, whose triangles differ from view to view
+        (session.statistics counts them)."""
         return self._info().triangles
+
+    @property
+    def mode(self):
+        """"triangles" or "clipmap"."""
+        return _MODES[self._info().mode]
+
+    @property
+    def on_body(self):
+        """Whether it stands on its body, else on a plane."""
+        return self._info().on_body
+
+    @property
+    def tiles(self):
+        """Of a clipmap: a dict of levels, subdivisions (halvings of a pixel's side between its
+        posts), bytes (in memory), loads, failures and last_failure (a message, or "")."""
+        info = self._info()
+        return {"levels": info.levels, "subdivisions": info.subdivisions, "bytes": info.tile_bytes,
+                "loads": info.tile_loads, "failures": info.tile_failures,
+                "last_failure": info.last_failure}
 
     def _label(self):
         return f"terrain {self._name!r}"
 
-    def _query(self, x, y, what, map):
-        x, y = (array_of(value, name, "a number or an array of numbers", self._label)
-                for name, value in (("x", x), ("y", y)))
+    def _query(self, x, y, what, map, z=None):
+        given = [("x", x), ("y", y)] + ([] if z is None else [("z", z)])
+        given = [array_of(value, name, "a number or an array of numbers", self._label)
+                 for name, value in given]
         try:
-            x, y = np.broadcast_arrays(x, y)
+            given = np.broadcast_arrays(*given)
         except ValueError:
-            raise InvalidArgument(f"{self._label()}: x and y have the shapes {x.shape} and {y.shape}; "
-                                  "accepted: shapes that broadcast", self._label()) from None
+            names = "x and y" if z is None else "x, y and z"
+            shapes = " and ".join(str(array.shape) for array in given)
+            raise InvalidArgument(f"{self._label()}: {names} have the shapes {shapes}; accepted: "
+                                  "shapes that broadcast", self._label()) from None
         command = self._scene._command()
         message = command.query_terrain
         message.terrain = self._name
         message.map = flag(map, "map", self._label)
         setattr(message, what, True)
-        _wire.put_array(message, "point", np.stack((x, y), axis=-1))
-        return x.shape, self._scene._execute(command).terrain_values
+        message.spatial = z is not None
+        _wire.put_array(message, "point", np.stack(given, axis=-1))
+        return given[0].shape, self._scene._execute(command).terrain_values
 
-    def height(self, x, y, map=False):
+    def height(self, x, y, z=None, map=False):
         """z of the surface [m] at x, y (numbers or arrays, shapes broadcast); NaN without data.
 
-        In the terrain's frame; with map=True, x and y are map coordinates and z is the height above
-        the vertical datum."""
-        shape, values = self._query(x, y, "height", map)
+        In the terrain's frame; with map=True, x and y are map coordinates and the result is the
+        height above the vertical datum. On a body give map=True (longitude and latitude, for a
+        degree grid) or x, y and z, through which the local vertical goes: heights above the datum."""
+        shape, values = self._query(x, y, "height", map, z)
         return _unpack(values, "height", shape)
 
-    def normal(self, x, y, map=False):
-        """Unit normals (..., 3) in the terrain's frame, of the triangle at x, y."""
-        shape, values = self._query(x, y, "normal", map)
+    def normal(self, x, y, z=None, map=False):
+        """Unit normals (..., 3) in the terrain's frame, of the surface at x, y as for height()."""
+        shape, values = self._query(x, y, "normal", map, z)
         return _unpack(values, "normal", shape + (3,))
 
     def _xy(self, points):
@@ -118,9 +147,9 @@ class Terrain(Strict):
         xy = self._xy(xy)
         return self.normal(xy[..., 0], xy[..., 1])
 
-    def slope_deg(self, x, y, map=False):
-        """Degrees from level."""
-        shape, values = self._query(x, y, "slope", map)
+    def slope_deg(self, x, y, z=None, map=False):
+        """Degrees from level at x, y as for height()."""
+        shape, values = self._query(x, y, "slope", map, z)
         return _unpack(values, "slope_deg", shape)
 
     def _convert(self, points, to_map):
@@ -146,7 +175,8 @@ class Terrain(Strict):
     def focus(self, points, radius=20.0):
         """Where every post is drawn: within `radius` metres of x, y points (n, 2) in its frame.
 
-        Replaces the earlier ones; only tiles that change are sent to the GPU."""
+        Replaces the earlier ones; only tiles that change are sent to the GPU. A clipmap draws every
+        post near each camera by itself."""
         points = np.empty((0, 2)) if isinstance(points, (list, tuple)) and not points else self._xy(points)
         command = self._scene._command()
         put(command.focus_terrain, self._label, terrain=self._name, radius=radius)
@@ -176,7 +206,8 @@ class TerrainMaking:
     def add_terrain(self, path, name=None, frame=None, image=None, color=None, relief=None,
                     origin=None, triangles=None, fragment=None, lit=True, image_crs=None,
                     image_extent=None, band=None, crs=None, vertical_datum=None,
-                    vertical_scale=None, vertical_offset=None, pixel_size=None):
+                    vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
+                    on_body=False, level_size=None, byte_budget=None, deadline=None):
         """A raster of heights (anything that GDAL opens) as a physical object.
 
         image: a file to drape over it, with image_crs and image_extent (left, top, right, bottom in
@@ -184,6 +215,13 @@ class TerrainMaking:
         default), a dict of sun_azimuth_deg, sun_elevation_deg, color_by_height. lit: whether the
         scene's lights shade it as well. origin: map x, y[, height] that become the frame's origin,
         by default the raster's middle at height 0. triangles: the budget (200000).
+        mode: "triangles" (all of it in memory, within the budget), "clipmap" (any size: tiles are
+        read as they are needed and triangles follow each camera) or "auto": triangles for up to
+        four million pixels on a plane. on_body: its frame is the body-fixed one (Z to the north
+        pole, X to longitude 0; centre at the frame's origin) instead of a plane, for degree grids of
+        a sphere. level_size: cells a side of a clipmap's levels (124; 252 is finer and slower);
+        byte_budget: of its tiles (256 MiB); deadline: seconds that images and queries wait for them
+        (60).
         band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and
         vertical_offset [m], pixel_size (map units): what the file does not say, or says wrongly."""
         path = file_path(path, "the path", "terrain")
@@ -216,9 +254,14 @@ class TerrainMaking:
             put_vector(message.map_origin, [*values, 0.0][:3], "the origin", label)
         message.fragment = self._fragment_name(fragment)
         message.unlit = not flag(lit, "lit", label)
+        if not isinstance(mode, str) or mode not in _MODES:
+            refuse(label, "the mode", mode, ", ".join(repr(known) for known in _MODES))
+        message.mode = _MODES.index(mode)
+        message.on_body = flag(on_body, "on_body", label)
         put_given(message, label, triangle_budget=triangles, band=band, crs=crs,
                   vertical_datum=vertical_datum, vertical_scale=vertical_scale,
-                  vertical_offset=vertical_offset, pixel_size=pixel_size)
+                  vertical_offset=vertical_offset, pixel_size=pixel_size,
+                  level_size=level_size, byte_budget=byte_budget, deadline=deadline)
         return Terrain(self, self._execute(command).terrain.name)
 
     @property

@@ -155,7 +155,9 @@ class Viewport(Strict):
 
     @property
     def size(self):
-        """(width, height) in pixels; may be set, 1 to 16384 a side."""
+        """(width, height) in pixels; may be set, 1 to 16384 a side.
+
+        Times `samples` it must be what OpenGL can draw, and at most 2**28 in all."""
         info = self._info()
         return (info.width, info.height)
 
@@ -215,7 +217,7 @@ class Viewport(Strict):
 
     @property
     def samples(self):
-        """n x n a pixel, 1 to 8."""
+        """n x n a pixel, 1 to 8; limited as `size` says."""
         return self._info().samples
 
     @samples.setter
@@ -265,7 +267,8 @@ class Viewport(Strict):
                   color=None, background=None, background_opacity=None):
         """Labels and values over the picture: rows is a dict or pairs of anything with a str.
 
-        Creates the table or replaces the one of that name. font_size and margin in pixels."""
+        Creates the table or replaces the one of that name. font_size and margin in pixels. Letters
+        as for add_text, of DejaVu Sans Mono; no line breaks or tabs."""
         table = f"text table {name!r}"
         command = pb.Command()
         message = command.set_text_table

@@ -1,11 +1,14 @@
 // Terrain: opened, focused, removed.
-#include <filesystem>
+#include <algorithm>
+#include <cmath>
 
 #include <dspace/scene/Checks.h>
+#include <dspace/session/ClipmapTerrainObject.h>
 #include <dspace/session/Convert.h>
+#include <dspace/session/MeshTerrain.h>
 #include <dspace/session/ObjectTools.h>
+#include <dspace/session/TerrainLook.h>
 #include <dspace/session/TerrainTools.h>
-#include <dspace/terrain/DrapeImage.h>
 
 namespace dspace::session {
 
@@ -20,15 +23,8 @@ TerrainObject& FindTerrain(const Context& context, const std::string& name) {
 
 namespace {
 
-// A path of GDAL's need not be a file ("/vsicurl/...", "PDS4:..."): only files are made absolute.
-std::string AbsoluteFile(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error) ? AbsolutePath(path) : path;
-}
-
-GridTerrainOptions ToOptions(const v1::OpenTerrain& command) {
-  GridTerrainOptions options;
-  ElevationOptions& elevation = options.elevation;
+ElevationOptions ToElevation(const v1::OpenTerrain& command) {
+  ElevationOptions elevation;
   if (command.band() != 0) {
     elevation.band = int(std::min<std::uint32_t>(command.band(), 1u << 30));
   }
@@ -47,77 +43,84 @@ GridTerrainOptions ToOptions(const v1::OpenTerrain& command) {
   if (command.has_pixel_size()) {
     elevation.pixelSize = command.pixel_size();
   }
+  return elevation;
+}
+
+std::unique_ptr<TerrainObject> OpenMesh(const Context& context, const std::string& name,
+                                        const std::string& path, v1::OpenTerrain& command) {
+  GridTerrainOptions options;
+  options.elevation = ToElevation(command);
   if (command.has_map_origin()) {
     options.origin = Eigen::Vector2d(command.map_origin().x(), command.map_origin().y());
     options.originHeight = command.map_origin().z();
   }
-  return options;
+  const auto grid = GridTerrain::Load(path, options);
+  auto terrain = std::make_unique<MeshTerrain>(name, grid, MeshMaterial(context, *grid, command),
+                                               std::size_t(command.triangle_budget()));
+  if (!terrain->Report().budgetMet) {
+    context.reply.add_warning("terrain '" + name +
+                              "': " + std::to_string(terrain->Report().triangles) +
+                              " triangles are needed, more than the budget of " +
+                              std::to_string(terrain->Report().budget));
+  }
+  return terrain;
 }
 
-DrapeImage Relief(const GridTerrain& grid, const v1::OpenTerrain::ShadedRelief& from) {
-  ShadedReliefOptions options;
-  if (from.has_sun_azimuth_deg()) {
-    options.sunAzimuth_deg = from.sun_azimuth_deg();
-  }
-  if (from.has_sun_elevation_deg()) {
-    options.sunElevation_deg = from.sun_elevation_deg();
-  }
-  if (from.color_by_height()) {
-    options.ramp = TerrainRamp();
-  }
-  return ShadedRelief(grid, options);
-}
-
-DrapeImage Draped(const GridTerrain& grid, v1::OpenTerrain::Drape& from) {
-  DrapeSource source;
-  from.set_path(AbsoluteFile(from.path()));
-  source.path = from.path();
-  if (!from.crs().empty()) {
-    source.crs = from.crs();
-  }
-  if (from.extent_size() != 0) {
-    if (from.extent_size() != 4) {
-      Refuse("file '" + from.path() + "'",
-             "its extent holds " + std::to_string(from.extent_size()) +
-                 " numbers; accepted: 4 (left, top, right, bottom) or none");
+std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::string& name,
+                                           const std::string& path, v1::OpenTerrain& command) {
+  const std::string label = "terrain '" + name + "'";
+  StreamedTerrainOptions options;
+  options.elevation = ToElevation(command);
+  options.onBody = command.on_body();
+  if (command.has_map_origin()) {
+    if (options.onBody) {
+      Refuse(label, "it stands on its body, whose centre is the origin; accepted: no origin");
     }
-    source.extent = {from.extent(0), from.extent(1), from.extent(2), from.extent(3)};
+    options.origin = Eigen::Vector2d(command.map_origin().x(), command.map_origin().y());
+    options.originHeight = command.map_origin().z();
   }
-  DrapeImage image = WarpImage(grid, source);
-  if (image.coverage.empty()) {
-    return image;
+  if (command.level_size() != 0) {
+    options.cells = int(std::min<std::uint32_t>(command.level_size(), 1u << 30));
   }
-  const std::vector<std::string> warnings = image.warnings;
-  image = Over(image, ShadedRelief(grid));
-  image.warnings = warnings;
-  return image;
+  if (command.byte_budget() != 0) {
+    options.pyramid.byteBudget = std::size_t(command.byte_budget());
+  }
+  if (command.has_deadline()) {
+    Require(command.deadline() > 0.0 && std::isfinite(command.deadline()), label, "the deadline",
+            command.deadline(), "more than 0 s, finite");
+    options.deadline = command.deadline();
+  }
+  const auto surface = StreamedTerrain::Open(path, options);
+  ClipmapOptions look = ClipmapLook(context, *surface, command);
+  look.cells = options.cells;
+  look.heights = surface->HeightRange();
+  look.deadline = options.deadline;
+  return std::make_unique<ClipmapTerrainObject>(name, surface, look);
 }
 
-std::shared_ptr<const Material> MakeMaterial(const Context& context, const GridTerrain& grid,
-                                             v1::OpenTerrain& command) {
-  auto material = std::make_shared<Material>();
-  material->name = "terrain";
-  material->roughness = 1.0;
-  material->repeatTexture = false;
-  material->lit = !command.unlit();
-  if (command.has_color()) {
-    material->color = ToColor(command.color(), grid.GetName());
-    return material;
+// Up to this many pixels all of a raster is kept in memory where the caller does not choose.
+constexpr std::int64_t MeshPixels = 4000000;
+
+v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
+                              const v1::OpenTerrain& command) {
+  using Command = v1::OpenTerrain;
+  const std::string label = "terrain '" + name + "'";
+  if (!Command::Mode_IsValid(command.mode())) {
+    Refuse(label, "mode " + std::to_string(command.mode()) +
+                      " is not known; accepted: auto, triangles, clipmap");
   }
-  DrapeImage drape =
-      command.has_drape() ? Draped(grid, *command.mutable_drape()) : Relief(grid, command.relief());
-  for (const std::string& warning : drape.warnings) {
-    context.reply.add_warning(warning);
+  if (command.on_body() && command.mode() == Command::TRIANGLES) {
+    Refuse(label, "triangles stand on a plane; accepted on a body: a clipmap");
   }
-  auto image = std::make_shared<Image>();
-  image->name = command.has_drape() ? command.drape().path() : grid.GetName() + " relief";
-  image->width = drape.width;
-  image->height = drape.height;
-  image->channels = 3;
-  image->pixels = std::move(drape.pixels);
-  material->color = {1, 1, 1};
-  material->texture = std::move(image);
-  return material;
+  if (command.mode() != Command::AUTO) {
+    return command.mode();
+  }
+  if (command.on_body()) {
+    return Command::CLIPMAP;
+  }
+  const RasterWindow window = ElevationSource(path, ToElevation(command)).Info().window;
+  return std::int64_t(window.width) * window.height > MeshPixels ? Command::CLIPMAP
+                                                                 : Command::TRIANGLES;
 }
 
 std::string FreeTerrainName(const SceneState& state) {
@@ -135,7 +138,7 @@ ObjectId AddTerrainObject(const Context& context, const v1::OpenTerrain& command
   object.name = FreeObjectName(context.TheScene(), terrain.Name());
   object.frame = ToFrame(command.frame());
   object.fragment = command.fragment();
-  object.levels = terrain.Levels();
+  terrain.Draw(object);
   return context.TheScene().AddObject(std::move(object));
 }
 
@@ -148,18 +151,13 @@ void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
                 "there is a terrain of this name already");
   }
   context.Frames().Name(ToFrame(command.frame())); // throws where there is none
-  const std::string path = AbsoluteFile(command.path());
-  const auto grid = GridTerrain::Load(path, ToOptions(command));
-  for (const std::string& warning : grid->GetWarnings()) {
+  const std::string path = AbsoluteRaster(command.path());
+  command.set_mode(ModeFor(name, path, command)); // a recording opens the same
+  auto terrain = command.mode() == v1::OpenTerrain::CLIPMAP
+                     ? OpenClipmap(context, name, path, command)
+                     : OpenMesh(context, name, path, command);
+  for (const std::string& warning : terrain->Surface().GetWarnings()) {
     context.reply.add_warning(warning);
-  }
-  auto terrain = std::make_unique<TerrainObject>(name, grid, MakeMaterial(context, *grid, command),
-                                                 std::size_t(command.triangle_budget()));
-  if (!terrain->Report().budgetMet) {
-    context.reply.add_warning("terrain '" + name +
-                              "': " + std::to_string(terrain->Report().triangles) +
-                              " triangles are needed, more than the budget of " +
-                              std::to_string(terrain->Report().budget));
   }
   terrain->SetObject(AddTerrainObject(context, command, *terrain));
   command.set_path(path);
@@ -186,7 +184,9 @@ void FocusTerrain(const Context& context, v1::FocusTerrain& command) {
     points[i] = Eigen::Vector2d(command.point().data() + 2 * i);
   }
   if (terrain.Focus(points, command.radius())) {
-    context.TheScene().SetObjectLevels(terrain.Object(), terrain.Levels());
+    GraphicsObject drawn;
+    terrain.Draw(drawn);
+    context.TheScene().SetObjectLevels(terrain.Object(), std::move(drawn.levels));
   }
 }
 

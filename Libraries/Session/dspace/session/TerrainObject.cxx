@@ -1,68 +1,16 @@
 #include <dspace/session/TerrainObject.h>
 
-#include <utility>
-
 namespace dspace::session {
-namespace {
 
-TerrainMeshOptions WithBudget(std::size_t triangleBudget) {
-  TerrainMeshOptions options;
-  if (triangleBudget != 0) {
-    options.triangleBudget = triangleBudget;
-  }
-  return options;
-}
-
-std::shared_ptr<const Mesh> ToMesh(const TerrainTile& tile) {
-  auto mesh = std::make_shared<Mesh>();
-  mesh->name = "tile " + std::to_string(tile.column) + ", " + std::to_string(tile.row);
-  mesh->positions = tile.positions;
-  mesh->normals = tile.normals;
-  mesh->tcoords = tile.tcoords;
-  mesh->indices = tile.indices;
-  return mesh;
-}
-
-} // namespace
-
-TerrainObject::TerrainObject(std::string name, std::shared_ptr<const GridTerrain> grid,
-                             std::shared_ptr<const Material> material, std::size_t triangleBudget)
-    : Name_(std::move(name)), Grid_(std::move(grid)), Material_(std::move(material)),
-      Mesh_(Grid_, WithBudget(triangleBudget)), Parts_(Mesh_.Tiles().size()) {
-  for (std::size_t i = 0; i < this->Parts_.size(); ++i) {
-    this->TakeTile(i);
-  }
-}
-
-void TerrainObject::TakeTile(std::size_t index) {
-  const TerrainTile& tile = *this->Mesh_.Tiles()[index];
-  Part& part = this->Parts_[index];
-  part.mesh = tile.indices.empty() ? nullptr : ToMesh(tile);
-  part.material = this->Material_;
-  part.X_OP = Eigen::Affine3d(Eigen::Translation3d(tile.origin_S));
-}
-
-std::vector<DetailLevel> TerrainObject::Levels() const {
-  std::vector<DetailLevel> levels(1);
-  for (const Part& part : this->Parts_) {
-    if (part.mesh) {
-      levels[0].parts.push_back(part);
-    }
-  }
-  return levels;
-}
-
-bool TerrainObject::Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) {
-  std::vector<TerrainZone> zones;
-  zones.reserve(points_S.size());
-  for (const Eigen::Vector2d& point : points_S) {
-    zones.push_back({{point}, radius});
-  }
-  const std::vector<std::size_t> changed = this->Mesh_.SetZones(zones);
-  for (const std::size_t index : changed) {
-    this->TakeTile(index);
-  }
-  return !changed.empty();
+void TerrainObject::Describe(v1::TerrainReply& reply) const {
+  const TerrainSurface& surface = this->Surface();
+  reply.set_crs(surface.GetCrs().GetWkt());
+  reply.set_vertical_datum(surface.GetVerticalDatum().Text());
+  const Eigen::AlignedBox3d bounds = surface.GetBounds().scene;
+  reply.set_west(bounds.min().x());
+  reply.set_east(bounds.max().x());
+  reply.set_south(bounds.min().y());
+  reply.set_north(bounds.max().y());
 }
 
 } // namespace dspace::session

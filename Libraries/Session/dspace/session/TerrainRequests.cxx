@@ -9,29 +9,10 @@
 namespace dspace::session {
 
 void DescribeTo(const Context& context, const TerrainObject& terrain, v1::TerrainReply* reply) {
-  const GridTerrain& grid = terrain.Surface();
+  terrain.Describe(*reply);
   reply->set_name(terrain.Name());
   reply->set_object(terrain.Object());
   reply->set_frame(context.TheScene().Object(terrain.Object()).frame);
-  reply->set_columns(std::uint32_t(grid.Grid().GetColumns()));
-  reply->set_rows(std::uint32_t(grid.Grid().GetRows()));
-  reply->set_pixel_width(grid.PixelToMap().linear().col(0).norm());
-  reply->set_pixel_height(grid.PixelToMap().linear().col(1).norm());
-  reply->set_crs(grid.GetCrs().GetWkt());
-  reply->set_vertical_datum(grid.GetVerticalDatum().Text());
-  reply->set_minimum_height(grid.Grid().GetMinimum());
-  reply->set_maximum_height(grid.Grid().GetMaximum());
-  const Eigen::Vector2d& origin = grid.Frame().GetOrigin();
-  Put(Eigen::Vector3d(origin.x(), origin.y(), grid.Frame().GetOriginHeight()),
-      reply->mutable_map_origin());
-  const Eigen::AlignedBox3d bounds = grid.GetBounds().scene;
-  reply->set_west(bounds.min().x());
-  reply->set_east(bounds.max().x());
-  reply->set_south(bounds.min().y());
-  reply->set_north(bounds.max().y());
-  reply->set_triangles(terrain.Report().triangles);
-  reply->set_tiles_built(terrain.Report().tilesBuilt);
-  reply->set_vertical_error(terrain.Report().verticalError);
 }
 
 void RequireFinitePoints(const std::string& label, const double* values, int size, std::size_t n) {
@@ -49,24 +30,56 @@ void RequireFinitePoints(const std::string& label, const double* values, int siz
 
 namespace {
 
-SurfaceSample SampleAt(const GridTerrain& grid, const double* xy, bool map) {
-  return map ? grid.SampleMap(Eigen::Vector2d(xy[0], xy[1]))
-             : grid.Sample(Eigen::Vector3d(xy[0], xy[1], 0.0));
+// Whether points of its frame need all three coordinates.
+bool OnBody(const TerrainObject& terrain) {
+  v1::TerrainReply info;
+  terrain.Describe(info);
+  return info.on_body();
 }
 
 void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
-  const GridTerrain& grid = FindTerrain(context, command.terrain()).Surface();
+  const TerrainObject& terrain = FindTerrain(context, command.terrain());
+  const TerrainSurface& surface = terrain.Surface();
   const std::string label = "terrain '" + command.terrain() + "'";
-  const std::size_t n = RowsOf(command.point_size(), 2, label, "point");
+  if (command.map() && command.spatial()) {
+    Refuse(label, "points are of the map or of space, not both");
+  }
+  const bool body = OnBody(terrain);
+  if (body && !command.map() && !command.spatial()) {
+    Refuse(label, "it stands on its body; accepted: map coordinates, or x, y and z");
+  }
+  const int size = command.spatial() ? 3 : 2;
+  const std::size_t n = RowsOf(command.point_size(), size, label, "point");
   if (!command.height() && !command.normal() && !command.slope()) {
     Refuse(label, "nothing is asked for; accepted: height, normal, slope");
   }
-  RequireFinitePoints(label, command.point().data(), 2, n);
+  RequireFinitePoints(label, command.point().data(), size, n);
   v1::TerrainQueryReply* reply = context.reply.mutable_terrain_values();
+  if (command.height() && !command.normal() && !command.slope()) { // many at once
+    Eigen::VectorXd heights(static_cast<Eigen::Index>(n));
+    if (command.map()) {
+      surface.HeightsMap(Eigen::Map<const Rows2>(command.point().data(), Eigen::Index(n), 2),
+                         heights);
+    } else {
+      Rows3 points = Rows3::Zero(Eigen::Index(n), 3);
+      points.leftCols(size) =
+          Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+              command.point().data(), Eigen::Index(n), size);
+      surface.Heights(points, heights);
+      // In a plane's frame a height is a place along Z.
+      const double zero = body ? 0.0 : surface.SceneToMap(Eigen::Vector3d::Zero()).z();
+      heights.array() -= zero;
+    }
+    *reply->mutable_height() = {heights.data(), heights.data() + heights.size()};
+    return;
+  }
   for (std::size_t i = 0; i < n; ++i) {
-    const SurfaceSample sample = SampleAt(grid, command.point().data() + 2 * i, command.map());
+    const double* p = command.point().data() + std::size_t(size) * i;
+    const SurfaceSample sample =
+        command.map() ? surface.SampleMap(Eigen::Vector2d(p[0], p[1]))
+                      : surface.Sample(Eigen::Vector3d(p[0], p[1], size == 3 ? p[2] : 0.0));
     if (command.height()) {
-      reply->add_height(command.map() ? sample.height : sample.position_S.z());
+      reply->add_height(command.map() || body ? sample.height : sample.position_S.z());
     }
     if (command.normal()) {
       for (const double value : sample.normal_S) {
@@ -80,7 +93,7 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
 }
 
 void ConvertTerrain(const Context& context, v1::ConvertTerrain& command) {
-  const GridTerrain& grid = FindTerrain(context, command.terrain()).Surface();
+  const TerrainSurface& grid = FindTerrain(context, command.terrain()).Surface();
   const std::string label = "terrain '" + command.terrain() + "'";
   const std::size_t n = RowsOf(command.point_size(), 3, label, "point");
   RequireFinitePoints(label, command.point().data(), 3, n);

@@ -144,7 +144,7 @@ void ViewportCommands::Pick(const Context& context, v1::Pick& command) {
   for (const auto& [name, terrain] : state.terrains) {
     if (terrain->Object() == pick.object) {
       reply->set_terrain(name);
-      Put(terrain->SceneToMap(pick.p_frame), reply->mutable_map());
+      Put(terrain->Surface().SceneToMap(pick.p_frame), reply->mutable_map());
     }
   }
 }

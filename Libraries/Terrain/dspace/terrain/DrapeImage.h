@@ -45,6 +45,16 @@ ColorRamp TerrainRamp();
 // Error(InvalidArgument) for an option out of range.
 DrapeImage ShadedRelief(const GridTerrain& terrain, const ShadedReliefOptions& options = {});
 
+// Where a terrain's raster lies: images are laid on it from pixel edge to pixel edge.
+struct RasterPlace {
+  std::string name; // for messages: "terrain 'gale.tif'"
+  Crs crs;
+  Eigen::Affine2d pixelToMap = Eigen::Affine2d::Identity(); // as in ElevationInfo
+  int columns = 0;
+  int rows = 0;
+};
+RasterPlace PlaceOf(const GridTerrain& terrain);
+
 // An image file, and what it does not say itself.
 struct DrapeSource {
   std::string path;
@@ -64,16 +74,16 @@ struct WarpOptions {
 // A plate carrée image that goes once around a body fits a grid whose left edge is elsewhere.
 // Throws Error naming the file: NotFound, Corrupt, Unsupported (bands; a CRS of another body),
 // InvalidArgument (extent, no overlap with the terrain).
-DrapeImage WarpImage(const GridTerrain& terrain, const DrapeSource& source,
+DrapeImage WarpImage(const RasterPlace& place, const DrapeSource& source,
                      const WarpOptions& options = {});
 
 // `top` where it has coverage, else `bottom` (its nearest pixel), in the size of `top`: an image of
 // a part of the terrain over the relief of all of it.
 DrapeImage Over(const DrapeImage& top, const DrapeImage& bottom);
 
-// Width and height of a drape image of at most `maximumSize` a side; throws
+// Width and height of a drape image of a raster, at most `maximumSize` a side; throws
 // Error(InvalidArgument) unless 1 <= maximumSize <= 32768.
-std::array<int, 2> DrapeSize(const GridTerrain& terrain, int maximumSize);
+std::array<int, 2> DrapeSize(int columns, int rows, int maximumSize);
 
 } // namespace dspace
 

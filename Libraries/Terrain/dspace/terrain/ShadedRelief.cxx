@@ -52,21 +52,25 @@ ColorRamp TerrainRamp() {
           {0.66, 0.44, 0.28}, {0.55, 0.45, 0.42}, {0.97, 0.97, 0.97}};
 }
 
-std::array<int, 2> DrapeSize(const GridTerrain& terrain, int maximumSize) {
+std::array<int, 2> DrapeSize(int columns, int rows, int maximumSize) {
   if (maximumSize < 1 || maximumSize > 32768)
     throw Error(Error::Kind::InvalidArgument, "drape image",
                 "a size of " + std::to_string(maximumSize) +
                     " pixels given; accepted is 1 to 32768");
-  const int columns = terrain.Grid().GetColumns(), rows = terrain.Grid().GetRows();
   const double factor = std::min(1.0, static_cast<double>(maximumSize) / std::max(columns, rows));
   const auto scaled = [&](int n) { return std::max(1, static_cast<int>(std::round(n * factor))); };
   return {scaled(columns), scaled(rows)};
 }
 
+RasterPlace PlaceOf(const GridTerrain& terrain) {
+  return {terrain.GetName(), terrain.GetCrs(), terrain.PixelToMap(), terrain.Grid().GetColumns(),
+          terrain.Grid().GetRows()};
+}
+
 DrapeImage ShadedRelief(const GridTerrain& terrain, const ShadedReliefOptions& options) {
   Check(options);
   const HeightGrid& grid = terrain.Grid();
-  const auto [width, height] = DrapeSize(terrain, options.maximumSize);
+  const auto [width, height] = DrapeSize(grid.GetColumns(), grid.GetRows(), options.maximumSize);
   const double degree = M_PI / 180.0;
   const double azimuth = options.sunAzimuth_deg * degree;
   const double elevation = options.sunElevation_deg * degree;

@@ -175,19 +175,18 @@ DatasetPointer ToDataset(Picture& p, const std::string& object) {
 
 // How many of the picture's pixels lie along the side of a terrain's cell; the least of some
 // places, since pixels crowd at a pole. Refuses a picture of another body, naming both.
-double PixelsAPost(const GridTerrain& terrain, const Picture& picture) {
-  const HeightGrid& grid = terrain.Grid();
+double PixelsAPost(const RasterPlace& place, const Picture& picture) {
   std::unique_ptr<CrsTransform> toPicture;
-  if (picture.crs.Ogr() && terrain.GetCrs().Ogr())
-    toPicture = std::make_unique<CrsTransform>(terrain.GetCrs(), picture.crs);
+  if (picture.crs.Ogr() && place.crs.Ogr())
+    toPicture = std::make_unique<CrsTransform>(place.crs, picture.crs);
   const auto pixel = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
-    const Eigen::Vector2d map = terrain.PixelToMap() * p;
+    const Eigen::Vector2d map = place.pixelToMap * p;
     return picture.pixelToMap.inverse() * (toPicture ? toPicture->Apply(map) : map);
   };
   double least = std::numeric_limits<double>::infinity();
   for (double u : {0.2, 0.5, 0.8})
     for (double v : {0.2, 0.5, 0.8}) {
-      const Eigen::Vector2d p(u * grid.GetColumns(), v * grid.GetRows());
+      const Eigen::Vector2d p(u * place.columns, v * place.rows);
       try {
         const Eigen::Vector2d at = pixel(p);
         least = std::min(least, std::max((pixel(p + Eigen::Vector2d::UnitX()) - at).norm(),
@@ -218,46 +217,47 @@ void Warp(GDALDataset& from, GDALDataset& to, const std::string& object) {
 
 } // namespace
 
-DrapeImage WarpImage(const GridTerrain& terrain, const DrapeSource& source,
+DrapeImage WarpImage(const RasterPlace& place, const DrapeSource& source,
                      const WarpOptions& options) {
   const std::string object = "image '" + source.path + "'";
   DrapeImage image;
   Picture picture = ReadPicture(source, object, image.warnings);
-  const HeightGrid& grid = terrain.Grid();
   if (!picture.placed) {
     image.warnings.push_back(object + " has no georeference: it is stretched over the terrain");
-    picture.pixelToMap = terrain.PixelToMap();
+    picture.pixelToMap = place.pixelToMap;
     picture.pixelToMap.linear() =
         picture.pixelToMap.linear() *
-        Eigen::Vector2d(static_cast<double>(grid.GetColumns()) / picture.width,
-                        static_cast<double>(grid.GetRows()) / picture.height)
+        Eigen::Vector2d(static_cast<double>(place.columns) / picture.width,
+                        static_cast<double>(place.rows) / picture.height)
             .asDiagonal();
-    picture.crs = terrain.GetCrs();
-  } else if (picture.crs.GetKind() == Crs::Kind::None &&
-             terrain.GetCrs().GetKind() != Crs::Kind::None) {
+    picture.crs = place.crs;
+  } else if (picture.crs.GetKind() == Crs::Kind::None && place.crs.GetKind() != Crs::Kind::None) {
     image.warnings.push_back(object + " has no CRS: the terrain's is taken");
-    picture.crs = terrain.GetCrs();
+    picture.crs = place.crs;
   }
   if (GoesAround(picture)) {
-    const bool flat = terrain.GetCrs().GetKind() == Crs::Kind::Geographic;
+    const bool flat = place.crs.GetKind() == Crs::Kind::Geographic;
     const double half = 180.0 / picture.crs.GetUnit();
-    const double middle = terrain.GetBounds().map.center().x() * terrain.GetCrs().GetUnit();
+    const double middle =
+        (place.pixelToMap * Eigen::Vector2d(0.5 * place.columns, 0.5 * place.rows)).x() *
+        place.crs.GetUnit();
     Roll(picture, flat ? middle / picture.crs.GetUnit() - half : -half);
   }
-  const double fineness = PixelsAPost(terrain, picture);
-  const double longer = std::max(grid.GetColumns(), grid.GetRows());
-  const auto most = DrapeSize(terrain, options.maximumSize); // refuses a size out of range
+  const double fineness = PixelsAPost(place, picture);
+  const double longer = std::max(place.columns, place.rows);
+  const auto most =
+      DrapeSize(place.columns, place.rows, options.maximumSize); // refuses a size out of range
   const double factor =
       std::clamp(options.maximumSize / longer, 0.0, std::max(1.0, std::ceil(fineness)));
-  image.width = std::max(most[0], static_cast<int>(std::round(grid.GetColumns() * factor)));
-  image.height = std::max(most[1], static_cast<int>(std::round(grid.GetRows() * factor)));
-  Eigen::Affine2d pixelToMap = terrain.PixelToMap();
-  const Eigen::Vector2d shrink(static_cast<double>(grid.GetColumns()) / image.width,
-                               static_cast<double>(grid.GetRows()) / image.height);
+  image.width = std::max(most[0], static_cast<int>(std::round(place.columns * factor)));
+  image.height = std::max(most[1], static_cast<int>(std::round(place.rows * factor)));
+  Eigen::Affine2d pixelToMap = place.pixelToMap;
+  const Eigen::Vector2d shrink(static_cast<double>(place.columns) / image.width,
+                               static_cast<double>(place.rows) / image.height);
   pixelToMap.linear() = pixelToMap.linear() * shrink.asDiagonal();
 
   DatasetPointer from = ToDataset(picture, object);
-  DatasetPointer to = Memory(image.width, image.height, 4, pixelToMap, terrain.GetCrs(), object);
+  DatasetPointer to = Memory(image.width, image.height, 4, pixelToMap, place.crs, object);
   to->GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
   Warp(*from, *to, object);
 
@@ -276,7 +276,7 @@ DrapeImage WarpImage(const GridTerrain& terrain, const DrapeSource& source,
   if (!read)
     throw Error(Error::Kind::Internal, object, errors.Message("the warped image is lost"));
   if (std::none_of(image.coverage.begin(), image.coverage.end(), [](auto v) { return v != 0; }))
-    throw Error(Error::Kind::InvalidArgument, object, "it does not overlap " + terrain.GetName());
+    throw Error(Error::Kind::InvalidArgument, object, "it does not overlap " + place.name);
   for (std::size_t i = 0; i < size * 3; ++i)
     if (image.coverage[i / 3] == 0)
       image.pixels[i] = options.background[i % 3];

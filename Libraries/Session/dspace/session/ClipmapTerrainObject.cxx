@@ -1,0 +1,57 @@
+#include <dspace/session/ClipmapTerrainObject.h>
+
+#include <cmath>
+#include <utility>
+
+#include <dspace/scene/Checks.h>
+#include <dspace/session/Convert.h>
+
+namespace dspace::session {
+
+ClipmapTerrainObject::ClipmapTerrainObject(std::string name,
+                                           std::shared_ptr<const StreamedTerrain> surface,
+                                           const ClipmapOptions& options)
+    : TerrainObject(std::move(name)), Surface_(std::move(surface)),
+      Clipmap_(std::make_shared<const ClipmapTerrain>(Surface_->Pyramid(), Surface_->Placement(),
+                                                      options)) {}
+
+void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
+  TerrainObject::Describe(reply);
+  const StreamedTerrain& surface = *this->Surface_;
+  const ElevationInfo& info = surface.Info();
+  reply.set_mode(v1::OpenTerrain::CLIPMAP);
+  reply.set_on_body(surface.Placement().GetKind() == PostPlacement::Kind::Sphere);
+  reply.set_columns(std::uint32_t(info.window.width));
+  reply.set_rows(std::uint32_t(info.window.height));
+  reply.set_pixel_width(info.pixelToMap.linear().col(0).norm());
+  reply.set_pixel_height(info.pixelToMap.linear().col(1).norm());
+  reply.set_minimum_height(surface.HeightRange()[0]);
+  reply.set_maximum_height(surface.HeightRange()[1]);
+  if (!reply.on_body()) {
+    const Eigen::Vector2d& origin = surface.Frame().GetOrigin();
+    Put(Eigen::Vector3d(origin.x(), origin.y(), surface.Frame().GetOriginHeight()),
+        reply.mutable_map_origin());
+  }
+  reply.set_levels(std::uint32_t(surface.Pyramid()->Lattice().levels));
+  reply.set_subdivisions(std::uint32_t(surface.Subdivisions()));
+  const ElevationPyramidStatistics statistics = surface.Pyramid()->Statistics();
+  reply.set_tile_bytes(statistics.bytes);
+  reply.set_tile_loads(statistics.loads);
+  reply.set_tile_failures(statistics.failures);
+  reply.set_last_failure(statistics.lastFailure);
+}
+
+bool ClipmapTerrainObject::Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) {
+  const std::string label = "terrain '" + this->Name() + "'";
+  for (const Eigen::Vector2d& point : points_S) {
+    if (!point.allFinite()) {
+      Refuse(label, "a point of the focus is not finite");
+    }
+  }
+  if (!points_S.empty() && !(radius > 0.0 && std::isfinite(radius))) {
+    Refuse(label, "the radius of the focus is " + NumberText(radius) + "; accepted: > 0 m, finite");
+  }
+  return false;
+}
+
+} // namespace dspace::session

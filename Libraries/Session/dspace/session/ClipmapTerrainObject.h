@@ -1,0 +1,35 @@
+// Terrain as a clipmap over tiles that are read as they are needed.
+#ifndef DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
+#define DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <dspace/session/TerrainObject.h>
+#include <dspace/terrain/ClipmapTerrain.h>
+#include <dspace/terrain/StreamedTerrain.h>
+
+namespace dspace::session {
+
+// Its frame S: X east, Y north, Z up, metres; or the body-fixed frame.
+class ClipmapTerrainObject : public TerrainObject {
+public:
+  // Throws what ClipmapTerrain throws.
+  ClipmapTerrainObject(std::string name, std::shared_ptr<const StreamedTerrain> surface,
+                       const ClipmapOptions& options);
+
+  const StreamedTerrain& Surface() const override { return *this->Surface_; }
+  void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }
+  void Describe(v1::TerrainReply& reply) const override;
+  // Checks its arguments only: a clipmap's posts follow the cameras.
+  bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) override;
+
+private:
+  std::shared_ptr<const StreamedTerrain> Surface_;
+  std::shared_ptr<const ClipmapTerrain> Clipmap_;
+};
+
+} // namespace dspace::session
+
+#endif
