@@ -4,13 +4,16 @@
 #include <limits>
 #include <mutex>
 
+#include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
+#include <sys/stat.h>
 
 #include <dspace/Error.h>
 
 #include "ElevationMetadata.h"
 #include "GdalErrors.h"
+#include "NetworkScope.h"
 
 namespace dspace {
 
@@ -24,20 +27,39 @@ struct CloseDataset {
 };
 using DatasetPointer = std::unique_ptr<GDALDataset, CloseDataset>;
 
-DatasetPointer Open(const std::string& path, std::vector<std::string>& warnings) {
+// Why a server's file did not open, from GDAL's messages.
+Error::Kind KindOfAnswer(const std::string& message) {
+  const auto has = [&](const char* words) { return message.find(words) != std::string::npos; };
+  if (has("timed out"))
+    return Error::Kind::DeadlineExceeded;
+  if (has("response code: 404") || has("response code: 410") || has("does not exist"))
+    return Error::Kind::NotFound;
+  if (has("CURL error") || has("response code") || has("response_code"))
+    return Error::Kind::Io;
+  return has("not recognized") ? Error::Kind::Unsupported : Error::Kind::Corrupt;
+}
+
+DatasetPointer Open(const std::string& path, const NetworkLimits& limits,
+                    std::vector<std::string>& warnings) {
   const std::string object = "raster '" + path + "'";
   RegisterGdal();
+  const NetworkScope scope(limits, path);
   GdalErrors errors;
-  DatasetPointer dataset(
-      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  DatasetPointer dataset(GDALDataset::Open(
+      GdalPath(path).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  if (!dataset && IsRemote(path)) {
+    ForgetAnswers(path);
+    const std::string message = errors.Message("not recognised by GDAL");
+    throw Error(KindOfAnswer(message), object, message);
+  }
   if (!dataset) {
     VSIStatBufL stat;
     const bool exists = VSIStatL(path.c_str(), &stat) == 0;
-    if (path.empty() || (!exists && errors.Message("").find("HTTP") == std::string::npos))
+    if (path.empty() || !exists)
       throw Error(Error::Kind::NotFound, object, errors.Message("no such file"));
-    if (exists && VSI_ISDIR(stat.st_mode))
+    if (VSI_ISDIR(stat.st_mode))
       throw Error(Error::Kind::Unsupported, object, "is a folder; a raster file is needed");
-    if (exists && stat.st_size == 0)
+    if (stat.st_size == 0)
       throw Error(Error::Kind::Corrupt, object, "the file is empty");
     VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
     if (!file)
@@ -53,20 +75,83 @@ DatasetPointer Open(const std::string& path, std::vector<std::string>& warnings)
   return dataset;
 }
 
+const char* const Changed = "the file has changed since it was opened; open it anew";
+
+// A local file as it was when it was opened; empty for what is none.
+struct FileState {
+  bool local = false;
+  struct stat state = {};
+
+  static FileState Of(const std::string& path) {
+    FileState file;
+    file.local = ::stat(path.c_str(), &file.state) == 0 && S_ISREG(file.state.st_mode);
+    return file;
+  }
+  // What a changed file gives is partly of the one and partly of the other. One that was replaced
+  // or removed by name is still read whole.
+  bool ChangedInPlace(const std::string& path) const {
+    const FileState now = Of(path);
+    return this->local && now.local && now.state.st_ino == this->state.st_ino &&
+           now.state.st_dev == this->state.st_dev &&
+           (now.state.st_size != this->state.st_size ||
+            now.state.st_mtim.tv_sec != this->state.st_mtim.tv_sec ||
+            now.state.st_mtim.tv_nsec != this->state.st_mtim.tv_nsec);
+  }
+};
+
+bool IsMosaic(GDALDataset& dataset) {
+  return dataset.GetDriver() && std::string(dataset.GetDriver()->GetDescription()) == "VRT";
+}
+
+bool HasRemoteFile(GDALDataset& dataset) {
+  const CPLStringList files(dataset.GetFileList());
+  for (int i = 0; i < files.size(); ++i)
+    if (IsRemote(files[i]))
+      return true;
+  return false;
+}
+
 } // namespace
 
 struct ElevationSource::Implementation {
   mutable std::mutex mutex;
   DatasetPointer dataset;
   GDALRasterBand* band = nullptr;
+  int bandNumber = 1;
+  NetworkLimits network;
+  bool remote = false;  // itself, or what it is a mosaic of
+  bool suspect = false; // a read failed
+  FileState file;
+
+  // After a failed read GDAL may take what it could not read for blocks that the file leaves out,
+  // and give zeros. With the mutex held.
+  void OpenAnew(const std::string& path) {
+    std::vector<std::string> warnings;
+    DatasetPointer fresh = Open(path, this->network, warnings);
+    if (fresh->GetRasterXSize() != this->dataset->GetRasterXSize() ||
+        fresh->GetRasterYSize() != this->dataset->GetRasterYSize() ||
+        fresh->GetRasterCount() < this->bandNumber ||
+        fresh->GetRasterBand(this->bandNumber)->GetRasterDataType() !=
+            this->band->GetRasterDataType())
+      throw Error(Error::Kind::Io, "raster '" + path + "'",
+                  "it is another raster than when it was opened; open it anew");
+    this->dataset = std::move(fresh);
+    this->band = this->dataset->GetRasterBand(this->bandNumber);
+    this->suspect = false;
+  }
 };
 
 ElevationSource::ElevationSource(const std::string& path, const ElevationOptions& options)
     : Impl_(std::make_unique<Implementation>()) {
   const std::string object = "raster '" + path + "'";
   this->Info_.path = path;
-  this->Impl_->dataset = Open(path, this->Info_.warnings);
+  CheckLimits(options.network, object);
+  this->Impl_->network = options.network;
+  this->Impl_->file = FileState::Of(path);
+  this->Impl_->dataset = Open(path, options.network, this->Info_.warnings);
+  const NetworkScope scope(options.network, path);
   GDALDataset& dataset = *this->Impl_->dataset;
+  this->Impl_->remote = IsRemote(path) || (IsMosaic(dataset) && HasRemoteFile(dataset));
   GdalErrors errors;
   const int bands = dataset.GetRasterCount();
   if (bands == 0)
@@ -76,6 +161,7 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
     throw Error(Error::Kind::InvalidArgument, object,
                 "band " + std::to_string(options.band) + " asked for; accepted are 1 to " +
                     std::to_string(bands));
+  this->Impl_->bandNumber = options.band;
   this->Impl_->band = dataset.GetRasterBand(options.band);
   GDALRasterBand& band = *this->Impl_->band;
   this->Info_.driver = dataset.GetDriver() ? dataset.GetDriver()->GetDescription() : "";
@@ -156,20 +242,36 @@ std::vector<double> ElevationSource::ReadReduced(const RasterWindow& w, int fact
 // Pixels of the file, `columns` x `rows` of them or of an overview, into rows of `stride`.
 void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, int stride,
                                double* values, std::uint8_t* mask) const {
-  const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  Implementation& impl = *this->Impl_;
+  const std::string object = "raster '" + this->Info_.path + "'";
+  const std::lock_guard<std::mutex> lock(impl.mutex);
+  if (impl.file.ChangedInPlace(this->Info_.path))
+    throw Error(Error::Kind::Io, object, Changed);
+  const NetworkScope scope(impl.network, this->Info_.path);
+  if (impl.suspect)
+    impl.OpenAnew(this->Info_.path);
   GdalErrors errors;
-  GDALRasterBand& band = *this->Impl_->band;
+  GDALRasterBand& band = *impl.band;
   const auto line = static_cast<GSpacing>(stride);
   const CPLErr read =
       band.RasterIO(GF_Read, part.column, part.row, part.width, part.height, values, columns, rows,
                     GDT_Float64, sizeof(double), line * GSpacing(sizeof(double)), nullptr);
   // The mask knows no-data, alpha and the special pixels of each format.
-  const CPLErr masked =
+  impl.suspect =
+      read != CE_None || errors.Failed() ||
       band.GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width, part.height, mask,
-                                   columns, rows, GDT_Byte, 1, line, nullptr);
-  if (read != CE_None || masked != CE_None || errors.Failed())
-    throw Error(Error::Kind::Corrupt, "raster '" + this->Info_.path + "'",
-                "cannot be read: " + errors.Message("GDAL gave no reason"));
+                                   columns, rows, GDT_Byte, 1, line, nullptr) != CE_None ||
+      errors.Failed();
+  if (impl.file.ChangedInPlace(this->Info_.path))
+    throw Error(Error::Kind::Io, object, Changed);
+  if (!impl.suspect)
+    return;
+  if (impl.remote)
+    ForgetAnswers(this->Info_.path);
+  const std::string message = errors.Message("GDAL gave no reason");
+  if (impl.remote && IsUnanswered(message))
+    throw Error(Error::Kind::Io, object, "cannot be read: " + InWords(message));
+  throw Error(Error::Kind::Corrupt, object, "cannot be read: " + message);
 }
 
 } // namespace dspace

@@ -24,6 +24,17 @@ struct RasterWindow {
   int height = 0;
 };
 
+// For rasters that a server sends (/vsicurl/, http://, https://, and mosaics of such). They go
+// before GDAL's own settings (GDAL_HTTP_...). A read under way ends within (retries + 1) times a
+// limit.
+struct NetworkLimits {
+  double connect = 10.0;   // [s] until a connection stands
+  double stall = 10.0;     // [s] with under 100 bytes a second; taken up to whole seconds
+  double request = 60.0;   // [s] for one request as a whole
+  int retries = 1;         // after 429, 502, 503, 504 and time-outs, within one read; 0 to 10
+  double retryDelay = 0.5; // [s] before the first retry; grows
+};
+
 // What a file does not say, or says wrongly. A file states its vertical datum by a compound CRS, by
 // an offset of a body's radius (ISIS), or by a metadata item VERTICAL_DATUM with the text of
 // VerticalDatum::Text(), such as "sphere:1737400".
@@ -37,6 +48,7 @@ struct ElevationOptions {
   std::optional<std::string> crs;     // replaces the file's; see Crs::FromText
   std::optional<double> pixelSize;    // [map units], for a raster without georeference; default 1
   std::optional<RasterWindow> window; // only these pixels; must lie within the raster
+  NetworkLimits network;
 };
 
 // What the source is, after options.
