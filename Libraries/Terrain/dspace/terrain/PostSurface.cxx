@@ -23,10 +23,10 @@ struct Block {
   }
 };
 
-CellRange CellsOf(const PostLattice& lattice) {
+CellRange CellsOf(const PostLattice& lattice, int level) {
   constexpr std::int64_t Around = std::int64_t(1) << 60;
-  return {lattice.periodic ? -Around : 0, lattice.periodic ? Around : lattice.columns - 2, 0,
-          lattice.rows - 2};
+  return {lattice.periodic ? -Around : 0, lattice.periodic ? Around : lattice.ColumnsAt(level) - 2,
+          0, lattice.RowsAt(level) - 2};
 }
 
 } // namespace
@@ -42,8 +42,8 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
                      const std::function<void(std::size_t, const Facet&)>& take) const {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  const PostLattice& lattice = this->Lattice();
-  const CellRange cells = CellsOf(lattice);
+  const double scale = std::ldexp(1.0, -this->Level_);
+  const CellRange cells = CellsOf(this->Lattice(), this->Level_);
   struct Item {
     std::int64_t tileRow;
     std::int64_t tileColumn;
@@ -51,16 +51,17 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
   };
   std::vector<Item> items;
   items.reserve(posts.size());
-  const auto cellOf = [&](const Eigen::Vector2d& p) {
+  const auto cellOf = [&](const Eigen::Vector2d& post) {
+    const Eigen::Vector2d p = post * scale;
     return std::array<std::int64_t, 2>{
         std::clamp(std::int64_t(std::floor(p.x())), cells.firstColumn, cells.lastColumn),
         std::clamp(std::int64_t(std::floor(p.y())), cells.firstRow, cells.lastRow)};
   };
   for (std::size_t i = 0; i < posts.size(); ++i) {
-    const Eigen::Vector2d& p = posts[i];
+    const Eigen::Vector2d p = posts[i] * scale;
     const bool inside = p.x() >= double(cells.firstColumn) - 1.0 &&
                         p.x() <= double(cells.lastColumn) + 2.0 && p.y() >= -1.0 &&
-                        p.y() <= double(lattice.rows);
+                        p.y() <= double(cells.lastRow) + 2.0;
     if (!inside) {
       take(i, {});
       continue;
@@ -84,7 +85,8 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
         high[k] = std::max(high[k], cell[k]);
       }
     }
-    block.place = {0, low[0] - 1, low[1] - 1, int(high[0] - low[0]) + 4, int(high[1] - low[1]) + 4};
+    block.place = {this->Level_, low[0] - 1, low[1] - 1, int(high[0] - low[0]) + 4,
+                   int(high[1] - low[1]) + 4};
     block.heights.resize(std::size_t(block.place.width) * block.place.height);
     const double spent = std::chrono::duration<double>(Clock::now() - start).count();
     this->Pyramid_->Read(block.place, block.heights.data(), std::max(0.0, this->Deadline_ - spent));
@@ -93,7 +95,7 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
     };
     for (; from < to; ++from) {
       const std::size_t i = items[from].index;
-      take(i, FacetNear(cells, posts[i], cell));
+      take(i, FacetNear(cells, posts[i] * scale, cell));
     }
   }
 }

@@ -1,5 +1,5 @@
-// The surface between the posts of a pyramid's level 0, as queries ask for it: blocks are read as
-// they are needed.
+// The surface between the posts of a pyramid, as queries ask for it: blocks are read as they are
+// needed.
 #ifndef DSPACE_TERRAIN_POSTSURFACE_H
 #define DSPACE_TERRAIN_POSTSURFACE_H
 
@@ -14,15 +14,17 @@
 
 namespace dspace {
 
-// Triangles as HeightGrid has them, but for the cells at a pole: there the surface is ruled from
-// the pole to the cell's other side, as the two triangles of posts that share a place would be.
+// Triangles as HeightGrid has them, of the level whose posts say all: those of finer levels lie on
+// them but for their rounding. In the cells at a pole the surface is ruled from the pole to the
+// cell's other side. Places and facets are told in posts of level 0, cells in those of that level.
 class PostSurface {
 public:
   using Facet = HeightGrid::Facet;
 
-  // `poles`: the first and the last row are poles. `deadline` [s] is what a call waits for tiles.
-  PostSurface(std::shared_ptr<ElevationPyramid> pyramid, bool poles, double deadline)
-      : Pyramid_(std::move(pyramid)), Poles_(poles), Deadline_(deadline) {}
+  // `level` says all, and divides the lattice evenly. `poles`: the first and the last row are
+  // poles. `deadline` [s] is what a call waits for tiles.
+  PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, bool poles, double deadline)
+      : Pyramid_(std::move(pyramid)), Level_(level), Poles_(poles), Deadline_(deadline) {}
 
   // Not valid outside the lattice and in holes.
   Facet At(const Eigen::Vector2d& post) const;
@@ -31,20 +33,22 @@ public:
   void At(const std::vector<Eigen::Vector2d>& posts,
           const std::function<void(std::size_t, const Facet&)>& take) const;
 
-  // A facet of cell (c, r) at (u, v) of it; `at` gives posts.
+  // A facet of cell (c, r) at (u, v) of it; `at` gives posts of the level.
   template<typename Posts>
   Facet OfCell(const Posts& at, std::int64_t c, std::int64_t r, bool below, double u,
                double v) const;
 
   bool AtPole(std::int64_t cellRow) const {
-    return this->Poles_ && (cellRow == 0 || cellRow == this->Lattice().rows - 2);
+    return this->Poles_ && (cellRow == 0 || cellRow == this->Lattice().RowsAt(this->Level_) - 2);
   }
+  int Level() const { return this->Level_; }
   const PostLattice& Lattice() const { return this->Pyramid_->Lattice(); }
   const std::shared_ptr<ElevationPyramid>& SharedPyramid() const { return this->Pyramid_; }
   double Deadline() const { return this->Deadline_; }
 
 private:
   std::shared_ptr<ElevationPyramid> Pyramid_;
+  int Level_;
   bool Poles_;
   double Deadline_;
 };
@@ -52,22 +56,24 @@ private:
 template<typename Posts>
 HeightGrid::Facet PostSurface::OfCell(const Posts& at, std::int64_t c, std::int64_t r, bool below,
                                       double u, double v) const {
-  if (!this->AtPole(r)) {
-    return FacetOfCell(at, c, r, below, u, v);
-  }
-  const bool north = r == 0;
-  const double pole = at(c, north ? r : r + 1);
-  const double west = at(c, north ? r + 1 : r);
-  const double east = at(c + 1, north ? r + 1 : r);
   Facet facet;
-  facet.valid = !(std::isnan(pole) || std::isnan(west) || std::isnan(east));
-  if (facet.valid) {
+  if (!this->AtPole(r)) {
+    facet = FacetOfCell(at, c, r, below, u, v);
+  } else {
+    const bool north = r == 0;
+    const double pole = at(c, north ? r : r + 1);
+    const double west = at(c, north ? r + 1 : r);
+    const double east = at(c + 1, north ? r + 1 : r);
+    facet.valid = !(std::isnan(pole) || std::isnan(west) || std::isnan(east));
     const double share = north ? v : 1.0 - v; // of the side that is not the pole
     const double side = west + u * (east - west);
     facet.height = pole + share * (side - pole);
     facet.dc = share * (east - west);
     facet.dr = north ? side - pole : pole - side;
   }
+  const double scale = std::ldexp(1.0, -this->Level_);
+  facet.dc *= scale;
+  facet.dr *= scale;
   return facet;
 }
 

@@ -113,9 +113,10 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   }
   this->Poles_ = poles;
   this->Pyramid_ = std::make_shared<ElevationPyramid>(raster, options.pyramid);
-  this->Surface_ = std::make_unique<PostSurface>(this->Pyramid_, poles, options.deadline);
   // With poles, level `subdivisions` has its rows between those of the pixels.
-  this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_, this->Subdivisions_ - (poles ? 1 : 0));
+  this->Surface_ = std::make_unique<PostSurface>(
+      this->Pyramid_, this->Subdivisions_ - (poles ? 1 : 0), poles, options.deadline);
+  this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_);
   const double parts = std::ldexp(1.0, this->Subdivisions_);
   this->PixelToPost_.linear() = parts * Eigen::Matrix2d::Identity();
   this->PixelToPost_.translation() << -0.5 * parts, poles ? 0.0 : -0.5 * parts;

@@ -42,7 +42,7 @@ struct SurfaceRay::March {
   double deadline;
   int side = 0; // +1 above ground, -1 below, 0 unknown (start, border, hole)
   Hit hit;
-  std::shared_ptr<const RayTile> tiles[2]; // the latest of the level that bounds and of level 0
+  std::shared_ptr<const RayTile> tile; // the latest
   std::vector<double> crossings;
 
   double Remaining() const {
@@ -57,9 +57,8 @@ struct SurfaceRay::March {
   }
 };
 
-SurfaceRay::SurfaceRay(const PostSurface& surface, int boundsLevel)
-    : Surface_(surface), BoundsLevel_(boundsLevel),
-      Tiles_(std::make_unique<RayTiles>(surface.SharedPyramid())) {}
+SurfaceRay::SurfaceRay(const PostSurface& surface)
+    : Surface_(surface), Tiles_(std::make_unique<RayTiles>(surface.SharedPyramid())) {}
 
 SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
   March march{path, Clock::now(), this->Surface_.Deadline(), 0, {}, {}, {}};
@@ -103,23 +102,55 @@ SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
   return {};
 }
 
-const RayTile& SurfaceRay::TileOf(March& march, int level, std::int64_t c, std::int64_t r) const {
-  std::shared_ptr<const RayTile>& held = march.tiles[level == 0 ? 1 : 0];
+// (c, r) counts tiles.
+const RayTile& SurfaceRay::TileOf(March& march, std::int64_t c, std::int64_t r) const {
+  std::shared_ptr<const RayTile>& held = march.tile;
   if (!held || held->column != c * RayTile::Cells || held->row != r * RayTile::Cells) {
-    held = this->Tiles_->Get({level, c, r}, march.Remaining());
+    held = this->Tiles_->Get({this->Surface_.Level(), c, r}, march.Remaining());
   }
   return *held;
 }
 
-// Of a block of 2^bits cells, from the coarsest posts that know it.
+// Of a block of 2^bits cells of level 0.
 RayTile::Range SurfaceRay::RangeOf(March& march, int bits, std::int64_t c, std::int64_t r) const {
-  const int level = bits > this->BoundsLevel_ ? this->BoundsLevel_ : 0;
-  const int within = bits - level;
-  const int up = RayTile::Bits - within;
+  const int level = this->Surface_.Level();
+  const int up = RayTile::Bits + level - bits; // a tile has 2^up of them a side
   if (up == 0) {
     return this->Tiles_->RangeOf({level, c, r}, march.Remaining());
   }
-  return this->TileOf(march, level, c >> up, r >> up).Of(within, c, r);
+  const RayTile& tile = this->TileOf(march, c >> up, r >> up);
+  if (bits > level) {
+    return tile.Of(bits - level, c, r);
+  }
+  // Part of a cell between the posts: flat pieces are least and greatest at their corners.
+  const std::int64_t parts = std::int64_t(1) << (level - bits);
+  const std::int64_t i = c & (parts - 1);
+  const std::int64_t j = r & (parts - 1);
+  const double size = 1.0 / double(parts);
+  RayTile::Range range;
+  const auto take = [&](bool below, std::int64_t di, std::int64_t dj) {
+    const HeightGrid::Facet facet =
+        this->Surface_.OfCell(tile, c >> (level - bits), r >> (level - bits), below,
+                              double(i + di) * size, double(j + dj) * size);
+    if (facet.valid) { // floats are rounded to either side
+      range.least = std::min(range.least, std::nextafter(float(facet.height), -1e30f));
+      range.greatest = std::max(range.greatest, std::nextafter(float(facet.height), 1e30f));
+    }
+  };
+  const bool pole = this->Surface_.AtPole(r >> (level - bits));
+  for (const bool below : {true, false}) {
+    if (pole || (below ? j >= i : i >= j)) {
+      take(below, 0, 0);
+      take(below, 1, 1);
+      if (below || i != j || pole) {
+        take(below, 0, 1);
+      }
+      if (!below || i != j || pole) {
+        take(below, 1, 0);
+      }
+    }
+  }
+  return range;
 }
 
 // (c, r) counts blocks of 2^bits cells. True once something is hit.
@@ -134,10 +165,7 @@ bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, d
     return this->VisitCell(march, c, r, t0, t1);
   }
   const RayPath& path = march.path;
-  // Above the level that bounds, a tile of it knows blocks of up to its own size; below, one of
-  // level 0 does.
-  if (bits <= RayTile::Bits + this->BoundsLevel_ &&
-      (bits > this->BoundsLevel_ || bits <= RayTile::Bits)) {
+  if (bits <= RayTile::Bits + this->Surface_.Level()) { // larger ones are in several tiles
     const RayTile::Range range = this->RangeOf(march, bits, c, r);
     const auto [low, high] = path.Heights(t0, t1);
     if (low - path.Slack() > range.greatest || high + path.Slack() < range.least) {
@@ -180,14 +208,23 @@ bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, d
 bool SurfaceRay::VisitCell(March& march, std::int64_t c, std::int64_t r, double t0,
                            double t1) const {
   const RayPath& path = march.path;
-  const RayTile& tile = this->TileOf(march, 0, c >> RayTile::Bits, r >> RayTile::Bits);
+  // The cell between posts that it is part of, and its place in it.
+  const int level = this->Surface_.Level();
+  const std::int64_t column = c >> level;
+  const std::int64_t row = r >> level;
+  const double size = std::ldexp(1.0, -level);
+  const Eigen::Vector2d corner = {double(c), double(r)};
+  const Eigen::Vector2d within = {double(c - (column << level)) * size,
+                                  double(r - (row << level)) * size};
+  const RayTile& tile = this->TileOf(march, column >> RayTile::Bits, row >> RayTile::Bits);
   const auto placeAt = [&](double t) {
-    return Eigen::Vector2d(path.Post(t, double(c) + 0.5) - Eigen::Vector2d(double(c), double(r)));
+    return Eigen::Vector2d(path.Post(t, corner.x() + 0.5) - corner);
   };
   // Where the ray changes from one triangle of the cell to the other.
   std::array<double, 3> ends = {t0, t1, t1};
   int pieces = 1;
-  if (!this->Surface_.AtPole(r)) {
+  const bool onDiagonal = within.x() == within.y() && !this->Surface_.AtPole(row);
+  if (onDiagonal) {
     const auto gap = [&](double t) {
       const Eigen::Vector2d g = placeAt(t);
       return g.x() - g.y();
@@ -202,12 +239,12 @@ bool SurfaceRay::VisitCell(March& march, std::int64_t c, std::int64_t r, double 
   for (int k = 0; k < pieces; ++k) {
     const double a = ends[k];
     const double b = ends[k + 1];
-    const Eigen::Vector2d middle = placeAt(0.5 * (a + b));
+    const Eigen::Vector2d middle = onDiagonal ? placeAt(0.5 * (a + b)) : within;
     const bool below = middle.y() > middle.x(); // triangle A
     HeightGrid::Facet facet;
     const auto over = [&](double t) {
-      const Eigen::Vector2d g = placeAt(t).cwiseMax(0.0).cwiseMin(1.0);
-      facet = this->Surface_.OfCell(tile, c, r, below, g.x(), g.y());
+      const Eigen::Vector2d g = within + placeAt(t).cwiseMax(0.0).cwiseMin(1.0) * size;
+      facet = this->Surface_.OfCell(tile, column, row, below, g.x(), g.y());
       return path.Height(t) - facet.height;
     };
     const double fa = over(a);

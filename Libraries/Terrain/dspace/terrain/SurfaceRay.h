@@ -11,9 +11,9 @@
 namespace dspace {
 
 // As GridRay, with posts that are read where the ray needs them: blocks of cells that it passes
-// wholly above or below are skipped by their least and greatest heights, and in the cells that
-// remain the sign of its height over the ground is followed from place to place, so that no ray
-// slips through an edge. On a sphere heights along a cell are curved: they are looked at in its
+// wholly above or below are skipped by their least and greatest heights, and in the cells of level
+// 0 that remain the sign of its height over the ground is followed from place to place, so that no
+// ray slips through an edge. On a sphere heights along a cell are curved: they are looked at in its
 // middle and where a parabola through three places has its extreme, and crossings are bracketed.
 class SurfaceRay {
 public:
@@ -24,8 +24,8 @@ public:
     HeightGrid::Facet facet;
   };
 
-  // `boundsLevel` is the coarsest level whose posts bound those of level 0 between them.
-  SurfaceRay(const PostSurface& surface, int boundsLevel);
+  // Keeps a reference to `surface`, which must outlive it.
+  explicit SurfaceRay(const PostSurface& surface);
 
   Hit Intersect(const RayPath& path) const;
 
@@ -34,10 +34,9 @@ private:
   bool Visit(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1) const;
   bool VisitCell(March& march, std::int64_t c, std::int64_t r, double t0, double t1) const;
   RayTile::Range RangeOf(March& march, int bits, std::int64_t c, std::int64_t r) const;
-  const RayTile& TileOf(March& march, int level, std::int64_t c, std::int64_t r) const;
+  const RayTile& TileOf(March& march, std::int64_t c, std::int64_t r) const;
 
   const PostSurface& Surface_;
-  int BoundsLevel_;
   std::unique_ptr<RayTiles> Tiles_;
 };
 
