@@ -1,0 +1,202 @@
+// Files that shrink, change or vanish under an open source: no read gives zeros or holes for what
+// is not there any more.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <cpl_string.h>
+#include <gtest/gtest.h>
+
+#include <dspace/Error.h>
+#include <dspace/terrain/ElevationPyramid.h>
+#include <dspace/terrain/ElevationSource.h>
+#include <dspace/terrain/RasterPosts.h>
+
+#include "RasterFile.h"
+
+namespace {
+
+using namespace dspace;
+using dspace::testing::RasterFile;
+using dspace::testing::TemporaryFolder;
+namespace fs = std::filesystem;
+
+constexpr int Side = 400;
+
+double Height(int c, int r) {
+  return 1000.0 + (c * 7919 + r * 104729 + c * r % 977) % 100003 / 64.0;
+}
+
+// `kind`: a compression, or "TILED".
+std::string Write(const std::string& path, const std::string& kind) {
+  RasterFile file;
+  file.width = Side;
+  file.height = Side;
+  file.type = GDT_Float32;
+  file.geotransform = std::array<double, 6>{0, 1, 0, 0, 0, -1};
+  file.value = [](int c, int r, int) { return Height(c, r); };
+  auto* plain = GDALDataset::Open(file.Write(path + ".plain.tif").c_str(), GDAL_OF_RASTER);
+  CPLStringList options;
+  options.SetNameValue("COMPRESS", kind == "TILED" ? "NONE" : kind.c_str());
+  options.SetNameValue("TILED", kind == "TILED" ? "YES" : "NO");
+  auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  GDALClose(driver->CreateCopy(path.c_str(), plain, 0, options.List(), nullptr, nullptr));
+  GDALClose(plain);
+  fs::remove(path + ".plain.tif");
+  return path;
+}
+
+// The left half from one file, the right half from another.
+std::string WriteMosaic(const std::string& path, const std::string& left,
+                        const std::string& right) {
+  std::ofstream vrt(path);
+  vrt << "<VRTDataset rasterXSize=\"800\" rasterYSize=\"400\">"
+         "<GeoTransform>0, 1, 0, 0, 0, -1</GeoTransform>"
+         "<VRTRasterBand dataType=\"Float32\" band=\"1\">";
+  for (const std::string& file : {left, right}) {
+    vrt << "<SimpleSource><SourceFilename>" << file
+        << "</SourceFilename><SourceBand>1</SourceBand>"
+           "<SourceProperties RasterXSize=\"400\" RasterYSize=\"400\" DataType=\"Float32\" "
+           "BlockXSize=\"400\" BlockYSize=\"5\"/>"
+           "<SrcRect xOff=\"0\" yOff=\"0\" xSize=\"400\" ySize=\"400\"/><DstRect xOff=\""
+        << (file == left ? 0 : 400) << "\" yOff=\"0\" xSize=\"400\" ySize=\"400\"/></SimpleSource>";
+  }
+  vrt << "</VRTRasterBand></VRTDataset>";
+  return path;
+}
+
+void ExpectHeights(const std::vector<double>& heights) {
+  ASSERT_EQ(heights.size(), std::size_t(Side) * Side);
+  int wrong = 0;
+  for (int i = 0; i < Side * Side; ++i) {
+    wrong += heights[i] != float(Height(i % Side, i / Side));
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+std::string Refusal(const ElevationSource& source, const RasterWindow& window, Error::Kind kind,
+                    int factor = 1) {
+  try {
+    source.ReadReduced(window, factor);
+  } catch (const Error& error) {
+    EXPECT_EQ(int(error.GetKind()), int(kind)) << error.what();
+    EXPECT_NE(std::string(error.what()).find(source.Info().path), std::string::npos);
+    return error.what();
+  }
+  ADD_FAILURE() << "was read";
+  return "";
+}
+
+TEST(DamagedRaster, AFileThatShrinksWhileOpenIsNotRead) {
+  const TemporaryFolder folder;
+  for (const std::string kind : {"NONE", "TILED", "DEFLATE", "LZW"}) {
+    for (const double part : {0.99, 0.6, 0.01, 0.0}) {
+      SCOPED_TRACE(kind + " " + std::to_string(part));
+      const std::string path = Write(folder / "shrinks.tif", kind);
+      const ElevationSource source(path);
+      EXPECT_EQ(source.Read({0, 0, 1, 1})[0], float(Height(0, 0)));
+      fs::resize_file(path, std::uintmax_t(double(fs::file_size(path)) * part));
+      for (const int factor : {1, 4}) {
+        const std::string said = Refusal(source, {0, 0, Side, Side}, Error::Kind::Io, factor);
+        EXPECT_NE(said.find("has changed since"), std::string::npos) << said;
+      }
+    }
+  }
+}
+
+// A mosaic's file stays as it is, so that only GDAL meets what is missing.
+TEST(DamagedRaster, AMosaicWhoseFileShrinksOrVanishesIsNotReadThere) {
+  const TemporaryFolder folder;
+  for (const std::string kind : {"NONE", "TILED", "DEFLATE", "LZW"}) {
+    for (const double part : {0.99, 0.6, 0.01, 0.0, -1.0}) {
+      SCOPED_TRACE(kind + " " + std::to_string(part));
+      const std::string left = Write(folder / "left.tif", kind);
+      const std::string right = Write(folder / "right.tif", kind);
+      const ElevationSource source(WriteMosaic(folder / "mosaic.vrt", left, right));
+      ExpectHeights(source.Read({0, 0, Side, Side}));
+      if (part < 0.0) {
+        fs::remove(right);
+      } else {
+        fs::resize_file(right, std::uintmax_t(double(fs::file_size(right)) * part));
+      }
+      for (int again = 0; again < 3; ++again) { // nor after the first refusal
+        Refusal(source, {Side, 0, Side, Side}, Error::Kind::Corrupt);
+        Refusal(source, {0, Side - 10, 2 * Side, 10}, Error::Kind::Corrupt);
+      }
+      ExpectHeights(source.Read({0, 0, Side, Side})); // what is there is read
+      Write(right, kind);                             // and what comes back
+      ExpectHeights(source.Read({Side, 0, Side, Side}));
+    }
+  }
+}
+
+TEST(DamagedRaster, AFileRewrittenInPlaceIsOpenedAnew) {
+  const TemporaryFolder folder;
+  const std::string path = Write(folder / "rewritten.tif", "NONE");
+  const ElevationSource source(path);
+  ExpectHeights(source.Read());
+  {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(200000);
+    file.write("changed!", 8);
+  }
+  fs::last_write_time(path, fs::last_write_time(path) + std::chrono::seconds(2));
+  Refusal(source, {0, 0, 1, 1}, Error::Kind::Io);
+  EXPECT_NO_THROW(ElevationSource(path).Read());
+}
+
+TEST(DamagedRaster, WhatIsRemovedOrReplacedByNameIsReadAsItWas) {
+  const TemporaryFolder folder;
+  for (const std::string kind : {"NONE", "DEFLATE"}) {
+    const std::string path = Write(folder / "removed.tif", kind);
+    const ElevationSource source(path);
+    fs::remove(path);
+    ExpectHeights(source.Read());
+    std::ofstream(path) << "something else";
+    ExpectHeights(source.Read());
+  }
+}
+
+TEST(DamagedRaster, AFlippedByteOfACompressedFileIsRefusedOrHarmless) {
+  const TemporaryFolder folder;
+  const std::string path = Write(folder / "flipped.tif", "DEFLATE");
+  const auto size = fs::file_size(path);
+  std::mt19937 random(3);
+  int refused = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto at = std::streamoff(random() % size);
+    char byte = 0;
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(at).get(byte);
+    file.seekp(at).put(char(byte ^ 0x10)).flush();
+    try {
+      ExpectHeights(ElevationSource(path).Read());
+    } catch (const Error&) {
+      ++refused;
+    }
+    file.seekp(at).put(byte);
+  }
+  EXPECT_GT(refused, 90);
+  ExpectHeights(ElevationSource(path).Read());
+}
+
+// The pyramid gives an error to who waits and goes on drawing what it has.
+TEST(DamagedRaster, APyramidOfAFileThatShrinksKeepsWhatItHas) {
+  const TemporaryFolder folder;
+  const std::string path = Write(folder / "pyramid.tif", "DEFLATE");
+  ElevationPyramidOptions options;
+  options.retryDelay = 0.01;
+  ElevationPyramid pyramid(std::make_shared<RasterPosts>(std::make_shared<ElevationSource>(path)),
+                           options);
+  std::vector<float> heights(100);
+  pyramid.Read({2, 0, 0, 10, 10}, heights.data());
+  fs::resize_file(path, fs::file_size(path) / 2);
+  EXPECT_THROW(pyramid.Read({0, 380, 380, 10, 10}, heights.data()), Error);
+  EXPECT_NE(pyramid.Statistics().lastFailure.find(path), std::string::npos);
+  EXPECT_TRUE(pyramid.TryRead({2, 0, 0, 10, 10}, heights.data()));
+  for (const float h : heights) {
+    EXPECT_GE(h, 1000.0f);
+  }
+}
+
+} // namespace
