@@ -1,0 +1,387 @@
+"""Clipmaps through Python: what they answer and draw against triangles, on a plane and on a body."""
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+import dspace
+from dspace.rover import Path, load_vehicle
+
+gdal = pytest.importorskip("osgeo.gdal")  # an independent reader
+gdal.UseExceptions()
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FIELD = ROOT / "Data/field/field.tif"
+MARS = "mars_mola_megt90n000cb_4ppd_m.tif"
+MARS_RADIUS = 3396190.0
+RASTERS = {"mars_gale_mola_128ppd_m.tif": {}, "moon_npole_stereo_33.tif": {},
+           "moon_apollo15_nac_dtm_257.png": {"vertical_scale": 49 / 255, "pixel_size": 2}}
+SIZE = (320, 240)
+
+
+def real(name):
+    path = pathlib.Path(os.environ.get("DSPACE_DATA") or "/nonexistent") / "terrain" / name
+    if not path.exists():
+        pytest.skip(f"real data absent: set DSPACE_DATA to the folder that has terrain/{name}")
+    return path
+
+
+def between_posts(z, c, r):
+    """Heights at places (c, r) in posts: two triangles a cell, the diagonal from the north-west to
+    the south-east post."""
+    i = np.clip(np.floor(c).astype(int), 0, z.shape[1] - 2)
+    j = np.clip(np.floor(r).astype(int), 0, z.shape[0] - 2)
+    u, v = c - i, r - j
+    nw, ne, sw, se = z[j, i], z[j, i + 1], z[j + 1, i], z[j + 1, i + 1]
+    return np.where(u >= v, nw + u * (ne - nw) + v * (se - ne), nw + v * (sw - nw) + u * (se - sw))
+
+
+def points_of(depth, eye, target, fov_deg):
+    """Root coordinates of what a camera (up: Z) hit, and metres there a pixel; NaN where nothing."""
+    height, width = depth.shape
+    eye, target = np.asarray(eye, float), np.asarray(target, float)
+    forward = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(forward, (0, 0, 1))
+    right /= np.linalg.norm(right)
+    down = np.cross(forward, right)
+    pixel = 2 * np.tan(np.radians(fov_deg) / 2) / height
+    x = (np.arange(width) + 0.5 - width / 2) * pixel
+    y = (np.arange(height) + 0.5 - height / 2) * pixel
+    rays = forward + x[None, :, None] * right + y[:, None, None] * down
+    depth = np.where(np.isfinite(depth), depth, np.nan)[..., None]
+    return eye + rays * depth, depth[..., 0] * pixel
+
+
+# --- On a plane ------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("name", RASTERS)
+def test_both_modes_answer_the_same(scene, name):
+    """Up to the floats of a clipmap's posts: half a step at the greatest height."""
+    path = real(name)
+    clipmap = scene.add_terrain(path, name="clipmap", mode="clipmap", **RASTERS[name])
+    mesh = scene.add_terrain(path, name="mesh", mode="triangles", **RASTERS[name])
+    assert (clipmap.mode, mesh.mode) == ("clipmap", "triangles")
+    assert clipmap.size == mesh.size and clipmap.crs == mesh.crs
+    np.testing.assert_allclose(clipmap.extent, mesh.extent, rtol=1e-12)
+    np.testing.assert_allclose(clipmap.height_range, mesh.height_range, atol=1e-9)
+    west, east, south, north = mesh.extent
+    random = np.random.default_rng(1)
+    x, y = random.uniform(west, east, 10000), random.uniform(south, north, 10000)
+    step = np.spacing(np.float32(np.abs(mesh.height_range).max()))
+    expected = mesh.height(x, y)
+    assert np.isfinite(expected).sum() > 9000
+    np.testing.assert_allclose(clipmap.height(x, y), expected, rtol=0, atol=step / 2 + 1e-9)
+    some = slice(0, 500)
+    slope = np.median(np.abs(mesh.slope_deg(x[some], y[some])))
+    assert slope > 0.1
+    np.testing.assert_allclose(clipmap.slope_deg(x[some], y[some]), mesh.slope_deg(x[some], y[some]),
+                               atol=0.01)
+    np.testing.assert_allclose(clipmap.normal(x[some], y[some]), mesh.normal(x[some], y[some]),
+                               atol=1e-4)
+    there = clipmap.to_map(np.column_stack((x[some], y[some], expected[some])))
+    np.testing.assert_allclose(there[:, 2], expected[some], atol=1e-6)
+    np.testing.assert_allclose(clipmap.height(there[:, 0], there[:, 1], map=True), expected[some],
+                               rtol=0, atol=1e-3)
+
+
+# Eye and target as fractions of the raster's side, above the ground.
+VIEWS = {"near": ((0, 0, 0.002), (0.3, 0.1, -0.05)), "far": ((-0.4, -0.4, 0.15), (0, 0, 0)),
+         "above": ((0, -0.3, 0.8), (0, 0, 0))}
+
+
+@pytest.mark.parametrize("place", VIEWS)
+@pytest.mark.parametrize("name", RASTERS)
+def test_both_modes_draw_the_same_within_the_screen_space_error(scene, name, place):
+    """The screen-space error is how far, in pixels of 240 rows and 45 degrees, the ground that is
+    drawn lies above or below the height query: of a clipmap of 124 cells at most 0.15 in half of the
+    picture, 0.7 in 99 % and 3 everywhere; where the camera is near, 0.002 in half of it. Triangles
+    of all posts are the surface itself."""
+    path = real(name)
+    clipmap = scene.add_terrain(path, name="clipmap", mode="clipmap", **RASTERS[name])
+    mesh = scene.add_terrain(path, name="mesh", mode="triangles", triangles=4_000_000, **RASTERS[name])
+    side = mesh.extent[1] - mesh.extent[0]
+    ground = mesh.height(0, 0)
+    eye, target = (np.add(np.multiply(at, side), (0, 0, ground)) for at in VIEWS[place])
+    scene.add_camera("eye", eye=eye, target=target, fov_deg=45, near=1e-5 * side)
+    view = scene.add_viewport(SIZE, "eye", samples=1)
+    depth = {}
+    for terrain, other in ((clipmap, mesh), (mesh, clipmap)):
+        terrain.object.visible, other.object.visible = True, False
+        depth[terrain.name] = view.depth()
+        points, pixel = points_of(depth[terrain.name], eye, target, 45)
+        hit = np.isfinite(points[..., 2])
+        p = points[hit]
+        error = np.abs(p[:, 2] - mesh.height(p[:, 0], p[:, 1])) / pixel[hit]
+        error = error[np.isfinite(error)]  # at the very edge a point may lie beside the raster
+        assert len(error) > 0.4 * SIZE[0] * SIZE[1]
+        median, most, all_of_it = np.percentile(error, (50, 99, 100))
+        if terrain is mesh:
+            assert median < 1e-3 and most < 0.5, (median, most)
+        else:
+            assert median < (2e-3 if place == "near" else 0.15), median
+            assert most < 0.7 and all_of_it < 3, (most, all_of_it)
+    # Of the planes themselves: who hits anything differs along silhouettes only.
+    hits = [np.isfinite(plane) for plane in depth.values()]
+    assert (hits[0] != hits[1]).sum() < 0.001 * hits[0].size
+    both = hits[0] & hits[1]
+    off = np.abs(depth["clipmap"][both] / depth["mesh"][both] - 1)
+    assert np.percentile(off, 90) < 5e-3
+
+
+def write_raster(path, z, pixel=1.0):
+    rows, columns = z.shape
+    data = gdal.GetDriverByName("GTiff").Create(str(path), columns, rows, 1, gdal.GDT_Float32,
+                                                ["TILED=YES"])
+    data.SetGeoTransform((0, pixel, 0, rows * pixel, 0, -pixel))
+    data.SetMetadataItem("VERTICAL_DATUM", "relative")
+    data.GetRasterBand(1).SetUnitType("m")
+    data.GetRasterBand(1).WriteArray(z)
+    return path
+
+
+def test_auto_chooses_by_size(scene, tmp_path):
+    """Triangles up to four million pixels."""
+    large = write_raster(tmp_path / "large.tif", np.zeros((2000, 2001), np.float32))
+    assert scene.add_terrain(large).mode == "clipmap"
+    assert scene.add_terrain(FIELD).mode == "triangles"
+    terrain = scene.add_terrain(FIELD, mode="clipmap")
+    assert (terrain.mode, terrain.on_body, terrain.triangles) == ("clipmap", False, 0)
+    assert terrain.tiles["levels"] > 1 and terrain.tiles["subdivisions"] == 0
+
+
+def test_a_million_heights(scene):
+    """Against the triangles by hand, from GDAL's own values of the posts."""
+    terrain = scene.add_terrain(FIELD, mode="clipmap")
+    data = gdal.Open(str(FIELD))
+    left, pixel, _, top, _, _ = data.GetGeoTransform()
+    random = np.random.default_rng(3)
+    x, y = random.uniform(-99, 99, (2, 1000, 1000))
+    heights = terrain.height(x, y, map=True)
+    assert heights.shape == (1000, 1000)
+    expected = between_posts(data.ReadAsArray().astype(float), (x - left) / pixel - 0.5,
+                             (top - y) / pixel - 0.5)
+    np.testing.assert_allclose(heights, expected, rtol=0, atol=1e-6)
+    assert np.isnan(terrain.height([0, 1e4], [0, 0])).tolist() == [False, True]
+    assert terrain.height(np.zeros((3, 1)), np.zeros(4)).shape == (3, 4)
+    assert terrain.height([], []).shape == (0,)
+    assert terrain.tiles["bytes"] > 0 and terrain.tiles["failures"] == 0
+
+
+# --- On a body -------------------------------------------------------------------------------------
+
+@pytest.fixture
+def mars(scene):
+    return scene.add_terrain(real(MARS), name="mars", on_body=True, vertical_datum="sphere:3396190")
+
+
+def on_sphere(longitude, latitude, radius):
+    longitude, latitude = np.radians(longitude), np.radians(latitude)
+    return np.stack((radius * np.cos(latitude) * np.cos(longitude),
+                     radius * np.cos(latitude) * np.sin(longitude), radius * np.sin(latitude)), -1)
+
+
+def test_heights_on_a_body(mars):
+    assert mars.on_body and mars.mode == "clipmap"
+    random = np.random.default_rng(4)
+    longitude, latitude = random.uniform(0.2, 359.8, 10000), random.uniform(-89.8, 89.8, 10000)
+    z = gdal.Open(str(real(MARS))).ReadAsArray().astype(float)
+    heights = mars.height(longitude, latitude, map=True)
+    expected = between_posts(z, longitude * 4 - 0.5, (90 - latitude) * 4 - 0.5)
+    np.testing.assert_allclose(heights, expected, rtol=0, atol=2e-3)  # floats of posts
+    points = on_sphere(longitude, latitude, MARS_RADIUS + heights)
+    np.testing.assert_allclose(mars.from_map(np.column_stack((longitude, latitude, heights))), points,
+                               atol=1e-6)
+    # Whatever their own height, the points stand above the same places.
+    np.testing.assert_allclose(mars.height(*(1.01 * points).T), heights, rtol=0, atol=2e-3)
+    back = mars.to_map(points)
+    np.testing.assert_allclose(back[:, 2], heights, atol=1e-6)
+    np.testing.assert_allclose((back[:, 0] - longitude + 180) % 360, 180, atol=1e-9)
+    # The normal leans from the vertical by the slope.
+    up = points[:100] / np.linalg.norm(points[:100], axis=1)[:, None]
+    normal = mars.normal(longitude[:100], latitude[:100], map=True)
+    lean = np.degrees(np.arccos(np.einsum("ni,ni->n", up, normal)))
+    np.testing.assert_allclose(lean, mars.slope_deg(longitude[:100], latitude[:100], map=True),
+                               atol=1e-6)
+
+
+def test_a_body_is_closed_at_the_date_line_and_the_poles(mars):
+    latitude = np.linspace(-89, 89, 50)
+    for longitude in (-0.05, 0.05, 120.0):
+        np.testing.assert_array_equal(mars.height(longitude, latitude, map=True),
+                                      mars.height(longitude + 360, latitude, map=True))
+    west, east = (mars.height(longitude, latitude, map=True) for longitude in (-1e-6, 1e-6))
+    assert np.abs(west - east).max() < 0.01  # the seam of this grid
+    z = gdal.Open(str(real(MARS))).ReadAsArray().astype(float)
+    for pole, row in ((90, z[0]), (-90, z[-1])):
+        heights = mars.height(np.arange(0, 360, 30.0), pole, map=True)
+        assert np.ptp(heights) == 0 and heights[0] == pytest.approx(row.mean(), abs=1e-3)
+
+
+@pytest.mark.parametrize("toward, up", [((-1, 0.02, 0.1), (0, 0, 1)), ((1, 0.001, 0), (0, 0, 1)),
+                                        ((0, 0.001, 1), (1, 0, 0)), ((0.001, 0, -1), (1, 0, 0))],
+                         ids=["date line", "grid's edge", "north pole", "south pole"])
+def test_no_background_shows_through_the_disc(scene, mars, toward, up):
+    low, high = (MARS_RADIUS + height for height in mars.height_range)
+    toward = np.array(toward) / np.linalg.norm(toward)
+    scene.lights["sky"].set(intensity=0.3)
+    for distance, height in ((1e7, 7.2e6), (4e6, 4e5)):  # all of it, and a part near its middle
+        scene.add_camera("orbit", eye=distance * toward, target=(0, 0, 0), up=up, height=height,
+                         near=1e4, far=2e7)
+        view = scene.add_viewport((240, 240), "orbit", samples=1)
+        view.set_background((1, 0, 1))
+        off_axis = np.hypot(*np.meshgrid(*2 * [(np.arange(240) - 119.5) * height / 240]))
+        planes = view.capture(depth=True)
+        # Chords of far levels cut the limb by less than a pixel.
+        inside, outside = off_axis < low - height / 240, off_axis > high + height / 240
+        assert np.isfinite(planes["depth"][inside]).all()
+        assert np.isinf(planes["depth"][outside]).all()
+        assert not (planes["color"][inside][:, :3] == (255, 0, 255)).all(axis=1).any()
+        # The surface is where it belongs.
+        radius = np.hypot(off_axis, distance - planes["depth"])[off_axis < 0.7 * low]
+        assert low - 500 < radius.min() and radius.max() < high + 500
+        view.remove()
+
+
+# --- Refusals --------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("given, text", [
+    ({"on_body": True, "origin": (0, 0)}, "origin"),
+    ({"on_body": True, "mode": "triangles"}, "clipmap"),
+    ({"on_body": True, "crs": "EPSG:32610"}, "ellipsoid"),
+    ({"on_body": True, "crs": "+proj=tmerc +R=1737400"}, "sphere"),
+    ({"mode": "clipmap", "level_size": 13}, "13"),
+    ({"mode": "clipmap", "level_size": 8}, "8"),
+    ({"mode": "clipmap", "byte_budget": 10}, "10"),
+    ({"mode": "clipmap", "deadline": 0}, "deadline"),
+    ({"mode": "clipmap", "deadline": float("nan")}, "deadline"),
+    ({"mode": "clipmap", "relief": {"sun_azimuth_deg": 90}}, "sun"),
+    ({"mode": "clipmap", "image": "no_such.png"}, "no_such.png"),
+    ({"mode": "planes"}, "planes"),
+    ({"mode": "clipmap", "frame": "no such frame"}, "no such frame"),
+])
+def test_what_is_refused_changes_nothing(scene, refused, given, text):
+    with refused(dspace.Error, text):
+        scene.add_terrain(FIELD, **given)
+
+
+def test_a_degree_grid_of_an_ellipsoid_is_refused_on_a_body(scene, refused, tmp_path):
+    degrees = write_raster(tmp_path / "degrees.tif", np.zeros((40, 40), np.float32), pixel=0.1)
+    with refused(dspace.Unsupported, "ellipsoid"):
+        scene.add_terrain(degrees, on_body=True, crs="EPSG:4326")
+    assert scene.add_terrain(degrees, mode="clipmap", crs="EPSG:4326").height(0, 0) == 0
+
+
+def test_queries_on_a_body_need_the_map_or_space(mars):
+    with pytest.raises(dspace.InvalidArgument, match="x, y and z"):
+        mars.height(0, 0)
+    with pytest.raises(dspace.InvalidArgument):
+        mars.height(0, 0, 0, map=True)
+
+
+# --- Pictures again --------------------------------------------------------------------------------
+
+def fly(scene, view, eye, target):
+    scene.add_camera("eye", eye=eye, target=target, fov_deg=50, near=0.1)
+    return view.image()
+
+
+def over_the_field(session, **given):
+    scene = session.scene()
+    terrain = scene.add_terrain(FIELD, mode="clipmap", level_size=28,
+                                image=ROOT / "Data/field/field_color.tif", **given)
+    scene.add_camera("eye")
+    return scene, terrain, scene.add_viewport((200, 150), "eye", samples=1)
+
+
+def test_the_same_commands_give_the_same_bytes_and_flying_leaves_no_trace(session):
+    scene, terrain, view = over_the_field(session)
+    here = ((3, -40, 6), (10, 30, 0))
+    first = fly(scene, view, *here)
+    assert first.std() > 10
+    for eye in ((-80, 80, 2), (0, 1, 900), (95, -95, 30)):
+        assert not np.array_equal(fly(scene, view, eye, (0, 0, 0)), first)
+    np.testing.assert_array_equal(fly(scene, view, *here), first)
+    with dspace.Session() as other:
+        scene, _, view = over_the_field(other, byte_budget=4 << 20)  # tiles come and go
+        np.testing.assert_array_equal(fly(scene, view, *here), first)
+
+
+def test_commands_replay_to_the_same_pictures():
+    def replay(commands):
+        with dspace.Session() as session:
+            for command in commands:
+                session.execute(command)
+            view = next(iter(session.viewports.values()))
+            terrain = session.scene().terrains["ground"]
+            return view.image(), view.depth(), str(terrain._info()).split("tile_bytes")[0]
+
+    recorded = []
+    with dspace.Session() as session:
+        execute = session._client.execute
+
+        def record(command):
+            recorded.append(type(command).FromString(command.SerializeToString()))
+            return execute(command)
+
+        session._client.execute = record
+        scene, terrain, view = over_the_field(session, name="ground")
+        fly(scene, view, (3, -40, 6), (10, 30, 0))
+        scene.add_camera("eye", eye=(-50, 20, 3), target=(0, 0, 0), near=0.1)
+        count = len(recorded)
+        made = view.image(), view.depth(), str(terrain._info()).split("tile_bytes")[0]
+    again = replay(recorded[:count])
+    np.testing.assert_array_equal(made[0], again[0])
+    np.testing.assert_array_equal(made[1], again[1])
+    assert made[2] == again[2] and "clipmap" not in made[2]
+
+
+def test_four_viewports_of_one_clipmap(session):
+    """Each shows what it would alone, in any order; an unchanged one is not drawn again."""
+    places = [((3, -40, 6), (10, 30, 0)), ((0, 0, 300), (0, 1, 0)), ((-80, 80, 2), (0, 0, 0)),
+              ((2000, 0, 500), (0, 0, 0))]
+    alone = []
+    for eye, target in places:
+        with dspace.Session() as other:
+            scene, _, view = over_the_field(other)
+            alone.append(fly(scene, view, eye, target))
+    scene, terrain, spare = over_the_field(session)
+    spare.remove()
+    views = []
+    for n, (eye, target) in enumerate(places):
+        scene.add_camera(f"eye {n}", eye=eye, target=target, fov_deg=50, near=0.1)
+        views.append(scene.add_viewport((200, 150), f"eye {n}", samples=1))
+    for order in ((0, 1, 2, 3), (2, 0, 3, 1)):
+        for n in order:
+            np.testing.assert_array_equal(views[n].image(), alone[n])
+    session.render()
+    before = session.statistics
+    assert session.render() == 0
+    after = session.statistics
+    assert after["texture_bytes_uploaded"] == before["texture_bytes_uploaded"]
+    loads = terrain.tiles["loads"]
+    for view in views:
+        view.image()
+    assert terrain.tiles["loads"] == loads  # the tiles are shared
+
+
+def test_wheels_stand_on_the_clipmap_that_is_drawn(scene):
+    """Each wheel's contact against the depth of a picture from straight above: a millimetre."""
+    terrain = scene.add_terrain(FIELD, mode="clipmap")
+    rover = scene.load(ROOT / "Data/rover/rover.urdf")
+    vehicle = load_vehicle(ROOT / "Data/rover/rover.urdf")
+    way = Path([(-20, -12), (-5, 4), (10, -3), (25, 14)], speed=1.0, ramp=1.0)
+    states = vehicle.drive(way, np.linspace(5, way.duration - 5, 4), terrain)
+    for part in rover.objects:
+        part.visible = False
+    compared = 0
+    for state in states:
+        rover.place(state)
+        for x, y, z in state.contacts.values():
+            scene.add_camera("above", eye=(x, y, z + 3.0), target=(x, y, z), up=(0, 1, 0), height=0.2,
+                             near=1.0, far=10.0)
+            view = scene.add_viewport((21, 21), "above", samples=1)
+            assert 3.0 - view.depth()[10, 10] == pytest.approx(0.0, abs=1e-3)
+            assert terrain.height(x, y) == pytest.approx(z, abs=1e-3)
+            view.remove()
+            compared += 1
+    assert compared == 4 * len(states[0].contacts)
