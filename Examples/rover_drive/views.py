@@ -11,7 +11,10 @@ class Views:
     """Chase; mast camera (physical objects only); overhead map; free view with read-outs."""
 
     def __init__(self, scene, placed, terrain, size, goal, route, ground):
+        self.scene = scene
         self.placed = placed
+        self.terrain = terrain
+        self.ground = ground
         length = placed.length
         half = (size[0] // 2, size[1] // 2)
         scene.lights["sun"].set(direction=(0.75, 0.45, -0.5), intensity=1.5)
@@ -23,7 +26,8 @@ class Views:
         mast = self._mast_camera(scene, placed)
         x, y = route.min(axis=0), route.max(axis=0)
         span = max((y - x)[1] * 1.3, (y - x)[0] * 1.3 * half[1] / half[0], 6 * length)
-        top = float(np.nanmax(ground.heights(route))) + 50 * length
+        # Low, for a clipmap shows what is far from a camera with fewer posts.
+        top = float(np.nanmax(ground.heights(route))) + 3 * length
         middle = 0.5 * (x + y)
         overhead = scene.add_camera("overhead", eye=(*middle, top), target=(*middle, top - 1),
                                     up=(0, 1, 0), height=float(span), near=1.0, far=100.0 * length)
@@ -101,3 +105,45 @@ class Views:
             view.samples = 3  # a still may take its time
             view.save(folder / f"{name}.png", physical_only=name == "mast")
             view.samples = 1
+
+    def triangles(self, session):
+        """Those of each view, and how many of all are the terrain's."""
+        def count():
+            counts = {}
+            for name, view in self.views.items():
+                view.capture()
+                counts[name] = session.statistics["triangles_drawn"]
+            return counts
+
+        self.terrain.object.visible = False
+        others = count()
+        self.terrain.object.visible = True  # what did not change would not be drawn again, nor counted
+        counts = count()
+        return counts, sum(counts.values()) - sum(others.values())
+
+    def screen_error(self, state):
+        """How far the ground that is drawn lies above or below the height query, in pixels: the median
+        and the 99th percentile of a view from behind the vehicle towards the horizon."""
+        length, size, fov_deg = self.placed.length, self.views["free"].size, 45.0
+        here = np.mean(list(state.contacts.values()), axis=0) if state.contacts else np.array(state.position)
+        heading = np.radians(state.heading_deg)
+        forward = np.array([np.cos(heading), np.sin(heading), -0.2])
+        forward /= np.linalg.norm(forward)
+        eye = here - 2.0 * length * forward + (0, 0, 0.5 * length)
+        eye[2] = max(eye[2], self.ground.heights(eye[None, :2])[0] + 0.5 * length)
+        self.scene.add_camera("measured", eye=eye, target=eye + forward, near=0.02 * length, fov_deg=fov_deg)
+        view = self.scene.add_viewport(size, "measured", samples=1)
+        planes = view.capture(color=False, depth=True, label=True, physical_only=True)
+        view.remove()
+        right = np.cross(forward, (0, 0, 1))
+        right /= np.linalg.norm(right)
+        down = np.cross(forward, right)
+        rows, columns = np.nonzero(planes["label"] == self.terrain.object.id)
+        depth = planes["depth"][rows, columns].astype(float)
+        pixel = 2 * np.tan(np.radians(fov_deg) / 2) / size[1]
+        rays = (forward + ((columns + 0.5 - size[0] / 2) * pixel)[:, None] * right
+                + ((rows + 0.5 - size[1] / 2) * pixel)[:, None] * down)
+        points = eye + depth[:, None] * rays
+        error = np.abs(points[:, 2] - self.ground.heights(points[:, :2])) / (depth * pixel)
+        error = error[np.isfinite(error)]
+        return tuple(np.percentile(error, (50, 99))) if len(error) else (np.nan, np.nan)

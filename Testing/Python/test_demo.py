@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -50,6 +51,16 @@ def test_the_shipped_demo_makes_its_files(tmp_path):
     check_files(tmp_path)
     for name in ("demo.mp4", "chase.png", "report.txt"):
         assert str(tmp_path / name) in done.stdout
+    report = (tmp_path / "report.txt").read_text()
+    assert "a clipmap of" in report and "pixels of the height query" in report
+    assert all(int(count) > 1000 for count in re.search(
+        r"triangles +chase (\d+), mast (\d+), overhead (\d+), free (\d+); .* (\d+)", report).groups())
+
+
+def test_the_demo_draws_triangles_where_asked(tmp_path):
+    done = run(tmp_path, "--mode", "triangles")
+    assert done.returncode == 0, done.stderr
+    assert "triangles of the terrain, every post about the route" in (tmp_path / "report.txt").read_text()
 
 
 @pytest.mark.parametrize("name", REAL)
@@ -73,6 +84,7 @@ def test_the_demo_runs_on_real_data(name, tmp_path):
     (["--model", "no_such.urdf"], "no_such.urdf"),
     (["--size", "0x0"], "0x0"),
     (["--seconds", "-1"], "-1"),
+    (["--mode", "planes"], "planes"),
 ])
 def test_bad_arguments_are_named(arguments, message, tmp_path):
     done = run(tmp_path, *arguments)
