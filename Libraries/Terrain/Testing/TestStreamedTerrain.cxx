@@ -1,6 +1,7 @@
-// Streamed terrains: on a plane against GridTerrain, on a body against closed forms.
+// Streamed terrains on a plane: against GridTerrain, and what only they can be asked.
 #include <cmath>
 #include <random>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -16,8 +17,6 @@ namespace {
 using namespace dspace;
 using dspace::testing::RasterFile;
 using dspace::testing::TemporaryFolder;
-
-constexpr double Degree = M_PI / 180.0;
 
 double Hills(double c, double r) {
   return 80.0 * std::sin(0.031 * c) * std::cos(0.027 * r) + 9.0 * std::sin(0.21 * c + 0.17 * r) +
@@ -147,226 +146,153 @@ TEST(StreamedTerrain, RealDataOnAPlaneAreTheGrid) {
   }
 }
 
-// A whole body of `width` x width / 2 pixels.
-struct Globe {
-  int width = 96;
-  double radius = 1737400.0;
-  double west_deg = -180.0;                             // of the left edge
-  int direction = 1;                                    // of longitude along columns
-  std::function<double(double lon, double lat)> height; // [deg]
-
-  double Step() const { return 360.0 / this->width; }
-  double Lon(int c) const { return this->west_deg + this->direction * (c + 0.5) * this->Step(); }
-  double Lat(int r) const { return 90.0 - (r + 0.5) * this->Step(); }
-  RasterFile File() const {
-    RasterFile file;
-    file.width = this->width;
-    file.height = this->width / 2;
-    file.crs = "+proj=longlat +R=" + std::to_string(this->radius) + " +no_defs";
-    file.verticalDatum = "sphere";
-    file.geotransform = std::array<double, 6>{
-        this->west_deg, this->direction * this->Step(), 0, 90, 0, -this->Step()};
-    file.value = [this](int c, int r, int) {
-      return double(float(this->height(this->Lon(c), this->Lat(r))));
-    };
-    return file;
-  }
-};
-
-double Bulges(double lon, double lat) {
-  const double l = lon * Degree;
-  const double p = lat * Degree;
-  return 4000.0 * std::cos(p) * std::cos(p) * std::sin(2.0 * l) + 1500.0 * std::sin(3.0 * p) +
-         700.0 * std::cos(p) * std::cos(l - 0.4);
-}
-
-StreamedTerrainOptions OnBody() {
-  StreamedTerrainOptions options;
-  options.onBody = true;
-  return options;
-}
-
-// The stated surface by hand: linear between pixels in longitude and latitude, on triangles whose
-// diagonal runs down to the right, and ruled from the pole.
-double ByHand(const Globe& globe, double lon, double lat) {
-  const int height = globe.width / 2;
-  const auto pixel = [&](int c, int r) {
-    c = ((c % globe.width) + globe.width) % globe.width;
-    return double(float(globe.height(globe.Lon(c), globe.Lat(r))));
-  };
-  double x = globe.direction * (lon - globe.west_deg) / globe.Step() - 0.5;
-  x -= globe.width * std::floor(x / globe.width);
-  const double y = (90.0 - lat) / globe.Step() - 0.5;
-  const int c = int(x);
-  const double u = x - c;
-  if (y < 0.0 || y > height - 1.0) {
-    const int row = y < 0.0 ? 0 : height - 1;
-    double pole = 0.0;
-    for (int i = 0; i < globe.width; ++i) {
-      pole += pixel(i, row) / globe.width;
-    }
-    const double along = (1.0 - u) * pixel(c, row) + u * pixel(c + 1, row);
-    const double share = 2.0 * (y < 0.0 ? y + 0.5 : height - 0.5 - y);
-    return pole + share * (along - pole);
-  }
-  const int r = std::min(int(y), height - 2);
-  const double v = y - r;
-  const double corner = u > v ? pixel(c + 1, r) : pixel(c, r + 1);
-  return (1.0 - std::max(u, v)) * pixel(c, r) + std::min(u, v) * pixel(c + 1, r + 1) +
-         std::abs(u - v) * corner;
-}
-
-Eigen::Vector3d Direction(double lon, double lat) {
-  return {std::cos(lat * Degree) * std::cos(lon * Degree),
-          std::cos(lat * Degree) * std::sin(lon * Degree), std::sin(lat * Degree)};
-}
-
-TEST(StreamedTerrain, OnABodyHeightsAreThoseByHand) {
+TEST(StreamedTerrain, ALargeRasterIsReadAsItIsAsked) {
   const TemporaryFolder folder;
-  for (const auto& [west, direction] : {std::pair(-180.0, 1), {0.0, 1}, {180.0, -1}}) {
-    Globe globe;
-    globe.west_deg = west;
-    globe.direction = direction;
-    globe.height = Bulges;
-    const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
-    EXPECT_TRUE(terrain->HeightRangeIsExact());
-    EXPECT_GE(terrain->Subdivisions(), 1);
-    // Flat cells stay within a millimetre of the sphere.
-    const double cell = terrain->Placement().CellSize({0.0, double(1 << 20)});
-    EXPECT_LE(cell * cell / (4.0 * globe.radius), 1e-3);
-    std::mt19937 random(4);
-    std::uniform_real_distribution<double> unit(-1.0, 1.0);
-    constexpr int Count = 4000;
-    Rows3 points(Count, 3);
-    Eigen::VectorXd heights(Count);
-    std::vector<double> expected;
-    for (int i = 0; i < Count; ++i) {
-      const double lon = 180.0 * unit(random);
-      // A quarter of them between the last row of pixels and a pole.
-      const double lat = i % 4 == 0 ? 90.0 - 2.5 * std::abs(unit(random)) : 90.0 * unit(random);
-      const double side = i % 8 == 0 ? -1.0 : 1.0;
-      points.row(i) = (2e6 + 1e6 * unit(random)) * Direction(lon, side * lat);
-      expected.push_back(ByHand(globe, lon, side * lat));
-    }
-    terrain->Heights(points, heights);
-    for (int i = 0; i < Count; ++i) {
-      ASSERT_NEAR(heights[i], expected[i], 2e-3) << west << " at " << points.row(i);
-      const SurfaceSample sample = terrain->Sample(points.row(i));
-      EXPECT_EQ(sample.height, heights[i]);
-      EXPECT_NEAR(sample.position_S.norm(), globe.radius + heights[i], 1e-6);
-      EXPECT_NEAR(sample.normal_S.norm(), 1.0, 1e-12);
-    }
-  }
-}
-
-// On a sphere of one height a ray's distance is the closed form's.
-TEST(StreamedTerrain, RaysMeetASphereWhereTheClosedFormDoes) {
-  const TemporaryFolder folder;
-  Globe globe;
-  globe.height = [](double, double) { return 1200.0; };
-  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
-  const double radius = globe.radius + 1200.0;
-  std::mt19937 random(4);
-  std::normal_distribution<double> normal;
+  RasterFile file;
+  file.width = 2150;
+  file.height = 1900;
+  file.type = GDT_Float32;
+  file.geotransform = std::array<double, 6>{0, 2, 0, 0, 0, -2};
+  file.value = [](int c, int r, int) { return float(Hills(c, r)); };
+  const std::string path = file.Write(folder / "large.tif");
+  const auto streamed = StreamedTerrain::Open(path);
+  EXPECT_FALSE(streamed->HeightRangeIsExact());
+  EXPECT_LT(streamed->Pyramid()->Statistics().loads, 4u); // its coarsest level only
+  EXPECT_LT(streamed->HeightRange()[0], -60.0);
+  EXPECT_GT(streamed->HeightRange()[1], 60.0);
+  const auto grid = GridTerrain::Load(path);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> x(-1850.0, 1850.0);
   int hits = 0;
-  for (int i = 0; i < 4000; ++i) {
-    const Eigen::Vector3d from =
-        Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized() * radius *
-        (1.0 + (i % 3 == 0 ? 1e-6 : 0.3) * (0.01 + i % 10));
-    Eigen::Vector3d to =
-        Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized() * radius;
-    if (i % 7 == 0) {
-      to = Eigen::Vector3d(0, 0, i % 2 == 0 ? radius : -radius); // at a pole
-    } else if (i % 11 == 0) {
-      to = 0.3 * from; // straight down
-    } else if (i % 3 == 0) {
-      to = from + 3e4 * Eigen::Vector3d(normal(random), normal(random), normal(random));
-    }
-    const Eigen::Vector3d d = (to - from).normalized();
-    const double b = from.dot(d);
-    const double root = b * b - (from.squaredNorm() - radius * radius);
-    const bool expected = root >= 0.0 && b < 0.0;
-    const RayHit hit = terrain->Intersect(from, d);
-    if (std::abs(root) < 1e4) {
-      continue; // within a tenth of a millimetre of passing by
-    }
-    ASSERT_EQ(hit.hit, expected) << i << ": " << from.transpose() << " to " << to.transpose();
-    if (expected) {
+  for (int i = 0; i < 500; ++i) {
+    const Eigen::Vector3d from(x(random), x(random), i % 2 == 0 ? 95.0 : 3e6);
+    const Eigen::Vector3d to(x(random), x(random), -20.0);
+    const RayHit a = grid->Intersect(from, to - from);
+    const RayHit b = streamed->Intersect(from, to - from);
+    ASSERT_EQ(a.hit, b.hit);
+    if (a.hit) {
       ++hits;
-      EXPECT_NEAR(hit.distance, -b - std::sqrt(root), 1e-6 / std::abs(d.dot(hit.normal_S)));
-      EXPECT_FALSE(hit.fromBelow);
-      EXPECT_LT((hit.normal_S - hit.position_S.normalized()).norm(), 1e-9);
+      const double steep = std::abs(a.normal_S.dot((to - from).normalized()));
+      EXPECT_NEAR(a.distance, b.distance, 1e-6 / std::max(1e-3, steep));
     }
+    EXPECT_EQ(grid->Sample(to).height, streamed->Sample(to).height);
   }
-  EXPECT_GT(hits, 2000);
+  EXPECT_GT(hits, 300);
 }
 
-// The first crossing that small steps along the ray find, by heights made by hand.
-TEST(StreamedTerrain, RaysMeetABodysGroundWhereStepsDo) {
+TEST(StreamedTerrain, AnswersAreTheSameFromSeveralThreads) {
   const TemporaryFolder folder;
-  for (const int direction : {1, -1}) {
-    Globe globe;
-    globe.width = 48;
-    globe.radius = 20000.0; // a small body: its ground's shape matters
-    globe.direction = direction;
-    globe.height = [](double lon, double lat) {
-      return 0.3 * Bulges(lon, lat) +
-             150.0 * std::sin(lon * Degree * 11.0) * std::cos(lat * Degree);
-    };
-    const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
-    const auto above = [&](const Eigen::Vector3d& p) {
-      const double lat = std::atan2(p.z(), p.head<2>().norm()) / Degree;
-      return p.norm() - globe.radius - ByHand(globe, std::atan2(p.y(), p.x()) / Degree, lat);
-    };
-    std::mt19937 random(9);
-    std::normal_distribution<double> normal;
-    int hits = 0;
-    int fromBelow = 0;
-    for (int i = 0; i < 400; ++i) {
-      const Eigen::Vector3d at(normal(random), normal(random), normal(random));
-      Eigen::Vector3d from = at.normalized() * (i % 4 == 0   ? 17000.0
-                                                : i % 4 == 1 ? 21500.0
-                                                             : 60000.0);
-      Eigen::Vector3d to =
-          15000.0 * Eigen::Vector3d(normal(random), normal(random), normal(random));
-      if (i % 9 == 0) {
-        to = Eigen::Vector3d(0, 0, i % 2 == 0 ? 18000.0 : -18000.0);
-        from = i % 18 == 0 ? Eigen::Vector3d(30000.0, 0.0, to.z()) : from;
-      }
-      const Eigen::Vector3d d = (to - from).normalized();
-      const RayHit hit = terrain->Intersect(from, d, 1.2e5);
-      double before = above(from);
-      double found = -1.0;
-      for (double t = 5.0; t < 1.2e5 && found < 0.0; t += 5.0) {
-        const double now = above(from + t * d);
-        if ((now > 0.0) != (before > 0.0)) {
-          double a = t - 5.0;
-          double b = t;
-          while (b - a > 1e-9 * b) {
-            const double m = 0.5 * (a + b);
-            ((above(from + m * d) > 0.0) == (before > 0.0) ? a : b) = m;
-          }
-          found = 0.5 * (a + b);
-        }
-        before = now;
-      }
-      // Steps may pass over a crest's tip; floats of posts are within a quarter of a millimetre.
-      if (hit.hit && (found < 0.0 || hit.distance < found - 1.0)) {
-        EXPECT_NEAR(above(from + hit.distance * d), 0.0, 1e-3) << i;
-        continue;
-      }
-      ASSERT_EQ(hit.hit, found >= 0.0) << i;
-      if (hit.hit) {
-        ++hits;
-        fromBelow += hit.fromBelow;
-        const double steep = std::max(1e-3, std::abs(hit.normal_S.dot(d)));
-        EXPECT_NEAR(hit.distance, found, 1e-3 / steep) << i;
-        EXPECT_NEAR(terrain->Sample(hit.position_S).position_S.norm(), hit.position_S.norm(), 2e-6);
-      }
-    }
-    EXPECT_GT(hits, 150);
-    EXPECT_GT(fromBelow, 20);
+  RasterFile file;
+  file.width = 700;
+  file.height = 600;
+  file.geotransform = std::array<double, 6>{0, 1, 0, 0, 0, -1};
+  file.value = [](int c, int r, int) { return Hills(c, r); };
+  StreamedTerrainOptions options;
+  options.pyramid.byteBudget = std::size_t(4) << 20;
+  const auto terrain = StreamedTerrain::Open(file.Write(folder / "threads.tif"), options);
+  constexpr int Count = 2000;
+  Rows3 points(Count, 3);
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> x(-290.0, 290.0);
+  for (int i = 0; i < Count; ++i) {
+    points.row(i) << x(random), x(random), 120.0;
   }
+  const Rows3 down = Eigen::RowVector3d(0.3, 0.1, -1.0).replicate(Count, 1);
+  std::array<Eigen::VectorXd, 4> heights;
+  std::array<Eigen::VectorXd, 4> distances;
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 4; ++k) {
+    heights[k].resize(Count);
+    distances[k].resize(Count);
+    threads.emplace_back([&, k] {
+      terrain->Heights(points, heights[k]);
+      terrain->Intersect(points, down, 1e4, distances[k]);
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_FALSE(heights[0].array().isNaN().any());
+  for (int k = 1; k < 4; ++k) {
+    EXPECT_EQ(heights[0], heights[k]);
+    EXPECT_EQ(distances[0], distances[k]);
+  }
+}
+
+// Azimuths of descent of a plane, by hand.
+TEST(StreamedTerrain, AspectPointsDownhill) {
+  const TemporaryFolder folder;
+  const auto azimuthOf = [&](double east, double north) {
+    RasterFile file;
+    file.width = 9;
+    file.height = 9;
+    file.geotransform = std::array<double, 6>{0, 1, 0, 0, 0, -1};
+    file.value = [&](int c, int r, int) { return east * c - north * r; }; // rises so per metre
+    const auto terrain = StreamedTerrain::Open(file.Write(folder / "plane.tif"));
+    const Rows3 point = Rows3::Zero(1, 3);
+    Eigen::VectorXd aspect(1);
+    terrain->Aspects(point, aspect);
+    return aspect[0];
+  };
+  EXPECT_NEAR(azimuthOf(0.0, -1.0), 0.0, 1e-9);
+  EXPECT_NEAR(azimuthOf(-1.0, 0.0), 90.0, 1e-9);
+  EXPECT_NEAR(azimuthOf(0.0, 1.0), 180.0, 1e-9);
+  EXPECT_NEAR(azimuthOf(1.0, 0.0), 270.0, 1e-9);
+  EXPECT_NEAR(azimuthOf(-0.5, -0.5), 45.0, 1e-9);
+  EXPECT_TRUE(std::isnan(azimuthOf(0.0, 0.0)));
+}
+
+TEST(StreamedTerrain, RoughnessIsWhatIsLeftOfAPlane) {
+  const TemporaryFolder folder;
+  RasterFile file;
+  file.width = 120;
+  file.height = 100;
+  file.noData = -9999.0;
+  file.geotransform = std::array<double, 6>{0, 2, 0, 0, 0, -2};
+  // A plane, and half a metre up and down by turns.
+  file.value = [](int c, int r, int) {
+    return c < 20 ? -9999.0 : 0.3 * c - 0.2 * r + ((c + r) % 2 == 0 ? 0.5 : -0.5);
+  };
+  const auto terrain = StreamedTerrain::Open(file.Write(folder / "rough.tif"));
+  Rows3 points(4, 3);
+  points << 0, 0, 0, 1.0, 1.0, 7.0, -119.0, 0, 0, 500, 500, 0;
+  Eigen::VectorXd roughness(4);
+  terrain->Roughness(points, 31.0, roughness);
+  EXPECT_NEAR(roughness[0], 0.5, 2e-3); // a plane takes next to nothing of a chessboard
+  EXPECT_NEAR(roughness[1], 0.5, 2e-3);
+  EXPECT_TRUE(std::isnan(roughness[2])); // most of it is a hole
+  EXPECT_TRUE(std::isnan(roughness[3])); // outside
+  // Five pixels about the middle one: residuals of 1, -1, -1, -1, -1 halves about their mean.
+  const Rows3 pixel = Eigen::RowVector3d(1.0, 1.0, 0.0);
+  Eigen::VectorXd one(1);
+  terrain->Roughness(pixel, 2.5, one);
+  EXPECT_NEAR(one[0], 0.4, 1e-6); // values 0.5 and four -0.5: mean -0.3, sqrt((0.64 + 4 0.04) / 5)
+  terrain->Roughness(pixel, 1.5, one);
+  EXPECT_TRUE(std::isnan(one[0])); // one pixel is no plane
+  EXPECT_THROW(terrain->Roughness(pixel, 0.0, one), Error);
+  EXPECT_THROW(terrain->Roughness(points, 1.0, one), Error);
+}
+
+TEST(StreamedTerrain, WhatIsAskedWronglyIsRefused) {
+  const TemporaryFolder folder;
+  RasterFile file;
+  file.width = 20;
+  file.height = 20;
+  file.geotransform = std::array<double, 6>{0, 1, 0, 0, 0, -1};
+  file.value = [](int, int, int) { return 1.0; };
+  const std::string path = file.Write(folder / "flat.tif");
+  StreamedTerrainOptions options;
+  options.deadline = 0.0;
+  EXPECT_THROW(StreamedTerrain::Open(path, options), Error);
+  options = {};
+  options.cells = 13;
+  EXPECT_THROW(StreamedTerrain::Open(path, options), Error);
+  EXPECT_THROW(StreamedTerrain::Open(folder / "none.tif"), Error);
+  file.noData = 1.0;
+  EXPECT_THROW(StreamedTerrain::Open(file.Write(folder / "empty.tif")), Error);
+  file.noData = -1.0;
+  file.value = [](int c, int, int) { return c == 3 ? 1e30 : 1.0; };
+  EXPECT_THROW(StreamedTerrain::Open(file.Write(folder / "high.tif")), Error);
 }
 
 } // namespace

@@ -73,9 +73,8 @@ Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
   const double distance = this->Placement_.Radius() + facet.height;
   const Eigen::Vector3d up = this->Placement_.Up(p_S);
   const double parallel = std::max(up.head<2>().norm(), 1e-12); // cosine of the latitude
-  const double longitude = std::atan2(up.y(), up.x());
-  const Eigen::Vector3d east(-std::sin(longitude), std::cos(longitude), 0.0);
-  const Eigen::Vector3d north = up.cross(east);
+  const Eigen::Vector3d north = this->DoNorth(p_S);
+  const Eigen::Vector3d east = north.cross(up);
   const Eigen::Vector2d& step = this->Placement_.Step();
   const double toEast = rise.x() == 0.0 ? 0.0 : rise.x() / (distance * parallel * step.x());
   const double toNorth = rise.y() / (distance * step.y());
@@ -179,6 +178,15 @@ Eigen::Vector3d StreamedTerrain::DoSceneToMap(const Eigen::Vector3d& p_S) const 
 
 Eigen::Vector3d StreamedTerrain::DoUp(const Eigen::Vector3d& p_S) const {
   return this->Placement_.Up(p_S);
+}
+
+Eigen::Vector3d StreamedTerrain::DoNorth(const Eigen::Vector3d& p_S) const {
+  if (!this->OnBody()) {
+    return Eigen::Vector3d::UnitY();
+  }
+  const Eigen::Vector3d up = this->Placement_.Up(p_S);
+  const double longitude = std::atan2(up.y(), up.x());
+  return up.cross(Eigen::Vector3d(-std::sin(longitude), std::cos(longitude), 0.0));
 }
 
 int StreamedTerrain::DoResidentLevel(const Eigen::Vector2d& map) const {

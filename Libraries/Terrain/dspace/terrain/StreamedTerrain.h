@@ -62,6 +62,15 @@ public:
   // How often cells between pixels are halved: 2^n posts of level 0 a pixel.
   int Subdivisions() const { return this->Subdivisions_; }
 
+  // Root mean square [m] of the heights of the raster's pixels within `radius` [m] of each point
+  // about the plane that fits them best (least squares, of heights above the vertical datum): the
+  // "RMS height" of Shepard et al., J. Geophys. Res. 106 (E12), 32777, 2001, detrended by a plane,
+  // over n. Distances are level: in the scene on a plane, along the sphere on a body. NaN where
+  // fewer than 4 pixels with data, or less than half of those there, span no plane. Throws
+  // Error(InvalidArgument) for a radius that is not positive or reaches over 4 million pixels.
+  void Roughness(const Eigen::Ref<const Rows3>& points_S, double radius,
+                 Eigen::Ref<Eigen::VectorXd> roughness) const;
+
 protected:
   TerrainBounds DoGetBounds() const override;
   SurfaceSample DoSample(const Eigen::Vector3d& p_S) const override;
@@ -71,6 +80,7 @@ protected:
   Eigen::Vector3d DoMapToScene(const Eigen::Vector3d& map) const override;
   Eigen::Vector3d DoSceneToMap(const Eigen::Vector3d& p_S) const override;
   Eigen::Vector3d DoUp(const Eigen::Vector3d& p_S) const override;
+  Eigen::Vector3d DoNorth(const Eigen::Vector3d& p_S) const override;
   int DoResidentLevel(const Eigen::Vector2d& map) const override;
   void DoHeights(const Eigen::Ref<const Rows3>& points_S,
                  Eigen::Ref<Eigen::VectorXd> heights) const override;

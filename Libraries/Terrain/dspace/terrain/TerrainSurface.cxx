@@ -100,6 +100,24 @@ void TerrainSurface::Slopes(const Eigen::Ref<const Rows3>& points_S,
     slopes_deg[i] = this->DoSample(points_S.row(i)).slope_deg;
 }
 
+void TerrainSurface::Aspects(const Eigen::Ref<const Rows3>& points_S,
+                             Eigen::Ref<Eigen::VectorXd> aspects_deg) const {
+  CheckRows(this->Name_, "points", points_S, aspects_deg.size());
+  for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
+    const Eigen::Vector3d p_S = points_S.row(i);
+    const Eigen::Vector3d north = this->DoNorth(p_S);
+    const Eigen::Vector3d normal = this->DoSample(p_S).normal_S;
+    const double toNorth = normal.dot(north);
+    const double toEast = normal.dot(north.cross(this->DoUp(p_S)));
+    // Written so that NaN is level; what is left of a level normal is rounding.
+    const bool slopes = std::hypot(toNorth, toEast) > 1e-12;
+    const double azimuth_deg = std::atan2(toEast, toNorth) * 180.0 / M_PI;
+    aspects_deg[i] = !slopes             ? std::numeric_limits<double>::quiet_NaN()
+                     : azimuth_deg < 0.0 ? std::fmod(azimuth_deg + 360.0, 360.0)
+                                         : azimuth_deg;
+  }
+}
+
 RayHit TerrainSurface::Intersect(const Eigen::Vector3d& origin_S,
                                  const Eigen::Vector3d& direction_S, double maximumDistance) const {
   CheckFinite(this->Name_, "ray origin", origin_S);
@@ -210,6 +228,15 @@ Eigen::Vector2d TerrainSurface::TowardsData(const Eigen::Vector2d& map) const {
 Eigen::Vector3d TerrainSurface::Up(const Eigen::Vector3d& p_S) const {
   CheckFinite(this->Name_, "point", p_S);
   return this->DoUp(p_S);
+}
+
+Eigen::Vector3d TerrainSurface::North(const Eigen::Vector3d& p_S) const {
+  CheckFinite(this->Name_, "point", p_S);
+  return this->DoNorth(p_S);
+}
+
+Eigen::Vector3d TerrainSurface::DoNorth(const Eigen::Vector3d&) const {
+  return Eigen::Vector3d::UnitY();
 }
 
 int TerrainSurface::ResidentLevel(const Eigen::Vector2d& map) const {

@@ -86,6 +86,9 @@ public:
   void Normals(const Eigen::Ref<const Rows3>& points_S, Eigen::Ref<Rows3> normals_S) const;
   void Slopes(const Eigen::Ref<const Rows3>& points_S,
               Eigen::Ref<Eigen::VectorXd> slopes_deg) const;
+  // Azimuth of steepest descent [deg], clockwise from north, 0 to 360; NaN on level ground too.
+  void Aspects(const Eigen::Ref<const Rows3>& points_S,
+               Eigen::Ref<Eigen::VectorXd> aspects_deg) const;
 
   // First crossing of origin + t * direction / |direction| for 0 <= t <= maximumDistance [m]. The
   // direction need not be unit, but must not be zero. A ray that starts on the surface meets it at
@@ -114,6 +117,9 @@ public:
 
   // The local vertical, unit.
   Eigen::Vector3d Up(const Eigen::Vector3d& p_S) const;
+  // Level, unit, to the north: Y on a plane, where it is the map's. At a body's poles along the
+  // meridian of longitude 0.
+  Eigen::Vector3d North(const Eigen::Vector3d& p_S) const;
 
   // Finest level that can answer at a map point now; -1 outside the data and where none is loaded.
   int ResidentLevel(const Eigen::Vector2d& map) const;
@@ -132,6 +138,7 @@ protected:
   virtual Eigen::Vector3d DoMapToScene(const Eigen::Vector3d& map) const = 0;
   virtual Eigen::Vector3d DoSceneToMap(const Eigen::Vector3d& p_S) const = 0;
   virtual Eigen::Vector3d DoUp(const Eigen::Vector3d& p_S) const = 0;
+  virtual Eigen::Vector3d DoNorth(const Eigen::Vector3d& p_S) const; // Y by default
   virtual int DoResidentLevel(const Eigen::Vector2d& map) const = 0;
   // By default a loop over DoSample and DoSampleMap.
   virtual void DoHeights(const Eigen::Ref<const Rows3>& points_S,

@@ -1,0 +1,264 @@
+// Streamed terrains on a body: against closed forms, their surface by hand.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <dspace/Error.h>
+#include <dspace/terrain/StreamedTerrain.h>
+
+#include "Globe.h"
+
+namespace {
+
+using namespace dspace;
+using dspace::testing::Bulges;
+using dspace::testing::ByHand;
+using dspace::testing::Degree;
+using dspace::testing::Direction;
+using dspace::testing::Globe;
+using dspace::testing::TemporaryFolder;
+
+StreamedTerrainOptions OnBody() {
+  StreamedTerrainOptions options;
+  options.onBody = true;
+  return options;
+}
+
+TEST(StreamedGlobe, OnABodyHeightsAreThoseByHand) {
+  const TemporaryFolder folder;
+  for (const auto& [west, direction] : {std::pair(-180.0, 1), {0.0, 1}, {180.0, -1}}) {
+    Globe globe;
+    globe.west_deg = west;
+    globe.direction = direction;
+    globe.height = Bulges;
+    const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+    EXPECT_TRUE(terrain->HeightRangeIsExact());
+    EXPECT_GE(terrain->Subdivisions(), 1);
+    // Flat cells stay within a millimetre of the sphere.
+    const double cell = terrain->Placement().CellSize({0.0, double(1 << 20)});
+    EXPECT_LE(cell * cell / (4.0 * globe.radius), 1e-3);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    constexpr int Count = 4000;
+    Rows3 points(Count, 3);
+    Eigen::VectorXd heights(Count);
+    std::vector<double> expected;
+    for (int i = 0; i < Count; ++i) {
+      const double lon = 180.0 * unit(random);
+      // A quarter of them between the last row of pixels and a pole.
+      const double lat = i % 4 == 0 ? 90.0 - 2.5 * std::abs(unit(random)) : 90.0 * unit(random);
+      const double side = i % 8 == 0 ? -1.0 : 1.0;
+      points.row(i) = (2e6 + 1e6 * unit(random)) * Direction(lon, side * lat);
+      expected.push_back(ByHand(globe, lon, side * lat));
+    }
+    terrain->Heights(points, heights);
+    for (int i = 0; i < Count; ++i) {
+      ASSERT_NEAR(heights[i], expected[i], 2e-3) << west << " at " << points.row(i);
+      const SurfaceSample sample = terrain->Sample(points.row(i));
+      EXPECT_EQ(sample.height, heights[i]);
+      EXPECT_NEAR(sample.position_S.norm(), globe.radius + heights[i], 1e-6);
+      EXPECT_NEAR(sample.normal_S.norm(), 1.0, 1e-12);
+    }
+  }
+}
+
+// On a sphere of one height a ray's distance is the closed form's.
+TEST(StreamedGlobe, RaysMeetASphereWhereTheClosedFormDoes) {
+  const TemporaryFolder folder;
+  Globe globe;
+  globe.height = [](double, double) { return 1200.0; };
+  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const double radius = globe.radius + 1200.0;
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  int hits = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Eigen::Vector3d from =
+        Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized() * radius *
+        (1.0 + (i % 3 == 0 ? 1e-6 : 0.3) * (0.01 + i % 10));
+    Eigen::Vector3d to =
+        Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized() * radius;
+    if (i % 7 == 0) {
+      to = Eigen::Vector3d(0, 0, i % 2 == 0 ? radius : -radius); // at a pole
+    } else if (i % 11 == 0) {
+      to = 0.3 * from; // straight down
+    } else if (i % 3 == 0) {
+      to = from + 3e4 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    }
+    const Eigen::Vector3d d = (to - from).normalized();
+    const double b = from.dot(d);
+    const double root = b * b - (from.squaredNorm() - radius * radius);
+    const bool expected = root >= 0.0 && b < 0.0;
+    const RayHit hit = terrain->Intersect(from, d);
+    if (std::abs(root) < 1e4) {
+      continue; // within a tenth of a millimetre of passing by
+    }
+    ASSERT_EQ(hit.hit, expected) << i << ": " << from.transpose() << " to " << to.transpose();
+    if (expected) {
+      ++hits;
+      EXPECT_NEAR(hit.distance, -b - std::sqrt(root), 1e-6 / std::abs(d.dot(hit.normal_S)));
+      EXPECT_FALSE(hit.fromBelow);
+      EXPECT_LT((hit.normal_S - hit.position_S.normalized()).norm(), 1e-9);
+    }
+  }
+  EXPECT_GT(hits, 2000);
+}
+
+// The first crossing that small steps along the ray find, by heights made by hand.
+TEST(StreamedGlobe, RaysMeetABodysGroundWhereStepsDo) {
+  const TemporaryFolder folder;
+  for (const int direction : {1, -1}) {
+    Globe globe;
+    globe.width = 48;
+    globe.radius = 20000.0; // a small body: its ground's shape matters
+    globe.direction = direction;
+    globe.height = [](double lon, double lat) {
+      return 0.3 * Bulges(lon, lat) +
+             150.0 * std::sin(lon * Degree * 11.0) * std::cos(lat * Degree);
+    };
+    const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+    const auto above = [&](const Eigen::Vector3d& p) {
+      const double lat = std::atan2(p.z(), p.head<2>().norm()) / Degree;
+      return p.norm() - globe.radius - ByHand(globe, std::atan2(p.y(), p.x()) / Degree, lat);
+    };
+    std::mt19937 random(9);
+    std::normal_distribution<double> normal;
+    int hits = 0;
+    int fromBelow = 0;
+    for (int i = 0; i < 400; ++i) {
+      const Eigen::Vector3d at(normal(random), normal(random), normal(random));
+      Eigen::Vector3d from = at.normalized() * (i % 4 == 0   ? 17000.0
+                                                : i % 4 == 1 ? 21500.0
+                                                             : 60000.0);
+      Eigen::Vector3d to =
+          15000.0 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+      if (i % 9 == 0) {
+        to = Eigen::Vector3d(0, 0, i % 2 == 0 ? 18000.0 : -18000.0);
+        from = i % 18 == 0 ? Eigen::Vector3d(30000.0, 0.0, to.z()) : from;
+      }
+      const Eigen::Vector3d d = (to - from).normalized();
+      const RayHit hit = terrain->Intersect(from, d, 1.2e5);
+      double before = above(from);
+      double found = -1.0;
+      for (double t = 5.0; t < 1.2e5 && found < 0.0; t += 5.0) {
+        const double now = above(from + t * d);
+        if ((now > 0.0) != (before > 0.0)) {
+          double a = t - 5.0;
+          double b = t;
+          while (b - a > 1e-9 * b) {
+            const double m = 0.5 * (a + b);
+            ((above(from + m * d) > 0.0) == (before > 0.0) ? a : b) = m;
+          }
+          found = 0.5 * (a + b);
+        }
+        before = now;
+      }
+      // Steps may pass over a crest's tip; floats of posts are within a quarter of a millimetre.
+      if (hit.hit && (found < 0.0 || hit.distance < found - 1.0)) {
+        EXPECT_NEAR(above(from + hit.distance * d), 0.0, 1e-3) << i;
+        continue;
+      }
+      ASSERT_EQ(hit.hit, found >= 0.0) << i;
+      if (hit.hit) {
+        ++hits;
+        fromBelow += hit.fromBelow;
+        const double steep = std::max(1e-3, std::abs(hit.normal_S.dot(d)));
+        EXPECT_NEAR(hit.distance, found, 1e-3 / steep) << i;
+        EXPECT_NEAR(terrain->Sample(hit.position_S).position_S.norm(), hit.position_S.norm(), 2e-6);
+      }
+    }
+    EXPECT_GT(hits, 150);
+    EXPECT_GT(fromBelow, 20);
+  }
+}
+
+// The normal against differences of the surface's own places, made by hand.
+TEST(StreamedGlobe, NormalsAreThoseOfTheCurvedSurface) {
+  const TemporaryFolder folder;
+  Globe globe;
+  globe.radius = 30000.0;
+  globe.height = Bulges;
+  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const auto place = [&](double lon, double lat) {
+    return Eigen::Vector3d((globe.radius + ByHand(globe, lon, lat)) * Direction(lon, lat));
+  };
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  int compared = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double lon = 180.0 * unit(random);
+    const double lat =
+        89.9 * (i % 3 == 0 ? std::copysign(1.0 - 0.02 * unit(random) * unit(random), unit(random))
+                           : unit(random));
+    if (std::abs(lat) > 89.8) {
+      continue;
+    }
+    const double h = 1e-4; // degrees
+    const Eigen::Vector3d east = place(lon + h, lat) - place(lon - h, lat);
+    const Eigen::Vector3d north = place(lon, lat + h) - place(lon, lat - h);
+    // Across an edge of triangles a difference is neither's.
+    const Eigen::Vector3d here = place(lon, lat);
+    const Eigen::Vector3d bends = place(lon + h, lat) + place(lon - h, lat) - 2.0 * here;
+    const Eigen::Vector3d bendsNorth = place(lon, lat + h) + place(lon, lat - h) - 2.0 * here;
+    if (bends.norm() > 1e-5 * east.norm() || bendsNorth.norm() > 1e-5 * north.norm()) {
+      continue;
+    }
+    ++compared;
+    const Eigen::Vector3d normal = east.cross(north).normalized();
+    const SurfaceSample sample = terrain->Sample(3.0 * here);
+    EXPECT_LT((sample.normal_S - normal).norm(), 2e-5) << lon << ", " << lat;
+    EXPECT_NEAR(sample.slope_deg,
+                std::acos(std::min(1.0, normal.dot(Direction(lon, lat)))) / Degree, 2e-3);
+    EXPECT_LT((sample.position_S - here).norm(), 1e-2);
+    // Downhill, from north to the east.
+    Eigen::VectorXd aspect(1);
+    terrain->Aspects(Rows3(here.transpose()), aspect);
+    const double toEast =
+        -(here.norm() > 0.0 ? place(lon + h, lat).norm() - place(lon - h, lat).norm() : 0.0) /
+        std::cos(lat * Degree);
+    const double toNorth = -(place(lon, lat + h).norm() - place(lon, lat - h).norm());
+    EXPECT_NEAR(std::remainder(aspect[0] - std::atan2(toEast, toNorth) / Degree, 360.0), 0.0, 0.1);
+  }
+  EXPECT_GT(compared, 2000);
+}
+
+// From one small step to the next no height changes by more than the steepest ground allows.
+TEST(StreamedGlobe, NoSeamAtTheDateLineNorAtThePoles) {
+  const TemporaryFolder folder;
+  for (const double west : {-180.0, 0.0}) {
+    Globe globe;
+    globe.west_deg = west;
+    globe.height = Bulges;
+    const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+    const auto walk = [&](const std::function<Eigen::Vector3d(double)>& at, double stride) {
+      constexpr int Steps = 2000;
+      Rows3 points(Steps, 3);
+      for (int i = 0; i < Steps; ++i) {
+        points.row(i) = at(i - 0.5 * Steps + 0.3);
+      }
+      Eigen::VectorXd heights(Steps);
+      terrain->Heights(points, heights);
+      for (int i = 1; i < Steps; ++i) {
+        // 0.2 m of height a metre is more than any slope of it; floats are a millimetre apart.
+        ASSERT_NEAR(heights[i], heights[i - 1], 0.2 * stride + 1e-3) << points.row(i);
+      }
+    };
+    const double metre = 1.0 / globe.radius / Degree;
+    for (const double lat : {-89.9, -45.0, 0.0, 3.75, 60.0, 89.0}) {
+      for (const double lon : {180.0, 0.0}) {
+        walk([&](double s) { return Direction(lon + s * metre / std::cos(lat * Degree), lat); },
+             1.0);
+      }
+    }
+    for (const double pole : {90.0, -90.0}) {
+      walk([&](double s) { return Direction(33.0, pole + s * metre); }, 1.0);
+      // Around it, a metre and a kilometre away.
+      walk([&](double s) { return Direction(s * 0.18, pole - std::copysign(metre, pole)); }, 0.01);
+      walk([&](double s) { return Direction(s * 0.18, pole - std::copysign(1e3 * metre, pole)); },
+           3.2);
+    }
+  }
+}
+
+} // namespace
