@@ -1,6 +1,9 @@
 //DSPACE::Version
 // Places the posts of one clipmap level: heights are fetched, and near the level's outline turned
 // into the next coarser level's (Losasso and Hoppe 2004). Everything is relative to the camera.
+#if defined(DSPACE_LIT) || defined(DSPACE_MIXED)
+#define DSPACE_NORMAL
+#endif
 layout(location = 0) in vec2 cell; // post of the window, 0 to cells
 
 uniform sampler2DArray posts; // height, slopes a level-0 column and row, hole
@@ -55,16 +58,18 @@ uniform vec3 objectEmissive;
 flat out vec3 emissive;
 #endif
 #ifdef DSPACE_TEXTURE
-#ifdef DSPACE_HEIGHT_RAMP
-uniform vec2 heightRamp; // height of the left edge, 1 / range
-#else
 uniform vec2 originTexture;
 uniform mat2 postTexture;
-#endif
 out vec2 tcoord;
 #endif
 #ifdef DSPACE_HOLES
 out float hole;
+#endif
+#ifdef DSPACE_MIXED
+uniform vec2 originGrid; // of the first post, from a line near the camera on; 1 from line to line
+uniform mat2 postGrid;
+out vec4 styleAt;
+flat out int levelShown;
 #endif
 
 vec4 postAt(ivec2 texel, int layer)
@@ -107,7 +112,7 @@ void main()
   float distance = radius + here.x;
   vec3 placedVC = distance * (direction.x * eastVC + direction.y * northVC + direction.z * upVC) +
     above * upVC;
-#ifdef DSPACE_LIT
+#ifdef DSPACE_NORMAL
   float sinEast = sin(d.x);
   float cosEast = cos(d.x);
   float sinLatitude = sin(latitude);
@@ -118,12 +123,14 @@ void main()
   vec3 n = direction + vec3(0.0, 0.0, 1.0) -
     here.y / (distance * max(cosLatitude, 1e-6) * stepBase.x) * east -
     here.z / (distance * stepBase.y) * north;
-  normalVC = n.x * eastVC + n.y * northVC + n.z * upVC;
+  vec3 normal = n.x * eastVC + n.y * northVC + n.z * upVC;
+  float cosSlope = dot(n, direction + vec3(0.0, 0.0, 1.0)) / length(n);
 #endif
 #else
   vec3 placedVC = originVC + place.x * columnVC + place.y * rowVC + above * upVC;
-#ifdef DSPACE_LIT
-  normalVC = upNormalVC - here.y * slopeColumnVC - here.z * slopeRowVC;
+#ifdef DSPACE_NORMAL
+  vec3 normal = upNormalVC - here.y * slopeColumnVC - here.z * slopeRowVC;
+  float cosSlope = dot(normalize(normal), normalize(upNormalVC));
 #endif
 #endif
   gl_Position = VCDCMatrix * vec4(placedVC, 1.0);
@@ -135,17 +142,18 @@ void main()
 #endif
 #ifdef DSPACE_LIT
   positionVC = placedVC;
+  normalVC = normal;
   surface = objectSurface;
 #endif
 #ifdef DSPACE_EMISSIVE
   emissive = objectEmissive;
 #endif
 #ifdef DSPACE_TEXTURE
-#ifdef DSPACE_HEIGHT_RAMP
-  tcoord = vec2((here.x - heightRamp.x) * heightRamp.y, 0.5);
-#else
   tcoord = originTexture + postTexture * place;
 #endif
+#ifdef DSPACE_MIXED
+  styleAt = vec4(here.x, degrees(acos(clamp(cosSlope, -1.0, 1.0))), originGrid + postGrid * place);
+  levelShown = level;
 #endif
 #ifdef DSPACE_HOLES
   hole = here.w > 0.0 ? 1.0 : 0.0;

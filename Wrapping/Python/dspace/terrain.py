@@ -3,7 +3,7 @@ import numpy as np
 
 from dspace import _wire
 from dspace._fields import (Named, array_of, flag, keywords, numbers, put, put_color, put_given,
-                            put_vector, refuse, shown)
+                            put_vector, refuse, shown, word)
 from dspace._strict import Strict
 from dspace.errors import InvalidArgument, WrongType
 from dspace.objects import file_path
@@ -183,6 +183,35 @@ class Terrain(Strict):
         _wire.put_array(command.focus_terrain, "point", points)
         self._scene._execute(command)
 
+    def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
+                  contours=None, grid=None):
+        """What is laid over a clipmap's own colour; replaces the style before, set_style() removes it.
+
+        color_by: "height" or "slope" (degrees from level), over `range` (low, high; the heights' own,
+        or 0 to 45), in `colors` evenly spaced (green over ochre to white), with `opacity` 0 to 1.
+        levels: opacity of a colour for each clipmap level. contours: metres of height between lines,
+        or a dict of interval, width (pixels), color, opacity. grid: the same for lines along the
+        map's axes, in map units; on a body meridians and parallels, in degrees."""
+        label = self._label()
+        command = self._scene._command()
+        style = command.style_terrain
+        put(style, label, terrain=self._name)
+        if color_by is not None:
+            style.ramp.by = word(color_by, {"height": 0, "slope": 1}, "color_by", label)
+            put(style.ramp, label, opacity=opacity)
+            if range is not None:
+                low, high = numbers(range, 2, "the range", label, "low, high")
+                put(style.ramp, label, low=low, high=high)
+            for value in () if colors is None else colors:
+                put_color(style.ramp.color.add(), value, "a colour of the ramp", label)
+        elif range is not None or colors is not None:
+            raise InvalidArgument(f"{label}: a range and colours are of color_by, which is not given; "
+                                  "accepted: color_by 'height' or 'slope'", label)
+        put_given(style, label, levels=levels)
+        _put_lines(style.contours, contours, "contours", label)
+        _put_lines(style.grid, grid, "grid", label)
+        self._scene._execute(command)
+
     def remove(self):
         self._scene._do("remove_terrain", terrain=self._name)
 
@@ -193,6 +222,19 @@ class Terrain(Strict):
                     f"{info.minimum_height:g} to {info.maximum_height:g} m>")
         except Exception:  # a repr never raises
             return f"<dspace.Terrain {self._name!r}, removed>"
+
+
+def _put_lines(message, lines, what, label):
+    """A number or a dict into Lines; nothing for None."""
+    if lines is None:
+        return
+    lines = lines if isinstance(lines, dict) else {"interval": lines}
+    keywords(lines, ("interval", "width", "color", "opacity"), f"{label}, {what}")
+    if "interval" not in lines:
+        refuse(label, what, lines, "an interval, or a dict with one", WrongType)
+    put(message, f"{label}, {what}", interval=lines["interval"], width=lines.get("width", 1.0),
+        opacity=lines.get("opacity", 1.0))
+    put_color(message.color, lines.get("color", (0, 0, 0)), f"the colour of its {what}", label)
 
 
 def _unpack(values, field, shape):

@@ -12,8 +12,8 @@ ClipmapTerrainObject::ClipmapTerrainObject(std::string name,
                                            std::shared_ptr<const StreamedTerrain> surface,
                                            const ClipmapOptions& options)
     : TerrainObject(std::move(name)), Surface_(std::move(surface)),
-      Clipmap_(std::make_shared<const ClipmapTerrain>(Surface_->Pyramid(), Surface_->Placement(),
-                                                      options)) {}
+      Clipmap_(
+          std::make_shared<ClipmapTerrain>(Surface_->Pyramid(), Surface_->Placement(), options)) {}
 
 void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   TerrainObject::Describe(reply);

@@ -19,6 +19,7 @@ public:
   ClipmapTerrainObject(std::string name, std::shared_ptr<const StreamedTerrain> surface,
                        const ClipmapOptions& options);
 
+  ClipmapTerrain& Clipmap() { return *this->Clipmap_; }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
   void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }
   void Describe(v1::TerrainReply& reply) const override;
@@ -27,7 +28,7 @@ public:
 
 private:
   std::shared_ptr<const StreamedTerrain> Surface_;
-  std::shared_ptr<const ClipmapTerrain> Clipmap_;
+  std::shared_ptr<ClipmapTerrain> Clipmap_;
 };
 
 } // namespace dspace::session

@@ -9,6 +9,7 @@
 #include <dspace/session/ObjectTools.h>
 #include <dspace/session/TerrainLook.h>
 #include <dspace/session/TerrainTools.h>
+#include <dspace/terrain/DrapeImage.h>
 
 namespace dspace::session {
 
@@ -95,7 +96,18 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   look.cells = options.cells;
   look.heights = surface->HeightRange();
   look.deadline = options.deadline;
-  return std::make_unique<ClipmapTerrainObject>(name, surface, look);
+  auto terrain = std::make_unique<ClipmapTerrainObject>(name, surface, look);
+  if (command.relief().color_by_height()) {
+    ClipmapStyle style;
+    style.ramp.emplace();
+    style.ramp->range = surface->HeightRange();
+    style.ramp->image = RampImage(TerrainRamp());
+    if (style.ramp->range[0] == style.ramp->range[1]) {
+      style.ramp->range[1] += 1.0; // level ground
+    }
+    terrain->Clipmap().SetStyle(style);
+  }
+  return terrain;
 }
 
 // Up to this many pixels all of a raster is kept in memory where the caller does not choose.
@@ -198,6 +210,7 @@ void AddTerrainCommands(Registry& registry) {
   registry.Add(C::kRemoveTerrain, &C::mutable_remove_terrain, Effect::Change, RemoveTerrain);
   registry.Add(C::kFocusTerrain, &C::mutable_focus_terrain, Effect::Change, FocusTerrain);
   AddTerrainRequests(registry);
+  AddTerrainStyleCommands(registry);
 }
 
 } // namespace dspace::session

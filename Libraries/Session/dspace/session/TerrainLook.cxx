@@ -1,5 +1,6 @@
 #include <dspace/session/TerrainLook.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include <dspace/scene/Checks.h>
@@ -83,7 +84,8 @@ std::shared_ptr<Material> MattMaterial(const v1::OpenTerrain& command) {
   return material;
 }
 
-// A ramp of colours as a texture: left is low.
+} // namespace
+
 std::shared_ptr<const Image> RampImage(const ColorRamp& ramp) {
   constexpr int Width = 1024;
   auto image = std::make_shared<Image>();
@@ -92,17 +94,16 @@ std::shared_ptr<const Image> RampImage(const ColorRamp& ramp) {
   image->height = 1;
   image->channels = 3;
   for (int x = 0; x < Width; ++x) {
-    const double at = (x + 0.5) / Width * double(ramp.size() - 1);
-    const auto low = std::min(static_cast<std::size_t>(at), ramp.size() - 2);
+    const double at = double(x) / (Width - 1) * double(ramp.size() - 1);
+    const auto low = std::min(static_cast<std::size_t>(at), ramp.size() - 1);
+    const auto high = std::min(low + 1, ramp.size() - 1);
     for (int k = 0; k < 3; ++k) {
-      const double value = ramp[low][k] + (at - double(low)) * (ramp[low + 1][k] - ramp[low][k]);
+      const double value = ramp[low][k] + (at - double(low)) * (ramp[high][k] - ramp[low][k]);
       image->pixels.push_back(static_cast<std::uint8_t>(255.0 * value + 0.5));
     }
   }
   return image;
 }
-
-} // namespace
 
 std::shared_ptr<const Material> MeshMaterial(const Context& context, const GridTerrain& grid,
                                              v1::OpenTerrain& command) {
@@ -124,6 +125,7 @@ ClipmapOptions ClipmapLook(const Context& context, const StreamedTerrain& surfac
   const ElevationInfo& info = surface.Info();
   const std::array<double, 3> ground = ShadedReliefOptions().ramp.front();
   ClipmapOptions options;
+  options.postToMap = info.pixelToMap * surface.PixelToPost().inverse();
   auto material = MattMaterial(command);
   material->color = ground;
   if (command.has_color()) {
@@ -147,11 +149,6 @@ ClipmapOptions ClipmapLook(const Context& context, const StreamedTerrain& surfac
   } else if (command.relief().has_sun_azimuth_deg() || command.relief().has_sun_elevation_deg()) {
     Refuse(surface.GetName(), "a clipmap's relief is lit by the scene's lights; accepted: no sun "
                               "angles, or mode triangles");
-  } else if (command.relief().color_by_height()) {
-    material->color = {1, 1, 1};
-    material->texture = RampImage(TerrainRamp());
-    material->repeatTexture = false;
-    options.textureByHeight = surface.HeightRange();
   }
   options.material = material;
   return options;

@@ -7,7 +7,7 @@
 
 #include <dspace/session/Registry.h>
 #include <dspace/terrain/ClipmapTerrain.h>
-#include <dspace/terrain/GridTerrain.h>
+#include <dspace/terrain/DrapeImage.h>
 #include <dspace/terrain/StreamedTerrain.h>
 
 namespace dspace::session {
@@ -24,6 +24,9 @@ std::shared_ptr<const Material> MeshMaterial(const Context& context, const GridT
 // posts' normals; its sun's angles are refused.
 ClipmapOptions ClipmapLook(const Context& context, const StreamedTerrain& surface,
                            v1::OpenTerrain& command);
+
+// A row of pixels: the ramp's colours, evenly spaced, linear between. At least one colour.
+std::shared_ptr<const Image> RampImage(const ColorRamp& ramp);
 
 } // namespace dspace::session
 

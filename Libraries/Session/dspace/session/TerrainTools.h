@@ -18,6 +18,7 @@ void DescribeTo(const Context& context, const TerrainObject& terrain, v1::Terrai
 void RequireFinitePoints(const std::string& label, const double* values, int size, std::size_t n);
 
 void AddTerrainRequests(Registry& registry);
+void AddTerrainStyleCommands(Registry& registry);
 
 } // namespace dspace::session
 

@@ -7,6 +7,7 @@
 
 #include "vtk_glew.h"
 
+#include "ClipmapColor_frag.h"
 #include "Clipmap_vert.h"
 
 #include "vtkDspaceHubWindow.h"
@@ -49,6 +50,42 @@ void SetVector(vtkShaderProgram* program, const char* name, const Eigen::Vector3
 void SetVector(vtkShaderProgram* program, const char* name, const Eigen::Vector2d& v) {
   const float values[2] = {float(v.x()), float(v.y())};
   program->SetUniform2f(name, values);
+}
+
+void SetMatrix(vtkShaderProgram* program, const char* name, const Eigen::Matrix2d& m) {
+  const float columns[4] = {float(m(0, 0)), float(m(1, 0)), float(m(0, 1)), float(m(1, 1))};
+  glUniformMatrix2fv(program->FindUniform(name), 1, GL_FALSE, columns);
+}
+
+void SetLine(vtkShaderProgram* program, const char* name, const ClipmapStyle::Lines& lines) {
+  const float color[4] = {LinearFromSrgb(lines.color[0]), LinearFromSrgb(lines.color[1]),
+                          LinearFromSrgb(lines.color[2]), float(lines.opacity)};
+  program->SetUniform4f(name, color);
+}
+
+void SetStyle(vtkShaderProgram* program, const ClipmapStyle& style, const CustomDrawing& drawing) {
+  const double pixels = 0.5 * drawing.samples; // of a line's half, in samples
+  if (style.ramp) {
+    const auto [low, high] = style.ramp->range;
+    const float ramp[4] = {float(low), float(1.0 / (high - low)), float(style.ramp->opacity),
+                           style.ramp->by == ClipmapStyle::Ramp::By::Height ? 0.0f : 1.0f};
+    program->SetUniform4f("ramp", ramp);
+    BindTextureUnit(drawing.window, TerrainUnit + 1, GL_TEXTURE_2D,
+                    drawing.store.TextureOf(style.ramp->image, false));
+    program->SetUniformi("rampTexture", TerrainUnit + 1);
+  }
+  if (style.levels) {
+    program->SetUniformf("levelOpacity", float(*style.levels));
+  }
+  if (style.contours) {
+    SetVector(program, "contours",
+              Eigen::Vector2d(1.0 / style.contours->interval, pixels * style.contours->width));
+    SetLine(program, "contourColor", *style.contours);
+  }
+  if (style.grid) {
+    program->SetUniformf("gridWidth", float(pixels * style.grid->width));
+    SetLine(program, "gridColor", *style.grid);
+  }
 }
 
 // GLSL 330 has no call for an integer vector in VTK's program class.
@@ -230,6 +267,9 @@ void ClipmapDrawer::SetLevel(vtkShaderProgram* program, const Placed& placed, in
     SetVector(program, "columnVC", Eigen::Vector3d(L.leftCols<2>() * (linear.col(0) * step)));
     SetVector(program, "rowVC", Eigen::Vector3d(L.leftCols<2>() * (linear.col(1) * step)));
   }
+  if (program->IsUniformUsed("postGrid")) {
+    this->SetGrid(program, first * step, step);
+  }
   if (program->IsUniformUsed("postTexture")) {
     const Eigen::Affine2d& map = this->Terrain_->Options().postToTexture;
     // Whole turns are nothing to a texture that repeats, but much to a float.
@@ -238,11 +278,25 @@ void ClipmapDrawer::SetLevel(vtkShaderProgram* program, const Placed& placed, in
       origin.x() -= std::floor(origin.x());
     }
     SetVector(program, "originTexture", origin);
-    const Eigen::Matrix2d linear = map.linear() * step;
-    const float columns[4] = {float(linear(0, 0)), float(linear(1, 0)), float(linear(0, 1)),
-                              float(linear(1, 1))};
-    glUniformMatrix2fv(program->FindUniform("postTexture"), 1, GL_FALSE, columns);
+    SetMatrix(program, "postTexture", map.linear() * step);
   }
+}
+
+// Grid lines, counted from one near the camera: a float holds what is near it well.
+void ClipmapDrawer::SetGrid(vtkShaderProgram* program, const Eigen::Vector2d& firstPost,
+                            double step) const {
+  const PostPlacement& placement = this->Terrain_->Placement();
+  Eigen::Affine2d lines = this->Terrain_->Options().postToMap;
+  if (placement.GetKind() == PostPlacement::Kind::Sphere) {
+    lines.linear() = Eigen::Vector2d(placement.Step() * (180.0 / M_PI)).asDiagonal();
+    lines.translation() = placement.First() * (180.0 / M_PI);
+  }
+  const double interval =
+      this->Terrain_->Style().grid ? this->Terrain_->Style().grid->interval : 1.0;
+  lines = Eigen::Scaling(1.0 / interval) * lines;
+  const Eigen::Vector2d camera = (lines * this->State_.place).array().floor();
+  SetVector(program, "originGrid", Eigen::Vector2d(lines * firstPost - camera));
+  SetMatrix(program, "postGrid", lines.linear() * step);
 }
 
 // Planes of the view volume in the terrain's frame; a block outside any of them is left out.
@@ -367,12 +421,18 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
       pages.defines = "#define DSPACE_HOLES\n";
     }
   }
-  const auto& ramp = this->Terrain_->Options().textureByHeight;
-  if (ramp) {
-    pages.defines += "#define DSPACE_HEIGHT_RAMP\n";
-  }
   if (sphere) {
     pages.defines += "#define DSPACE_SPHERE\n";
+  }
+  const ClipmapStyle& style = this->Terrain_->Style();
+  const bool styled = !(features & SurfaceShaders::Label) && !style.Empty();
+  if (styled) {
+    features |= SurfaceShaders::Mixed;
+    pages.fragment = ClipmapColor_frag;
+    pages.defines += style.ramp ? "#define DSPACE_RAMP\n" : "";
+    pages.defines += style.levels ? "#define DSPACE_LEVELS\n" : "";
+    pages.defines += style.contours ? "#define DSPACE_CONTOURS\n" : "";
+    pages.defines += style.grid ? "#define DSPACE_GRID\n" : "";
   }
   vtkShaderProgram* program = drawing.shaders.Surface(features, pages);
   drawing.shaders.SetView(program, drawing.list, drawing.view, drawing.samples);
@@ -392,9 +452,8 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
                               float(over.roughness.value_or(material.roughness)), placed.mirrored};
     program->SetUniform3f("objectSurface", surface);
   }
-  if (ramp) {
-    const double range = std::max((*ramp)[1] - (*ramp)[0], 1e-9);
-    SetVector(program, "heightRamp", Eigen::Vector2d((*ramp)[0], 1.0 / range));
+  if (styled) {
+    SetStyle(program, style, drawing);
   }
   const double cameraHeight = placed.posts.z();
   const auto high = static_cast<float>(cameraHeight);

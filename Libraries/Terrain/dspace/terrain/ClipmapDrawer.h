@@ -39,6 +39,7 @@ private:
   void Create();
   void Draw(const CustomDrawing& drawing, unsigned features);
   void SetLevel(vtkShaderProgram* program, const Placed& placed, int level, bool sphere) const;
+  void SetGrid(vtkShaderProgram* program, const Eigen::Vector2d& firstPost, double step) const;
   Eigen::AlignedBox2d BlockPosts(int level, int column, int row) const;
   bool OutsideOnPlane(const std::vector<Eigen::Vector4d>& planes,
                       const Eigen::AlignedBox2d& block) const;

@@ -52,4 +52,10 @@ ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
   }
 }
 
+void ClipmapTerrain::SetStyle(const ClipmapStyle& style) {
+  style.Check(this->Pyramid_->Source().GetName());
+  this->Style_ = style;
+  ++this->StyleRevision_;
+}
+
 } // namespace dspace

@@ -4,10 +4,10 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 
 #include <dspace/scene/CustomGeometry.h>
 #include <dspace/scene/GraphicsObject.h>
+#include <dspace/terrain/ClipmapStyle.h>
 #include <dspace/terrain/ElevationPyramid.h>
 #include <dspace/terrain/PostPlacement.h>
 
@@ -20,8 +20,9 @@ struct ClipmapOptions {
   // From level-0 posts (c, r) to the texture coordinates of the material's texture; (0, 0) is its
   // bottom-left corner.
   Eigen::Affine2d postToTexture = Eigen::Affine2d::Identity();
-  // Else the texture is a ramp: its left edge is the first height [m], its right edge the second.
-  std::optional<std::array<double, 2>> textureByHeight;
+  // From level-0 posts to the map's coordinates, along which a plane's grid lines run; a body's run
+  // along its meridians and parallels [deg].
+  Eigen::Affine2d postToMap = Eigen::Affine2d::Identity();
   double deadline = 60.0; // [s] that a picture that is kept waits for its data
 };
 
@@ -32,7 +33,13 @@ public:
                  const ClipmapOptions& options);
 
   BoundingSphere Bounds() const override { return this->Bounds_; }
-  std::uint64_t Revision() const override { return this->Pyramid_->Arrivals(); }
+  std::uint64_t Revision() const override {
+    return this->Pyramid_->Arrivals() + this->StyleRevision_;
+  }
+
+  // May change at any time between two pictures. Throws what ClipmapStyle::Check throws.
+  void SetStyle(const ClipmapStyle& style);
+  const ClipmapStyle& Style() const { return this->Style_; }
 
   const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
   const PostPlacement& Placement() const { return this->Placement_; }
@@ -43,6 +50,8 @@ private:
   PostPlacement Placement_;
   ClipmapOptions Options_;
   BoundingSphere Bounds_;
+  ClipmapStyle Style_;
+  std::uint64_t StyleRevision_ = 0;
 };
 
 } // namespace dspace

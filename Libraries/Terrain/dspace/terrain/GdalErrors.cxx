@@ -2,6 +2,7 @@
 
 #include <mutex>
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
 #include <gdal.h>
 
@@ -54,7 +55,14 @@ void GdalErrors::DemoteFailures() {
 
 void RegisterGdal() {
   static std::once_flag once;
-  std::call_once(once, [] { GDALAllRegister(); });
+  std::call_once(once, [] {
+    GDALAllRegister();
+    // Tiles are kept by the pyramid, under its own budget: GDAL's share of all memory (5 %) would
+    // stand beside it. Whoever asks for another size is heard.
+    if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr)) {
+      GDALSetCacheMax64(GIntBig(64) << 20);
+    }
+  });
 }
 
 } // namespace dspace

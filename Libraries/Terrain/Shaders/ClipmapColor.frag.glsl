@@ -1,0 +1,51 @@
+// What a terrain's style lays over its own colour: a ramp by height or slope, the levels, lines.
+in vec4 styleAt; // height [m], slope [deg], grid lines along columns and rows (whole at a line)
+flat in int levelShown;
+
+#ifdef DSPACE_RAMP
+uniform sampler2D rampTexture;
+uniform vec4 ramp; // value of its left edge, 1 / range, opacity, 0: by height, 1: by slope
+#endif
+#ifdef DSPACE_LEVELS
+uniform float levelOpacity;
+#endif
+#ifdef DSPACE_CONTOURS
+uniform vec2 contours; // lines a metre, half width [pixels]
+uniform vec4 contourColor; // linear light, opacity
+#endif
+#ifdef DSPACE_GRID
+uniform float gridWidth; // half [pixels]
+uniform vec4 gridColor;
+#endif
+
+// How much of a pixel is a line at whole values of f; lines closer than two pixels fade away.
+float lineAt(float f, float halfWidth)
+{
+  float pixel = max(fwidth(f), 1e-12);
+  float away = abs(fract(f - 0.5) - 0.5) / pixel;
+  return (1.0 - smoothstep(halfWidth - 0.5, halfWidth + 0.5, away)) *
+    clamp(2.0 - 4.0 * pixel, 0.0, 1.0);
+}
+
+vec4 mixedColor(vec4 color)
+{
+#ifdef DSPACE_RAMP
+  float value = ramp.w == 0.0 ? styleAt.x : styleAt.y;
+  color.rgb = mix(color.rgb, texture(rampTexture, vec2((value - ramp.x) * ramp.y, 0.5)).rgb, ramp.z);
+#endif
+#ifdef DSPACE_LEVELS
+  // Six hues in turn: neighbours differ much.
+  vec3 hues[6] = vec3[6](vec3(0.8, 0.1, 0.1), vec3(0.9, 0.6, 0.05), vec3(0.35, 0.7, 0.1),
+    vec3(0.05, 0.6, 0.6), vec3(0.1, 0.2, 0.8), vec3(0.6, 0.1, 0.6));
+  color.rgb = mix(color.rgb, hues[levelShown % 6], levelOpacity);
+#endif
+#ifdef DSPACE_CONTOURS
+  color.rgb = mix(color.rgb, contourColor.rgb,
+    contourColor.a * lineAt(styleAt.x * contours.x, contours.y));
+#endif
+#ifdef DSPACE_GRID
+  color.rgb = mix(color.rgb, gridColor.rgb,
+    gridColor.a * max(lineAt(styleAt.z, gridWidth), lineAt(styleAt.w, gridWidth)));
+#endif
+  return color;
+}

@@ -1,0 +1,52 @@
+#include <dspace/terrain/ClipmapStyle.h>
+
+#include <cmath>
+
+#include <dspace/scene/Checks.h>
+
+namespace dspace {
+namespace {
+
+void CheckOpacity(const std::string& terrain, const std::string& what, double opacity) {
+  Require(opacity >= 0.0 && opacity <= 1.0, terrain, ("the opacity of " + what).c_str(), opacity,
+          "0 to 1");
+}
+
+void CheckLines(const std::string& terrain, const std::string& what,
+                const ClipmapStyle::Lines& lines) {
+  Require(lines.interval > 0.0 && std::isfinite(lines.interval), terrain,
+          ("the interval of " + what).c_str(), lines.interval, "more than 0, finite");
+  Require(lines.width > 0.0 && lines.width <= 64.0, terrain, ("the width of " + what).c_str(),
+          lines.width, "more than 0, up to 64 pixels");
+  for (const double c : lines.color) {
+    Require(c >= 0.0 && c <= 1.0, terrain, ("a colour component of " + what).c_str(), c, "0 to 1");
+  }
+  CheckOpacity(terrain, what, lines.opacity);
+}
+
+} // namespace
+
+void ClipmapStyle::Check(const std::string& terrain) const {
+  if (this->ramp) {
+    if (!this->ramp->image) {
+      Refuse(terrain, "its ramp has no colours");
+    }
+    const auto [low, high] = this->ramp->range;
+    if (!std::isfinite(low) || !std::isfinite(high) || low == high) {
+      Refuse(terrain, "its ramp goes from " + NumberText(low) + " to " + NumberText(high) +
+                          "; accepted: two finite values that differ");
+    }
+    CheckOpacity(terrain, "its ramp", this->ramp->opacity);
+  }
+  if (this->levels) {
+    CheckOpacity(terrain, "its levels", *this->levels);
+  }
+  if (this->contours) {
+    CheckLines(terrain, "its contours", *this->contours);
+  }
+  if (this->grid) {
+    CheckLines(terrain, "its grid", *this->grid);
+  }
+}
+
+} // namespace dspace

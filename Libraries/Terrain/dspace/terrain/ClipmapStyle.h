@@ -1,0 +1,41 @@
+// What is laid over a clipmap's own colour: ramps, levels, contour lines, grids.
+#ifndef DSPACE_TERRAIN_CLIPMAPSTYLE_H
+#define DSPACE_TERRAIN_CLIPMAPSTYLE_H
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <dspace/import/Model.h>
+
+namespace dspace {
+
+// Stacked in this order, each with its opacity (0 to 1). Colours are sRGB, 0 to 1.
+struct ClipmapStyle {
+  struct Ramp {
+    enum class By { Height, Slope }; // [m] above the vertical datum; [deg] from level
+    By by = By::Height;
+    std::array<double, 2> range = {0, 1}; // values of its two ends; beyond them the end's colour
+    std::shared_ptr<const Image> image;   // a row of pixels: left is the first value
+    double opacity = 1.0;
+  };
+  struct Lines {
+    double interval = 1.0; // contours: [m]; grid: [map units] (degrees of a degree grid)
+    double width = 1.0;    // pixels, (0, 64]
+    std::array<double, 3> color = {0, 0, 0};
+    double opacity = 1.0;
+  };
+  std::optional<Ramp> ramp;
+  std::optional<double> levels; // opacity of a colour for each clipmap level
+  std::optional<Lines> contours;
+  std::optional<Lines> grid; // along the map's axes
+
+  bool Empty() const { return !ramp && !levels && !contours && !grid; }
+  // Throws Error(InvalidArgument) naming `terrain` and the value.
+  void Check(const std::string& terrain) const;
+};
+
+} // namespace dspace
+
+#endif
