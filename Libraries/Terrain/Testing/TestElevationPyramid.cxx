@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <map>
 #include <mutex>
 #include <random>
 #include <set>
@@ -216,6 +218,169 @@ TEST(ElevationPyramid, ManyThreadsReadAtOnce) {
   for (std::thread& thread : threads) {
     thread.join();
   }
+}
+
+// Posts of any level that hold what was last set, and how often each was read.
+class ChangingPosts : public dspace::PostSource {
+public:
+  explicit ChangingPosts(const PostLattice& lattice) : Lattice_(lattice) {}
+  const std::string& GetName() const override { return this->Name_; }
+  const PostLattice& GetLattice() const override { return this->Lattice_; }
+  void Read(const PostBlock& block, float* heights) const override {
+    this->posts += std::size_t(block.width) * block.height;
+    for (int j = 0; j < block.height; ++j) {
+      for (int i = 0; i < block.width; ++i) {
+        heights[std::size_t(j) * block.width + i] =
+            this->Value(block.level, block.column + i, block.row + j);
+      }
+    }
+    if (this->during) { // between reading and handing over
+      std::function<void()> once;
+      std::swap(once, this->during);
+      once();
+    }
+  }
+  bool ReadWithTracks(const PostBlock& block, float* heights, float* tracks) const override {
+    this->Read(block, heights);
+    for (std::size_t i = 0; i < std::size_t(block.width) * block.height; ++i) {
+      tracks[i] = heights[i] >= 1e6f ? 1.0f : 0.0f;
+    }
+    return !this->values.empty();
+  }
+  // A post of a coarser level is the greatest value in the posts it reaches to either side.
+  float Value(int level, std::int64_t c, std::int64_t r) const {
+    const std::int64_t column = this->Lattice_.Wrapped(level, c);
+    if (column < 0 || column >= this->Lattice_.ColumnsAt(level) || r < 0 ||
+        r >= this->Lattice_.RowsAt(level)) {
+      return std::numeric_limits<float>::quiet_NaN();
+    }
+    float value = float(level * 1000 + column + r);
+    const std::int64_t reach = level == 0 ? 0 : std::int64_t(1) << (level - 1);
+    const std::int64_t x = this->Lattice_.ColumnPlace(level, column);
+    const std::int64_t y = this->Lattice_.RowPlace(level, r);
+    for (const auto& [place, high] : this->values) {
+      std::int64_t away = std::abs(place.first - x);
+      if (this->Lattice_.periodic) {
+        away = std::min(away, this->Lattice_.columns - away);
+      }
+      if (away <= reach && std::abs(place.second - y) <= reach) {
+        value = std::max(value, high);
+      }
+    }
+    return value;
+  }
+
+  std::map<std::pair<std::int64_t, std::int64_t>, float> values; // of level-0 posts
+  mutable std::function<void()> during;
+  mutable std::atomic<std::size_t> posts{0};
+
+private:
+  std::string Name_ = "changing posts";
+  PostLattice Lattice_;
+};
+
+void ExpectSource(ElevationPyramid& pyramid, const ChangingPosts& source, const PostBlock& block) {
+  std::vector<float> heights(std::size_t(block.width) * block.height);
+  std::vector<float> tracks(heights.size(), -1.0f);
+  pyramid.Read(block, heights.data(), tracks.data(), 60.0);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const std::int64_t c = block.column + std::int64_t(i) % block.width;
+    const std::int64_t r = block.row + std::int64_t(i) / block.width;
+    const float expected = source.Value(block.level, c, r);
+    ASSERT_TRUE(expected == heights[i] || (std::isnan(expected) && std::isnan(heights[i])))
+        << "level " << block.level << ", post " << c << ", " << r << ": " << heights[i]
+        << " instead of " << expected;
+    ASSERT_EQ(tracks[i], expected >= 1e6f ? 1.0f : 0.0f) << c << ", " << r;
+  }
+}
+
+TEST(ElevationPyramid, WhatChangesIsReadAgainAtEveryLevelAndNothingElse) {
+  for (const bool periodic : {false, true}) {
+    const auto source = std::make_shared<ChangingPosts>(Lattice(1024, 700, periodic, 4));
+    ElevationPyramid pyramid(source);
+    const auto all = [&] {
+      for (int level = 0; level < 4; ++level) {
+        ExpectSource(pyramid, *source, {level, -9, -9, (1024 >> level) + 20, (700 >> level) + 20});
+      }
+    };
+    all();
+    const std::uint64_t loads = pyramid.Statistics().loads;
+    const std::uint64_t arrivals = pyramid.Arrivals();
+    std::mt19937 random(12);
+    for (int n = 0; n < 12; ++n) {
+      const std::int64_t c = n == 0 ? 0 : n == 1 ? 1023 : std::int64_t(random() % 1020);
+      const std::int64_t r = n == 0 ? 0 : n == 1 ? 699 : std::int64_t(random() % 690);
+      source->values[{c, r}] = 1e6f + float(n);
+      // The same rectangle, in another turn around the body.
+      pyramid.Invalidate({{c + (periodic ? 1024 * (n - 5) : 0), r, 1, 1}});
+      const std::size_t before = source->posts;
+      all();
+      // At each level the posts that the change may reach, not whole tiles; across a border, where
+      // one tile goes all around, up to its whole rows.
+      EXPECT_LE(source->posts - before, 1u + 3u * 25u + (periodic && n < 2 ? 5u * 128u : 0u))
+          << "change " << n;
+    }
+    source->values.clear();
+    pyramid.Invalidate({{0, 0, 1024, 700}});
+    all();
+    EXPECT_EQ(pyramid.Statistics().loads, loads); // patched, not dropped
+    EXPECT_GT(pyramid.Arrivals(), arrivals);
+  }
+}
+
+TEST(ElevationPyramid, ATileThatChangesWhileItIsReadDoesNotComeBackStale) {
+  const auto source = std::make_shared<ChangingPosts>(Lattice(512, 512, false, 3));
+  ElevationPyramidOptions options;
+  options.threads = 1;
+  ElevationPyramid pyramid(source, options);
+  for (int n = 0; n < 6; ++n) { // of a tile that is new, and of a part that is read again
+    source->during = [&] {
+      source->values[{40 + n, 50}] = 2e6f + float(n);
+      pyramid.Invalidate({{40 + n, 50, 1, 1}});
+    };
+    ExpectSource(pyramid, *source, {0, 0, 0, 100, 100});
+    source->values[{41, 52}] = 3e6f + float(n);
+    pyramid.Invalidate({{41, 52, 1, 1}});
+  }
+  ExpectSource(pyramid, *source, {0, 0, 0, 100, 100});
+}
+
+TEST(ElevationPyramid, WhatDidNotChangeIsThereMeanwhile) {
+  const auto source = std::make_shared<ChangingPosts>(Lattice(512, 512, false, 3));
+  ElevationPyramid pyramid(source);
+  ExpectSource(pyramid, *source, {0, 0, 0, 100, 100});
+  source->values[{40, 50}] = 5e6f;
+  pyramid.Invalidate({{40, 50, 1, 1}});
+  std::vector<float> heights(100 * 100);
+  EXPECT_TRUE(pyramid.TryRead({0, 0, 0, 100, 50}, heights.data()));
+  EXPECT_TRUE(pyramid.TryRead({0, 41, 0, 50, 100}, heights.data()));
+  // The change alone is missing, and then comes.
+  while (!pyramid.TryRead({0, 40, 50, 1, 1}, heights.data())) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(heights[0], 5e6f);
+}
+
+TEST(ElevationPyramid, ChangesAreToldSinceAMoment) {
+  const auto source = std::make_shared<ChangingPosts>(Lattice(512, 300, false, 3));
+  ElevationPyramid pyramid(source);
+  EXPECT_EQ(pyramid.Changes(0).stamp, 0u);
+  EXPECT_TRUE(pyramid.Changes(0).rectangles.empty());
+  pyramid.Invalidate({{1, 2, 3, 4}, {5, 6, 7, 8}});
+  const dspace::PyramidChanges two = pyramid.Changes(0);
+  ASSERT_EQ(two.rectangles.size(), 2u);
+  EXPECT_EQ(two.rectangles[1].column, 5);
+  EXPECT_TRUE(pyramid.Changes(two.stamp).rectangles.empty());
+  pyramid.Invalidate({{9, 9, 1, 1}});
+  ASSERT_EQ(pyramid.Changes(two.stamp).rectangles.size(), 1u);
+  EXPECT_EQ(pyramid.Changes(two.stamp).rectangles[0].column, 9);
+  for (int n = 0; n < 10000; ++n) { // more than are kept: then all of it
+    pyramid.Invalidate({{n % 500, 9, 1, 1}});
+  }
+  ASSERT_EQ(pyramid.Changes(two.stamp).rectangles.size(), 1u);
+  EXPECT_EQ(pyramid.Changes(two.stamp).rectangles[0].width, 512);
+  EXPECT_EQ(pyramid.Changes(two.stamp).rectangles[0].height, 300);
+  EXPECT_TRUE(pyramid.Changes(pyramid.Changes(0).stamp).rectangles.empty());
 }
 
 TEST(ElevationPyramid, OptionsOutOfRangeAreRefused) {

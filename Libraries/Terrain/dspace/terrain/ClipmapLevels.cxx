@@ -83,13 +83,79 @@ bool ClipmapLevels::ToTexels(int level, const ClipmapUpdate& update,
   return holes;
 }
 
-bool ClipmapLevels::Fill(int index, const ClipmapWindow& window, const std::optional<double>& wait,
-                         const Upload& upload) {
-  Level& level = this->Levels_[index];
-  if (level.window == window) {
-    return true;
+// What changed in the pyramid since the last time, in posts of each level that holds something.
+void ClipmapLevels::NoteChanges() {
+  constexpr std::size_t Most = 256; // rectangles; then one that holds them all
+  const PyramidChanges changes = this->Pyramid_->Changes(this->Seen_);
+  this->Seen_ = changes.stamp;
+  for (int index = 0; index < this->Count(); ++index) {
+    Level& level = this->Levels_[index];
+    if (!level.window) {
+      level.changed.clear();
+      continue;
+    }
+    for (const PostRectangle& base : changes.rectangles) {
+      if (index < base.levels) { // and the neighbours, whose slopes change
+        const PostRectangle posts = PostsTouched(base, index);
+        level.changed.push_back(
+            {posts.column - 1, posts.row - 1, posts.width + 2, posts.height + 2});
+      }
+    }
+    if (level.changed.size() > Most) {
+      PostRectangle all = level.changed.front();
+      for (const PostRectangle& one : level.changed) {
+        const std::int64_t right = std::max(all.column + all.width, one.column + one.width);
+        const std::int64_t bottom = std::max(all.row + all.height, one.row + one.height);
+        all.column = std::min(all.column, one.column);
+        all.row = std::min(all.row, one.row);
+        all.width = right - all.column;
+        all.height = bottom - all.row;
+      }
+      level.changed = {all};
+    }
   }
-  const std::vector<ClipmapUpdate> updates = this->Geometry_.Updates(level.window, window);
+}
+
+// What changed of the posts that a level holds and goes on to hold in `window`.
+std::vector<ClipmapUpdate> ClipmapLevels::ChangesIn(int index, const ClipmapWindow& window) const {
+  const Level& level = this->Levels_[index];
+  const PostLattice& lattice = this->Lattice();
+  const std::int64_t posts = this->Geometry_.Cells() + 3; // with the border
+  const std::int64_t left = std::max(level.window->column, window.column) - 1;
+  const std::int64_t right = std::min(level.window->column, window.column) - 1 + posts;
+  const std::int64_t top = std::max(level.window->row, window.row) - 1;
+  const std::int64_t bottom = std::min(level.window->row, window.row) - 1 + posts;
+  std::vector<ClipmapUpdate> updates;
+  for (const PostRectangle& changed : level.changed) {
+    // Around a body the window may be in another turn; in two when it is as wide.
+    const std::int64_t around = lattice.periodic ? lattice.ColumnsAt(index) : 0;
+    std::int64_t column = changed.column;
+    if (lattice.periodic) {
+      column -= (column + changed.width - left) / around * around;
+      while (column + changed.width > left) {
+        column -= around;
+      }
+      column += around;
+    }
+    const std::int64_t r0 = std::max(changed.row, top);
+    const std::int64_t r1 = std::min(changed.row + changed.height, bottom);
+    for (; r0 < r1; column += around) {
+      const std::int64_t c0 = std::max(column, left);
+      const std::int64_t c1 = std::min(column + changed.width, right);
+      if (c0 < c1) {
+        this->Geometry_.Cut(c0, r0, c1 - c0, r1 - r0, updates);
+      }
+      if (!lattice.periodic || column >= right) {
+        break;
+      }
+    }
+  }
+  return updates;
+}
+
+bool ClipmapLevels::Bring(int index, const std::vector<ClipmapUpdate>& updates,
+                          const std::optional<double>& wait, const Upload& upload) {
+  Level& level = this->Levels_[index];
   // All of it is there before any of it goes up: the level stays what it was otherwise.
   std::vector<std::vector<float>> heights(updates.size());
   bool complete = true;
@@ -118,8 +184,24 @@ bool ClipmapLevels::Fill(int index, const ClipmapWindow& window, const std::opti
     }
     upload(index, u, texels.data());
   }
-  level.window = window;
   return true;
+}
+
+ClipmapLevels::Filled ClipmapLevels::Fill(int index, const ClipmapWindow& window,
+                                          const std::optional<double>& wait, const Upload& upload) {
+  Level& level = this->Levels_[index];
+  const bool current =
+      level.changed.empty() || this->Bring(index, this->ChangesIn(index, window), wait, upload);
+  if (level.window != window) {
+    if (!this->Bring(index, this->Geometry_.Updates(level.window, window), wait, upload)) {
+      return Filled::Not; // what changed outside the new window is still what it was
+    }
+    level.window = window;
+  }
+  if (current) {
+    level.changed.clear();
+  }
+  return current ? Filled::Wholly : Filled::Before;
 }
 
 double ClipmapLevels::GroundAt(int level, const Eigen::Vector2d& place) const {
@@ -158,6 +240,7 @@ ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& uploa
   const double outside = lattice.periodic
                              ? std::abs(view.place.y() - state.place.y()) * view.cellSize
                              : (view.place - state.place).norm() * view.cellSize;
+  this->NoteChanges();
   state.finest = this->Count();
   for (int level = this->Count() - 1; level >= 0; --level) {
     const double posts = InPosts(state.distance, view.cellSize, level);
@@ -165,8 +248,9 @@ ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& uploa
       break; // too far away to tell it from the coarser one
     }
     const ClipmapWindow window = this->Geometry_.WindowAt(state.place, level);
-    if (!this->Fill(level, window, view.wait, upload)) {
-      state.complete = false;
+    const Filled filled = this->Fill(level, window, view.wait, upload);
+    state.complete &= filled == Filled::Wholly;
+    if (filled == Filled::Not) {
       break;
     }
     state.finest = level;

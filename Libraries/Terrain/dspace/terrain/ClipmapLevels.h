@@ -22,7 +22,8 @@ struct ClipmapTexel {
 static_assert(sizeof(ClipmapTexel) == 16, "tightly packed");
 
 // Levels are filled from the coarsest down, as far as the view can resolve them and their data is
-// there. What a texel holds depends on its post alone, not on how the view came there. No OpenGL.
+// there. What a texel holds depends on its post alone, not on how the view came there. Posts that
+// change in the pyramid are uploaded again; until they are there the old ones are drawn. No OpenGL.
 class ClipmapLevels {
 public:
   // Where the camera is.
@@ -67,9 +68,15 @@ private:
     std::optional<ClipmapWindow> window; // none: nothing in it is valid
     std::vector<ClipmapTexel> texels;
     bool holes = false;
+    std::vector<PostRectangle> changed; // posts of the level that it holds as they were before
   };
-  bool Fill(int level, const ClipmapWindow& window, const std::optional<double>& wait,
-            const Upload& upload);
+  enum class Filled { Not, Before, Wholly }; // Before: with posts as they were before a change
+  void NoteChanges();
+  std::vector<ClipmapUpdate> ChangesIn(int level, const ClipmapWindow& window) const;
+  bool Bring(int level, const std::vector<ClipmapUpdate>& updates,
+             const std::optional<double>& wait, const Upload& upload);
+  Filled Fill(int level, const ClipmapWindow& window, const std::optional<double>& wait,
+              const Upload& upload);
   // Whether a post of the lattice has no data.
   bool ToTexels(int level, const ClipmapUpdate& update, const std::vector<float>& heights,
                 std::vector<ClipmapTexel>& texels) const;
@@ -79,6 +86,7 @@ private:
   ClipmapGeometry Geometry_;
   std::vector<Level> Levels_;
   double LastColumn_ = 0.0;
+  std::uint64_t Seen_ = 0; // change of the pyramid
 };
 
 // The most cells a side that the coarsest level may have: then one window shows all of it.

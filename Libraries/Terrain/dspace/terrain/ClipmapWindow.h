@@ -66,10 +66,11 @@ public:
   std::vector<ClipmapUpdate> Updates(const std::optional<ClipmapWindow>& from,
                                      const ClipmapWindow& to) const;
 
-private:
+  // Posts of a rectangle, cut where the texture wraps.
   void Cut(std::int64_t column, std::int64_t row, std::int64_t width, std::int64_t height,
            std::vector<ClipmapUpdate>& updates) const;
 
+private:
   int Cells_;
   int Texels_;
 };

@@ -1,7 +1,6 @@
 #include <dspace/terrain/ElevationPyramid.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -14,16 +13,14 @@
 
 #include <dspace/Error.h>
 
+#include "PyramidTiles.h"
+
 namespace dspace {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr int Size = ElevationPyramid::TileSize;
 
-// Level, tile column, tile row.
-using Key = std::array<std::int64_t, 3>;
-using Tile = std::vector<float>; // Size x Size
-constexpr std::size_t TileBytes = std::size_t(Size) * Size * sizeof(float);
 constexpr std::uint64_t StaleAfter = 1000; // later calls: nobody looks there any more
 constexpr double LongestDelay = 30.0;      // [s] between attempts
 
@@ -31,65 +28,18 @@ Clock::duration Seconds(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-std::int64_t FloorDiv(std::int64_t a, std::int64_t b) {
-  return a >= 0 ? a / b : -((-a + b - 1) / b);
-}
-
-// A rectangle of a block that lies in one tile.
-struct Piece {
-  Key key;
-  int tileColumn; // of its first post in the tile
-  int tileRow;
-  int column; // of its first post in the block
-  int row;
-  int width;
-  int height;
-};
-
-// The block cut at tile borders and, where the lattice is periodic, at its ends. What lies outside
-// the lattice is in no piece.
-std::vector<Piece> Cut(const PostLattice& lattice, const PostBlock& block) {
-  std::vector<Piece> pieces;
-  const std::int64_t columns = lattice.ColumnsAt(block.level);
-  const std::int64_t rows = lattice.RowsAt(block.level);
-  const std::int64_t top = std::clamp<std::int64_t>(block.row, 0, rows);
-  const std::int64_t bottom = std::clamp<std::int64_t>(block.row + block.height, 0, rows);
-  std::int64_t left = block.column;
-  std::int64_t right = block.column + block.width;
-  if (!lattice.periodic) {
-    left = std::clamp<std::int64_t>(left, 0, columns);
-    right = std::clamp<std::int64_t>(right, 0, columns);
-  }
-  for (std::int64_t r = top; r < bottom;) {
-    const std::int64_t nextRow = std::min((r / Size + 1) * Size, bottom);
-    for (std::int64_t c = left; c < right;) {
-      const std::int64_t at = c - FloorDiv(c, columns) * columns; // within the lattice
-      const std::int64_t end = std::min((at / Size + 1) * Size, columns);
-      const std::int64_t run = std::min(end - at, right - c);
-      pieces.push_back({{block.level, at / Size, r / Size},
-                        int(at % Size),
-                        int(r % Size),
-                        int(c - block.column),
-                        int(r - block.row),
-                        int(run),
-                        int(nextRow - r)});
-      c += run;
-    }
-    r = nextRow;
-  }
-  return pieces;
-}
-
 } // namespace
 
 struct ElevationPyramid::Implementation {
   struct Resident {
-    std::shared_ptr<const Tile> tile;
-    std::list<Key>::iterator use; // in `uses`
+    std::shared_ptr<const PyramidTile> tile;
+    std::list<TileKey>::iterator use; // in `uses`
+    TileBox stale;                    // has changed since
   };
   struct Request {
     std::uint64_t stamp = 0; // of the latest call that asked for it
     bool reading = false;
+    TileBox since; // what changed while it is being read
     int failures = 0;
     Clock::time_point notBefore = {}; // of the next attempt
     std::exception_ptr error;         // of the last one
@@ -100,11 +50,12 @@ struct ElevationPyramid::Implementation {
   mutable std::mutex mutex;
   std::condition_variable wanted;  // a worker may have something to do
   std::condition_variable arrived; // a tile came, or an attempt failed
-  std::map<Key, Resident> tiles;
-  std::list<Key> uses; // latest first
-  std::map<Key, Request> requests;
+  std::map<TileKey, Resident> tiles;
+  std::list<TileKey> uses; // latest first
+  std::map<TileKey, Request> requests;
   std::uint64_t stamp = 0;
   std::uint64_t arrivals = 0;
+  PyramidChangeLog changes;
   ElevationPyramidStatistics statistics;
   bool stopping = false;
   std::vector<std::thread> threads;
@@ -127,34 +78,64 @@ struct ElevationPyramid::Implementation {
     }
   }
 
-  // With the lock held, as all below. Null where the tile is not there.
-  std::shared_ptr<const Tile> Find(const Key& key) {
-    const auto found = this->tiles.find(key);
-    if (found == this->tiles.end()) {
+  // With the lock held, as all below. Null where the tile is not there, or has changed in the
+  // piece.
+  std::shared_ptr<const PyramidTile> Find(const TilePiece& piece) {
+    const auto found = this->tiles.find(piece.key);
+    if (found == this->tiles.end() || found->second.stale.Meets(piece.box)) {
       return nullptr;
     }
     this->uses.splice(this->uses.begin(), this->uses, found->second.use);
     return found->second.tile;
   }
 
-  void Ask(const Key& key) { this->requests[key].stamp = this->stamp; }
+  void Ask(const TileKey& key) { this->requests[key].stamp = this->stamp; }
 
-  void Store(const Key& key, std::shared_ptr<const Tile> tile) {
+  void Forget(std::map<TileKey, Resident>::iterator found) {
+    this->statistics.bytes -= found->second.tile->Bytes();
+    this->uses.erase(found->second.use);
+    this->tiles.erase(found);
+  }
+
+  void Store(const TileKey& key, std::shared_ptr<const PyramidTile> tile, const TileBox& stale) {
+    const auto old = this->tiles.find(key);
+    if (old != this->tiles.end()) {
+      this->Forget(old);
+    }
+    this->statistics.bytes += tile->Bytes();
     this->uses.push_front(key);
-    this->tiles[key] = {std::move(tile), this->uses.begin()};
-    this->statistics.bytes += TileBytes;
-    ++this->statistics.loads;
+    this->tiles[key] = {std::move(tile), this->uses.begin(), stale};
     ++this->arrivals;
     while (this->statistics.bytes > this->options.byteBudget) {
-      this->tiles.erase(this->uses.back());
-      this->uses.pop_back();
-      this->statistics.bytes -= TileBytes;
+      this->Forget(this->tiles.find(this->uses.back()));
       ++this->statistics.evictions;
     }
   }
 
+  void Invalidate(const std::vector<PostRectangle>& rectangles) {
+    const PostLattice& lattice = this->source.GetLattice();
+    for (const PostRectangle& rectangle : rectangles) {
+      this->changes.Add(rectangle);
+      std::vector<PostRectangle> posts;
+      for (int level = 0; level < std::min(lattice.levels, rectangle.levels); ++level) {
+        posts.push_back(PostsTouched(rectangle, level));
+      }
+      const auto touched = [&](const TileKey& key) {
+        return key[0] < std::int64_t(posts.size()) ? TouchedOfTile(lattice, posts[key[0]], key)
+                                                   : TileBox();
+      };
+      for (auto& [key, resident] : this->tiles) {
+        resident.stale.Widen(touched(key));
+      }
+      for (auto& [key, request] : this->requests) {
+        request.since.Widen(touched(key));
+      }
+    }
+    ++this->arrivals;
+  }
+
   // The request to serve next, or none; `soonest` is then when one becomes due.
-  std::map<Key, Request>::iterator Next(std::optional<Clock::time_point>& soonest) {
+  std::map<TileKey, Request>::iterator Next(std::optional<Clock::time_point>& soonest) {
     const Clock::time_point now = Clock::now();
     auto best = this->requests.end();
     for (auto it = this->requests.begin(); it != this->requests.end();) {
@@ -193,14 +174,18 @@ struct ElevationPyramid::Implementation {
         }
         continue;
       }
-      const Key key = next->first;
+      const TileKey key = next->first;
       next->second.reading = true;
+      next->second.since = {};
+      const auto resident = this->tiles.find(key);
+      const bool patch = resident != this->tiles.end();
+      const std::shared_ptr<const PyramidTile> old = patch ? resident->second.tile : nullptr;
+      const TileBox box = patch ? resident->second.stale : TileBox{0, 0, Size, Size};
       lock.unlock();
-      std::shared_ptr<Tile> tile;
+      std::shared_ptr<const PyramidTile> tile;
       std::exception_ptr error;
       try {
-        tile = std::make_shared<Tile>(std::size_t(Size) * Size);
-        this->source.Read({int(key[0]), key[1] * Size, key[2] * Size, Size, Size}, tile->data());
+        tile = box.Empty() ? old : ReadPyramidTile(this->source, key, box, old.get());
       } catch (...) {
         error = std::current_exception();
       }
@@ -208,14 +193,16 @@ struct ElevationPyramid::Implementation {
       if (error) {
         this->Fail(key, error);
       } else {
+        const TileBox since = this->requests[key].since;
         this->requests.erase(key);
-        this->Store(key, std::move(tile));
+        this->Store(key, std::move(tile), since);
+        ++(patch ? this->statistics.patches : this->statistics.loads);
       }
       this->arrived.notify_all();
     }
   }
 
-  void Fail(const Key& key, const std::exception_ptr& error) {
+  void Fail(const TileKey& key, const std::exception_ptr& error) {
     Request& request = this->requests[key];
     request.reading = false;
     request.error = error;
@@ -234,13 +221,13 @@ struct ElevationPyramid::Implementation {
   }
 
   // Copies what the pieces show, or asks for what is missing and returns false.
-  bool Serve(const std::vector<Piece>& pieces, const PostBlock& block, float* heights,
-             std::vector<std::shared_ptr<const Tile>>& held) {
+  bool Serve(const std::vector<TilePiece>& pieces, const PostBlock& block, const PostPlanes& planes,
+             std::vector<std::shared_ptr<const PyramidTile>>& held) {
     bool complete = true;
     held.resize(pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       if (!held[i]) {
-        held[i] = this->Find(pieces[i].key);
+        held[i] = this->Find(pieces[i]);
       }
       if (!held[i]) {
         this->Ask(pieces[i].key);
@@ -250,14 +237,13 @@ struct ElevationPyramid::Implementation {
     if (!complete) {
       return false;
     }
-    std::fill_n(heights, std::size_t(block.width) * block.height,
-                std::numeric_limits<float>::quiet_NaN());
+    const std::size_t posts = std::size_t(block.width) * block.height;
+    std::fill_n(planes.heights, posts, std::numeric_limits<float>::quiet_NaN());
+    if (planes.tracks) {
+      std::fill_n(planes.tracks, posts, 0.0f);
+    }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const Piece& piece = pieces[i];
-      for (int r = 0; r < piece.height; ++r) {
-        std::copy_n(held[i]->data() + std::size_t(piece.tileRow + r) * Size + piece.tileColumn,
-                    piece.width, heights + std::size_t(piece.row + r) * block.width + piece.column);
-      }
+      CopyPiece(*held[i], pieces[i], block.width, planes);
     }
     return true;
   }
@@ -286,13 +272,17 @@ ElevationPyramid::ElevationPyramid(std::shared_ptr<const PostSource> source,
 ElevationPyramid::~ElevationPyramid() = default;
 
 bool ElevationPyramid::TryRead(const PostBlock& block, float* heights) {
-  const std::vector<Piece> pieces = Cut(this->Lattice(), block);
-  std::vector<std::shared_ptr<const Tile>> held;
+  return this->TryRead(block, heights, nullptr);
+}
+
+bool ElevationPyramid::TryRead(const PostBlock& block, float* heights, float* tracks) {
+  const std::vector<TilePiece> pieces = CutIntoTiles(this->Lattice(), block);
+  std::vector<std::shared_ptr<const PyramidTile>> held;
   bool complete = false;
   {
     const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
     ++this->Impl_->stamp;
-    complete = this->Impl_->Serve(pieces, block, heights, held);
+    complete = this->Impl_->Serve(pieces, block, {heights, tracks}, held);
   }
   if (!complete) {
     this->Impl_->wanted.notify_all();
@@ -301,15 +291,19 @@ bool ElevationPyramid::TryRead(const PostBlock& block, float* heights) {
 }
 
 void ElevationPyramid::Read(const PostBlock& block, float* heights, double seconds) {
+  this->Read(block, heights, nullptr, seconds);
+}
+
+void ElevationPyramid::Read(const PostBlock& block, float* heights, float* tracks, double seconds) {
   Implementation& impl = *this->Impl_;
-  const std::vector<Piece> pieces = Cut(this->Lattice(), block);
+  const std::vector<TilePiece> pieces = CutIntoTiles(this->Lattice(), block);
   // Tiles are held as they come: a block larger than the budget is served all the same.
-  std::vector<std::shared_ptr<const Tile>> held;
+  std::vector<std::shared_ptr<const PyramidTile>> held;
   const bool forever = !(seconds < 1e9);
   const Clock::time_point deadline = Clock::now() + Seconds(forever ? 0.0 : seconds);
   std::unique_lock<std::mutex> lock(impl.mutex);
   ++impl.stamp;
-  while (!impl.Serve(pieces, block, heights, held)) {
+  while (!impl.Serve(pieces, block, {heights, tracks}, held)) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const auto request = impl.requests.find(pieces[i].key);
       if (!held[i] && request != impl.requests.end() &&
@@ -330,6 +324,16 @@ void ElevationPyramid::Read(const PostBlock& block, float* heights, double secon
                            : "; the last failure: " + impl.statistics.lastFailure));
     }
   }
+}
+
+void ElevationPyramid::Invalidate(const std::vector<PostRectangle>& rectangles) {
+  const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  this->Impl_->Invalidate(rectangles);
+}
+
+PyramidChanges ElevationPyramid::Changes(std::uint64_t since) const {
+  const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  return this->Impl_->changes.Since(since, this->Lattice());
 }
 
 std::uint64_t ElevationPyramid::Arrivals() const {

@@ -21,12 +21,19 @@ struct ElevationPyramidOptions {
 };
 
 struct ElevationPyramidStatistics {
-  std::size_t bytes = 0;   // of tiles in memory
-  std::uint64_t loads = 0; // tiles read so far
+  std::size_t bytes = 0;     // of tiles in memory
+  std::uint64_t loads = 0;   // tiles read so far
+  std::uint64_t patches = 0; // parts of tiles read again after a change
   std::uint64_t evictions = 0;
   std::uint64_t failures = 0; // reads that failed, each attempt counted
   std::size_t pending = 0;    // tiles asked for and not there yet
   std::string lastFailure;    // its message; empty without any
+};
+
+// What changed up to a moment, in posts of level 0.
+struct PyramidChanges {
+  std::uint64_t stamp = 0; // of that moment
+  std::vector<PostRectangle> rectangles;
 };
 
 // What a drawing thread asks is answered at once, from memory, or not; what is missing is then on
@@ -53,7 +60,17 @@ public:
   void Read(const PostBlock& block, float* heights,
             double seconds = std::numeric_limits<double>::infinity());
 
-  // Grows with each tile that arrives.
+  // The same, and into `tracks` what PostSource::ReadWithTracks gives, 0 where none is.
+  bool TryRead(const PostBlock& block, float* heights, float* tracks);
+  void Read(const PostBlock& block, float* heights, float* tracks, double seconds);
+
+  // The source gives other posts in these rectangles of level 0 from now on: what is in memory of
+  // them is read again when it is asked for, and a read under way does not bring the old ones back.
+  void Invalidate(const std::vector<PostRectangle>& rectangles);
+  // Of all calls of Invalidate since `stamp`; all of the lattice where that is long ago.
+  PyramidChanges Changes(std::uint64_t since) const;
+
+  // Grows with each tile that arrives and with each change.
   std::uint64_t Arrivals() const;
   ElevationPyramidStatistics Statistics() const;
 

@@ -18,6 +18,30 @@ struct PostBlock {
   int height = 0;
 };
 
+// Posts that changed, of a level; around a body they may begin in any turn, and are at most one.
+struct PostRectangle {
+  std::int64_t column = 0; // of its first post
+  std::int64_t row = 0;
+  std::int64_t width = 0; // posts
+  std::int64_t height = 0;
+  int levels = 64; // a change of level 0 reaches levels 0..levels-1
+};
+
+// The posts of a level whose cells reach into a rectangle of level 0.
+inline PostRectangle PostsTouched(const PostRectangle& base, int level) {
+  if (level == 0) {
+    return base;
+  }
+  const std::int64_t step = std::int64_t(1) << level;
+  const auto floorOf = [step](std::int64_t a) {
+    return a >= 0 ? a / step : -((step - 1 - a) / step);
+  };
+  const std::int64_t column = floorOf(base.column) - 1;
+  const std::int64_t row = floorOf(base.row) - 1;
+  return {column, row, floorOf(base.column + base.width) + 3 - column,
+          floorOf(base.row + base.height) + 3 - row, base.levels};
+}
+
 // Abstract. Heights are metres above the terrain's vertical datum, floats: a step of 0.5 mm below
 // 8192 m and 1 mm below 16384 m, the same for drawing and for queries.
 class PostSource {
@@ -29,6 +53,12 @@ public:
   // surface itself; a post of a coarser level is the mean over its cell, so that far ground does
   // not shimmer. Called from several threads at once. Throws Error when the data cannot be read.
   virtual void Read(const PostBlock& block, float* heights) const = 0;
+  // The same, and into `tracks` from 0 to 1 how much of each post's cell is rolled over. False, and
+  // `tracks` not written, where none is.
+  virtual bool ReadWithTracks(const PostBlock& block, float* heights, float* /*tracks*/) const {
+    this->Read(block, heights);
+    return false;
+  }
 };
 
 } // namespace dspace
