@@ -10,10 +10,12 @@
 #include <sys/stat.h>
 
 #include <dspace/Error.h>
+#include <dspace/terrain/ElevationCache.h>
 
 #include "ElevationMetadata.h"
 #include "GdalErrors.h"
 #include "NetworkScope.h"
+#include "OverviewFile.h"
 
 namespace dspace {
 
@@ -122,6 +124,7 @@ struct ElevationSource::Implementation {
   bool remote = false;  // itself, or what it is a mosaic of
   bool suspect = false; // a read failed
   FileState file;
+  std::shared_ptr<const OverviewFile> overviews;
 
   // After a failed read GDAL may take what it could not read for blocks that the file leaves out,
   // and give zeros. With the mutex held.
@@ -176,6 +179,21 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   ReadGeoreference(dataset, options, this->Info_);
   ReadVertical(band, options, this->Info_);
   errors.Check(Error::Kind::Corrupt, object);
+  if (!options.overviewCache.empty() && this->Info_.overviews == 0) {
+    const std::string file = ElevationCache::FileFor(options.overviewCache, path, options.band);
+    try {
+      auto overviews = std::make_shared<OverviewFile>(file);
+      if (overviews->Header().identity == this->Identity()) {
+        this->Info_.overviews = overviews->Header().levels;
+        this->Info_.overviewsAreCached = true;
+        this->Impl_->overviews = std::move(overviews);
+      }
+    } catch (const Error& error) {
+      if (error.GetKind() != Error::Kind::NotFound)
+        this->Info_.warnings.push_back(std::string(error.what()) +
+                                       "; far ground is read without it until it is built anew");
+    }
+  }
   this->Info_.warnings.insert(this->Info_.warnings.end(), errors.Warnings().begin(),
                               errors.Warnings().end());
 }
@@ -213,12 +231,15 @@ std::vector<double> ElevationSource::ReadReduced(const RasterWindow& w, int fact
   }
   // A last column or row that is narrower than the others is read by itself.
   const int fullColumns = w.width / factor, fullRows = w.height / factor;
+  const bool cached = factor > 1 && this->ReadCached(w, factor, heights.data());
+  if (cached)
+    std::fill(mask.begin(), mask.end(), std::uint8_t(255));
   for (const bool lastRow : {false, true})
     for (const bool lastColumn : {false, true}) {
       const int c = lastColumn ? fullColumns : 0, r = lastRow ? fullRows : 0;
       const int columns = lastColumn ? width - fullColumns : fullColumns;
       const int rows = lastRow ? height - fullRows : fullRows;
-      if (columns == 0 || rows == 0)
+      if (cached || columns == 0 || rows == 0)
         continue;
       const RasterWindow part{info.window.column + w.column + c * factor,
                               info.window.row + w.row + r * factor,
@@ -237,6 +258,63 @@ std::vector<double> ElevationSource::ReadReduced(const RasterWindow& w, int fact
         mask[i] && std::isfinite(height) ? height : std::numeric_limits<double>::quiet_NaN();
   }
   return heights;
+}
+
+// False where the cache has nothing for it.
+bool ElevationSource::ReadCached(const RasterWindow& w, int factor, double* values) const {
+  Implementation& impl = *this->Impl_;
+  std::shared_ptr<const OverviewFile> overviews;
+  {
+    const std::lock_guard<std::mutex> lock(impl.mutex);
+    overviews = impl.overviews;
+  }
+  const int column = this->Info_.window.column + w.column;
+  const int row = this->Info_.window.row + w.row;
+  int level = 0;
+  while (level < 30 && (2 << level) < factor)
+    ++level;
+  if (!overviews || (2 << level) != factor || level >= overviews->Header().levels ||
+      column % factor != 0 || row % factor != 0)
+    return false;
+  // Cells at the window's edge reach beyond it where the raster does.
+  const RasterWindow cells{column / factor, row / factor, 1 + (w.width - 1) / factor,
+                           1 + (w.height - 1) / factor};
+  if (impl.file.ChangedInPlace(this->Info_.path))
+    throw Error(Error::Kind::Io, "raster '" + this->Info_.path + "'", Changed);
+  try {
+    overviews->Read(level, cells, values);
+  } catch (const Error& error) {
+    const std::lock_guard<std::mutex> lock(impl.mutex);
+    if (impl.overviews == overviews)
+      impl.overviews.reset();
+    overviews->Remove();
+    throw Error(error.GetKind(), "raster '" + this->Info_.path + "'",
+                std::string(error.what()) +
+                    "; it is removed, and far ground read without it until it is built anew");
+  }
+  return true;
+}
+
+std::string ElevationSource::Identity() const {
+  const Implementation& impl = *this->Impl_;
+  const std::lock_guard<std::mutex> lock(impl.mutex);
+  const NetworkScope scope(impl.network, this->Info_.path);
+  const GdalErrors quiet;
+  const CPLStringList files(impl.dataset->GetFileList());
+  std::string text = "band " + std::to_string(impl.bandNumber) + " of " +
+                     std::to_string(impl.dataset->GetRasterXSize()) + " x " +
+                     std::to_string(impl.dataset->GetRasterYSize()) + " " + this->Info_.dataType;
+  for (int i = 0; i < files.size(); ++i) {
+    struct stat local = {};
+    VSIStatBufL stat;
+    text += "\n" + std::string(files[i]);
+    if (::stat(files[i], &local) == 0)
+      text += " " + std::to_string(local.st_size) + " " + std::to_string(local.st_mtim.tv_sec) +
+              "." + std::to_string(local.st_mtim.tv_nsec);
+    else if (VSIStatL(files[i], &stat) == 0)
+      text += " " + std::to_string(stat.st_size) + " " + std::to_string(stat.st_mtime);
+  }
+  return text;
 }
 
 // Pixels of the file, `columns` x `rows` of them or of an overview, into rows of `stride`.

@@ -49,6 +49,8 @@ struct ElevationOptions {
   std::optional<double> pixelSize;    // [map units], for a raster without georeference; default 1
   std::optional<RasterWindow> window; // only these pixels; must lie within the raster
   NetworkLimits network;
+  // A folder of ElevationCache: its overviews are read where the raster has none. Empty: none are.
+  std::string overviewCache;
 };
 
 // What the source is, after options.
@@ -66,7 +68,8 @@ struct ElevationInfo {
   double verticalScale = 1.0;  // metres = value * verticalScale + verticalOffset
   double verticalOffset = 0.0; // [m]; with a Radius datum the heights returned are less its radius
   std::string unit;            // as the file states it; may be empty
-  int overviews = 0;
+  int overviews = 0;           // the file's, or the cache's
+  bool overviewsAreCached = false;
   std::vector<std::string> warnings; // each names what was assumed and how to state it
 };
 
@@ -88,14 +91,19 @@ public:
   std::vector<double> Read(const RasterWindow& window) const;
   std::vector<double> Read() const; // all of Info().window
   // The same with one value for every `factor` x `factor` pixels from the window's first on (fewer
-  // at its right and bottom edge): an overview's where the file has one for it, else the pixel's in
-  // their middle.
+  // at its right and bottom edge): an overview's where the file has one for it; the mean where the
+  // cache does and the window begins at a multiple of `factor` in the file; else the pixel's in
+  // their middle. Throws Error(Corrupt) where the cache is damaged, once: it is then removed.
   std::vector<double> ReadReduced(const RasterWindow& window, int factor) const;
+
+  // The band and the files that the raster consists of, with their sizes and times of change.
+  std::string Identity() const;
 
 private:
   struct Implementation;
   void ReadPart(const RasterWindow& part, int columns, int rows, int stride, double* values,
                 std::uint8_t* mask) const;
+  bool ReadCached(const RasterWindow& window, int factor, double* values) const;
   std::unique_ptr<Implementation> Impl_;
   ElevationInfo Info_;
 };
