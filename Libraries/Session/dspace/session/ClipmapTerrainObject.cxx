@@ -34,6 +34,10 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   }
   reply.set_levels(std::uint32_t(surface.Pyramid()->Lattice().levels));
   reply.set_subdivisions(std::uint32_t(surface.Subdivisions()));
+  reply.set_post_columns(std::uint64_t(surface.Pyramid()->Lattice().columns));
+  reply.set_post_rows(std::uint64_t(surface.Pyramid()->Lattice().rows));
+  reply.set_vertical_scale(info.verticalScale);
+  reply.set_vertical_offset(info.verticalOffset);
   const ElevationPyramidStatistics statistics = surface.Pyramid()->Statistics();
   reply.set_tile_bytes(statistics.bytes);
   reply.set_tile_loads(statistics.loads);
