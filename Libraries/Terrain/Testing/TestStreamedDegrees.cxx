@@ -53,6 +53,10 @@ TEST(StreamedDegrees, FormsOfDegreeGridsAreOneGround) {
       const Eigen::Vector3d map = other.SceneToMap(p);
       EXPECT_LT((other.MapToScene(map) - p).norm(), 1e-3);
       EXPECT_NEAR(other.SampleMap(map.head<2>()).height, b.height, 1e-3);
+      if (other.GetCrs().GetKind() == Crs::Kind::Geographic) { // turns of longitude do not matter
+        const Eigen::Vector2d turned(map.x() + (i % 2 == 0 ? 360.0 : -720.0), map.y());
+        EXPECT_NEAR(other.SampleMap(turned).height, b.height, 1e-3);
+      }
       // What does not quite go around is drawn out by up to a hundredth of a pixel.
       EXPECT_NEAR(std::remainder(other.MapToGeographic(map).x() - lon, 360.0), 0.0,
                   tolerance > 0.02 ? 1e-4 : 1e-6);

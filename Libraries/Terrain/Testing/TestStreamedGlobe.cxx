@@ -105,6 +105,67 @@ TEST(StreamedGlobe, RaysMeetASphereWhereTheClosedFormDoes) {
   EXPECT_GT(hits, 2000);
 }
 
+// Chords of some metres: no deeper than a flat cell's own departure from the sphere. One high place
+// far away keeps the range of heights from telling.
+TEST(StreamedGlobe, RaysThatTouchASphereAreSeenTo) {
+  const TemporaryFolder folder;
+  Globe globe;
+  globe.height = [](double lon, double lat) {
+    return lon < -170.0 && lat < -80.0 ? 9000.0 : 1200.0;
+  };
+  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const double radius = globe.radius + 1200.0;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int i = 0; i < 4000; ++i) {
+    const Eigen::Vector3d up = Direction(170.0 * unit(random), 150.0 * unit(random) - 60.0);
+    const Eigen::Vector3d along =
+        (Direction(360.0 * unit(random), 60.0) - 0.2 * up).cross(up).normalized();
+    const double half = 2.0 + 40.0 * unit(random); // of the chord
+    const double out = 3000.0 * unit(random);
+    const double nearest = std::sqrt((radius - half) * (radius + half));
+    const RayHit hit = terrain->Intersect(nearest * up - (half + out) * along, along);
+    ASSERT_TRUE(hit.hit) << i << ": " << half;
+    EXPECT_NEAR(hit.distance, out, 1e-8 * radius / half) << half;
+    EXPECT_FALSE(terrain->Intersect((radius + 1e-3) * up - out * along, along, 5e3).hit);
+  }
+}
+
+// Over a pole, where longitude turns by half a turn at once, and along meridians and parallels.
+TEST(StreamedGlobe, RaysAlongAndAcrossTheLinesOfTheGridMeetTheGround) {
+  const TemporaryFolder folder;
+  Globe globe;
+  globe.height = Bulges;
+  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const auto ground = [&](double lon, double lat) {
+    return terrain->Sample(Direction(lon, lat)).position_S;
+  };
+  const double post = globe.Step() / std::ldexp(1.0, terrain->Subdivisions());
+  std::mt19937 random(4);
+  std::uniform_int_distribution<int> any(0, 9999);
+  for (int i = 0; i < 3000; ++i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const double lon = (any(random) - 5000) * 2.0 * post;
+    const double lat = i % 3 == 0 ? side * (90.0 - 20.0 * post) : (any(random) - 5000) * post;
+    const Eigen::Vector3d to = ground(lon, lat);
+    Eigen::Vector3d from = to;
+    if (i % 3 == 0) { // from beyond the pole, over it
+      from = ground(lon + 180.0, side * (90.0 - 50.0 * post)) * 1.001;
+    } else if (i % 3 == 1) { // along the meridian
+      from = ground(lon, lat - 3.0) * 1.03;
+    } else { // down
+      from = 1.5 * to;
+    }
+    const RayHit hit = terrain->Intersect(from, to - from);
+    ASSERT_TRUE(hit.hit) << i << ": " << lon << ", " << lat;
+    EXPECT_LT(hit.distance, (to - from).norm() + 1e-3) << i << ": " << lon << ", " << lat;
+    if (i % 3 == 2) {
+      EXPECT_NEAR(hit.distance, (to - from).norm(), 1e-6) << i;
+    }
+    EXPECT_NEAR(terrain->Sample(hit.position_S).position_S.norm(), hit.position_S.norm(), 2e-6);
+  }
+}
+
 // The first crossing that small steps along the ray find, by heights made by hand.
 TEST(StreamedGlobe, RaysMeetABodysGroundWhereStepsDo) {
   const TemporaryFolder folder;

@@ -75,6 +75,18 @@ void ExpectSame(const std::string& path, const GridTerrainOptions& options = {})
     EXPECT_EQ(t.level, 0);
   }
   EXPECT_GT(valid, Count / 4) << path << " of size " << size;
+  // At the very posts, on the rims of holes too.
+  const HeightGrid& posts = grid->Grid();
+  for (int r = 0; r < posts.GetRows(); r += 1 + posts.GetRows() / 200) {
+    for (int c = 0; c < posts.GetColumns(); ++c) {
+      const Eigen::Vector2d at = grid->PixelToMap() * Eigen::Vector2d(c + 0.5, r + 0.5);
+      const SurfaceSample s = grid->SampleMap(at);
+      const SurfaceSample t = streamed->SampleMap(at);
+      ASSERT_EQ(s.valid, t.valid) << path << ": " << c << ", " << r;
+      ASSERT_TRUE(!s.valid || std::abs(s.height - t.height) < 1e-3)
+          << path << ": " << c << ", " << r;
+    }
+  }
   // Rays of all kinds: down, up from below, grazing, from far away and from within.
   int hits = 0;
   for (int i = 0; i < Count; ++i) {
@@ -178,6 +190,40 @@ TEST(StreamedTerrain, ALargeRasterIsReadAsItIsAsked) {
     EXPECT_EQ(grid->Sample(to).height, streamed->Sample(to).height);
   }
   EXPECT_GT(hits, 300);
+}
+
+// Rounding may put such places to either side of an edge: none may be missed.
+TEST(StreamedTerrain, RaysAimedAtEdgesMeetThem) {
+  const TemporaryFolder folder;
+  RasterFile file;
+  file.width = 300;
+  file.height = 200;
+  file.geotransform = std::array<double, 6>{0.1, 0.7, 0, 0.3, 0, -0.7};
+  file.value = [](int c, int r, int) { return double(float(0.05 * Hills(c, r))); };
+  const auto terrain = StreamedTerrain::Open(file.Write(folder / "edges.tif"));
+  const Eigen::AlignedBox2d map = terrain->GetBounds().map;
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> column(10, 289);
+  std::uniform_int_distribution<int> row(10, 189);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int i = 0; i < 20000; ++i) {
+    Eigen::Vector2d g(column(random), row(random)); // a post
+    if (i % 4 == 1) {
+      g.x() += unit(random);
+    } else if (i % 4 == 2) {
+      g.y() += unit(random);
+    } else if (i % 4 == 3) {
+      g += Eigen::Vector2d::Constant(unit(random));
+    }
+    const Eigen::Vector2d at(map.min().x() + 0.7 * g.x(), map.max().y() - 0.7 * g.y());
+    const Eigen::Vector3d to = terrain->SampleMap(at).position_S;
+    const Eigen::Vector3d from =
+        to + Eigen::Vector3d(3.0 * unit(random), 3.0 * unit(random), i % 2 == 0 ? 40.0 : -40.0);
+    const RayHit hit = terrain->Intersect(from, to - from);
+    ASSERT_TRUE(hit.hit) << i;
+    ASSERT_LT(hit.distance, (to - from).norm() + 1e-6) << i;
+    ASSERT_EQ(hit.fromBelow, i % 2 == 1) << i;
+  }
 }
 
 TEST(StreamedTerrain, AnswersAreTheSameFromSeveralThreads) {

@@ -27,8 +27,7 @@ RayPath::RayPath(const PostPlacement& placement, const PostLattice& lattice,
                  const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S, double maximum,
                  double low, double high)
     : Placement_(placement), Curved_(placement.GetKind() == PostPlacement::Kind::Sphere),
-      Middle_(0.5 * double(lattice.columns - 1)), Last_(maximum), Origin_(origin_S),
-      Direction_(unit_S) {
+      Last_(maximum), Origin_(origin_S), Direction_(unit_S) {
   const double pad = 1e-6 * (1.0 + high - low);
   low -= pad;
   high += pad;
@@ -139,18 +138,6 @@ void RayPath::RowCrossings(double row, std::vector<double>& t) const {
       t.push_back(this->Nearest_ + this->NearestRadius_ * std::tan(angle));
     }
   }
-}
-
-void RayPath::Breaks(std::vector<double>& t) const {
-  if (!this->Curved_) {
-    return;
-  }
-  const double across = this->Direction_.head<2>().squaredNorm();
-  if (across > 0.0) {
-    t.push_back(-this->Origin_.head<2>().dot(this->Direction_.head<2>()) / across);
-  }
-  const double half = M_PI / std::abs(this->Placement_.Step().x());
-  this->ColumnCrossings(this->Middle_ + half, t);
 }
 
 } // namespace dspace

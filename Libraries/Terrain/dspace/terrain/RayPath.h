@@ -34,8 +34,6 @@ public:
   // not.
   void ColumnCrossings(double column, std::vector<double>& t) const;
   void RowCrossings(double row, std::vector<double>& t) const;
-  // Where Post() jumps or turns fast: the axis of a sphere, and opposite the lattice's middle.
-  void Breaks(std::vector<double>& t) const;
   bool Curved() const { return this->Curved_; } // not a straight line over the posts
   // What heights along it may be off by through rounding.
   double Slack() const { return this->Slack_; }
@@ -45,7 +43,6 @@ private:
 
   const PostPlacement& Placement_;
   bool Curved_;
-  double Middle_; // column
   double Entry_ = 0.0;
   double First_ = 0.0;
   double Last_ = 0.0;

@@ -63,14 +63,15 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
   }
   const PostLattice& lattice = this->Pyramid_->Lattice();
   const int level = this->Surface_->Level();
-  // With poles the level has rows and columns between those of pixels, too.
-  const int every = this->Poles_ ? 2 : 1;
-  const int firstRow = this->Poles_ ? 1 : 0;
+  // With poles the level may have rows and columns between those of pixels, too.
+  const bool between = this->Poles_ && level + 1 == this->Subdivisions_;
+  const int every = between ? 2 : 1;
+  const int firstRow = between ? 1 : 0;
   const double posts = std::ldexp(1.0, level); // of level 0 to the next of the level
   std::vector<float> heights;
   for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
     const Eigen::Vector3d p_S = points_S.row(i);
-    const Eigen::Vector2d post = this->ToPosts(p_S).head<2>() / posts;
+    const Eigen::Vector2d post = this->Placement_.ToPosts(p_S).head<2>() / posts;
     // Posts that the circle reaches to either side.
     Eigen::Vector2d reach;
     if (this->OnBody()) {

@@ -51,16 +51,6 @@ Eigen::Vector2d StreamedTerrain::MapToPost(const Eigen::Vector2d& map) const {
   return post;
 }
 
-Eigen::Vector3d StreamedTerrain::ToPosts(const Eigen::Vector3d& p_S) const {
-  Eigen::Vector3d post = this->Placement_.ToPosts(p_S);
-  const PostLattice& lattice = this->Pyramid_->Lattice();
-  if (lattice.periodic) {
-    const auto turn = double(lattice.columns);
-    post.x() -= turn * std::floor(post.x() / turn);
-  }
-  return post;
-}
-
 // Unit, upward, of the facet at a place of the surface.
 Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
                                           const Eigen::Vector3d& p_S) const {
@@ -108,7 +98,7 @@ SurfaceSample StreamedTerrain::DoSample(const Eigen::Vector3d& p_S) const {
   if (this->OnBody() && p_S.isZero(0.0)) {
     return {}; // its centre lies under no place
   }
-  return this->SampleAt(this->ToPosts(p_S).head<2>(), p_S);
+  return this->SampleAt(this->Placement_.ToPosts(p_S).head<2>(), p_S);
 }
 
 SurfaceSample StreamedTerrain::DoSampleMap(const Eigen::Vector2d& map) const {
@@ -123,8 +113,9 @@ void StreamedTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
   std::vector<Eigen::Vector2d> posts(points_S.rows());
   for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
     const Eigen::Vector3d p_S = points_S.row(i);
-    posts[i] = this->OnBody() && p_S.isZero(0.0) ? Eigen::Vector2d(none, none)
-                                                 : Eigen::Vector2d(this->ToPosts(p_S).head<2>());
+    posts[i] = this->OnBody() && p_S.isZero(0.0)
+                   ? Eigen::Vector2d(none, none)
+                   : Eigen::Vector2d(this->Placement_.ToPosts(p_S).head<2>());
   }
   this->Surface_->At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
     heights[Eigen::Index(i)] = facet.valid ? facet.height : none;

@@ -96,8 +96,6 @@ private:
   void FindHeightRange();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
   Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;
-  // (c, r, height), c within the lattice where that is periodic.
-  Eigen::Vector3d ToPosts(const Eigen::Vector3d& p_S) const;
   bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
 
   std::shared_ptr<const ElevationSource> Source_;

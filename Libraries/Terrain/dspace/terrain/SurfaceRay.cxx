@@ -70,7 +70,6 @@ SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
   const double lastColumn = double(lattice.columns - (lattice.periodic ? 0 : 1));
   const auto lastRow = double(lattice.rows - 1);
   std::vector<double> cuts;
-  path.Breaks(cuts);
   path.ColumnCrossings(0.0, cuts);
   path.ColumnCrossings(lastColumn, cuts);
   path.RowCrossings(0.0, cuts);
