@@ -9,6 +9,7 @@
 
 #include <dspace/terrain/ElevationPyramid.h>
 #include <dspace/terrain/ElevationSource.h>
+#include <dspace/terrain/GroupPosts.h>
 #include <dspace/terrain/HeightGrid.h>
 #include <dspace/terrain/PostPlacement.h>
 #include <dspace/terrain/SceneFrame.h>
@@ -31,6 +32,8 @@ struct StreamedTerrainOptions {
   int cells = 124; // of a clipmap level that it will be drawn with: how far it is halved
   ElevationPyramidOptions pyramid;
   double deadline = 60.0; // [s] that a query waits for tiles
+  // Of higher resolution, later ones on top; see GroupPosts. Level 0 is as fine as the finest.
+  std::vector<TerrainPatch> patches;
 };
 
 // Posts stand at pixel centres; on a body they are divided until a chord departs from the sphere by
@@ -61,6 +64,8 @@ public:
   std::uint64_t GetVersion() const override { return this->Pyramid_->Arrivals(); }
   // How often cells between pixels are halved: 2^n posts of level 0 a pixel.
   int Subdivisions() const { return this->Subdivisions_; }
+  // What became of its patches; null without any.
+  const GroupReport* Group() const { return this->Group_ ? &this->Group_->Report() : nullptr; }
 
   // Root mean square [m] of the heights of the raster's pixels within `radius` [m] of each point
   // about the plane that fits them best (least squares, of heights above the vertical datum): the
@@ -94,11 +99,13 @@ private:
   void StandOnBody(const StreamedTerrainOptions& options);
   void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
   void FindHeightRange();
+  void TakePatches();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
   Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;
   bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
 
   std::shared_ptr<const ElevationSource> Source_;
+  std::shared_ptr<const GroupPosts> Group_;
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
   std::unique_ptr<SurfaceRay> Ray_;

@@ -64,6 +64,7 @@ StreamedTerrain::Open(const std::string& path, const StreamedTerrainOptions& opt
     terrain->StandOnPlane(options);
   }
   terrain->FindHeightRange();
+  terrain->TakePatches();
   return terrain;
 }
 
@@ -71,8 +72,11 @@ void StreamedTerrain::StandOnPlane(const StreamedTerrainOptions& options) {
   const ElevationInfo& info = this->Info();
   this->Frame_.emplace(info.crs, options.origin.value_or(MiddleOf(info)), options.originHeight);
   this->MakePyramid(options, false, false);
+  // PostToScene() takes posts to stand half a unit from the corner.
+  const Eigen::Affine2d postToMap =
+      info.pixelToMap * (this->PixelToPost_.inverse() * Eigen::Translation2d(-0.5, -0.5));
   this->Placement_ =
-      PostPlacement::OnPlane(this->Frame_->PostToScene(info.pixelToMap), options.originHeight);
+      PostPlacement::OnPlane(this->Frame_->PostToScene(postToMap), options.originHeight);
 }
 
 void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
@@ -93,6 +97,11 @@ void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
 void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool periodic,
                                   bool poles) {
   const ElevationInfo& info = this->Info();
+  std::optional<OpenPatches> patches;
+  if (!options.patches.empty()) {
+    patches.emplace(info, options.patches);
+    this->Subdivisions_ = std::max(this->Subdivisions_, patches->Subdivisions());
+  }
   RasterPostsOptions posts;
   posts.subdivisions = this->Subdivisions_;
   posts.periodic = periodic;
@@ -112,15 +121,22 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
                     " columns");
   }
   this->Poles_ = poles;
-  this->Pyramid_ = std::make_shared<ElevationPyramid>(raster, options.pyramid);
-  // With poles, level `subdivisions` has its rows between those of the pixels.
-  this->Surface_ = std::make_unique<PostSurface>(
-      this->Pyramid_, this->Subdivisions_ - (poles ? 1 : 0), poles, options.deadline);
-  this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_);
   const double parts = std::ldexp(1.0, this->Subdivisions_);
   this->PixelToPost_.linear() = parts * Eigen::Matrix2d::Identity();
   this->PixelToPost_.translation() << -0.5 * parts, poles ? 0.0 : -0.5 * parts;
   this->MapToPost_ = this->PixelToPost_ * info.pixelToMap.inverse();
+  std::shared_ptr<const PostSource> source = raster;
+  // With poles, level `subdivisions` has its rows between those of the pixels.
+  int level = this->Subdivisions_ - (poles ? 1 : 0);
+  if (patches) {
+    this->Group_ = std::make_shared<const GroupPosts>(raster, this->MapToPost_.inverse(), poles,
+                                                      std::move(*patches));
+    source = this->Group_;
+    level = 0; // patches have posts between those of the raster
+  }
+  this->Pyramid_ = std::make_shared<ElevationPyramid>(source, options.pyramid);
+  this->Surface_ = std::make_unique<PostSurface>(this->Pyramid_, level, poles, options.deadline);
+  this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_);
 }
 
 void StreamedTerrain::FindHeightRange() {
@@ -173,6 +189,24 @@ void StreamedTerrain::FindHeightRange() {
     throw Error(Error::Kind::InvalidArgument, this->GetName(),
                 "a height of " + std::to_string(this->HeightRange_[0]) +
                     " m lies below the body's centre");
+  }
+}
+
+// Their warnings and heights.
+void StreamedTerrain::TakePatches() {
+  if (!this->Group_) {
+    return;
+  }
+  for (const std::string& warning : this->Group_->Report().warnings) {
+    this->AddWarning(warning);
+  }
+  for (const PatchReport& patch : this->Group_->Report().patches) {
+    if (patch.used) {
+      const double more = patch.heightsAreExact ? 0.0 : 0.5 * (patch.heights[1] - patch.heights[0]);
+      this->HeightRange_ = {std::min(this->HeightRange_[0], patch.heights[0] - more),
+                            std::max(this->HeightRange_[1], patch.heights[1] + more)};
+      this->HeightRangeIsExact_ = this->HeightRangeIsExact_ && patch.heightsAreExact;
+    }
   }
 }
 

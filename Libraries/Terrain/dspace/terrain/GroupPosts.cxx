@@ -1,0 +1,105 @@
+#include <dspace/terrain/GroupPosts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "Patch.h"
+#include "PostFacets.h"
+
+namespace dspace {
+namespace {
+
+constexpr int MostSubdivisions = 24;
+constexpr int Spots = 16; // of the resampling error, and posts in each
+constexpr int SpotPosts = 16;
+constexpr int SpotSize = 32; // pixels a side
+
+} // namespace
+
+OpenPatches::OpenPatches(const ElevationInfo& base, const std::vector<TerrainPatch>& patches) {
+  for (const TerrainPatch& options : patches) {
+    const auto patch = std::make_shared<Patch>(base, options, this->Warnings_);
+    const double ratio = std::max(1.0, patch->Place().BasePixel());
+    const int needed = int(std::ceil(std::log2(ratio) - 1e-6));
+    if (needed > MostSubdivisions) {
+      this->Warnings_.push_back(patch->Object() + ": its pixels are " + std::to_string(ratio) +
+                                " times finer than those of the raster below; posts stand only 2^" +
+                                std::to_string(MostSubdivisions) + " times closer");
+    }
+    this->Subdivisions_ = std::max(this->Subdivisions_, std::min(needed, MostSubdivisions));
+    this->Patches_.push_back(patch);
+  }
+}
+
+OpenPatches::OpenPatches(OpenPatches&&) noexcept = default;
+OpenPatches::~OpenPatches() = default;
+
+GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base, const Eigen::Affine2d& postToMap,
+                       bool poles, OpenPatches patches)
+    : Base_(std::move(base)), Name_(Base_->GetName()) {
+  this->Report_.warnings = patches.Warnings_;
+  for (const std::shared_ptr<Patch>& opened : patches.Patches_) {
+    if (opened->Settle(this->GetLattice(), postToMap, poles, this->Report_.warnings)) {
+      this->Patches_.push_back(opened);
+      this->Measure(this->Patches_.size() - 1, opened->Report());
+    }
+    this->Report_.patches.push_back(opened->Report());
+  }
+}
+
+GroupPosts::~GroupPosts() = default;
+
+void GroupPosts::ReadUpTo(std::size_t count, const PostBlock& block, float* heights) const {
+  this->Base_->Read(block, heights);
+  for (std::size_t i = 0; i < count; ++i) {
+    this->Patches_[i]->Blend(block, heights);
+  }
+}
+
+void GroupPosts::Read(const PostBlock& block, float* heights) const {
+  this->ReadUpTo(this->Patches_.size(), block, heights);
+}
+
+// At posts of the patch near a number of places, so that few of its tiles are read.
+void GroupPosts::Measure(std::size_t index, PatchReport& report) const {
+  const Patch& patch = *this->Patches_[index];
+  const RasterWindow window = patch.Source().Info().window;
+  std::mt19937 random(1);
+  const auto below = [&](int n) { return int(random() % std::uint32_t(std::max(1, n))); };
+  double squares = 0.0;
+  for (int spot = 0; spot < Spots; ++spot) {
+    const RasterWindow part{below(window.width - SpotSize + 1), below(window.height - SpotSize + 1),
+                            std::min(SpotSize, window.width), std::min(SpotSize, window.height)};
+    const std::vector<double> own = patch.Source().Read(part);
+    for (int i = 0; i < SpotPosts; ++i) {
+      const int c = below(part.width);
+      const int r = below(part.height);
+      const double height = own[std::size_t(r) * part.width + c] + report.addedTo;
+      const Eigen::Vector2d pixel(part.column + c + 0.5, part.row + r + 0.5);
+      const Eigen::Vector2d post = patch.Place().PostOf(pixel);
+      if (std::isnan(height) || !post.allFinite() || patch.Weight().At(pixel, 0) < 1.0 - 1e-6) {
+        continue;
+      }
+      const Eigen::Vector2d cell = post.array().floor();
+      const PostBlock block{0, std::int64_t(cell.x()), std::int64_t(cell.y()), 2, 2};
+      std::array<float, 4> posts = {};
+      this->ReadUpTo(index + 1, block, posts.data());
+      const auto at = [&](std::int64_t k, std::int64_t j) -> double {
+        return posts[std::size_t(2 * (j - block.row) + k - block.column)];
+      };
+      const Eigen::Vector2d place = post - cell;
+      const HeightGrid::Facet facet =
+          FacetOfCell(at, block.column, block.row, place.y() > place.x(), place.x(), place.y());
+      if (facet.valid) {
+        const double error = facet.height - height;
+        squares += error * error;
+        report.greatestError = std::max(report.greatestError, std::abs(error));
+        ++report.posts;
+      }
+    }
+  }
+  report.rmsError = report.posts > 0 ? std::sqrt(squares / report.posts) : 0.0;
+}
+
+} // namespace dspace

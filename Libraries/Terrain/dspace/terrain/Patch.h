@@ -1,0 +1,50 @@
+// One patch of a terrain group: its source, place, posts and weight.
+#ifndef DSPACE_TERRAIN_PATCH_H
+#define DSPACE_TERRAIN_PATCH_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <dspace/terrain/GroupPosts.h>
+#include <dspace/terrain/RasterPosts.h>
+
+#include "PatchPlace.h"
+#include "PatchWeight.h"
+
+namespace dspace {
+
+class Patch {
+public:
+  // Throws what OpenPatches throws. Adds what is in doubt to `warnings`.
+  Patch(const ElevationInfo& base, const TerrainPatch& options, std::vector<std::string>& warnings);
+
+  const std::string& Object() const { return this->Object_; } // "patch 'name'"
+  const ElevationSource& Source() const { return *this->Source_; }
+  const PatchPlace& Place() const { return this->Place_; }
+  const PatchWeight& Weight() const { return *this->Weight_; }
+  PatchReport& Report() { return this->Report_; }
+
+  // Chooses the lattice, and reads the patch for its weights where it lies within. False, with a
+  // warning, where the patch adds nothing.
+  bool Settle(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
+              std::vector<std::string>& warnings);
+  // Over the heights of a block of that lattice.
+  void Blend(const PostBlock& block, float* heights) const;
+
+private:
+  class Heights;
+  int LevelFor(int level) const;
+
+  std::string Object_;
+  std::shared_ptr<const ElevationSource> Source_;
+  PatchPlace Place_;
+  PatchReport Report_;
+  std::unique_ptr<const RasterPosts> Posts_;
+  std::unique_ptr<const PatchWeight> Weight_;
+  double PostPixels_ = 1.0; // of the patch, between level-0 posts
+};
+
+} // namespace dspace
+
+#endif
