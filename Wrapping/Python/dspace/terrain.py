@@ -2,7 +2,7 @@
 import numpy as np
 
 from dspace import _wire
-from dspace._fields import (Named, array_of, flag, keywords, numbers, put, put_color, put_given,
+from dspace._fields import (Named, array_of, flag, items, keywords, numbers, put, put_color, put_given,
                             put_vector, refuse, shown, word)
 from dspace._strict import Strict
 from dspace.errors import InvalidArgument, WrongType
@@ -92,6 +92,18 @@ class Terrain(Strict):
         return {"levels": info.levels, "subdivisions": info.subdivisions, "bytes": info.tile_bytes,
                 "loads": info.tile_loads, "failures": info.tile_failures,
                 "last_failure": info.last_failure}
+
+    @property
+    def patches(self):
+        """Of a clipmap, a dict for each patch: name; used (else it adds nothing, as a warning said);
+        pixel_size and margin [m]; added [m] to its heights for its vertical datum; height_range [m];
+        rms_error and greatest_error [m] of the surface against the patch's own posts (what resampling
+        costs), measured at `posts` of them taken at random where nothing is blended."""
+        return [{"name": patch.name, "used": patch.used, "pixel_size": patch.pixel_size,
+                 "margin": patch.margin, "added": patch.added,
+                 "height_range": (patch.minimum_height, patch.maximum_height), "posts": patch.posts,
+                 "rms_error": patch.rms_error, "greatest_error": patch.greatest_error}
+                for patch in self._info().patch]
 
     def _label(self):
         return f"terrain {self._name!r}"
@@ -242,6 +254,22 @@ def _unpack(values, field, shape):
     return float(array) if shape == () else array
 
 
+def _put_patches(message, label, patches):
+    """The dicts of add_terrain's `patches` into its command."""
+    accepted = "a list of dicts of path and options"
+    for index, patch in enumerate(items(patches, "patches", label, accepted)):
+        what = f"patch {index}"
+        if not isinstance(patch, dict):
+            refuse(label, what, patch, "a dict of path and options", WrongType)
+        sent = message.patch.add()
+        known = [field.name for field in sent.DESCRIPTOR.fields]
+        keywords(patch, known, f"{label}, {what}")
+        if "path" not in patch:
+            refuse(label, what, patch, "a dict that has a path")
+        given = dict(patch, path=file_path(patch["path"], "the path", f"{label}, {what}"))
+        put_given(sent, f"{label}, {what}", **given)
+
+
 class TerrainMaking:
     """The part of Scene that opens terrain."""
 
@@ -249,7 +277,7 @@ class TerrainMaking:
                     origin=None, triangles=None, fragment=None, lit=True, image_crs=None,
                     image_extent=None, band=None, crs=None, vertical_datum=None,
                     vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
-                    on_body=False, level_size=None, byte_budget=None, deadline=None):
+                    on_body=False, level_size=None, byte_budget=None, deadline=None, patches=()):
         """A raster of heights (anything that GDAL opens) as a physical object.
 
         image: a file to drape over it, with image_crs and image_extent (left, top, right, bottom in
@@ -265,7 +293,11 @@ class TerrainMaking:
         byte_budget: of its tiles (256 MiB); deadline: seconds that images and queries wait for them
         (60).
         band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and
-        vertical_offset [m], pixel_size (map units): what the file does not say, or says wrongly."""
+        vertical_offset [m], pixel_size (map units): what the file does not say, or says wrongly.
+        patches: rasters of higher resolution on this one, each in its own CRS, later ones on top
+        (clipmaps only): dicts of path and, as above, name, band, crs, vertical_datum, vertical_scale,
+        vertical_offset, pixel_size; margin [m] is what each is blended over into what lies under it
+        (a tenth of its shorter side). Terrain.patches tells what became of them."""
         path = file_path(path, "the path", "terrain")
         label = f"terrain {shown(path if name is None else name)}"
         if sum(value is not None for value in (image, color, relief)) > 1:
@@ -304,6 +336,7 @@ class TerrainMaking:
                   vertical_datum=vertical_datum, vertical_scale=vertical_scale,
                   vertical_offset=vertical_offset, pixel_size=pixel_size,
                   level_size=level_size, byte_budget=byte_budget, deadline=deadline)
+        _put_patches(message, label, patches)
         return Terrain(self, self._execute(command).terrain.name)
 
     @property

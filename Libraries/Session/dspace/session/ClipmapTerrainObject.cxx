@@ -43,6 +43,20 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   reply.set_tile_loads(statistics.loads);
   reply.set_tile_failures(statistics.failures);
   reply.set_last_failure(statistics.lastFailure);
+  for (std::size_t i = 0; surface.Group() && i < surface.Group()->patches.size(); ++i) {
+    const PatchReport& from = surface.Group()->patches[i];
+    v1::PatchReply* patch = reply.add_patch();
+    patch->set_name(from.name);
+    patch->set_used(from.used);
+    patch->set_pixel_size(from.pixel);
+    patch->set_margin(from.margin);
+    patch->set_added(from.addedTo);
+    patch->set_minimum_height(from.heights[0]);
+    patch->set_maximum_height(from.heights[1]);
+    patch->set_posts(std::uint32_t(from.posts));
+    patch->set_rms_error(from.rmsError);
+    patch->set_greatest_error(from.greatestError);
+  }
 }
 
 bool ClipmapTerrainObject::Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) {

@@ -24,7 +24,8 @@ TerrainObject& FindTerrain(const Context& context, const std::string& name) {
 
 namespace {
 
-ElevationOptions ToElevation(const v1::OpenTerrain& command) {
+// Of a terrain or a patch.
+template<typename Message> ElevationOptions ToElevation(const Message& command) {
   ElevationOptions elevation;
   if (command.band() != 0) {
     elevation.band = int(std::min<std::uint32_t>(command.band(), 1u << 30));
@@ -45,6 +46,18 @@ ElevationOptions ToElevation(const v1::OpenTerrain& command) {
     elevation.pixelSize = command.pixel_size();
   }
   return elevation;
+}
+
+TerrainPatch ToPatch(v1::OpenTerrain::Patch& from) {
+  TerrainPatch patch;
+  from.set_path(AbsoluteRaster(from.path()));
+  patch.path = from.path();
+  patch.name = from.name();
+  patch.elevation = ToElevation(from);
+  if (from.has_margin()) {
+    patch.margin = from.margin();
+  }
+  return patch;
 }
 
 std::unique_ptr<TerrainObject> OpenMesh(const Context& context, const std::string& name,
@@ -91,6 +104,9 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
             command.deadline(), "more than 0 s, finite");
     options.deadline = command.deadline();
   }
+  for (v1::OpenTerrain::Patch& patch : *command.mutable_patch()) {
+    options.patches.push_back(ToPatch(patch));
+  }
   const auto surface = StreamedTerrain::Open(path, options);
   ClipmapOptions look = ClipmapLook(context, *surface, command);
   look.cells = options.cells;
@@ -124,10 +140,13 @@ v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
   if (command.on_body() && command.mode() == Command::TRIANGLES) {
     Refuse(label, "triangles stand on a plane; accepted on a body: a clipmap");
   }
+  if (command.patch_size() != 0 && command.mode() == Command::TRIANGLES) {
+    Refuse(label, "triangles are of one raster; accepted with patches: a clipmap");
+  }
   if (command.mode() != Command::AUTO) {
     return command.mode();
   }
-  if (command.on_body()) {
+  if (command.on_body() || command.patch_size() != 0) {
     return Command::CLIPMAP;
   }
   const RasterWindow window = ElevationSource(path, ToElevation(command)).Info().window;
