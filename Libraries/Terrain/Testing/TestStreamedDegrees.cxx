@@ -98,6 +98,50 @@ TEST(StreamedDegrees, FormsOfDegreeGridsAreOneGround) {
   EXPECT_LT(box.max().z(), 0.9 * globe.radius); // it ends at 60 degrees
 }
 
+// Its range of heights is a guess: rays must not trust it. From orbit to the ground, and nothing
+// above it on the way.
+TEST(StreamedDegrees, RaysFromOrbitMeetALargeRastersHighestPlace) {
+  const TemporaryFolder folder;
+  RasterFile file;
+  file.width = 2150;
+  file.height = 1900;
+  file.type = GDT_Float32;
+  file.crs = "+proj=longlat +R=3396190 +no_defs";
+  file.geotransform = std::array<double, 6>{120.0, 0.01, 0, 10.0, 0, -0.01};
+  file.value = [](int c, int r, int) {
+    return c == 1003 && r == 750 ? 50000.0 : 1500.0 * std::sin(0.02 * c) * std::cos(0.03 * r);
+  };
+  const auto terrain = StreamedTerrain::Open(file.Write(folder / "large.tif"), OnBody());
+  EXPECT_FALSE(terrain->HeightRangeIsExact());
+  EXPECT_LT(terrain->HeightRange()[1], 40000.0);
+  const Eigen::Vector3d needle = Direction(120.0 + 1003.5 * 0.01, 10.0 - 750.5 * 0.01);
+  const RayHit top = terrain->Intersect(1e7 * needle, -needle);
+  ASSERT_TRUE(top.hit);
+  EXPECT_NEAR(top.distance, 1e7 - 3396190.0 - 50000.0, 1e-2); // the place is a rounding aside
+  const RayHit side = terrain->Intersect(
+      3436190.0 * needle - 2e5 * needle.cross(Eigen::Vector3d::UnitZ()).normalized(),
+      needle.cross(Eigen::Vector3d::UnitZ()), 4e5);
+  EXPECT_TRUE(side.hit); // 40 km high
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int i = 0; i < 300; ++i) {
+    const auto place = [&] {
+      return Direction(121.0 + 19.0 * unit(random), 9.0 - 17.0 * unit(random));
+    };
+    const Eigen::Vector3d from = 3396190.0 * (1.001 + 2.0 * unit(random) * (i % 2)) * place();
+    const Eigen::Vector3d d = (3390000.0 * place() - from).normalized();
+    const RayHit hit = terrain->Intersect(from, d);
+    ASSERT_TRUE(hit.hit) << i;
+    const SurfaceSample ground = terrain->Sample(hit.position_S);
+    EXPECT_NEAR(ground.position_S.norm(), hit.position_S.norm(), 2e-6) << i;
+    for (double t = 0.01; t < 0.999; t += 0.01) {
+      const Eigen::Vector3d p = from + t * hit.distance * d;
+      const SurfaceSample below = terrain->Sample(p);
+      ASSERT_FALSE(below.valid && below.position_S.norm() > p.norm()) << i << " at " << t;
+    }
+  }
+}
+
 TEST(StreamedDegrees, WhatCannotStandOnABodyIsRefused) {
   const TemporaryFolder folder;
   Globe globe;

@@ -313,6 +313,10 @@ TEST(StreamedGlobe, NoSeamAtTheDateLineNorAtThePoles) {
       }
     }
     for (const double pole : {90.0, -90.0}) {
+      const SurfaceSample very = terrain->Sample({0.0, 0.0, pole});
+      EXPECT_NEAR(very.height, ByHand(globe, 77.0, pole), 1e-3);
+      EXPECT_NEAR(very.normal_S.norm(), 1.0, 1e-12);
+      EXPECT_LT(very.slope_deg, 10.0);
       walk([&](double s) { return Direction(33.0, pole + s * metre); }, 1.0);
       // Around it, a metre and a kilometre away.
       walk([&](double s) { return Direction(s * 0.18, pole - std::copysign(metre, pole)); }, 0.01);
@@ -320,6 +324,36 @@ TEST(StreamedGlobe, NoSeamAtTheDateLineNorAtThePoles) {
            3.2);
     }
   }
+}
+
+// Heights that alternate from pixel to pixel, wherever the circle lies: over a pole, and the edge.
+TEST(StreamedGlobe, RoughnessIsTakenAlongTheSphere) {
+  const TemporaryFolder folder;
+  Globe globe;
+  globe.height = [&](double lon, double lat) {
+    const auto column = std::lround((lon - globe.west_deg) / globe.Step() - 0.5);
+    const auto row = std::lround((90.0 - lat) / globe.Step() - 0.5);
+    return (column + row) % 2 == 0 ? 60.0 : 20.0;
+  };
+  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  Rows3 points(5, 3);
+  points.row(0) = Direction(10.0, 20.0);
+  points.row(1) = Direction(179.9, -30.0);
+  points.row(2) = Direction(50.0, 89.0);
+  points.row(3) = Direction(50.0, -90.0);
+  points.row(4) = Direction(-180.0, 60.0);
+  Eigen::VectorXd roughness(5);
+  terrain->Roughness(points, 16.0 * Degree * globe.radius, roughness);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_NEAR(roughness[i], 20.0, 0.3) << i; // 40 m from top to bottom
+  }
+  terrain->Roughness(points, 0.5 * Degree * globe.radius, roughness);
+  EXPECT_TRUE(std::isnan(roughness[0])); // no four pixels
+  // A slope is no roughness: 1000 m of height a radian of latitude.
+  globe.height = [](double, double lat) { return 1000.0 * lat * Degree; };
+  const auto slope = StreamedTerrain::Open(globe.File().Write(folder / "slope.tif"), OnBody());
+  slope->Roughness(points.topRows(1), 16.0 * Degree * globe.radius, roughness.head(1));
+  EXPECT_LT(roughness[0], 5.0); // 140 m without the plane
 }
 
 } // namespace
