@@ -141,7 +141,7 @@ def write_raster(path, z, pixel=1.0):
 
 def test_auto_chooses_by_size(scene, tmp_path):
     """Triangles up to four million pixels."""
-    large = write_raster(tmp_path / "large.tif", np.zeros((2000, 2001), np.float32))
+    large = write_raster(tmp_path / "large.tif", np.ones((2000, 2001), np.float32))
     assert scene.add_terrain(large).mode == "clipmap"
     assert scene.add_terrain(FIELD).mode == "triangles"
     terrain = scene.add_terrain(FIELD, mode="clipmap")

@@ -1,0 +1,92 @@
+"""`dspace terrain`: info, render."""
+import argparse
+import math
+
+from dspace.command_line import terrain_info, terrain_render
+
+
+def add_arguments(parser):
+    commands = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
+    info = commands.add_parser("info", help="what a raster is, its statistics, its pyramid, what would be drawn",
+                               description="What a raster is, its statistics, its pyramid, what would be drawn.")
+    add_raster(info)
+    info.add_argument("--json", action="store_true", help="as JSON: a list with an entry a file")
+    info.set_defaults(run=terrain_info.run)
+
+    render = commands.add_parser(
+        "render", help="a picture: a map, or a perspective view",
+        description="A picture of one raster or of several of one CRS, lit by a sun: from straight above "
+        "with the rasters' extent, or in perspective; on a plane, or on the body.")
+    add_raster(render)
+    render.add_argument("--out", required=True, metavar="PNG", help="the picture: .png, .jpg or .tif")
+    render.add_argument("--size", type=size, metavar="WxH", help="pixels (default: 1024 on the longer side)")
+    render.add_argument("--view", choices=("map", "perspective"), default="map")
+    render.add_argument("--on-body", action="store_true", help="stands on its body, else on a plane")
+    look = render.add_mutually_exclusive_group()
+    look.add_argument("--image", metavar="IMG", help="an image that lies on it")
+    look.add_argument("--color-by-height", action="store_true", help="false colour")
+    render.add_argument("--image-crs", metavar="CRS", help="of the image, where its file does not say")
+    render.add_argument("--image-extent", type=numbers(4, "LEFT,TOP,RIGHT,BOTTOM"), metavar="L,T,R,B",
+                        help="of the image in map coordinates, where its file does not say")
+    render.add_argument("--sun", type=sun, default=(315.0, 45.0), metavar="AZ,EL",
+                        help="degrees clockwise from north and above the horizon (default 315,45)")
+    render.add_argument("--eye", type=numbers(3, "LON,LAT,HEIGHT"), metavar="LON,LAT,HEIGHT",
+                        help="of a perspective view, height in metres above the vertical datum; without a "
+                        "CRS map x,y,height")
+    render.add_argument("--target", type=numbers(3, "LON,LAT,HEIGHT"), metavar="LON,LAT,HEIGHT")
+    render.add_argument("--fov", type=fov, default=35.0, metavar="DEG",
+                        help="vertical angle of a perspective view (default 35)")
+    render.set_defaults(run=terrain_render.run)
+
+
+def add_raster(parser):
+    """What files do not say, or say wrongly."""
+    parser.add_argument("files", nargs="+", metavar="FILE", help="any raster that GDAL opens")
+    parser.add_argument("--band", type=int)
+    parser.add_argument("--crs", help="of the raster: WKT, PROJ, AUTHORITY:CODE")
+    parser.add_argument("--vertical-datum", metavar="DATUM", help="ellipsoid, sphere:R, areoid, relative, ...")
+    parser.add_argument("--vertical-scale", type=float, metavar="S", help="metres a unit of height")
+    parser.add_argument("--vertical-offset", type=float, metavar="M", help="metres added to them")
+    parser.add_argument("--pixel-size", type=float, metavar="P", help="map units, without georeference")
+    parser.add_argument("--level-size", type=int, metavar="N",
+                        help="cells a side of a clipmap's levels (info 124, render 252)")
+    parser.add_argument("--byte-budget", type=int, metavar="BYTES", help="of tiles in memory (256 MiB)")
+    parser.add_argument("--deadline", type=float, metavar="S", help="seconds to wait for tiles (60)")
+
+
+# --- Values ----------------------------------------------------------------------------------------
+
+def size(text):
+    try:
+        width, height = (int(part) for part in text.lower().split("x"))
+    except ValueError:
+        width = height = 0
+    if not (1 <= width <= 16384 and 1 <= height <= 16384):
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: WIDTHxHEIGHT, each 1 to 16384")
+    return width, height
+
+
+def numbers(count, names):
+    def read(text):
+        try:
+            values = tuple(float(part) for part in text.split(","))
+        except ValueError:
+            values = ()
+        if len(values) != count or not all(map(math.isfinite, values)):
+            raise argparse.ArgumentTypeError(f"'{text}'; accepted: {names}, {count} finite numbers")
+        return values
+    return read
+
+
+def sun(text):
+    azimuth, elevation = numbers(2, "AZ,EL")(text)
+    if not -90 <= elevation <= 90:
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: an elevation of -90 to 90 degrees")
+    return azimuth, elevation
+
+
+def fov(text):
+    value = numbers(1, "DEG")(text)[0]
+    if not 0.001 <= value <= 170:
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: 0.001 to 170 degrees")
+    return value

@@ -1,0 +1,226 @@
+"""`dspace terrain info`."""
+import json
+import math
+import sys
+
+import numpy as np
+
+from dspace.command_line import Failed, tell
+from dspace.command_line.terrain_rasters import add, degrees, gdal_modules, lines
+
+MESH_PIXELS = 4_000_000  # what mode "auto" draws as triangles
+STATISTICS_PIXELS = 4_000_000  # more are not read for statistics
+TILE = 128
+
+
+def run(options):
+    import dspace
+    failed = 0
+    found = []
+    with dspace.Session() as session:
+        for number, path in enumerate(options.files):
+            try:
+                found.append(describe(session.scene(f"scene {number}"), path, options))
+            except (dspace.Error, Failed, RuntimeError) as error:  # RuntimeError: GDAL's
+                failed = tell(error if str(path) in str(error) else f"'{path}': {error}")
+                continue
+            if not options.json:
+                print(("\n" if len(found) > 1 else "") + as_text(found[-1]))
+    if options.json:
+        json.dump(found, sys.stdout, indent=2, ensure_ascii=False, allow_nan=False)
+        print()
+    return failed
+
+
+def describe(scene, path, options):
+    """Everything, as a dict of what JSON holds."""
+    import dspace
+    gdal, osr = gdal_modules()
+    terrain, warned = add(scene, path, options, name="plane")
+    info = terrain._info()
+    data = gdal.Open(str(path))
+    band = data.GetRasterBand(options.band or 1)
+    crs = degrees(osr, info.crs)
+    to_map = np.array(data.GetGeoTransform())
+    if not data.GetGeoTransform(can_return_null=True):
+        side = options.pixel_size or 1.0
+        to_map = np.array([0, side, 0, data.RasterYSize * side, 0, -side])
+    found = {
+        "path": str(path),
+        "driver": data.GetDriver().ShortName,
+        "columns": data.RasterXSize, "rows": data.RasterYSize,
+        "type": gdal.GetDataTypeName(band.DataType), "band": options.band or 1, "bands": data.RasterCount,
+        "crs": crs[0].GetName() if crs else None, "crs_wkt": info.crs or None,
+        "map_unit": map_unit(crs),
+        "pixel_width": info.pixel_width, "pixel_height": info.pixel_height,
+        "pixel_width_m": (terrain.extent[1] - terrain.extent[0]) / max(data.RasterXSize - 1, 1),
+        "vertical_datum": info.vertical_datum,
+        "unit": band.GetUnitType() or None,
+        "vertical_scale": info.vertical_scale, "vertical_offset_m": info.vertical_offset,
+        "no_data": number_or_none(band.GetNoDataValue()),
+        "overviews": [[level.XSize, level.YSize] for level in map(band.GetOverview, range(band.GetOverviewCount()))],
+        **bounds(osr, crs, to_map, data.RasterXSize, data.RasterYSize),
+        "statistics": statistics(data, band, info),
+        "plane": pyramid(info, options),
+        "body": on_body(dspace, scene, path, options),
+        "auto_mode": "triangles" if data.RasterXSize * data.RasterYSize <= MESH_PIXELS else "clipmap",
+        "warnings": warned,
+    }
+    return found
+
+
+def number_or_none(value):
+    return None if value is None or not math.isfinite(value) else value
+
+
+def map_unit(crs):
+    if not crs:
+        return "unit"
+    return "degree" if crs[0].IsGeographic() else crs[0].GetLinearUnitsName()
+
+
+# --- Where it is -----------------------------------------------------------------------------------
+
+def bounds(osr, crs, to_map, columns, rows):
+    """Of the outer edges of its pixels, on the map and in longitude and latitude."""
+    u, v = (np.linspace(0, n, 65) for n in (columns, rows))
+    edge = np.concatenate([np.column_stack((u, 0 * u)), np.column_stack((0 * v + columns, v)),
+                           np.column_stack((u[::-1], 0 * u + rows)), np.column_stack((0 * v, v[::-1]))])
+    x = to_map[0] + edge @ to_map[1:3]
+    y = to_map[3] + edge @ to_map[4:6]
+    found = {"map": {"x": [x.min(), x.max()], "y": [y.min(), y.max()]}, "longitude": None, "latitude": None}
+    if not crs:
+        return found
+    if crs[0].IsGeographic():
+        longitude, latitude = x, y
+    else:
+        try:
+            there = osr.CoordinateTransformation(*crs)
+            points = np.array(there.TransformPoints(np.column_stack((x, y)).tolist()))[:, :2]
+        except RuntimeError:  # beyond where the projection is defined
+            return found
+        if not np.isfinite(points).all():
+            return found
+        # An edge that crosses the date line goes on beyond 180 degrees.
+        longitude, latitude = np.degrees(np.unwrap(np.radians(points[:, 0]))), points[:, 1]
+        if abs(longitude[-1] - longitude[0]) > 180:  # around a pole
+            found["longitude"] = [-180.0, 180.0]
+            pole = 90.0 if latitude.mean() > 0 else -90.0
+            found["latitude"] = sorted([pole, latitude.min() if pole > 0 else latitude.max()])
+            return found
+    found["longitude"] = [longitude.min(), longitude.max()]
+    found["latitude"] = [max(latitude.min(), -90.0), min(latitude.max(), 90.0)]
+    return found
+
+
+# --- What it holds ---------------------------------------------------------------------------------
+
+def statistics(data, band, info):
+    """Heights in metres above the vertical datum."""
+    columns, rows = data.RasterXSize, data.RasterYSize
+    shrink = max(1, math.ceil(math.sqrt(columns * rows / STATISTICS_PIXELS)))
+    size = (math.ceil(columns / shrink), math.ceil(rows / shrink))
+    values = band.ReadAsArray(buf_xsize=size[0], buf_ysize=size[1]).astype(float)
+    seen = band.GetMaskBand().ReadAsArray(buf_xsize=size[0], buf_ysize=size[1]) != 0
+    seen &= np.isfinite(values)
+    heights = values[seen] * info.vertical_scale + info.vertical_offset
+    datum = info.vertical_datum.split(":")
+    if datum[0] == "radius" and len(datum) > 1:
+        heights = heights - float(datum[1])
+    holes = 1.0 - seen.mean()
+    found = {"of": "all pixels" if shrink == 1 else "a sample", "pixels": int(seen.size),
+             "every": shrink, "from_overviews": shrink > 1 and band.GetOverviewCount() > 0,
+             "minimum_m": None, "maximum_m": None, "mean_m": None, "holes": int(seen.size - seen.sum()),
+             "hole_fraction": float(holes)}
+    if len(heights):
+        found.update(minimum_m=float(heights.min()), maximum_m=float(heights.max()),
+                     mean_m=float(heights.mean()))
+    return found
+
+
+# --- How it is drawn -------------------------------------------------------------------------------
+
+def pyramid(info, options):
+    cells = options.level_size or 124
+    periodic = info.on_body and info.post_columns == info.columns << info.subdivisions
+    levels = []
+    for level in range(info.levels):
+        step = 1 << level
+        wide = (info.post_columns >> level if periodic else -(-(info.post_columns - 1) // step) + 1)
+        high = -(-(info.post_rows - 1) // step) + 1
+        levels.append({"posts": [wide, high], "spacing": info.pixel_width * step / (1 << info.subdivisions)})
+    return {"subdivisions": info.subdivisions, "closed": bool(periodic), "levels": levels,
+            "level_size": cells, "triangles_at_most": 2 * cells * cells + (info.levels - 1) * 3 * cells * cells // 2,
+            "bytes_of_all_tiles": 4 * info.columns * info.rows,
+            "byte_budget": options.byte_budget or 256 << 20}
+
+
+def on_body(dspace, scene, path, options):
+    """The same on its body, or why it cannot stand there."""
+    try:
+        terrain, _ = add(scene, path, options, name="body", on_body=True)
+    except dspace.Error as error:
+        return {"refused": str(error)}
+    return pyramid(terrain._info(), options)
+
+
+# --- As text ---------------------------------------------------------------------------------------
+
+def as_text(found):
+    statistic = found["statistics"]
+    heights = "no data at all" if statistic["mean_m"] is None else (
+        f"{statistic['minimum_m']:.6g} to {statistic['maximum_m']:.6g} m, mean {statistic['mean_m']:.6g} m")
+    if statistic["every"] == 1:
+        source = "of all pixels"
+    else:
+        how = "from its overviews" if statistic["from_overviews"] else "it has no overviews"
+        source = f"estimated from one value for {statistic['every']} x {statistic['every']} pixels ({how})"
+    place = [span(found["map"]["x"], "x") + ", " + span(found["map"]["y"], "y")]
+    if found["longitude"]:
+        place.append(span(found["longitude"], "longitude") + ", " + span(found["latitude"], "latitude"))
+    scale = f"metres = value * {found['vertical_scale']:.9g}"
+    if found["vertical_offset_m"]:
+        scale += f" + {found['vertical_offset_m']:.9g}"
+    if found["vertical_datum"].startswith("radius:"):
+        scale += " less the radius"
+    rows = [
+        ("raster", f"{found['driver']}, {found['columns']} x {found['rows']} pixels of {found['type']}, "
+                   f"band {found['band']} of {found['bands']}"),
+        ("CRS", found["crs"] or "none"),
+        ("pixel", f"{found['pixel_width']:.9g} x {found['pixel_height']:.9g} {found['map_unit']}s"
+                  + (f" ({found['pixel_width_m']:.6g} m wide in its middle)" if found["map_unit"] == "degree" else "")),
+        ("extent", place),
+        ("heights", f"{scale} (unit {'not stated' if found['unit'] is None else repr(found['unit'])}), "
+                    f"vertical datum {found['vertical_datum']}"),
+        ("no-data", "none stated" if found["no_data"] is None else f"{found['no_data']:.9g}"),
+        ("overviews", ", ".join(f"{w} x {h}" for w, h in found["overviews"]) or "none"),
+        ("statistics", [heights + "; " + (f"{statistic['holes']} holes ({100 * statistic['hole_fraction']:.3g} %)"
+                                          if statistic["holes"] else "no holes"), source]),
+        ("drawn", f"{found['auto_mode']}, unless the mode is chosen (triangles up to {MESH_PIXELS} pixels)"),
+        ("on a plane", pyramid_text(found["plane"], found["map_unit"])),
+        ("on its body", "no: " + found["body"]["refused"] if "refused" in found["body"]
+         else pyramid_text(found["body"], found["map_unit"])),
+        ("tiles", f"{TILE} x {TILE} posts of 4 bytes; all pixels {mebibytes(found['plane']['bytes_of_all_tiles'])}, "
+                  f"at most {mebibytes(found['plane']['byte_budget'])} of them in memory"),
+    ]
+    rows += [("warning", warning) for warning in found["warnings"]]
+    return lines(found["path"], rows)
+
+
+def span(pair, name):
+    return f"{name} {pair[0]:.9g} to {pair[1]:.9g}"
+
+
+def mebibytes(count):
+    return f"{count / 2**20:.3g} MiB"
+
+
+def pyramid_text(made, unit):
+    divided = (f", a pixel's side halved {made['subdivisions']} times" if made["subdivisions"] else "")
+    text = [f"a clipmap of {len(made['levels'])} levels of {made['level_size']} x {made['level_size']} cells"
+            f"{divided}{', closed around the body' if made['closed'] else ''}: at most "
+            f"{made['triangles_at_most']} triangles a view"]
+    for level, row in enumerate(made["levels"]):
+        text.append(f"level {level:>2}: {row['posts'][0]} x {row['posts'][1]} posts, one every "
+                    f"{row['spacing']:.6g} {unit}s")
+    return text

@@ -1,0 +1,113 @@
+"""Pictures from straight above, orthographic: of a plane with the raster's extent, of a body its disc.
+
+A clipmap shows fewer posts away from its camera. These pictures are made of small ones, each from a
+camera right above its middle, so low that it shows one level of posts everywhere, and so high that
+this level's posts are about as close as pixels. Cameras are parallel and share edges: the picture is
+one."""
+import math
+
+import numpy as np
+
+BESIDE = (1.0, 1.0, 1.0)
+SKY = (0.0, 0.0, 0.0)
+# Of levels of 252 cells, in posts: a level is drawn unmixed within 90 posts of the camera, and a
+# finer one is drawn as well below 60.
+REACH = 80
+ABOVE = 75
+
+
+def fitted_size(width, height, longer):
+    """Pixels of that shape."""
+    shrink = longer / max(width, height)
+    return max(1, round(width * shrink)), max(1, round(height * shrink))
+
+
+def level_of(ground, pixel):
+    """The level whose posts are about `pixel` metres apart, or closer."""
+    return min(max(0, math.floor(math.log2(pixel / ground.post))), ground.levels - 1)
+
+
+def tiles(size, side):
+    """(x, y, width, height) in pixels of squares that make up a picture."""
+    for y in range(0, size[1], side):
+        for x in range(0, size[0], side):
+            yield x, y, min(side, size[0] - x), min(side, size[1] - y)
+
+
+def draw_tiles(session, scene, ground, size, pixel, background, camera_at):
+    """camera_at(x, y, width, height, above): eye, the direction up in the picture, and the way down."""
+    level = level_of(ground, pixel)
+    reach, above = (posts * ground.post * 2**level for posts in (REACH, ABOVE))
+    side = max(16, min(1024, math.floor(2 * reach / pixel)))
+    picture = np.empty((size[1], size[0], 3), np.uint8)
+    view, triangles = None, 0
+    for x, y, width, height in tiles(size, side):
+        eye, up, down = camera_at(x, y, width, height, above)
+        scene.add_camera("above", eye=tuple(eye), target=tuple(eye + above * down), up=tuple(up),
+                         height=height * pixel, near=1e-3 * above, far=far_of(ground, above))
+        if view is None:
+            view = scene.add_viewport((width, height), "above", samples=2)
+            view.set_background(background)
+        elif view.size != (width, height):
+            view.size = (width, height)
+        picture[y:y + height, x:x + width] = view.image()
+        triangles += session.statistics["triangles_drawn"]
+    return picture, f"posts of level {level} every {ground.post * 2**level:.6g} m; {triangles} triangles"
+
+
+def far_of(ground, above):
+    relief = ground.heights[1] - ground.heights[0]
+    return 2 * above + 2 * relief + (2 * ground.radius if ground.on_body else 0.0)
+
+
+def draw_map(session, scene, ground, options, longer):
+    west, east, south, north = ground.extent
+    size = options.size or fitted_size(east - west, north - south, longer)
+    pixel = max((east - west) / size[0], (north - south) / size[1])
+    # What is beside the rasters in a picture of another shape is background.
+    left = 0.5 * (west + east) - 0.5 * size[0] * pixel
+    top = 0.5 * (south + north) + 0.5 * size[1] * pixel
+
+    def camera_at(x, y, width, height, above):
+        middle = np.array([left + (x + 0.5 * width) * pixel, top - (y + 0.5 * height) * pixel])
+        u, v = (middle[i] + np.linspace(-0.5, 0.5, 33) * n * pixel for i, n in ((0, width), (1, height)))
+        heights = np.stack([t.height(u[:, None], v[None, :]) for t in ground.terrains])
+        known = heights[np.isfinite(heights)]
+        # Just above what stands highest there, as far as 33 x 33 samples tell.
+        highest = min(known.max() + 0.3 * np.ptp(known), ground.heights[1]) if len(known) else ground.heights[1]
+        lowest = known.min() if len(known) else ground.heights[0]
+        z = max(highest + 0.01 * above, lowest + above)
+        return np.array([*middle, z]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, -1.0])
+
+    picture, told = draw_tiles(session, scene, ground, size, pixel, BESIDE, camera_at)
+    edges = ground.terrains[0].to_map(np.array([[left, top, 0.0], [left + size[0] * pixel,
+                                                                    top - size[1] * pixel, 0.0]]))
+    return picture, (f"map x {edges[0, 0]:.9g} to {edges[1, 0]:.9g}, y {edges[1, 1]:.9g} to {edges[0, 1]:.9g}; "
+                     f"a pixel is {pixel:.6g} m; {told}")
+
+
+def draw_disc(session, scene, ground, options, longer):
+    """The body, or the part that the rasters cover, from above their middle."""
+    middle = ground.place((*ground.middle, 0.0))
+    axes = ground.axes(middle)
+    points = ground.grid(65) @ axes.T
+    points = points[points[:, 2] > 0]
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    if ground.radius < np.abs(points[:, :2]).max() * 1.02:  # nearly half of it, or more
+        low, high = np.full(2, -1.02 * ground.radius), np.full(2, 1.02 * ground.radius)
+    size = options.size or fitted_size(*(high - low), longer)
+    pixel = max((high - low) / size)
+    left, top = 0.5 * (low + high) * (1, 1) + 0.5 * pixel * np.array(size) * (-1, 1)
+    outer = ground.radius + ground.heights[1]
+
+    def camera_at(x, y, width, height, above):
+        u = left + (x + 0.5 * width) * pixel
+        v = top - (y + 0.5 * height) * pixel
+        # The highest that the ground stands anywhere in this part, towards the camera.
+        near = np.hypot(*(max(abs(at) - 0.5 * n * pixel, 0.0) for at, n in ((u, width), (v, height))))
+        up = math.sqrt(max(outer**2 - near**2, 0.0)) + 0.2 * above
+        here = math.sqrt(max(ground.radius**2 - u**2 - v**2, 0.0)) + above
+        return np.array([u, v, max(up, here)]) @ axes, axes[1], -axes[2]
+
+    picture, told = draw_tiles(session, scene, ground, size, pixel, SKY, camera_at)
+    return picture, f"the body from above its middle; a pixel is {pixel:.6g} m; {told}"

@@ -1,0 +1,55 @@
+"""What several `dspace terrain` commands do with a raster."""
+import warnings
+
+from dspace.command_line import Failed
+
+RASTER = ("band", "crs", "vertical_datum", "vertical_scale", "vertical_offset", "pixel_size", "level_size",
+          "byte_budget", "deadline")
+
+
+def gdal_modules():
+    try:
+        from osgeo import gdal, osr
+    except ImportError:
+        raise Failed("GDAL's Python package is not installed (Debian: python3-gdal)") from None
+    gdal.UseExceptions()
+    osr.UseExceptions()
+    return gdal, osr
+
+
+def add(scene, path, options, **more):
+    """The terrain of a file as a clipmap, and what was warned of."""
+    given = {name: getattr(options, name) for name in RASTER if getattr(options, name) is not None}
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        terrain = scene.add_terrain(path, mode="clipmap", **{**given, **more})
+    return terrain, [str(warning.message) for warning in caught]
+
+
+def degrees(osr, wkt):
+    """From map x, y to longitude and latitude on the CRS's own body, and its CRS; None without a CRS."""
+    if not wkt:
+        return None
+    crs = osr.SpatialReference()
+    crs.ImportFromWkt(wkt)
+    crs = crs if not crs.IsCompound() else _horizontal(crs)
+    geographic = crs.CloneGeogCS()
+    for each in (crs, geographic):
+        each.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    return crs, geographic
+
+
+def _horizontal(crs):
+    crs = crs.Clone()
+    crs.StripVertical()
+    return crs
+
+
+def lines(title, rows):
+    """A table of labels and values as text."""
+    text = [title]
+    for label, value in rows:
+        value = value if isinstance(value, list) else [value]
+        text.append(f"  {label:<12}{value[0]}")
+        text.extend(f"  {'':<12}{line}" for line in value[1:])
+    return "\n".join(text)

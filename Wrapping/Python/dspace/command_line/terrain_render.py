@@ -1,0 +1,186 @@
+"""`dspace terrain render`."""
+import math
+import pathlib
+import sys
+
+import numpy as np
+
+from dspace.command_line import Failed
+from dspace.command_line.terrain_rasters import add, degrees, gdal_modules
+from dspace.command_line.terrain_map import draw_disc, draw_map
+
+LONGER_SIDE = 1024
+GROUND = (0.72, 0.69, 0.65)
+SKY = (0.0, 0.0, 0.0)
+
+
+def run(options):
+    import dspace
+    out = pathlib.Path(options.out)
+    if out.suffix.lower() not in (".png", ".jpg", ".jpeg", ".tif", ".tiff"):
+        raise Failed(f"'{out}': the picture's format is not known; accepted: .png, .jpg, .tif")
+    if not out.resolve().parent.is_dir():
+        raise Failed(f"'{out}': there is no folder {out.resolve().parent}")
+    if options.view == "map" and (options.eye or options.target):
+        raise Failed("--eye and --target are of perspective views; accepted: --view perspective with them")
+    options.level_size = options.level_size or 252
+    with dspace.Session() as session:
+        scene = session.scene()
+        ground = Ground(scene, options)
+        set_sun(scene, ground, options.sun)
+        if options.view == "perspective":
+            picture, told = draw_perspective(session, scene, ground, options)
+        else:
+            draw = draw_disc if options.on_body else draw_map
+            picture, told = draw(session, scene, ground, options, LONGER_SIDE)
+        save(out, picture)
+    print(f"{out}: {picture.shape[1]} x {picture.shape[0]} pixels, {told}")
+
+
+def save(path, picture):
+    gdal, _ = gdal_modules()
+    driver = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG"}.get(path.suffix.lower(), "GTiff")
+    height, width = picture.shape[:2]
+    memory = gdal.GetDriverByName("MEM").Create("", width, height, 3, gdal.GDT_Byte)
+    memory.WriteArray(np.ascontiguousarray(np.moveaxis(picture[..., :3], -1, 0)))
+    gdal.SetConfigOption("GDAL_PAM_ENABLED", "NO")  # nothing is written beside it
+    gdal.GetDriverByName(driver).CreateCopy(str(path), memory)
+
+
+class Ground:
+    """The terrains of a picture in one frame."""
+
+    def __init__(self, scene, options):
+        gdal, osr = gdal_modules()
+        look = {"color": GROUND}
+        if options.image:
+            look = {"image": options.image, "image_crs": options.image_crs,
+                    "image_extent": options.image_extent}
+        elif options.color_by_height:
+            look = {"relief": {"color_by_height": True}}
+        self.on_body = options.on_body
+        self.terrains, self.maps = [], []
+        for number, path in enumerate(options.files):
+            more = {}
+            if number and not self.on_body:
+                more["origin"] = tuple(self.terrains[0].to_map([[0.0, 0.0, 0.0]])[0])
+            terrain, warned = add(scene, path, options, name=f"terrain {number}", on_body=self.on_body,
+                                  **look, **more)
+            if self.terrains and terrain.crs != self.terrains[0].crs:
+                raise Failed(f"'{path}': its CRS differs from that of '{options.files[0]}'; accepted: rasters "
+                             "of one CRS")
+            for warning in warned:
+                print(f"dspace: note: {path}: {warning}", file=sys.stderr)
+            self.terrains.append(terrain)
+            self.maps.append(map_extent(gdal.Open(str(path)), options))
+        self.crs = degrees(osr, self.terrains[0].crs)
+        self.heights = (min(terrain.height_range[0] for terrain in self.terrains),
+                        max(terrain.height_range[1] for terrain in self.terrains))
+        info = self.terrains[0]._info()
+        self.levels = info.levels
+        if self.on_body:
+            self.radius = float(np.linalg.norm(self.place((*self.middle, 0.0))))
+            pixel = info.pixel_width * (math.radians(self.radius) if self.crs[0].IsGeographic() else 1.0)
+        else:
+            west, east, _, _ = self.terrains[0].extent
+            pixel = (east - west) / max(info.columns - 1, 1)
+        self.post = pixel / 2 ** info.subdivisions  # [m]
+
+    @property
+    def extent(self):
+        """(west, east, south, north) of all posts, in the frame of a plane."""
+        every = np.array([terrain.extent for terrain in self.terrains])
+        return every[:, 0].min(), every[:, 1].max(), every[:, 2].min(), every[:, 3].max()
+
+    @property
+    def middle(self):
+        """Map x and y."""
+        every = np.array(self.maps)
+        return (0.5 * (every[:, 0].min() + every[:, 1].max()), 0.5 * (every[:, 2].min() + every[:, 3].max()))
+
+    def place(self, point):
+        """Of map x, y and height, in the frame."""
+        return self.terrains[0].from_map(np.array([point], float))[0]
+
+    def place_of_degrees(self, point):
+        """Of longitude, latitude and height, in the frame; without a CRS of map x, y and height."""
+        if self.crs and not self.crs[0].IsGeographic():
+            _, osr = gdal_modules()
+            x, y, _ = osr.CoordinateTransformation(self.crs[1], self.crs[0]).TransformPoint(*point[:2])
+            point = (x, y, point[2])
+        place = self.place(point)
+        if not np.isfinite(place).all():
+            raise Failed(f"the place {point} is not on the map of '{self.terrains[0].name}'")
+        return place
+
+    def grid(self, count=25):
+        """Points of the ground all over it, in the frame, (n, 3)."""
+        points = []
+        for terrain, (x0, x1, y0, y1) in zip(self.terrains, self.maps):
+            x, y = (a.ravel() for a in np.meshgrid(np.linspace(x0, x1, count), np.linspace(y0, y1, count)))
+            heights = terrain.height(x, y, map=True)
+            heights = np.where(np.isfinite(heights), heights, self.heights[1])
+            points.append(terrain.from_map(np.column_stack((x, y, heights))))
+        return np.concatenate(points)
+
+    def axes(self, place):
+        """East, north and up at a place of the frame."""
+        if not self.on_body:
+            return np.eye(3)
+        up = place / np.linalg.norm(place)
+        east = np.cross((0.0, 0.0, 1.0), up)
+        if np.linalg.norm(east) < 1e-9:
+            east = np.array([0.0, 1.0, 0.0])
+        east /= np.linalg.norm(east)
+        return np.array([east, np.cross(up, east), up])
+
+
+def map_extent(data, options):
+    """Map x0, x1, y0, y1 of its outermost pixels' centres."""
+    side = options.pixel_size or 1.0
+    g = data.GetGeoTransform(can_return_null=True) or (0, side, 0, data.RasterYSize * side, 0, -side)
+    corners = np.array([(u, v) for u in (0.5, data.RasterXSize - 0.5) for v in (0.5, data.RasterYSize - 0.5)])
+    x, y = g[0] + corners @ g[1:3], g[3] + corners @ g[4:6]
+    return x.min(), x.max(), y.min(), y.max()
+
+
+def set_sun(scene, ground, sun):
+    """At the middle of the ground."""
+    azimuth, elevation = np.radians(sun)
+    toward = np.array([np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation),
+                       np.sin(elevation)]) @ ground.axes(ground.place((*ground.middle, 0.0)))
+    scene.lights["sun"].set(direction=tuple(-toward), intensity=1.3)
+    scene.lights["sky"].set(intensity=0.06)
+
+
+def draw_perspective(session, scene, ground, options):
+    """From the eye; by default from the south, so that all of it is seen."""
+    width, height = options.size or (LONGER_SIDE, LONGER_SIDE * 9 // 16)
+    points = ground.grid()
+    middle = ground.place((*ground.middle, 0.5 * sum(ground.heights)))
+    target = middle if options.target is None else ground.place_of_degrees(options.target)
+    east, north, up = ground.axes(middle)
+    if options.eye is None:
+        # Back along the line of sight until every point is within the picture.
+        slope = math.radians(90 if ground.on_body and np.ptp(points, axis=0).max() > ground.radius else 35)
+        back = -math.cos(slope) * north + math.sin(slope) * up
+        right, down = east, np.cross(-back, east)
+        tangent = math.tan(math.radians(options.fov) / 2)
+        across = np.maximum(np.abs((points - target) @ right) * height / width, np.abs((points - target) @ down))
+        eye = target + back * 1.03 * np.max((points - target) @ back + across / tangent)
+    else:
+        eye = ground.place_of_degrees(options.eye)
+    towards = (target - eye) / np.linalg.norm(target - eye)
+    above = ground.axes(eye)[2]
+    vertical = north if abs(above @ towards) > 0.9999 else above
+    if abs(vertical @ towards) > 0.9999:
+        raise Failed("the eye and the target are one place; accepted: two")
+    near = max(0.05, 1e-6 * float(np.linalg.norm(target - eye)))
+    scene.add_camera("eye", eye=tuple(eye), target=tuple(target), up=tuple(vertical), fov_deg=options.fov,
+                     near=near)
+    view = scene.add_viewport((width, height), "eye", samples=3 if width * height < 3_000_000 else 2)
+    view.set_background(SKY)
+    picture = view.image().copy()
+    place = ground.terrains[0].to_map(np.array([eye]))[0]
+    return picture, (f"seen from map {place[0]:.9g}, {place[1]:.9g}, height {place[2]:.6g} m; "
+                     f"{session.statistics['triangles_drawn']} triangles")
