@@ -157,6 +157,106 @@ TEST(DamagedRaster, WhatIsRemovedOrReplacedByNameIsReadAsItWas) {
   }
 }
 
+bool WarnsOfGaps(const ElevationSource& source) {
+  for (const std::string& warning : source.Info().warnings) {
+    if (warning.find("blocks of it are left out") != std::string::npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// As a program that ended while it wrote leaves them, too. GDAL gives zeros there.
+TEST(DamagedRaster, BlocksThatAreNotInTheFileAreHoles) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "sparse.tif";
+  CPLStringList options;
+  options.SetNameValue("SPARSE_OK", "TRUE");
+  options.SetNameValue("TILED", "YES");
+  options.SetNameValue("BLOCKXSIZE", "64");
+  options.SetNameValue("BLOCKYSIZE", "64");
+  GDALAllRegister();
+  auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  auto* dataset = driver->Create(path.c_str(), 300, 200, 1, GDT_Float32, options.List());
+  double place[] = {0, 1, 0, 0, 0, -1};
+  dataset->SetGeoTransform(place);
+  const auto written = [](int c, int r) { return (c / 64 + r / 64) % 3 != 1; };
+  for (int r = 0; r < 200; r += 64) {
+    for (int c = 0; c < 300; c += 64) {
+      if (written(c, r)) {
+        const int width = std::min(64, 300 - c);
+        const int height = std::min(64, 200 - r);
+        std::vector<float> block(std::size_t(width) * height, float(1000 + c + r));
+        EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, c, r, width, height, block.data(),
+                                                      width, height, GDT_Float32, 0, 0, nullptr),
+                  CE_None);
+      }
+    }
+  }
+  GDALClose(dataset);
+  const ElevationSource source(path);
+  EXPECT_TRUE(WarnsOfGaps(source));
+  for (const int factor : {1, 4}) {
+    const std::vector<double> heights = source.ReadReduced({0, 0, 300, 200}, factor);
+    const int columns = 1 + 299 / factor;
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      const int c = int(i) % columns * factor;
+      const int r = int(i) / columns * factor;
+      if (written(c, r)) {
+        ASSERT_EQ(heights[i], 1000 + c / 64 * 64 + r / 64 * 64);
+      } else {
+        ASSERT_TRUE(std::isnan(heights[i])) << c << ", " << r;
+      }
+    }
+  }
+  EXPECT_TRUE(std::isnan(source.Read({70, 3, 1, 1})[0]));
+  EXPECT_FALSE(WarnsOfGaps(ElevationSource(Write(folder / "whole.tif", "TILED"))));
+}
+
+TEST(DamagedRaster, GapsOfAMosaicAreHoles) {
+  const TemporaryFolder folder;
+  const std::string left = Write(folder / "left.tif", "TILED");
+  std::string vrt;
+  {
+    std::ifstream whole(WriteMosaic(folder / "gap.vrt", left, Write(folder / "right.tif", "NONE")));
+    vrt.assign(std::istreambuf_iterator<char>(whole), {});
+  }
+  // Its right half begins 77 columns further, and the raster ends there.
+  vrt.replace(vrt.find("xOff=\"400\""), 10, "xOff=\"477\"");
+  vrt.replace(vrt.find("rasterXSize=\"800\""), 17, "rasterXSize=\"877\"");
+  std::ofstream(folder / "gap.vrt") << vrt;
+  const ElevationSource source(folder / "gap.vrt");
+  const std::vector<double> heights = source.Read();
+  for (int i = 0; i < 877 * 400; ++i) {
+    const int c = i % 877;
+    if (c >= 400 && c < 477) {
+      ASSERT_TRUE(std::isnan(heights[i])) << c;
+    } else {
+      ASSERT_EQ(heights[i], float(Height(c < 400 ? c : c - 477, i / 877))) << c;
+    }
+  }
+}
+
+// Nothing is there to draw, and every query says so.
+TEST(DamagedRaster, AnEmptyRasterIsNaNAtEveryLevel) {
+  const TemporaryFolder folder;
+  RasterFile file;
+  file.width = 1000;
+  file.height = 700;
+  file.type = GDT_Int16;
+  file.noData = 0.0;
+  file.value = [](int, int, int) { return 0.0; };
+  const auto source = std::make_shared<ElevationSource>(file.Write(folder / "empty.tif"));
+  ElevationPyramid pyramid(std::make_shared<RasterPosts>(source));
+  for (int level = 0; level < pyramid.Lattice().levels; ++level) {
+    std::vector<float> heights(60 * 40, 0.0f);
+    pyramid.Read({level, 0, 0, 60, 40}, heights.data());
+    for (const float h : heights) {
+      ASSERT_TRUE(std::isnan(h)) << level;
+    }
+  }
+}
+
 // The pyramid gives an error to who waits and goes on drawing what it has.
 TEST(DamagedRaster, APyramidOfAFileThatShrinksKeepsWhatItHas) {
   const TemporaryFolder folder;

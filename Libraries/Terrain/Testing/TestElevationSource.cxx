@@ -236,6 +236,24 @@ TEST_F(Raster, RefusesAWrongPlace) {
   EXPECT_THROW(GridTerrain::Load(this->Folder / "a.tif", options), Error);
 }
 
+TEST_F(Raster, AnUnknownOrAnotherBodysCrsIsTold) {
+  RasterFile file = this->File();
+  const std::string moon = file.Write(this->Folder / "moon.tif");
+  ElevationOptions options;
+  options.crs = "+proj=eqc +lat_ts=10 +R=1737400 +type=crs"; // of the same body
+  EXPECT_FALSE(this->Warns(ElevationSource(moon, options), "of a body of radius"));
+  options.crs = "+proj=eqc +R=3396190 +type=crs";
+  const ElevationSource given(moon, options);
+  EXPECT_EQ(given.Info().crs.GetAxes().semiMajor, 3396190.0); // what is given by hand holds
+  EXPECT_TRUE(this->Warns(given, "of a body of radius 3396190"));
+  EXPECT_TRUE(this->Warns(given, "of one of 1737400"));
+  file.crs.clear();
+  const std::string unknown = file.Write(this->Folder / "unknown.tif");
+  EXPECT_TRUE(this->Warns(ElevationSource(unknown), "no CRS"));
+  EXPECT_FALSE(this->Warns(ElevationSource(unknown, options), "no CRS"));
+  EXPECT_FALSE(this->Warns(ElevationSource(unknown, options), "of a body of radius"));
+}
+
 TEST_F(Raster, RefusesHeightsThatNothingHas) {
   RasterFile file = this->File();
   const auto value = file.value;

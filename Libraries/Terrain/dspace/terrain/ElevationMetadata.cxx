@@ -41,6 +41,22 @@ Crs ReadCrs(GDALDataset& dataset, const ElevationOptions& options) {
   return srs ? Crs::FromOgr(*srs) : Crs();
 }
 
+// A CRS given by hand goes before the file's, which may be wrong or no CRS of a map at all.
+void WarnOfAnotherBody(const OGRSpatialReference* own, ElevationInfo& info) {
+  Crs stated;
+  try {
+    if (own)
+      stated = Crs::FromOgr(*own);
+  } catch (const Error&) {
+    return;
+  }
+  const double a = stated.GetAxes().semiMajor, b = info.crs.GetAxes().semiMajor;
+  if (a > 0.0 && b > 0.0 && std::abs(a - b) > 0.005 * a)
+    info.warnings.push_back("the CRS given, '" + info.crs.GetName() + "', is of a body of radius " +
+                            std::to_string(b) + " m; the file's own, '" + stated.GetName() +
+                            "', of one of " + std::to_string(a) + " m");
+}
+
 // Latitudes beyond the poles mean a wrong geotransform, and would be drawn at a wrong place.
 void CheckLatitudes(const ElevationInfo& info) {
   if (info.crs.GetKind() != Crs::Kind::Geographic)
@@ -86,6 +102,8 @@ void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, Ele
     Refuse(info, "pixel size " + std::to_string(*options.pixelSize) +
                      " given; accepted is a positive number");
   info.crs = ReadCrs(dataset, options);
+  if (options.crs)
+    WarnOfAnotherBody(dataset.GetSpatialRef(), info);
 
   double g[6] = {0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
   info.georeferenced = dataset.GetGeoTransform(g) == CE_None;

@@ -4,10 +4,7 @@
 #include <limits>
 #include <mutex>
 
-#include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <gdal_priv.h>
-#include <sys/stat.h>
 
 #include <dspace/Error.h>
 #include <dspace/terrain/ElevationCache.h>
@@ -15,103 +12,14 @@
 #include "ElevationMetadata.h"
 #include "GdalErrors.h"
 #include "NetworkScope.h"
+#include "OpenRaster.h"
 #include "OverviewFile.h"
 
 namespace dspace {
 
 namespace {
 
-struct CloseDataset {
-  void operator()(GDALDataset* dataset) const {
-    const GdalErrors quiet;
-    GDALClose(dataset);
-  }
-};
-using DatasetPointer = std::unique_ptr<GDALDataset, CloseDataset>;
-
-// Why a server's file did not open, from GDAL's messages.
-Error::Kind KindOfAnswer(const std::string& message) {
-  const auto has = [&](const char* words) { return message.find(words) != std::string::npos; };
-  if (has("timed out"))
-    return Error::Kind::DeadlineExceeded;
-  if (has("response code: 404") || has("response code: 410") || has("does not exist"))
-    return Error::Kind::NotFound;
-  if (has("CURL error") || has("response code") || has("response_code"))
-    return Error::Kind::Io;
-  return has("not recognized") ? Error::Kind::Unsupported : Error::Kind::Corrupt;
-}
-
-DatasetPointer Open(const std::string& path, const NetworkLimits& limits,
-                    std::vector<std::string>& warnings) {
-  const std::string object = "raster '" + path + "'";
-  RegisterGdal();
-  const NetworkScope scope(limits, path);
-  GdalErrors errors;
-  DatasetPointer dataset(GDALDataset::Open(
-      GdalPath(path).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
-  if (!dataset && IsRemote(path)) {
-    ForgetAnswers(path);
-    const std::string message = errors.Message("not recognised by GDAL");
-    throw Error(KindOfAnswer(message), object, message);
-  }
-  if (!dataset) {
-    VSIStatBufL stat;
-    const bool exists = VSIStatL(path.c_str(), &stat) == 0;
-    if (path.empty() || !exists)
-      throw Error(Error::Kind::NotFound, object, errors.Message("no such file"));
-    if (VSI_ISDIR(stat.st_mode))
-      throw Error(Error::Kind::Unsupported, object, "is a folder; a raster file is needed");
-    if (stat.st_size == 0)
-      throw Error(Error::Kind::Corrupt, object, "the file is empty");
-    VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
-    if (!file)
-      throw Error(Error::Kind::Io, object, errors.Message("cannot be read"));
-    VSIFCloseL(file);
-    const std::string message = errors.Message("not recognised by GDAL");
-    const bool type = message.find("not recognized") != std::string::npos;
-    throw Error(type ? Error::Kind::Unsupported : Error::Kind::Corrupt, object,
-                message + "; any raster that GDAL opens is accepted");
-  }
-  errors.DemoteFailures();
-  warnings.insert(warnings.end(), errors.Warnings().begin(), errors.Warnings().end());
-  return dataset;
-}
-
 const char* const Changed = "the file has changed since it was opened; open it anew";
-
-// A local file as it was when it was opened; empty for what is none.
-struct FileState {
-  bool local = false;
-  struct stat state = {};
-
-  static FileState Of(const std::string& path) {
-    FileState file;
-    file.local = ::stat(path.c_str(), &file.state) == 0 && S_ISREG(file.state.st_mode);
-    return file;
-  }
-  // What a changed file gives is partly of the one and partly of the other. One that was replaced
-  // or removed by name is still read whole.
-  bool ChangedInPlace(const std::string& path) const {
-    const FileState now = Of(path);
-    return this->local && now.local && now.state.st_ino == this->state.st_ino &&
-           now.state.st_dev == this->state.st_dev &&
-           (now.state.st_size != this->state.st_size ||
-            now.state.st_mtim.tv_sec != this->state.st_mtim.tv_sec ||
-            now.state.st_mtim.tv_nsec != this->state.st_mtim.tv_nsec);
-  }
-};
-
-bool IsMosaic(GDALDataset& dataset) {
-  return dataset.GetDriver() && std::string(dataset.GetDriver()->GetDescription()) == "VRT";
-}
-
-bool HasRemoteFile(GDALDataset& dataset) {
-  const CPLStringList files(dataset.GetFileList());
-  for (int i = 0; i < files.size(); ++i)
-    if (IsRemote(files[i]))
-      return true;
-  return false;
-}
 
 } // namespace
 
@@ -123,6 +31,7 @@ struct ElevationSource::Implementation {
   NetworkLimits network;
   bool remote = false;  // itself, or what it is a mosaic of
   bool suspect = false; // a read failed
+  bool gaps = false;    // there may be some, see GivesZerosForGaps
   FileState file;
   std::shared_ptr<const OverviewFile> overviews;
 
@@ -130,7 +39,7 @@ struct ElevationSource::Implementation {
   // and give zeros. With the mutex held.
   void OpenAnew(const std::string& path) {
     std::vector<std::string> warnings;
-    DatasetPointer fresh = Open(path, this->network, warnings);
+    DatasetPointer fresh = OpenRaster(path, this->network, warnings);
     if (fresh->GetRasterXSize() != this->dataset->GetRasterXSize() ||
         fresh->GetRasterYSize() != this->dataset->GetRasterYSize() ||
         fresh->GetRasterCount() < this->bandNumber ||
@@ -151,10 +60,10 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   CheckLimits(options.network, object);
   this->Impl_->network = options.network;
   this->Impl_->file = FileState::Of(path);
-  this->Impl_->dataset = Open(path, options.network, this->Info_.warnings);
+  this->Impl_->dataset = OpenRaster(path, options.network, this->Info_.warnings);
   const NetworkScope scope(options.network, path);
   GDALDataset& dataset = *this->Impl_->dataset;
-  this->Impl_->remote = IsRemote(path) || (IsMosaic(dataset) && HasRemoteFile(dataset));
+  this->Impl_->remote = IsRemote(path) || IsRemoteMosaic(dataset);
   GdalErrors errors;
   const int bands = dataset.GetRasterCount();
   if (bands == 0)
@@ -175,9 +84,19 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   if (band.GetColorTable())
     this->Info_.warnings.push_back("band " + std::to_string(options.band) +
                                    " has a colour table: its indices are taken as heights");
+  this->Impl_->gaps = GivesZerosForGaps(band);
   this->Info_.overviews = band.GetOverviewCount();
   ReadGeoreference(dataset, options, this->Info_);
   ReadVertical(band, options, this->Info_);
+  const RasterWindow& all = this->Info_.window;
+  // Of a mosaic each file would be opened, of a server's all offsets sent.
+  if (this->Impl_->gaps && !this->Impl_->remote && this->Info_.driver == "GTiff" &&
+      (band.GetDataCoverageStatus(all.column, all.row, all.width, all.height,
+                                  GDAL_DATA_COVERAGE_STATUS_EMPTY, nullptr) &
+       GDAL_DATA_COVERAGE_STATUS_EMPTY))
+    this->Info_.warnings.push_back(
+        "blocks of it are left out (a sparse or unfinished file): they are taken as no data; if "
+        "they stand for 0, fill them (gdal_translate does)");
   errors.Check(Error::Kind::Corrupt, object);
   if (!options.overviewCache.empty() && this->Info_.overviews == 0) {
     const std::string file = ElevationCache::FileFor(options.overviewCache, path, options.band);
@@ -300,21 +219,10 @@ std::string ElevationSource::Identity() const {
   const std::lock_guard<std::mutex> lock(impl.mutex);
   const NetworkScope scope(impl.network, this->Info_.path);
   const GdalErrors quiet;
-  const CPLStringList files(impl.dataset->GetFileList());
-  std::string text = "band " + std::to_string(impl.bandNumber) + " of " +
-                     std::to_string(impl.dataset->GetRasterXSize()) + " x " +
-                     std::to_string(impl.dataset->GetRasterYSize()) + " " + this->Info_.dataType;
-  for (int i = 0; i < files.size(); ++i) {
-    struct stat local = {};
-    VSIStatBufL stat;
-    text += "\n" + std::string(files[i]);
-    if (::stat(files[i], &local) == 0)
-      text += " " + std::to_string(local.st_size) + " " + std::to_string(local.st_mtim.tv_sec) +
-              "." + std::to_string(local.st_mtim.tv_nsec);
-    else if (VSIStatL(files[i], &stat) == 0)
-      text += " " + std::to_string(stat.st_size) + " " + std::to_string(stat.st_mtime);
-  }
-  return text;
+  return "band " + std::to_string(impl.bandNumber) + " of " +
+         std::to_string(impl.dataset->GetRasterXSize()) + " x " +
+         std::to_string(impl.dataset->GetRasterYSize()) + " " + this->Info_.dataType +
+         FilesOf(*impl.dataset);
 }
 
 // Pixels of the file, `columns` x `rows` of them or of an overview, into rows of `stride`.
@@ -340,6 +248,10 @@ void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, 
       band.GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width, part.height, mask,
                                    columns, rows, GDT_Byte, 1, line, nullptr) != CE_None ||
       errors.Failed();
+  if (!impl.suspect && impl.gaps) {
+    MaskGaps(band, part, columns, rows, stride, mask);
+    impl.suspect = errors.Failed();
+  }
   if (impl.file.ChangedInPlace(this->Info_.path))
     throw Error(Error::Kind::Io, object, Changed);
   if (!impl.suspect)
