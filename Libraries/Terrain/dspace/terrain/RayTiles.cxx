@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "PyramidTiles.h"
 
 namespace dspace {
 namespace {
@@ -30,7 +33,7 @@ std::shared_ptr<RayTile> ReadTile(ElevationPyramid& pyramid, const RayTiles::Key
         for (int j = 2 * r; j <= 2 * r + (k == 0 ? 2 : 1); ++j) {
           for (int i = 2 * c; i <= 2 * c + (k == 0 ? 2 : 1); ++i) {
             if (k > 0) {
-              Widen(range, tile->ranges[k - 1][std::size_t(j) * (2 * side) + i]);
+              Widen(range, tile->ranges[k - 1][std::size_t(j) * 2 * side + i]);
               continue;
             }
             const float h = tile->heights[std::size_t(j) * RayTile::Posts + i];
@@ -54,9 +57,43 @@ RayTile::Range RayTile::Of(int bits, std::int64_t c, std::int64_t r) const {
   return this->ranges[bits - 1][std::size_t(j) * side + i];
 }
 
+void RayTiles::DropChanged() {
+  const PyramidChanges changes = this->Pyramid_->Changes(this->Seen_);
+  this->Seen_ = changes.stamp;
+  const auto touched = [&](const Key& key) {
+    return std::any_of(changes.rectangles.begin(), changes.rectangles.end(),
+                       [&](const PostRectangle& base) {
+                         PostRectangle posts = PostsTouched(base, int(key[0]));
+                         ++posts.width; // tiles share the posts at their borders
+                         ++posts.height;
+                         --posts.column;
+                         --posts.row;
+                         return key[0] < base.levels &&
+                                !TouchedOfTile(this->Pyramid_->Lattice(), posts, key).Empty();
+                       });
+  };
+  if (changes.rectangles.empty()) {
+    return;
+  }
+  for (auto it = this->Tiles_.begin(); it != this->Tiles_.end();) {
+    if (touched(it->first)) {
+      this->Uses_.erase(it->second.use);
+      it = this->Tiles_.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  for (auto it = this->Ranges_.begin(); it != this->Ranges_.end();) {
+    it = touched(it->first) ? this->Ranges_.erase(it) : std::next(it);
+  }
+}
+
 std::shared_ptr<const RayTile> RayTiles::Get(const Key& key, double seconds) {
+  std::uint64_t seen = 0;
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
+    this->DropChanged();
+    seen = this->Seen_;
     const auto found = this->Tiles_.find(key);
     if (found != this->Tiles_.end()) {
       this->Uses_.splice(this->Uses_.begin(), this->Uses_, found->second.use);
@@ -65,6 +102,10 @@ std::shared_ptr<const RayTile> RayTiles::Get(const Key& key, double seconds) {
   }
   std::shared_ptr<const RayTile> tile = ReadTile(*this->Pyramid_, key, seconds);
   const std::lock_guard<std::mutex> lock(this->Mutex_);
+  this->DropChanged();
+  if (this->Seen_ != seen) {
+    return tile; // of a moment that has passed
+  }
   this->Ranges_[key] = tile->ranges.back().front();
   if (this->Tiles_.count(key) == 0) { // another thread may have been here
     this->Uses_.push_front(key);
@@ -80,6 +121,7 @@ std::shared_ptr<const RayTile> RayTiles::Get(const Key& key, double seconds) {
 RayTile::Range RayTiles::RangeOf(const Key& key, double seconds) {
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
+    this->DropChanged();
     const auto found = this->Ranges_.find(key);
     if (found != this->Ranges_.end()) {
       return found->second;

@@ -40,7 +40,8 @@ struct RayTile {
   Range Of(int bits, std::int64_t c, std::int64_t r) const;
 };
 
-// The latest ones; and of all that were ever read the whole tile's range.
+// The latest ones; and of all that were ever read the whole tile's range. What has
+// changed in the pyramid since is read again.
 class RayTiles {
 public:
   using Key = std::array<std::int64_t, 3>; // level, column and row of tiles
@@ -52,6 +53,7 @@ public:
   RayTile::Range RangeOf(const Key& key, double seconds);
 
 private:
+  void DropChanged(); // with the lock held
   struct Entry {
     std::shared_ptr<const RayTile> tile;
     std::list<Key>::iterator use;
@@ -61,6 +63,7 @@ private:
   std::map<Key, Entry> Tiles_;
   std::list<Key> Uses_; // latest first
   std::map<Key, RayTile::Range> Ranges_;
+  std::uint64_t Seen_ = 0; // change of the pyramid
 };
 
 } // namespace dspace

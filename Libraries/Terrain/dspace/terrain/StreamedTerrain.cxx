@@ -75,7 +75,7 @@ Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
 // is found on.
 SurfaceSample StreamedTerrain::SampleAt(const Eigen::Vector2d& post,
                                         const Eigen::Vector3d& vertical_S) const {
-  const HeightGrid::Facet facet = this->Surface_->At(post);
+  const HeightGrid::Facet facet = this->Surface().At(post);
   SurfaceSample sample;
   if (!facet.valid) {
     return sample;
@@ -117,7 +117,7 @@ void StreamedTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
                    ? Eigen::Vector2d(none, none)
                    : Eigen::Vector2d(this->Placement_.ToPosts(p_S).head<2>());
   }
-  this->Surface_->At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
+  this->Surface().At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
     heights[Eigen::Index(i)] = facet.valid ? facet.height : none;
   });
 }
@@ -128,7 +128,7 @@ void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,
   for (Eigen::Index i = 0; i < map.rows(); ++i) {
     posts[i] = this->MapToPost(map.row(i));
   }
-  this->Surface_->At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
+  this->Surface().At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
     heights[Eigen::Index(i)] =
         facet.valid ? facet.height : std::numeric_limits<double>::quiet_NaN();
   });
@@ -138,9 +138,9 @@ RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen
                                     double maximumDistance) const {
   const double most = 1e9; // [m] that heights are within
   const RayPath path(this->Placement_, this->Pyramid_->Lattice(), origin_S, unit_S, maximumDistance,
-                     this->HeightRangeIsExact_ ? this->HeightRange_[0] : -most,
-                     this->HeightRangeIsExact_ ? this->HeightRange_[1] : most);
-  const SurfaceRay::Hit found = this->Ray_->Intersect(path);
+                     this->HeightRangeIsExact_ ? this->DrawnHeights()[0] : -most,
+                     this->HeightRangeIsExact_ ? this->DrawnHeights()[1] : most);
+  const SurfaceRay::Hit found = this->Ray().Intersect(path);
   RayHit hit;
   if (!found.hit || found.distance > maximumDistance) {
     return hit;

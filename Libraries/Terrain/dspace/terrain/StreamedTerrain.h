@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -14,11 +15,13 @@
 #include <dspace/terrain/PostPlacement.h>
 #include <dspace/terrain/SceneFrame.h>
 #include <dspace/terrain/TerrainSurface.h>
+#include <dspace/terrain/WheelTracks.h>
 
 namespace dspace {
 
 class PostSurface;
 class SurfaceRay;
+class TrackPosts;
 
 struct StreamedTerrainOptions {
   ElevationOptions elevation;
@@ -29,7 +32,11 @@ struct StreamedTerrainOptions {
   // height 0 the sphere of the CRS's semi-major axis. A degree grid on a sphere is needed. One that
   // goes once around is closed across its edge, and where it reaches the poles over them.
   bool onBody = false;
-  int cells = 124; // of a clipmap level that it will be drawn with: how far it is halved
+  // On a plane each cell between pixels is halved so often: wheel tracks need posts some
+  // centimetres apart. 0 to 12; on a body it follows from its size.
+  int subdivisions = 0;
+  WheelTracksOptions tracks; // on a plane
+  int cells = 124;           // of a clipmap level that it will be drawn with: how far it is halved
   ElevationPyramidOptions pyramid;
   double deadline = 60.0; // [s] that a query waits for tiles
   // Of higher resolution, later ones on top; see GroupPosts. Level 0 is as fine as the finest.
@@ -67,6 +74,16 @@ public:
   // What became of its patches; null without any.
   const GroupReport* Group() const { return this->Group_ ? &this->Group_->Report() : nullptr; }
 
+  // Wheels leave ruts, in what is drawn and in all that is answered from then on. Places are of the
+  // scene's frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
+  void AddTracks(const std::vector<TrackAddition>& additions) const;
+  void ClearTracks() const;
+  const WheelTracks& Tracks() const; // throws Error(Unsupported) on a body
+  // The same ground as it was before all wheels; lives as long as this.
+  const StreamedTerrain& Undisturbed() const;
+  // HeightRange() and as far as ruts and rims reach beyond it.
+  std::array<double, 2> DrawnHeights() const;
+
   // Root mean square [m] of the heights of the raster's pixels within `radius` [m] of each point
   // about the plane that fits them best (least squares, of heights above the vertical datum): the
   // "RMS height" of Shepard et al., J. Geophys. Res. 106 (E12), 32777, 2001, detrended by a plane,
@@ -98,6 +115,12 @@ private:
   void StandOnPlane(const StreamedTerrainOptions& options);
   void StandOnBody(const StreamedTerrainOptions& options);
   void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
+  Eigen::Affine2d PlanePosts() const; // level-0 posts to the scene
+  std::shared_ptr<const PostSource> WithTracks(std::shared_ptr<const PostSource> source,
+                                               const StreamedTerrainOptions& options);
+  bool Tracked() const { return this->Tracks_ && !this->Tracks_->Empty(); }
+  const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
+  const SurfaceRay& Ray() const { return this->Tracked() ? *this->TrackedRay_ : *this->Ray_; }
   void FindHeightRange();
   void TakePatches();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
@@ -109,6 +132,13 @@ private:
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
   std::unique_ptr<SurfaceRay> Ray_;
+  std::shared_ptr<WheelTracks> Tracks_; // on a plane; and what follows
+  std::shared_ptr<const TrackPosts> TrackPosts_;
+  std::shared_ptr<const PostSource> Bare_;
+  std::unique_ptr<PostSurface> Tracked_; // of level 0: ruts are between the raster's posts
+  std::unique_ptr<SurfaceRay> TrackedRay_;
+  mutable std::mutex Mutex_; // of what follows
+  mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
   PostPlacement Placement_;
   std::optional<SceneFrame> Frame_;
   Eigen::Affine2d PixelToPost_ = Eigen::Affine2d::Identity();

@@ -46,6 +46,11 @@ StreamedTerrain::Open(const std::string& path, const StreamedTerrainOptions& opt
                 "deadline " + std::to_string(options.deadline) +
                     " s given; accepted is a positive number");
   }
+  if (options.subdivisions < 0 || options.subdivisions > (options.onBody ? 0 : 12)) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                std::to_string(options.subdivisions) + " subdivisions are refused; accepted is " +
+                    (options.onBody ? "0: on a body they follow from its size" : "0 to 12"));
+  }
   ClipmapGeometry geometry(options.cells); // refuses what is out of range
   auto source = std::make_shared<const ElevationSource>(path, options.elevation);
   if (options.onBody && DegreeGridOf(source->Info()).repeats) {
@@ -71,12 +76,9 @@ StreamedTerrain::Open(const std::string& path, const StreamedTerrainOptions& opt
 void StreamedTerrain::StandOnPlane(const StreamedTerrainOptions& options) {
   const ElevationInfo& info = this->Info();
   this->Frame_.emplace(info.crs, options.origin.value_or(MiddleOf(info)), options.originHeight);
+  this->Subdivisions_ = options.subdivisions;
   this->MakePyramid(options, false, false);
-  // PostToScene() takes posts to stand half a unit from the corner.
-  const Eigen::Affine2d postToMap =
-      info.pixelToMap * (this->PixelToPost_.inverse() * Eigen::Translation2d(-0.5, -0.5));
-  this->Placement_ =
-      PostPlacement::OnPlane(this->Frame_->PostToScene(postToMap), options.originHeight);
+  this->Placement_ = PostPlacement::OnPlane(this->PlanePosts(), options.originHeight);
 }
 
 void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
@@ -134,9 +136,16 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
     source = this->Group_;
     level = 0; // patches have posts between those of the raster
   }
+  if (this->Frame_) {
+    source = this->WithTracks(source, options);
+  }
   this->Pyramid_ = std::make_shared<ElevationPyramid>(source, options.pyramid);
   this->Surface_ = std::make_unique<PostSurface>(this->Pyramid_, level, poles, options.deadline);
   this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_);
+  if (this->Tracks_) {
+    this->Tracked_ = std::make_unique<PostSurface>(this->Pyramid_, 0, poles, options.deadline);
+    this->TrackedRay_ = std::make_unique<SurfaceRay>(*this->Tracked_);
+  }
 }
 
 void StreamedTerrain::FindHeightRange() {

@@ -26,13 +26,12 @@ void WheelTracks::Check(const TrackAddition& addition) const {
     }
   };
   const TrackProfile& p = addition.profile;
-  const double deep = TrackProfile::DeepestSinkage;
   const auto within = [](double v, double most) { return v >= 0.0 && v <= most; };
   require(p.width > 0.0 && p.width <= 10.0, "its width", p.width, "more than 0, at most 10 m");
   require(within(p.wall, 2.0), "the width of its walls", p.wall, "0 to 2 m");
   require(within(p.rimWidth, 2.0), "the width of its rims", p.rimWidth, "0 to 2 m");
-  require(within(p.rimHeight, deep), "the height of its rims", p.rimHeight, "0 to 2 m");
-  require(within(p.treadDepth, deep), "its tread's depth", p.treadDepth, "0 to 2 m");
+  require(within(p.rimHeight, p.MostRim), "the height of its rims", p.rimHeight, "0 to 0.5 m");
+  require(within(p.treadDepth, p.MostTread), "its tread's depth", p.treadDepth, "0 to 0.25 m");
   require(p.treadPitch == 0.0 || (p.treadPitch >= 1e-3 && p.treadPitch <= 100.0),
           "its tread's pitch", p.treadPitch, "0 (none) or 0.001 to 100 m");
   for (const TrackContact& c : addition.contacts) {
@@ -40,7 +39,7 @@ void WheelTracks::Check(const TrackAddition& addition) const {
       require(std::abs(value) <= Farthest, "a coordinate of a contact", value,
               "finite numbers up to 1e9 m");
     }
-    require(within(c.sinkage, deep), "the sinkage of a contact", c.sinkage, "0 to 2 m");
+    require(within(c.sinkage, p.MostSinkage), "the sinkage of a contact", c.sinkage, "0 to 1 m");
     require(!std::isinf(c.heading), "the heading of a contact", c.heading, "a finite number");
     require(std::isnan(c.rolled) || std::abs(c.rolled) <= Farthest, "the distance rolled", c.rolled,
             "finite numbers up to 1e9 m");

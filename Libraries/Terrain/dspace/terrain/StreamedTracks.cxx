@@ -1,0 +1,86 @@
+// Wheel tracks on a StreamedTerrain, and the ground as it was before them.
+#include <dspace/terrain/StreamedTerrain.h>
+
+#include <utility>
+
+#include <dspace/Error.h>
+#include <dspace/terrain/TrackPosts.h>
+
+#include "PostSurface.h"
+#include "SurfaceRay.h"
+
+namespace dspace {
+
+Eigen::Affine2d StreamedTerrain::PlanePosts() const {
+  // PostToScene() takes posts to stand half a unit from the corner.
+  const Eigen::Affine2d postToMap =
+      this->Info().pixelToMap * (this->PixelToPost_.inverse() * Eigen::Translation2d(-0.5, -0.5));
+  return this->Frame_->PostToScene(postToMap);
+}
+
+std::shared_ptr<const PostSource>
+StreamedTerrain::WithTracks(std::shared_ptr<const PostSource> source,
+                            const StreamedTerrainOptions& options) {
+  this->Bare_ = std::move(source);
+  this->Tracks_ = std::make_shared<WheelTracks>(this->GetName(), options.tracks);
+  this->TrackPosts_ =
+      std::make_shared<const TrackPosts>(this->Bare_, this->Tracks_, this->PlanePosts());
+  return this->TrackPosts_;
+}
+
+const WheelTracks& StreamedTerrain::Tracks() const {
+  if (!this->Tracks_) {
+    throw Error(Error::Kind::Unsupported, this->GetName(),
+                "it stands on a body; wheel tracks are accepted on a plane");
+  }
+  return *this->Tracks_;
+}
+
+void StreamedTerrain::AddTracks(const std::vector<TrackAddition>& additions) const {
+  this->Tracks();
+  this->Pyramid_->Invalidate(this->TrackPosts_->RectanglesOf(this->Tracks_->Add(additions)));
+}
+
+void StreamedTerrain::ClearTracks() const {
+  this->Tracks();
+  this->Pyramid_->Invalidate(this->TrackPosts_->RectanglesOf(this->Tracks_->Clear()));
+}
+
+std::array<double, 2> StreamedTerrain::DrawnHeights() const {
+  if (!this->Tracks_) {
+    return this->HeightRange_;
+  }
+  return {this->HeightRange_[0] - TrackProfile::MostSinkage - TrackProfile::MostTread,
+          this->HeightRange_[1] + TrackProfile::MostRim};
+}
+
+const StreamedTerrain& StreamedTerrain::Undisturbed() const {
+  if (!this->Tracks_) {
+    return *this;
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  if (!this->Undisturbed_) {
+    ElevationPyramidOptions options;
+    options.byteBudget = std::size_t(16) << 20;
+    std::unique_ptr<StreamedTerrain> bare(
+        new StreamedTerrain(this->GetName(), this->Source_, this->GetWarnings()));
+    bare->Group_ = this->Group_;
+    bare->Pyramid_ = std::make_shared<ElevationPyramid>(this->Bare_, options);
+    bare->Surface_ = std::make_unique<PostSurface>(bare->Pyramid_, this->Surface_->Level(),
+                                                   this->Poles_, this->Deadline_);
+    bare->Ray_ = std::make_unique<SurfaceRay>(*bare->Surface_);
+    bare->Placement_ = this->Placement_;
+    bare->Frame_ = this->Frame_;
+    bare->PixelToPost_ = this->PixelToPost_;
+    bare->MapToPost_ = this->MapToPost_;
+    bare->Poles_ = this->Poles_;
+    bare->Subdivisions_ = this->Subdivisions_;
+    bare->Deadline_ = this->Deadline_;
+    bare->HeightRange_ = this->HeightRange_;
+    bare->HeightRangeIsExact_ = this->HeightRangeIsExact_;
+    this->Undisturbed_ = std::move(bare);
+  }
+  return *this->Undisturbed_;
+}
+
+} // namespace dspace
