@@ -146,7 +146,7 @@ TEST(StreamedDegrees, WhatCannotStandOnABodyIsRefused) {
   const TemporaryFolder folder;
   Globe globe;
   globe.height = Bulges;
-  const auto kindOf = [&](RasterFile file, const std::string& says) {
+  const auto kindOf = [&](const RasterFile& file, const std::string& says) {
     try {
       StreamedTerrain::Open(file.Write(folder / "refused.tif"), OnBody());
     } catch (const Error& error) {
@@ -199,10 +199,11 @@ void ExpectPixels(const StreamedTerrain& terrain, const std::string& path, doubl
   const double noData = dataset->GetRasterBand(1)->GetNoDataValue(&none);
   GDALClose(dataset);
   Rows3 points(Eigen::Index(values.size()), 3);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double lon = west_deg + (double(i % width) + 0.5) * 360.0 / width;
-    points.row(Eigen::Index(i)) =
-        2e6 * Direction(lon, 90.0 - (double(i / width) + 0.5) * 180.0 / height);
+  for (int r = 0; r < height; ++r) {
+    for (int c = 0; c < width; ++c) {
+      points.row(Eigen::Index(r) * width + c) =
+          2e6 * Direction(west_deg + (c + 0.5) * 360.0 / width, 90.0 - (r + 0.5) * 180.0 / height);
+    }
   }
   Eigen::VectorXd heights(points.rows());
   terrain.Heights(points, heights);
@@ -266,9 +267,10 @@ TEST(StreamedDegrees, WholeMoonIsLola) {
       const double lon = (c + 0.5) * 0.75;
       const double lat = 90.0 - (r + 0.5) * 0.75;
       double mean = 0.0;
-      for (int k = 0; k < 9; ++k) {
-        mean += fine->Sample(Direction(lon + 0.25 * (k % 3 - 1), lat + 0.25 * (k / 3 - 1))).height /
-                9.0;
+      for (const double east : {-0.25, 0.0, 0.25}) {
+        for (const double north : {-0.25, 0.0, 0.25}) {
+          mean += fine->Sample(Direction(lon + east, lat + north)).height / 9.0;
+        }
       }
       const double h = coarse->Sample(Direction(lon, lat)).height;
       if (!std::isnan(h)) {
