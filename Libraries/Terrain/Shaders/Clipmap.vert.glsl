@@ -29,6 +29,17 @@ uniform float cameraLatitudeAngle;
 uniform float radius; // [m]
 uniform vec3 eastVC; // of the place below the camera
 uniform vec3 northVC;
+#elif defined(DSPACE_POLE)
+// In the pole's stereographic plane, in twice the radius: the camera; the window's first post less
+// the camera, and a post's step.
+uniform vec2 cameraPlane;
+uniform vec2 originPlane;
+uniform vec2 stepPlane;
+uniform float planeBase; // a level-0 post
+uniform float radius; // [m]
+uniform vec3 poleXVC; // axes: Z out of the pole
+uniform vec3 poleYVC;
+uniform vec3 poleZVC;
 #else
 uniform vec3 originVC; // first post, at the camera's height
 uniform vec3 columnVC; // a post
@@ -66,8 +77,12 @@ out vec2 tcoord;
 out float hole;
 #endif
 #ifdef DSPACE_MIXED
+#ifdef DSPACE_POLE
+out vec3 poleDirection;
+#else
 uniform vec2 originGrid; // of the first post, from a line near the camera on; 1 from line to line
 uniform mat2 postGrid;
+#endif
 out vec4 styleAt;
 flat out int levelShown;
 #endif
@@ -126,6 +141,26 @@ void main()
   vec3 normal = n.x * eastVC + n.y * northVC + n.z * upVC;
   float cosSlope = dot(n, direction + vec3(0.0, 0.0, 1.0)) / length(n);
 #endif
+#elif defined(DSPACE_POLE)
+  // The difference of two inverse projections without their difference.
+  vec2 d = originPlane + place * stepPlane;
+  vec2 u = cameraPlane + d;
+  float here1 = 1.0 + dot(cameraPlane, cameraPlane);
+  float more = 2.0 * dot(cameraPlane, d) + dot(d, d);
+  float there1 = here1 + more;
+  vec3 apart = vec3(2.0 * (d * here1 - cameraPlane * more), -2.0 * more) / (here1 * there1);
+  float distance = radius + here.x;
+  vec3 placedVC = distance * (apart.x * poleXVC + apart.y * poleYVC + apart.z * poleZVC) +
+    above * upVC;
+#ifdef DSPACE_NORMAL
+  vec3 vertical = vec3(2.0 * u, 1.0 - dot(u, u)) / there1;
+  vec3 alongX = vec3(1.0 - 2.0 * u.x * u.x / there1, -2.0 * u.x * u.y / there1, -2.0 * u.x / there1);
+  vec3 alongY = vec3(-2.0 * u.x * u.y / there1, 1.0 - 2.0 * u.y * u.y / there1, -2.0 * u.y / there1);
+  float metres = distance * 2.0 * planeBase / there1; // of ground, a level-0 post
+  vec3 n = vertical - here.y / metres * alongX + here.z / metres * alongY;
+  vec3 normal = n.x * poleXVC + n.y * poleYVC + n.z * poleZVC;
+  float cosSlope = dot(n, vertical) / length(n);
+#endif
 #else
   vec3 placedVC = originVC + place.x * columnVC + place.y * rowVC + above * upVC;
 #ifdef DSPACE_NORMAL
@@ -152,7 +187,12 @@ void main()
   tcoord = originTexture + postTexture * place;
 #endif
 #ifdef DSPACE_MIXED
-  styleAt = vec4(here.x, degrees(acos(clamp(cosSlope, -1.0, 1.0))), originGrid + postGrid * place);
+  styleAt = vec4(here.x, degrees(acos(clamp(cosSlope, -1.0, 1.0))), 0.0, 0.0);
+#ifdef DSPACE_POLE
+  poleDirection = vertical;
+#elif defined(DSPACE_GRID)
+  styleAt.zw = originGrid + postGrid * place;
+#endif
   levelShown = level;
 #endif
 #ifdef DSPACE_HOLES

@@ -17,6 +17,27 @@ uniform vec4 contourColor; // linear light, opacity
 uniform float gridWidth; // half [pixels]
 uniform vec4 gridColor;
 #endif
+#ifdef DSPACE_POLE
+in vec3 poleDirection; // Z out of the pole
+uniform float poleSign; // -1 at the south pole
+#ifdef DSPACE_GRID
+uniform float gridInterval; // [deg]
+#endif
+#ifdef DSPACE_POLE_TEXTURE
+uniform sampler2D colorTexture;
+uniform mat2 degreesTexture; // longitude and latitude to the texture
+uniform vec2 degreesOrigin;
+#endif
+
+// Longitude from -180 to 180, latitude; and longitude from 0 to 360, which does not jump where the
+// first does.
+vec3 degreesAt()
+{
+  float longitude = degrees(atan(poleSign * poleDirection.y, poleDirection.x));
+  float latitude = poleSign * degrees(atan(poleDirection.z, length(poleDirection.xy)));
+  return vec3(longitude, latitude, longitude < 0.0 ? longitude + 360.0 : longitude);
+}
+#endif
 
 // How much of a pixel is a line at whole values of f; lines closer than two pixels fade away.
 float lineAt(float f, float halfWidth)
@@ -29,6 +50,20 @@ float lineAt(float f, float halfWidth)
 
 vec4 mixedColor(vec4 color)
 {
+#ifdef DSPACE_POLE
+  vec3 at = degreesAt();
+#endif
+#ifdef DSPACE_POLE_TEXTURE
+  // Its size on the screen is that of the longitude that does not jump here.
+  vec2 t = degreesTexture * at.xy + degreesOrigin;
+  vec2 other = degreesTexture * at.zy + degreesOrigin;
+  vec2 dx = dFdx(t);
+  vec2 dy = dFdy(t);
+  vec2 otherX = dFdx(other);
+  vec2 otherY = dFdy(other);
+  bool jump = dot(dx, dx) + dot(dy, dy) > dot(otherX, otherX) + dot(otherY, otherY);
+  color *= textureGrad(colorTexture, t, jump ? otherX : dx, jump ? otherY : dy);
+#endif
 #ifdef DSPACE_RAMP
   float value = ramp.w == 0.0 ? styleAt.x : styleAt.y;
   color.rgb = mix(color.rgb, texture(rampTexture, vec2((value - ramp.x) * ramp.y, 0.5)).rgb, ramp.z);
@@ -44,8 +79,15 @@ vec4 mixedColor(vec4 color)
     contourColor.a * lineAt(styleAt.x * contours.x, contours.y));
 #endif
 #ifdef DSPACE_GRID
-  color.rgb = mix(color.rgb, gridColor.rgb,
-    gridColor.a * max(lineAt(styleAt.z, gridWidth), lineAt(styleAt.w, gridWidth)));
+#ifdef DSPACE_POLE
+  vec3 lines = at / gridInterval;
+  float meridian = fwidth(lines.x) < fwidth(lines.z) ? lineAt(lines.x, gridWidth)
+                                                     : lineAt(lines.z, gridWidth);
+  float line = max(meridian, lineAt(lines.y, gridWidth));
+#else
+  float line = max(lineAt(styleAt.z, gridWidth), lineAt(styleAt.w, gridWidth));
+#endif
+  color.rgb = mix(color.rgb, gridColor.rgb, gridColor.a * line);
 #endif
   return color;
 }

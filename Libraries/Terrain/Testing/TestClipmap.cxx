@@ -13,6 +13,7 @@
 #include <dspace/terrain/ClipmapDrawer.h>
 #include <dspace/terrain/ClipmapTerrain.h>
 #include <dspace/terrain/HeightGrid.h>
+#include <dspace/terrain/PolarPosts.h>
 
 namespace {
 
@@ -511,6 +512,48 @@ struct BodyFixture : ClipmapFixture {
     return v > u ? a + v * (Relief(c, r + 1) - a) + u * (d - Relief(c, r + 1))
                  : a + u * (Relief(c + 1, r) - a) + v * (d - Relief(c + 1, r));
   }
+
+  // From orbit to the ground in one flight: where a ray meets the ball below the lowest ground
+  // there is ground, and beyond the ball above the highest there is none.
+  void FlyDown(const Eigen::Vector2d& place) {
+    auto view = View(160, 120);
+
+    for (int step = 0; step < 40; ++step) {
+      const double above = 1e7 * std::pow(3e-8, step / 39.0); // 1e7 to 0.3 m
+      const Eigen::Vector3d ground = Place(place.x(), place.y(), 0.0);
+      const double height = OnTriangles(PostOf(ground));
+      const Eigen::Vector3d eye = Place(place.x(), place.y(), height + above);
+      const Eigen::Vector3d up = eye.normalized();
+      const Eigen::Vector3d east = Eigen::Vector3d::UnitZ().cross(up).normalized();
+      const double tilt = above > 1e6 ? 0.1 : 0.8;
+      LookFrom(eye, eye + tilt * east - up, 60.0, up);
+      CaptureRequest request;
+      request.label = true;
+      const Capture capture = view->GetCapture(request);
+      const Projection& projection = scene->Vantage("main").ActiveCamera().projection;
+      const Pose X_FC = scene->PlaceCamera("main").X_FC;
+      for (int y = 0; y < capture.height; ++y) {
+        for (int x = 0; x < capture.width; ++x) {
+          const Projection::Ray ray = projection.PixelRay(x, y, capture.width, capture.height);
+          const Eigen::Vector3d d = (X_FC.rotation * ray.direction).normalized();
+          const double nearest = (eye - eye.dot(d) * d).norm(); // of the line to the centre
+          const bool forward = eye.dot(d) < 0.0;
+          const bool hit = capture.label[std::size_t(y) * capture.width + x] != 0;
+          if (forward && nearest < Radius - 2030.0 - 1e-3 * above) {
+            if (!hit) {
+              Keep(capture, "missorbit");
+            }
+            ASSERT_TRUE(hit) << place.transpose() << ", " << above << " m above, pixel " << x
+                             << ", " << y;
+          }
+          if (nearest > Radius + 2030.0 + 1e-3 * above && eye.norm() > Radius + 2030.0) {
+            ASSERT_FALSE(hit) << place.transpose() << ", " << above << " m above, pixel " << x
+                              << ", " << y;
+          }
+        }
+      }
+    }
+  }
 };
 
 TEST_F(BodyFixture, TheFinestRingIsTheStatedSurface) {
@@ -563,50 +606,182 @@ TEST_F(BodyFixture, TheFinestRingIsTheStatedSurface) {
   EXPECT_GT(compared, 50000);
 }
 
-// From orbit to the ground in one flight: where a ray meets the ball below the lowest ground there
-// is ground, and beyond the ball above the highest there is none.
 TEST_F(BodyFixture, NoGapOpensFromOrbitToTheGround) {
+  FlyDown({180.0, 10.0}); // the date line
+  FlyDown({20.0, 89.97});
+  FlyDown({100.0, -45.0});
+}
+
+// With charts of its poles, as a terrain that is opened has them.
+struct PoleFixture : BodyFixture {
+  void SetUp() override {
+    BodyFixture::SetUp();
+    scene->RemoveObject(object);
+    AddWithPoles(true);
+  }
+  void AddWithPoles(bool poles, std::shared_ptr<const Image> image = nullptr) {
+    const PostPlacement placement = terrain->Placement();
+    ClipmapOptions options = terrain->Options();
+    if (image) {
+      auto material = std::make_shared<Material>(*options.material);
+      material->color = {1, 1, 1};
+      material->texture = std::move(image);
+      options.material = material;
+      options.postToTexture.linear() << 1.0 / Columns, 0.0, 0.0, -1.0 / (Rows - 1);
+      options.postToTexture.translation() << 0.0, 1.0;
+    }
+    std::vector<ClipmapChart> charts;
+    for (const bool south : {false, true}) {
+      const auto polar = std::make_shared<PolarPosts>(posts, placement, 0, south, CoarsestFor(124));
+      charts.push_back({std::make_shared<ElevationPyramid>(polar), polar->Placement()});
+    }
+    terrain =
+        std::make_shared<ClipmapTerrain>(std::make_shared<ElevationPyramid>(posts), placement,
+                                         options, poles ? charts : std::vector<ClipmapChart>());
+    GraphicsObject ground;
+    ground.name = "body";
+    ground.custom = terrain;
+    object = scene->AddObject(ground);
+  }
+};
+
+// Each post stands where the stereographic projection's textbook formulas put it, and has the
+// height of the degree grid's triangles there.
+TEST_F(PoleFixture, PolarPostsAreTheGridsAtTheirPlaces) {
+  std::mt19937 random(17);
+  for (const bool south : {false, true}) {
+    const PolarPosts polar(posts, terrain->Placement(), 0, south, CoarsestFor(124));
+    const PostLattice& lattice = polar.GetLattice();
+    const double half = 0.5 * double(lattice.columns - 1);
+    const double spacing = Radius * Step;
+    for (int n = 0; n < 30; ++n) {
+      PostBlock block;
+      block.width = 40;
+      block.height = 30;
+      const double reach = n % 3 == 0 ? 60.0 : n % 3 == 1 ? 900.0 : half;
+      block.column = std::int64_t(half + reach * (2.0 * (random() % 1000) / 999.0 - 1.0)) - 20;
+      block.row = std::int64_t(half + reach * (2.0 * (random() % 1000) / 999.0 - 1.0)) - 15;
+      std::vector<float> heights(40 * 30);
+      polar.Read(block, heights.data());
+      for (int i = 0; i < 40 * 30; ++i) {
+        const double c = double(block.column + i % 40);
+        const double r = double(block.row + i / 40);
+        if (c < 0 || r < 0 || c >= double(lattice.columns) || r >= double(lattice.rows)) {
+          EXPECT_TRUE(std::isnan(heights[i]));
+          continue;
+        }
+        const double x = (c - half) * spacing; // [m] in the plane
+        const double y = (half - r) * spacing;
+        const double colatitude = 2.0 * std::atan2(std::hypot(x, y), 2.0 * Radius);
+        const double longitude = std::atan2(south ? -y : y, x);
+        const double row = (south ? M_PI - colatitude : colatitude) / Step;
+        const double column = (longitude + M_PI) / Step;
+        ASSERT_NEAR(heights[i], OnTriangles({column, std::min(row, Rows - 1.0 - 1e-9)}), 2e-3)
+            << c << ", " << r << (south ? " south" : " north");
+      }
+    }
+  }
+}
+
+TEST_F(PoleFixture, TheGroundAtThePolesIsTheStatedSurface) {
   auto view = View(160, 120);
-  for (const Eigen::Vector2d& place : // the date line, a pole, somewhere
-       {Eigen::Vector2d(180.0, 10.0), {20.0, 89.97}, {100.0, -45.0}}) {
-    for (int step = 0; step < 40; ++step) {
-      const double above = 1e7 * std::pow(3e-8, step / 39.0); // 1e7 to 0.3 m
-      const Eigen::Vector3d ground = Place(place.x(), place.y(), 0.0);
-      const double height = OnTriangles(PostOf(ground));
+  int compared = 0;
+  for (const Eigen::Vector2d& place :
+       {Eigen::Vector2d(0.0, 90.0), {33.0, 89.995}, {-170.0, -89.97}, {120.0, -90.0}}) {
+    for (const double above : {2.0, 300.0}) {
+      const double height = OnTriangles(PostOf(Place(place.x(), place.y() * (1.0 - 1e-12), 0.0)));
       const Eigen::Vector3d eye = Place(place.x(), place.y(), height + above);
       const Eigen::Vector3d up = eye.normalized();
-      const Eigen::Vector3d east = Eigen::Vector3d::UnitZ().cross(up).normalized();
-      const double tilt = above > 1e6 ? 0.1 : 0.8;
-      LookFrom(eye, eye + tilt * east - up, 60.0, up);
-      CaptureRequest request;
-      request.label = true;
-      const Capture capture = view->GetCapture(request);
-      if (step % 13 == 0) {
-        Keep(capture, "orbit" + std::to_string(int(place.y())) + "_" + std::to_string(step));
-      }
-      const Projection& projection = scene->Vantage("main").ActiveCamera().projection;
-      const Pose X_FC = scene->PlaceCamera("main").X_FC;
+      LookFrom(eye, eye + up.unitOrthogonal() - 0.6 * up, 60.0, up);
+      const Capture capture = Shoot(view);
       for (int y = 0; y < capture.height; ++y) {
         for (int x = 0; x < capture.width; ++x) {
-          const Projection::Ray ray = projection.PixelRay(x, y, capture.width, capture.height);
-          const Eigen::Vector3d d = (X_FC.rotation * ray.direction).normalized();
-          const double nearest = (eye - eye.dot(d) * d).norm(); // of the line to the centre
-          const bool forward = eye.dot(d) < 0.0;
-          const bool hit = capture.label[std::size_t(y) * capture.width + x] != 0;
-          if (forward && nearest < Radius - 2030.0 - 1e-3 * above) {
-            if (!hit) {
-              Keep(capture, "missorbit");
-            }
-            ASSERT_TRUE(hit) << place.transpose() << ", " << above << " m above, pixel " << x
-                             << ", " << y;
+          const Hit hit = HitAt(*scene, capture, x, y);
+          const double range = (hit.p - eye).norm();
+          if (!hit.hit || range > 40.0 * Radius * Step) {
+            continue;
           }
-          if (nearest > Radius + 2030.0 + 1e-3 * above && eye.norm() > Radius + 2030.0) {
-            ASSERT_FALSE(hit) << place.transpose() << ", " << above << " m above, pixel " << x
-                              << ", " << y;
-          }
+          // Here the relief bends by less than a centimetre from post to post.
+          const double pixel = 2.0 * std::tan(M_PI / 6.0) / 120.0 * range;
+          ASSERT_NEAR(hit.p.norm() - Radius, OnTriangles(PostOf(hit.p)),
+                      0.02 + std::pow(Radius * Step, 2) / (4.0 * Radius) + pixel / 300.0)
+              << place.transpose() << ", " << above << " m above, range " << range;
+          ++compared;
         }
       }
     }
+  }
+  EXPECT_GT(compared, 60000);
+}
+
+TEST_F(PoleFixture, NoGapOpensAboveThePoles) {
+  FlyDown({20.0, 89.97});
+  FlyDown({-60.0, 61.0});
+  FlyDown({140.0, -80.0});
+}
+
+// The same picture from the same place, through either chart.
+TEST_F(PoleFixture, ImagesAndGridsLieAlikeOnBothCharts) {
+  auto image = std::make_shared<Image>();
+  image->name = "directions";
+  image->width = 1024;
+  image->height = 512;
+  image->channels = 3;
+  for (int y = 0; y < 512; ++y) {
+    for (int x = 0; x < 1024; ++x) { // continuous around
+      const double longitude = (x + 0.5) / 1024.0 * 2.0 * M_PI;
+      image->pixels.push_back(std::uint8_t(127.5 + 120.0 * std::sin(longitude)));
+      image->pixels.push_back(std::uint8_t(127.5 + 120.0 * std::cos(3.0 * longitude)));
+      image->pixels.push_back(std::uint8_t(y / 2));
+    }
+  }
+  ClipmapStyle style;
+  style.grid.emplace();
+  style.grid->interval = 15.0;
+  style.grid->width = 3.0;
+  auto view = View(320, 240);
+  for (const Eigen::Vector2d& place : {Eigen::Vector2d(170.0, 66.0), {-20.0, -72.0}}) {
+    const Eigen::Vector3d eye = Place(place.x(), place.y(), 6e5);
+    LookFrom(eye, Place(place.x() + 5.0, place.y() * 1.1, 0.0), 60.0, Eigen::Vector3d::UnitZ());
+    std::vector<Capture> captures;
+    for (const bool poles : {true, false}) {
+      scene->RemoveObject(object);
+      AddWithPoles(poles, image);
+      EXPECT_EQ(terrain->ChartAt(eye) != 0, poles);
+      terrain->SetStyle(style);
+      captures.push_back(Shoot(view));
+      Keep(captures.back(), std::string(poles ? "poles" : "grid") + std::to_string(int(place.y())));
+    }
+    // A line may be drawn a pixel aside; within some degrees of the pole the degree grid's own
+    // triangles are too coarse to be compared with.
+    const auto alike = [&captures](int x, int y) {
+      for (int j = std::max(y - 1, 0); j <= std::min(y + 1, 239); ++j) {
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, 319); ++i) {
+          int most = 0;
+          for (std::size_t k = 0; k < 3; ++k) {
+            most = std::max(most, std::abs(captures[0].color[4 * (std::size_t(y) * 320 + x) + k] -
+                                           captures[1].color[4 * (std::size_t(j) * 320 + i) + k]));
+          }
+          if (most <= 40) {
+            return true;
+          }
+        }
+      }
+      return false;
+    };
+    std::size_t differ = 0;
+    std::size_t ground = 0;
+    for (int y = 0; y < 240; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        const Hit hit = HitAt(*scene, captures[0], x, y);
+        if (hit.hit && std::abs(hit.p.z()) / hit.p.norm() < std::sin(75.0 * M_PI / 180.0)) {
+          ++ground;
+          differ += !alike(x, y);
+        }
+      }
+    }
+    EXPECT_GT(ground, 20000u);
+    EXPECT_LT(differ, ground / 200) << place.transpose();
   }
 }
 

@@ -5,15 +5,17 @@
 
 #include <dspace/scene/Checks.h>
 #include <dspace/session/Convert.h>
+#include <dspace/terrain/PoleCharts.h>
 
 namespace dspace::session {
 
 ClipmapTerrainObject::ClipmapTerrainObject(std::string name,
                                            std::shared_ptr<const StreamedTerrain> surface,
-                                           const ClipmapOptions& options)
+                                           const ClipmapOptions& options,
+                                           const ElevationPyramidOptions& pyramid)
     : TerrainObject(std::move(name)), Surface_(std::move(surface)),
-      Clipmap_(
-          std::make_shared<ClipmapTerrain>(Surface_->Pyramid(), Surface_->Placement(), options)) {}
+      Clipmap_(std::make_shared<ClipmapTerrain>(Surface_->Pyramid(), Surface_->Placement(), options,
+                                                PoleChartsOf(*Surface_, options.cells, pyramid))) {}
 
 void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   TerrainObject::Describe(reply);

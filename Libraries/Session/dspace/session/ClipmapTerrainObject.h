@@ -17,7 +17,7 @@ class ClipmapTerrainObject : public TerrainObject {
 public:
   // Throws what ClipmapTerrain throws.
   ClipmapTerrainObject(std::string name, std::shared_ptr<const StreamedTerrain> surface,
-                       const ClipmapOptions& options);
+                       const ClipmapOptions& options, const ElevationPyramidOptions& pyramid);
 
   ClipmapTerrain& Clipmap() { return *this->Clipmap_; }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }

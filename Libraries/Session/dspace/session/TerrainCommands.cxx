@@ -112,7 +112,7 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   look.cells = options.cells;
   look.heights = surface->HeightRange();
   look.deadline = options.deadline;
-  auto terrain = std::make_unique<ClipmapTerrainObject>(name, surface, look);
+  auto terrain = std::make_unique<ClipmapTerrainObject>(name, surface, look, options.pyramid);
   if (command.relief().color_by_height()) {
     ClipmapStyle style;
     style.ramp.emplace();

@@ -10,8 +10,6 @@
 #include <dspace/terrain/ClipmapLevels.h>
 #include <dspace/terrain/ClipmapTerrain.h>
 
-class vtkShaderProgram;
-
 namespace dspace {
 
 // From now on scenes may hold a ClipmapTerrain. Any number of calls.
@@ -19,7 +17,7 @@ void RegisterClipmapDrawer();
 
 // One layer of a texture array holds a level's posts; each level is drawn as a ring around the next
 // finer one with indices that all levels share, in blocks that are left out where the view does not
-// see them.
+// see them. Of a body the chart under the camera is drawn.
 class ClipmapDrawer : public CustomDrawer {
 public:
   explicit ClipmapDrawer(std::shared_ptr<const ClipmapTerrain> terrain);
@@ -29,30 +27,24 @@ public:
   void DrawColor(const CustomDrawing& drawing) override;
   void DrawLabels(const CustomDrawing& drawing) override;
 
-  const ClipmapLevels& Levels() const { return this->Levels_; }
-  const ClipmapLevels::State& State() const { return this->State_; }
-  unsigned int Texture() const { return this->Texture_; } // OpenGL's name, for tests
-
 private:
-  struct Placed; // the camera and the view's axes, in double precision
-  Placed Place(const CustomDrawing& drawing) const;
+  // What is kept of one chart of the terrain.
+  struct Chart {
+    Chart(const ClipmapChart& from, int cells)
+        : placement(from.placement), levels(from.pyramid, cells) {}
+    PostPlacement placement;
+    ClipmapLevels levels;
+    ClipmapLevels::State state;
+    unsigned int texture = 0;
+  };
   void Create();
+  static void CreateTexture(Chart& chart);
   void Draw(const CustomDrawing& drawing, unsigned features);
-  void SetLevel(vtkShaderProgram* program, const Placed& placed, int level, bool sphere) const;
-  void SetGrid(vtkShaderProgram* program, const Eigen::Vector2d& firstPost, double step) const;
-  Eigen::AlignedBox2d BlockPosts(int level, int column, int row) const;
-  bool OutsideOnPlane(const std::vector<Eigen::Vector4d>& planes,
-                      const Eigen::AlignedBox2d& block) const;
-  bool HiddenOnBody(const Placed& placed, const std::vector<Eigen::Vector4d>& planes,
-                    const Eigen::AlignedBox2d& block) const;
-  void ChooseBlocks(const Placed& placed, const std::vector<Eigen::Vector4d>& planes, int level,
-                    std::vector<ClipmapIndices::Run>& runs) const;
 
   std::shared_ptr<const ClipmapTerrain> Terrain_;
-  ClipmapLevels Levels_;
   ClipmapIndices Indices_;
-  ClipmapLevels::State State_;
-  unsigned int Texture_ = 0;
+  std::vector<std::unique_ptr<Chart>> Charts_; // of the terrain's; null until the camera is there
+  Chart* Active_ = nullptr;
   unsigned int VertexArray_ = 0;
   unsigned int VertexBuffer_ = 0;
   unsigned int IndexBuffer_ = 0;

@@ -12,7 +12,7 @@ namespace {
 BoundingSphere BoundsOf(const PostLattice& lattice, const PostPlacement& placement,
                         const std::array<double, 2>& heights) {
   BoundingSphere sphere;
-  if (placement.GetKind() == PostPlacement::Kind::Sphere) {
+  if (placement.OnBody()) {
     sphere.radius = placement.Radius() + std::max(heights[0], heights[1]);
     return sphere;
   }
@@ -32,11 +32,17 @@ BoundingSphere BoundsOf(const PostLattice& lattice, const PostPlacement& placeme
 } // namespace
 
 ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
-                               const PostPlacement& placement, const ClipmapOptions& options)
-    : Pyramid_(std::move(pyramid)), Placement_(placement), Options_(options),
-      Bounds_(BoundsOf(Pyramid_->Lattice(), placement, options.heights)) {
-  const std::string& name = this->Pyramid_->Source().GetName();
-  ClipmapLevels(this->Pyramid_, options.cells); // refuses what cannot be drawn
+                               const PostPlacement& placement, const ClipmapOptions& options,
+                               std::vector<ClipmapChart> poles)
+    : Charts_{{std::move(pyramid), placement}}, Options_(options),
+      Bounds_(BoundsOf(Charts_[0].pyramid->Lattice(), placement, options.heights)) {
+  const std::string& name = this->Pyramid()->Source().GetName();
+  for (ClipmapChart& pole : poles) {
+    this->Charts_.push_back(std::move(pole));
+  }
+  for (const ClipmapChart& chart : this->Charts_) {
+    ClipmapLevels(chart.pyramid, options.cells); // refuses what cannot be drawn
+  }
   if (options.cells > 252) {
     throw Error(Error::Kind::InvalidArgument, name,
                 "level size " + std::to_string(options.cells) +
@@ -52,8 +58,27 @@ ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
   }
 }
 
+std::uint64_t ClipmapTerrain::Revision() const {
+  std::uint64_t revision = this->StyleRevision_;
+  for (const ClipmapChart& chart : this->Charts_) {
+    revision += chart.pyramid->Arrivals();
+  }
+  return revision;
+}
+
+std::size_t ClipmapTerrain::ChartAt(const Eigen::Vector3d& p_S) const {
+  const double sine = p_S.z() / std::max(p_S.norm(), 1e-300);
+  for (std::size_t i = 1; i < this->Charts_.size(); ++i) {
+    // 60 degrees: there a degree of longitude is half as long as one of latitude.
+    if ((this->Charts_[i].placement.South() ? -sine : sine) > std::sqrt(0.75)) {
+      return i;
+    }
+  }
+  return 0;
+}
+
 void ClipmapTerrain::SetStyle(const ClipmapStyle& style) {
-  style.Check(this->Pyramid_->Source().GetName());
+  style.Check(this->Pyramid()->Source().GetName());
   this->Style_ = style;
   ++this->StyleRevision_;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include <dspace/scene/CustomGeometry.h>
 #include <dspace/scene/GraphicsObject.h>
@@ -26,28 +27,36 @@ struct ClipmapOptions {
   double deadline = 60.0; // [s] that a picture that is kept waits for its data
 };
 
+// Posts and where they stand.
+struct ClipmapChart {
+  std::shared_ptr<ElevationPyramid> pyramid;
+  PostPlacement placement;
+};
+
 class ClipmapTerrain : public CustomGeometry {
 public:
-  // Throws Error(InvalidArgument) for an option out of range.
+  // `poles`: charts (Pole) of a whole body's poles, which are drawn instead while the camera is
+  // within 30 degrees of one. Throws Error(InvalidArgument) for an option out of range.
   ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid, const PostPlacement& placement,
-                 const ClipmapOptions& options);
+                 const ClipmapOptions& options, std::vector<ClipmapChart> poles = {});
 
   BoundingSphere Bounds() const override { return this->Bounds_; }
-  std::uint64_t Revision() const override {
-    return this->Pyramid_->Arrivals() + this->StyleRevision_;
-  }
+  std::uint64_t Revision() const override;
 
   // May change at any time between two pictures. Throws what ClipmapStyle::Check throws.
   void SetStyle(const ClipmapStyle& style);
   const ClipmapStyle& Style() const { return this->Style_; }
 
-  const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
-  const PostPlacement& Placement() const { return this->Placement_; }
+  // The terrain's own, which comes first, then the poles'.
+  const std::vector<ClipmapChart>& Charts() const { return this->Charts_; }
+  const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Charts_[0].pyramid; }
+  const PostPlacement& Placement() const { return this->Charts_[0].placement; }
+  // Index of the chart that is drawn for a camera at p_S.
+  std::size_t ChartAt(const Eigen::Vector3d& p_S) const;
   const ClipmapOptions& Options() const { return this->Options_; }
 
 private:
-  std::shared_ptr<ElevationPyramid> Pyramid_;
-  PostPlacement Placement_;
+  std::vector<ClipmapChart> Charts_;
   ClipmapOptions Options_;
   BoundingSphere Bounds_;
   ClipmapStyle Style_;

@@ -42,10 +42,41 @@ PostPlacement PostPlacement::OnSphere(const Eigen::Vector2d& first_deg,
   return placement;
 }
 
+PostPlacement PostPlacement::OnPole(bool south, double spacing, double half, double radius) {
+  if (!(spacing > 0.0 && std::isfinite(spacing)) || !(radius > 0.0 && radius <= 1e12) ||
+      !std::isfinite(half)) {
+    throw Error(Error::Kind::InvalidArgument, "terrain",
+                "a spacing of more than 0 m and a radius in (0, 1e12] m are accepted");
+  }
+  PostPlacement placement;
+  placement.Kind_ = Kind::Pole;
+  placement.South_ = south;
+  placement.PlaneStep_ = 0.5 * spacing / radius;
+  placement.Half_ = half;
+  placement.Radius_ = radius;
+  return placement;
+}
+
+Eigen::Vector2d PostPlacement::Angles(const Eigen::Vector2d& post) const {
+  if (this->Kind_ != Kind::Pole) {
+    return this->First_ + post.cwiseProduct(this->Step_);
+  }
+  const Eigen::Vector2d u = this->OnPlaneOfPole(post);
+  const double latitude = 0.5 * M_PI - 2.0 * std::atan(u.norm());
+  return {std::atan2(this->South_ ? -u.y() : u.y(), u.x()), this->South_ ? -latitude : latitude};
+}
+
 Eigen::Vector3d PostPlacement::ToScene(const Eigen::Vector2d& post, double height) const {
   if (this->Kind_ == Kind::Plane) {
     const Eigen::Vector2d xy = this->PostToScene_ * post;
     return {xy.x(), xy.y(), height - this->OriginHeight_};
+  }
+  if (this->Kind_ == Kind::Pole) {
+    const Eigen::Vector2d u = this->OnPlaneOfPole(post);
+    const double q = u.squaredNorm();
+    const Eigen::Vector3d p =
+        (this->Radius_ + height) / (1.0 + q) * Eigen::Vector3d(2.0 * u.x(), 2.0 * u.y(), 1.0 - q);
+    return this->South_ ? Eigen::Vector3d(p.x(), -p.y(), -p.z()) : p;
   }
   const Eigen::Vector2d angles = this->First_ + post.cwiseProduct(this->Step_);
   const double c = std::cos(angles.y());
@@ -61,6 +92,16 @@ Eigen::Vector3d PostPlacement::ToPosts(const Eigen::Vector3d& p_S) const {
   const double distance = p_S.norm();
   if (distance == 0.0) {
     return {0.0, 0.0, -this->Radius_};
+  }
+  if (this->Kind_ == Kind::Pole) {
+    Eigen::Vector3d d = p_S / distance;
+    if (this->South_) {
+      d = Eigen::Vector3d(d.x(), -d.y(), -d.z());
+    }
+    // The other pole is infinitely far: a place far outside stands for it.
+    const Eigen::Vector2d u = d.head<2>() / std::max(1.0 + d.z(), 1e-9);
+    return {this->Half_ + u.x() / this->PlaneStep_, this->Half_ - u.y() / this->PlaneStep_,
+            distance - this->Radius_};
   }
   const double latitude = std::atan2(p_S.z(), p_S.head<2>().norm());
   const double middle = this->MiddleColumn_ * this->Step_.x();
@@ -80,6 +121,9 @@ double PostPlacement::CellSize(const Eigen::Vector2d& post) const {
   if (this->Kind_ == Kind::Plane) {
     return std::max(this->PostToScene_.linear().col(0).norm(),
                     this->PostToScene_.linear().col(1).norm());
+  }
+  if (this->Kind_ == Kind::Pole) {
+    return 2.0 * this->Radius_ * this->PlaneStep_ / (1.0 + this->OnPlaneOfPole(post).squaredNorm());
   }
   const double latitude = this->First_.y() + post.y() * this->Step_.y();
   return this->Radius_ *

@@ -10,8 +10,9 @@ namespace dspace {
 class PostPlacement {
 public:
   enum class Kind {
-    Plane, // scene: X east, Y north, Z up; z = height - originHeight
-    Sphere // scene: the body-fixed frame, Z to the north pole, X to longitude 0
+    Plane,  // scene: X east, Y north, Z up; z = height - originHeight
+    Sphere, // scene: the body-fixed frame, Z to the north pole, X to longitude 0; a degree grid
+    Pole    // the same scene; a square in the stereographic plane of a pole
   };
 
   // `postToScene` takes (c, r) to scene (x, y) [m]; invertible.
@@ -22,6 +23,11 @@ public:
   static PostPlacement OnSphere(const Eigen::Vector2d& first_deg, const Eigen::Vector2d& step_deg,
                                 double radius, double middleColumn = 0.0);
 
+  // Stereographic (Snyder 1987, p. 154; scale 1 at the pole), posts `spacing` [m] apart, post
+  // (half, half) at the pole. Columns run along longitude 0 from the pole, rows against the axis
+  // that completes it seen from outside: longitude 90 at the north pole, -90 at the south pole.
+  static PostPlacement OnPole(bool south, double spacing, double half, double radius);
+
   Kind GetKind() const { return this->Kind_; }
   // Plane: its map; its origin's height.
   const Eigen::Affine2d& PostToScene() const { return this->PostToScene_; }
@@ -30,6 +36,17 @@ public:
   const Eigen::Vector2d& First() const { return this->First_; }
   const Eigen::Vector2d& Step() const { return this->Step_; }
   double Radius() const { return this->Radius_; }
+  bool OnBody() const { return this->Kind_ != Kind::Plane; }
+  // Pole: which; post spacing at the pole over twice the radius; its column and row.
+  bool South() const { return this->South_; }
+  double PlaneStep() const { return this->PlaneStep_; }
+  double Half() const { return this->Half_; }
+  // The stereographic plane's place of a post, in twice the radius.
+  Eigen::Vector2d OnPlaneOfPole(const Eigen::Vector2d& post) const {
+    return this->PlaneStep_ * Eigen::Vector2d(post.x() - this->Half_, this->Half_ - post.y());
+  }
+  // Longitude and latitude [rad] of a post of a body.
+  Eigen::Vector2d Angles(const Eigen::Vector2d& post) const;
 
   Eigen::Vector3d ToScene(const Eigen::Vector2d& post, double height) const;
   // (c, r, height) of a point. On a sphere c is within half a turn of the middle column; any at the
@@ -49,6 +66,9 @@ private:
   Eigen::Vector2d Step_ = Eigen::Vector2d::Ones();
   double Radius_ = 0.0;
   double MiddleColumn_ = 0.0;
+  bool South_ = false;
+  double PlaneStep_ = 0.0;
+  double Half_ = 0.0;
 };
 
 } // namespace dspace

@@ -71,6 +71,8 @@ public:
   std::uint64_t GetVersion() const override { return this->Pyramid_->Arrivals(); }
   // How often cells between pixels are halved: 2^n posts of level 0 a pixel.
   int Subdivisions() const { return this->Subdivisions_; }
+  // Whether it goes from pole to pole of its body.
+  bool ReachesPoles() const { return this->Poles_; }
   // What became of its patches; null without any.
   const GroupReport* Group() const { return this->Group_ ? &this->Group_->Report() : nullptr; }
 

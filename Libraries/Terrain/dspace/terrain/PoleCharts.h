@@ -1,0 +1,20 @@
+// The charts with which a whole body is drawn about its poles.
+#ifndef DSPACE_TERRAIN_POLECHARTS_H
+#define DSPACE_TERRAIN_POLECHARTS_H
+
+#include <vector>
+
+#include <dspace/terrain/ClipmapTerrain.h>
+#include <dspace/terrain/StreamedTerrain.h>
+
+namespace dspace {
+
+// North and south, for a terrain on a body that reaches both; else none. Each has a pyramid of its
+// own with a quarter of `options`' budget. About a pole all columns of some rows are read at once:
+// at most 65536 of them, hence of a finer degree grid a coarser level.
+std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells,
+                                       const ElevationPyramidOptions& options = {});
+
+} // namespace dspace
+
+#endif
