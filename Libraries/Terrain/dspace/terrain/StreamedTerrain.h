@@ -49,7 +49,7 @@ struct StreamedTerrainOptions {
 // was drawn before; they are for any thread but a drawing one.
 class StreamedTerrain : public TerrainSurface {
 public:
-  // Reads the raster's header and its coarsest level only. Throws what ElevationSource throws, and
+  // Reads the raster's header and what HeightRange() says. Throws what ElevationSource throws, and
   // Error(Unsupported) for a raster that cannot stand on a body.
   static std::shared_ptr<const StreamedTerrain> Open(const std::string& path,
                                                      const StreamedTerrainOptions& options = {});
@@ -59,7 +59,7 @@ public:
   const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
   const PostPlacement& Placement() const { return this->Placement_; }
   // Least and greatest height [m]: exact where the raster has at most 4 million pixels, else that
-  // of the coarsest level widened by half its range, a guess that only culling uses.
+  // of up to 512 x 512 of them widened by half to either side, a guess that only culling uses.
   const std::array<double, 2>& HeightRange() const { return this->HeightRange_; }
   bool HeightRangeIsExact() const { return this->HeightRangeIsExact_; }
   // Map coordinates to level-0 posts; without meaning outside a plane's map or the body.
@@ -80,6 +80,9 @@ public:
   // scene's frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
   void AddTracks(const std::vector<TrackAddition>& additions) const;
   void ClearTracks() const;
+  // See TrackFile.h. What is loaded is added; a wheel of its name goes on with it.
+  void SaveTracks(const std::string& path) const;
+  void LoadTracks(const std::string& path) const;
   const WheelTracks& Tracks() const; // throws Error(Unsupported) on a body
   // The same ground as it was before all wheels; lives as long as this.
   const StreamedTerrain& Undisturbed() const;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <dspace/Error.h>
+#include <dspace/terrain/TrackFile.h>
 #include <dspace/terrain/TrackPosts.h>
 
 #include "PostSurface.h"
@@ -44,6 +45,19 @@ void StreamedTerrain::AddTracks(const std::vector<TrackAddition>& additions) con
 void StreamedTerrain::ClearTracks() const {
   this->Tracks();
   this->Pyramid_->Invalidate(this->TrackPosts_->RectanglesOf(this->Tracks_->Clear()));
+}
+
+void StreamedTerrain::SaveTracks(const std::string& path) const {
+  WriteTracks(path, this->Tracks().Strokes(), this->Info().crs, [this](const Eigen::Vector2d& p) {
+    return Eigen::Vector2d(this->Frame_->SceneToMap({p.x(), p.y(), 0.0}).head<2>());
+  });
+}
+
+void StreamedTerrain::LoadTracks(const std::string& path) const {
+  this->Tracks();
+  this->AddTracks(ReadTracks(path, this->Info().crs, [this](const Eigen::Vector2d& p) {
+    return Eigen::Vector2d(this->Frame_->MapToScene({p.x(), p.y(), 0.0}).head<2>());
+  }));
 }
 
 std::array<double, 2> StreamedTerrain::DrawnHeights() const {

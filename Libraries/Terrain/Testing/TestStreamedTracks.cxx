@@ -1,0 +1,218 @@
+// Wheel tracks on a raster: what is answered, what is drawn after it, and files of tracks.
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <dspace/Error.h>
+#include <dspace/terrain/StreamedTerrain.h>
+#include <dspace/terrain/TrackPosts.h>
+
+#include "RasterFile.h"
+
+namespace {
+
+using namespace dspace;
+using dspace::testing::RasterFile;
+using dspace::testing::TemporaryFolder;
+
+// 40 m x 40 m of pixels 0.2 m apart, a slope of 1 in 10 eastwards that a plane fits exactly.
+struct StreamedTracks : ::testing::Test {
+  TemporaryFolder folder;
+  std::shared_ptr<const StreamedTerrain> terrain;
+  StreamedTerrainOptions options;
+
+  void Open(double east = 500000.0) {
+    RasterFile file;
+    file.width = 201;
+    file.height = 201;
+    file.type = GDT_Float32;
+    file.crs = "EPSG:32633";
+    file.geotransform = {east, 0.2, 0.0, 4200000.0, 0.0, -0.2};
+    file.value = [](int c, int, int) { return 0.02 * (c - 100); };
+    options.subdivisions = 3; // 2.5 cm
+    terrain = StreamedTerrain::Open(file.Write(folder / "slope.tif"), options);
+  }
+  void SetUp() override { Open(); }
+  static double Before(double x) { return 0.1 * x; }
+  static TrackAddition Straight(double sinkage = 0.06) { // along X from -5 to 5, at y = 2
+    TrackAddition stroke;
+    stroke.name = "wheel";
+    stroke.profile.width = 0.3;
+    stroke.profile.wall = 0.05;
+    stroke.contacts = {{{-5.0, 2.0}, sinkage}, {{5.0, 2.0}, sinkage}};
+    return stroke;
+  }
+  double Height(const StreamedTerrain& of, double x, double y) const {
+    return of.Sample(Eigen::Vector3d(x, y, 0.0)).height;
+  }
+};
+
+TEST_F(StreamedTracks, QueriesSeeTheRutsAndTheGroundBeforeThem) {
+  EXPECT_NEAR(Height(*terrain, 1.03, 2.01), Before(1.03), 1e-6);
+  // A ray's tiles are kept: they must go with the change.
+  const Eigen::Vector3d above(1.03, 2.01, 5.0);
+  const Eigen::Vector3d down(0.0, 0.0, -1.0);
+  EXPECT_NEAR(terrain->Intersect(above, down, 100.0).distance, 5.0 - Before(1.03), 1e-6);
+  terrain->AddTracks({Straight()});
+  for (const double y : {1.87, 2.0, 2.12}) { // posts to either side are on the floor
+    EXPECT_NEAR(Height(*terrain, 1.03, y), Before(1.03) - 0.06, 1e-6) << y;
+  }
+  EXPECT_NEAR(Height(*terrain, 1.03, 2.25), Before(1.03), 1e-6);
+  EXPECT_NEAR(terrain->Intersect(above, down, 100.0).distance, 5.0 - Before(1.03) + 0.06, 1e-6);
+  // Along the rut, below the ground as it was, and onto its end.
+  const RayHit along = terrain->Intersect({-4.0, 2.0, Before(-4.0) - 0.03}, {1.0, 0.0, 0.1}, 100.0);
+  ASSERT_TRUE(along.hit);
+  EXPECT_GT(along.position_S.x(), 5.0);
+  EXPECT_LT(along.position_S.x(), 5.0 + 0.15 + 0.05);
+  Rows3 points(2, 3);
+  points << 1.03, 2.0, 0.0, 1.03, 3.0, 0.0;
+  Eigen::VectorXd heights(2);
+  terrain->Heights(points, heights);
+  EXPECT_NEAR(heights[0], Before(1.03) - 0.06, 1e-6);
+  EXPECT_NEAR(heights[1], Before(1.03), 1e-6);
+
+  const StreamedTerrain& before = terrain->Undisturbed();
+  EXPECT_NEAR(Height(before, 1.03, 2.0), Before(1.03), 1e-6);
+  EXPECT_NEAR(before.Intersect(above, down, 100.0).distance, 5.0 - Before(1.03), 1e-6);
+  EXPECT_EQ(before.Frame().GetOrigin(), terrain->Frame().GetOrigin());
+
+  terrain->ClearTracks();
+  EXPECT_NEAR(Height(*terrain, 1.03, 2.0), Before(1.03), 1e-6);
+  EXPECT_NEAR(terrain->Intersect(above, down, 100.0).distance, 5.0 - Before(1.03), 1e-6);
+}
+
+TEST_F(StreamedTracks, ARutBelowTheLowestGroundIsHit) {
+  TrackAddition deep = Straight(0.9);
+  deep.contacts = {{{-19.0, 2.0}, 0.9}, {{-15.0, 2.0}, 0.9}};
+  terrain->AddTracks({deep}); // the least height is -2 m, at x = -20
+  const RayHit hit = terrain->Intersect({-18.0, 2.0, 5.0}, {0.0, 0.0, -1.0}, 100.0);
+  ASSERT_TRUE(hit.hit);
+  EXPECT_NEAR(hit.position_S.z(), -1.8 - 0.9, 1e-6);
+  EXPECT_LE(terrain->DrawnHeights()[0], -2.9);
+}
+
+TEST_F(StreamedTracks, SavedAndLoadedTheyAreTheSame) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<TrackAddition> additions;
+  for (int n = 0; n < 5; ++n) {
+    TrackAddition stroke = Straight();
+    stroke.name = "wheel " + std::to_string(n) + " \"left\" \xc3\xa4";
+    stroke.profile.treadPitch = n == 3 ? 0.0 : 0.21;
+    stroke.profile.treadDepth = 0.011;
+    stroke.profile.rimWidth = 0.07;
+    stroke.profile.rimHeight = 0.013;
+    stroke.contacts.clear();
+    Eigen::Vector2d p(10.0 * unit(random), 10.0 * unit(random));
+    for (int i = 0; i < (n == 4 ? 1 : 40); ++i) {
+      p += Eigen::Vector2d(0.2, 0.2 * unit(random));
+      TrackContact contact;
+      contact.place = p;
+      contact.sinkage = 0.05 + 0.04 * unit(random);
+      contact.heading = n == 2 ? TrackContact::Unknown : unit(random);
+      contact.rolled = 0.3 * i;
+      stroke.contacts.push_back(contact);
+    }
+    additions.push_back(stroke);
+  }
+  terrain->AddTracks(additions);
+  const std::vector<TrackStroke> before = terrain->Tracks().Strokes();
+  const std::string path = folder / "tracks.geojson";
+  terrain->SaveTracks(path);
+  terrain->SaveTracks(path); // over what is there
+  terrain->ClearTracks();
+  terrain->LoadTracks(path);
+  const std::vector<TrackStroke> after = terrain->Tracks().Strokes();
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t n = 0; n < before.size(); ++n) {
+    EXPECT_EQ(before[n].name, after[n].name);
+    EXPECT_TRUE(before[n].profile == after[n].profile);
+    ASSERT_EQ(before[n].contacts.size(), after[n].contacts.size()) << n;
+    for (std::size_t i = 0; i < before[n].contacts.size(); ++i) {
+      const TrackContact& a = before[n].contacts[i];
+      const TrackContact& b = after[n].contacts[i];
+      EXPECT_LE((a.place - b.place).norm(), 2e-9); // map coordinates of 4e6 m
+      EXPECT_NEAR(a.sinkage, b.sinkage, 1e-8);
+      EXPECT_NEAR(a.rolled, b.rolled, 1e-12);
+      EXPECT_EQ(std::isnan(a.heading), std::isnan(b.heading));
+      EXPECT_TRUE(std::isnan(a.heading) || std::abs(a.heading - b.heading) < 1e-6);
+    }
+  }
+}
+
+// Written here by hand, with a place of its own in the map: (500030.1, 4199970.0) is 10 m east and
+// 9.9 m south of the middle.
+TEST_F(StreamedTracks, AFileWrittenByHandIsWhatItSays) {
+  const std::string path = folder / "by_hand.geojson";
+  std::ofstream(path) << R"({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"wheel": "rear", "width": 0.3, "wall": 0.05, "sinkage": 0.04},
+     "geometry": {"type": "LineString", "coordinates": [[500030.1, 4199970.0], [500034.1, 4199970.0]]}},
+    {"type": "Feature", "properties": {"wheel": "front", "width": 0.4, "sinkage": [0.02, 0.06],
+       "tread_pitch": 0.5, "tread_depth": 0.1, "rolled": [0, 0]},
+     "geometry": {"type": "LineString", "coordinates": [[500010.1, 4199990.0], [500014.1, 4199990.0]]}}
+  ]})";
+  terrain->LoadTracks(path);
+  EXPECT_EQ(terrain->Tracks().Statistics().strokes, 2u);
+  EXPECT_NEAR(Height(*terrain, 12.0, -9.9), Before(12.0) - 0.04, 1e-6);
+  EXPECT_NEAR(Height(*terrain, 12.0, -9.65), Before(12.0), 1e-6);
+  // Half way; it does not turn, so that its tread's bars stay at depth 0.
+  EXPECT_NEAR(Height(*terrain, -8.0, 10.1), Before(-8.0) - 0.04, 1e-6);
+}
+
+TEST_F(StreamedTracks, FilesThatAreNoTracksAreRefusedAndChangeNothing) {
+  const auto refused = [this](const std::string& text, Error::Kind kind, const std::string& part) {
+    const std::string path = folder / "bad.geojson";
+    std::ofstream(path) << text;
+    try {
+      terrain->LoadTracks(path);
+      ADD_FAILURE() << text << " was accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.GetKind(), kind) << error.what();
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+    EXPECT_TRUE(terrain->Tracks().Empty());
+  };
+  const std::string head = R"({"type": "FeatureCollection", "features": [{"type": "Feature", )";
+  const std::string line =
+      R"("geometry": {"type": "LineString", "coordinates": [[500010, 4199990], [500012, 4199990]]}}]})";
+  refused("", Error::Kind::Corrupt, "bad.geojson");
+  refused("no tracks at all", Error::Kind::Corrupt, "bad.geojson");
+  refused(head + R"("properties": {"sinkage": [0.1, 0.1, 0.1]}, )" + line, Error::Kind::Corrupt,
+          "3 numbers");
+  refused(head + R"("properties": {"width": 0.1}, )" + line, Error::Kind::Corrupt, "sinkage");
+  refused(head + R"("properties": {"sinkage": "deep"}, )" + line, Error::Kind::Corrupt, "sinkage");
+  refused(head + R"("properties": {"sinkage": -1.0}, )" + line, Error::Kind::InvalidArgument,
+          "sinkage");
+  refused(head + R"("properties": {"sinkage": 0.1, "crs": "EPSG:32634"}, )" + line,
+          Error::Kind::InvalidArgument, "34N");
+  refused(head + R"("properties": {"sinkage": 0.1}, "geometry": {"type": "Point",
+      "coordinates": [500010, 4199990]}}]})",
+          Error::Kind::Corrupt, "POINT");
+  EXPECT_THROW(terrain->LoadTracks(folder / "absent.geojson"), Error);
+  EXPECT_THROW(terrain->SaveTracks(folder / "no/such/folder.geojson"), Error);
+}
+
+TEST_F(StreamedTracks, SubdivisionsAndTracksAreRefusedOnABody) {
+  RasterFile file;
+  file.width = 64;
+  file.height = 32;
+  file.crs = "IAU_2015:30100";
+  file.geotransform = {-180.0, 360.0 / 64, 0.0, 90.0, 0.0, -180.0 / 32};
+  file.value = [](int, int, int) { return 0.0; };
+  const std::string path = file.Write(folder / "moon.tif");
+  StreamedTerrainOptions body;
+  body.onBody = true;
+  const auto moon = StreamedTerrain::Open(path, body);
+  EXPECT_THROW(moon->AddTracks({Straight()}), Error);
+  EXPECT_EQ(&moon->Undisturbed(), moon.get());
+  body.subdivisions = 1;
+  EXPECT_THROW(StreamedTerrain::Open(path, body), Error);
+  options.subdivisions = 13;
+  EXPECT_THROW(StreamedTerrain::Open(folder / "slope.tif", options), Error);
+}
+
+} // namespace
