@@ -204,7 +204,7 @@ TEST_F(ClipmapFixture, CoarserRingsStayWithinTheirChords) {
 }
 
 // Nothing but ground is below the horizon: each pixel of another colour is a gap.
-TEST_F(ClipmapFixture, NoGapOpensOnAFlightAndNoPixelJumps) {
+TEST_F(ClipmapFixture, NoGapOpensOnAFlight) {
   AddPlane(4097, Hills, {-51, 51}, false);
   auto view = View(240, 180);
   view->SetBackground({1, 0, 0}, {1, 0, 0});
@@ -221,6 +221,49 @@ TEST_F(ClipmapFixture, NoGapOpensOnAFlightAndNoPixelJumps) {
       ASSERT_FALSE(capture.color[i] == 255 && capture.color[i + 1] == 0)
           << "step " << step << ", pixel " << i / 4 % 240 << ", " << i / 4 / 240;
     }
+  }
+}
+
+// A window that snaps on, and a level that comes or goes with the camera's height, change nothing
+// that is seen: the two pictures a hair's breadth apart on either side are alike.
+TEST_F(ClipmapFixture, NoPixelJumpsWhereWindowsSnapAndLevelsCome) {
+  AddPlane(4097, Hills, {-51, 51}, true);
+  auto view = View(320, 240);
+  const ClipmapGeometry geometry(124);
+  const auto shoot = [&](const Eigen::Vector3d& eye) {
+    LookFrom(eye, eye + Eigen::Vector3d(1.0, 0.3, -0.5));
+    return view->GetCapture({});
+  };
+  const auto compare = [&](const Eigen::Vector3d& before, const Eigen::Vector3d& after,
+                           const std::string& where) {
+    const Capture a = shoot(before);
+    const Capture b = shoot(after);
+    int changed = 0;
+    for (std::size_t i = 0; i < a.color.size(); ++i) {
+      changed += std::abs(a.color[i] - b.color[i]) > 6;
+    }
+    EXPECT_LE(changed, 12) << where; // of 307200: ridges move by a part of a pixel
+  };
+  const double hair = 1e-4; // [m]
+  const double west = -0.5 * Post * 4097;
+  for (const int level : {0, 1, 2, 4, 6}) {
+    // A post on which windows of this and all finer levels snap.
+    const double x = west + Post * (1 << level) * 2.0 * std::round(1000.0 / (1 << level));
+    for (const double height : {70.0, 260.0}) {
+      compare({x - hair, 3.0, height}, {x + hair, 3.0, height},
+              "level " + std::to_string(level) + " snaps at height " + std::to_string(height));
+    }
+  }
+  const auto ground = [&](double x, double y) {
+    const Eigen::Vector3d post = terrain->Placement().ToPosts({x, y, 0.0});
+    return Hills(std::round(post.x()), std::round(post.y()));
+  };
+  const Eigen::Vector2d post = // where the ground's height is a post's, in all levels
+      terrain->Placement().ToScene({2048.0, 2048.0}, 0.0).head<2>();
+  for (const int level : {0, 1, 2, 3}) {
+    const double height = ground(post.x(), post.y()) + geometry.BlendTo() * Post * (1 << level);
+    compare({post.x(), post.y(), height - hair}, {post.x(), post.y(), height + hair},
+            "level " + std::to_string(level) + " goes");
   }
 }
 
