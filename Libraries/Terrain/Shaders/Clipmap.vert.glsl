@@ -99,7 +99,7 @@ void main()
   vec4 here = postAt(windowTexel + post, level);
   vec2 away = abs(at - cameraPost);
   float coarser = clamp((max(max(away.x, away.y), blend.z) - blend.x) * blend.y, 0.0, 1.0);
-  if (coarser > 2.0)
+  if (coarser > 0.0)
   {
     // The coarser surface at this place: a post of it, or the middle of an edge or a diagonal. The
     // lattice's last post is one of every level.
