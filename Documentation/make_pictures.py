@@ -7,6 +7,8 @@ import subprocess
 import sys
 import tempfile
 
+import numpy as np
+
 import dspace
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -40,6 +42,77 @@ def demo(name, seconds, *arguments):
                         str(IMAGES / f"{name}.png")], check=True)
 
 
+# --- Terrain ---------------------------------------------------------------------------------------
+
+SHADES = ("#3b0f70", "#2c56c8", "#1fa5c9", "#3fbf5f", "#e6d44a", "#e5832f", "#c03a2b", "#a98a84", "#f5f2f0")
+
+
+def place(terrain, longitude, latitude, height):
+    return terrain.from_map([[longitude, latitude, height]])[0]
+
+
+def axes_at(point):
+    """East, north and up there on a body."""
+    up = point / np.linalg.norm(point)
+    east = np.cross((0.0, 0.0, 1.0), up)
+    east /= np.linalg.norm(east)
+    return east, np.cross(up, east), up
+
+
+def picture(scene, name, size, eye, target, up, light, intensity, fov_deg, sky=0.05):
+    """light: the direction in which it falls."""
+    scene.lights["sun"].set(direction=tuple(light), intensity=intensity)
+    scene.lights["sky"].set(intensity=sky)
+    scene.add_camera("eye", eye=tuple(eye), target=tuple(target), up=tuple(up), fov_deg=fov_deg, near=10.0)
+    view = scene.add_viewport(size, "eye", samples=3)
+    view.set_background((0.02, 0.02, 0.03))
+    view.save(IMAGES / f"{name}.png")
+
+
+def levels(data):
+    """The levels of a clipmap in false colour: Gale crater, heights doubled."""
+    with dspace.Session() as session:
+        scene = session.scene()
+        terrain = scene.add_terrain(f"{data}/terrain/mars_gale_mola_128ppd_m.tif", mode="clipmap", level_size=60,
+                                    color=(0.8, 0.78, 0.75), vertical_scale=2, vertical_datum="areoid")
+        terrain.set_style(levels=0.65)
+        x, y, _ = place(terrain, 137.75, -5.1, 0.0)
+        eye = (x - 20e3, y - 48e3, terrain.height(x - 20e3, y - 48e3) + 8500)
+        target = (x - 6e3, y - 14e3, terrain.height(x, y) - 9500)
+        picture(scene, "terrain_levels", (640, 400), eye, target, (0, 0, 1), (0.85, 0.2, -0.4), 1.9, 50, 0.08)
+
+
+def mars(scene, data, viking, **settings):
+    if viking:
+        settings.update(image=f"{data}/textures/mars_viking_mdim21_color_2880.jpg", image_crs="IAU_2015:49900",
+                        image_extent=(-180, 90, 180, -90))
+    return scene.add_terrain(f"{data}/terrain/mars_mola_megt90n000cb_4ppd_m.tif", on_body=True, level_size=252,
+                             vertical_datum="areoid", **settings)
+
+
+def whole_mars(data):
+    with dspace.Session() as session:
+        scene = session.scene()
+        terrain = mars(scene, data, True, vertical_scale=1)
+        eye = place(terrain, -80, 10, 8.2e6)
+        east, _, up = axes_at(eye)
+        light = -(0.8 * up - 0.6 * east + (0, 0, 0.25))
+        picture(scene, "terrain_mars", (420, 420), eye, (0, 0, 0), (0, 0, 1), light, 1.6, 36, 0.02)
+
+
+def valles_marineris(data):
+    """By height and textured; heights tripled."""
+    for name, viking in (("terrain_valles_height", False), ("terrain_valles", True)):
+        with dspace.Session() as session:
+            scene = session.scene()
+            terrain = mars(scene, data, viking, vertical_scale=3)
+            if not viking:
+                terrain.set_style(color_by="height", range=(-18000, 24000), colors=SHADES)
+            eye, target = place(terrain, -72, -23, 6.5e5), place(terrain, -70, -11.3, 0)
+            east, north, up = axes_at(target)
+            picture(scene, name, (640, 400), eye, target, up, -(0.5 * up + 0.75 * east + 0.3 * north), 1.7, 52)
+
+
 def main():
     IMAGES.mkdir(exist_ok=True)
     first_picture()
@@ -52,6 +125,10 @@ def main():
              "--vertical-scale", "0.19216", "--pixel-size", "2", "--model", f"{data}/models/rocky7_vrml")
         demo("viper_north_pole", 2, "--terrain", f"{data}/terrain/moon_npole_stereo_33.tif", "--model",
              f"{data}/models/viper_obj")
+    if pathlib.Path(data, "terrain").is_dir():
+        levels(data)
+        whole_mars(data)
+        valles_marineris(data)
 
 
 if __name__ == "__main__":
