@@ -170,13 +170,13 @@ TEST(StreamedTerrain, ALargeRasterIsReadAsItIsAsked) {
   const auto streamed = StreamedTerrain::Open(path);
   EXPECT_FALSE(streamed->HeightRangeIsExact());
   EXPECT_LT(streamed->Pyramid()->Statistics().loads, 4u); // its coarsest level only
-  EXPECT_GT(streamed->ResidentLevel({2000.0, -2000.0}), 0);
+  EXPECT_NE(streamed->ResidentLevel({2000.0, -2000.0}), 0);
   streamed->SampleMap({2000.0, -2000.0});
   EXPECT_EQ(streamed->ResidentLevel({2000.0, -2000.0}), 0);
   EXPECT_EQ(streamed->ResidentLevel({-10.0, -2000.0}), -1);
-  EXPECT_LT(streamed->HeightRange()[0], -60.0);
-  EXPECT_GT(streamed->HeightRange()[1], 60.0);
   const auto grid = GridTerrain::Load(path);
+  EXPECT_LT(streamed->HeightRange()[0], grid->Grid().GetMinimum());
+  EXPECT_GT(streamed->HeightRange()[1], grid->Grid().GetMaximum());
   std::mt19937 random(3);
   std::uniform_real_distribution<double> x(-1850.0, 1850.0);
   int hits = 0;

@@ -19,6 +19,7 @@ namespace {
 constexpr double Degree = M_PI / 180.0;
 constexpr double Departure = 1e-3;          // [m] of a flat cell's middle from the sphere, at most
 constexpr std::int64_t ReadWhole = 4000000; // pixels whose heights are all looked at
+constexpr int Sampled = 512;                // else so many along the raster's longer side
 
 Eigen::Vector2d MiddleOf(const ElevationInfo& info) {
   return info.pixelToMap * Eigen::Vector2d(0.5 * info.window.width, 0.5 * info.window.height);
@@ -156,25 +157,27 @@ void StreamedTerrain::FindHeightRange() {
   if (this->OnBody()) {
     postToScene.linear() = (this->Placement_.Radius() * this->Placement_.Step()).asDiagonal();
   }
-  std::vector<double> heights;
-  int columns = window.width;
-  int rows = window.height;
-  int level = this->Subdivisions_;
-  if (this->HeightRangeIsExact_) {
-    heights = this->Source_->Read();
-  } else {
+  // Pixels, not means: the mean of ups and downs is neither.
+  int factor = 1;
+  while (!this->HeightRangeIsExact_ && std::max(window.width, window.height) / factor > Sampled) {
+    factor *= 2;
+  }
+  std::vector<double> heights =
+      this->Source_->ReadReduced({0, 0, window.width, window.height}, factor);
+  const int columns = 1 + (window.width - 1) / factor;
+  const int rows = 1 + (window.height - 1) / factor;
+  if (!this->HeightRangeIsExact_) {
+    // The first picture's first level; it need not be waited for here.
     const PostLattice& lattice = this->Pyramid_->Lattice();
-    level = lattice.levels - 1;
-    columns = int(lattice.ColumnsAt(level));
-    rows = int(lattice.RowsAt(level));
-    std::vector<float> posts(std::size_t(columns) * rows);
-    this->Pyramid_->Read({level, 0, 0, columns, rows}, posts.data(), this->Deadline_);
-    heights.assign(posts.begin(), posts.end());
+    const int top = lattice.levels - 1;
+    const PostBlock coarsest{top, 0, 0, int(lattice.ColumnsAt(top)), int(lattice.RowsAt(top))};
+    std::vector<float> posts(std::size_t(coarsest.width) * coarsest.height);
+    this->Pyramid_->TryRead(coarsest, posts.data());
     if (std::all_of(heights.begin(), heights.end(), [](double h) { return std::isnan(h); })) {
       return; // there may be heights between
     }
   }
-  postToScene.linear() *= std::ldexp(1.0, level);
+  postToScene.linear() *= std::ldexp(double(factor), this->Subdivisions_);
   const HeightGrid grid(this->GetName(), columns, rows, std::move(heights), postToScene);
   this->HeightRange_ = {grid.GetMinimum(), grid.GetMaximum()};
   Eigen::AlignedBox3d box;
