@@ -80,6 +80,9 @@ public:
   // scene's frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
   void AddTracks(const std::vector<TrackAddition>& additions) const;
   void ClearTracks() const;
+  // See TrackFile.h. What is loaded is added; a wheel of its name goes on with it.
+  void SaveTracks(const std::string& path) const;
+  void LoadTracks(const std::string& path) const;
   const WheelTracks& Tracks() const; // throws Error(Unsupported) on a body
   // The same ground as it was before all wheels; lives as long as this.
   const StreamedTerrain& Undisturbed() const;
