@@ -61,6 +61,12 @@ void GroupPosts::Read(const PostBlock& block, float* heights) const {
   this->ReadUpTo(this->Patches_.size(), block, heights);
 }
 
+bool GroupPosts::Reaches(const Eigen::Vector2d& post, int level) const {
+  // Weights reach two sides beyond a patch, and a cell's posts are one side away.
+  return std::any_of(this->Patches_.begin(), this->Patches_.end(),
+                     [&](const auto& patch) { return patch->Place().Reaches(post, level, 4.0); });
+}
+
 // At posts of the patch near a number of places, so that few of its tiles are read.
 void GroupPosts::Measure(std::size_t index, PatchReport& report) const {
   const Patch& patch = *this->Patches_[index];

@@ -85,6 +85,10 @@ public:
   const PostLattice& GetLattice() const override { return this->Base_->GetLattice(); }
   void Read(const PostBlock& block, float* heights) const override;
 
+  // Whether any patch may change the cell of a level that a place in level 0 is in: elsewhere the
+  // posts of the base are all there is.
+  bool Reaches(const Eigen::Vector2d& post, int level) const;
+
   const GroupReport& Report() const { return this->Report_; }
 
 private:

@@ -263,6 +263,12 @@ void PatchPlace::TakePoles() {
   }
 }
 
+bool PatchPlace::Reaches(const Eigen::Vector2d& post, int level, double sides) const {
+  const Eigen::Vector2d widened = std::ldexp(0.5 * sides, level) * this->Widening_;
+  return this->Inside_ && this->Columns_.Has(this->Unwrapped(post.x()), widened.x()) &&
+         this->Rows_.Has(post.y(), widened.y());
+}
+
 // Posts k..k+size-1, j..j+size-1 of a level, of which those of the block are wanted.
 struct PatchPlace::Square {
   int level = 0;

@@ -36,6 +36,8 @@ public:
   bool Inside() const { return this->Inside_; }
   Eigen::Vector2d PostOf(const Eigen::Vector2d& pixel) const; // level 0, towards the lattice
   double PostSize() const; // BasePixel() for the side between two posts of level 0
+  // Whether any of it lies within `sides` of a level's longer sides from a place in level 0.
+  bool Reaches(const Eigen::Vector2d& post, int level, double sides) const;
   // Pixels of a block's posts, not finite for those that the patch, widened by two sides
   // of the level, does not reach. PROJ is asked at the corners, edges and middles of squares of
   // posts, and what lies between is interpolated where that is within `tolerance` [pixels] at all

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <dspace/Error.h>
 #include <dspace/terrain/ClipmapLevels.h>
@@ -71,11 +72,39 @@ Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
   return (up - toEast * east - toNorth * north).normalized();
 }
 
+const PostSurface& StreamedTerrain::SurfaceAt(const Eigen::Vector2d& post) const {
+  const bool plain =
+      this->Plain_ && !this->Tracked() && !this->Group_->Reaches(post, this->Plain_->Level());
+  return plain ? *this->Plain_ : this->Surface();
+}
+
+// Each surface is asked for all of its places at once.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is a view that is written through
+void StreamedTerrain::HeightsAt(const std::vector<Eigen::Vector2d>& posts,
+                                Eigen::Ref<Eigen::VectorXd> heights) const {
+  std::map<const PostSurface*, std::vector<std::size_t>> parts;
+  for (std::size_t i = 0; i < posts.size(); ++i) {
+    parts[&this->SurfaceAt(posts[i])].push_back(i);
+  }
+  for (const auto& [surface, indices] : parts) {
+    std::vector<Eigen::Vector2d> places;
+    places.reserve(indices.size());
+    for (const std::size_t i : indices) {
+      places.push_back(posts[i]);
+    }
+    const std::vector<std::size_t>& at = indices; // bindings are not captured
+    surface->At(places, [&](std::size_t k, const HeightGrid::Facet& facet) {
+      heights[Eigen::Index(at[k])] =
+          facet.valid ? facet.height : std::numeric_limits<double>::quiet_NaN();
+    });
+  }
+}
+
 // The surface at a place; `vertical_S` is the point of space that was asked for, whose vertical it
 // is found on.
 SurfaceSample StreamedTerrain::SampleAt(const Eigen::Vector2d& post,
                                         const Eigen::Vector3d& vertical_S) const {
-  const HeightGrid::Facet facet = this->Surface().At(post);
+  const HeightGrid::Facet facet = this->SurfaceAt(post).At(post);
   SurfaceSample sample;
   if (!facet.valid) {
     return sample;
@@ -117,9 +146,7 @@ void StreamedTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
                    ? Eigen::Vector2d(none, none)
                    : Eigen::Vector2d(this->Placement_.ToPosts(p_S).head<2>());
   }
-  this->Surface().At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
-    heights[Eigen::Index(i)] = facet.valid ? facet.height : none;
-  });
+  this->HeightsAt(posts, heights);
 }
 
 void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,
@@ -128,10 +155,7 @@ void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,
   for (Eigen::Index i = 0; i < map.rows(); ++i) {
     posts[i] = this->MapToPost(map.row(i));
   }
-  this->Surface().At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
-    heights[Eigen::Index(i)] =
-        facet.valid ? facet.height : std::numeric_limits<double>::quiet_NaN();
-  });
+  this->HeightsAt(posts, heights);
 }
 
 RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,

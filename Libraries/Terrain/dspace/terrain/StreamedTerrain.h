@@ -124,6 +124,10 @@ private:
   std::shared_ptr<const PostSource> WithTracks(std::shared_ptr<const PostSource> source,
                                                const StreamedTerrainOptions& options);
   bool Tracked() const { return this->Tracks_ && !this->Tracks_->Empty(); }
+  // What answers there.
+  const PostSurface& SurfaceAt(const Eigen::Vector2d& post) const;
+  void HeightsAt(const std::vector<Eigen::Vector2d>& posts,
+                 Eigen::Ref<Eigen::VectorXd> heights) const;
   const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
   const SurfaceRay& Ray() const { return this->Tracked() ? *this->TrackedRay_ : *this->Ray_; }
   void FindHeightRange();
@@ -134,6 +138,7 @@ private:
 
   std::shared_ptr<const ElevationSource> Source_;
   std::shared_ptr<const GroupPosts> Group_;
+  std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
   std::unique_ptr<SurfaceRay> Ray_;

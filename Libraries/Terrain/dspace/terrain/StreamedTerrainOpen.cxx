@@ -142,6 +142,10 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   }
   this->Pyramid_ = std::make_shared<ElevationPyramid>(source, options.pyramid);
   this->Surface_ = std::make_unique<PostSurface>(this->Pyramid_, level, poles, options.deadline);
+  if (this->Group_) {
+    this->Plain_ = std::make_unique<PostSurface>(
+        this->Pyramid_, this->Subdivisions_ - (poles ? 1 : 0), poles, options.deadline);
+  }
   this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_);
   if (this->Tracks_) {
     this->Tracked_ = std::make_unique<PostSurface>(this->Pyramid_, 0, poles, options.deadline);
