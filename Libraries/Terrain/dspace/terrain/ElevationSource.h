@@ -25,8 +25,9 @@ struct RasterWindow {
 };
 
 // For rasters that a server sends (/vsicurl/, http://, https://, and mosaics of such). They go
-// before GDAL's own settings (GDAL_HTTP_...). A read under way ends within (retries + 1) times a
-// limit.
+// before GDAL's own settings (GDAL_HTTP_...). A read that fails ends after (retries + 2) times a
+// limit at most, an opening after (retries + 1) times; a pyramid that ends waits for its reads
+// under way.
 struct NetworkLimits {
   double connect = 10.0;   // [s] until a connection stands
   double stall = 10.0;     // [s] with under 100 bytes a second; taken up to whole seconds
