@@ -1,0 +1,145 @@
+// What a style lays over a clipmap, by plain arithmetic.
+
+#include "ClipmapTestSupport.h"
+
+namespace dspace::testing {
+namespace {
+
+// A ramp of greys: 0 to 255 over its range.
+std::shared_ptr<const Image> Greys() {
+  auto image = std::make_shared<Image>();
+  image->name = "greys";
+  image->width = 256;
+  image->height = 1;
+  image->channels = 3;
+  for (int i = 0; i < 256; ++i) {
+    image->pixels.insert(image->pixels.end(), 3, std::uint8_t(i));
+  }
+  return image;
+}
+
+// Seen from straight above, a pixel of 2 m: where each colour must be is plain arithmetic.
+struct StyleFixture : ClipmapFixture {
+  vtkSmartPointer<vtkDspaceViewport> view;
+  static constexpr double Rise = 0.25; // of the ground, to the east
+
+  void SetUp() override {
+    ClipmapFixture::SetUp();
+    AddPlane(
+        1025, [](double c, double) { return Rise * Post * c; }, {0.0, 1025.0 * Rise * Post}, false);
+    Camera camera;
+    camera.name = "camera";
+    camera.projection.kind = Projection::Kind::Orthographic;
+    camera.projection.height = 200.0;
+    camera.projection.nearDistance = 1.0;
+    camera.projection.farDistance = 1e4;
+    camera.mount.X_FC = LookAt("camera", {0, 0, 400}, {0, 0, 0}, {0, 1, 0});
+    scene->SetCamera("main", camera);
+    view = View(100, 100);
+  }
+  Capture With(const ClipmapStyle& style) {
+    terrain->SetStyle(style);
+    return view->GetCapture({});
+  }
+  // Of a pixel's centre: scene x, and the ground's height there.
+  static double XOf(int x) { return 2.0 * (x + 0.5) - 100.0; }
+  static double HeightOf(int x) { return Rise * (XOf(x) + 0.5 * Post * 1025); }
+  static int Grey(const Capture& capture, int x, int y) {
+    return capture.color[4 * (std::size_t(y) * capture.width + x)];
+  }
+};
+
+TEST_F(StyleFixture, ARampByHeightShowsHeights) {
+  ClipmapStyle style;
+  style.ramp.emplace();
+  style.ramp->image = Greys();
+  style.ramp->range = {HeightOf(0) - 10.0, HeightOf(99) + 10.0};
+  const Capture capture = With(style);
+  Keep(capture, "ramp");
+  for (int x = 0; x < 100; ++x) {
+    const double at =
+        (HeightOf(x) - style.ramp->range[0]) / (style.ramp->range[1] - style.ramp->range[0]);
+    EXPECT_NEAR(Grey(capture, x, 50), 256.0 * at - 0.5, 1.5) << x;
+  }
+}
+
+TEST_F(StyleFixture, ARampBySlopeShowsDegrees) {
+  ClipmapStyle style;
+  style.ramp.emplace();
+  style.ramp->by = ClipmapStyle::Ramp::By::Slope;
+  style.ramp->image = Greys();
+  style.ramp->range = {0.0, 90.0};
+  const Capture capture = With(style);
+  const double degrees = std::atan(Rise) * 180.0 / M_PI;
+  EXPECT_NEAR(Grey(capture, 20, 50), 256.0 * degrees / 90.0 - 0.5, 1.5);
+  EXPECT_NEAR(Grey(capture, 77, 12), 256.0 * degrees / 90.0 - 0.5, 1.5);
+  style.ramp->range = {0.0, 20.0};
+  EXPECT_NEAR(Grey(With(style), 20, 50), 256.0 * degrees / 20.0 - 0.5, 1.5);
+}
+
+TEST_F(StyleFixture, ContoursAndGridLinesLieAtTheirValues) {
+  ClipmapStyle style;
+  style.contours.emplace();
+  style.contours->interval = 10.0; // [m]: every 40 m of map, 20 pixels
+  const Capture contours = With(style);
+  Keep(contours, "contours");
+  int lines = 0;
+  for (int x = 0; x < 100; ++x) {
+    const double away = std::abs(std::remainder(HeightOf(x), 10.0)) / Rise / 2.0; // pixels
+    if (away < 0.3) {
+      EXPECT_LT(Grey(contours, x, 30), 130) << x;
+      ++lines;
+    } else if (away > 1.2) {
+      EXPECT_EQ(Grey(contours, x, 30), Grey(contours, 99, 99)) << x;
+    }
+  }
+  EXPECT_GE(lines, 3);
+
+  ClipmapStyle grid;
+  grid.grid.emplace();
+  grid.grid->interval = 50.0; // posts here: 100 m, 50 pixels
+  grid.grid->color = {1, 0, 0};
+  const Capture squares = With(grid);
+  Keep(squares, "grid");
+  const Eigen::Affine2d toPosts = terrain->Placement().PostToScene().inverse();
+  int crossings = 0;
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      const Eigen::Vector2d post = toPosts * Eigen::Vector2d(XOf(x), -XOf(y));
+      const double away = std::min(std::abs(std::remainder(post.x(), 50.0)),
+                                   std::abs(std::remainder(post.y(), 50.0))); // posts are pixels
+      const std::size_t at = 4 * (std::size_t(y) * 100 + x);
+      const bool red = squares.color[at] > 180 && squares.color[at + 1] < 140;
+      if (away < 0.3) {
+        EXPECT_TRUE(red) << x << ", " << y;
+        ++crossings;
+      } else if (away > 1.2) {
+        EXPECT_FALSE(red) << x << ", " << y;
+      }
+    }
+  }
+  EXPECT_GT(crossings, 100);
+}
+
+TEST_F(StyleFixture, AStyleStacksGoesAndIsRefusedWhole) {
+  const Capture plain = view->GetCapture({});
+  ClipmapStyle style;
+  style.ramp.emplace();
+  style.ramp->image = Greys();
+  style.ramp->range = {HeightOf(0), HeightOf(99)};
+  style.ramp->opacity = 0.0; // seen through
+  EXPECT_EQ(With(style).color, plain.color);
+  style.levels = 1.0;
+  EXPECT_NE(With(style).color, plain.color);
+  EXPECT_EQ(With(ClipmapStyle()).color, plain.color);
+  style.ramp->opacity = 1.5;
+  EXPECT_THROW(terrain->SetStyle(style), Error);
+  style.ramp->opacity = 0.5;
+  style.contours.emplace();
+  style.contours->interval = 0.0;
+  EXPECT_THROW(terrain->SetStyle(style), Error);
+  EXPECT_TRUE(terrain->Style().Empty());
+}
+
+} // namespace
+} // namespace dspace::testing
