@@ -200,6 +200,25 @@ def test_the_body_is_a_disc_without_gaps(tmp_path):
     assert (picture[40:50, 70:90] > 0).any(axis=2).all()
 
 
+def test_patches_lie_on_it(tmp_path):
+    """A level patch 7 m above level ground: two colours, and between them the margin's."""
+    base = write_raster(tmp_path / "base.tif", np.ones((100, 100), int))
+    fine = gdal.GetDriverByName("GTiff").Create(str(tmp_path / "fine.tif"), 100, 100, 1, gdal.GDT_Int16)
+    fine.SetGeoTransform((160, 0.5, 0, 420, 0, -0.5))
+    fine.GetRasterBand(1).WriteArray(np.full((100, 100), 4))
+    del fine  # writes it
+    given = f"{tmp_path / 'fine.tif'},vertical_scale=2,margin=5"
+    found, = info(base, "--patch", given)
+    assert found["patches"][0]["used"] and found["patches"][0]["height_range"] == [8, 8]
+    assert found["auto_mode"] == "clipmap" and found["statistics"]["maximum_m"] == 1
+    picture, _ = render(tmp_path / "p.png", base, "--patch", given, "--color-by-height", "--size", "198x198",
+                        "--sun", "0,90")
+    # The picture's columns are metres from x = 101 on.
+    inside, outside = picture[90:110, 75:95].astype(int), picture[90:110, 5:45].astype(int)
+    assert np.ptp(inside, axis=(0, 1)).max() <= 1 and np.ptp(outside, axis=(0, 1)).max() <= 1
+    assert np.abs(inside[0, 0] - outside[0, 0]).max() > 50
+
+
 # --- What is refused -------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("arguments, code, text", [
@@ -213,6 +232,10 @@ def test_the_body_is_a_disc_without_gaps(tmp_path):
     (["terrain", "info", FIELD, "--vertical-scale", "0"], 1, "scale"),
     (["terrain", "info", FIELD, "--crs", "nonsense"], 1, "nonsense"),
     (["terrain", "info", FIELD, "--band", "2"], 1, "band"),
+    (["terrain", "info", FIELD, "--patch", ",margin=3"], 2, "names no file"),
+    (["terrain", "info", FIELD, "--patch", "a.tif,margin=x"], 2, "margin"),
+    (["terrain", "info", FIELD, "--patch", "/no/such.tif"], 1, "/no/such.tif"),
+    (["terrain", "info", FIELD, FIELD, "--patch", "a.tif"], 1, "--patch"),
     (["terrain", "render", FIELD], 2, "--out"),
     (["terrain", "render", FIELD, "--out", "/no/such/a.png"], 1, "/no/such"),
     (["terrain", "render", FIELD, "--out", "a.bmp"], 1, "a.bmp"),

@@ -4,6 +4,10 @@ import math
 
 from dspace.command_line import terrain_info, terrain_render
 
+# What a patch's keys hold.
+PATCH = {"band": int, "crs": str, "vertical_datum": str, "vertical_scale": float, "vertical_offset": float,
+         "pixel_size": float, "margin": float}
+
 
 def add_arguments(parser):
     commands = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
@@ -48,6 +52,9 @@ def add_raster(parser):
     parser.add_argument("--vertical-scale", type=float, metavar="S", help="metres a unit of height")
     parser.add_argument("--vertical-offset", type=float, metavar="M", help="metres added to them")
     parser.add_argument("--pixel-size", type=float, metavar="P", help="map units, without georeference")
+    parser.add_argument("--patch", type=patch, action="append", dest="patches", metavar="PATH[,KEY=VALUE...]",
+                        help="a raster of higher resolution that lies on FILE, in its own CRS, blended over a "
+                        f"margin; keys: {', '.join(PATCH)}; may be given several times")
     parser.add_argument("--level-size", type=int, metavar="N",
                         help="cells a side of a clipmap's levels (info 124, render 252)")
     parser.add_argument("--byte-budget", type=int, metavar="BYTES", help="of tiles in memory (256 MiB)")
@@ -90,3 +97,22 @@ def fov(text):
     if not 0.001 <= value <= 170:
         raise argparse.ArgumentTypeError(f"'{text}'; accepted: 0.001 to 170 degrees")
     return value
+
+
+def patch(text):
+    """A dict that add_terrain's `patches` takes; commas without a key belong to the path or CRS."""
+    found = {"path": ""}
+    last = "path"
+    for number, part in enumerate(text.split(",")):
+        key, equals, value = part.partition("=")
+        if number and equals and key in PATCH:
+            found[key], last = value, key
+        else:
+            found[last] += ("," if number else "") + part
+    try:
+        values = {key: PATCH.get(key, str)(value) for key, value in found.items()}
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: PATH and KEY=VALUE of {', '.join(PATCH)}") from None
+    if not values["path"]:
+        raise argparse.ArgumentTypeError(f"'{text}' names no file; accepted: PATH[,KEY=VALUE...]")
+    return values

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 
 from dspace.command_line import Failed, tell
-from dspace.command_line.terrain_rasters import add, degrees, gdal_modules, lines
+from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, lines
 
 MESH_PIXELS = 4_000_000  # what mode "auto" draws as triangles
 STATISTICS_PIXELS = 4_000_000  # more are not read for statistics
@@ -15,6 +15,7 @@ TILE = 128
 
 def run(options):
     import dspace
+    check(options)
     failed = 0
     found = []
     with dspace.Session() as session:
@@ -27,9 +28,18 @@ def run(options):
             if not options.json:
                 print(("\n" if len(found) > 1 else "") + as_text(found[-1]))
     if options.json:
-        json.dump(found, sys.stdout, indent=2, ensure_ascii=False, allow_nan=False)
+        json.dump(finite(found), sys.stdout, indent=2, ensure_ascii=False, allow_nan=False)
         print()
     return failed
+
+
+def finite(value):
+    """With null for what JSON has no number for."""
+    if isinstance(value, dict):
+        return {key: finite(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def describe(scene, path, options):
@@ -63,7 +73,9 @@ def describe(scene, path, options):
         "statistics": statistics(data, band, info),
         "plane": pyramid(info, options),
         "body": on_body(dspace, scene, path, options),
-        "auto_mode": "triangles" if data.RasterXSize * data.RasterYSize <= MESH_PIXELS else "clipmap",
+        "patches": terrain.patches,
+        "auto_mode": ("triangles" if data.RasterXSize * data.RasterYSize <= MESH_PIXELS and not options.patches
+                      else "clipmap"),
         "warnings": warned,
     }
     return found
@@ -203,8 +215,16 @@ def as_text(found):
         ("tiles", f"{TILE} x {TILE} posts of 4 bytes; all pixels {mebibytes(found['plane']['bytes_of_all_tiles'])}, "
                   f"at most {mebibytes(found['plane']['byte_budget'])} of them in memory"),
     ]
+    rows += [("patch", patch_text(patch)) for patch in found["patches"]]
     rows += [("warning", warning) for warning in found["warnings"]]
     return lines(found["path"], rows)
+
+
+def patch_text(patch):
+    low, high = patch["height_range"]
+    return [f"{patch['name']}: a pixel is {patch['pixel_size']:.6g} m, {low:.6g} to {high:.6g} m, blended over "
+            f"{patch['margin']:.6g} m" if patch["used"] else f"{patch['name']}: adds nothing",
+            f"drawn within {patch['greatest_error']:.3g} m of its own posts (rms {patch['rms_error']:.3g} m)"]
 
 
 def span(pair, name):

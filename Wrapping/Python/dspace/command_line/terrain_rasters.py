@@ -4,7 +4,7 @@ import warnings
 from dspace.command_line import Failed
 
 RASTER = ("band", "crs", "vertical_datum", "vertical_scale", "vertical_offset", "pixel_size", "level_size",
-          "byte_budget", "deadline")
+          "byte_budget", "deadline", "patches")
 
 
 def gdal_modules():
@@ -15,6 +15,12 @@ def gdal_modules():
     gdal.UseExceptions()
     osr.UseExceptions()
     return gdal, osr
+
+
+def check(options):
+    """What no single argument is wrong with."""
+    if options.patches and len(options.files) > 1:
+        raise Failed(f"--patch is given with {len(options.files)} files; accepted: patches on one")
 
 
 def add(scene, path, options, **more):

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 
 from dspace.command_line import Failed
-from dspace.command_line.terrain_rasters import add, degrees, gdal_modules
+from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules
 from dspace.command_line.terrain_map import draw_disc, draw_map
 
 LONGER_SIDE = 1024
@@ -16,6 +16,7 @@ SKY = (0.0, 0.0, 0.0)
 
 def run(options):
     import dspace
+    check(options)
     out = pathlib.Path(options.out)
     if out.suffix.lower() not in (".png", ".jpg", ".jpeg", ".tif", ".tiff"):
         raise Failed(f"'{out}': the picture's format is not known; accepted: .png, .jpg, .tif")
