@@ -33,7 +33,7 @@ def add_arguments(parser):
     render.add_argument("--image-extent", type=numbers(4, "LEFT,TOP,RIGHT,BOTTOM"), metavar="L,T,R,B",
                         help="of the image in map coordinates, where its file does not say")
     render.add_argument("--sun", type=sun, default=(315.0, 45.0), metavar="AZ,EL",
-                        help="degrees clockwise from north and above the horizon (default 315,45)")
+                        help="degrees clockwise from north and above the horizon, at the target or the middle (315,45)")
     render.add_argument("--eye", type=numbers(3, "LON,LAT,HEIGHT"), metavar="LON,LAT,HEIGHT",
                         help="of a perspective view, height in metres above the vertical datum; without a "
                         "CRS map x,y,height")

@@ -28,7 +28,7 @@ def run(options):
     with dspace.Session() as session:
         scene = session.scene()
         ground = Ground(scene, options)
-        set_sun(scene, ground, options.sun)
+        set_sun(scene, ground, options)
         if options.view == "perspective":
             picture, told = draw_perspective(session, scene, ground, options)
         else:
@@ -145,11 +145,12 @@ def map_extent(data, options):
     return x.min(), x.max(), y.min(), y.max()
 
 
-def set_sun(scene, ground, sun):
-    """At the middle of the ground."""
-    azimuth, elevation = np.radians(sun)
+def set_sun(scene, ground, options):
+    """Its angles are those at the target, else at the middle of the ground."""
+    place = ground.place((*ground.middle, 0.0)) if options.target is None else ground.place_of_degrees(options.target)
+    azimuth, elevation = np.radians(options.sun)
     toward = np.array([np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation),
-                       np.sin(elevation)]) @ ground.axes(ground.place((*ground.middle, 0.0)))
+                       np.sin(elevation)]) @ ground.axes(place)
     scene.lights["sun"].set(direction=tuple(-toward), intensity=1.3)
     scene.lights["sky"].set(intensity=0.06)
 
