@@ -249,7 +249,7 @@ TEST(DamagedRaster, AnEmptyRasterIsNaNAtEveryLevel) {
   const auto source = std::make_shared<ElevationSource>(file.Write(folder / "empty.tif"));
   ElevationPyramid pyramid(std::make_shared<RasterPosts>(source));
   for (int level = 0; level < pyramid.Lattice().levels; ++level) {
-    std::vector<float> heights(60 * 40, 0.0f);
+    std::vector<float> heights(std::size_t(60) * 40, 0.0f);
     pyramid.Read({level, 0, 0, 60, 40}, heights.data());
     for (const float h : heights) {
       ASSERT_TRUE(std::isnan(h)) << level;

@@ -238,8 +238,8 @@ TEST_F(Remote, TheCoarserLevelStaysAndTheFinerComesLater) {
     ElevationPyramid pyramid(std::make_shared<RasterPosts>(source), options);
     const PostBlock coarse{4, 0, 0, 64, 64}; // from an overview
     const PostBlock fine{0, 700, 700, 50, 50};
-    std::vector<float> far(64 * 64);
-    std::vector<float> near(50 * 50, -1.0f);
+    std::vector<float> far(std::size_t(64) * 64);
+    std::vector<float> near(std::size_t(50) * 50, -1.0f);
     pyramid.Read(coarse, far.data());
     const std::vector<float> before = far;
     server.mode = mode;
@@ -249,7 +249,7 @@ TEST_F(Remote, TheCoarserLevelStaysAndTheFinerComesLater) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     } while (pyramid.Statistics().failures < 2);
     EXPECT_EQ(far, before);
-    EXPECT_EQ(near, std::vector<float>(50 * 50, -1.0f));
+    EXPECT_EQ(near, std::vector<float>(std::size_t(50) * 50, -1.0f));
     const std::string told = pyramid.Statistics().lastFailure;
     EXPECT_NE(told.find(url), std::string::npos) << told;
     EXPECT_TRUE(mode != Mode::Busy || told.find("503") != std::string::npos) << told;
