@@ -85,6 +85,12 @@ uniform mat2 postGrid;
 #endif
 out vec4 styleAt;
 flat out int levelShown;
+#ifdef DSPACE_DETAILS
+uniform vec4 originDetail; // of two textures: tiles from one near the camera on
+uniform mat2 postDetail0;
+uniform mat2 postDetail1;
+out vec4 detailAt;
+#endif
 #endif
 
 vec4 postAt(ivec2 texel, int layer)
@@ -194,6 +200,9 @@ void main()
   styleAt.zw = originGrid + postGrid * place;
 #endif
   levelShown = coarser < 1.0 ? level : level + 1; // where two levels overlap both are the coarser
+#endif
+#ifdef DSPACE_DETAILS
+  detailAt = originDetail + vec4(postDetail0 * place, postDetail1 * place);
 #endif
 #ifdef DSPACE_HOLES
   hole = here.w > 0.0 ? 1.0 : 0.0;

@@ -2,6 +2,28 @@
 in vec4 styleAt; // height [m], slope [deg], grid lines along columns and rows (whole at a line)
 flat in int levelShown;
 
+#ifdef DSPACE_DETAILS
+in vec4 detailAt; // tiles
+uniform sampler2D detailTexture0;
+uniform sampler2D detailTexture1;
+uniform vec3 detailMean0; // linear light
+uniform vec3 detailMean1;
+uniform vec4 detailRange0; // slopes [deg], heights [m]
+uniform vec4 detailRange1;
+uniform vec4 detailLook; // opacities, softness of the heights' ends [m]
+
+float within(float value, vec2 range, float soft)
+{
+  return smoothstep(range.x - soft, range.x + soft, value) *
+    (1.0 - smoothstep(range.y - soft, range.y + soft, value));
+}
+
+vec3 detailed(vec3 color, vec3 structure, vec3 mean, vec4 range, float opacity, float soft)
+{
+  float weight = opacity * within(styleAt.y, range.xy, 2.0) * within(styleAt.x, range.zw, soft);
+  return color * mix(vec3(1.0), structure / mean, weight);
+}
+#endif
 #ifdef DSPACE_RAMP
 uniform sampler2D rampTexture;
 uniform vec4 ramp; // value of its left edge, 1 / range, opacity, 0: by height, 1: by slope
@@ -63,6 +85,14 @@ vec4 mixedColor(vec4 color)
   vec2 otherY = dFdy(other);
   bool jump = dot(dx, dx) + dot(dy, dy) > dot(otherX, otherX) + dot(otherY, otherY);
   color *= textureGrad(colorTexture, t, jump ? otherX : dx, jump ? otherY : dy);
+#endif
+#ifdef DSPACE_DETAILS
+  color.rgb = detailed(color.rgb, texture(detailTexture0, detailAt.xy).rgb, detailMean0, detailRange0,
+    detailLook.x, detailLook.z);
+#if DSPACE_DETAILS > 1
+  color.rgb = detailed(color.rgb, texture(detailTexture1, detailAt.zw).rgb, detailMean1, detailRange1,
+    detailLook.y, detailLook.w);
+#endif
 #endif
 #ifdef DSPACE_RAMP
   float value = ramp.w == 0.0 ? styleAt.x : styleAt.y;

@@ -121,6 +121,66 @@ TEST_F(StyleFixture, ContoursAndGridLinesLieAtTheirValues) {
   EXPECT_GT(crossings, 100);
 }
 
+// Texels of 20 m, ten pixels.
+TEST_F(StyleFixture, DetailsTileTheMapWhereTheyAreWanted) {
+  auto image = std::make_shared<Image>();
+  image->name = "four greys";
+  image->width = image->height = 2;
+  image->channels = 1;
+  image->pixels = {60, 200, 120, 250}; // the top row first
+  const auto linear = [](double v) {
+    v /= 255.0;
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  };
+  double mean = 0.0;
+  for (const std::uint8_t v : image->pixels) {
+    mean += 0.25 * linear(v);
+  }
+  ClipmapStyle style;
+  style.details.resize(1);
+  style.details[0].image = image;
+  style.details[0].size = 40.0;
+  style.details[0].opacity = 1.0;
+  const Capture plain = view->GetCapture({});
+  const Capture capture = With(style);
+  Keep(capture, "details");
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      // In texels from the middle of one, of the tile whose corner is the scene's origin; row 0 of an
+      // image is its top. Between the middles of texels their values are mixed.
+      const double u = XOf(x) / 20.0 - 0.5;
+      const double v = -XOf(y) / 20.0 - 0.5;
+      double structure = 0.0;
+      for (const int j : {0, 1}) {
+        for (const int i : {0, 1}) {
+          const int column = (int(std::floor(u)) + i) & 1;
+          const int row = 1 - ((int(std::floor(v)) + j) & 1);
+          structure += (i ? u - std::floor(u) : 1.0 - u + std::floor(u)) *
+                       (j ? v - std::floor(v) : 1.0 - v + std::floor(v)) *
+                       linear(image->pixels[2 * row + column]);
+        }
+      }
+      const double expected = std::min(linear(Grey(plain, x, y)) * structure / mean, 1.0);
+      ASSERT_NEAR(linear(Grey(capture, x, y)), expected, 0.012) << x << ", " << y;
+    }
+  }
+
+  const double degrees = std::atan(Rise) * 180.0 / M_PI;
+  style.details[0].slopes = {degrees + 5.0, 90.0}; // steeper than all of it
+  EXPECT_EQ(With(style).color, plain.color);
+  style.details[0].slopes = {degrees - 5.0, degrees + 5.0};
+  EXPECT_EQ(With(style).color, capture.color);
+  style.details[0].heights = {HeightOf(50), HeightOf(50) + 1e4}; // the eastern half, softly
+  style.details[0].heights[1] = HeightOf(50) + 100.0;
+  const Capture half = With(style);
+  for (int y = 0; y < 100; ++y) {
+    EXPECT_EQ(Grey(half, 20, y), Grey(plain, 20, y));
+    EXPECT_EQ(Grey(half, 80, y), Grey(capture, 80, y));
+  }
+  style.details.resize(3, style.details[0]);
+  EXPECT_THROW(terrain->SetStyle(style), Error);
+}
+
 TEST_F(StyleFixture, AStyleStacksGoesAndIsRefusedWhole) {
   const Capture plain = view->GetCapture({});
   ClipmapStyle style;

@@ -27,6 +27,24 @@ void CheckLines(const std::string& terrain, const std::string& what,
 } // namespace
 
 void ClipmapStyle::Check(const std::string& terrain) const {
+  if (this->details.size() > Detail::Most) {
+    Refuse(terrain, std::to_string(this->details.size()) + " details are given; accepted: up to " +
+                        std::to_string(Detail::Most));
+  }
+  for (const Detail& detail : this->details) {
+    if (!detail.image || detail.image->width < 1 || detail.image->height < 1) {
+      Refuse(terrain, "a detail has no image");
+    }
+    Require(detail.size >= 1e-3 && detail.size <= 1e6, terrain, "the size of a detail", detail.size,
+            "1e-3 to 1e6 m");
+    for (const auto& [low, high] : {detail.slopes, detail.heights}) {
+      if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) {
+        Refuse(terrain, "a detail's range is " + NumberText(low) + " to " + NumberText(high) +
+                            "; accepted: finite, the first the lesser");
+      }
+    }
+    CheckOpacity(terrain, "a detail", detail.opacity);
+  }
   if (this->ramp) {
     if (!this->ramp->image) {
       Refuse(terrain, "its ramp has no colours");

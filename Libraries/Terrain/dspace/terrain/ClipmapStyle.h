@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <dspace/import/Model.h>
 
@@ -13,6 +14,16 @@ namespace dspace {
 
 // Stacked in this order, each with its opacity (0 to 1). Colours are sRGB, 0 to 1.
 struct ClipmapStyle {
+  // A tiling texture that adds structure closer than the posts: the colour times the texture's over
+  // its mean, where slope and height are within their ranges (soft over 2 degrees and a fiftieth of
+  XX struct Detail {
+    static constexpr std::size_t Most = 2;
+    std::shared_ptr<const Image> image;
+    double size = 1.0;                           // [m] a tile's side, 1e-3 to 1e6
+    std::array<double, 2> slopes = {0, 90};      // [deg]
+    std::array<double, 2> heights = {-1e9, 1e9}; // [m] above the vertical datum
+    double opacity = 0.5;
+  };
   struct Ramp {
     enum class By { Height, Slope }; // [m] above the vertical datum; [deg] from level
     By by = By::Height;
@@ -26,12 +37,13 @@ struct ClipmapStyle {
     std::array<double, 3> color = {0, 0, 0};
     double opacity = 1.0;
   };
+  std::vector<Detail> details; // at most Detail::Most
   std::optional<Ramp> ramp;
   std::optional<double> levels; // opacity of a colour for each clipmap level
   std::optional<Lines> contours;
   std::optional<Lines> grid; // along the map's axes
 
-  bool Empty() const { return !ramp && !levels && !contours && !grid; }
+  bool Empty() const { return details.empty() && !ramp && !levels && !contours && !grid; }
   // Throws Error(InvalidArgument) naming `terrain` and the value.
   void Check(const std::string& terrain) const;
 };

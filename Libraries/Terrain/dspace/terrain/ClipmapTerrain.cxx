@@ -29,6 +29,24 @@ BoundingSphere BoundsOf(const PostLattice& lattice, const PostPlacement& placeme
   return sphere;
 }
 
+// IEC 61966-2-1.
+double Linear(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+// Of all pixels, in linear light.
+Eigen::Vector3d MeanOf(const Image& image) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const std::size_t count = std::size_t(image.width) * image.height;
+  const auto channels = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum[Eigen::Index(k)] += Linear(image.pixels[i * channels + (channels < 3 ? 0 : k)] / 255.0);
+    }
+  }
+  return (sum / double(count)).cwiseMax(1e-4);
+}
+
 } // namespace
 
 ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
@@ -79,6 +97,15 @@ std::size_t ClipmapTerrain::ChartAt(const Eigen::Vector3d& p_S) const {
 
 void ClipmapTerrain::SetStyle(const ClipmapStyle& style) {
   style.Check(this->Pyramid()->Source().GetName());
+  if (!style.details.empty() && this->Placement().OnBody()) {
+    throw Error(Error::Kind::Unsupported, this->Pyramid()->Source().GetName(),
+                "details tile a plane; accepted on a body: none");
+  }
+  std::vector<Eigen::Vector3d> means;
+  for (const ClipmapStyle::Detail& detail : style.details) {
+    means.push_back(MeanOf(*detail.image));
+  }
+  this->DetailMeans_ = std::move(means);
   this->Style_ = style;
   ++this->StyleRevision_;
 }

@@ -43,9 +43,12 @@ public:
   BoundingSphere Bounds() const override { return this->Bounds_; }
   std::uint64_t Revision() const override;
 
-  // May change at any time between two pictures. Throws what ClipmapStyle::Check throws.
+  // May change at any time between two pictures. Throws what ClipmapStyle::Check throws, and
+  // Error(Unsupported) for details on a body.
   void SetStyle(const ClipmapStyle& style);
   const ClipmapStyle& Style() const { return this->Style_; }
+  // Mean colours of the style's details, linear light.
+  const std::vector<Eigen::Vector3d>& DetailMeans() const { return this->DetailMeans_; }
 
   // The terrain's own, which comes first, then the poles'.
   const std::vector<ClipmapChart>& Charts() const { return this->Charts_; }
@@ -60,6 +63,7 @@ private:
   ClipmapOptions Options_;
   BoundingSphere Bounds_;
   ClipmapStyle Style_;
+  std::vector<Eigen::Vector3d> DetailMeans_;
   std::uint64_t StyleRevision_ = 0;
 };
 

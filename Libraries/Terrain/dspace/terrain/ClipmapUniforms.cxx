@@ -68,6 +68,9 @@ std::string ClipmapUniforms::Defines(const PostPlacement& placement, const Clipm
     defines += "#define DSPACE_POLE\n";
   }
   if (style) {
+    if (!style->details.empty() && placement.GetKind() == PostPlacement::Kind::Plane) {
+      defines += "#define DSPACE_DETAILS " + std::to_string(style->details.size()) + "\n";
+    }
     defines += style->ramp ? "#define DSPACE_RAMP\n" : "";
     defines += style->levels ? "#define DSPACE_LEVELS\n" : "";
     defines += style->contours ? "#define DSPACE_CONTOURS\n" : "";
@@ -89,9 +92,33 @@ void ClipmapUniforms::SetLook(const GraphicsObject& object) const {
   this->Program_->SetUniform3f("objectSurface", surface);
 }
 
+void ClipmapUniforms::SetDetails(const CustomDrawing& drawing) const {
+  const std::vector<ClipmapStyle::Detail>& details = this->Terrain_.Style().details;
+  float look[4] = {0, 0, 0, 0};
+  for (std::size_t k = 0; k < details.size(); ++k) {
+    const ClipmapStyle::Detail& detail = details[k];
+    const std::string number = std::to_string(k);
+    // Units of peeling, which has not begun.
+    const int unit = k == 0 ? OpaqueDepthUnit : PeeledDepthUnit;
+    BindTextureUnit(drawing.window, unit, GL_TEXTURE_2D,
+                    drawing.store.TextureOf(detail.image, true));
+    this->Program_->SetUniformi(("detailTexture" + number).c_str(), unit);
+    Set(this->Program_, ("detailMean" + number).c_str(), this->Terrain_.DetailMeans()[k]);
+    const float range[4] = {float(detail.slopes[0]), float(detail.slopes[1]),
+                            float(detail.heights[0]), float(detail.heights[1])};
+    this->Program_->SetUniform4f(("detailRange" + number).c_str(), range);
+    look[k] = float(detail.opacity);
+    look[2 + k] = float(0.02 * (detail.heights[1] - detail.heights[0]));
+  }
+  this->Program_->SetUniform4f("detailLook", look);
+}
+
 void ClipmapUniforms::SetStyle(const CustomDrawing& drawing) const {
   const ClipmapStyle& style = this->Terrain_.Style();
   vtkShaderProgram* program = this->Program_;
+  if (program->IsUniformUsed("detailLook")) {
+    this->SetDetails(drawing);
+  }
   const double pixels = 0.5 * drawing.samples; // of a line's half, in samples
   if (style.ramp) {
     const auto [low, high] = style.ramp->range;
@@ -214,6 +241,21 @@ void ClipmapUniforms::SetMaps(int level, const Eigen::Vector2d& first) const {
     Set(this->Program_, "originGrid",
         Eigen::Vector2d(lines * Eigen::Vector2d(first * step) - near));
     Set(this->Program_, "postGrid", Eigen::Matrix2d(lines.linear() * step));
+  }
+  if (this->Program_->IsUniformUsed("originDetail")) {
+    const std::vector<ClipmapStyle::Detail>& details = this->Terrain_.Style().details;
+    float origin[4] = {0, 0, 0, 0};
+    for (std::size_t k = 0; k < details.size(); ++k) {
+      const Eigen::Affine2d tiles =
+          Eigen::Scaling(1.0 / details[k].size) * this->Placement_.PostToScene();
+      const Eigen::Vector2d near = (tiles * this->State_.place).array().floor();
+      const Eigen::Vector2d at = tiles * Eigen::Vector2d(first * step) - near;
+      origin[2 * k] = float(at.x());
+      origin[2 * k + 1] = float(at.y());
+      const std::string name = "postDetail" + std::to_string(k);
+      Set(this->Program_, name.c_str(), Eigen::Matrix2d(tiles.linear() * step));
+    }
+    this->Program_->SetUniform4f("originDetail", origin);
   }
   if (this->Program_->IsUniformUsed("postTexture")) {
     const Eigen::Affine2d& map = this->Terrain_.Options().postToTexture;

@@ -41,6 +41,7 @@ public:
   void SetLevel(int level) const;
 
 private:
+  void SetDetails(const CustomDrawing& drawing) const;
   void SetExtent(int level, const Eigen::Vector2d& first) const;
   void SetMaps(int level, const Eigen::Vector2d& first) const;
 
