@@ -1,39 +1,14 @@
-"""Clipmaps through Python: what they answer and draw against triangles, on a plane and on a body."""
-import os
-import pathlib
-
+"""Clipmaps on a plane through Python: what they answer and draw against triangles, and refusals."""
 import numpy as np
 import pytest
 
 import dspace
 from dspace.rover import Path, load_vehicle
+from terrain_support import FIELD, ROOT, between_posts, gdal, real, write_raster
 
-gdal = pytest.importorskip("osgeo.gdal")  # an independent reader
-gdal.UseExceptions()
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-FIELD = ROOT / "Data/field/field.tif"
-MARS = "mars_mola_megt90n000cb_4ppd_m.tif"
-MARS_RADIUS = 3396190.0
 RASTERS = {"mars_gale_mola_128ppd_m.tif": {}, "moon_npole_stereo_33.tif": {},
            "moon_apollo15_nac_dtm_257.png": {"vertical_scale": 49 / 255, "pixel_size": 2}}
 SIZE = (320, 240)
-
-
-def real(name):
-    path = pathlib.Path(os.environ.get("DSPACE_DATA") or "/nonexistent") / "terrain" / name
-    if not path.exists():
-        pytest.skip(f"real data absent: set DSPACE_DATA to the folder that has terrain/{name}")
-    return path
-
-
-def between_posts(z, c, r):
-    """Heights at places (c, r) in posts: two triangles a cell, the diagonal from the north-west to
-    the south-east post."""
-    i = np.clip(np.floor(c).astype(int), 0, z.shape[1] - 2)
-    j = np.clip(np.floor(r).astype(int), 0, z.shape[0] - 2)
-    u, v = c - i, r - j
-    nw, ne, sw, se = z[j, i], z[j, i + 1], z[j + 1, i], z[j + 1, i + 1]
-    return np.where(u >= v, nw + u * (ne - nw) + v * (se - ne), nw + v * (sw - nw) + u * (se - sw))
 
 
 def points_of(depth, eye, target, fov_deg):
@@ -128,17 +103,6 @@ def test_both_modes_draw_the_same_within_the_screen_space_error(scene, name, pla
     assert np.percentile(off, 90) < 5e-3
 
 
-def write_raster(path, z, pixel=1.0):
-    rows, columns = z.shape
-    data = gdal.GetDriverByName("GTiff").Create(str(path), columns, rows, 1, gdal.GDT_Float32,
-                                                ["TILED=YES"])
-    data.SetGeoTransform((0, pixel, 0, rows * pixel, 0, -pixel))
-    data.SetMetadataItem("VERTICAL_DATUM", "relative")
-    data.GetRasterBand(1).SetUnitType("m")
-    data.GetRasterBand(1).WriteArray(z)
-    return path
-
-
 def test_auto_chooses_by_size(scene, tmp_path):
     """Triangles up to four million pixels."""
     large = write_raster(tmp_path / "large.tif", np.ones((2000, 2001), np.float32))
@@ -167,81 +131,6 @@ def test_a_million_heights(scene):
     assert terrain.tiles["bytes"] > 0 and terrain.tiles["failures"] == 0
 
 
-# --- On a body -------------------------------------------------------------------------------------
-
-@pytest.fixture
-def mars(scene):
-    return scene.add_terrain(real(MARS), name="mars", on_body=True, vertical_datum="sphere:3396190")
-
-
-def on_sphere(longitude, latitude, radius):
-    longitude, latitude = np.radians(longitude), np.radians(latitude)
-    return np.stack((radius * np.cos(latitude) * np.cos(longitude),
-                     radius * np.cos(latitude) * np.sin(longitude), radius * np.sin(latitude)), -1)
-
-
-def test_heights_on_a_body(mars):
-    assert mars.on_body and mars.mode == "clipmap"
-    random = np.random.default_rng(4)
-    longitude, latitude = random.uniform(0.2, 359.8, 10000), random.uniform(-89.8, 89.8, 10000)
-    z = gdal.Open(str(real(MARS))).ReadAsArray().astype(float)
-    heights = mars.height(longitude, latitude, map=True)
-    expected = between_posts(z, longitude * 4 - 0.5, (90 - latitude) * 4 - 0.5)
-    np.testing.assert_allclose(heights, expected, rtol=0, atol=2e-3)  # floats of posts
-    points = on_sphere(longitude, latitude, MARS_RADIUS + heights)
-    np.testing.assert_allclose(mars.from_map(np.column_stack((longitude, latitude, heights))), points,
-                               atol=1e-6)
-    # Whatever their own height, the points stand above the same places.
-    np.testing.assert_allclose(mars.height(*(1.01 * points).T), heights, rtol=0, atol=2e-3)
-    back = mars.to_map(points)
-    np.testing.assert_allclose(back[:, 2], heights, atol=1e-6)
-    np.testing.assert_allclose((back[:, 0] - longitude + 180) % 360, 180, atol=1e-9)
-    # The normal leans from the vertical by the slope.
-    up = points[:100] / np.linalg.norm(points[:100], axis=1)[:, None]
-    normal = mars.normal(longitude[:100], latitude[:100], map=True)
-    lean = np.degrees(np.arccos(np.einsum("ni,ni->n", up, normal)))
-    np.testing.assert_allclose(lean, mars.slope_deg(longitude[:100], latitude[:100], map=True),
-                               atol=1e-6)
-
-
-def test_a_body_is_closed_at_the_date_line_and_the_poles(mars):
-    latitude = np.linspace(-89, 89, 50)
-    for longitude in (-0.05, 0.05, 120.0):
-        np.testing.assert_array_equal(mars.height(longitude, latitude, map=True),
-                                      mars.height(longitude + 360, latitude, map=True))
-    west, east = (mars.height(longitude, latitude, map=True) for longitude in (-1e-6, 1e-6))
-    assert np.abs(west - east).max() < 0.01  # the seam of this grid
-    z = gdal.Open(str(real(MARS))).ReadAsArray().astype(float)
-    for pole, row in ((90, z[0]), (-90, z[-1])):
-        heights = mars.height(np.arange(0, 360, 30.0), pole, map=True)
-        assert np.ptp(heights) == 0 and heights[0] == pytest.approx(row.mean(), abs=1e-3)
-
-
-@pytest.mark.parametrize("toward, up", [((-1, 0.02, 0.1), (0, 0, 1)), ((1, 0.001, 0), (0, 0, 1)),
-                                        ((0, 0.001, 1), (1, 0, 0)), ((0.001, 0, -1), (1, 0, 0))],
-                         ids=["date line", "grid's edge", "north pole", "south pole"])
-def test_no_background_shows_through_the_disc(scene, mars, toward, up):
-    low, high = (MARS_RADIUS + height for height in mars.height_range)
-    toward = np.array(toward) / np.linalg.norm(toward)
-    scene.lights["sky"].set(intensity=0.3)
-    for distance, height in ((1e7, 7.2e6), (4e6, 4e5)):  # all of it, and a part near its middle
-        scene.add_camera("orbit", eye=distance * toward, target=(0, 0, 0), up=up, height=height,
-                         near=1e4, far=2e7)
-        view = scene.add_viewport((240, 240), "orbit", samples=1)
-        view.set_background((1, 0, 1))
-        off_axis = np.hypot(*np.meshgrid(*2 * [(np.arange(240) - 119.5) * height / 240]))
-        planes = view.capture(depth=True)
-        # Chords of far levels cut the limb by less than a pixel.
-        inside, outside = off_axis < low - height / 240, off_axis > high + height / 240
-        assert np.isfinite(planes["depth"][inside]).all()
-        assert np.isinf(planes["depth"][outside]).all()
-        assert not (planes["color"][inside][:, :3] == (255, 0, 255)).all(axis=1).any()
-        # The surface is where it belongs.
-        radius = np.hypot(off_axis, distance - planes["depth"])[off_axis < 0.7 * low]
-        assert low - 500 < radius.min() and radius.max() < high + 500
-        view.remove()
-
-
 # --- Refusals --------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("given, text", [
@@ -262,20 +151,6 @@ def test_no_background_shows_through_the_disc(scene, mars, toward, up):
 def test_what_is_refused_changes_nothing(scene, refused, given, text):
     with refused(dspace.Error, text):
         scene.add_terrain(FIELD, **given)
-
-
-def test_a_degree_grid_of_an_ellipsoid_is_refused_on_a_body(scene, refused, tmp_path):
-    degrees = write_raster(tmp_path / "degrees.tif", np.zeros((40, 40), np.float32), pixel=0.1)
-    with refused(dspace.Unsupported, "ellipsoid"):
-        scene.add_terrain(degrees, on_body=True, crs="EPSG:4326")
-    assert scene.add_terrain(degrees, mode="clipmap", crs="EPSG:4326").height(0, 0) == 0
-
-
-def test_queries_on_a_body_need_the_map_or_space(mars):
-    with pytest.raises(dspace.InvalidArgument, match="x, y and z"):
-        mars.height(0, 0)
-    with pytest.raises(dspace.InvalidArgument):
-        mars.height(0, 0, 0, map=True)
 
 
 # --- Pictures again --------------------------------------------------------------------------------
@@ -333,6 +208,16 @@ def test_commands_replay_to_the_same_pictures():
     np.testing.assert_array_equal(made[0], again[0])
     np.testing.assert_array_equal(made[1], again[1])
     assert made[2] == again[2] and "clipmap" not in made[2]
+
+
+def test_what_is_not_there_in_time_is_an_error_and_a_frame_is_none(session):
+    scene, terrain, view = over_the_field(session, deadline=1e-9)
+    scene.add_camera("eye", eye=(3, -40, 6), target=(10, 30, 0))
+    with pytest.raises(dspace.DeadlineExceeded, match="field.tif"):
+        terrain.height(90, 90)
+    with pytest.raises(dspace.DeadlineExceeded, match="field.tif"):
+        view.image()
+    assert session.render() == 1  # as coarse as what is there
 
 
 def test_four_viewports_of_one_clipmap(session):

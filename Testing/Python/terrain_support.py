@@ -1,0 +1,39 @@
+"""What the tests of terrain share."""
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+gdal = pytest.importorskip("osgeo.gdal")  # an independent reader
+gdal.UseExceptions()
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FIELD = ROOT / "Data/field/field.tif"
+
+
+def real(name):
+    path = pathlib.Path(os.environ.get("DSPACE_DATA") or "/nonexistent") / "terrain" / name
+    if not path.exists():
+        pytest.skip(f"real data absent: set DSPACE_DATA to the folder that has terrain/{name}")
+    return path
+
+
+def between_posts(z, c, r):
+    """Heights at places (c, r) in posts: two triangles a cell, the diagonal from the north-west to
+    the south-east post."""
+    i = np.clip(np.floor(c).astype(int), 0, z.shape[1] - 2)
+    j = np.clip(np.floor(r).astype(int), 0, z.shape[0] - 2)
+    u, v = c - i, r - j
+    nw, ne, sw, se = z[j, i], z[j, i + 1], z[j + 1, i], z[j + 1, i + 1]
+    return np.where(u >= v, nw + u * (ne - nw) + v * (se - ne), nw + v * (sw - nw) + u * (se - sw))
+
+
+def write_raster(path, z, pixel=1.0):
+    rows, columns = z.shape
+    data = gdal.GetDriverByName("GTiff").Create(str(path), columns, rows, 1, gdal.GDT_Float32,
+                                                ["TILED=YES"])
+    data.SetGeoTransform((0, pixel, 0, rows * pixel, 0, -pixel))
+    data.SetMetadataItem("VERTICAL_DATUM", "relative")
+    data.GetRasterBand(1).SetUnitType("m")
+    data.GetRasterBand(1).WriteArray(z)
+    return path
