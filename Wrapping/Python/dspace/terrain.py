@@ -7,11 +7,12 @@ from dspace._fields import (Named, array_of, flag, items, keywords, numbers, put
 from dspace._strict import Strict
 from dspace.errors import InvalidArgument, WrongType
 from dspace.objects import file_path
+from dspace.tracks import TrackMaking
 
 _MODES = ("auto", "triangles", "clipmap")  # in the order of OpenTerrain.Mode
 
 
-class Terrain(Strict):
+class Terrain(TrackMaking, Strict):
     """A raster of heights in a frame S: X east, Y north, Z up from its origin [m]; on its body, the
     body-fixed frame (Z to the north pole, X to longitude 0).
 
@@ -20,9 +21,10 @@ class Terrain(Strict):
     the tiles that they need.
     """
 
-    def __init__(self, scene, name):
+    def __init__(self, scene, name, undisturbed=False):
         self._scene = scene
         self._name = name
+        self._undisturbed = undisturbed  # queries leave wheel tracks out
 
     def _info(self):
         return self._scene._ask("describe_terrain", terrain=self._name).terrain
@@ -123,6 +125,7 @@ class Terrain(Strict):
         message = command.query_terrain
         message.terrain = self._name
         message.map = flag(map, "map", self._label)
+        message.undisturbed = self._undisturbed
         setattr(message, what, True)
         message.spatial = z is not None
         _wire.put_array(message, "point", np.stack(given, axis=-1))
@@ -131,6 +134,7 @@ class Terrain(Strict):
     def height(self, x, y, z=None, map=False):
         """z of the surface [m] at x, y (numbers or arrays, shapes broadcast); NaN without data.
 
+        With the ruts of wheels; terrain.undisturbed.height() is without.
         In the terrain's frame; with map=True, x and y are map coordinates and the result is the
         height above the vertical datum. On a body give map=True (longitude and latitude, for a
         degree grid) or x, y and z, through which the local vertical goes: heights above the datum."""
@@ -277,7 +281,8 @@ class TerrainMaking:
                     origin=None, triangles=None, fragment=None, lit=True, image_crs=None,
                     image_extent=None, band=None, crs=None, vertical_datum=None,
                     vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
-                    on_body=False, level_size=None, byte_budget=None, deadline=None, patches=()):
+                    on_body=False, level_size=None, byte_budget=None, deadline=None, patches=(),
+                    subdivisions=None, track_budget=None):
         """A raster of heights (anything that GDAL opens) as a physical object.
 
         image: a file to drape over it, with image_crs and image_extent (left, top, right, bottom in
@@ -292,6 +297,8 @@ class TerrainMaking:
         a sphere. level_size: cells a side of a clipmap's levels (124; 252 is finer and slower);
         byte_budget: of its tiles (256 MiB); deadline: seconds that images and queries wait for them
         (60).
+        subdivisions: on a plane, how often a clipmap's cells between pixels are halved: wheel tracks
+        (track()) need posts some centimetres apart. track_budget: bytes for them (64 MiB).
         band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and
         vertical_offset [m], pixel_size (map units): what the file does not say, or says wrongly.
         patches: rasters of higher resolution on this one, each in its own CRS, later ones on top
@@ -335,7 +342,8 @@ class TerrainMaking:
         put_given(message, label, triangle_budget=triangles, band=band, crs=crs,
                   vertical_datum=vertical_datum, vertical_scale=vertical_scale,
                   vertical_offset=vertical_offset, pixel_size=pixel_size,
-                  level_size=level_size, byte_budget=byte_budget, deadline=deadline)
+                  level_size=level_size, byte_budget=byte_budget, deadline=deadline,
+                  subdivisions=subdivisions, track_byte_budget=track_budget)
         _put_patches(message, label, patches)
         return Terrain(self, self._execute(command).terrain.name)
 

@@ -45,6 +45,12 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   reply.set_tile_loads(statistics.loads);
   reply.set_tile_failures(statistics.failures);
   reply.set_last_failure(statistics.lastFailure);
+  if (!reply.on_body()) {
+    const TrackStatistics tracks = surface.Tracks().Statistics();
+    reply.set_track_bytes(tracks.bytes);
+    reply.set_track_contacts(tracks.contacts);
+    reply.set_track_length(tracks.length);
+  }
   for (std::size_t i = 0; surface.Group() && i < surface.Group()->patches.size(); ++i) {
     const PatchReport& from = surface.Group()->patches[i];
     v1::PatchReply* patch = reply.add_patch();

@@ -21,6 +21,7 @@ public:
 
   ClipmapTerrain& Clipmap() { return *this->Clipmap_; }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
+  const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
   void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }
   void Describe(v1::TerrainReply& reply) const override;
   // Checks its arguments only: a clipmap's posts follow the cameras.

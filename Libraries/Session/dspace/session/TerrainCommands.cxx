@@ -99,6 +99,10 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   if (command.byte_budget() != 0) {
     options.pyramid.byteBudget = std::size_t(command.byte_budget());
   }
+  options.subdivisions = int(std::min<std::uint32_t>(command.subdivisions(), 1u << 30));
+  if (command.track_byte_budget() != 0) {
+    options.tracks.byteBudget = std::size_t(command.track_byte_budget());
+  }
   if (command.has_deadline()) {
     Require(command.deadline() > 0.0 && std::isfinite(command.deadline()), label, "the deadline",
             command.deadline(), "more than 0 s, finite");
@@ -110,7 +114,7 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   const auto surface = StreamedTerrain::Open(path, options);
   ClipmapOptions look = ClipmapLook(context, *surface, command);
   look.cells = options.cells;
-  look.heights = surface->HeightRange();
+  look.heights = surface->DrawnHeights();
   look.deadline = options.deadline;
   auto terrain = std::make_unique<ClipmapTerrainObject>(name, surface, look, options.pyramid);
   if (command.relief().color_by_height()) {
@@ -143,10 +147,13 @@ v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
   if (command.patch_size() != 0 && command.mode() == Command::TRIANGLES) {
     Refuse(label, "triangles are of one raster; accepted with patches: a clipmap");
   }
+  if (command.subdivisions() != 0 && command.mode() == Command::TRIANGLES) {
+    Refuse(label, "triangles have no posts between pixels; accepted with subdivisions: a clipmap");
+  }
   if (command.mode() != Command::AUTO) {
     return command.mode();
   }
-  if (command.on_body() || command.patch_size() != 0) {
+  if (command.on_body() || command.patch_size() != 0 || command.subdivisions() != 0) {
     return Command::CLIPMAP;
   }
   const RasterWindow window = ElevationSource(path, ToElevation(command)).Info().window;
@@ -230,6 +237,7 @@ void AddTerrainCommands(Registry& registry) {
   registry.Add(C::kFocusTerrain, &C::mutable_focus_terrain, Effect::Change, FocusTerrain);
   AddTerrainRequests(registry);
   AddTerrainStyleCommands(registry);
+  AddTerrainTrackCommands(registry);
 }
 
 } // namespace dspace::session

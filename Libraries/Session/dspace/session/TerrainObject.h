@@ -24,6 +24,8 @@ public:
   void SetObject(ObjectId object) { this->Object_ = object; }
 
   virtual const TerrainSurface& Surface() const = 0;
+  // Without wheel tracks.
+  virtual const TerrainSurface& Undisturbed() const { return this->Surface(); }
   // Puts what draws it into `object`.
   virtual void Draw(GraphicsObject& object) const = 0;
   // All but name, object and frame.

@@ -39,7 +39,7 @@ bool OnBody(const TerrainObject& terrain) {
 
 void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   const TerrainObject& terrain = FindTerrain(context, command.terrain());
-  const TerrainSurface& surface = terrain.Surface();
+  const TerrainSurface& surface = command.undisturbed() ? terrain.Undisturbed() : terrain.Surface();
   const std::string label = "terrain '" + command.terrain() + "'";
   if (command.map() && command.spatial()) {
     Refuse(label, "points are of the map or of space, not both");

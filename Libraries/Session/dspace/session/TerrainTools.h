@@ -19,6 +19,7 @@ void RequireFinitePoints(const std::string& label, const double* values, int siz
 
 void AddTerrainRequests(Registry& registry);
 void AddTerrainStyleCommands(Registry& registry);
+void AddTerrainTrackCommands(Registry& registry);
 
 } // namespace dspace::session
 

@@ -1,0 +1,80 @@
+// Wheel tracks: made, cleared, saved, loaded.
+#include <cmath>
+
+#include <dspace/scene/Checks.h>
+#include <dspace/session/ClipmapTerrainObject.h>
+#include <dspace/session/Convert.h>
+#include <dspace/session/ObjectTools.h>
+#include <dspace/session/TerrainTools.h>
+
+namespace dspace::session {
+namespace {
+
+constexpr double Degree = M_PI / 180.0;
+constexpr int ContactSize = 5; // x y heading_deg sinkage rolled
+
+const StreamedTerrain& FindTracked(const Context& context, const std::string& name) {
+  const auto* terrain = dynamic_cast<const ClipmapTerrainObject*>(&FindTerrain(context, name));
+  if (!terrain) {
+    throw Error(Error::Kind::Unsupported, "terrain '" + name + "'",
+                "it is drawn as triangles, which take no wheel tracks; accepted: mode clipmap");
+  }
+  return terrain->Surface();
+}
+
+void TrackWheels(const Context& context, v1::TrackWheels& command) {
+  const StreamedTerrain& terrain = FindTracked(context, command.terrain());
+  TrackProfile profile;
+  profile.width = command.width();
+  profile.wall = command.has_wall() ? command.wall() : profile.wall;
+  profile.rimWidth = command.rim_width();
+  profile.rimHeight = command.rim_height();
+  profile.treadPitch = command.tread_pitch();
+  profile.treadDepth = command.tread_depth();
+  std::vector<TrackAddition> additions;
+  for (const v1::TrackWheels::Wheel& wheel : command.wheel()) {
+    TrackAddition addition;
+    addition.name = wheel.name();
+    addition.profile = profile;
+    addition.begin = command.begin();
+    const std::size_t n =
+        RowsOf(wheel.contact_size(), ContactSize, "terrain '" + command.terrain() + "'", "contact");
+    for (std::size_t i = 0; i < n; ++i) {
+      const double* value = wheel.contact().data() + i * ContactSize;
+      TrackContact contact;
+      contact.place = {value[0], value[1]};
+      contact.heading = value[2] * Degree;
+      contact.sinkage = value[3];
+      contact.rolled = value[4];
+      addition.contacts.push_back(contact);
+    }
+    additions.push_back(std::move(addition));
+  }
+  terrain.AddTracks(additions);
+}
+
+void ClearTracks(const Context& context, v1::ClearTracks& command) {
+  FindTracked(context, command.terrain()).ClearTracks();
+}
+
+void SaveTracks(const Context& context, v1::SaveTracks& command) {
+  FindTracked(context, command.terrain()).SaveTracks(command.path());
+}
+
+void LoadTracks(const Context& context, v1::LoadTracks& command) {
+  const StreamedTerrain& terrain = FindTracked(context, command.terrain());
+  command.set_path(AbsolutePath(command.path()));
+  terrain.LoadTracks(command.path());
+}
+
+} // namespace
+
+void AddTerrainTrackCommands(Registry& registry) {
+  using C = v1::Command;
+  registry.Add(C::kTrackWheels, &C::mutable_track_wheels, Effect::Change, TrackWheels);
+  registry.Add(C::kClearTracks, &C::mutable_clear_tracks, Effect::Change, ClearTracks);
+  registry.Add(C::kSaveTracks, &C::mutable_save_tracks, Effect::Request, SaveTracks);
+  registry.Add(C::kLoadTracks, &C::mutable_load_tracks, Effect::Change, LoadTracks);
+}
+
+} // namespace dspace::session
