@@ -1,5 +1,6 @@
 #include <dspace/terrain/ElevationCache.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
