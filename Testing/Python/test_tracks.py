@@ -110,10 +110,10 @@ def test_a_vehicle_leaves_ruts_and_does_not_sink_twice(scene):
     for time in np.arange(0.0, 4.0, 0.25):
         state = vehicle.solve(path.pose(time), terrain.undisturbed)
         terrain.track(state, width=0.15, sinkage=0.03)
-    assert terrain.tracks["length"] > 0.9 * len(state.contacts) * 3.75 * 0.5
+    assert terrain.tracks["length"] > 0.9 * len(state.wheel_centers) * 3.75 * 0.5
     again = vehicle.solve(path.pose(3.75), terrain.undisturbed)
     np.testing.assert_array_equal(again.position, state.position)
-    for point in state.contacts.values():
+    for point in state.wheel_centers.values():
         before = terrain.undisturbed.height(*point[:2])
         assert terrain.height(*point[:2]) <= before - 0.03 + 1e-6
 

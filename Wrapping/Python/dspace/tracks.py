@@ -18,7 +18,7 @@ class TrackMaking:
         and answered by every query from then on. `undisturbed` answers without.
 
         wheels: {name: (x, y) or points (n, 2) or (n, 3)} in the terrain's frame, or the state that a
-        vehicle's solve() returns. Each name is a track that goes on; begin=True begins them anew,
+        vehicle's solve() returns: its wheels' middles. Each name is a track that goes on; begin=True begins them anew,
         without a rut from where they were. Solve on `undisturbed`, less the sinkage where the vehicle
         is to stand in its ruts: on the tracked ground it would sink twice.
         sinkage: metres of the ruts' floor below the ground; heading_deg: of the wheels,
@@ -29,7 +29,8 @@ class TrackMaking:
         across the floor, deeper by up to tread_depth (none). All metres. Where ruts overlap the
         deepest counts."""
         label = self._label()
-        contacts = getattr(wheels, "contacts", wheels)
+        # Of a vehicle's state the wheels' middles: a wide wheel may rest on either edge.
+        contacts = getattr(wheels, "wheel_centers", wheels)
         if not isinstance(contacts, dict):
             refuse(label, "wheels", wheels, _CONTACTS, WrongType)
         for what, given in (("sinkage", sinkage), ("heading_deg", heading_deg), ("rolled", rolled)):
