@@ -28,6 +28,22 @@ def between_posts(z, c, r):
     return np.where(u >= v, nw + u * (ne - nw) + v * (se - ne), nw + v * (sw - nw) + u * (se - sw))
 
 
+def points_of(depth, eye, target, fov_deg):
+    """Root coordinates of what a camera (up: Z) hit, and metres there a pixel; NaN where nothing."""
+    height, width = depth.shape
+    eye, target = np.asarray(eye, float), np.asarray(target, float)
+    forward = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(forward, (0, 0, 1))
+    right /= np.linalg.norm(right)
+    down = np.cross(forward, right)
+    pixel = 2 * np.tan(np.radians(fov_deg) / 2) / height
+    x = (np.arange(width) + 0.5 - width / 2) * pixel
+    y = (np.arange(height) + 0.5 - height / 2) * pixel
+    rays = forward + x[None, :, None] * right + y[:, None, None] * down
+    depth = np.where(np.isfinite(depth), depth, np.nan)[..., None]
+    return eye + rays * depth, depth[..., 0] * pixel
+
+
 def write_raster(path, z, pixel=1.0):
     rows, columns = z.shape
     data = gdal.GetDriverByName("GTiff").Create(str(path), columns, rows, 1, gdal.GDT_Float32,

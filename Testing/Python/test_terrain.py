@@ -4,27 +4,11 @@ import pytest
 
 import dspace
 from dspace.rover import Path, load_vehicle
-from terrain_support import FIELD, ROOT, between_posts, gdal, real, write_raster
+from terrain_support import FIELD, ROOT, between_posts, gdal, points_of, real, write_raster
 
 RASTERS = {"mars_gale_mola_128ppd_m.tif": {}, "moon_npole_stereo_33.tif": {},
            "moon_apollo15_nac_dtm_257.png": {"vertical_scale": 49 / 255, "pixel_size": 2}}
 SIZE = (320, 240)
-
-
-def points_of(depth, eye, target, fov_deg):
-    """Root coordinates of what a camera (up: Z) hit, and metres there a pixel; NaN where nothing."""
-    height, width = depth.shape
-    eye, target = np.asarray(eye, float), np.asarray(target, float)
-    forward = (target - eye) / np.linalg.norm(target - eye)
-    right = np.cross(forward, (0, 0, 1))
-    right /= np.linalg.norm(right)
-    down = np.cross(forward, right)
-    pixel = 2 * np.tan(np.radians(fov_deg) / 2) / height
-    x = (np.arange(width) + 0.5 - width / 2) * pixel
-    y = (np.arange(height) + 0.5 - height / 2) * pixel
-    rays = forward + x[None, :, None] * right + y[:, None, None] * down
-    depth = np.where(np.isfinite(depth), depth, np.nan)[..., None]
-    return eye + rays * depth, depth[..., 0] * pixel
 
 
 # --- On a plane ------------------------------------------------------------------------------------

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import dspace
-from terrain_support import between_posts, gdal, real, write_raster
+from terrain_support import between_posts, gdal, points_of, real, write_raster
 
 MARS = "mars_mola_megt90n000cb_4ppd_m.tif"
 MARS_RADIUS = 3396190.0
@@ -80,6 +80,25 @@ def test_no_background_shows_through_the_disc(scene, mars, toward, up):
         radius = np.hypot(off_axis, distance - planes["depth"])[off_axis < 0.7 * low]
         assert low - 500 < radius.min() and radius.max() < high + 500
         view.remove()
+
+
+@pytest.mark.parametrize("longitude, latitude", [(10, 0.1), (0, 20), (179.99, -50), (275.3, -13.2), (359.99, 55)])
+def test_the_ground_near_a_camera_is_what_is_answered(scene, mars, longitude, latitude):
+    """To two millimetres, and what OpenGL's grid of 1/256 pixel moves a sloping surface across a ray."""
+    ground = mars.height(longitude, latitude, map=True)
+    for above in (5, 300):
+        eye, below, north = mars.from_map([[longitude, latitude, ground + above], [longitude, latitude, ground],
+                                           [longitude, latitude + 0.01, ground]])
+        target = below + 0.5 * above * (north - below) / np.linalg.norm(north - below)
+        scene.add_camera("eye", eye=tuple(eye), target=tuple(target), fov_deg=60, near=0.5)
+        view = scene.add_viewport((160, 120), "eye", samples=1)
+        points, pixel = points_of(view.depth(), eye, target, 60)
+        view.remove()
+        points = points.reshape(-1, 3)
+        drawn = mars.to_map(points)[:, 2]  # nothing of the sky is in the picture
+        slope = np.radians(mars.slope_deg(longitude, latitude, map=True))
+        moved = np.sqrt(2) / 512 * pixel.max() / np.cos(slope)
+        np.testing.assert_allclose(drawn, mars.height(*points.T), rtol=0, atol=2e-3 + moved)
 
 
 def test_a_degree_grid_of_an_ellipsoid_is_refused_on_a_body(scene, refused, tmp_path):
