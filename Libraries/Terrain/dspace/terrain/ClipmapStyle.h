@@ -16,7 +16,8 @@ namespace dspace {
 struct ClipmapStyle {
   // A tiling texture that adds structure closer than the posts: the colour times the texture's over
   // its mean, where slope and height are within their ranges (soft over 2 degrees and a fiftieth of
-  XX struct Detail {
+  // the heights' range). Tiles lie along the scene's axes from its origin. Planes only.
+  struct Detail {
     static constexpr std::size_t Most = 2;
     std::shared_ptr<const Image> image;
     double size = 1.0;                           // [m] a tile's side, 1e-3 to 1e6
