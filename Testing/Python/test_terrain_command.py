@@ -21,19 +21,19 @@ def real(name):
     return DATA / name
 
 
-def dspace(*arguments):
+def run(*arguments):
     return subprocess.run([sys.executable, "-m", "dspace", *map(str, arguments)], capture_output=True,
                           text=True)
 
 
 def info(*arguments):
-    done = dspace("terrain", "info", "--json", *arguments)
+    done = run("terrain", "info", "--json", *arguments)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
 
 def render(path, *arguments):
-    done = dspace("terrain", "render", *arguments, "--out", path)
+    done = run("terrain", "render", *arguments, "--out", path)
     assert done.returncode == 0, done.stderr
     return np.moveaxis(gdal.Open(str(path)).ReadAsArray(), 0, -1), done.stdout
 
@@ -54,7 +54,7 @@ def test_info_of_the_field():
     assert found["plane"]["levels"][0] == {"posts": [1001, 1001], "spacing": pytest.approx(0.2)}
     assert found["plane"]["levels"][1]["posts"] == [501, 501]
     assert found["auto_mode"] == "triangles" and found["warnings"] == []
-    text = dspace("terrain", "info", FIELD)
+    text = run("terrain", "info", FIELD)
     assert text.returncode == 0 and text.stderr == ""
     for part in (str(FIELD), "1001 x 1001 pixels of Float32", "sphere:1737400", "no holes", "level  1: 501 x 501",
                  "triangles, unless"):
@@ -92,7 +92,7 @@ def test_holes_scale_and_offset_are_heeded(tmp_path):
     assert not (tmp_path / "holes.tif.aux.xml").exists()
     by_hand, = info(tmp_path / "holes.tif", "--vertical-scale", "2")
     assert by_hand["statistics"]["maximum_m"] == 2 * z.max()
-    empty = dspace("terrain", "info", write_raster(tmp_path / "empty.tif", np.full((30, 30), -999), -999))
+    empty = run("terrain", "info", write_raster(tmp_path / "empty.tif", np.full((30, 30), -999), -999))
     assert empty.returncode == 1 and "without data" in empty.stderr
 
 
@@ -108,7 +108,7 @@ def test_statistics_of_large_rasters_are_estimates_and_say_so(tmp_path, overview
     assert statistics["mean_m"] == pytest.approx(z.mean(), abs=2)
     assert statistics["maximum_m"] == pytest.approx(z.max(), abs=20)
     assert found["auto_mode"] == "clipmap" and len(found["overviews"]) == len(overviews)
-    text = dspace("terrain", "info", path).stdout
+    text = run("terrain", "info", path).stdout
     assert "estimated from one value for 2 x 2 pixels" in text
     assert ("from its overviews" in text) == bool(overviews)
 
@@ -256,6 +256,16 @@ def test_what_is_refused_is_told_in_one_line(arguments, code, text, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_the_entry_script_knows_the_words_of_the_command():
+    script = ROOT / "dspace"
+    for word in ("tset", "terrain_map", "__init__", "../terrain"):
+        done = subprocess.run([script, word], capture_output=True, text=True)
+        assert done.returncode == 2 and f"no command '{word}'" in done.stderr
+    from dspace.command_line import WORDS
+    modules = ROOT / "Wrapping/Python/dspace/command_line"
+    assert all((modules / f"{word}.py").exists() for word in WORDS)
+
+
 def test_a_bad_file_among_good_ones_stops_nothing():
-    done = dspace("terrain", "info", "/no/such.tif", FIELD)
+    done = run("terrain", "info", "/no/such.tif", FIELD)
     assert done.returncode == 1 and "/no/such.tif" in done.stderr and "1001 x 1001" in done.stdout
