@@ -200,14 +200,17 @@ class Terrain(TrackMaking, Strict):
         self._scene._execute(command)
 
     def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
-                  contours=None, grid=None):
+                  contours=None, grid=None, details=()):
         """What is laid over a clipmap's own colour; replaces the style before, set_style() removes it.
 
         color_by: "height" or "slope" (degrees from level), over `range` (low, high; the heights' own,
         or 0 to 45), in `colors` evenly spaced (green over ochre to white), with `opacity` 0 to 1.
         levels: opacity of a colour for each clipmap level. contours: metres of height between lines,
         or a dict of interval, width (pixels), color, opacity. grid: the same for lines along the
-        map's axes, in map units; on a body meridians and parallels, in degrees."""
+        map's axes, in map units; on a body meridians and parallels, in degrees. details: up to two
+        tiling images that add structure closer than the posts, on a plane: dicts of image (a file),
+        size (metres a tile), slope (low, high; degrees), height (low, high; metres), opacity
+        (0.5)."""
         label = self._label()
         command = self._scene._command()
         style = command.style_terrain
@@ -223,6 +226,8 @@ class Terrain(TrackMaking, Strict):
         elif range is not None or colors is not None:
             raise InvalidArgument(f"{label}: a range and colours are of color_by, which is not given; "
                                   "accepted: color_by 'height' or 'slope'", label)
+        for detail in details:
+            _put_detail(style.detail.add(), detail, f"{label}, a detail")
         put_given(style, label, levels=levels)
         _put_lines(style.contours, contours, "contours", label)
         _put_lines(style.grid, grid, "grid", label)
@@ -238,6 +243,22 @@ class Terrain(TrackMaking, Strict):
                     f"{info.minimum_height:g} to {info.maximum_height:g} m>")
         except Exception:  # a repr never raises
             return f"<dspace.Terrain {self._name!r}, removed>"
+
+
+def _put_detail(message, detail, label):
+    """A dict into a Detail."""
+    if not isinstance(detail, dict):
+        refuse(label, "it", detail, "a dict of image, size, slope, height, opacity", WrongType)
+    keywords(detail, ("image", "size", "slope", "height", "opacity"), label)
+    for needed in ("image", "size"):
+        if needed not in detail:
+            refuse(label, "it", detail, f"a dict with {needed!r}", WrongType)
+    low, high = numbers(detail.get("slope", (0, 90)), 2, "its slope", label, "low, high")
+    put(message, label, path=file_path(detail["image"], "its image", label), size=detail["size"],
+        slope_low=low, slope_high=high, opacity=detail.get("opacity", 0.5))
+    if "height" in detail:
+        low, high = numbers(detail["height"], 2, "its height", label, "low, high")
+        put(message, label, height_low=low, height_high=high)
 
 
 def _put_lines(message, lines, what, label):

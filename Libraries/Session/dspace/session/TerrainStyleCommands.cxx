@@ -4,6 +4,7 @@
 #include <dspace/scene/Checks.h>
 #include <dspace/session/ClipmapTerrainObject.h>
 #include <dspace/session/Convert.h>
+#include <dspace/session/ObjectTools.h>
 #include <dspace/session/TerrainLook.h>
 #include <dspace/session/TerrainTools.h>
 #include <dspace/terrain/DrapeImage.h>
@@ -49,6 +50,22 @@ ClipmapStyle::Ramp ToRamp(const v1::StyleTerrain::Ramp& ramp, const StreamedTerr
   return result;
 }
 
+ClipmapStyle::Detail ToDetail(const Context& context, v1::StyleTerrain::Detail& detail) {
+  ClipmapStyle::Detail result;
+  detail.set_path(AbsolutePath(detail.path()));
+  result.image = context.state.models.LoadImage(detail.path());
+  result.size = detail.size();
+  result.slopes = {detail.slope_low(), detail.slope_high()};
+  if (detail.has_height_low()) {
+    result.heights[0] = detail.height_low();
+  }
+  if (detail.has_height_high()) {
+    result.heights[1] = detail.height_high();
+  }
+  result.opacity = detail.opacity();
+  return result;
+}
+
 void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
   const std::string label = "terrain '" + command.terrain() + "'";
   auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&FindTerrain(context, command.terrain()));
@@ -57,6 +74,9 @@ void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
                 "it is drawn as triangles, which have no style; accepted: mode clipmap");
   }
   ClipmapStyle style;
+  for (v1::StyleTerrain::Detail& detail : *command.mutable_detail()) {
+    style.details.push_back(ToDetail(context, detail));
+  }
   if (command.has_ramp()) {
     style.ramp = ToRamp(command.ramp(), terrain->Surface(), label);
   }
