@@ -30,20 +30,23 @@ struct Projection {
 };
 
 // Snyder, Map Projections: A Working Manual, 1987, (21-1), (21-2), (21-11) on a sphere.
-inline Projection PolarStereographic(double lon0) {
+inline Projection PolarStereographic(double lon0, bool south = false) {
+  const double side = south ? -1.0 : 1.0;
   Projection p;
-  p.text = "+proj=stere +lat_0=90 +lon_0=" + std::to_string(lon0) + " +R=1737400 +no_defs";
-  p.toMap = [lon0](const Eigen::Vector2d& q) {
-    const double rho = 2.0 * MoonRadius * std::tan((45.0 - 0.5 * q.y()) * Deg);
+  p.text = "+proj=stere +lat_0=" + std::to_string(90.0 * side) + " +lon_0=" + std::to_string(lon0) +
+           " +R=1737400 +no_defs";
+  p.toMap = [lon0, side](const Eigen::Vector2d& q) {
+    const double rho = 2.0 * MoonRadius * std::tan((45.0 - 0.5 * side * q.y()) * Deg);
     const double l = (q.x() - lon0) * Deg;
-    return Eigen::Vector2d(rho * std::sin(l), -rho * std::cos(l));
+    return Eigen::Vector2d(rho * std::sin(l), -side * rho * std::cos(l));
   };
-  p.toLonLat = [lon0](const Eigen::Vector2d& m) {
-    return Eigen::Vector2d(lon0 + std::atan2(m.x(), -m.y()) / Deg,
-                           90.0 - 2.0 * std::atan(m.norm() / (2.0 * MoonRadius)) / Deg);
+  p.toLonLat = [lon0, side](const Eigen::Vector2d& m) {
+    return Eigen::Vector2d(lon0 + std::atan2(m.x(), -side * m.y()) / Deg,
+                           side * (90.0 - 2.0 * std::atan(m.norm() / (2.0 * MoonRadius)) / Deg));
   };
-  p.scale = [](double latitude) {
-    return Eigen::Vector2d(Eigen::Vector2d::Constant(2.0 / (1.0 + std::sin(latitude * Deg))));
+  p.scale = [side](double latitude) {
+    return Eigen::Vector2d(
+        Eigen::Vector2d::Constant(2.0 / (1.0 + std::sin(side * latitude * Deg))));
   };
   return p;
 }

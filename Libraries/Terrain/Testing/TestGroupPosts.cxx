@@ -1,4 +1,5 @@
 // Terrain groups against formulas, and post by post against other code (Patches.h).
+#include <algorithm>
 #include <cmath>
 #include <list>
 #include <random>
@@ -7,6 +8,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/terrain/GroupPosts.h>
+#include <dspace/terrain/PatchWeight.h>
 #include <dspace/terrain/RasterPosts.h>
 
 #include "Patches.h"
@@ -373,6 +375,93 @@ TEST(GroupPosts, APatchOnAPoleHasOneHeightThere) {
     }
     EXPECT_NEAR(row.front(), 300.0, 0.1);
   }
+}
+
+// What queries rely on: elsewhere a level's cell is the base's.
+TEST(GroupPosts, WhereNoPatchReachesPostsAreTheBases) {
+  const TemporaryFolder folder;
+  const Base base = Region();
+  const PatchFile patch = Polar();
+  const Group group(base, base.Write(folder / "base.tif"), {patch.Write(folder / "patch.tif")});
+  const PostLattice& lattice = group.base->GetLattice();
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal;
+  for (int level = 0; level < lattice.levels - 2; ++level) {
+    const double size = std::ldexp(1.0, level);
+    int beside = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const Eigen::Vector2d place =
+          group.Place(patch.middle) + 1500.0 * Eigen::Vector2d(normal(random), normal(random));
+      if (place.minCoeff() < 0.0 || place.x() > double(lattice.columns - 2) ||
+          place.y() > double(lattice.rows - 2) || group.posts->Reaches(place, level)) {
+        continue;
+      }
+      const PostBlock cell{level, std::int64_t(place.x() / size), std::int64_t(place.y() / size), 2,
+                           2};
+      std::array<float, 4> a = {};
+      std::array<float, 4> b = {};
+      group.posts->Read(cell, a.data());
+      group.base->Read(cell, b.data());
+      ASSERT_EQ(a, b) << level << " at " << place.transpose();
+      // Not only far away from it.
+      const Eigen::Vector2d pixel = patch.PixelOf(group.LonLat(place.x(), place.y()));
+      beside += (pixel - Eigen::Vector2d(150.0, 130.0)).norm() < 300.0 + 10.0 * size;
+    }
+    EXPECT_GT(beside, 0) << level;
+  }
+}
+
+// Over 4 million pixels, a weight stands for 2 x 2 of them: still within the stated distances.
+TEST(GroupPosts, WeightsOfLargePatches) {
+  const TemporaryFolder folder;
+  constexpr int Size = 2200;
+  const std::vector<Eigen::Vector2i> holes = {{400, 700}, {1501, 333}, {1502, 1800}, {900, 901}};
+  RasterFile file;
+  file.width = Size;
+  file.height = Size;
+  file.type = GDT_Byte;
+  file.noData = 255.0;
+  file.geotransform = std::array<double, 6>{0, 3.0, 0, 0, 0, -3.0};
+  file.value = [&](int c, int r, int) {
+    const bool hole = std::find(holes.begin(), holes.end(), Eigen::Vector2i(c, r)) != holes.end();
+    return hole ? 255.0 : double((c + r) % 200);
+  };
+  const ElevationSource source(file.Write(folder / "large.tif"));
+  constexpr double Margin = 120.0;
+  const PatchWeight weight(source, {3.0, 3.0}, Margin);
+  EXPECT_FALSE(weight.Empty());
+  EXPECT_TRUE(weight.HeightsAreExact());
+  EXPECT_EQ(weight.Heights(), (std::array<double, 2>{0.0, 199.0}));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int between = 0;
+  for (int i = 0; i < 40000; ++i) {
+    Eigen::Vector2d pixel(unit(random) * Size, unit(random) * Size);
+    if (i % 2 == 0) {
+      const Eigen::Vector2d hole = holes[std::size_t(i / 2) % holes.size()].cast<double>();
+      pixel = hole + Eigen::Vector2d::Constant(0.5) +
+              70.0 * Eigen::Vector2d(unit(random) - 0.5, unit(random) - 0.5);
+    }
+    double distance = std::min({pixel.x() + 0.5, Size - pixel.x() + 0.5, pixel.y() + 0.5,
+                                Size - pixel.y() + 0.5}); // to the middles of what is not there
+    for (const Eigen::Vector2i& hole : holes) {
+      distance =
+          std::min(distance, (pixel - hole.cast<double>() - Eigen::Vector2d::Constant(0.5)).norm());
+    }
+    const double w = weight.At(pixel, 0);
+    // To two cells of 2 pixels, for where holes lie in theirs and for what is between weights.
+    const auto rise = [&](double pixels) {
+      const double s = std::clamp((3.0 * pixels - 3.0 * 6.0) / Margin, 0.0, 1.0);
+      return s * s * (3.0 - 2.0 * s);
+    };
+    ASSERT_GE(w, rise(distance - 4.0) - 1e-6) << pixel.transpose();
+    ASSERT_LE(w, rise(distance + 4.0) + 1e-6) << pixel.transpose();
+    if (distance < 1.5) {
+      ASSERT_EQ(w, 0.0); // no triangle with a post without data counts
+    }
+    between += w > 0.0 && w < 1.0;
+  }
+  EXPECT_GT(between, 5000);
 }
 
 TEST(GroupPosts, WhatAddsNothingSaysSo) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <dspace/terrain/PoleCharts.h>
 #include <dspace/terrain/StreamedTerrain.h>
 
 #include "Patches.h"
@@ -152,6 +153,74 @@ TEST(StreamedGroup, WholeMoonWithASiteOfOneMetre) {
     EXPECT_NEAR(HeightAt(*terrain, out.x(), out.y()), HeightAt(*bare, out.x(), out.y()), 1e-3);
   }
   ExpectRaysMeetIt(*terrain, terrain->SampleMap({3.63, 26.13}).position_S, 100.0);
+}
+
+// Around the poles a body is drawn on charts of their own: there, too, with its patches.
+TEST(StreamedGroup, PoleChartsHaveThePatches) {
+  const TemporaryFolder folder;
+  RasterFile file;
+  file.width = 128;
+  file.height = 64;
+  file.unit = "m";
+  file.verticalDatum = "sphere";
+  file.crs = "+proj=longlat +R=1737400 +no_defs";
+  file.geotransform = std::array<double, 6>{-180, 360.0 / 128, 0, 90, 0, -360.0 / 128};
+  file.value = [](int, int r, int) { return 10.0 * r; };
+  StreamedTerrainOptions options;
+  options.onBody = true;
+  const std::string path = file.Write(folder / "globe.tif");
+  for (const bool south : {false, true}) {
+    PatchFile patch;
+    patch.projection = south ? PolarStereographic(25.0, true) : PolarStereographic(25.0);
+    patch.middle = {70.0, south ? -89.97 : 89.97};
+    patch.width = 240;
+    patch.height = 200;
+    patch.size = 20.0;
+    patch.margin = 600.0;
+    patch.formula = [](const Eigen::Vector2d& m) {
+      return 900.0 + 8.0 * std::sin(m.x() / 150.0) + 0.02 * m.y();
+    };
+    options.patches = {patch.Write(folder / (south ? "south.tif" : "north.tif"))};
+    const auto terrain = StreamedTerrain::Open(path, options);
+    ASSERT_TRUE(terrain->Group()->patches[0].used);
+    const std::vector<ClipmapChart> charts = PoleChartsOf(*terrain, 124);
+    ASSERT_EQ(charts.size(), 2u);
+    const ClipmapChart& chart = charts[south ? 1 : 0];
+    const double spacing = 2.0 * MoonRadius * chart.placement.PlaneStep();
+    EXPECT_LT(spacing, 20.0);
+    const auto half = std::int64_t(chart.placement.Half());
+    int within = 0;
+    int outside = 0;
+    std::mt19937 random(6);
+    for (int i = 0; i < 150; ++i) {
+      const auto about = [&] { return std::int64_t(random() % 600) - 300; };
+      const PostBlock block{0, half + about(), half + about(), 5, 4};
+      std::array<float, 20> heights = {};
+      chart.pyramid->Read(block, heights.data());
+      for (int k = 0; k < 20; ++k) {
+        const Eigen::Vector2d angles = chart.placement.Angles(
+            Eigen::Vector2d(double(block.column + k % 5), double(block.row + k / 5)));
+        const Eigen::Vector2d lonLat = angles / Deg;
+        const Eigen::Vector2d pixel = patch.PixelOf(lonLat);
+        const double away =
+            std::min({pixel.x(), patch.width - pixel.x(), pixel.y(), patch.height - pixel.y()});
+        if (away > 35.0) {
+          EXPECT_NEAR(heights[k], patch.FormulaAt(lonLat), 0.05) << lonLat.transpose();
+          ++within;
+        }
+        outside += away < 0.0;
+        // As queries answer; their lattice is another one, and in the margin the ground bends:
+        // 900 m x 6 / (600 m)^2, which posts 17 m apart cut by up to 0.55 m.
+        const SurfaceSample sample =
+            terrain->Sample(1e6 * Eigen::Vector3d(std::cos(angles.y()) * std::cos(angles.x()),
+                                                  std::cos(angles.y()) * std::sin(angles.x()),
+                                                  std::sin(angles.y())));
+        EXPECT_NEAR(heights[k], sample.height, 0.7) << lonLat.transpose();
+      }
+    }
+    EXPECT_GT(within, 200) << south << ", " << spacing << ", " << outside;
+    EXPECT_GT(outside, 20);
+  }
 }
 
 // A base on a plane, whose posts are divided for the patch.

@@ -48,7 +48,27 @@ GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base, const Eigen::Affi
   }
 }
 
+GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base)
+    : Base_(std::move(base)), Name_(Base_->GetName()) {}
+
 GroupPosts::~GroupPosts() = default;
+
+std::shared_ptr<const GroupPosts> GroupPosts::On(std::shared_ptr<const PostSource> posts,
+                                                 const Crs& crs,
+                                                 const Eigen::Affine2d& postToMap) const {
+  const std::shared_ptr<GroupPosts> group(new GroupPosts(std::move(posts)));
+  ElevationInfo info;
+  info.crs = crs;
+  info.pixelToMap = postToMap; // for sizes
+  for (const std::shared_ptr<Patch>& patch : this->Patches_) {
+    const auto again = std::make_shared<Patch>(*patch, info);
+    if (again->SettleAgain(group->GetLattice(), postToMap)) {
+      group->Patches_.push_back(again);
+    }
+  }
+  group->Report_ = this->Report_;
+  return group;
+}
 
 void GroupPosts::ReadUpTo(std::size_t count, const PostBlock& block, float* heights) const {
   this->Base_->Read(block, heights);

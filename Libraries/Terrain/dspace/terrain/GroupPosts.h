@@ -89,9 +89,15 @@ public:
   // posts of the base are all there is.
   bool Reaches(const Eigen::Vector2d& post, int level) const;
 
+  // The same patches over other posts of the same body, of another map.
+  std::shared_ptr<const GroupPosts> On(std::shared_ptr<const PostSource> posts, const Crs& crs,
+                                       const Eigen::Affine2d& postToMap) const;
+  const std::shared_ptr<const PostSource>& Base() const { return this->Base_; }
+
   const GroupReport& Report() const { return this->Report_; }
 
 private:
+  explicit GroupPosts(std::shared_ptr<const PostSource> base);
   void ReadUpTo(std::size_t count, const PostBlock& block, float* heights) const;
   void Measure(std::size_t index, PatchReport& report) const;
 

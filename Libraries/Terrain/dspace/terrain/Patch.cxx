@@ -46,7 +46,7 @@ Patch::Patch(const ElevationInfo& base, const TerrainPatch& options,
       Place_(Object_, base, Source_->Info()) {
   const ElevationInfo& info = this->Source_->Info();
   const Eigen::Vector2d& metres = this->Place_.Metres();
-  this->Posts_ = std::make_unique<const RasterPosts>(this->Source_, [] {
+  this->Posts_ = std::make_shared<const RasterPosts>(this->Source_, [] {
     RasterPostsOptions posts;
     posts.coarsest = 2;
     return posts;
@@ -83,7 +83,7 @@ bool Patch::Settle(const PostLattice& lattice, const Eigen::Affine2d& postToMap,
     warnings.push_back(this->Object_ + " lies wholly outside the raster below: it adds nothing");
     return false;
   }
-  this->Weight_ = std::make_unique<const PatchWeight>(*this->Source_, this->Place_.Metres(),
+  this->Weight_ = std::make_shared<const PatchWeight>(*this->Source_, this->Place_.Metres(),
                                                       this->Report_.margin);
   if (this->Weight_->Empty()) {
     warnings.push_back(this->Object_ + " is wholly without data: it adds nothing");
@@ -109,6 +109,16 @@ bool Patch::Settle(const PostLattice& lattice, const Eigen::Affine2d& postToMap,
   }
   this->Report_.heightsAreExact = this->Weight_->HeightsAreExact();
   return true;
+}
+
+Patch::Patch(const Patch& other, const ElevationInfo& on)
+    : Object_(other.Object_), Source_(other.Source_), Place_(Object_, on, Source_->Info()),
+      Report_(other.Report_), Posts_(other.Posts_), Weight_(other.Weight_) {}
+
+bool Patch::SettleAgain(const PostLattice& lattice, const Eigen::Affine2d& postToMap) {
+  this->Place_.Settle(lattice, postToMap, false);
+  this->PostPixels_ = this->Place_.PostSize();
+  return this->Place_.Inside();
 }
 
 // The level of its own posts that are about as far apart as those of a level of the lattice.

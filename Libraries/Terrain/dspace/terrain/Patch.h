@@ -19,6 +19,9 @@ public:
   // Throws what OpenPatches throws. Adds what is in doubt to `warnings`.
   Patch(const ElevationInfo& base, const TerrainPatch& options, std::vector<std::string>& warnings);
 
+  // One that was settled, on another base of the same body.
+  Patch(const Patch& other, const ElevationInfo& on);
+
   const std::string& Object() const { return this->Object_; } // "patch 'name'"
   const ElevationSource& Source() const { return *this->Source_; }
   const PatchPlace& Place() const { return this->Place_; }
@@ -31,6 +34,8 @@ public:
               std::vector<std::string>& warnings);
   // Over the heights of a block of that lattice.
   void Blend(const PostBlock& block, float* heights) const;
+  // Of one that was settled elsewhere: its weights are known. False where it does not lie within.
+  bool SettleAgain(const PostLattice& lattice, const Eigen::Affine2d& postToMap);
 
 private:
   class Heights;
@@ -40,8 +45,8 @@ private:
   std::shared_ptr<const ElevationSource> Source_;
   PatchPlace Place_;
   PatchReport Report_;
-  std::unique_ptr<const RasterPosts> Posts_;
-  std::unique_ptr<const PatchWeight> Weight_;
+  std::shared_ptr<const RasterPosts> Posts_;
+  std::shared_ptr<const PatchWeight> Weight_;
   double PostPixels_ = 1.0; // of the patch, between level-0 posts
 };
 

@@ -1,11 +1,32 @@
 #include <dspace/terrain/PoleCharts.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include <dspace/terrain/ClipmapLevels.h>
 #include <dspace/terrain/PolarPosts.h>
 
 namespace dspace {
+namespace {
+
+// Of the plane that PostPlacement::OnPole() has, in metres.
+Crs PolarCrs(const StreamedTerrain& terrain, bool south) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "+proj=stere +lat_0=" << (south ? -90 : 90)
+       << " +lon_0=-90 +R=" << terrain.Info().crs.GetAxes().semiMajor << " +no_defs";
+  return Crs::FromText(text.str());
+}
+
+Eigen::Affine2d PostToPolarMap(const StreamedTerrain& terrain, const PostPlacement& chart) {
+  const double step = 2.0 * terrain.Info().crs.GetAxes().semiMajor * chart.PlaneStep();
+  Eigen::Affine2d map = Eigen::Affine2d::Identity();
+  map.linear() << step, 0.0, 0.0, -step;
+  map.translation() << -step * chart.Half(), step * chart.Half();
+  return map;
+}
+
+} // namespace
 
 std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells,
                                        const ElevationPyramidOptions& options) {
@@ -17,18 +38,26 @@ std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells
   }
   // The raster's own posts are those of the level below the one of its pixels: rows count from the
   // poles, half a pixel beside.
-  int complete = terrain.Group() ? 0 : std::max(terrain.Subdivisions() - 1, 0);
+  int complete = std::max(terrain.Subdivisions() - 1, 0);
   while (complete < lattice.levels - 1 && lattice.ColumnsAt(complete) > MostColumns) {
     ++complete;
   }
   ElevationPyramidOptions quarter = options;
   quarter.byteBudget = std::max(options.byteBudget / 4, std::size_t(4) << 20);
-  const std::shared_ptr<const PostSource> base(pyramid, &pyramid->Source());
+  // Patches are laid on the chart itself: around a pole their posts would be too many columns.
+  const auto* group = dynamic_cast<const GroupPosts*>(&pyramid->Source());
+  const std::shared_ptr<const PostSource> base =
+      group ? group->Base() : std::shared_ptr<const PostSource>(pyramid, &pyramid->Source());
   std::vector<ClipmapChart> charts;
   for (const bool south : {false, true}) {
     const auto posts = std::make_shared<const PolarPosts>(base, terrain.Placement(), complete,
                                                           south, CoarsestFor(cells));
-    charts.push_back({std::make_shared<ElevationPyramid>(posts, quarter), posts->Placement()});
+    std::shared_ptr<const PostSource> source = posts;
+    if (group) {
+      source =
+          group->On(posts, PolarCrs(terrain, south), PostToPolarMap(terrain, posts->Placement()));
+    }
+    charts.push_back({std::make_shared<ElevationPyramid>(source, quarter), posts->Placement()});
   }
   return charts;
 }
