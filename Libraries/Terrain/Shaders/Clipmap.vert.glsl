@@ -6,7 +6,7 @@
 #endif
 layout(location = 0) in vec2 cell; // post of the window, 0 to cells
 
-uniform sampler2DArray posts; // height, slopes a level-0 column and row, hole
+uniform sampler2DArray posts; // height, slopes a level-0 column and row, 1 in a hole, else tracks
 uniform int texelMask;
 uniform int level;
 uniform ivec2 windowTexel; // texel of the window's first post, here and in the coarser level
@@ -85,6 +85,9 @@ uniform mat2 postGrid;
 #endif
 out vec4 styleAt;
 flat out int levelShown;
+#ifdef DSPACE_TRACKS
+out float trackAt;
+#endif
 #ifdef DSPACE_DETAILS
 uniform vec4 originDetail; // of two textures: tiles from one near the camera on
 uniform mat2 postDetail0;
@@ -103,6 +106,7 @@ void main()
   vec2 at = clamp(cell, firstPost, lastPost);
   ivec2 post = ivec2(at);
   vec4 here = postAt(windowTexel + post, level);
+  bool missing = here.w > 0.75;
   vec2 away = abs(at - cameraPost);
   float coarser = clamp((max(max(away.x, away.y), blend.z) - blend.x) * blend.y, 0.0, 1.0);
   if (coarser > 0.0)
@@ -111,10 +115,12 @@ void main()
     // lattice's last post is one of every level.
     ivec2 before = (post + ivec2(equal(at, lastPost))) >> 1;
     ivec2 after = (post + 1) >> 1;
-    vec4 there = 0.5 * (postAt(coarseTexel + before, level + 1) + postAt(coarseTexel + after, level + 1));
-    if (there.w == 0.0)
+    vec4 there0 = postAt(coarseTexel + before, level + 1);
+    vec4 there1 = postAt(coarseTexel + after, level + 1);
+    if (max(there0.w, there1.w) < 0.75)
     {
-      here = mix(here, there, coarser);
+      here = mix(here, 0.5 * (there0 + there1), coarser);
+      missing = missing && coarser < 1.0;
     }
   }
   vec2 place = min(at, lastPlace);
@@ -201,10 +207,13 @@ void main()
 #endif
   levelShown = coarser < 1.0 ? level : level + 1; // where two levels overlap both are the coarser
 #endif
+#ifdef DSPACE_TRACKS
+  trackAt = missing ? 0.0 : 2.0 * here.w;
+#endif
 #ifdef DSPACE_DETAILS
   detailAt = originDetail + vec4(postDetail0 * place, postDetail1 * place);
 #endif
 #ifdef DSPACE_HOLES
-  hole = here.w > 0.0 ? 1.0 : 0.0;
+  hole = missing ? 1.0 : 0.0;
 #endif
 }

@@ -24,6 +24,10 @@ vec3 detailed(vec3 color, vec3 structure, vec3 mean, vec4 range, float opacity, 
   return color * mix(vec3(1.0), structure / mean, weight);
 }
 #endif
+#ifdef DSPACE_TRACKS
+in float trackAt; // how much is rolled over
+uniform vec4 trackColor; // linear light, opacity
+#endif
 #ifdef DSPACE_RAMP
 uniform sampler2D rampTexture;
 uniform vec4 ramp; // value of its left edge, 1 / range, opacity, 0: by height, 1: by slope
@@ -93,6 +97,9 @@ vec4 mixedColor(vec4 color)
   color.rgb = detailed(color.rgb, texture(detailTexture1, detailAt.zw).rgb, detailMean1, detailRange1,
     detailLook.y, detailLook.w);
 #endif
+#endif
+#ifdef DSPACE_TRACKS
+  color.rgb = mix(color.rgb, trackColor.rgb, trackColor.a * clamp(trackAt, 0.0, 1.0));
 #endif
 #ifdef DSPACE_RAMP
   float value = ramp.w == 0.0 ? styleAt.x : styleAt.y;

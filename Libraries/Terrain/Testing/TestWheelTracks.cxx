@@ -378,6 +378,26 @@ TEST(WheelTracks, TexturesFollowByteForByte) {
   }
 }
 
+// Half of the weight stands where holes have a 1.
+TEST(WheelTracks, TexelsTellHowMuchIsRolledOver) {
+  Ground ground;
+  ground.tracks->Add({Stroke("wheel", Rut(), {{{-2.0, 0.0}, 0.05}, {{2.0, 0.0}, 0.05}})});
+  ClipmapLevels levels(std::make_shared<ElevationPyramid>(ground.posts), 124);
+  ClipmapLevels::View where;
+  where.place = {400.0, 400.0};
+  where.height = 0.5;
+  where.cellSize = Post;
+  where.wait = 60.0;
+  ASSERT_EQ(levels.Update(where, [](int, const ClipmapUpdate&, const ClipmapTexel*) {}).finest, 0);
+  EXPECT_TRUE(levels.HasTracks(0));
+  EXPECT_FALSE(levels.HasHoles(0));
+  for (std::int64_t r = 380; r <= 420; ++r) { // y = 0 is row 400
+    const double y = Post * std::abs(double(r - 400));
+    const double weight = y <= 0.12 ? 1.0 : std::max(0.0, (0.18 - y) / 0.06);
+    EXPECT_NEAR(levels.Texel(0, 400, r).hole, 0.5 * weight, 1e-6) << r;
+  }
+}
+
 TEST(WheelTracks, AStepDoesNotReadTheSourceAgain) {
   Ground ground(2001, Hills);
   ElevationPyramid pyramid(ground.posts);

@@ -173,7 +173,11 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   const bool pole = chart.placement.GetKind() == PostPlacement::Kind::Pole;
   // Longitude jumps within a triangle at a pole: there the texture's place is found a pixel.
   const bool poleTexture = pole && (features & SurfaceShaders::Texture) != 0;
-  const bool mixed = !labels && (poleTexture || !style.Empty());
+  bool tracks = false; // what mixes colours costs time elsewhere
+  for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
+    tracks |= !labels && chart.levels.HasTracks(level);
+  }
+  const bool mixed = !labels && (poleTexture || tracks || !style.Empty());
   ShaderPages pages;
   pages.vertex = Clipmap_vert;
   pages.defines = ClipmapUniforms::Defines(chart.placement, mixed ? &style : nullptr);
@@ -182,6 +186,9 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
       pages.defines += "#define DSPACE_HOLES\n";
       break;
     }
+  }
+  if (tracks) {
+    pages.defines += "#define DSPACE_TRACKS\n";
   }
   if (mixed) {
     features |= SurfaceShaders::Mixed;

@@ -158,15 +158,17 @@ bool ClipmapLevels::Bring(int index, const std::vector<ClipmapUpdate>& updates,
   Level& level = this->Levels_[index];
   // All of it is there before any of it goes up: the level stays what it was otherwise.
   std::vector<std::vector<float>> heights(updates.size());
+  std::vector<std::vector<float>> tracks(updates.size());
   bool complete = true;
   for (std::size_t i = 0; i < updates.size(); ++i) {
     const ClipmapUpdate& u = updates[i];
     const PostBlock block{index, u.column - 1, u.row - 1, u.width + 2, u.height + 2};
     heights[i].resize(std::size_t(block.width) * block.height);
+    tracks[i].resize(heights[i].size());
     if (wait) {
-      this->Pyramid_->Read(block, heights[i].data(), *wait);
+      this->Pyramid_->Read(block, heights[i].data(), tracks[i].data(), *wait);
     } else { // go on after the first that is missing: all of them are then asked for
-      complete &= this->Pyramid_->TryRead(block, heights[i].data());
+      complete &= this->Pyramid_->TryRead(block, heights[i].data(), tracks[i].data());
     }
   }
   if (!complete) {
@@ -178,6 +180,14 @@ bool ClipmapLevels::Bring(int index, const std::vector<ClipmapUpdate>& updates,
   for (std::size_t i = 0; i < updates.size(); ++i) {
     const ClipmapUpdate& u = updates[i];
     level.holes |= this->ToTexels(index, u, heights[i], texels);
+    for (std::size_t k = 0; k < texels.size(); ++k) {
+      const std::size_t row = k / std::size_t(u.width) + 1; // within the border
+      const float track = tracks[i][row * std::size_t(u.width + 2) + k % std::size_t(u.width) + 1];
+      if (track > 0.0f && texels[k].hole == 0.0f) {
+        texels[k].hole = 0.5f * track;
+        level.tracks = true;
+      }
+    }
     for (int j = 0; j < u.height; ++j) {
       std::copy_n(texels.begin() + std::ptrdiff_t(j) * u.width, u.width,
                   level.texels.begin() + std::ptrdiff_t(u.y + j) * side + u.x);
@@ -215,7 +225,7 @@ double ClipmapLevels::GroundAt(int level, const Eigen::Vector2d& place) const {
     for (const int i : {0, 1}) {
       const ClipmapTexel& texel = this->Texel(level, c + i, r + j);
       const double w = (1.0 - std::abs(x - double(c + i))) * (1.0 - std::abs(y - double(r + j)));
-      if (texel.hole == 0.0f) {
+      if (texel.hole < 1.0f) {
         sum += w * texel.height;
         weight += w;
       }

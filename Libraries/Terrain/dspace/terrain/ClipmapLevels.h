@@ -17,7 +17,8 @@ struct ClipmapTexel {
   float height = 0.0f;      // [m]
   float slopeColumn = 0.0f; // rise a level-0 post along the columns [m]
   float slopeRow = 0.0f;
-  float hole = 0.0f; // 1: no data; the rest is then 0
+  // 1: no data; the rest is then 0. Else half of how much of its cell is rolled over, 0 to 0.5.
+  float hole = 0.0f;
 };
 static_assert(sizeof(ClipmapTexel) == 16, "tightly packed");
 
@@ -58,6 +59,8 @@ public:
   const std::vector<ClipmapTexel>& Texels(int level) const { return this->Levels_[level].texels; }
   // Whether it holds, or held, a post of the lattice without data.
   bool HasHoles(int level) const { return this->Levels_[level].holes; }
+  // Whether it holds, or held, a post that is rolled over.
+  bool HasTracks(int level) const { return this->Levels_[level].tracks; }
   const ClipmapTexel& Texel(int level, std::int64_t column, std::int64_t row) const;
 
   // The height distance of a level: `distance` in its posts.
@@ -68,6 +71,7 @@ private:
     std::optional<ClipmapWindow> window; // none: nothing in it is valid
     std::vector<ClipmapTexel> texels;
     bool holes = false;
+    bool tracks = false;
     std::vector<PostRectangle> changed; // posts of the level that it holds as they were before
   };
   enum class Filled { Not, Before, Wholly }; // Before: with posts as they were before a change

@@ -45,6 +45,10 @@ void ClipmapStyle::Check(const std::string& terrain) const {
     }
     CheckOpacity(terrain, "a detail", detail.opacity);
   }
+  for (const double c : this->tracks.color) {
+    Require(c >= 0.0 && c <= 1.0, terrain, "a colour component of its tracks", c, "0 to 1");
+  }
+  CheckOpacity(terrain, "its tracks", this->tracks.opacity);
   if (this->ramp) {
     if (!this->ramp->image) {
       Refuse(terrain, "its ramp has no colours");

@@ -25,6 +25,11 @@ struct ClipmapStyle {
     std::array<double, 2> heights = {-1e9, 1e9}; // [m] above the vertical datum
     double opacity = 0.5;
   };
+  // Where wheels have rolled, less so up the walls of their ruts.
+  struct Tracks {
+    std::array<double, 3> color = {0, 0, 0};
+    double opacity = 0.35;
+  };
   struct Ramp {
     enum class By { Height, Slope }; // [m] above the vertical datum; [deg] from level
     By by = By::Height;
@@ -39,6 +44,7 @@ struct ClipmapStyle {
     double opacity = 1.0;
   };
   std::vector<Detail> details; // at most Detail::Most
+  Tracks tracks;               // where there are any
   std::optional<Ramp> ramp;
   std::optional<double> levels; // opacity of a colour for each clipmap level
   std::optional<Lines> contours;

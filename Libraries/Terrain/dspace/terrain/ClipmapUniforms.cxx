@@ -129,6 +129,12 @@ void ClipmapUniforms::SetStyle(const CustomDrawing& drawing) const {
                     drawing.store.TextureOf(style.ramp->image, false));
     program->SetUniformi("rampTexture", TerrainUnit + 1);
   }
+  if (program->IsUniformUsed("trackColor")) {
+    const ClipmapStyle::Tracks& tracks = style.tracks;
+    const float color[4] = {LinearFromSrgb(tracks.color[0]), LinearFromSrgb(tracks.color[1]),
+                            LinearFromSrgb(tracks.color[2]), float(tracks.opacity)};
+    program->SetUniform4f("trackColor", color);
+  }
   if (style.levels) {
     program->SetUniformf("levelOpacity", float(*style.levels));
   }
