@@ -11,7 +11,8 @@ namespace dspace {
 
 // North and south, for a terrain on a body that reaches both; else none. Each has a pyramid of its
 // own with a quarter of `options`' budget. About a pole all columns of some rows are read at once:
-// at most 65536 of them, hence of a finer degree grid a coarser level.
+// at most 65536 of them, hence of a finer degree grid a coarser level. A group's
+// patches lie on the charts themselves.
 std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells,
                                        const ElevationPyramidOptions& options = {});
 
