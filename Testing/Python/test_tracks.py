@@ -82,6 +82,29 @@ def test_depth_images_show_the_sinkage(scene, terrain):
         terrain.clear_tracks()
 
 
+def test_the_ground_is_darker_where_wheels_rolled(scene, field):
+    """Unlit, so that the ground's own colour shows: linear light times 0.65, or another colour."""
+    terrain = scene.add_terrain(field, subdivisions=5, color=(0.8, 0.8, 0.8), lit=False)
+    scene.add_camera("eye", eye=(X, Y, X / 2 + 0.9), target=(X + 0.05, Y, X / 2), fov_deg=40, near=0.05)
+    view = scene.add_viewport((160, 120), "eye", samples=1)
+    middle, beside = (60, 80), (5, 80)  # on the floor, and 0.3 m from it
+    before = view.image()
+    terrain.track({"wheel": [(X, Y - 2), (X, Y + 2)]}, width=0.2)
+    dark = view.image()
+    linear = ((0.8 + 0.055) / 1.055) ** 2.4
+    expected = 1.055 * (0.65 * linear) ** (1 / 2.4) - 0.055
+    assert np.abs(before[middle] / 255 - 0.8).max() < 0.004
+    assert np.abs(dark[middle] / 255 - expected).max() < 0.004
+    assert (dark[beside] == before[beside]).all()
+    terrain.set_style(tracks="red")
+    red = view.image()
+    assert tuple(red[middle]) == (255, 0, 0) and (red[beside] == before[beside]).all()
+    terrain.clear_tracks()
+    assert (view.image() == before).all()
+    with pytest.raises(InvalidArgument, match="opacity"):
+        terrain.set_style(tracks={"color": "red", "opacity": 2.0})
+
+
 def test_saved_and_loaded(terrain, tmp_path):
     path = tmp_path / "tracks.geojson"
     terrain.track({"left": lengthwise(), "right": lengthwise() + (0.0, 1.0)}, width=0.2, sinkage=0.05,

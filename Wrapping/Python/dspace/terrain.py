@@ -200,7 +200,7 @@ class Terrain(TrackMaking, Strict):
         self._scene._execute(command)
 
     def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
-                  contours=None, grid=None, details=()):
+                  contours=None, grid=None, details=(), tracks=None):
         """What is laid over a clipmap's own colour; replaces the style before, set_style() removes it.
 
         color_by: "height" or "slope" (degrees from level), over `range` (low, high; the heights' own,
@@ -210,7 +210,8 @@ class Terrain(TrackMaking, Strict):
         map's axes, in map units; on a body meridians and parallels, in degrees. details: up to two
         tiling images that add structure closer than the posts, on a plane: dicts of image (a file),
         size (metres a tile), slope (low, high; degrees), height (low, high; metres), opacity
-        (0.5)."""
+        (0.5). tracks: the ground's colour where wheels have rolled (see track()), or a dict of color
+        and opacity (black, 0.35)."""
         label = self._label()
         command = self._scene._command()
         style = command.style_terrain
@@ -228,6 +229,11 @@ class Terrain(TrackMaking, Strict):
                                   "accepted: color_by 'height' or 'slope'", label)
         for detail in details:
             _put_detail(style.detail.add(), detail, f"{label}, a detail")
+        if tracks is not None:
+            look = tracks if isinstance(tracks, dict) else {"color": tracks, "opacity": 1.0}
+            keywords(look, ("color", "opacity"), f"{label}, tracks")
+            put_color(style.tracks.color, look.get("color", (0, 0, 0)), "the colour of its tracks", label)
+            put(style.tracks, f"{label}, tracks", opacity=look.get("opacity", 0.35))
         put_given(style, label, levels=levels)
         _put_lines(style.contours, contours, "contours", label)
         _put_lines(style.grid, grid, "grid", label)

@@ -80,6 +80,10 @@ void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
   if (command.has_ramp()) {
     style.ramp = ToRamp(command.ramp(), terrain->Surface(), label);
   }
+  if (command.has_tracks()) {
+    style.tracks.color = ToColor(command.tracks().color(), label);
+    style.tracks.opacity = command.tracks().opacity();
+  }
   if (command.has_levels()) {
     style.levels = command.levels();
   }
