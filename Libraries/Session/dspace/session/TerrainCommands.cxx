@@ -10,6 +10,7 @@
 #include <dspace/session/TerrainLook.h>
 #include <dspace/session/TerrainTools.h>
 #include <dspace/terrain/DrapeImage.h>
+#include <dspace/terrain/ElevationCache.h>
 
 namespace dspace::session {
 
@@ -80,11 +81,47 @@ std::unique_ptr<TerrainObject> OpenMesh(const Context& context, const std::strin
   return terrain;
 }
 
+// Up to this many pixels all of a raster is kept in memory where the caller does not choose.
+constexpr std::int64_t MeshPixels = 4000000;
+
+// Where overviews are read; empty: nowhere.
+std::string CacheFolder(v1::OpenTerrain& command) {
+  if (!command.has_overview_cache()) {
+    return ElevationCache::DefaultFolder(); // whose it is where a recording replays
+  }
+  if (!command.overview_cache().empty()) {
+    command.set_overview_cache(AbsolutePath(command.overview_cache()));
+  }
+  return command.overview_cache();
+}
+
+// Smaller rasters lose little.
+void WarnOfOverviews(const Context& context, const std::string& label, const ElevationInfo& info,
+                     const v1::OpenTerrain& command) {
+  const bool off = command.has_overview_cache() && command.overview_cache().empty();
+  if (off || info.overviewsAreCached || !ElevationCache::Needs(info) ||
+      std::int64_t(info.window.width) * info.window.height <= MeshPixels) {
+    return;
+  }
+  std::string build = "dspace terrain cache ";
+  if (command.has_overview_cache()) {
+    build += "--folder '" + command.overview_cache() + "' ";
+  }
+  if (command.band() > 1) {
+    build += "--band " + std::to_string(command.band()) + " ";
+  }
+  context.reply.add_warning(label + ": its raster of " + std::to_string(info.window.width) + " x " +
+                            std::to_string(info.window.height) +
+                            " pixels has no overviews: far ground is every n-th pixel; `" + build +
+                            "'" + info.path + "'` builds overviews");
+}
+
 std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::string& name,
                                            const std::string& path, v1::OpenTerrain& command) {
   const std::string label = "terrain '" + name + "'";
   StreamedTerrainOptions options;
   options.elevation = ToElevation(command);
+  options.elevation.overviewCache = CacheFolder(command);
   options.onBody = command.on_body();
   if (command.has_map_origin()) {
     if (options.onBody) {
@@ -110,8 +147,10 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   }
   for (v1::OpenTerrain::Patch& patch : *command.mutable_patch()) {
     options.patches.push_back(ToPatch(patch));
+    options.patches.back().elevation.overviewCache = options.elevation.overviewCache;
   }
   const auto surface = StreamedTerrain::Open(path, options);
+  WarnOfOverviews(context, label, surface->Info(), command);
   ClipmapOptions look = ClipmapLook(context, *surface, command);
   look.cells = options.cells;
   look.heights = surface->DrawnHeights();
@@ -129,9 +168,6 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   }
   return terrain;
 }
-
-// Up to this many pixels all of a raster is kept in memory where the caller does not choose.
-constexpr std::int64_t MeshPixels = 4000000;
 
 v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
                               const v1::OpenTerrain& command) {
@@ -238,6 +274,7 @@ void AddTerrainCommands(Registry& registry) {
   AddTerrainRequests(registry);
   AddTerrainStyleCommands(registry);
   AddTerrainTrackCommands(registry);
+  AddTerrainCacheCommands(registry);
 }
 
 } // namespace dspace::session

@@ -20,6 +20,7 @@ void RequireFinitePoints(const std::string& label, const double* values, int siz
 void AddTerrainRequests(Registry& registry);
 void AddTerrainStyleCommands(Registry& registry);
 void AddTerrainTrackCommands(Registry& registry);
+void AddTerrainCacheCommands(Registry& registry);
 
 } // namespace dspace::session
 
