@@ -97,6 +97,15 @@ def test_auto_chooses_by_size(scene, tmp_path):
     assert terrain.tiles["levels"] > 1 and terrain.tiles["subdivisions"] == 0
 
 
+def test_bounds_of_what_is_drawn_hold_the_ground(scene):
+    terrain = scene.add_terrain(FIELD, mode="clipmap")
+    west, east, south, north = terrain.extent
+    low, high = terrain.object.box
+    assert (low <= (west, south, terrain.height_range[0])).all()
+    assert (high >= (east, north, terrain.height_range[1])).all()
+    assert (high - low).max() < 2 * (east - west)  # of a sphere about it
+
+
 def test_a_million_heights(scene):
     """Against the triangles by hand, from GDAL's own values of the posts."""
     terrain = scene.add_terrain(FIELD, mode="clipmap")

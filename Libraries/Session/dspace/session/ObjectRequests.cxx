@@ -1,4 +1,5 @@
 // What objects there are, and what they are like.
+#include <dspace/scene/CustomGeometry.h>
 #include <dspace/session/Convert.h>
 #include <dspace/session/ObjectTools.h>
 
@@ -40,6 +41,14 @@ void Describe(const GraphicsObject& object, v1::ObjectInfo* info) {
       Put(Eigen::Vector3d(box.min()), info->mutable_box_minimum());
       Put(Eigen::Vector3d(box.max()), info->mutable_box_maximum());
     }
+  }
+  if (object.custom) {
+    const BoundingSphere bounds = object.custom->Bounds();
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bounds.radius);
+    Put(bounds.center, info->mutable_bounds_center());
+    info->set_bounds_radius(bounds.radius);
+    Put(bounds.center - reach, info->mutable_box_minimum());
+    Put(bounds.center + reach, info->mutable_box_maximum());
   }
 }
 
