@@ -5,6 +5,7 @@
 #include <complex>
 #include <cstring>
 #include <random>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -372,6 +373,106 @@ TEST(WheelTracks, TexturesFollowByteForByte) {
           ASSERT_EQ(
               std::memcmp(&textures[level][at], &fresh.Texel(level, c, r), sizeof(ClipmapTexel)), 0)
               << "addition " << n << ", level " << level << ", post " << c << ", " << r;
+        }
+      }
+    }
+  }
+}
+
+// Reads wait while it is closed.
+class GatedPosts : public PostSource {
+public:
+  explicit GatedPosts(std::shared_ptr<const PostSource> source) : Source_(std::move(source)) {}
+  const std::string& GetName() const override { return this->Source_->GetName(); }
+  const PostLattice& GetLattice() const override { return this->Source_->GetLattice(); }
+  void Read(const PostBlock& block, float* heights) const override {
+    while (this->closed) {
+      std::this_thread::yield();
+    }
+    this->Source_->Read(block, heights);
+  }
+  std::atomic<bool> closed{false};
+
+private:
+  std::shared_ptr<const PostSource> Source_;
+};
+
+// An interactive picture has no part that vanishes while what changed is on its way.
+TEST(WheelTracks, UntilAChangeIsThereTheOldPostsAreDrawn) {
+  Ground ground;
+  const auto gate = std::make_shared<GatedPosts>(ground.posts);
+  const auto pyramid = std::make_shared<ElevationPyramid>(gate);
+  ClipmapLevels levels(pyramid, 124);
+  ClipmapLevels::View where;
+  where.place = {400.0, 400.0};
+  where.height = 0.5;
+  where.cellSize = Post;
+  where.wait = 60.0;
+  std::size_t uploaded = 0;
+  const auto upload = [&uploaded](int, const ClipmapUpdate& u, const ClipmapTexel*) {
+    uploaded += std::size_t(u.width) * u.height;
+  };
+  ASSERT_EQ(levels.Update(where, upload).finest, 0);
+  const float before = levels.Texel(0, 400, 400).height;
+  gate->closed = true;
+  pyramid->Invalidate(ground.posts->RectanglesOf(
+      ground.tracks->Add({Stroke("wheel", Rut(), {{{-1.0, 0.0}, 0.05}, {{1.0, 0.0}, 0.05}})})));
+  where.wait.reset();
+  uploaded = 0;
+  for (int n = 0; n < 3; ++n) {
+    const ClipmapLevels::State state = levels.Update(where, upload);
+    EXPECT_EQ(state.finest, 0);
+    EXPECT_FALSE(state.complete);
+    EXPECT_EQ(levels.Texel(0, 400, 400).height, before);
+  }
+  EXPECT_EQ(uploaded, 0u);
+  gate->closed = false;
+  while (!levels.Update(where, upload).complete) {
+    std::this_thread::yield();
+  }
+  EXPECT_LT(levels.Texel(0, 400, 400).height, before - 0.04f);
+  uploaded = 0;
+  EXPECT_TRUE(levels.Update(where, upload).complete);
+  EXPECT_EQ(uploaded, 0u); // once
+}
+
+// Where a lattice goes around a body the window and the change may be in different turns.
+TEST(WheelTracks, ChangesAroundABodyReachTheTextures) {
+  auto bump = std::make_shared<std::pair<double, double>>(-100.0, -100.0);
+  const auto base = std::make_shared<FormulaPosts>(
+      1024, 513, true,
+      [bump](double c, double r) {
+        return c == bump->first && r == bump->second ? 7.0 : 0.01 * c + 0.02 * r;
+      },
+      60);
+  const auto pyramid = std::make_shared<ElevationPyramid>(base);
+  ClipmapLevels levels(pyramid, 60);
+  std::mt19937 random(7);
+  double column = 10.0;
+  for (int n = 0; n < 60; ++n) {
+    ClipmapLevels::View where;
+    column += double(random() % 120) - 20.0; // around several times
+    where.place = {std::fmod(column, 1024.0), 250.0 + double(random() % 20)};
+    where.height = 30.0;
+    where.wait = 60.0;
+    const auto none = [](int, const ClipmapUpdate&, const ClipmapTexel*) {};
+    levels.Update(where, none);
+    const auto old = *bump;
+    *bump = {double((int(column) + int(random() % 40) - 20 + 2048) % 1024),
+             240.0 + double(random() % 40)};
+    pyramid->Invalidate({{std::int64_t(old.first), std::int64_t(old.second), 1, 1},
+                         {std::int64_t(bump->first), std::int64_t(bump->second), 1, 1}});
+    const ClipmapLevels::State state = levels.Update(where, none);
+    ClipmapLevels fresh(std::make_shared<ElevationPyramid>(base), 60);
+    fresh.Update(where, none);
+    for (int level = state.finest; level < levels.Count(); ++level) {
+      const ClipmapWindow& window = levels.Window(level);
+      const std::int64_t turn =
+          (window.column - fresh.Window(level).column); // whole turns apart, or none
+      for (std::int64_t r = window.row - 1; r <= window.row + 61; ++r) {
+        for (std::int64_t c = window.column - 1; c <= window.column + 61; ++c) {
+          ASSERT_EQ(levels.Texel(level, c, r).height, fresh.Texel(level, c - turn, r).height)
+              << "step " << n << ", level " << level << ", post " << c << ", " << r;
         }
       }
     }
