@@ -1,0 +1,73 @@
+"""What a style lays over a clipmap, through Python: colours where arithmetic puts them, and refusals."""
+import numpy as np
+import pytest
+
+import dspace
+from terrain_support import FIELD, write_raster
+
+RISE = 0.1  # metres a metre, to the east
+
+
+@pytest.fixture
+def slope(scene, tmp_path):
+    """Ground that rises to the east by RISE, seen from straight above, 2 metres a pixel."""
+    z = np.tile(np.arange(256.0) * 2 * RISE, (256, 1)).astype(np.float32)
+    ground = scene.add_terrain(write_raster(tmp_path / "slope.tif", z, pixel=2.0), mode="clipmap",
+                               color=(0.5, 0.5, 0.5), lit=False)
+    scene.add_camera(eye=(0, 0, 500), target=(0, 0, 0), up=(0, 1, 0), height=200)
+    view = scene.add_viewport(size=(100, 100), samples=1)
+    x = 2 * (np.arange(100) + 0.5) - 100
+    return ground, view, x
+
+
+def test_a_ramp_shows_heights(slope):
+    ground, view, x = slope
+    heights = ground.height(x, 0 * x)
+    low, high = heights[0] - 2, heights[-1] + 2
+    ground.set_style(color_by="height", range=(low, high), colors=["black", "white"])
+    row = view.image()[50, :, 0].astype(float)
+    np.testing.assert_allclose(row, 255 * (heights - low) / (high - low), atol=2)
+    ground.set_style(color_by="slope", range=(0, 20), colors=["black", "white"])
+    expected = 255 * np.degrees(np.arctan(RISE)) / 20
+    np.testing.assert_allclose(view.image()[..., 0], expected, atol=2)
+
+
+def test_contours_lie_at_their_heights(slope):
+    ground, view, x = slope
+    plain = view.image()
+    ground.set_style(contours=dict(interval=4.0, width=2, color="red"))
+    image = view.image()
+    red = (image[..., 0] > 150) & (image[..., 1] < 100)
+    from_line = np.abs(np.remainder(ground.height(x, 0 * x) + 2, 4.0) - 2) / RISE / 2  # pixels
+    assert red[50, from_line < 0.4].all() and (from_line < 0.4).sum() >= 3
+    assert not red[:, from_line > 2].any()
+    ground.set_style()
+    np.testing.assert_array_equal(view.image(), plain)
+
+
+@pytest.mark.parametrize("style, told", [
+    (dict(color_by="depth"), "'height', 'slope'"),
+    (dict(range=(0, 1)), "color_by"),
+    (dict(color_by="height", range=(3, 3)), "differ"),
+    (dict(color_by="height", colors=["nocolour"]), "CSS"),
+    (dict(color_by="height", opacity=2), "0 to 1"),
+    (dict(levels=-0.1), "0 to 1"),
+    (dict(contours=0), "more than 0"),
+    (dict(contours=dict(width=1)), "interval"),
+    (dict(grid=dict(interval=1, colour="red")), "colour"),
+    (dict(details=[dict(image="nowhere.png", size=1)]), "nowhere.png"),
+    (dict(details=[3]), "dict"),
+])
+def test_a_style_is_refused_whole(slope, style, told):
+    ground, view, _ = slope
+    ground.set_style(contours=4.0)
+    before = view.image()
+    with pytest.raises(dspace.Error, match=told):
+        ground.set_style(**style)
+    np.testing.assert_array_equal(view.image(), before)
+
+
+def test_triangles_have_no_style(scene):
+    ground = scene.add_terrain(FIELD, mode="triangles")
+    with pytest.raises(dspace.Unsupported, match="clipmap"):
+        ground.set_style(levels=1)
