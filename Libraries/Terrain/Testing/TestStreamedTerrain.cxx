@@ -1,4 +1,5 @@
 // Streamed terrains on a plane: against GridTerrain, and what only they can be asked.
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <thread>
@@ -343,6 +344,27 @@ TEST(StreamedTerrain, WhatIsAskedWronglyIsRefused) {
   file.noData = -1.0;
   file.value = [](int c, int, int) { return c == 3 ? 1e30 : 1.0; };
   EXPECT_THROW(StreamedTerrain::Open(file.Write(folder / "high.tif")), Error);
+}
+
+// One that is small is refused; of one that is large not every pixel is looked at.
+TEST(StreamedTerrain, ALargeRasterThatSeemsEmptyIsWarnedOf) {
+  const TemporaryFolder folder;
+  RasterFile file;
+  file.width = 2001;
+  file.height = 2000;
+  file.type = GDT_Byte;
+  file.noData = 1.0;
+  file.geotransform = std::array<double, 6>{0, 1, 0, 0, 0, -1};
+  for (const bool empty : {true, false}) {
+    file.value = [empty](int c, int, int) { return empty || c < 1900 ? 1.0 : 7.0; };
+    const auto warnings = StreamedTerrain::Open(file.Write(folder / "large.tif"))->GetWarnings();
+    EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                            [](const std::string& text) {
+                              return text.find("2001 x 2000 pixels") != std::string::npos &&
+                                     text.find("no data") != std::string::npos;
+                            }),
+              empty ? 1 : 0);
+  }
 }
 
 } // namespace

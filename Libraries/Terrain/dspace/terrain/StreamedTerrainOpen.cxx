@@ -178,6 +178,11 @@ void StreamedTerrain::FindHeightRange() {
     std::vector<float> posts(std::size_t(coarsest.width) * coarsest.height);
     this->Pyramid_->TryRead(coarsest, posts.data());
     if (std::all_of(heights.begin(), heights.end(), [](double h) { return std::isnan(h); })) {
+      this->AddWarning(
+          "of its " + std::to_string(window.width) + " x " + std::to_string(window.height) +
+          " pixels, the " + std::to_string(columns) + " x " + std::to_string(rows) +
+          " that were looked at have no data: it may hold no heights at all, or what it "
+          "states as no data is wrong");
       return; // there may be heights between
     }
   }
