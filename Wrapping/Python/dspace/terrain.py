@@ -301,6 +301,11 @@ def _put_patches(message, label, patches):
         put_given(sent, f"{label}, {what}", **given)
 
 
+def _folder(value, label):
+    folder = "" if isinstance(value, bool) else file_path(value, "the cache", label)
+    return folder or refuse(label, "the cache", value, "a folder, False or None", WrongType)
+
+
 class TerrainMaking:
     """The part of Scene that opens terrain."""
 
@@ -309,7 +314,7 @@ class TerrainMaking:
                     image_extent=None, band=None, crs=None, vertical_datum=None,
                     vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
                     on_body=False, level_size=None, byte_budget=None, deadline=None, patches=(),
-                    subdivisions=None, track_budget=None):
+                    subdivisions=None, track_budget=None, cache=None):
         """A raster of heights (anything that GDAL opens) as a physical object.
 
         image: a file to drape over it, with image_crs and image_extent (left, top, right, bottom in
@@ -324,6 +329,8 @@ class TerrainMaking:
         a sphere. level_size: cells a side of a clipmap's levels (124; 252 is finer and slower);
         byte_budget: of its tiles (256 MiB); deadline: seconds that images and queries wait for them
         (60).
+        cache: the folder of averaged overviews that a clipmap reads where a raster has none (the user's
+        cache folder, which `dspace terrain cache FILE` fills); False: none are read.
         subdivisions: on a plane, how often a clipmap's cells between pixels are halved: wheel tracks
         (track()) need posts some centimetres apart. track_budget: bytes for them (64 MiB).
         band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and
@@ -371,6 +378,8 @@ class TerrainMaking:
                   vertical_offset=vertical_offset, pixel_size=pixel_size,
                   level_size=level_size, byte_budget=byte_budget, deadline=deadline,
                   subdivisions=subdivisions, track_byte_budget=track_budget)
+        if cache is not None:
+            message.overview_cache = "" if cache is False else _folder(cache, label)
         _put_patches(message, label, patches)
         return Terrain(self, self._execute(command).terrain.name)
 

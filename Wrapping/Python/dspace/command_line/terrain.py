@@ -1,8 +1,8 @@
-"""`dspace terrain`: info, render."""
+"""`dspace terrain`: info, render, cache."""
 import argparse
 import math
 
-from dspace.command_line import terrain_info, terrain_render
+from dspace.command_line import terrain_cache, terrain_info, terrain_render
 
 # What a patch's keys hold.
 PATCH = {"band": int, "crs": str, "vertical_datum": str, "vertical_scale": float, "vertical_offset": float,
@@ -41,6 +41,9 @@ def add_arguments(parser):
     render.add_argument("--fov", type=fov, default=35.0, metavar="DEG",
                         help="vertical angle of a perspective view (default 35)")
     render.set_defaults(run=terrain_render.run)
+
+    terrain_cache.add_arguments(commands.add_parser(
+        "cache", help="overviews of large rasters that have none", description=terrain_cache.ABOUT))
 
 
 def add_raster(parser):

@@ -1,0 +1,192 @@
+"""`dspace terrain cache`: averaged overviews of rasters that have none, in a folder of their own."""
+import glob
+import json
+import os
+import select
+import signal
+import sys
+import time
+
+from dspace.command_line import Failed, tell
+
+ABOUT = (
+    "Builds averaged overviews of rasters that have none, so that far ground is the mean of all its pixels: "
+    "add_terrain reads them from the cache folder. Nothing is written beside a raster. A file is read once as a "
+    "whole; on a terminal the bytes written are shown meanwhile (compressed: how many there will be is not known). "
+    "Ctrl-C cancels and leaves what was there before.")
+TICK = 0.2  # seconds
+
+
+def add_arguments(parser):
+    parser.add_argument("files", nargs="*", metavar="FILE", help="any raster that GDAL opens")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--list", action="store_true", help="what the folder holds")
+    what.add_argument("--clear", action="store_true", help="remove the overviews of FILE..., without any all of them")
+    what.add_argument("--verify", action="store_true", help="read all of them; exit code 1 where one is damaged")
+    parser.add_argument("--folder", metavar="DIR",
+                        help="instead of $XDG_CACHE_HOME/dspace/terrain or ~/.cache/dspace/terrain")
+    parser.add_argument("--band", type=int)
+    parser.add_argument("--crs", help="of the raster: WKT, PROJ, AUTHORITY:CODE")
+    parser.add_argument("--pixel-size", type=float, metavar="P", help="map units, without georeference")
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    if options.folder == "":
+        raise Failed("--folder ''; accepted: a folder's path")
+    if options.list or options.verify:
+        if options.files:
+            raise Failed(f"--{'list' if options.list else 'verify'} is of the whole folder; accepted: no FILE")
+        return show(options)
+    if options.clear:
+        return clear(options)
+    if not options.files:
+        raise Failed("no FILE is given; accepted: FILE ..., --list, --clear or --verify")
+    for ending in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(ending, signal.default_int_handler)
+    failed = 0
+    try:
+        folder = folder_of(options)
+        for path in options.files:
+            failed |= build(path, folder, options)
+    except KeyboardInterrupt:
+        tell("cancelled; nothing half-made is left")
+        return 130
+    return failed
+
+
+def ask(name, options, **values):
+    """A request's entries and folder."""
+    import dspace
+    from dspace._fields import put, put_given
+    from dspace.session import commands_pb2
+    command = commands_pb2.Command()
+    message = getattr(command, name)
+    put(message, "the cache", folder=options.folder or "")
+    put_given(message, "the cache", **values)
+    with dspace.Session() as session:
+        return session.execute(command).terrain_cache
+
+
+# --- Built -----------------------------------------------------------------------------------------
+
+def build(path, folder, options):
+    """In a process of its own, which can be ended at any time; returns the exit code."""
+    began = time.monotonic()
+    answer, child = in_child(lambda: [
+        {"file": entry.file, "bytes": entry.bytes, "levels": entry.levels}
+        for entry in ask("build_terrain_cache", options, path=path, band=options.band, crs=options.crs,
+                         pixel_size=options.pixel_size).entry])
+    try:
+        found = wait(answer, lambda: note(f"{path}: {mebibytes(written(folder, child))} written, "
+                                          f"{time.monotonic() - began:.0f} s"))
+    except BaseException:
+        os.kill(child, signal.SIGKILL)
+        raise
+    finally:
+        os.waitpid(child, 0)
+        os.close(answer)
+        note("")
+        for part in parts(folder, child):
+            os.remove(part)
+    if isinstance(found, str):
+        return tell(found if path in found else f"'{path}': {found}")
+    if not found:
+        print(f"{path}: has overviews of its own; none are built")
+    for entry in found:
+        print(f"{path}: {entry['levels']} levels of overviews, {mebibytes(entry['bytes'])}, "
+              f"{time.monotonic() - began:.1f} s: {entry['file']}", flush=True)
+    return 0
+
+
+def folder_of(options):
+    answer, child = in_child(lambda: [ask("list_terrain_cache", options).folder])
+    found = wait(answer, lambda: None)
+    os.close(answer)
+    os.waitpid(child, 0)
+    if isinstance(found, str):
+        raise Failed(found)
+    return found[0]
+
+
+def in_child(work):
+    """Begins it; returns where its answer is read, and its process."""
+    sys.stdout.flush()
+    answer, said = os.pipe()
+    child = os.fork()
+    if child:
+        os.close(said)
+        return answer, child
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
+    try:
+        text = json.dumps(work())
+    except Exception as error:
+        text = json.dumps(str(error) or type(error).__name__)
+    os.write(said, text.encode())
+    os._exit(0)
+
+
+def wait(answer, each_tick):
+    text = b""
+    while True:
+        if not select.select([answer], [], [], TICK)[0]:
+            each_tick()
+            continue
+        more = os.read(answer, 65536)
+        if not more:
+            return json.loads(text) if text else "the process that built its overviews ended early"
+        text += more
+
+
+def parts(folder, child):
+    """Files that a process has not finished."""
+    return glob.glob(os.path.join(glob.escape(folder), f"*-{child}-*.overviews-part"))
+
+
+def written(folder, child):
+    return sum(os.path.getsize(part) for part in parts(folder, child) if os.path.exists(part))
+
+
+def note(text):
+    """One line of a terminal, which the next replaces."""
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+
+
+# --- Listed, cleared, verified ---------------------------------------------------------------------
+
+def show(options):
+    reply = ask("verify_terrain_cache" if options.verify else "list_terrain_cache", options)
+    damaged = 0
+    for entry in reply.entry:
+        line(entry)
+        if entry.problem:
+            damaged = tell(f"'{entry.file}': {entry.problem}; --clear, or build it anew")
+    total(reply, "all whole" if options.verify and not damaged else "")
+    return damaged if options.verify else 0
+
+
+def clear(options):
+    failed = 0
+    for path in options.files or [None]:
+        reply = ask("clear_terrain_cache", options, path=path)
+        for entry in reply.entry:
+            line(entry)
+        if path is not None and not reply.entry:
+            failed = tell(f"'{path}': no overviews of it are in '{reply.folder}'")
+        else:
+            total(reply, "removed")
+    return failed
+
+
+def line(entry):
+    print(f"{entry.path or 'unknown'}: {entry.levels} levels, {mebibytes(entry.bytes)}: {entry.file}")
+
+
+def total(reply, more):
+    print(f"{len(reply.entry)} rasters, {mebibytes(sum(entry.bytes for entry in reply.entry))} in {reply.folder}"
+          + (f", {more}" if more else ""))
+
+
+def mebibytes(count):
+    return f"{count / 2**20:.3g} MiB"
