@@ -104,6 +104,11 @@ def test_bounds_of_what_is_drawn_hold_the_ground(scene):
     assert (low <= (west, south, terrain.height_range[0])).all()
     assert (high >= (east, north, terrain.height_range[1])).all()
     assert (high - low).max() < 2 * (east - west)  # of a sphere about it
+    scene.add_camera("eye", eye=(5000, 0, 3000), target=(6000, 0, 2000))
+    view = scene.add_viewport((60, 60), "eye", samples=1)
+    assert not view.labels().any()
+    view.event("key", key="f")  # shows all of it
+    assert 0.05 < (view.labels() == terrain.object.id).mean() < 1
 
 
 def test_a_million_heights(scene):

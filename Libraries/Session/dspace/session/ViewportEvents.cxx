@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues> // operatorNorm
 
 #include <dspace/scene/Checks.h>
+#include <dspace/scene/CustomGeometry.h>
 #include <dspace/session/ViewportCommands.h>
 
 #include "vtkDspaceViewport.h"
@@ -50,10 +51,12 @@ InputEvent ToEvent(const v1::ViewportEvent& from) {
 std::optional<BoundingSphere> SceneBounds(const Scene& scene, FrameId F) {
   Eigen::AlignedBox3d box;
   for (const auto& [id, object] : scene.Objects()) {
-    if (object.levels.empty() || object.nature != Nature::Physical || !object.visible) {
+    if ((object.levels.empty() && !object.custom) || object.nature != Nature::Physical ||
+        !object.visible) {
       continue;
     }
-    const BoundingSphere& sphere = object.levels.front().sphere;
+    const BoundingSphere sphere =
+        object.custom ? object.custom->Bounds() : object.levels.front().sphere;
     const Pose X = scene.Frames().RelativePose(F, object.frame);
     const double stretch = object.X_FO.linear().operatorNorm() * X.scale;
     const Eigen::Vector3d center = X.Apply(object.X_FO * sphere.center);
