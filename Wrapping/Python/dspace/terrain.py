@@ -227,7 +227,7 @@ class Terrain(TrackMaking, Strict):
         elif range is not None or colors is not None:
             raise InvalidArgument(f"{label}: a range and colours are of color_by, which is not given; "
                                   "accepted: color_by 'height' or 'slope'", label)
-        for detail in details:
+        for detail in items(details, "details", label, "a list of dicts"):
             _put_detail(style.detail.add(), detail, f"{label}, a detail")
         if tracks is not None:
             look = tracks if isinstance(tracks, dict) else {"color": tracks, "opacity": 1.0}
