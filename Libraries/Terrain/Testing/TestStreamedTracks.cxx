@@ -53,7 +53,6 @@ struct StreamedTracks : ::testing::Test {
 
 TEST_F(StreamedTracks, QueriesSeeTheRutsAndTheGroundBeforeThem) {
   EXPECT_NEAR(Height(*terrain, 1.03, 2.01), Before(1.03), 1e-6);
-  // A ray's tiles are kept: they must go with the change.
   const Eigen::Vector3d above(1.03, 2.01, 5.0);
   const Eigen::Vector3d down(0.0, 0.0, -1.0);
   EXPECT_NEAR(terrain->Intersect(above, down, 100.0).distance, 5.0 - Before(1.03), 1e-6);
@@ -74,6 +73,11 @@ TEST_F(StreamedTracks, QueriesSeeTheRutsAndTheGroundBeforeThem) {
   terrain->Heights(points, heights);
   EXPECT_NEAR(heights[0], Before(1.03) - 0.06, 1e-6);
   EXPECT_NEAR(heights[1], Before(1.03), 1e-6);
+
+  TrackAddition deeper = Straight(0.1); // a ray's tiles must go with the change
+  deeper.name = "another";
+  terrain->AddTracks({deeper});
+  EXPECT_NEAR(terrain->Intersect(above, down, 100.0).distance, 5.0 - Before(1.03) + 0.1, 1e-6);
 
   const StreamedTerrain& before = terrain->Undisturbed();
   EXPECT_NEAR(Height(before, 1.03, 2.0), Before(1.03), 1e-6);
