@@ -66,8 +66,9 @@ void Canvas::Draw(const TrackSegment& segment, const Eigen::Affine2d& postToScen
           double(this->Lattice_.ColumnPlace(this->Block_.level, this->Block_.column + i));
       std::size_t& at = this->First_[std::size_t(j) * this->Block_.width + i];
       for (int k = 0; k < n * n; ++k) {
-        const double dc = n == 1 ? 0.0 : ((k % n + 0.5) / n - 0.5) * step;
-        const double dr = n == 1 ? 0.0 : ((k / n + 0.5) / n - 0.5) * step;
+        const int place[2] = {k % n, k / n};
+        const double dc = n == 1 ? 0.0 : ((place[0] + 0.5) / n - 0.5) * step;
+        const double dr = n == 1 ? 0.0 : ((place[1] + 0.5) / n - 0.5) * step;
         TrackDepth depth;
         if (!segment.At(postToScene * Eigen::Vector2d(c + dc, r + dr), depth)) {
           continue;
