@@ -23,10 +23,11 @@ def folder(tmp_path, monkeypatch):
     return tmp_path / "cache/dspace/terrain"
 
 
-def stripes(path, overviews=False):
+def stripes(path, overviews=False, noise=0.0):
     """Columns by turns 0 and 90 m: their mean is 45 m, whereas every n-th has one of the two."""
     z = np.zeros((SIDE, SIDE), np.float32)
     z[:, 1::2] = HIGH
+    z += noise * np.random.default_rng(1).random(z.shape, np.float32)
     write_raster(path, z)
     if overviews:
         gdal.Open(str(path), gdal.GA_Update).BuildOverviews("AVERAGE", [2, 4, 8])
@@ -124,6 +125,21 @@ def test_overviews_of_an_older_raster_are_not_read(scene, folder, tmp_path):
     assert opened(scene, path)[1] == []
 
 
+def test_damaged_overviews_are_warned_of_and_removed(scene, folder, tmp_path):
+    """All tiles are; their index, some kilobytes at the file's end, is not. Noise is not compressed."""
+    path = stripes(tmp_path / "stripes.tif", noise=1.0)
+    built(path)
+    file, = folder.iterdir()
+    content = np.frombuffer(file.read_bytes(), np.uint8).copy()
+    content[64:-16384] ^= 1
+    file.write_bytes(content)
+    terrain, warned = opened(scene, path)
+    assert len(warned) == 2 and str(file) in warned[0] and "`dspace terrain cache" in warned[1]
+    assert not file.exists()
+    far = far_height(scene, terrain)
+    assert ((far < LOW + 1.5) | (far > HIGH - 0.5)).all()
+
+
 @pytest.mark.parametrize("cache", [True, 3, ""])
 def test_what_is_no_folder_is_refused(scene, refused, tmp_path, cache):
     path = write_raster(tmp_path / "small.tif", np.ones((9, 9), np.float32))
@@ -143,6 +159,9 @@ def test_listed_verified_and_cleared(folder, tmp_path):
     assert listed.returncode == 0
     assert all(str(part) in listed.stdout for part in (first, second, *files, "2 rasters"))
     assert run("--verify").returncode == 0
+    info = subprocess.run([sys.executable, "-m", "dspace", "terrain", "info", str(first)], capture_output=True,
+                          text=True).stdout
+    assert "none of its own, 4 levels in the cache" in info  # 1152 to 144 cells a side
     assert run("--list", "--folder", tmp_path / "none").stdout.startswith("0 rasters")
 
     damaged = files[0]

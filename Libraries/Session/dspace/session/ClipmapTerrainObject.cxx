@@ -40,6 +40,8 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   reply.set_post_rows(std::uint64_t(surface.Pyramid()->Lattice().rows));
   reply.set_vertical_scale(info.verticalScale);
   reply.set_vertical_offset(info.verticalOffset);
+  reply.set_overviews(std::uint32_t(info.overviews));
+  reply.set_overviews_are_cached(info.overviewsAreCached);
   const ElevationPyramidStatistics statistics = surface.Pyramid()->Statistics();
   reply.set_tile_bytes(statistics.bytes);
   reply.set_tile_loads(statistics.loads);

@@ -116,6 +116,27 @@ void WarnOfOverviews(const Context& context, const std::string& label, const Ele
                             "'" + info.path + "'` builds overviews");
 }
 
+// Overviews that prove damaged are removed by the read that finds it: the next does without.
+std::shared_ptr<const StreamedTerrain> OpenStreamed(const Context& context, const std::string& path,
+                                                    const StreamedTerrainOptions& options) {
+  std::vector<std::string> damaged; // at most one a raster
+  for (;;) {
+    try {
+      auto surface = StreamedTerrain::Open(path, options);
+      for (const std::string& warning : damaged) {
+        context.reply.add_warning(warning);
+      }
+      return surface;
+    } catch (const Error& error) {
+      if (error.GetKind() != Error::Kind::Corrupt || options.elevation.overviewCache.empty() ||
+          damaged.size() > options.patches.size()) {
+        throw;
+      }
+      damaged.push_back(error.what());
+    }
+  }
+}
+
 std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::string& name,
                                            const std::string& path, v1::OpenTerrain& command) {
   const std::string label = "terrain '" + name + "'";
@@ -149,7 +170,7 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
     options.patches.push_back(ToPatch(patch));
     options.patches.back().elevation.overviewCache = options.elevation.overviewCache;
   }
-  const auto surface = StreamedTerrain::Open(path, options);
+  const auto surface = OpenStreamed(context, path, options);
   WarnOfOverviews(context, label, surface->Info(), command);
   ClipmapOptions look = ClipmapLook(context, *surface, command);
   look.cells = options.cells;

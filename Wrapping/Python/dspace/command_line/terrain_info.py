@@ -69,6 +69,7 @@ def describe(scene, path, options):
         "vertical_scale": info.vertical_scale, "vertical_offset_m": info.vertical_offset,
         "no_data": number_or_none(band.GetNoDataValue()),
         "overviews": [[level.XSize, level.YSize] for level in map(band.GetOverview, range(band.GetOverviewCount()))],
+        "cached_overviews": info.overviews if info.overviews_are_cached else 0,
         **bounds(osr, crs, to_map, data.RasterXSize, data.RasterYSize),
         "statistics": statistics(data, band, info),
         "plane": pyramid(info, options),
@@ -205,7 +206,8 @@ def as_text(found):
         ("heights", f"{scale} (unit {'not stated' if found['unit'] is None else repr(found['unit'])}), "
                     f"vertical datum {found['vertical_datum']}"),
         ("no-data", "none stated" if found["no_data"] is None else f"{found['no_data']:.9g}"),
-        ("overviews", ", ".join(f"{w} x {h}" for w, h in found["overviews"]) or "none"),
+        ("overviews", (", ".join(f"{w} x {h}" for w, h in found["overviews"]) or "none")
+         + (f" of its own, {found['cached_overviews']} levels in the cache" if found["cached_overviews"] else "")),
         ("statistics", [heights + "; " + (f"{statistic['holes']} holes ({100 * statistic['hole_fraction']:.3g} %)"
                                           if statistic["holes"] else "no holes"), source]),
         ("drawn", f"{found['auto_mode']}, unless the mode is chosen (triangles up to {MESH_PIXELS} pixels)"),
