@@ -13,6 +13,7 @@ uniform ivec2 windowTexel; // texel of the window's first post, here and in the 
 uniform ivec2 coarseTexel;
 uniform vec2 firstPost; // of the lattice, in the window's posts: those outside collapse into it
 uniform vec2 lastPost;
+uniform vec2 endPost; // where the lattice ends: nowhere around a body
 uniform vec2 lastPlace; // where the last one stands: the lattice may end between two
 uniform vec2 cameraPost;
 uniform vec3 blend; // distance where blending begins, 1 / its width, the camera's distance [posts]
@@ -113,7 +114,7 @@ void main()
   {
     // The coarser surface at this place: a post of it, or the middle of an edge or a diagonal. The
     // lattice's last post is one of every level.
-    ivec2 before = (post + ivec2(equal(at, lastPost))) >> 1;
+    ivec2 before = (post + ivec2(equal(at, endPost))) >> 1;
     ivec2 after = (post + 1) >> 1;
     vec4 there0 = postAt(coarseTexel + before, level + 1);
     vec4 there1 = postAt(coarseTexel + after, level + 1);

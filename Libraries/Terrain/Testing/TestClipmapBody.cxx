@@ -261,6 +261,23 @@ TEST_F(PoleFixture, NoGapOpensAboveThePoles) {
   FlyDown({140.0, -80.0});
 }
 
+// Nothing of the other chart is there yet: the one that the camera comes from goes on.
+TEST_F(PoleFixture, ChartsHandOverWithoutAnEmptyPicture) {
+  auto view = View(64, 48);
+  const auto lookFrom = [&](double latitude) {
+    LookFrom(Place(40.0, latitude, 5e4), Place(40.0, latitude + 0.5, 0.0), 60.0,
+             Place(40.0, latitude, 0.0).normalized());
+  };
+  lookFrom(59.9);
+  view->GetCapture({});
+  lookFrom(60.1);
+  view->ForceRender(); // an interactive picture: it does not wait
+  EXPECT_GT(context->GetStatistics().trianglesDrawn, 1000u);
+  const Capture complete = view->GetCapture({});
+  view->Invalidate();
+  EXPECT_EQ(view->GetCapture({}).color, complete.color);
+}
+
 // The same picture from the same place, through either chart.
 TEST_F(PoleFixture, ImagesAndGridsLieAlikeOnBothCharts) {
   auto image = std::make_shared<Image>();

@@ -146,8 +146,8 @@ TEST_F(StyleFixture, DetailsTileTheMapWhereTheyAreWanted) {
   Keep(capture, "details");
   for (int y = 0; y < 100; ++y) {
     for (int x = 0; x < 100; ++x) {
-      // In texels from the middle of one, of the tile whose corner is the scene's origin; row 0 of an
-      // image is its top. Between the middles of texels their values are mixed.
+      // In texels from the middle of one, of the tile whose corner is the scene's origin; row 0 of
+      // an image is its top. Between the middles of texels their values are mixed.
       const double u = XOf(x) / 20.0 - 0.5;
       const double v = -XOf(y) / 20.0 - 0.5;
       double structure = 0.0;
@@ -179,6 +179,43 @@ TEST_F(StyleFixture, DetailsTileTheMapWhereTheyAreWanted) {
   }
   style.details.resize(3, style.details[0]);
   EXPECT_THROW(terrain->SetStyle(style), Error);
+}
+
+// Each image goes up with the first picture that shows it: none may push another aside.
+TEST_F(StyleFixture, TheFirstPictureOfAStyleIsAsTheNext) {
+  const auto grey = [](std::uint8_t value) {
+    auto image = std::make_shared<Image>();
+    image->name = "grey";
+    image->width = image->height = 2;
+    image->channels = 1;
+    image->pixels = {value, 255, 255, value};
+    return image;
+  };
+  ClipmapStyle style;
+  style.details.resize(2);
+  style.details[0].image = grey(40);
+  style.details[1].image = grey(90);
+  style.ramp.emplace();
+  style.ramp->image = Greys();
+  style.ramp->range = {HeightOf(0), HeightOf(99)};
+  style.ramp->opacity = 0.3;
+  const Capture first = With(style);
+  view->Invalidate();
+  EXPECT_EQ(view->GetCapture({}).color, first.color);
+}
+
+// A terrain that is removed is forgotten with the next picture: tiles, threads, textures and all.
+TEST_F(StyleFixture, ATerrainThatIsRemovedIsLetGo) {
+  CaptureRequest request;
+  request.label = true;
+  view->GetCapture(request);
+  const std::weak_ptr<ClipmapTerrain> watch = terrain;
+  const std::weak_ptr<ElevationPyramid> tiles = terrain->Pyramid();
+  terrain.reset();
+  scene->RemoveObject(object);
+  view->GetCapture(request);
+  EXPECT_TRUE(watch.expired());
+  EXPECT_TRUE(tiles.expired());
 }
 
 TEST_F(StyleFixture, AStyleStacksGoesAndIsRefusedWhole) {

@@ -180,6 +180,50 @@ TEST(ElevationPyramid, FailuresAreToldAndTriedAgain) {
   ExpectBlock(*source, block, heights);
 }
 
+// What drawing failed to read long ago is not held against a picture that waits.
+TEST(ElevationPyramid, AWaitingReadMakesItsOwnAttempts) {
+  const auto source = std::make_shared<NumberedPosts>(Lattice(2000, 2000, false, 3));
+  source->failing = true;
+  ElevationPyramidOptions options;
+  options.retryDelay = 0.001;
+  ElevationPyramid pyramid(source, options);
+  const PostBlock block{0, 0, 0, 600, 600};
+  std::vector<float> heights(600 * 600);
+  while (pyramid.Statistics().failures < 200) { // each of 25 tiles failed more than thrice
+    ASSERT_FALSE(pyramid.TryRead(block, heights.data()));
+    std::this_thread::yield();
+  }
+  source->failing = false;
+  pyramid.Read(block, heights.data(), 60.0); // the pauses have grown to many seconds by now
+  ExpectBlock(*source, block, heights);
+}
+
+// Thousands of other questions do not make a waiting call's tile be forgotten.
+TEST(ElevationPyramid, WhatSomebodyWaitsForIsNotDropped) {
+  const auto source = std::make_shared<NumberedPosts>(Lattice(5000, 5000, false, 3));
+  ElevationPyramidOptions options;
+  options.retryDelay = 0.2;
+  ElevationPyramid pyramid(source, options);
+  std::vector<float> near(100);
+  pyramid.Read({0, 0, 0, 10, 10}, near.data(), 60.0);
+  source->failing = true;
+  std::thread waiting([&pyramid, &source] {
+    std::vector<float> far(100);
+    pyramid.Read({0, 3000, 3000, 10, 10}, far.data(), 60.0);
+    ExpectBlock(*source, {0, 3000, 3000, 10, 10}, far);
+  });
+  while (pyramid.Statistics().failures < 1) {
+    std::this_thread::yield();
+  }
+  source->failing = false;
+  std::vector<float> other(100);
+  for (int i = 0; i < 3000; ++i) { // resident, and not
+    pyramid.TryRead({0, 0, 0, 10, 10}, near.data());
+    pyramid.TryRead({1, (i * 128) % 2400, 1000, 10, 10}, other.data());
+  }
+  waiting.join();
+}
+
 TEST(ElevationPyramid, AWaitEndsAtItsDeadline) {
   const auto source = std::make_shared<NumberedPosts>(Lattice(1000, 1000, false, 3));
   source->delay = std::chrono::milliseconds(300);

@@ -27,10 +27,11 @@ void LabelPicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, con
   this->View_ = view;
   this->Filter_ = filter;
   this->Target_->Resize(view.width, view.height);
+  const std::uint64_t revision = scene.Revision(); // before: what changes meanwhile is not in it
   this->List_.Build(scene, view, filter);
   const bool complete = this->Drawer_->Prepare(this->List_, view, 1);
   this->Drawer_->DrawLabels(this->List_, view, *this->Target_);
-  this->Revision_ = complete ? scene.Revision() : 0;
+  this->Revision_ = complete ? revision : 0;
 }
 
 std::vector<std::uint32_t> LabelPicture::Labels() const {

@@ -26,12 +26,20 @@ void RegisterClipmapDrawer() {
   RegisterCustomDrawer(
       typeid(ClipmapTerrain),
       [](std::shared_ptr<const CustomGeometry> geometry) -> std::unique_ptr<CustomDrawer> {
-        return std::make_unique<ClipmapDrawer>(
-            std::static_pointer_cast<const ClipmapTerrain>(std::move(geometry)));
+        return std::make_unique<ClipmapDrawer>(static_cast<const ClipmapTerrain&>(*geometry));
       });
 }
 
 namespace {
+
+// Lines or filled while it lives, whatever is thrown.
+class PolygonMode {
+public:
+  explicit PolygonMode(GLenum mode) { glPolygonMode(GL_FRONT_AND_BACK, mode); }
+  PolygonMode(const PolygonMode&) = delete;
+  PolygonMode& operator=(const PolygonMode&) = delete;
+  ~PolygonMode() { glPolygonMode(GL_FRONT_AND_BACK, GL_FILL); }
+};
 
 // The camera's place and the view volume, in the terrain's frame.
 ClipmapSight SightOf(const ClipmapCamera& camera, const DrawView& view) {
@@ -50,9 +58,8 @@ ClipmapSight SightOf(const ClipmapCamera& camera, const DrawView& view) {
 
 } // namespace
 
-ClipmapDrawer::ClipmapDrawer(std::shared_ptr<const ClipmapTerrain> terrain)
-    : Terrain_(std::move(terrain)), Indices_(Terrain_->Options().cells),
-      Charts_(Terrain_->Charts().size()) {}
+ClipmapDrawer::ClipmapDrawer(const ClipmapTerrain& terrain)
+    : Terrain_(&terrain), Indices_(terrain.Options().cells), Charts_(terrain.Charts().size()) {}
 
 ClipmapDrawer::~ClipmapDrawer() {
   for (const auto& chart : this->Charts_) {
@@ -107,9 +114,10 @@ bool ClipmapDrawer::Prepare(const CustomDrawing& drawing) {
   if (!this->VertexArray_) {
     this->Create();
   }
-  const Eigen::Affine3d& X_VS = drawing.object.X_VO;
-  const std::size_t index =
-      this->Terrain_->ChartAt(X_VS.inverse(Eigen::Affine) * Eigen::Vector3d::Zero());
+  this->LoadTextures(drawing);
+  const Eigen::Vector3d camera =
+      drawing.object.X_VO.inverse(Eigen::Affine) * Eigen::Vector3d::Zero();
+  const std::size_t index = this->Terrain_->ChartAt(camera);
   std::unique_ptr<Chart>& chart = this->Charts_[index];
   if (!chart) {
     chart =
@@ -117,9 +125,33 @@ bool ClipmapDrawer::Prepare(const CustomDrawing& drawing) {
     BindTextureUnit(drawing.window, TerrainUnit, GL_TEXTURE_2D_ARRAY, 0);
     CreateTexture(*chart);
   }
-  this->Active_ = chart.get();
-  const ClipmapCamera camera(X_VS, chart->placement, chart->levels.Lattice());
-  BindTextureUnit(drawing.window, TerrainUnit, GL_TEXTURE_2D_ARRAY, chart->texture);
+  this->Update(*chart, drawing);
+  if (chart->Drawable() || !this->Active_ || !this->Active_->Drawable()) {
+    this->Active_ = chart.get();
+  } else { // the chart that the camera comes from is shown until some of the other is there
+    this->Update(*this->Active_, drawing);
+  }
+  return this->Active_ == chart.get() && chart->state.complete;
+}
+
+// Before any is bound for drawing: an upload ends with its unit unbound.
+void ClipmapDrawer::LoadTextures(const CustomDrawing& drawing) const {
+  const Material& material = *this->Terrain_->Options().material;
+  if (const auto texture = drawing.object.object->material.texture.value_or(material.texture)) {
+    drawing.store.TextureOf(texture, material.repeatTexture);
+  }
+  const ClipmapStyle& style = this->Terrain_->Style();
+  for (const ClipmapStyle::Detail& detail : style.details) {
+    drawing.store.TextureOf(detail.image, true);
+  }
+  if (style.ramp) {
+    drawing.store.TextureOf(style.ramp->image, false);
+  }
+}
+
+void ClipmapDrawer::Update(Chart& chart, const CustomDrawing& drawing) const {
+  const ClipmapCamera camera(drawing.object.X_VO, chart.placement, chart.levels.Lattice());
+  BindTextureUnit(drawing.window, TerrainUnit, GL_TEXTURE_2D_ARRAY, chart.texture);
   ClipmapLevels::View view;
   view.place = camera.posts.head<2>();
   view.height = camera.posts.z();
@@ -128,14 +160,13 @@ bool ClipmapDrawer::Prepare(const CustomDrawing& drawing) {
     view.wait = this->Terrain_->Options().deadline;
   }
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  chart->state = chart->levels.Update(
+  chart.state = chart.levels.Update(
       view, [&drawing](int level, const ClipmapUpdate& u, const ClipmapTexel* texels) {
         glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, u.x, u.y, level, u.width, u.height, 1, GL_RGBA,
                         GL_FLOAT, texels);
         drawing.statistics.textureBytesUploaded +=
             std::uint64_t(u.width) * u.height * sizeof(ClipmapTexel);
       });
-  return chart->state.complete;
 }
 
 void ClipmapDrawer::DrawColor(const CustomDrawing& drawing) {
@@ -155,10 +186,8 @@ void ClipmapDrawer::DrawColor(const CustomDrawing& drawing) {
     BindTextureUnit(drawing.window, ColorUnit, GL_TEXTURE_2D,
                     drawing.store.TextureOf(texture, material.repeatTexture));
   }
-  const bool wireframe = over.wireframe.value_or(false);
-  glPolygonMode(GL_FRONT_AND_BACK, wireframe ? GL_LINE : GL_FILL);
+  const PolygonMode mode(over.wireframe.value_or(false) ? GL_LINE : GL_FILL);
   this->Draw(drawing, features);
-  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
 void ClipmapDrawer::DrawLabels(const CustomDrawing& drawing) {

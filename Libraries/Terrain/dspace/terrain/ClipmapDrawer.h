@@ -20,7 +20,8 @@ void RegisterClipmapDrawer();
 // see them. Of a body the chart under the camera is drawn.
 class ClipmapDrawer : public CustomDrawer {
 public:
-  explicit ClipmapDrawer(std::shared_ptr<const ClipmapTerrain> terrain);
+  // The terrain is not kept alive: it is drawn while a scene has it, and then this goes, too.
+  explicit ClipmapDrawer(const ClipmapTerrain& terrain);
   ~ClipmapDrawer() override;
 
   bool Prepare(const CustomDrawing& drawing) override;
@@ -36,12 +37,16 @@ private:
     ClipmapLevels levels;
     ClipmapLevels::State state;
     unsigned int texture = 0;
+    // Some level of it is there.
+    bool Drawable() const { return this->state.finest < this->levels.Count(); }
   };
+  void LoadTextures(const CustomDrawing& drawing) const;
+  void Update(Chart& chart, const CustomDrawing& drawing) const;
   void Create();
   static void CreateTexture(Chart& chart);
   void Draw(const CustomDrawing& drawing, unsigned features);
 
-  std::shared_ptr<const ClipmapTerrain> Terrain_;
+  const ClipmapTerrain* Terrain_;
   ClipmapIndices Indices_;
   std::vector<std::unique_ptr<Chart>> Charts_; // of the terrain's; null until the camera is there
   Chart* Active_ = nullptr;

@@ -214,7 +214,7 @@ ClipmapLevels::Filled ClipmapLevels::Fill(int index, const ClipmapWindow& window
   return current ? Filled::Wholly : Filled::Before;
 }
 
-double ClipmapLevels::GroundAt(int level, const Eigen::Vector2d& place) const {
+std::optional<double> ClipmapLevels::GroundAt(int level, const Eigen::Vector2d& place) const {
   const double x = std::ldexp(place.x(), -level);
   const double y = std::ldexp(place.y(), -level);
   const auto c = static_cast<std::int64_t>(std::floor(x));
@@ -231,7 +231,7 @@ double ClipmapLevels::GroundAt(int level, const Eigen::Vector2d& place) const {
       }
     }
   }
-  return weight > 0.0 ? sum / weight : 0.0;
+  return weight > 0.0 ? std::optional<double>(sum / weight) : std::nullopt;
 }
 
 ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& upload) {
@@ -252,6 +252,7 @@ ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& uploa
                              : (view.place - state.place).norm() * view.cellSize;
   this->NoteChanges();
   state.finest = this->Count();
+  state.distance = outside;
   for (int level = this->Count() - 1; level >= 0; --level) {
     const double posts = InPosts(state.distance, view.cellSize, level);
     if (level < this->Count() - 1 && posts >= this->Geometry_.BlendTo()) {
@@ -264,8 +265,11 @@ ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& uploa
       break;
     }
     state.finest = level;
-    state.groundHeight = this->GroundAt(level, state.place);
-    state.distance = std::max(std::abs(view.height - state.groundHeight), outside);
+    // Over a hole what the coarser level knows of the ground around it holds.
+    if (const std::optional<double> ground = this->GroundAt(level, state.place)) {
+      state.groundHeight = *ground;
+      state.distance = std::max(std::abs(view.height - state.groundHeight), outside);
+    }
   }
   return state;
 }

@@ -39,7 +39,7 @@ public:
     bool complete = true; // as fine as the view can resolve
     Eigen::Vector2d place = Eigen::Vector2d::Zero(); // level-0 posts; within the lattice, and near
                                                      // the last one where that is periodic
-    double groundHeight = 0.0; // [m] below the camera, as the finest level has it
+    double groundHeight = 0.0; // [m] below the camera, as the finest level has it that has some
     double distance = 0.0;     // [m] from the camera to that place on the ground
   };
   using Upload = std::function<void(int level, const ClipmapUpdate& update, const ClipmapTexel*)>;
@@ -84,7 +84,7 @@ private:
   // Whether a post of the lattice has no data.
   bool ToTexels(int level, const ClipmapUpdate& update, const std::vector<float>& heights,
                 std::vector<ClipmapTexel>& texels) const;
-  double GroundAt(int level, const Eigen::Vector2d& place) const;
+  std::optional<double> GroundAt(int level, const Eigen::Vector2d& place) const; // none in a hole
 
   std::shared_ptr<ElevationPyramid> Pyramid_;
   ClipmapGeometry Geometry_;

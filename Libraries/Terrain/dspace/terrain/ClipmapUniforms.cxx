@@ -222,6 +222,11 @@ void ClipmapUniforms::SetExtent(int level, const Eigen::Vector2d& first) const {
     lastPost.x() = firstPost.x() + around;
     lastPlace.x() = lastPost.x();
   }
+  Eigen::Vector2d endPost = lastPost;
+  if (lattice.periodic) {
+    endPost.x() = 1e9;
+  }
+  Set(this->Program_, "endPost", Eigen::Vector2d(endPost.cwiseMin(1e9).cwiseMax(-1e9)));
   const auto cells = double(this->Levels_.Geometry().Cells());
   const auto within = [cells](const Eigen::Vector2d& post) {
     return Eigen::Vector2d(post.cwiseMax(0.0).cwiseMin(cells));
@@ -243,9 +248,16 @@ void ClipmapUniforms::SetMaps(int level, const Eigen::Vector2d& first) const {
     }
     lines = Eigen::Scaling(1.0 / this->Terrain_.Style().grid->interval) * lines;
     // Counted from a line near the camera: a float holds well what is near it.
-    const Eigen::Vector2d near = (lines * this->State_.place).array().floor();
+    // Whole turns are taken off: lines need not divide them.
+    Eigen::Vector2d turns = Eigen::Vector2d::Zero();
+    const PostLattice& lattice = this->Levels_.Lattice();
+    if (lattice.periodic) {
+      turns.x() =
+          std::floor(this->State_.place.x() / double(lattice.columns)) * double(lattice.columns);
+    }
+    const Eigen::Vector2d near = (lines * (this->State_.place - turns)).array().floor();
     Set(this->Program_, "originGrid",
-        Eigen::Vector2d(lines * Eigen::Vector2d(first * step) - near));
+        Eigen::Vector2d(lines * Eigen::Vector2d(first * step - turns) - near));
     Set(this->Program_, "postGrid", Eigen::Matrix2d(lines.linear() * step));
   }
   if (this->Program_->IsUniformUsed("originDetail")) {

@@ -57,8 +57,34 @@ struct ElevationPyramid::Implementation {
   std::uint64_t arrivals = 0;
   PyramidChangeLog changes;
   ElevationPyramidStatistics statistics;
+  std::map<TileKey, int> waited; // by how many calls of Read(): not dropped meanwhile
   bool stopping = false;
   std::vector<std::thread> threads;
+
+  // Says, while it lives, that a call waits for tiles. With the lock held.
+  class Waiting {
+  public:
+    Waiting(Implementation& impl, const std::vector<TilePiece>& pieces)
+        : Impl_(impl), Pieces_(pieces) {
+      for (const TilePiece& piece : pieces) {
+        ++this->Impl_.waited[piece.key];
+      }
+    }
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+    ~Waiting() {
+      for (const TilePiece& piece : this->Pieces_) {
+        const auto found = this->Impl_.waited.find(piece.key);
+        if (--found->second == 0) {
+          this->Impl_.waited.erase(found);
+        }
+      }
+    }
+
+  private:
+    Implementation& Impl_;
+    const std::vector<TilePiece>& Pieces_;
+  };
 
   Implementation(const PostSource& posts, const ElevationPyramidOptions& given)
       : source(posts), options(given) {
@@ -140,7 +166,8 @@ struct ElevationPyramid::Implementation {
     auto best = this->requests.end();
     for (auto it = this->requests.begin(); it != this->requests.end();) {
       const Request& request = it->second;
-      const bool stale = !request.reading && this->stamp - request.stamp > StaleAfter;
+      const bool stale = !request.reading && this->stamp - request.stamp > StaleAfter &&
+                         this->waited.count(it->first) == 0;
       it = stale ? this->requests.erase(it) : std::next(it);
     }
     for (auto it = this->requests.begin(); it != this->requests.end(); ++it) {
@@ -283,6 +310,9 @@ bool ElevationPyramid::TryRead(const PostBlock& block, float* heights, float* tr
     const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
     ++this->Impl_->stamp;
     complete = this->Impl_->Serve(pieces, block, {heights, tracks}, held);
+    if (complete) {
+      --this->Impl_->stamp; // nothing was asked for: older requests are no older for it
+    }
   }
   if (!complete) {
     this->Impl_->wanted.notify_all();
@@ -303,14 +333,26 @@ void ElevationPyramid::Read(const PostBlock& block, float* heights, float* track
   const Clock::time_point deadline = Clock::now() + Seconds(forever ? 0.0 : seconds);
   std::unique_lock<std::mutex> lock(impl.mutex);
   ++impl.stamp;
-  while (!impl.Serve(pieces, block, {heights, tracks}, held)) {
+  if (impl.Serve(pieces, block, {heights, tracks}, held)) {
+    --impl.stamp; // nothing was asked for: older requests are no older for it
+    return;
+  }
+  const Implementation::Waiting waiting(impl, pieces);
+  // Failures of earlier callers are not this one's: it makes its own attempts, at once.
+  std::map<TileKey, int> before;
+  for (const TilePiece& piece : pieces) {
+    const auto request = impl.requests.find(piece.key);
+    if (request != impl.requests.end()) {
+      before[piece.key] = request->second.failures;
+      request->second.notBefore = {};
+    }
+  }
+  do {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const auto request = impl.requests.find(pieces[i].key);
-      if (!held[i] && request != impl.requests.end() &&
-          request->second.failures >= impl.options.attempts) {
-        const std::exception_ptr error = request->second.error;
-        impl.requests.erase(request); // the next reader tries anew
-        std::rethrow_exception(error);
+      if (!held[i] && request != impl.requests.end() && !request->second.reading &&
+          request->second.failures - before[pieces[i].key] >= impl.options.attempts) {
+        std::rethrow_exception(request->second.error);
       }
     }
     impl.wanted.notify_all();
@@ -323,7 +365,7 @@ void ElevationPyramid::Read(const PostBlock& block, float* heights, float* track
                            ? std::string()
                            : "; the last failure: " + impl.statistics.lastFailure));
     }
-  }
+  } while (!impl.Serve(pieces, block, {heights, tracks}, held));
 }
 
 void ElevationPyramid::Invalidate(const std::vector<PostRectangle>& rectangles) {

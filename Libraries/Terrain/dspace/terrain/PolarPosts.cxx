@@ -16,15 +16,16 @@ constexpr double Reach = 1.92; // of the square from the pole, in twice the radi
 // Levels and half a side in posts: as close as the base's rows, halved until the coarsest suits.
 PostLattice LatticeAround(double step, int coarsest) {
   PostLattice lattice;
-  const double half = Reach / step;
+  // Whole cells of the coarsest level on each side: the pole is a post of every level.
+  const auto cellsOf = [step](int levels) {
+    return static_cast<std::int64_t>(std::ceil(std::ldexp(Reach / step, 1 - levels)));
+  };
   lattice.levels = 1;
-  while (2.0 * half * std::ldexp(1.0, 1 - lattice.levels) > coarsest) {
+  while (2 * cellsOf(lattice.levels) > coarsest) {
     ++lattice.levels;
   }
-  // Whole cells of the coarsest level on each side: the pole is a post of every level.
-  const std::int64_t cell = std::int64_t(1) << (lattice.levels - 1);
-  const auto cells = static_cast<std::int64_t>(half / double(cell));
-  lattice.columns = lattice.rows = 2 * cells * cell + 1;
+  lattice.columns = lattice.rows =
+      2 * cellsOf(lattice.levels) * (std::int64_t(1) << (lattice.levels - 1)) + 1;
   return lattice;
 }
 

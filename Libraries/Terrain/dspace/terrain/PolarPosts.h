@@ -12,8 +12,8 @@ namespace dspace {
 
 // A degree grid's columns crowd at the poles: a clipmap of it shows little ground to the east and
 // west there. Around a pole the ground is drawn from a square of the pole's stereographic plane
-// instead, which reaches a quarter of the body past the equator, farther than any camera from
-// within 30 degrees of the pole sees. It is resampled: level l has the height that the grid's level
+// instead, which reaches 35 degrees past the equator, farther than any camera from within 30
+// degrees of the pole sees. It is resampled: level l has the height that the grid's level
 // l (or the finest that holds all of its data, where that is coarser) has at the post's place, on
 // the grid's triangles.
 class PolarPosts : public PostSource {

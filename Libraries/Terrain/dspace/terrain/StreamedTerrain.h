@@ -29,7 +29,8 @@ struct StreamedTerrainOptions {
   std::optional<Eigen::Vector2d> origin;
   double originHeight = 0.0; // [m] above the vertical datum, where scene z = 0
   // On the body: the scene is the body-fixed frame (Z to the north pole, X to longitude 0), and
-  // height 0 the sphere of the CRS's semi-major axis. A degree grid on a sphere is needed. One that
+  // height 0 the sphere of the vertical datum's radius, or where it states none of the CRS's
+  // semi-major axis. A degree grid on a sphere is needed. One that
   // goes once around is closed across its edge, and where it reaches the poles over them.
   bool onBody = false;
   // On a plane each cell between pixels is halved so often: wheel tracks need posts some
