@@ -228,6 +228,23 @@ TEST_F(ClipmapFixture, TexturesAreThoseOfAFullUploadAndOnlyNewsGoesUp) {
   }
 }
 
+// A range of heights that was guessed too narrow hides nothing.
+TEST_F(ClipmapFixture, GroundBeyondTheGuessedHeightsIsDrawn) {
+  const auto spire = [](double c, double r) {
+    return std::abs(c - 256.0) < 4.0 && std::abs(r - 256.0) < 4.0 ? 300.0 : 0.0;
+  };
+  AddPlane(513, spire, {0.0, 0.0}, false);
+  const Eigen::Vector3d foot = terrain->Placement().ToScene({256.0, 256.0}, 0.0);
+  LookFrom(foot + Eigen::Vector3d(-60.0, 3.0, 240.0), foot + Eigen::Vector3d(0.0, 0.0, 270.0),
+           20.0);
+  auto view = View(64, 48);
+  const Capture capture = Shoot(view);
+  const Hit hit = HitAt(*scene, capture, 32, 24);
+  ASSERT_TRUE(hit.hit);
+  EXPECT_LT((hit.p - foot).head<2>().norm(), 9.0);
+  EXPECT_GT(hit.p.z(), 200.0);
+}
+
 // Bytes are counted at the OpenGL call, and the texture read back.
 TEST_F(ClipmapFixture, WhatOpenGLHoldsIsWhatWasCounted) {
   AddPlane(4097, Hills, {-51, 51}, false);

@@ -1,5 +1,6 @@
 #include <dspace/terrain/ClipmapDrawer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <typeindex>
@@ -120,8 +121,7 @@ bool ClipmapDrawer::Prepare(const CustomDrawing& drawing) {
   const std::size_t index = this->Terrain_->ChartAt(camera);
   std::unique_ptr<Chart>& chart = this->Charts_[index];
   if (!chart) {
-    chart =
-        std::make_unique<Chart>(this->Terrain_->Charts()[index], this->Terrain_->Options().cells);
+    chart = std::make_unique<Chart>(this->Terrain_->Charts()[index], this->Terrain_->Options());
     BindTextureUnit(drawing.window, TerrainUnit, GL_TEXTURE_2D_ARRAY, 0);
     CreateTexture(*chart);
   }
@@ -161,7 +161,13 @@ void ClipmapDrawer::Update(Chart& chart, const CustomDrawing& drawing) const {
   }
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   chart.state = chart.levels.Update(
-      view, [&drawing](int level, const ClipmapUpdate& u, const ClipmapTexel* texels) {
+      view, [&drawing, &chart](int level, const ClipmapUpdate& u, const ClipmapTexel* texels) {
+        for (int i = 0; i < u.width * u.height; ++i) {
+          if (texels[i].hole < 1.0f) {
+            chart.heights[0] = std::min<double>(chart.heights[0], texels[i].height);
+            chart.heights[1] = std::max<double>(chart.heights[1], texels[i].height);
+          }
+        }
         glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, u.x, u.y, level, u.width, u.height, 1, GL_RGBA,
                         GL_FLOAT, texels);
         drawing.statistics.textureBytesUploaded +=
@@ -249,7 +255,7 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     state->vtkglEnable(GL_CULL_FACE);
     state->vtkglCullFace(camera.mirrored > 0.0f ? GL_BACK : GL_FRONT);
   }
-  const ClipmapBlocks blocks(chart.levels, chart.placement, this->Terrain_->Options().heights);
+  const ClipmapBlocks blocks(chart.levels, chart.placement, chart.heights);
   const ClipmapSight sight = SightOf(camera, drawing.view);
   std::vector<GLsizei> counts;
   std::vector<const void*> firsts;

@@ -2,6 +2,7 @@
 #ifndef DSPACE_TERRAIN_CLIPMAPDRAWER_H
 #define DSPACE_TERRAIN_CLIPMAPDRAWER_H
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -31,11 +32,13 @@ public:
 private:
   // What is kept of one chart of the terrain.
   struct Chart {
-    Chart(const ClipmapChart& from, int cells)
-        : placement(from.placement), levels(from.pyramid, cells) {}
+    Chart(const ClipmapChart& from, const ClipmapOptions& options)
+        : placement(from.placement), levels(from.pyramid, options.cells), heights(options.heights) {
+    }
     PostPlacement placement;
     ClipmapLevels levels;
     ClipmapLevels::State state;
+    std::array<double, 2> heights; // [m] that nothing that is drawn leaves; at first a guess
     unsigned int texture = 0;
     // Some level of it is there.
     bool Drawable() const { return this->state.finest < this->levels.Count(); }
