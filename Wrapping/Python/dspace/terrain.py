@@ -110,7 +110,7 @@ class Terrain(TrackMaking, Strict):
     def _label(self):
         return f"terrain {self._name!r}"
 
-    def _query(self, x, y, what, map, z=None):
+    def _query(self, x, y, what, map, z=None, asked=True):
         given = [("x", x), ("y", y)] + ([] if z is None else [("z", z)])
         given = [array_of(value, name, "a number or an array of numbers", self._label)
                  for name, value in given]
@@ -126,7 +126,7 @@ class Terrain(TrackMaking, Strict):
         message.terrain = self._name
         message.map = flag(map, "map", self._label)
         message.undisturbed = self._undisturbed
-        setattr(message, what, True)
+        put(message, self._label, **{what: asked})
         message.spatial = z is not None
         _wire.put_array(message, "point", np.stack(given, axis=-1))
         return given[0].shape, self._scene._execute(command).terrain_values
@@ -167,6 +167,42 @@ class Terrain(TrackMaking, Strict):
         """Degrees from level at x, y as for height()."""
         shape, values = self._query(x, y, "slope", map, z)
         return _unpack(values, "slope_deg", shape)
+
+    def aspect_deg(self, x, y, z=None, map=False):
+        """Azimuth of steepest descent at x, y as for height(): degrees clockwise from north, 0 to 360;
+        NaN on level ground."""
+        shape, values = self._query(x, y, "aspect", map, z)
+        return _unpack(values, "aspect_deg", shape)
+
+    def roughness(self, x, y, radius, z=None, map=False):
+        """Root mean square [m] of the heights of the raster's pixels within `radius` metres of x, y (as
+        for height()) about the plane that fits them best; NaN where they span none. Clipmaps only."""
+        shape, values = self._query(x, y, "roughness_radius", map, z, radius)
+        return _unpack(values, "roughness", shape)
+
+    def intersect(self, origins, directions, maximum=None):
+        """Distances [m] at which rays first meet the surface, from above or from below; infinity where
+        they meet nothing within `maximum` metres (default: no limit).
+
+        origins and directions (..., 3) in the terrain's frame, of shapes that broadcast; directions
+        need not be unit. The point met is origin + distance * direction / |direction|."""
+        given = [array_of(value, name, "an array (..., 3)", self._label)
+                 for value, name in ((origins, "the origins"), (directions, "the directions"))]
+        try:
+            given = np.broadcast_arrays(*given)
+        except ValueError:
+            given = [np.empty(0)]
+        if given[0].shape[-1:] != (3,):
+            raise InvalidArgument(f"{self._label()}: origins and directions have the shapes "
+                                  f"{np.shape(origins)} and {np.shape(directions)}; accepted: (..., 3), "
+                                  "of shapes that broadcast", self._label())
+        command = self._scene._command()
+        message = command.intersect_terrain
+        put(message, self._label, terrain=self._name)
+        put_given(message, self._label, maximum=maximum)
+        message.undisturbed = self._undisturbed
+        _wire.put_array(message, "ray", np.concatenate(given, axis=-1))
+        return _unpack(self._scene._execute(command).terrain_rays, "distance", given[0].shape[:-1])
 
     def _convert(self, points, to_map):
         points = array_of(points, "the points", "an array (..., 3)", self._label)

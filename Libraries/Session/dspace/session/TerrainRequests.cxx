@@ -1,10 +1,12 @@
 // What terrain answers.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <dspace/scene/Checks.h>
 #include <dspace/session/Convert.h>
 #include <dspace/session/TerrainTools.h>
+#include <dspace/terrain/StreamedTerrain.h>
 
 namespace dspace::session {
 
@@ -37,6 +39,37 @@ bool OnBody(const TerrainObject& terrain) {
   return info.on_body();
 }
 
+// The command's points in the terrain's frame; those of the map at height 0.
+Rows3 PointsOf(const TerrainSurface& surface, const v1::QueryTerrain& command, std::size_t n) {
+  const int size = command.spatial() ? 3 : 2;
+  Rows3 points = Rows3::Zero(Eigen::Index(n), 3);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* p = command.point().data() + std::size_t(size) * i;
+    const Eigen::Vector3d given(p[0], p[1], size == 3 ? p[2] : 0.0);
+    points.row(Eigen::Index(i)) = command.map() ? surface.MapToScene(given) : given;
+  }
+  return points;
+}
+
+using Values = google::protobuf::RepeatedField<double>;
+
+void Put(const Eigen::Ref<const Eigen::VectorXd>& values, Values* field) {
+  *field = {values.data(), values.data() + values.size()};
+}
+
+void Heights(const TerrainSurface& surface, const v1::QueryTerrain& command, const Rows3& points,
+             bool body, Values* field) {
+  Eigen::VectorXd heights(points.rows());
+  if (command.map()) {
+    surface.HeightsMap(Eigen::Map<const Rows2>(command.point().data(), points.rows(), 2), heights);
+  } else {
+    surface.Heights(points, heights);
+    // In a plane's frame a height is a place along Z.
+    heights.array() -= body ? 0.0 : surface.SceneToMap(Eigen::Vector3d::Zero()).z();
+  }
+  Put(heights, field);
+}
+
 void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   const TerrainObject& terrain = FindTerrain(context, command.terrain());
   const TerrainSurface& surface = command.undisturbed() ? terrain.Undisturbed() : terrain.Surface();
@@ -50,46 +83,58 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   }
   const int size = command.spatial() ? 3 : 2;
   const std::size_t n = RowsOf(command.point_size(), size, label, "point");
-  if (!command.height() && !command.normal() && !command.slope()) {
-    Refuse(label, "nothing is asked for; accepted: height, normal, slope");
+  if (!command.height() && !command.normal() && !command.slope() && !command.aspect() &&
+      !command.has_roughness_radius()) {
+    Refuse(label, "nothing is asked for; accepted: height, normal, slope, aspect, roughness");
   }
   RequireFinitePoints(label, command.point().data(), size, n);
-  v1::TerrainQueryReply* reply = context.reply.mutable_terrain_values();
-  if (command.height() && !command.normal() && !command.slope()) { // many at once
-    Eigen::VectorXd heights(static_cast<Eigen::Index>(n));
-    if (command.map()) {
-      surface.HeightsMap(Eigen::Map<const Rows2>(command.point().data(), Eigen::Index(n), 2),
-                         heights);
-    } else {
-      Rows3 points = Rows3::Zero(Eigen::Index(n), 3);
-      points.leftCols(size) =
-          Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-              command.point().data(), Eigen::Index(n), size);
-      surface.Heights(points, heights);
-      // In a plane's frame a height is a place along Z.
-      const double zero = body ? 0.0 : surface.SceneToMap(Eigen::Vector3d::Zero()).z();
-      heights.array() -= zero;
-    }
-    *reply->mutable_height() = {heights.data(), heights.data() + heights.size()};
-    return;
+  const auto* streamed = dynamic_cast<const StreamedTerrain*>(&surface);
+  if (command.has_roughness_radius() && !streamed) {
+    throw Error(Error::Kind::Unsupported, label,
+                "roughness is not answered by triangles; accepted: mode clipmap");
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    const double* p = command.point().data() + std::size_t(size) * i;
-    const SurfaceSample sample =
-        command.map() ? surface.SampleMap(Eigen::Vector2d(p[0], p[1]))
-                      : surface.Sample(Eigen::Vector3d(p[0], p[1], size == 3 ? p[2] : 0.0));
-    if (command.height()) {
-      reply->add_height(command.map() || body ? sample.height : sample.position_S.z());
-    }
-    if (command.normal()) {
-      for (const double value : sample.normal_S) {
-        reply->add_normal(value);
-      }
-    }
-    if (command.slope()) {
-      reply->add_slope_deg(sample.slope_deg);
-    }
+  const Rows3 points = PointsOf(surface, command, n);
+  Eigen::VectorXd values(points.rows());
+  v1::TerrainQueryReply reply;
+  if (command.height()) {
+    Heights(surface, command, points, body, reply.mutable_height());
   }
+  if (command.normal()) {
+    Rows3 normals(points.rows(), 3);
+    surface.Normals(points, normals);
+    *reply.mutable_normal() = {normals.data(), normals.data() + normals.size()};
+  }
+  if (command.slope()) {
+    surface.Slopes(points, values);
+    Put(values, reply.mutable_slope_deg());
+  }
+  if (command.aspect()) {
+    surface.Aspects(points, values);
+    Put(values, reply.mutable_aspect_deg());
+  }
+  if (command.has_roughness_radius()) {
+    streamed->Roughness(points, command.roughness_radius(), values);
+    Put(values, reply.mutable_roughness());
+  }
+  context.reply.mutable_terrain_values()->Swap(&reply);
+}
+
+void IntersectTerrain(const Context& context, v1::IntersectTerrain& command) {
+  const TerrainObject& terrain = FindTerrain(context, command.terrain());
+  const TerrainSurface& surface = command.undisturbed() ? terrain.Undisturbed() : terrain.Surface();
+  const std::string label = "terrain '" + command.terrain() + "'";
+  const std::size_t n = RowsOf(command.ray_size(), 6, label, "ray");
+  RequireFinitePoints(label, command.ray().data(), 6, n);
+  const double maximum =
+      command.has_maximum() ? command.maximum() : std::numeric_limits<double>::infinity();
+  Require(maximum >= 0.0, label, "the greatest distance of rays", maximum, "0 m or more");
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> rays(
+      command.ray().data(), Eigen::Index(n), 6);
+  const Rows3 origins = rays.leftCols<3>();
+  const Rows3 directions = rays.rightCols<3>();
+  Eigen::VectorXd distances(origins.rows());
+  surface.Intersect(origins, directions, maximum, distances);
+  Put(distances, context.reply.mutable_terrain_rays()->mutable_distance());
 }
 
 void ConvertTerrain(const Context& context, v1::ConvertTerrain& command) {
@@ -122,6 +167,8 @@ void ListTerrains(const Context& context, v1::ListTerrains&) {
 void AddTerrainRequests(Registry& registry) {
   using C = v1::Command;
   registry.Add(C::kQueryTerrain, &C::mutable_query_terrain, Effect::Request, QueryTerrain);
+  registry.Add(C::kIntersectTerrain, &C::mutable_intersect_terrain, Effect::Request,
+               IntersectTerrain);
   registry.Add(C::kConvertTerrain, &C::mutable_convert_terrain, Effect::Request, ConvertTerrain);
   registry.Add(C::kDescribeTerrain, &C::mutable_describe_terrain, Effect::Request, DescribeTerrain);
   registry.Add(C::kListTerrains, &C::mutable_list_terrains, Effect::Request, ListTerrains);
