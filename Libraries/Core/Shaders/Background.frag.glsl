@@ -1,4 +1,5 @@
-//DSPACE::Version
+#version 330 core
+//DSPACE::Defines
 // A vertical gradient between two colours given in sRGB display values, as a picture shows them.
 uniform vec3 bottomColor;
 uniform vec3 topColor;

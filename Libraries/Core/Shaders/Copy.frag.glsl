@@ -1,4 +1,5 @@
-//DSPACE::Version
+#version 330 core
+//DSPACE::Defines
 // Hands a texture's texel on, for the blend function to add it.
 uniform sampler2D source;
 layout(location = 0) out vec4 fragColor;

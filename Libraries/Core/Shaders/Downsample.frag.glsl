@@ -1,4 +1,5 @@
-//DSPACE::Version
+#version 330 core
+//DSPACE::Defines
 // Mean of DSPACE_SAMPLES x DSPACE_SAMPLES texels, in linear light (the source decodes sRGB, the
 // target encodes).
 uniform sampler2D source;

@@ -1,4 +1,5 @@
-//DSPACE::Version
+#version 330 core
+//DSPACE::Defines
 // Places one instance of a mesh: MC (mesh) to VC (view, camera at the origin) to DC (clip).
 // Everything that differs between instances is an attribute that advances with them
 // (DrawInstance in dspace/render/DrawList.h; laid out by GpuStore).

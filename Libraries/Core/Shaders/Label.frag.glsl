@@ -1,4 +1,5 @@
-//DSPACE::Version
+#version 330 core
+//DSPACE::Defines
 // Which object a pixel belongs to.
 flat in uint label;
 layout(location = 0) out uint fragLabel;

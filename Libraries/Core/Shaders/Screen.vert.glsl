@@ -1,4 +1,5 @@
-//DSPACE::Version
+#version 330 core
+//DSPACE::Defines
 // One triangle that covers the picture, at reversed depth's far end; no buffers.
 void main()
 {

@@ -1,4 +1,5 @@
-//DSPACE::Version
+#version 330 core
+//DSPACE::Defines
 // Colour of a surface in linear light: metallic-roughness material (glTF 2.0, appendix B) under
 // the scene's lights; a light of intensity 1 that falls straight on a white matt surface makes 1.
 // A surface without DSPACE_SPECULAR is Lambertian. The number of lights and whether all of them are

@@ -1,4 +1,5 @@
-//DSPACE::Version
+#version 330 core
+//DSPACE::Defines
 // Places the posts of one clipmap level: heights are fetched, and near the level's outline turned
 // into the next coarser level's (Losasso and Hoppe 2004). Everything is relative to the camera.
 #if defined(DSPACE_LIT) || defined(DSPACE_MIXED)

@@ -26,10 +26,10 @@ void Replace(std::string& text, const std::string& marker, const std::string& by
   }
 }
 
-// The GLSL version, and one definition a feature, in place of the marker.
-std::string Versioned(const char* source, const std::string& defines) {
+// One definition a feature, in place of the marker.
+std::string WithDefines(const char* source, const std::string& defines) {
   std::string text = source;
-  Replace(text, "//DSPACE::Version", "#version 330 core\n" + defines);
+  Replace(text, "//DSPACE::Defines", defines);
   return text;
 }
 vtkShaderProgram* Ready(vtkDspaceHubWindow* window, const std::string& vertex,
@@ -87,9 +87,9 @@ vtkShaderProgram* SurfaceShaders::Surface(unsigned features, const ShaderPages& 
   define(PlacedLights, "DSPACE_PLACED_LIGHTS");
   define(Mixed, "DSPACE_MIXED");
   defines += "#define DSPACE_LIGHT_COUNT " + std::to_string(features >> LightShift) + "\n";
-  std::string fragment = Versioned(features & Label ? Label_frag : Surface_frag, defines);
+  std::string fragment = WithDefines(features & Label ? Label_frag : Surface_frag, defines);
   Replace(fragment, "//DSPACE::Functions", pages.fragment ? pages.fragment : "");
-  program = Ready(this->Window_, Versioned(pages.vertex ? pages.vertex : Instance_vert, defines),
+  program = Ready(this->Window_, WithDefines(pages.vertex ? pages.vertex : Instance_vert, defines),
                   fragment);
   return program;
 }
@@ -99,7 +99,7 @@ vtkShaderProgram* SurfaceShaders::Screen(const char* fragment, const std::string
   if (program) {
     this->Window_->GetShaderCache()->ReadyShaderProgram(program);
   } else {
-    program = Ready(this->Window_, Versioned(Screen_vert, ""), Versioned(fragment, defines));
+    program = Ready(this->Window_, WithDefines(Screen_vert, ""), WithDefines(fragment, defines));
   }
   return program;
 }

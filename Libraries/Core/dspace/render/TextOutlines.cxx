@@ -61,7 +61,7 @@ struct Pen {
 } // namespace
 
 struct OutlineFont::Face {
-  FT_Library library = nullptr;
+  FT_Library freetype = nullptr;
   FT_Face face = nullptr;
   double capital = 1.0; // in the font's own units
 
@@ -70,14 +70,14 @@ struct OutlineFont::Face {
   Face& operator=(const Face&) = delete;
   ~Face() {
     FT_Done_Face(this->face);
-    FT_Done_FreeType(this->library);
+    FT_Done_FreeType(this->freetype);
   }
 };
 
 OutlineFont::OutlineFont(Font font) : Face_(std::make_unique<Face>()) {
   Face& self = *this->Face_;
-  if (FT_Init_FreeType(&self.library) != 0 ||
-      FT_New_Face(self.library, FontFile(font), 0, &self.face) != 0 ||
+  if (FT_Init_FreeType(&self.freetype) != 0 ||
+      FT_New_Face(self.freetype, FontFile(font), 0, &self.face) != 0 ||
       FT_Load_Char(self.face, 'H', FT_LOAD_NO_SCALE) != 0 ||
       self.face->glyph->metrics.height <= 0) {
     RefuseFont(font);
