@@ -197,3 +197,13 @@ def test_callbacks_that_double_their_events_are_stopped(scene, monkeypatch):
     with pytest.raises(dspace.Resource, match="500 changes"):
         frame.position = (-1, 0, 0)
     assert 500 < len(calls) < 2000
+
+
+def test_a_state_of_another_vehicle_moves_nothing(arm):
+    """A robot's place() is its base and its joints, or neither."""
+    class State:
+        position, quaternion, joints = (5.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), {"no such joint": 1.0}
+    before = arm.pose
+    with pytest.raises(dspace.NotFound, match="no such joint"):
+        arm.place(State())
+    assert arm.pose == before

@@ -175,8 +175,9 @@ class Robot(Strict):
         for each in ("position", "quaternion", "joints"):
             if not hasattr(state, each):
                 refuse(self._label, "the state", state, "what dspace.rover's solve() returned", WrongType)
-        self.pose = Pose(state.position, state.quaternion, self.pose.scale)
-        self.set_joints(state.joints, clamp=True)
+        pose = Pose(state.position, state.quaternion, self.pose.scale)
+        self.set_joints(state.joints, clamp=True)  # refuses another vehicle's before anything moves
+        self.pose = pose
 
     def joint_positions(self):
         """{name: degrees or metres} of all joints."""

@@ -405,9 +405,7 @@ class TerrainMaking:
             put_vector(message.map_origin, [*values, 0.0][:3], "the origin", label)
         message.fragment = self._fragment_name(fragment)
         message.unlit = not flag(lit, "lit", label)
-        if not isinstance(mode, str) or mode not in _MODES:
-            refuse(label, "the mode", mode, ", ".join(repr(known) for known in _MODES))
-        message.mode = _MODES.index(mode)
+        message.mode = word(mode, {known: i for i, known in enumerate(_MODES)}, "the mode", label)
         message.on_body = flag(on_body, "on_body", label)
         put_given(message, label, triangle_budget=triangles, band=band, crs=crs,
                   vertical_datum=vertical_datum, vertical_scale=vertical_scale,

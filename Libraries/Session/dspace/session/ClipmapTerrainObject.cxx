@@ -22,7 +22,7 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   const StreamedTerrain& surface = *this->Surface_;
   const ElevationInfo& info = surface.Info();
   reply.set_mode(v1::OpenTerrain::CLIPMAP);
-  reply.set_on_body(surface.Placement().GetKind() == PostPlacement::Kind::Sphere);
+  reply.set_on_body(this->OnBody());
   reply.set_columns(std::uint32_t(info.window.width));
   reply.set_rows(std::uint32_t(info.window.height));
   reply.set_pixel_width(info.pixelToMap.linear().col(0).norm());

@@ -20,6 +20,7 @@ public:
                        const ClipmapOptions& options, const ElevationPyramidOptions& pyramid);
 
   ClipmapTerrain& Clipmap() { return *this->Clipmap_; }
+  bool OnBody() const override { return this->Surface_->Placement().OnBody(); }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
   const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
   void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }

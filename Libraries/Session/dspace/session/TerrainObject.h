@@ -24,6 +24,8 @@ public:
   void SetObject(ObjectId object) { this->Object_ = object; }
 
   virtual const TerrainSurface& Surface() const = 0;
+  // Its frame is the body-fixed one: points of it need all three coordinates.
+  virtual bool OnBody() const { return false; }
   // Without wheel tracks.
   virtual const TerrainSurface& Undisturbed() const { return this->Surface(); }
   // Puts what draws it into `object`.

@@ -32,13 +32,6 @@ void RequireFinitePoints(const std::string& label, const double* values, int siz
 
 namespace {
 
-// Whether points of its frame need all three coordinates.
-bool OnBody(const TerrainObject& terrain) {
-  v1::TerrainReply info;
-  terrain.Describe(info);
-  return info.on_body();
-}
-
 // The command's points in the terrain's frame; those of the map at height 0.
 Rows3 PointsOf(const TerrainSurface& surface, const v1::QueryTerrain& command, std::size_t n) {
   const int size = command.spatial() ? 3 : 2;
@@ -77,7 +70,7 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   if (command.map() && command.spatial()) {
     Refuse(label, "points are of the map or of space, not both");
   }
-  const bool body = OnBody(terrain);
+  const bool body = terrain.OnBody();
   if (body && !command.map() && !command.spatial()) {
     Refuse(label, "it stands on its body; accepted: map coordinates, or x, y and z");
   }

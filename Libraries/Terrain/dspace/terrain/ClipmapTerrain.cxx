@@ -36,12 +36,16 @@ double Linear(double srgb) {
 
 // Of all pixels, in linear light.
 Eigen::Vector3d MeanOf(const Image& image) {
+  std::array<double, 256> linear;
+  for (std::size_t v = 0; v < linear.size(); ++v) {
+    linear[v] = Linear(double(v) / 255.0);
+  }
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   const std::size_t count = std::size_t(image.width) * image.height;
   const auto channels = static_cast<std::size_t>(image.channels);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      sum[Eigen::Index(k)] += Linear(image.pixels[i * channels + (channels < 3 ? 0 : k)] / 255.0);
+      sum[Eigen::Index(k)] += linear[image.pixels[i * channels + (channels < 3 ? 0 : k)]];
     }
   }
   return (sum / double(count)).cwiseMax(1e-4);
@@ -58,13 +62,13 @@ ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
   for (ClipmapChart& pole : poles) {
     this->Charts_.push_back(std::move(pole));
   }
-  for (const ClipmapChart& chart : this->Charts_) {
-    ClipmapLevels(chart.pyramid, options.cells); // refuses what cannot be drawn
-  }
   if (options.cells > 252) {
     throw Error(Error::Kind::InvalidArgument, name,
                 "level size " + std::to_string(options.cells) +
                     " is refused; accepted is 12 to 252");
+  }
+  for (const ClipmapChart& chart : this->Charts_) {
+    ClipmapLevels(chart.pyramid, options.cells); // refuses what cannot be drawn
   }
   if (!(options.heights[0] <= options.heights[1]) || !std::isfinite(options.heights[0]) ||
       !std::isfinite(options.heights[1])) {

@@ -11,10 +11,6 @@ namespace {
 constexpr int SquareSize = 64; // posts
 const Eigen::Vector2d Nowhere = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
-std::int64_t FloorDiv(std::int64_t a, std::int64_t b) {
-  return a >= 0 ? a / b : -((-a + b - 1) / b);
-}
-
 } // namespace
 
 // Posts k..k+size-1, j..j+size-1 of a level, of which those of the block are wanted.

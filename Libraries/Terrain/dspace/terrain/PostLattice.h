@@ -7,6 +7,11 @@
 
 namespace dspace {
 
+// a / b rounded down; b > 0.
+inline std::int64_t FloorDiv(std::int64_t a, std::int64_t b) {
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+
 // Posts (c, r) of level 0, 0 <= c < columns, 0 <= r < rows. Post (k, j) of level l stands where
 // post (k 2^l, j 2^l) of level 0 does, and the last one of each row and column, which need not be a
 // multiple, at the lattice's edge: every level reaches exactly as far as level 0.
@@ -33,7 +38,7 @@ struct PostLattice {
   // The column in 0..ColumnsAt(level)-1 that a column of a periodic lattice is.
   std::int64_t Wrapped(int level, std::int64_t k) const {
     const std::int64_t n = this->ColumnsAt(level);
-    return this->periodic ? ((k % n) + n) % n : k;
+    return this->periodic ? k - FloorDiv(k, n) * n : k;
   }
 
 private:

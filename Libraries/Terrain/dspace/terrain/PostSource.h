@@ -33,13 +33,10 @@ inline PostRectangle PostsTouched(const PostRectangle& base, int level) {
     return base;
   }
   const std::int64_t step = std::int64_t(1) << level;
-  const auto floorOf = [step](std::int64_t a) {
-    return a >= 0 ? a / step : -((step - 1 - a) / step);
-  };
-  const std::int64_t column = floorOf(base.column) - 1;
-  const std::int64_t row = floorOf(base.row) - 1;
-  return {column, row, floorOf(base.column + base.width) + 3 - column,
-          floorOf(base.row + base.height) + 3 - row, base.levels};
+  const std::int64_t column = FloorDiv(base.column, step) - 1;
+  const std::int64_t row = FloorDiv(base.row, step) - 1;
+  return {column, row, FloorDiv(base.column + base.width, step) + 3 - column,
+          FloorDiv(base.row + base.height, step) + 3 - row, base.levels};
 }
 
 // Abstract. Heights are metres above the terrain's vertical datum, floats: a step of 0.5 mm below

@@ -66,8 +66,8 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
       take(i, {});
       continue;
     }
-    const auto [c, r] = cellOf(p);
-    items.push_back({r / Size, (c - (c < 0 ? Size - 1 : 0)) / Size, i});
+    const auto [c, r] = cellOf(posts[i]);
+    items.push_back({r / Size, FloorDiv(c, Size), i});
   }
   const auto before = [](const Item& a, const Item& b) {
     return a.tileRow != b.tileRow ? a.tileRow < b.tileRow : a.tileColumn < b.tileColumn;

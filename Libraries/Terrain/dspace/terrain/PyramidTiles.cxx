@@ -8,10 +8,6 @@ namespace {
 constexpr int Size = ElevationPyramid::TileSize;
 constexpr std::size_t KeptChanges = 4096;
 
-std::int64_t FloorDiv(std::int64_t a, std::int64_t b) {
-  return a >= 0 ? a / b : -((-a + b - 1) / b);
-}
-
 } // namespace
 
 bool TileBox::Meets(const TileBox& o) const {
@@ -44,7 +40,7 @@ std::vector<TilePiece> CutIntoTiles(const PostLattice& lattice, const PostBlock&
   for (std::int64_t r = top; r < bottom;) {
     const std::int64_t nextRow = std::min((r / Size + 1) * Size, bottom);
     for (std::int64_t c = left; c < right;) {
-      const std::int64_t at = c - FloorDiv(c, columns) * columns; // within the lattice
+      const std::int64_t at = lattice.Wrapped(block.level, c);
       const std::int64_t end = std::min((at / Size + 1) * Size, columns);
       const std::int64_t run = std::min(end - at, right - c);
       const int x = int(at % Size);

@@ -13,10 +13,6 @@ namespace {
 constexpr int FullReads = 3; // levels above the pixels whose means read every pixel
 constexpr double NoData = std::numeric_limits<double>::quiet_NaN();
 
-std::int64_t FloorDiv(std::int64_t a, std::int64_t b) {
-  return a >= 0 ? a / b : -((-a + b - 1) / b);
-}
-
 PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& options) {
   const std::string object = "raster '" + info.path + "'";
   const int width = info.window.width;

@@ -47,7 +47,6 @@ public:
 
   const ElevationSource& Source() const { return *this->Source_; }
   int Subdivisions() const { return this->Subdivisions_; }
-  bool Poles() const { return this->Poles_; }
 
 private:
   std::vector<double> ReadPixels(std::int64_t column, std::int64_t row, int width, int height,

@@ -60,7 +60,6 @@ public:
   // False beyond its reach.
   bool At(const Eigen::Vector2d& place, TrackDepth& depth) const;
   Eigen::AlignedBox2d Box() const; // all that it reaches
-  const TrackProfile& Profile() const { return this->Profile_; }
 
 private:
   TrackProfile Profile_;

@@ -8,6 +8,7 @@ import sys
 import time
 
 from dspace.command_line import Failed, tell
+from dspace.command_line.terrain_rasters import mebibytes
 
 ABOUT = (
     "Builds averaged overviews of rasters that have none, so that far ground is the mean of all its pixels: "
@@ -186,7 +187,3 @@ def line(entry):
 def total(reply, more):
     print(f"{len(reply.entry)} rasters, {mebibytes(sum(entry.bytes for entry in reply.entry))} in {reply.folder}"
           + (f", {more}" if more else ""))
-
-
-def mebibytes(count):
-    return f"{count / 2**20:.3g} MiB"

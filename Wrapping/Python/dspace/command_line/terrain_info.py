@@ -6,7 +6,8 @@ import sys
 import numpy as np
 
 from dspace.command_line import Failed, tell
-from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, lines
+from dspace.command_line.terrain_rasters import (add, check, degrees, gdal_modules, lines, mebibytes,
+                                                  open_raster)
 
 MESH_PIXELS = 4_000_000  # what mode "auto" draws as triangles
 STATISTICS_PIXELS = 4_000_000  # more are not read for statistics
@@ -48,13 +49,10 @@ def describe(scene, path, options):
     gdal, osr = gdal_modules()
     terrain, warned = add(scene, path, options, name="plane")
     info = terrain._info()
-    data = gdal.Open(str(path))
+    data, to_map = open_raster(gdal, path, options)
     band = data.GetRasterBand(options.band or 1)
     crs = degrees(osr, info.crs)
-    to_map = np.array(data.GetGeoTransform())
-    if not data.GetGeoTransform(can_return_null=True):
-        side = options.pixel_size or 1.0
-        to_map = np.array([0, side, 0, data.RasterYSize * side, 0, -side])
+    to_map = np.array(to_map)
     found = {
         "path": str(path),
         "driver": data.GetDriver().ShortName,
@@ -231,10 +229,6 @@ def patch_text(patch):
 
 def span(pair, name):
     return f"{name} {pair[0]:.9g} to {pair[1]:.9g}"
-
-
-def mebibytes(count):
-    return f"{count / 2**20:.3g} MiB"
 
 
 def pyramid_text(made, unit):

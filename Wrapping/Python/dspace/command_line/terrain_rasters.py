@@ -17,6 +17,23 @@ def gdal_modules():
     return gdal, osr
 
 
+def open_raster(gdal, path, options):
+    """GDAL's own view of a raster, and its geotransform: made up where the file has none."""
+    name = str(path)
+    if name.startswith(("http://", "https://")):  # in parts, as the terrain itself reads it
+        name = "/vsicurl/" + name
+        for key, seconds in (("CONNECTTIMEOUT", 10), ("LOW_SPEED_TIME", 10), ("LOW_SPEED_LIMIT", 1)):
+            gdal.SetConfigOption(f"GDAL_HTTP_{key}", str(seconds))
+    data = gdal.Open(name)
+    side = options.pixel_size or 1.0
+    return data, (data.GetGeoTransform(can_return_null=True)
+                  or (0, side, 0, data.RasterYSize * side, 0, -side))
+
+
+def mebibytes(count):
+    return f"{count / 2**20:.3g} MiB"
+
+
 def check(options):
     """What no single argument is wrong with."""
     if options.patches and len(options.files) > 1:

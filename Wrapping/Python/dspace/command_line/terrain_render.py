@@ -6,7 +6,7 @@ import sys
 import numpy as np
 
 from dspace.command_line import Failed
-from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules
+from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, open_raster
 from dspace.command_line.terrain_map import draw_disc, draw_map
 
 LONGER_SIDE = 1024
@@ -73,7 +73,7 @@ class Ground:
             for warning in warned:
                 print(f"dspace: note: {path}: {warning}", file=sys.stderr)
             self.terrains.append(terrain)
-            self.maps.append(map_extent(gdal.Open(str(path)), options))
+            self.maps.append(map_extent(*open_raster(gdal, path, options)))
         self.crs = degrees(osr, self.terrains[0].crs)
         self.heights = (min(terrain.height_range[0] for terrain in self.terrains),
                         max(terrain.height_range[1] for terrain in self.terrains))
@@ -136,10 +136,9 @@ class Ground:
         return np.array([east, np.cross(up, east), up])
 
 
-def map_extent(data, options):
+def map_extent(data, to_map):
     """Map x0, x1, y0, y1 of its outermost pixels' centres."""
-    side = options.pixel_size or 1.0
-    g = data.GetGeoTransform(can_return_null=True) or (0, side, 0, data.RasterYSize * side, 0, -side)
+    g = to_map
     corners = np.array([(u, v) for u in (0.5, data.RasterXSize - 0.5) for v in (0.5, data.RasterYSize - 0.5)])
     x, y = g[0] + corners @ g[1:3], g[3] + corners @ g[4:6]
     return x.min(), x.max(), y.min(), y.max()
