@@ -1,0 +1,40 @@
+// What is painted on a terrain: an image, a raster in false colour, shapes, noise.
+#ifndef DSPACE_LAYERS_COLORLAYER_H
+#define DSPACE_LAYERS_COLORLAYER_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <dspace/layers/ColorGrid.h>
+
+namespace dspace {
+
+// Texels of a zoom; may lie outside the grid's tiles, and where it is periodic in any turn.
+struct ColorBlock {
+  int zoom = 0;
+  std::int64_t column = 0; // of the first texel
+  std::int64_t row = 0;
+  int width = 0; // texels
+  int height = 0;
+};
+
+// Abstract. Immutable; called from several threads at once.
+class ColorLayer {
+public:
+  virtual ~ColorLayer() = default;
+  virtual const std::string& GetName() const = 0; // for messages: "image 'mars.tif'"
+  // Fills `rgba`, 4 bytes a texel, row by row: sRGB colour and straight opacity; where that is 0
+  // the colour is 0, too. A texel is the mean of what lies within it. False, and nothing written,
+  // where there is nothing at all. Throws Error when the data cannot be read.
+  virtual bool Read(const ColorGrid& grid, const ColorBlock& block, std::uint8_t* rgba) const = 0;
+  // Size of its finest detail [m] on the ground: closer texels show nothing more. Infinity where
+  // any zoom will do.
+  virtual double PixelSize() const = 0;
+  // What was assumed when it was opened, each naming how to state it.
+  virtual const std::vector<std::string>& Warnings() const = 0;
+};
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,74 @@
+// Tiles of a stack of colour layers, composed by threads of their own, under a byte budget.
+#ifndef DSPACE_LAYERS_COLORTILES_H
+#define DSPACE_LAYERS_COLORTILES_H
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <dspace/layers/LayerStack.h>
+
+namespace dspace {
+
+struct ColorTilesOptions {
+  std::size_t byteBudget = std::size_t(192) << 20; // at least 16 MiB
+  int threads = 2;                                 // 1 to 64
+  double retryDelay = 0.5;                         // [s] after a failed read; doubles up to 30 s
+  int attempts = 3; // failed reads of a tile before a waiting call gives up
+};
+
+struct ColorTilesStatistics {
+  std::size_t bytes = 0;   // of tiles in memory: the layers' own and composed ones
+  std::uint64_t reads = 0; // of one tile of one layer
+  std::uint64_t compositions = 0;
+  std::uint64_t failures = 0;
+  std::size_t pending = 0;
+  std::string lastFailure; // its message; empty without any
+};
+
+// A drawing thread is answered at once, from memory; captures wait. A change of the stack composes
+// tiles anew from the layers' tiles in memory, without reading. Any thread may call.
+class ColorTiles {
+public:
+  static constexpr int Side = ColorGrid::TileTexels + 2; // a texel of border all around
+
+  struct Tile {
+    std::uint64_t revision = 0; // of the stack that it shows
+    // Side x Side texels of four bytes, top row first: colour times opacity in linear light, then
+    // encoded as sRGB; opacity. Empty where all of it is transparent.
+    std::vector<std::uint8_t> texels;
+  };
+  using TilePointer = std::shared_ptr<const Tile>;
+
+  // Throws Error(InvalidArgument) for an option out of range.
+  ColorTiles(std::shared_ptr<const LayerStack> stack, std::vector<ColorGrid> grids,
+             const ColorTilesOptions& options = {});
+  ColorTiles(const ColorTiles&) = delete;
+  ColorTiles& operator=(const ColorTiles&) = delete;
+  ~ColorTiles(); // waits for reads under way
+
+  const LayerStack& Stack() const;
+  const std::vector<ColorGrid>& Grids() const;
+
+  // One a tile, most wanted first: as it is in memory, of this or an earlier revision; null where
+  // it is not there. What is missing or out of date is asked for, and requests of earlier calls
+  // that are not among these are served after them.
+  std::vector<TilePointer> TryGet(const std::vector<ColorTile>& tiles);
+  // All of them, of the revision at the time of the call or a later one. Throws Error: what the
+  // last of the failed attempts threw; DeadlineExceeded when `seconds` ran out.
+  std::vector<TilePointer> Get(const std::vector<ColorTile>& tiles, double seconds);
+
+  // Grows with each tile that arrives and with each change of the stack.
+  std::uint64_t Arrivals() const;
+  ColorTilesStatistics Statistics() const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> Impl_;
+};
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,59 @@
+// The colour layers of one terrain, bottom first.
+#ifndef DSPACE_LAYERS_LAYERSTACK_H
+#define DSPACE_LAYERS_LAYERSTACK_H
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <dspace/layers/ColorLayer.h>
+
+namespace dspace {
+
+struct StackedLayer {
+  std::string name; // unique in its stack
+  std::shared_ptr<const ColorLayer> layer;
+  double opacity = 1.0; // 0 to 1
+  bool visible = true;
+};
+
+// Any thread may call. Each change makes a new revision.
+class LayerStack {
+public:
+  static constexpr std::size_t Most = 64;
+
+  explicit LayerStack(std::string terrain) : Terrain_(std::move(terrain)) {}
+
+  // On top, or at `position` from the bottom (0). Throws Error(InvalidArgument) naming the terrain
+  // for an empty or taken name, an opacity out of range, a position beyond the top, or more than
+  // Most layers.
+  void Add(StackedLayer layer, std::optional<std::size_t> position = std::nullopt);
+  // Absent: unchanged. Throws as Add does, NotFound for a name that it has not; nothing is then
+  // changed.
+  void Change(const std::string& name, std::optional<double> opacity, std::optional<bool> visible,
+              std::optional<std::size_t> position);
+  void Remove(const std::string& name); // throws Error(NotFound)
+
+  std::vector<StackedLayer> Layers() const; // a copy: bottom first
+  std::uint64_t Revision() const;
+  // That is seen at all: visible, opacity over 0.
+  bool Empty() const;
+  // The finest that a layer that is seen has; infinity without one.
+  double PixelSize() const;
+
+private:
+  std::size_t Find(const std::string& name) const;
+
+  std::string Terrain_; // for messages
+  mutable std::mutex Mutex_;
+  std::vector<StackedLayer> Layers_;
+  std::uint64_t Revision_ = 0;
+};
+
+} // namespace dspace
+
+#endif
