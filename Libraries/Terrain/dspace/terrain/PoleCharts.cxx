@@ -7,9 +7,7 @@
 #include <dspace/terrain/PolarPosts.h>
 
 namespace dspace {
-namespace {
 
-// Of the plane that PostPlacement::OnPole() has, in metres.
 Crs PolarCrs(const StreamedTerrain& terrain, bool south) {
   std::ostringstream text;
   text.precision(17);
@@ -25,8 +23,6 @@ Eigen::Affine2d PostToPolarMap(const StreamedTerrain& terrain, const PostPlaceme
   map.translation() << -step * chart.Half(), step * chart.Half();
   return map;
 }
-
-} // namespace
 
 std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells,
                                        const ElevationPyramidOptions& options) {

@@ -16,6 +16,10 @@ namespace dspace {
 std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells,
                                        const ElevationPyramidOptions& options = {});
 
+// The plane of a pole's chart as a CRS, in metres, and posts of the chart to it.
+Crs PolarCrs(const StreamedTerrain& terrain, bool south);
+Eigen::Affine2d PostToPolarMap(const StreamedTerrain& terrain, const PostPlacement& chart);
+
 } // namespace dspace
 
 #endif
