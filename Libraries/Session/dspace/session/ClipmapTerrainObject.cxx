@@ -8,14 +8,30 @@
 #include <dspace/terrain/PoleCharts.h>
 
 namespace dspace::session {
+namespace {
+
+std::shared_ptr<ClipmapTerrain> MakeClipmap(const StreamedTerrain& surface,
+                                            const ClipmapOptions& options,
+                                            const ElevationPyramidOptions& pyramid) {
+  const std::vector<ClipmapChart> poles = PoleChartsOf(surface, options.cells, pyramid);
+  return std::make_shared<ClipmapTerrain>(surface.Pyramid(), surface.Placement(), options, poles,
+                                          ColorGridsOf(surface, poles));
+}
+
+} // namespace
 
 ClipmapTerrainObject::ClipmapTerrainObject(std::string name,
                                            std::shared_ptr<const StreamedTerrain> surface,
                                            const ClipmapOptions& options,
-                                           const ElevationPyramidOptions& pyramid)
+                                           const ElevationPyramidOptions& pyramid,
+                                           std::string cacheFolder)
     : TerrainObject(std::move(name)), Surface_(std::move(surface)),
-      Clipmap_(std::make_shared<ClipmapTerrain>(Surface_->Pyramid(), Surface_->Placement(), options,
-                                                PoleChartsOf(*Surface_, options.cells, pyramid))) {}
+      Clipmap_(MakeClipmap(*Surface_, options, pyramid)), Layers_(this->Name(), Clipmap_->Layers()),
+      CacheFolder_(std::move(cacheFolder)) {}
+
+void ClipmapTerrainObject::DescribeLayers(v1::TerrainLayerList& list) const {
+  this->Layers_.Describe(list);
+}
 
 void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   TerrainObject::Describe(reply);

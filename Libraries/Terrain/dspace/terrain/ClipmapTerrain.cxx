@@ -55,9 +55,10 @@ Eigen::Vector3d MeanOf(const Image& image) {
 
 ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
                                const PostPlacement& placement, const ClipmapOptions& options,
-                               std::vector<ClipmapChart> poles)
+                               std::vector<ClipmapChart> poles, std::vector<ColorGrid> grids)
     : Charts_{{std::move(pyramid), placement}}, Options_(options),
-      Bounds_(BoundsOf(Charts_[0].pyramid->Lattice(), placement, options.heights)) {
+      Bounds_(BoundsOf(Charts_[0].pyramid->Lattice(), placement, options.heights)),
+      Grids_(std::move(grids)) {
   const std::string& name = this->Pyramid()->Source().GetName();
   for (ClipmapChart& pole : poles) {
     this->Charts_.push_back(std::move(pole));
@@ -74,6 +75,15 @@ ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
       !std::isfinite(options.heights[1])) {
     throw Error(Error::Kind::InvalidArgument, name,
                 "its least height must not exceed its greatest");
+  }
+  if (!this->Grids_.empty() && this->Grids_.size() != this->Charts_.size()) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                std::to_string(this->Grids_.size()) +
+                    " grids of colour layers are refused; accepted: " +
+                    std::to_string(this->Charts_.size()) + ", one a chart, or none");
+  }
+  if (!this->Grids_.empty()) {
+    this->Layers_ = std::make_shared<LayerStack>(name);
   }
   if (!this->Options_.material) {
     this->Options_.material = std::make_shared<const Material>();

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include <dspace/layers/LayerStack.h>
 #include <dspace/scene/CustomGeometry.h>
 #include <dspace/scene/GraphicsObject.h>
 #include <dspace/terrain/ClipmapStyle.h>
@@ -36,9 +37,11 @@ struct ClipmapChart {
 class ClipmapTerrain : public CustomGeometry {
 public:
   // `poles`: charts (Pole) of a whole body's poles, which are drawn instead while the camera is
-  // within 30 degrees of one. Throws Error(InvalidArgument) for an option out of range.
+  // within 30 degrees of one. `grids`: where colour layers lie, one a chart (ColorGridsOf); none:
+  // there are no layers. Throws Error(InvalidArgument) for an option out of range.
   ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid, const PostPlacement& placement,
-                 const ClipmapOptions& options, std::vector<ClipmapChart> poles = {});
+                 const ClipmapOptions& options, std::vector<ClipmapChart> poles = {},
+                 std::vector<ColorGrid> grids = {});
 
   BoundingSphere Bounds() const override { return this->Bounds_; }
   std::uint64_t Revision() const override;
@@ -49,6 +52,10 @@ public:
   const ClipmapStyle& Style() const { return this->Style_; }
   // Mean colours of the style's details, linear light.
   const std::vector<Eigen::Vector3d>& DetailMeans() const { return this->DetailMeans_; }
+
+  // What is painted on it, under the style; it may change at any time. Null without grids.
+  const std::shared_ptr<LayerStack>& Layers() const { return this->Layers_; }
+  const std::vector<ColorGrid>& Grids() const { return this->Grids_; }
 
   // The terrain's own, which comes first, then the poles'.
   const std::vector<ClipmapChart>& Charts() const { return this->Charts_; }
@@ -65,6 +72,8 @@ private:
   ClipmapStyle Style_;
   std::vector<Eigen::Vector3d> DetailMeans_;
   std::uint64_t StyleRevision_ = 0;
+  std::vector<ColorGrid> Grids_;
+  std::shared_ptr<LayerStack> Layers_;
 };
 
 } // namespace dspace
