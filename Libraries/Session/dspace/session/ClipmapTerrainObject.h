@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <dspace/session/TerrainLayers.h>
 #include <dspace/session/TerrainObject.h>
 #include <dspace/terrain/ClipmapTerrain.h>
 #include <dspace/terrain/StreamedTerrain.h>
@@ -15,11 +16,17 @@ namespace dspace::session {
 // Its frame S: X east, Y north, Z up, metres; or the body-fixed frame.
 class ClipmapTerrainObject : public TerrainObject {
 public:
-  // Throws what ClipmapTerrain throws.
+  // `cacheFolder`: where overviews are kept; empty: in memory only. Throws what ClipmapTerrain
+  // throws.
   ClipmapTerrainObject(std::string name, std::shared_ptr<const StreamedTerrain> surface,
-                       const ClipmapOptions& options, const ElevationPyramidOptions& pyramid);
+                       const ClipmapOptions& options, const ElevationPyramidOptions& pyramid,
+                       std::string cacheFolder);
 
   ClipmapTerrain& Clipmap() { return *this->Clipmap_; }
+  TerrainLayers& Layers() { return this->Layers_; }
+  const std::string& CacheFolder() const { return this->CacheFolder_; }
+  // Its layers, and what their tiles have cost.
+  void DescribeLayers(v1::TerrainLayerList& list) const;
   bool OnBody() const override { return this->Surface_->Placement().OnBody(); }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
   const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
@@ -31,6 +38,8 @@ public:
 private:
   std::shared_ptr<const StreamedTerrain> Surface_;
   std::shared_ptr<ClipmapTerrain> Clipmap_;
+  TerrainLayers Layers_;
+  std::string CacheFolder_;
 };
 
 } // namespace dspace::session

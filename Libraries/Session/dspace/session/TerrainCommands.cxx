@@ -176,7 +176,8 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   look.cells = options.cells;
   look.heights = surface->DrawnHeights();
   look.deadline = options.deadline;
-  auto terrain = std::make_unique<ClipmapTerrainObject>(name, surface, look, options.pyramid);
+  auto terrain = std::make_unique<ClipmapTerrainObject>(name, surface, look, options.pyramid,
+                                                        options.elevation.overviewCache);
   if (command.relief().color_by_height()) {
     ClipmapStyle style;
     style.ramp.emplace();

@@ -8,6 +8,8 @@
 
 namespace dspace::session {
 
+class ClipmapTerrainObject;
+
 // Throws Error(NotFound).
 TerrainObject& FindTerrain(const Context& context, const std::string& name);
 
@@ -17,10 +19,15 @@ void DescribeTo(const Context& context, const TerrainObject& terrain, v1::Terrai
 // not finite.
 void RequireFinitePoints(const std::string& label, const double* values, int size, std::size_t n);
 
+// The layer "drape", at the bottom. Its path is made absolute, warnings go to the reply. Throws what
+// OpenImageLayer throws.
+void AddDrape(const Context& context, ClipmapTerrainObject& terrain, v1::OpenTerrain::Drape& drape);
+
 void AddTerrainRequests(Registry& registry);
 void AddTerrainStyleCommands(Registry& registry);
 void AddTerrainTrackCommands(Registry& registry);
 void AddTerrainCacheCommands(Registry& registry);
+void AddTerrainLayerCommands(Registry& registry);
 
 } // namespace dspace::session
 
