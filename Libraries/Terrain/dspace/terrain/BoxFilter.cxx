@@ -29,9 +29,8 @@ template<typename Element> Sums Gather(const BoxSpan& span, int count, const Ele
 
 } // namespace
 
-std::vector<double> BoxMeans(const std::vector<double>& values, int width, int height,
-                             const std::vector<BoxSpan>& columns,
-                             const std::vector<BoxSpan>& rows) {
+void BoxSums::Add(const std::vector<double>& values, int width, int height,
+                  const std::vector<BoxSpan>& columns, const std::vector<BoxSpan>& rows) {
   // Boxes are products of spans: first along the rows, then down the columns.
   std::vector<Sums> along(static_cast<std::size_t>(height) * columns.size());
   for (int r = 0; r < height; ++r) {
@@ -42,19 +41,41 @@ std::vector<double> BoxMeans(const std::vector<double>& values, int width, int h
       });
     }
   }
-  std::vector<double> means(columns.size() * rows.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const Sums box = Gather(rows[r], height, [&](int i) {
         return along[static_cast<std::size_t>(i) * columns.size() + c];
       });
-      const double area = (rows[r].to - rows[r].from) * (columns[c].to - columns[c].from);
-      means[r * columns.size() + c] = box.weight >= 0.5 * area
-                                          ? box.value / box.weight
-                                          : std::numeric_limits<double>::quiet_NaN();
+      this->Values_[r * columns.size() + c] += box.value;
+      this->Weights_[r * columns.size() + c] += box.weight;
+    }
+  }
+}
+
+std::vector<double> BoxSums::Means(const std::vector<double>& widths,
+                                   const std::vector<BoxSpan>& rows) const {
+  std::vector<double> means(widths.size() * rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t c = 0; c < widths.size(); ++c) {
+      const std::size_t i = r * widths.size() + c;
+      const double area = (rows[r].to - rows[r].from) * widths[c];
+      means[i] = this->Weights_[i] >= 0.5 * area ? this->Values_[i] / this->Weights_[i]
+                                                 : std::numeric_limits<double>::quiet_NaN();
     }
   }
   return means;
+}
+
+std::vector<double> BoxMeans(const std::vector<double>& values, int width, int height,
+                             const std::vector<BoxSpan>& columns,
+                             const std::vector<BoxSpan>& rows) {
+  BoxSums sums(columns.size() * rows.size());
+  sums.Add(values, width, height, columns, rows);
+  std::vector<double> widths;
+  for (const BoxSpan& span : columns) {
+    widths.push_back(span.to - span.from);
+  }
+  return sums.Means(widths, rows);
 }
 
 } // namespace dspace

@@ -2,6 +2,7 @@
 #ifndef DSPACE_TERRAIN_BOXFILTER_H
 #define DSPACE_TERRAIN_BOXFILTER_H
 
+#include <cstddef>
 #include <vector>
 
 namespace dspace {
@@ -17,6 +18,21 @@ struct BoxSpan {
 // Pixels outside the raster have no data. NaN where less than half of a box has data.
 std::vector<double> BoxMeans(const std::vector<double>& values, int width, int height,
                              const std::vector<BoxSpan>& columns, const std::vector<BoxSpan>& rows);
+
+// The same from several parts of a raster: their sums are added, then divided.
+class BoxSums {
+public:
+  explicit BoxSums(std::size_t boxes) : Values_(boxes, 0.0), Weights_(boxes, 0.0) {}
+  void Add(const std::vector<double>& values, int width, int height,
+           const std::vector<BoxSpan>& columns, const std::vector<BoxSpan>& rows);
+  // `widths` are those of the whole boxes.
+  std::vector<double> Means(const std::vector<double>& widths,
+                            const std::vector<BoxSpan>& rows) const;
+
+private:
+  std::vector<double> Values_;
+  std::vector<double> Weights_;
+};
 
 } // namespace dspace
 

@@ -32,9 +32,7 @@ std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells
   if (!terrain.ReachesPoles() || !lattice.periodic) {
     return {};
   }
-  // The raster's own posts are those of the level below the one of its pixels: rows count from the
-  // poles, half a pixel beside.
-  int complete = std::max(terrain.Subdivisions() - 1, 0);
+  int complete = terrain.FullLevel();
   while (complete < lattice.levels - 1 && lattice.ColumnsAt(complete) > MostColumns) {
     ++complete;
   }

@@ -31,6 +31,7 @@ public:
   Kind GetKind() const { return this->Kind_; }
   // Plane: its map; its origin's height.
   const Eigen::Affine2d& PostToScene() const { return this->PostToScene_; }
+  const Eigen::Affine2d& SceneToPost() const { return this->SceneToPost_; } // its inverse
   double OriginHeight() const { return this->OriginHeight_; }
   // Sphere [rad].
   const Eigen::Vector2d& First() const { return this->First_; }

@@ -5,12 +5,12 @@
 #include <limits>
 
 #include <dspace/Error.h>
-#include <dspace/terrain/BoxFilter.h>
+
+#include "PostsBetween.h"
 
 namespace dspace {
 namespace {
 
-constexpr int FullReads = 3; // levels above the pixels whose means read every pixel
 constexpr double NoData = std::numeric_limits<double>::quiet_NaN();
 
 PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& options) {
@@ -31,10 +31,18 @@ PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& optio
     throw Error(Error::Kind::InvalidArgument, object,
                 "poles need a raster that goes once around and subdivisions of 1 or more");
   }
+  if (options.columns != 0 && (!options.periodic || options.columns < width)) {
+    throw Error(Error::Kind::InvalidArgument, object,
+                std::to_string(options.columns) +
+                    " columns are refused; accepted are, where it goes "
+                    "once around, " +
+                    std::to_string(width) + " or more");
+  }
   PostLattice lattice;
+  const std::int64_t around = options.columns > 0 ? options.columns : width;
   const std::int64_t parts = std::int64_t(1) << options.subdivisions;
   lattice.periodic = options.periodic;
-  lattice.columns = options.periodic ? width * parts : (width - 1) * parts + 1;
+  lattice.columns = options.periodic ? around * parts : (width - 1) * parts + 1;
   lattice.rows = (options.poles ? height : height - 1) * parts + 1;
   lattice.levels = options.levels > 0 ? options.levels : LevelsFor(lattice, options.coarsest);
   const bool halved = lattice.periodic
@@ -42,25 +50,10 @@ PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& optio
                           : lattice.levels <= 50;
   if (!halved) {
     throw Error(Error::Kind::InvalidArgument, object,
-                std::to_string(width) + " columns around a body cannot be halved for " +
+                std::to_string(around) + " columns around a body cannot be halved for " +
                     std::to_string(lattice.levels) + " levels");
   }
   return lattice;
-}
-
-// Height at (u, v) of a cell whose corners are a (0, 0), b (1, 0), c (0, 1), d (1, 1): triangles A
-// (below the diagonal a-d) and B, as in HeightGrid.
-double OnTriangles(double a, double b, double c, double d, double u, double v) {
-  if (u == 0.0 && v == 0.0) {
-    return a;
-  }
-  if (u == v) { // the diagonal needs only its ends
-    return a + u * (d - a);
-  }
-  if (v > u) {
-    return u == 0.0 ? a + v * (c - a) : a + u * (d - c) + v * (c - a);
-  }
-  return v == 0.0 ? a + u * (b - a) : a + u * (b - a) + v * (d - b);
 }
 
 } // namespace
@@ -81,11 +74,28 @@ int LevelsFor(const PostLattice& lattice, int coarsest) {
   return levels;
 }
 
+std::int64_t ColumnsAround(int columns, int rowCells, int coarsest) {
+  int halvings = 0;
+  const auto left = [&](int count) {
+    return ((std::int64_t(count) - 1) >> halvings) + 1; // rounded up
+  };
+  while (left(columns) > 2 * std::int64_t(coarsest) || left(rowCells) > coarsest) {
+    ++halvings;
+  }
+  return std::max<std::int64_t>(left(columns), 4) * (std::int64_t(1) << halvings);
+}
+
 RasterPosts::RasterPosts(std::shared_ptr<const ElevationSource> source,
                          const RasterPostsOptions& options)
     : Source_(std::move(source)), Name_("raster '" + Source_->Info().path + "'"),
       Lattice_(LatticeOf(Source_->Info(), options)), Subdivisions_(options.subdivisions),
-      Poles_(options.poles) {}
+      Poles_(options.poles) {
+  const int width = this->Source_->Info().window.width;
+  const bool stretched = options.columns > width;
+  this->Stretch_ = stretched ? double(width) / double(options.columns) : 1.0;
+  this->Full_ = stretched ? std::max(0, this->Subdivisions_ - Finer)
+                          : this->Subdivisions_ - (this->Poles_ ? 1 : 0);
+}
 
 // Pixels of any window of the raster reduced by `factor`; NaN outside it, wrapped where periodic.
 std::vector<double> RasterPosts::ReadPixels(std::int64_t column, std::int64_t row, int width,
@@ -120,42 +130,26 @@ std::vector<double> RasterPosts::ReadPixels(std::int64_t column, std::int64_t ro
   return pixels;
 }
 
-// Of all that a level's boxes about a pole reach; up to the raster's own posts, of the row next to
-// it.
-double RasterPosts::PoleHeight(int level, bool last) const {
-  const std::pair<int, bool> key(std::max(level, this->Subdivisions_), last);
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex_);
-    const auto known = this->PoleHeights_.find(key);
-    if (known != this->PoleHeights_.end()) {
-      return known->second;
-    }
-  }
-  const RasterWindow all = this->Source_->Info().window;
-  const int above = key.first - this->Subdivisions_;
-  const int factor = 1 << std::max(0, above - FullReads);
-  const int columns = 1 + (all.width - 1) / factor;
-  const int rows = 1 + (all.height - 1) / factor;
-  // In reduced pixels; a row of pixels is the least that is taken.
-  const double reach = std::min(double(all.height), std::max(1.0, std::ldexp(0.5, above))) / factor;
-  const double to = double(all.height) / factor;
-  const int height = std::min(rows, int(std::ceil(reach)) + 1);
-  const int top = last ? rows - height : 0;
-  const std::vector<double> pixels = this->ReadPixels(0, top, columns, height, factor);
-  const BoxSpan span = last ? BoxSpan{to - reach - top, to - top} : BoxSpan{0.0, reach};
-  const double mean =
-      BoxMeans(pixels, columns, height, {{0.0, double(all.width) / factor}}, {span}).front();
-  const std::lock_guard<std::mutex> lock(this->Mutex_);
-  return this->PoleHeights_[key] = mean;
-}
-
 void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {
   const int step = 1 << (this->Subdivisions_ - block.level); // parts a pixel
   const std::int64_t shift = this->Poles_ ? step / 2 : 0;    // rows from the pole to the pixels
   const std::int64_t first = block.row - shift;
-  const std::int64_t column = FloorDiv(block.column, step);
+  // A post's column of pixels, and how far it is from there to the next.
+  const auto cellOf = [&](int i) {
+    if (this->Stretch_ == 1.0) {
+      const std::int64_t c = FloorDiv(block.column + i, step);
+      return std::pair(c, double(block.column + i - c * step) / step);
+    }
+    // By whole numbers: each post of a level lies where that of a finer one does.
+    const std::int64_t pixels = this->Source_->Info().window.width;
+    const std::int64_t posts = this->Lattice_.ColumnsAt(block.level);
+    const std::int64_t place = (block.column + i) * pixels;
+    const std::int64_t c = FloorDiv(place, posts);
+    return std::pair(c, double(place - c * posts) / double(posts));
+  };
+  const std::int64_t column = cellOf(0).first;
   const std::int64_t row = FloorDiv(first, step);
-  const int width = int(FloorDiv(block.column + block.width - 1, step) - column) + 2;
+  const int width = int(cellOf(block.width - 1).first - column) + 2;
   const int height = int(FloorDiv(first + block.height - 1, step) - row) + 2;
   const std::vector<double> pixels = this->ReadPixels(column, row, width, height, 1);
   const std::int64_t lastRow = this->Source_->Info().window.height - 1;
@@ -168,9 +162,8 @@ void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {
       const double pole = this->PoleHeight(block.level, south);
       const double share = north ? 2.0 * v - 1.0 : 1.0 - 2.0 * v; // of the row of pixels
       for (int i = 0; i < block.width; ++i) {
-        const std::int64_t c = FloorDiv(block.column + i, step) - column;
-        const double u = double(block.column + i - (c + column) * step) / step;
-        const double* p = pixels.data() + (r + (north ? 1 : 0)) * width + c;
+        const auto [c, u] = cellOf(i);
+        const double* p = pixels.data() + (r + (north ? 1 : 0)) * width + (c - column);
         const double along = u == 0.0 ? p[0] : p[0] + u * (p[1] - p[0]);
         heights[std::size_t(j) * block.width + i] =
             float(share == 0.0 ? pole : pole + share * (along - pole));
@@ -178,68 +171,20 @@ void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {
       continue;
     }
     for (int i = 0; i < block.width; ++i) {
-      const std::int64_t c = FloorDiv(block.column + i, step) - column;
-      const double u = double(block.column + i - (c + column) * step) / step;
-      const double* p = pixels.data() + r * width + c;
+      const auto [c, u] = cellOf(i);
+      const double* p = pixels.data() + r * width + (c - column);
       heights[std::size_t(j) * block.width + i] =
           float(OnTriangles(p[0], p[1], p[width], p[width + 1], u, v));
     }
   }
 }
 
-void RasterPosts::ReadMeans(const PostBlock& block, float* heights) const {
-  const RasterWindow all = this->Source_->Info().window;
-  const int above = block.level - this->Subdivisions_;
-  const double half = std::ldexp(0.5, above); // of a box [pixels]
-  // Pixels are taken `factor` together where the means would read too many of them.
-  const int factor = 1 << std::max(0, above - FullReads);
-  // `offset` is the first post's place, in pixels from the raster's edge.
-  const auto spans = [&](std::int64_t first, int count, bool periodic, std::int64_t pixels,
-                         double offset) {
-    const std::int64_t last = offset > 0.0 ? pixels - 1 : pixels;
-    std::vector<BoxSpan> result(count);
-    for (int i = 0; i < count; ++i) {
-      const std::int64_t k = (first + i) * (std::int64_t(1) << above);
-      const double center = offset + double(periodic ? k : std::clamp<std::int64_t>(k, 0, last));
-      result[i] = {center - half, center + half};
-      if (!periodic) {
-        result[i].from = std::max(result[i].from, 0.0);
-        result[i].to = std::min(result[i].to, double(pixels));
-      }
-    }
-    return result;
-  };
-  std::vector<BoxSpan> columns =
-      spans(block.column, block.width, this->Lattice_.periodic, all.width, 0.5);
-  std::vector<BoxSpan> rows =
-      spans(block.row, block.height, false, all.height, this->Poles_ ? 0.0 : 0.5);
-  const std::int64_t left = FloorDiv(std::int64_t(std::floor(columns.front().from)), factor);
-  const std::int64_t right = FloorDiv(std::int64_t(std::ceil(columns.back().to)) - 1, factor) + 1;
-  const std::int64_t top = FloorDiv(std::int64_t(std::floor(rows.front().from)), factor);
-  const std::int64_t bottom = FloorDiv(std::int64_t(std::ceil(rows.back().to)) - 1, factor) + 1;
-  const int width = int(right - left);
-  const int height = int(bottom - top);
-  const std::vector<double> pixels = this->ReadPixels(left, top, width, height, factor);
-  for (BoxSpan& span : columns) {
-    span = {span.from / factor - double(left), span.to / factor - double(left)};
-  }
-  for (BoxSpan& span : rows) {
-    span = {span.from / factor - double(top), span.to / factor - double(top)};
-  }
-  const std::vector<double> means = BoxMeans(pixels, width, height, columns, rows);
-  std::transform(means.begin(), means.end(), heights, [](double h) { return float(h); });
-  const std::int64_t last = this->Lattice_.RowsAt(block.level) - 1;
-  for (int j = 0; this->Poles_ && j < block.height; ++j) {
-    if (block.row + j == 0 || block.row + j == last) {
-      std::fill_n(heights + std::size_t(j) * block.width, block.width,
-                  float(this->PoleHeight(block.level, block.row + j == last)));
-    }
-  }
-}
-
 void RasterPosts::Read(const PostBlock& block, float* heights) const {
   // With poles, the rows of level `subdivisions` already stand between those of pixels.
-  if (block.level <= this->Subdivisions_ - (this->Poles_ ? 1 : 0)) {
+  if (this->Stretch_ != 1.0 && block.level < this->Full_) {
+    const auto full = [this](const PostBlock& wanted, float* posts) { this->Read(wanted, posts); };
+    ReadBetweenPosts(this->Lattice_, this->Poles_, this->Full_, full, block, heights);
+  } else if (block.level <= this->Subdivisions_ - (this->Poles_ ? 1 : 0)) {
     this->ReadSubdivided(block, heights);
   } else {
     this->ReadMeans(block, heights);

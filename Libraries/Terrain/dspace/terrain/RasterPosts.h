@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <dspace/terrain/BoxFilter.h>
 #include <dspace/terrain/ElevationSource.h>
 #include <dspace/terrain/PostSource.h>
 
@@ -23,6 +24,9 @@ struct RasterPostsOptions {
   // needs `periodic` and subdivisions of 1 or more. A pole's height is the mean of the row next to
   // it; along each meridian the surface is straight between the two.
   bool poles = false;
+  // Of a periodic raster: so many columns around instead of its own, at least as many, which halve
+  // as often as is wanted; ColumnsAround() has them. 0: its own.
+  std::int64_t columns = 0;
   int levels = 0; // 0: until a level has at most `coarsest` cells a side
   int coarsest = 96;
 };
@@ -34,6 +38,11 @@ struct RasterPostsOptions {
 // 2^(subdivisions - 1) of level 0, and rows of level `subdivisions` and coarser ones stand between
 // rows of pixels. All posts of a pole have one height, at coarser levels the mean of the cap that
 // their boxes reach.
+// With `columns` of its own choice the lattice is finer than the raster along the parallels, by
+// Stretch(): posts of levels FullLevel() to `subdivisions` lie on the raster's surface, those of
+// finer levels on the triangles between the posts of FullLevel(), and the boxes of coarser ones are
+// as wide as its posts are apart. Between two columns of pixels that surface departs from the
+// raster's by about a sixteenth of its second differences, at most.
 class RasterPosts : public PostSource {
 public:
   // Throws Error(InvalidArgument) for an option out of range, fewer than 2 x 2 pixels, or a
@@ -47,11 +56,21 @@ public:
 
   const ElevationSource& Source() const { return *this->Source_; }
   int Subdivisions() const { return this->Subdivisions_; }
+  // Halvings of a pixel that posts on columns of one's own choice are taken at.
+  static constexpr int Finer = 2;
+  // The level whose posts say all: those of finer levels lie on its triangles.
+  int FullLevel() const { return this->Full_; }
+  // Pixels along a row from a post of level `subdivisions` to the next; 1 unless columns are given.
+  double Stretch() const { return this->Stretch_; }
 
 private:
   std::vector<double> ReadPixels(std::int64_t column, std::int64_t row, int width, int height,
                                  int factor) const;
   void ReadSubdivided(const PostBlock& block, float* heights) const;
+  std::vector<double> MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows,
+                              int factor) const;
+  std::vector<double> MeansAround(const std::vector<BoxSpan>& columns,
+                                  const std::vector<BoxSpan>& rows, int factor) const;
   void ReadMeans(const PostBlock& block, float* heights) const;
   double PoleHeight(int level, bool last) const;
 
@@ -60,6 +79,8 @@ private:
   PostLattice Lattice_;
   int Subdivisions_;
   bool Poles_;
+  double Stretch_ = 1.0;
+  int Full_ = 0;
   mutable std::mutex Mutex_; // of what follows
   mutable std::map<std::pair<int, bool>, double> PoleHeights_;
 };
@@ -67,6 +88,11 @@ private:
 // Levels until the coarsest has at most `coarsest` cells a side; for a periodic lattice at most as
 // many as halve its columns evenly.
 int LevelsFor(const PostLattice& lattice, int coarsest);
+
+// Of a raster that goes once around: its columns where they halve as often as it takes until at
+// most twice `coarsest` of them and at most `coarsest` cells between rows are left; else the next
+// greater number that does.
+std::int64_t ColumnsAround(int columns, int rowCells, int coarsest);
 
 } // namespace dspace
 

@@ -61,32 +61,34 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
     throw Error(Error::Kind::InvalidArgument, this->GetName(),
                 "finite points and as many results are accepted");
   }
-  const PostLattice& lattice = this->Pyramid_->Lattice();
-  const int level = this->Surface_->Level();
+  ElevationPyramid& pyramid = this->Pixels_ ? *this->Pixels_ : *this->Pyramid_;
+  const PostPlacement& placement = this->Pixels_ ? this->PixelPlacement_ : this->Placement_;
+  const PostLattice& lattice = pyramid.Lattice();
+  const int level = this->Pixels_ ? 0 : this->Surface_->Level();
   // With poles the level may have rows and columns between those of pixels, too.
-  const bool between = this->Poles_ && level + 1 == this->Subdivisions_;
+  const bool between = !this->Pixels_ && this->Poles_ && level + 1 == this->Subdivisions_;
   const int every = between ? 2 : 1;
   const int firstRow = between ? 1 : 0;
   const double posts = std::ldexp(1.0, level); // of level 0 to the next of the level
   std::vector<float> heights;
   for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
     const Eigen::Vector3d p_S = points_S.row(i);
-    const Eigen::Vector2d post = this->Placement_.ToPosts(p_S).head<2>() / posts;
+    const Eigen::Vector2d post = placement.ToPosts(p_S).head<2>() / posts;
     // Posts that the circle reaches to either side.
     Eigen::Vector2d reach;
     if (this->OnBody()) {
-      const double angle = radius / this->Placement_.Radius();
-      const Eigen::Vector2d step = this->Placement_.Step().cwiseAbs() * posts;
-      const double parallel = this->Placement_.Up(p_S).head<2>().norm();
+      const double angle = radius / placement.Radius();
+      const Eigen::Vector2d step = placement.Step().cwiseAbs() * posts;
+      const double parallel = placement.Up(p_S).head<2>().norm();
       const double aside = angle < 0.5 * M_PI && std::sin(angle) < parallel
                                ? std::asin(std::sin(angle) / parallel)
                                : M_PI;
       reach = Eigen::Vector2d(aside, angle).cwiseQuotient(step);
     } else {
-      const Eigen::Matrix2d m = this->Placement_.PostToScene().linear().inverse();
+      const Eigen::Matrix2d m = placement.SceneToPost().linear();
       reach = radius / posts * Eigen::Vector2d(m.row(0).norm(), m.row(1).norm());
     }
-    const double most = this->OnBody() ? 2.0 * M_PI / std::abs(this->Placement_.Step().x()) / posts
+    const double most = this->OnBody() ? 2.0 * M_PI / std::abs(placement.Step().x()) / posts
                                        : double(lattice.ColumnsAt(level));
     const double wide = std::min(2.0 * reach.x(), most);
     const double high = std::min(2.0 * reach.y(), double(lattice.RowsAt(level)));
@@ -114,7 +116,7 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
     Footprint footprint;
     if (block.width > 0 && block.height > 0) {
       heights.resize(std::size_t(block.width) * block.height);
-      this->Pyramid_->Read(block, heights.data(), this->Deadline_);
+      pyramid.Read(block, heights.data(), this->Deadline_);
     }
     const Eigen::Vector3d up = this->DoUp(p_S);
     const Eigen::Vector3d north = this->DoNorth(p_S);
@@ -130,15 +132,15 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
           continue;
         }
         const Eigen::Vector3d there =
-            this->Placement_.ToScene(Eigen::Vector2d(double(column), double(row)) * posts, 0.0);
+            placement.ToScene(Eigen::Vector2d(double(column), double(row)) * posts, 0.0);
         Eigen::Vector2d at;
         if (this->OnBody()) { // distance and direction along the sphere
-          const Eigen::Vector3d d = there / this->Placement_.Radius();
+          const Eigen::Vector3d d = there / placement.Radius();
           const Eigen::Vector2d aside(d.dot(east), d.dot(north));
           const double sine = aside.norm();
           const double angle = std::atan2(sine, d.dot(up));
           at = sine > 0.0 ? Eigen::Vector2d(aside * (angle / sine)) : Eigen::Vector2d::Zero();
-          at *= this->Placement_.Radius() / radius;
+          at *= placement.Radius() / radius;
         } else {
           at = (there - p_S).head<2>() / radius;
         }

@@ -19,7 +19,9 @@
 
 namespace dspace {
 
+struct DegreeGrid;
 class PostSurface;
+class RasterPosts;
 class SurfaceRay;
 class TrackPosts;
 
@@ -44,10 +46,22 @@ struct StreamedTerrainOptions {
   std::vector<TerrainPatch> patches;
 };
 
+// A degree grid whose columns do not halve often enough is resampled along its parallels: posts lie
+// on its surface, but not at its pixels.
+struct ResamplingReport {
+  std::int64_t columns = 0; // around the body instead of the raster's
+  // The surface that is drawn and answered against the raster's pixels, at `posts` of them taken at
+  // random. 0 posts: not measured.
+  int posts = 0;
+  double rmsError = 0.0;      // [m]
+  double greatestError = 0.0; // [m]
+};
+
 // Posts stand at pixel centres; on a body they are divided until a chord departs from the sphere by
-// at most a millimetre. Between the posts of level 0 are the triangles of HeightGrid: heights are
-// linear in post coordinates. Queries read what is missing, hence wait, and are the same whatever
-// was drawn before; they are for any thread but a drawing one.
+// at most a millimetre, and resampled where ResamplingReport says so. Between the posts of level 0
+// are the triangles of HeightGrid: heights are linear in post coordinates. Queries read what is
+// missing, hence wait, and are the same whatever was drawn before; they are for any thread but a
+// drawing one.
 class StreamedTerrain : public TerrainSurface {
 public:
   // Reads the raster's header and what HeightRange() says. Throws what ElevationSource throws, and
@@ -76,6 +90,11 @@ public:
   bool ReachesPoles() const { return this->Poles_; }
   // What became of its patches; null without any.
   const GroupReport* Group() const { return this->Group_ ? &this->Group_->Report() : nullptr; }
+
+  // What resampling costs; none where every pixel is a post.
+  const std::optional<ResamplingReport>& Resampling() const { return this->Resampling_; }
+  // The level whose posts say all of the raster; those of a group's patches stand closer.
+  int FullLevel() const { return this->FullLevel_; }
 
   // Wheels leave ruts, in what is drawn and in all that is answered from then on. Places are of the
   // scene's frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
@@ -121,6 +140,7 @@ private:
   void StandOnPlane(const StreamedTerrainOptions& options);
   void StandOnBody(const StreamedTerrainOptions& options);
   void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
+  void Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options);
   Eigen::Affine2d PlanePosts() const; // level-0 posts to the scene
   std::shared_ptr<const PostSource> WithTracks(std::shared_ptr<const PostSource> source,
                                                const StreamedTerrainOptions& options);
@@ -139,6 +159,7 @@ private:
 
   std::shared_ptr<const ElevationSource> Source_;
   std::shared_ptr<const GroupPosts> Group_;
+  std::shared_ptr<const RasterPosts> Posts_;
   std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
@@ -162,5 +183,9 @@ private:
 };
 
 } // namespace dspace
+  int FullLevel_ = 0;
+  std::optional<ResamplingReport> Resampling_;
+  std::shared_ptr<ElevationPyramid> Pixels_; // the raster's own where it is resampled, and their
+  PostPlacement PixelPlacement_;             // places
 
 #endif

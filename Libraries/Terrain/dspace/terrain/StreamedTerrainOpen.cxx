@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include <dspace/Error.h>
 #include <dspace/terrain/ClipmapLevels.h>
@@ -10,6 +11,7 @@
 
 #include "DegreeGrid.h"
 #include "PostSurface.h"
+#include "ResamplingError.h"
 #include "SurfaceRay.h"
 #include "TerrainWarnings.h"
 
@@ -85,16 +87,49 @@ void StreamedTerrain::StandOnPlane(const StreamedTerrainOptions& options) {
 void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
   const DegreeGrid grid = DegreeGridOf(this->Info());
   this->Subdivisions_ = SubdivisionsFor(grid);
+  const RasterWindow& window = this->Info().window;
+  if (grid.periodic && ColumnsAround(window.width, window.height - (grid.poles ? 0 : 1),
+                                     CoarsestFor(options.cells)) != window.width) {
+    this->Subdivisions_ = std::max(this->Subdivisions_, RasterPosts::Finer);
+  }
   this->MakePyramid(options, grid.periodic, grid.poles);
   const double parts = std::ldexp(1.0, this->Subdivisions_);
-  const Eigen::Vector2d step = grid.step_deg / parts;
+  const PostLattice& lattice = this->Pyramid_->Lattice();
+  Eigen::Vector2d step = grid.step_deg / parts;
+  if (grid.periodic) {
+    step.x() = std::copysign(360.0 / double(lattice.columns), step.x());
+  }
   Eigen::Vector2d first = grid.first_deg;
   if (grid.poles) {
     first.y() = 90.0;
   }
-  const PostLattice& lattice = this->Pyramid_->Lattice();
   this->Placement_ =
       PostPlacement::OnSphere(first, step, grid.radius, 0.5 * double(lattice.columns - 1));
+  if (this->Posts_->Stretch() != 1.0) {
+    this->Resample(grid, options.pyramid);
+  }
+}
+
+// Its own pixels, for what is asked of them, and what the others cost.
+void StreamedTerrain::Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options) {
+  RasterPostsOptions own;
+  own.periodic = true;
+  own.levels = 1;
+  ElevationPyramidOptions small = options;
+  small.byteBudget = std::max(options.byteBudget / 16, std::size_t(4) << 20);
+  const auto pixels = std::make_shared<const RasterPosts>(this->Source_, own);
+  this->Pixels_ = std::make_shared<ElevationPyramid>(pixels, small);
+  this->PixelPlacement_ = PostPlacement::OnSphere(grid.first_deg, grid.step_deg, grid.radius,
+                                                  0.5 * double(pixels->GetLattice().columns - 1));
+  this->Resampling_ = MeasureResampling(*this->Posts_);
+  std::ostringstream text;
+  text.precision(3);
+  text << "its " << this->Info().window.width << " columns around the body are resampled to "
+       << this->Resampling_->columns << ", which halve often enough: what is drawn and answered "
+       << "departs from its pixels by " << this->Resampling_->rmsError << " m rms, at most "
+       << this->Resampling_->greatestError << " m, at " << this->Resampling_->posts
+       << " of them taken at random";
+  this->AddWarning(text.str());
 }
 
 void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool periodic,
@@ -110,27 +145,21 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   posts.periodic = periodic;
   posts.poles = poles;
   posts.coarsest = CoarsestFor(options.cells);
-  auto raster = std::make_shared<const RasterPosts>(this->Source_, posts);
-  const PostLattice& lattice = raster->GetLattice();
-  const int top = lattice.levels - 1;
-  if (periodic && (lattice.ColumnsAt(top) + 1) / 2 > posts.coarsest) {
-    throw Error(Error::Kind::Unsupported, this->GetName(),
-                "its " + std::to_string(info.window.width) +
-                    " columns around the body can be halved only until " +
-                    std::to_string(lattice.ColumnsAt(top)) +
-                    " are left; a count is accepted that halves to at most " +
-                    std::to_string(2 * posts.coarsest) + ": resample it, as to " +
-                    std::to_string(1 << int(std::lround(std::log2(info.window.width)))) +
-                    " columns");
+  if (periodic) {
+    posts.columns =
+        ColumnsAround(info.window.width, info.window.height - (poles ? 0 : 1), posts.coarsest);
   }
+  auto raster = std::make_shared<const RasterPosts>(this->Source_, posts);
+  this->Posts_ = raster;
   this->Poles_ = poles;
   const double parts = std::ldexp(1.0, this->Subdivisions_);
-  this->PixelToPost_.linear() = parts * Eigen::Matrix2d::Identity();
-  this->PixelToPost_.translation() << -0.5 * parts, poles ? 0.0 : -0.5 * parts;
+  const double across = parts / raster->Stretch();
+  this->PixelToPost_.linear() = Eigen::Vector2d(across, parts).asDiagonal();
+  this->PixelToPost_.translation() << -0.5 * across, poles ? 0.0 : -0.5 * parts;
   this->MapToPost_ = this->PixelToPost_ * info.pixelToMap.inverse();
   std::shared_ptr<const PostSource> source = raster;
-  // With poles, level `subdivisions` has its rows between those of the pixels.
-  int level = this->Subdivisions_ - (poles ? 1 : 0);
+  this->FullLevel_ = raster->FullLevel();
+  int level = this->FullLevel_;
   if (patches) {
     this->Group_ = std::make_shared<const GroupPosts>(raster, this->MapToPost_.inverse(), poles,
                                                       std::move(*patches));
@@ -143,8 +172,8 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   this->Pyramid_ = std::make_shared<ElevationPyramid>(source, options.pyramid);
   this->Surface_ = std::make_unique<PostSurface>(this->Pyramid_, level, poles, options.deadline);
   if (this->Group_) {
-    this->Plain_ = std::make_unique<PostSurface>(
-        this->Pyramid_, this->Subdivisions_ - (poles ? 1 : 0), poles, options.deadline);
+    this->Plain_ =
+        std::make_unique<PostSurface>(this->Pyramid_, this->FullLevel_, poles, options.deadline);
   }
   this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_);
   if (this->Tracks_) {
@@ -186,7 +215,7 @@ void StreamedTerrain::FindHeightRange() {
       return; // there may be heights between
     }
   }
-  postToScene.linear() *= std::ldexp(double(factor), this->Subdivisions_);
+  postToScene.linear() = postToScene.linear() * this->PixelToPost_.linear() * double(factor);
   const HeightGrid grid(this->GetName(), columns, rows, std::move(heights), postToScene);
   this->HeightRange_ = {grid.GetMinimum(), grid.GetMaximum()};
   Eigen::AlignedBox3d box;
