@@ -63,8 +63,9 @@ struct Gaps {
 } // namespace
 
 DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
-                          std::vector<std::string>& warnings) {
-  const std::string object = "raster '" + path + "'";
+                          std::vector<std::string>& warnings, std::string object) {
+  if (object.empty())
+    object = "raster '" + path + "'";
   RegisterGdal();
   const NetworkScope scope(limits, path);
   GdalErrors errors;

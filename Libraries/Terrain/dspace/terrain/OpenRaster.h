@@ -24,9 +24,10 @@ struct CloseDataset {
 };
 using DatasetPointer = std::unique_ptr<GDALDataset, CloseDataset>;
 
-// Throws what ElevationSource's constructor says.
+// Throws what ElevationSource's constructor says, naming `object`; "raster 'path'" where it is
+// empty.
 DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
-                          std::vector<std::string>& warnings);
+                          std::vector<std::string>& warnings, std::string object = {});
 
 // A local file as it was when it was opened; empty for what is none.
 struct FileState {

@@ -5,6 +5,8 @@
 
 #include <dspace/Error.h>
 
+#include "RampColor.h"
+
 namespace dspace {
 
 namespace {
@@ -34,6 +36,8 @@ void Check(const ShadedReliefOptions& o) {
     Refuse("the ramp's limits must be finite and ascending");
 }
 
+} // namespace
+
 std::array<double, 3> ColorAt(const ColorRamp& ramp, double where) {
   const double at = std::clamp(where, 0.0, 1.0) * static_cast<double>(ramp.size() - 1);
   const std::size_t i = std::min(static_cast<std::size_t>(at), ramp.size() - 1);
@@ -44,8 +48,6 @@ std::array<double, 3> ColorAt(const ColorRamp& ramp, double where) {
     color[k] = ramp[i][k] * (1.0 - f) + ramp[next][k] * f;
   return color;
 }
-
-} // namespace
 
 ColorRamp TerrainRamp() {
   return {{0.16, 0.35, 0.28}, {0.45, 0.58, 0.33}, {0.82, 0.74, 0.48},
