@@ -234,6 +234,13 @@ TEST(ElevationPyramid, AWaitEndsAtItsDeadline) {
     FAIL() << "the deadline passed unnoticed";
   } catch (const Error& error) {
     EXPECT_EQ(error.GetKind(), Error::Kind::DeadlineExceeded);
+    EXPECT_NE(std::string(error.what()).find("within 0.02 s"), std::string::npos) << error.what();
+  }
+  try { // a caller whose time is used up
+    pyramid.Read({0, 0, 0, 100, 100}, heights.data(), 0.0);
+    FAIL() << "the deadline passed unnoticed";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("deadline was up"), std::string::npos) << error.what();
   }
   pyramid.Read({0, 0, 0, 100, 100}, heights.data(), 60.0); // it came all the same
   ExpectBlock(*source, {0, 0, 0, 100, 100}, heights);

@@ -1,6 +1,7 @@
 // Wheel tracks on a raster: what is answered, what is drawn after it, and files of tracks.
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <random>
@@ -145,6 +146,77 @@ TEST_F(StreamedTracks, SavedAndLoadedTheyAreTheSame) {
       EXPECT_EQ(std::isnan(a.heading), std::isnan(b.heading));
       EXPECT_TRUE(std::isnan(a.heading) || std::abs(a.heading - b.heading) < 1e-6);
     }
+  }
+}
+
+// Thousands of lines are told to the pyramid as a few rectangles, and no tile keeps old posts.
+TEST_F(StreamedTracks, ManyAtOnceAreThoseAddedOneByOne) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<TrackAddition> additions;
+  for (int n = 0; n < 6; ++n) {
+    TrackAddition stroke = Straight();
+    stroke.name = "wheel " + std::to_string(n);
+    stroke.contacts.clear();
+    Eigen::Vector2d p(15.0 * unit(random), 15.0 * unit(random));
+    double course = 3.0 * unit(random);
+    for (int i = 0; i < 500; ++i) {
+      course += 0.3 * unit(random) - (p.norm() > 15.0 ? 0.2 : 0.0);
+      p += 0.06 * Eigen::Vector2d(std::cos(course), std::sin(course));
+      stroke.contacts.push_back({p, 0.05 + 0.04 * unit(random)});
+    }
+    additions.push_back(stroke);
+  }
+  terrain->AddTracks(additions);
+  const std::string path = folder / "tracks.geojson";
+  terrain->SaveTracks(path);
+
+  const PostLattice& lattice = terrain->Pyramid()->Lattice();
+  const auto all = [&lattice](const StreamedTerrain& of, int level) {
+    const int columns = int(lattice.ColumnsAt(level));
+    const int rows = int(lattice.RowsAt(level));
+    std::vector<float> planes(2 * std::size_t(columns) * rows);
+    of.Pyramid()->Read({level, 0, 0, columns, rows}, planes.data(),
+                       planes.data() + std::size_t(columns) * rows, 60.0);
+    return planes;
+  };
+  const auto loaded = StreamedTerrain::Open(folder / "slope.tif", options);
+  const auto grown = StreamedTerrain::Open(folder / "slope.tif", options);
+  std::vector<std::vector<float>> before;
+  for (int level = 0; level < lattice.levels; ++level) { // tiles that must change are there
+    before.push_back(all(*loaded, level));
+    all(*grown, level);
+  }
+  const std::uint64_t stamp = loaded->Pyramid()->Changes(0).stamp;
+  loaded->LoadTracks(path);
+  EXPECT_GE(loaded->Tracks().Statistics().contacts, 2500u);
+  const std::size_t told = loaded->Pyramid()->Changes(stamp).rectangles.size();
+  EXPECT_GT(told, 0u);
+  EXPECT_LE(told, 256u);
+  for (const TrackStroke& stroke : loaded->Tracks().Strokes()) { // as they came from the file
+    for (std::size_t i = 0; i < stroke.contacts.size(); ++i) {
+      TrackAddition one;
+      one.name = stroke.name;
+      one.profile = stroke.profile;
+      one.contacts = {stroke.contacts[i]};
+      one.exact = true;
+      grown->AddTracks({one});
+    }
+  }
+  EXPECT_GE(grown->Pyramid()->Changes(0).stamp, 2500u);
+  for (int level = 0; level < lattice.levels; ++level) {
+    const std::vector<float> a = all(*loaded, level);
+    const std::vector<float> b = all(*grown, level);
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0) << level;
+    if (level < 4) {
+      EXPECT_NE(std::memcmp(a.data(), before[std::size_t(level)].data(), a.size() * sizeof(float)),
+                0);
+    }
+  }
+  for (int i = 0; i < 200; ++i) {
+    const double x = 15.0 * unit(random);
+    const double y = 15.0 * unit(random);
+    EXPECT_EQ(Height(*loaded, x, y), Height(*grown, x, y));
   }
 }
 

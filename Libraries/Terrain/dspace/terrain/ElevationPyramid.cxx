@@ -1,9 +1,11 @@
 #include <dspace/terrain/ElevationPyramid.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <cstdio>
 #include <exception>
 #include <list>
 #include <map>
@@ -26,6 +28,16 @@ constexpr double LongestDelay = 30.0;      // [s] between attempts
 
 Clock::duration Seconds(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+// A caller that has used up its time elsewhere has none left to name.
+std::string WithinSeconds(double seconds) {
+  if (!(seconds > 0.0)) {
+    return "its tiles were not there when the deadline was up";
+  }
+  char number[32];
+  std::snprintf(number, sizeof number, "%g", seconds);
+  return "its tiles were not there within " + std::string(number) + " s";
 }
 
 } // namespace
@@ -56,6 +68,7 @@ struct ElevationPyramid::Implementation {
   std::uint64_t stamp = 0;
   std::uint64_t arrivals = 0;
   PyramidChangeLog changes;
+  std::atomic<std::uint64_t> changed{0}; // stamp of the latest change, for who does not lock
   ElevationPyramidStatistics statistics;
   std::map<TileKey, int> waited; // by how many calls of Read(): not dropped meanwhile
   bool stopping = false;
@@ -157,6 +170,7 @@ struct ElevationPyramid::Implementation {
         request.since.Widen(touched(key));
       }
     }
+    this->changed = this->changes.Latest();
     ++this->arrivals;
   }
 
@@ -360,7 +374,7 @@ void ElevationPyramid::Read(const PostBlock& block, float* heights, float* track
       impl.arrived.wait(lock);
     } else if (impl.arrived.wait_until(lock, deadline) == std::cv_status::timeout) {
       throw Error(Error::Kind::DeadlineExceeded, this->Source_->GetName(),
-                  "its tiles were not there within " + std::to_string(seconds) + " s" +
+                  WithinSeconds(seconds) +
                       (impl.statistics.lastFailure.empty()
                            ? std::string()
                            : "; the last failure: " + impl.statistics.lastFailure));
@@ -376,6 +390,10 @@ void ElevationPyramid::Invalidate(const std::vector<PostRectangle>& rectangles) 
 PyramidChanges ElevationPyramid::Changes(std::uint64_t since) const {
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
   return this->Impl_->changes.Since(since, this->Lattice());
+}
+
+std::uint64_t ElevationPyramid::LatestChange() const {
+  return this->Impl_->changed;
 }
 
 std::uint64_t ElevationPyramid::Arrivals() const {

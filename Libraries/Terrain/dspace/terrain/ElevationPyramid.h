@@ -69,6 +69,8 @@ public:
   void Invalidate(const std::vector<PostRectangle>& rectangles);
   // Of all calls of Invalidate since `stamp`; all of the lattice where that is long ago.
   PyramidChanges Changes(std::uint64_t since) const;
+  // The stamp that Changes() would give, without waiting for anything.
+  std::uint64_t LatestChange() const;
 
   // Grows with each tile that arrives and with each change.
   std::uint64_t Arrivals() const;

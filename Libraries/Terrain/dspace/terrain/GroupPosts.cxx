@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "Patch.h"
@@ -85,6 +86,21 @@ bool GroupPosts::Reaches(const Eigen::Vector2d& post, int level) const {
   // Weights reach two sides beyond a patch, and a cell's posts are one side away.
   return std::any_of(this->Patches_.begin(), this->Patches_.end(),
                      [&](const auto& patch) { return patch->Place().Reaches(post, level, 4.0); });
+}
+
+bool GroupPosts::Reaches(const Eigen::AlignedBox2d& posts) const {
+  return std::any_of(this->Patches_.begin(), this->Patches_.end(),
+                     [&](const auto& patch) { return patch->Place().Touches(posts); });
+}
+
+std::array<double, 2> GroupPosts::PatchHeights(const Eigen::AlignedBox2d& posts) const {
+  constexpr double Infinity = std::numeric_limits<double>::infinity();
+  std::array<double, 2> all = {Infinity, -Infinity};
+  for (const std::shared_ptr<Patch>& patch : this->Patches_) {
+    const std::array<double, 2> heights = patch->HeightsIn(posts);
+    all = {std::min(all[0], heights[0]), std::max(all[1], heights[1])};
+  }
+  return all;
 }
 
 // At posts of the patch near a number of places, so that few of its tiles are read.

@@ -89,6 +89,12 @@ public:
   // posts of the base are all there is.
   bool Reaches(const Eigen::Vector2d& post, int level) const;
 
+  // Whether any patch may change posts of level 0 in a box of such places; and what the heights of
+  // all patches lie between there [m]: least above greatest for none, infinite where it is not
+  // known.
+  bool Reaches(const Eigen::AlignedBox2d& posts) const;
+  std::array<double, 2> PatchHeights(const Eigen::AlignedBox2d& posts) const;
+
   // The same patches over other posts of the same body, of another map.
   std::shared_ptr<const GroupPosts> On(std::shared_ptr<const PostSource> posts, const Crs& crs,
                                        const Eigen::Affine2d& postToMap) const;

@@ -126,6 +126,24 @@ int Patch::LevelFor(int level) const {
   return std::max(0, int(std::lround(std::log2(this->PostPixels_) + level)));
 }
 
+std::array<double, 2> Patch::HeightsIn(const Eigen::AlignedBox2d& posts) const {
+  constexpr double Infinity = std::numeric_limits<double>::infinity();
+  if (!this->Place_.Touches(posts)) {
+    return {Infinity, -Infinity};
+  }
+  // Heights come from its posts about a place, and those of a coarser level from pixels about them.
+  const double more = 2.0 + 2.0 * std::ldexp(1.0, this->LevelFor(0));
+  const Eigen::AlignedBox2d places = this->Place_.PixelBox(posts);
+  std::array<double, 2> range =
+      this->Weight_->Ranges().Of({places.min() - Eigen::Vector2d::Constant(more),
+                                  places.max() + Eigen::Vector2d::Constant(more)});
+  for (int k = 0; range[0] <= range[1] && k < 2;
+       ++k) { // its posts are floats before the datum is added
+    range[k] += (k == 0 ? -1.2e-7 : 1.2e-7) * std::abs(range[k]) + this->Report_.addedTo;
+  }
+  return range;
+}
+
 // Its heights about a number of places: a block of its posts, and the triangles between them.
 class Patch::Heights {
 public:

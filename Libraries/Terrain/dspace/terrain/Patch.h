@@ -2,6 +2,7 @@
 #ifndef DSPACE_TERRAIN_PATCH_H
 #define DSPACE_TERRAIN_PATCH_H
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ public:
   // warning, where the patch adds nothing.
   bool Settle(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
               std::vector<std::string>& warnings);
+  // What its heights lie between in a box of places of level 0; least above greatest where it does
+  // not reach, infinite where nothing is known.
+  std::array<double, 2> HeightsIn(const Eigen::AlignedBox2d& posts) const;
   // Over the heights of a block of that lattice.
   void Blend(const PostBlock& block, float* heights) const;
   // Of one that was settled elsewhere: its weights are known. False where it does not lie within.

@@ -2,6 +2,7 @@
 #include "PatchPlace.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -148,6 +149,41 @@ bool PatchPlace::PixelsOf(const PostBlock& block, double tolerance,
     }
   }
   return true;
+}
+
+Eigen::AlignedBox2d PatchPlace::PixelBox(const Eigen::AlignedBox2d& posts) const {
+  constexpr int Parts = 4;
+  const Eigen::Vector2d endless =
+      Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  std::array<Eigen::Vector2d, (Parts + 1) * (Parts + 1)> places;
+  const auto at = [&places](int i, int j) -> Eigen::Vector2d& {
+    return places[std::size_t(j) * (Parts + 1) + i];
+  };
+  Eigen::AlignedBox2d box;
+  for (int j = 0; j <= Parts; ++j) {
+    for (int i = 0; i <= Parts; ++i) {
+      const Eigen::Vector2d share(double(i) / Parts, double(j) / Parts);
+      at(i, j) = this->PixelOfPost(posts.min() + share.cwiseProduct(posts.sizes()));
+      if (!at(i, j).allFinite()) {
+        return {-endless, endless};
+      }
+      box.extend(at(i, j));
+    }
+  }
+  // Between places a distance h apart straight lines are off by at most h^2 / 8 of the second
+  // derivatives, of which the second differences are h^2: taken eightfold they are safe.
+  double bend = 0.0;
+  for (int j = 0; j <= Parts; ++j) {
+    for (int i = 1; i < Parts; ++i) {
+      bend = std::max(bend, (at(i - 1, j) - 2.0 * at(i, j) + at(i + 1, j)).norm());
+      bend = std::max(bend, (at(j, i - 1) - 2.0 * at(j, i) + at(j, i + 1)).norm());
+    }
+  }
+  if (bend > 0.25 * box.sizes().norm() + 1.0) {
+    return {-endless, endless};
+  }
+  const Eigen::Vector2d more = Eigen::Vector2d::Constant(bend);
+  return {box.min() - more, box.max() + more};
 }
 
 } // namespace dspace

@@ -264,4 +264,15 @@ bool PatchPlace::Reaches(const Eigen::Vector2d& post, int level, double sides) c
          this->Rows_.Has(post.y(), widened.y());
 }
 
+bool PatchPlace::Touches(const Eigen::AlignedBox2d& posts) const {
+  const auto meets = [](const Reach& reach, double from, double to, double widened) {
+    return reach.all || (to >= reach.from - widened && from <= reach.to + widened);
+  };
+  const Eigen::Vector2d half = 0.5 * posts.sizes();
+  const double column = this->Unwrapped(posts.center().x()); // the nearest turn
+  return this->Inside_ &&
+         meets(this->Columns_, column - half.x(), column + half.x(), this->Widening_.x()) &&
+         meets(this->Rows_, posts.min().y(), posts.max().y(), this->Widening_.y());
+}
+
 } // namespace dspace

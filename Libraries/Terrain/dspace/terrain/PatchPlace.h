@@ -38,6 +38,11 @@ public:
   double PostSize() const; // BasePixel() for the side between two posts of level 0
   // Whether any of it lies within `sides` of a level's longer sides from a place in level 0.
   bool Reaches(const Eigen::Vector2d& post, int level, double sides) const;
+  // Whether it may change posts of level 0 in a box of places.
+  bool Touches(const Eigen::AlignedBox2d& posts) const;
+  // A box of pixels that holds those of all places in a box of level 0. Found by places in it: how
+  // it bends between them is allowed for. Without end where they bend too much.
+  Eigen::AlignedBox2d PixelBox(const Eigen::AlignedBox2d& posts) const;
   // Pixels of a block's posts, not finite for those that the patch, widened by two sides
   // of the level, does not reach. PROJ is asked at the corners, edges and middles of squares of
   // posts, and what lies between is interpolated where that is within `tolerance` [pixels] at all

@@ -83,6 +83,9 @@ std::vector<std::uint8_t> PatchWeight::ReadMask(const ElevationSource& source) {
   finest.rows = 1 + (all.height - 1) / side;
   this->Exact_ = pixels <= ReadWhole;
   const int factor = this->Exact_ ? 1 : side;
+  if (this->Exact_) {
+    this->Ranges_ = PatchRanges(all.width, all.height);
+  }
   const int width = finest.columns + 2;
   std::vector<std::uint8_t> mask(std::size_t(width) * (finest.rows + 2), 0);
   for (int r = 0; r < finest.rows; ++r) {
@@ -101,8 +104,14 @@ std::vector<std::uint8_t> PatchWeight::ReadMask(const ElevationSource& source) {
       } else {
         this->Heights_[0] = std::min(this->Heights_[0], heights[i]);
         this->Heights_[1] = std::max(this->Heights_[1], heights[i]);
+        if (this->Exact_) {
+          this->Ranges_.Take(c, r, heights[i]);
+        }
       }
     }
+  }
+  if (this->Exact_) {
+    this->Ranges_.Finish();
   }
   return mask;
 }

@@ -8,6 +8,8 @@
 
 #include <dspace/terrain/ElevationSource.h>
 
+#include "PatchRanges.h"
+
 namespace dspace {
 
 // 0 within three cells of the raster's edge and of every pixel without data, from there rising
@@ -29,6 +31,7 @@ public:
   // Of the pixels that were read [m], and whether those were all.
   const std::array<double, 2>& Heights() const { return this->Heights_; }
   bool HeightsAreExact() const { return this->Exact_; }
+  const PatchRanges& Ranges() const { return this->Ranges_; } // of nothing where they are not
 
 private:
   struct Level {
@@ -44,6 +47,7 @@ private:
   std::array<double, 2> Heights_;
   double Greatest_ = 0.0;
   bool Exact_ = true;
+  PatchRanges Ranges_;
 };
 
 } // namespace dspace

@@ -65,6 +65,7 @@ void CopyPiece(const PyramidTile& tile, const TilePiece& piece, int blockWidth,
 class PyramidChangeLog {
 public:
   void Add(const PostRectangle& rectangle);
+  std::uint64_t Latest() const { return this->Latest_; } // its number; 0 before all
   PyramidChanges Since(std::uint64_t stamp, const PostLattice& lattice) const;
 
 private:

@@ -33,7 +33,7 @@ RayPath::RayPath(const PostPlacement& placement, const PostLattice& lattice,
   high += pad;
   bool meets = true;
   if (!this->Curved_) {
-    const Eigen::Affine2d toPosts = placement.PostToScene().inverse();
+    const Eigen::Affine2d& toPosts = placement.SceneToPost();
     this->Origin_ << toPosts * Eigen::Vector2d(origin_S.head<2>()),
         origin_S.z() + placement.OriginHeight();
     this->Direction_.head<2>() = toPosts.linear() * Eigen::Vector2d(unit_S.head<2>());

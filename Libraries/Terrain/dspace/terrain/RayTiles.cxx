@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::size_t Kept = 256; // tiles; 110 kB each
 
-void Widen(RayTile::Range& range, const RayTile::Range& by) {
-  range.least = std::min(range.least, by.least);
-  range.greatest = std::max(range.greatest, by.greatest);
-}
-
 std::shared_ptr<RayTile> ReadTile(ElevationPyramid& pyramid, const RayTiles::Key& key,
                                   double seconds) {
   auto tile = std::make_shared<RayTile>();
@@ -33,12 +28,12 @@ std::shared_ptr<RayTile> ReadTile(ElevationPyramid& pyramid, const RayTiles::Key
         for (int j = 2 * r; j <= 2 * r + (k == 0 ? 2 : 1); ++j) {
           for (int i = 2 * c; i <= 2 * c + (k == 0 ? 2 : 1); ++i) {
             if (k > 0) {
-              Widen(range, tile->ranges[k - 1][std::size_t(j) * 2 * side + i]);
+              range.Widen(tile->ranges[k - 1][std::size_t(j) * 2 * side + i]);
               continue;
             }
             const float h = tile->heights[std::size_t(j) * RayTile::Posts + i];
             if (!std::isnan(h)) {
-              Widen(range, {h, h});
+              range.Widen({h, h});
             }
           }
         }
@@ -55,6 +50,16 @@ RayTile::Range RayTile::Of(int bits, std::int64_t c, std::int64_t r) const {
   const std::int64_t i = c - (this->column >> bits);
   const std::int64_t j = r - (this->row >> bits);
   return this->ranges[bits - 1][std::size_t(j) * side + i];
+}
+
+RayTiles::RayTiles(std::shared_ptr<ElevationPyramid> pyramid)
+    : Pyramid_(std::move(pyramid)), Tiles_(Kept) {}
+
+void RayTiles::Refresh() {
+  if (this->Pyramid_->LatestChange() != this->Seen_) {
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    this->DropChanged();
+  }
 }
 
 void RayTiles::DropChanged() {
@@ -75,14 +80,7 @@ void RayTiles::DropChanged() {
   if (changes.rectangles.empty()) {
     return;
   }
-  for (auto it = this->Tiles_.begin(); it != this->Tiles_.end();) {
-    if (touched(it->first)) {
-      this->Uses_.erase(it->second.use);
-      it = this->Tiles_.erase(it);
-    } else {
-      ++it;
-    }
-  }
+  this->Tiles_.DropIf(touched);
   for (auto it = this->Ranges_.begin(); it != this->Ranges_.end();) {
     it = touched(it->first) ? this->Ranges_.erase(it) : std::next(it);
   }
@@ -92,12 +90,9 @@ std::shared_ptr<const RayTile> RayTiles::Get(const Key& key, double seconds) {
   std::uint64_t seen = 0;
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
-    this->DropChanged();
     seen = this->Seen_;
-    const auto found = this->Tiles_.find(key);
-    if (found != this->Tiles_.end()) {
-      this->Uses_.splice(this->Uses_.begin(), this->Uses_, found->second.use);
-      return found->second.tile;
+    if (const std::shared_ptr<const RayTile>* kept = this->Tiles_.Find(key)) {
+      return *kept;
     }
   }
   std::shared_ptr<const RayTile> tile = ReadTile(*this->Pyramid_, key, seconds);
@@ -107,21 +102,13 @@ std::shared_ptr<const RayTile> RayTiles::Get(const Key& key, double seconds) {
     return tile; // of a moment that has passed
   }
   this->Ranges_[key] = tile->ranges.back().front();
-  if (this->Tiles_.count(key) == 0) { // another thread may have been here
-    this->Uses_.push_front(key);
-    this->Tiles_[key] = {tile, this->Uses_.begin()};
-    if (this->Uses_.size() > Kept) {
-      this->Tiles_.erase(this->Uses_.back());
-      this->Uses_.pop_back();
-    }
-  }
+  this->Tiles_.Keep(key, tile);
   return tile;
 }
 
 RayTile::Range RayTiles::RangeOf(const Key& key, double seconds) {
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
-    this->DropChanged();
     const auto found = this->Ranges_.find(key);
     if (found != this->Ranges_.end()) {
       return found->second;

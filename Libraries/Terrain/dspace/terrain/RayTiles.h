@@ -3,15 +3,17 @@
 #define DSPACE_TERRAIN_RAYTILES_H
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <limits>
-#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include <dspace/terrain/ElevationPyramid.h>
+
+#include "LatestKept.h"
 
 namespace dspace {
 
@@ -25,6 +27,10 @@ struct RayTile {
   struct Range {
     float least = std::numeric_limits<float>::infinity();
     float greatest = -std::numeric_limits<float>::infinity();
+    void Widen(const Range& by) { // to hold both
+      this->least = by.least < this->least ? by.least : this->least;
+      this->greatest = by.greatest > this->greatest ? by.greatest : this->greatest;
+    }
   };
 
   std::int64_t column = 0; // of its first post
@@ -40,30 +46,27 @@ struct RayTile {
   Range Of(int bits, std::int64_t c, std::int64_t r) const;
 };
 
-// The latest ones; and of all that were ever read the whole tile's range. What has
-// changed in the pyramid since is read again.
+// The latest ones; and of all that were ever read the whole tile's range.
 class RayTiles {
 public:
   using Key = std::array<std::int64_t, 3>; // level, column and row of tiles
 
-  explicit RayTiles(std::shared_ptr<ElevationPyramid> pyramid) : Pyramid_(std::move(pyramid)) {}
+  explicit RayTiles(std::shared_ptr<ElevationPyramid> pyramid);
 
+  // Forgets what has changed in the pyramid since. Each ray begins with it; what changes while it
+  // is on its way it may see or not.
+  void Refresh();
   // Throws what the pyramid's Read() throws.
   std::shared_ptr<const RayTile> Get(const Key& key, double seconds);
   RayTile::Range RangeOf(const Key& key, double seconds);
 
 private:
   void DropChanged(); // with the lock held
-  struct Entry {
-    std::shared_ptr<const RayTile> tile;
-    std::list<Key>::iterator use;
-  };
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::mutex Mutex_; // of what follows
-  std::map<Key, Entry> Tiles_;
-  std::list<Key> Uses_; // latest first
+  LatestKept<Key, std::shared_ptr<const RayTile>> Tiles_;
   std::map<Key, RayTile::Range> Ranges_;
-  std::uint64_t Seen_ = 0; // change of the pyramid
+  std::atomic<std::uint64_t> Seen_{0}; // change of the pyramid; written with the lock held
 };
 
 } // namespace dspace

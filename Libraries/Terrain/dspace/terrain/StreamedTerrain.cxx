@@ -57,7 +57,7 @@ Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
                                           const Eigen::Vector3d& p_S) const {
   const Eigen::Vector2d rise(facet.dc, facet.dr);
   if (!this->OnBody()) {
-    const Eigen::Vector2d g = this->Placement_.PostToScene().linear().inverse().transpose() * rise;
+    const Eigen::Vector2d g = this->Placement_.SceneToPost().linear().transpose() * rise;
     return Eigen::Vector3d(-g.x(), -g.y(), 1.0).normalized();
   }
   // p = (R + h(c, r)) up(c, r): its derivatives by c and r span the tangent plane.
@@ -156,25 +156,6 @@ void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,
     posts[i] = this->MapToPost(map.row(i));
   }
   this->HeightsAt(posts, heights);
-}
-
-RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,
-                                    double maximumDistance) const {
-  const double most = 1e9; // [m] that heights are within
-  const RayPath path(this->Placement_, this->Pyramid_->Lattice(), origin_S, unit_S, maximumDistance,
-                     this->HeightRangeIsExact_ ? this->DrawnHeights()[0] : -most,
-                     this->HeightRangeIsExact_ ? this->DrawnHeights()[1] : most);
-  const SurfaceRay::Hit found = this->Ray().Intersect(path);
-  RayHit hit;
-  if (!found.hit || found.distance > maximumDistance) {
-    return hit;
-  }
-  hit.hit = true;
-  hit.fromBelow = found.fromBelow;
-  hit.distance = found.distance;
-  hit.position_S = origin_S + found.distance * unit_S;
-  hit.normal_S = this->NormalAt(found.facet, hit.position_S);
-  return hit;
 }
 
 Eigen::Vector3d StreamedTerrain::DoMapToScene(const Eigen::Vector3d& map) const {

@@ -150,7 +150,8 @@ private:
   void HeightsAt(const std::vector<Eigen::Vector2d>& posts,
                  Eigen::Ref<Eigen::VectorXd> heights) const;
   const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
-  const SurfaceRay& Ray() const { return this->Tracked() ? *this->TrackedRay_ : *this->Ray_; }
+  const PostSurface& Bottom() const;
+  const SurfaceRay& Ray() const;
   void FindHeightRange();
   void TakePatches();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
@@ -158,17 +159,22 @@ private:
   bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
 
   std::shared_ptr<const ElevationSource> Source_;
-  std::shared_ptr<const GroupPosts> Group_;
   std::shared_ptr<const RasterPosts> Posts_;
+  std::shared_ptr<const GroupPosts> Group_;
   std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
-  std::unique_ptr<SurfaceRay> Ray_;
+  ElevationPyramidOptions BottomOptions_;
+  mutable std::once_flag BottomOnce_; // made when the first ray needs it, as are rays
+  mutable std::unique_ptr<PostSurface> Bottom_;
+  mutable std::once_flag RayOnce_;
+  mutable std::unique_ptr<SurfaceRay> Ray_;
   std::shared_ptr<WheelTracks> Tracks_; // on a plane; and what follows
   std::shared_ptr<const TrackPosts> TrackPosts_;
   std::shared_ptr<const PostSource> Bare_;
   std::unique_ptr<PostSurface> Tracked_; // of level 0: ruts are between the raster's posts
-  std::unique_ptr<SurfaceRay> TrackedRay_;
+  mutable std::once_flag TrackedRayOnce_;
+  mutable std::unique_ptr<SurfaceRay> TrackedRay_;
   mutable std::mutex Mutex_; // of what follows
   mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
   PostPlacement Placement_;
@@ -177,15 +183,15 @@ private:
   Eigen::Affine2d MapToPost_ = Eigen::Affine2d::Identity();
   bool Poles_ = false;
   int Subdivisions_ = 0;
+  int FullLevel_ = 0;
+  std::optional<ResamplingReport> Resampling_;
+  std::shared_ptr<ElevationPyramid> Pixels_; // the raster's own where it is resampled, and their
+  PostPlacement PixelPlacement_;             // places
   double Deadline_ = 60.0;
   std::array<double, 2> HeightRange_ = {0.0, 0.0};
   bool HeightRangeIsExact_ = false;
 };
 
 } // namespace dspace
-  int FullLevel_ = 0;
-  std::optional<ResamplingReport> Resampling_;
-  std::shared_ptr<ElevationPyramid> Pixels_; // the raster's own where it is resampled, and their
-  PostPlacement PixelPlacement_;             // places
 
 #endif

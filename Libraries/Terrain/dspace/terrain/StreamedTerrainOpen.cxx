@@ -175,10 +175,11 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
     this->Plain_ =
         std::make_unique<PostSurface>(this->Pyramid_, this->FullLevel_, poles, options.deadline);
   }
-  this->Ray_ = std::make_unique<SurfaceRay>(*this->Surface_);
+  this->BottomOptions_ = options.pyramid;
+  this->BottomOptions_.byteBudget = std::size_t(4) << 20; // rays keep what they need
+  this->BottomOptions_.threads = 1;
   if (this->Tracks_) {
     this->Tracked_ = std::make_unique<PostSurface>(this->Pyramid_, 0, poles, options.deadline);
-    this->TrackedRay_ = std::make_unique<SurfaceRay>(*this->Tracked_);
   }
 }
 

@@ -7,10 +7,17 @@
 #include <dspace/terrain/TrackFile.h>
 #include <dspace/terrain/TrackPosts.h>
 
+#include "JoinRectangles.h"
 #include "PostSurface.h"
 #include "SurfaceRay.h"
 
 namespace dspace {
+namespace {
+
+// Each is compared with every tile in memory, while all who read tiles wait.
+constexpr std::size_t MostRectangles = 256;
+
+} // namespace
 
 Eigen::Affine2d StreamedTerrain::PlanePosts() const {
   // PostToScene() takes posts to stand half a unit from the corner.
@@ -39,7 +46,8 @@ const WheelTracks& StreamedTerrain::Tracks() const {
 
 void StreamedTerrain::AddTracks(const std::vector<TrackAddition>& additions) const {
   this->Tracks();
-  this->Pyramid_->Invalidate(this->TrackPosts_->RectanglesOf(this->Tracks_->Add(additions)));
+  this->Pyramid_->Invalidate(JoinRectangles(
+      this->TrackPosts_->RectanglesOf(this->Tracks_->Add(additions)), MostRectangles));
 }
 
 void StreamedTerrain::ClearTracks() const {
@@ -82,13 +90,20 @@ const StreamedTerrain& StreamedTerrain::Undisturbed() const {
     bare->Pyramid_ = std::make_shared<ElevationPyramid>(this->Bare_, options);
     bare->Surface_ = std::make_unique<PostSurface>(bare->Pyramid_, this->Surface_->Level(),
                                                    this->Poles_, this->Deadline_);
-    bare->Ray_ = std::make_unique<SurfaceRay>(*bare->Surface_);
+    if (this->Plain_) {
+      bare->Plain_ = std::make_unique<PostSurface>(bare->Pyramid_, this->Plain_->Level(),
+                                                   this->Poles_, this->Deadline_);
+    }
+    bare->Posts_ = this->Posts_;
+    bare->FullLevel_ = this->FullLevel_;
+    bare->BottomOptions_ = this->BottomOptions_;
     bare->Placement_ = this->Placement_;
     bare->Frame_ = this->Frame_;
     bare->PixelToPost_ = this->PixelToPost_;
     bare->MapToPost_ = this->MapToPost_;
     bare->Poles_ = this->Poles_;
     bare->Subdivisions_ = this->Subdivisions_;
+    bare->FullLevel_ = this->FullLevel_;
     bare->Deadline_ = this->Deadline_;
     bare->HeightRange_ = this->HeightRange_;
     bare->HeightRangeIsExact_ = this->HeightRangeIsExact_;

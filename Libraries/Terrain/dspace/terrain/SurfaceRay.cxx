@@ -38,17 +38,12 @@ double RootOf(const Function& f, double a, double fa, double b, double fb) {
 // A ray's way, and what it has seen so far.
 struct SurfaceRay::March {
   const RayPath& path;
-  Clock::time_point start;
-  double deadline;
   int side = 0; // +1 above ground, -1 below, 0 unknown (start, border, hole)
   Hit hit;
-  std::shared_ptr<const RayTile> tile; // the latest
+  RayLayer::Hold hold;      // of the surface
+  RayLayer::Hold plainHold; // of the plain one
   std::vector<double> crossings;
 
-  double Remaining() const {
-    return std::max(0.0, this->deadline -
-                             std::chrono::duration<double>(Clock::now() - this->start).count());
-  }
   void Meet(double t, const HeightGrid::Facet& facet) {
     this->hit.hit = true;
     this->hit.fromBelow = this->side != 0 ? this->side < 0 : this->path.Rises(t);
@@ -57,16 +52,26 @@ struct SurfaceRay::March {
   }
 };
 
-SurfaceRay::SurfaceRay(const PostSurface& surface)
-    : Surface_(surface), Tiles_(std::make_unique<RayTiles>(surface.SharedPyramid())) {}
+SurfaceRay::SurfaceRay(const PostSurface& surface, const PostSurface* plain,
+                       std::unique_ptr<const RayCover> cover)
+    : Layer_(std::make_unique<RayLayer>(surface)),
+      Plain_(plain ? std::make_unique<RayLayer>(*plain) : nullptr), Cover_(std::move(cover)) {}
 
 SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
-  March march{path, Clock::now(), this->Surface_.Deadline(), 0, {}, {}, {}};
+  const Clock::time_point start = Clock::now();
+  const auto remaining = [start, deadline = this->Layer_->Surface().Deadline()] {
+    return std::max(0.0, deadline - std::chrono::duration<double>(Clock::now() - start).count());
+  };
+  March march{path, 0, {}, {nullptr, remaining}, {nullptr, remaining}, {}};
+  this->Layer_->Refresh();
+  if (this->Plain_) {
+    this->Plain_->Refresh();
+  }
   if (path.First() > path.Last()) {
     return {};
   }
   // Pieces that lie wholly within the lattice or outside it.
-  const PostLattice& lattice = this->Surface_.Lattice();
+  const PostLattice& lattice = this->Layer_->Surface().Lattice();
   const double lastColumn = double(lattice.columns - (lattice.periodic ? 0 : 1));
   const auto lastRow = double(lattice.rows - 1);
   std::vector<double> cuts;
@@ -94,83 +99,54 @@ SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
                         g.y() <= lastRow + border;
     if (!inside) {
       march.side = 0;
-    } else if (this->Visit(march, bits, 0, 0, cuts[i], cuts[i + 1])) {
+    } else if (this->Visit(march, bits, 0, 0, cuts[i], cuts[i + 1], false)) {
       return march.hit;
     }
   }
   return {};
 }
 
-// (c, r) counts tiles.
-const RayTile& SurfaceRay::TileOf(March& march, std::int64_t c, std::int64_t r) const {
-  std::shared_ptr<const RayTile>& held = march.tile;
-  if (!held || held->column != c * RayTile::Cells || held->row != r * RayTile::Cells) {
-    held = this->Tiles_->Get({this->Surface_.Level(), c, r}, march.Remaining());
-  }
-  return *held;
-}
-
-// Of a block of 2^bits cells of level 0.
-RayTile::Range SurfaceRay::RangeOf(March& march, int bits, std::int64_t c, std::int64_t r) const {
-  const int level = this->Surface_.Level();
-  const int up = RayTile::Bits + level - bits; // a tile has 2^up of them a side
-  if (up == 0) {
-    return this->Tiles_->RangeOf({level, c, r}, march.Remaining());
-  }
-  const RayTile& tile = this->TileOf(march, c >> up, r >> up);
-  if (bits > level) {
-    return tile.Of(bits - level, c, r);
-  }
-  // Part of a cell between the posts: flat pieces are least and greatest at their corners.
-  const std::int64_t parts = std::int64_t(1) << (level - bits);
-  const std::int64_t i = c & (parts - 1);
-  const std::int64_t j = r & (parts - 1);
-  const double size = 1.0 / double(parts);
-  RayTile::Range range;
-  const auto take = [&](bool below, std::int64_t di, std::int64_t dj) {
-    const HeightGrid::Facet facet =
-        this->Surface_.OfCell(tile, c >> (level - bits), r >> (level - bits), below,
-                              double(i + di) * size, double(j + dj) * size);
-    if (facet.valid) { // floats are rounded to either side
-      range.least = std::min(range.least, std::nextafter(float(facet.height), -1e30f));
-      range.greatest = std::max(range.greatest, std::nextafter(float(facet.height), 1e30f));
-    }
+// Whether the ray passes a block wholly above or below, as far as that is known without its cells.
+bool SurfaceRay::Misses(March& march, int bits, std::int64_t c, std::int64_t r, double t0,
+                        double t1, bool plain) const {
+  const RayPath& path = march.path;
+  const auto [low, high] = path.Heights(t0, t1);
+  const auto misses = [&, low = low, high = high](const RayTile::Range& range) {
+    return low - path.Slack() > range.greatest || high + path.Slack() < range.least;
   };
-  const bool pole = this->Surface_.AtPole(r >> (level - bits));
-  for (const bool below : {true, false}) {
-    if (pole || (below ? j >= i : i >= j)) {
-      take(below, 0, 0);
-      take(below, 1, 1);
-      if (below || i != j || pole) {
-        take(below, 0, 1);
-      }
-      if (!below || i != j || pole) {
-        take(below, 1, 0);
-      }
-    }
+  if (plain) {
+    return bits <= this->Plain_->Bits() &&
+           misses(this->Plain_->RangeOf(march.plainHold, bits, c, r));
   }
-  return range;
+  if (bits < this->Layer_->Bits()) {
+    return misses(this->Layer_->RangeOf(march.hold, bits, c, r));
+  }
+  // What the cover says spares reading the tile.
+  if (this->Plain_ && bits <= this->Plain_->Bits() &&
+      misses(this->Cover_->Over(bits, c, r, this->Plain_->RangeOf(march.plainHold, bits, c, r)))) {
+    return true;
+  }
+  return bits == this->Layer_->Bits() && misses(this->Layer_->RangeOf(march.hold, bits, c, r));
 }
 
 // (c, r) counts blocks of 2^bits cells. True once something is hit.
-bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, double t0,
-                       double t1) const {
-  const PostLattice& lattice = this->Surface_.Lattice();
+bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1,
+                       bool plain) const {
+  const PostLattice& lattice = this->Layer_->Surface().Lattice();
   // A ray along the last line belongs to the last cells.
   const std::int64_t lastColumn = lattice.columns - (lattice.periodic ? 1 : 2);
   c = std::clamp<std::int64_t>(c, 0, lastColumn >> bits);
   r = std::clamp<std::int64_t>(r, 0, (lattice.rows - 2) >> bits);
+  if (!plain && this->Plain_ && bits >= this->Layer_->Bits()) {
+    plain = !this->Cover_->Reaches(bits, c, r);
+  }
   if (bits == 0) {
-    return this->VisitCell(march, c, r, t0, t1);
+    return this->VisitCell(march, c, r, t0, t1, plain);
   }
   const RayPath& path = march.path;
-  if (bits <= RayTile::Bits + this->Surface_.Level()) { // larger ones are in several tiles
-    const RayTile::Range range = this->RangeOf(march, bits, c, r);
-    const auto [low, high] = path.Heights(t0, t1);
-    if (low - path.Slack() > range.greatest || high + path.Slack() < range.least) {
-      march.side = 0; // known without looking, or there is only a hole
-      return false;
-    }
+  if (this->Misses(march, bits, c, r, t0, t1, plain)) {
+    march.side = 0; // known without looking, or there is only a hole
+    return false;
   }
   // Split where the ray crosses the block's middle lines; each piece lies in one quarter.
   const std::int64_t half = std::int64_t(1) << (bits - 1);
@@ -197,32 +173,35 @@ bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, d
     const Eigen::Vector2d g = path.Post(0.5 * (cuts[k] + cuts[k + 1]), near);
     const std::int64_t cc = 2 * c + (g.x() >= middleColumn ? 1 : 0);
     const std::int64_t rr = 2 * r + (g.y() >= middleRow ? 1 : 0);
-    if (this->Visit(march, bits - 1, cc, rr, cuts[k], cuts[k + 1])) {
+    if (this->Visit(march, bits - 1, cc, rr, cuts[k], cuts[k + 1], plain)) {
       return true;
     }
   }
   return false;
 }
 
-bool SurfaceRay::VisitCell(March& march, std::int64_t c, std::int64_t r, double t0,
-                           double t1) const {
+bool SurfaceRay::VisitCell(March& march, std::int64_t c, std::int64_t r, double t0, double t1,
+                           bool plain) const {
   const RayPath& path = march.path;
   // The cell between posts that it is part of, and its place in it.
-  const int level = this->Surface_.Level();
+  RayLayer& layer = plain ? *this->Plain_ : *this->Layer_;
+  const PostSurface& surface = layer.Surface();
+  const int level = surface.Level();
   const std::int64_t column = c >> level;
   const std::int64_t row = r >> level;
   const double size = std::ldexp(1.0, -level);
   const Eigen::Vector2d corner = {double(c), double(r)};
   const Eigen::Vector2d within = {double(c - (column << level)) * size,
                                   double(r - (row << level)) * size};
-  const RayTile& tile = this->TileOf(march, column >> RayTile::Bits, row >> RayTile::Bits);
+  const RayTile& tile = layer.TileOf(plain ? march.plainHold : march.hold, column >> RayTile::Bits,
+                                     row >> RayTile::Bits);
   const auto placeAt = [&](double t) {
     return Eigen::Vector2d(path.Post(t, corner.x() + 0.5) - corner);
   };
   // Where the ray changes from one triangle of the cell to the other.
   std::array<double, 3> ends = {t0, t1, t1};
   int pieces = 1;
-  const bool onDiagonal = within.x() == within.y() && !this->Surface_.AtPole(row);
+  const bool onDiagonal = within.x() == within.y() && !surface.AtPole(row);
   if (onDiagonal) {
     const auto gap = [&](double t) {
       const Eigen::Vector2d g = placeAt(t);
@@ -243,7 +222,7 @@ bool SurfaceRay::VisitCell(March& march, std::int64_t c, std::int64_t r, double 
     HeightGrid::Facet facet;
     const auto over = [&](double t) {
       const Eigen::Vector2d g = within + placeAt(t).cwiseMax(0.0).cwiseMin(1.0) * size;
-      facet = this->Surface_.OfCell(tile, column, row, below, g.x(), g.y());
+      facet = surface.OfCell(tile, column, row, below, g.x(), g.y());
       return path.Height(t) - facet.height;
     };
     const double fa = over(a);

@@ -5,8 +5,9 @@
 #include <memory>
 
 #include "PostSurface.h"
+#include "RayCover.h"
+#include "RayLayer.h"
 #include "RayPath.h"
-#include "RayTiles.h"
 
 namespace dspace {
 
@@ -24,20 +25,26 @@ public:
     HeightGrid::Facet facet;
   };
 
-  // Keeps a reference to `surface`, which must outlive it.
-  explicit SurfaceRay(const PostSurface& surface);
+  // Keeps references to the surfaces, which must outlive it. Of ground that differs from a plain
+  // surface of coarser posts only where `cover` says so, the rest is followed on the plain one;
+  // where it does, blocks are skipped by the plain one's heights and what the cover makes of them.
+  explicit SurfaceRay(const PostSurface& surface, const PostSurface* plain = nullptr,
+                      std::unique_ptr<const RayCover> cover = nullptr);
 
   Hit Intersect(const RayPath& path) const;
 
 private:
   struct March;
-  bool Visit(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1) const;
-  bool VisitCell(March& march, std::int64_t c, std::int64_t r, double t0, double t1) const;
-  RayTile::Range RangeOf(March& march, int bits, std::int64_t c, std::int64_t r) const;
-  const RayTile& TileOf(March& march, std::int64_t c, std::int64_t r) const;
+  bool Visit(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1,
+             bool plain) const;
+  bool VisitCell(March& march, std::int64_t c, std::int64_t r, double t0, double t1,
+                 bool plain) const;
+  bool Misses(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1,
+              bool plain) const;
 
-  const PostSurface& Surface_;
-  std::unique_ptr<RayTiles> Tiles_;
+  std::unique_ptr<RayLayer> Layer_;
+  std::unique_ptr<RayLayer> Plain_; // null: there is none; nor a cover
+  std::unique_ptr<const RayCover> Cover_;
 };
 
 } // namespace dspace

@@ -7,6 +7,8 @@
 
 #include <dspace/terrain/ElevationPyramid.h>
 
+#include "LatestKept.h"
+
 namespace dspace {
 namespace {
 
@@ -109,7 +111,12 @@ TrackPosts::TrackPosts(std::shared_ptr<const PostSource> source,
                        std::shared_ptr<const WheelTracks> tracks,
                        const Eigen::Affine2d& postToScene)
     : Source_(std::move(source)), Tracks_(std::move(tracks)), PostToScene_(postToScene),
-      SceneToPost_(postToScene.inverse()) {}
+      SceneToPost_(postToScene.inverse()),
+      Tiles_(
+          std::make_unique<LatestKept<Key, std::shared_ptr<const std::vector<float>>>>(KeptTiles)) {
+}
+
+TrackPosts::~TrackPosts() = default;
 
 double TrackPosts::Spacing(int level) const {
   return std::ldexp(this->PostToScene_.linear().colwise().norm().minCoeff(), level);
@@ -132,23 +139,14 @@ std::vector<TrackSegment> TrackPosts::Near(const PostBlock& block) const {
 std::shared_ptr<const std::vector<float>> TrackPosts::TileOf(const Key& key) const {
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
-    const auto found = this->Tiles_.find(key);
-    if (found != this->Tiles_.end()) {
-      this->Uses_.splice(this->Uses_.begin(), this->Uses_, found->second.use);
-      return found->second.heights;
+    if (const auto* kept = this->Tiles_->Find(key)) {
+      return *kept;
     }
   }
   auto heights = std::make_shared<std::vector<float>>(std::size_t(Size) * Size);
   this->Source_->Read({int(key[0]), key[1] * Size, key[2] * Size, Size, Size}, heights->data());
   const std::lock_guard<std::mutex> lock(this->Mutex_);
-  if (this->Tiles_.count(key) == 0) { // another thread may have been here
-    this->Uses_.push_front(key);
-    this->Tiles_[key] = {heights, this->Uses_.begin()};
-    if (this->Uses_.size() > KeptTiles) {
-      this->Tiles_.erase(this->Uses_.back());
-      this->Uses_.pop_back();
-    }
-  }
+  this->Tiles_->Keep(key, heights);
   return heights;
 }
 

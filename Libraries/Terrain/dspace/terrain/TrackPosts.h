@@ -4,8 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <list>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -14,6 +12,8 @@
 #include <dspace/terrain/WheelTracks.h>
 
 namespace dspace {
+
+template<typename Key, typename Value> class LatestKept;
 
 // On a plane. A post of level 0 is lowered by the depth where it stands; one of a coarser level by
 // the mean over its cell, of 2^level x 2^level places up to 8 x 8, evenly apart. A level whose
@@ -25,6 +25,7 @@ public:
   // `postToScene` takes level-0 posts to the tracks' coordinates; invertible.
   TrackPosts(std::shared_ptr<const PostSource> source, std::shared_ptr<const WheelTracks> tracks,
              const Eigen::Affine2d& postToScene);
+  ~TrackPosts() override;
 
   const std::string& GetName() const override { return this->Source_->GetName(); }
   const PostLattice& GetLattice() const override { return this->Source_->GetLattice(); }
@@ -36,11 +37,7 @@ public:
 
 private:
   using Key = std::array<std::int64_t, 3>; // level, tile column, tile row
-  struct Kept {
-    std::shared_ptr<const std::vector<float>> heights;
-    std::list<Key>::iterator use;
-  };
-  double Spacing(int level) const; // [m] of posts, the lesser of the two
+  double Spacing(int level) const;         // [m] of posts, the lesser of the two
   std::vector<TrackSegment> Near(const PostBlock& block) const;
   void ReadSource(const PostBlock& block, float* heights) const;
   std::shared_ptr<const std::vector<float>> TileOf(const Key& key) const;
@@ -50,8 +47,7 @@ private:
   Eigen::Affine2d PostToScene_;
   Eigen::Affine2d SceneToPost_;
   mutable std::mutex Mutex_; // of what follows
-  mutable std::map<Key, Kept> Tiles_;
-  mutable std::list<Key> Uses_; // latest first
+  mutable std::unique_ptr<LatestKept<Key, std::shared_ptr<const std::vector<float>>>> Tiles_;
 };
 
 } // namespace dspace

@@ -91,6 +91,51 @@ std::size_t WheelTracks::CostOf(const Draft& draft) const {
   return bytes;
 }
 
+void WheelTracks::TakeSquares(Cell cell) {
+  std::int64_t x = std::int32_t(cell >> 32);
+  std::int64_t y = std::int32_t(cell & 0xffffffffu);
+  for (std::unordered_set<Cell>& squares : this->Squares_) {
+    x = x >> 3; // rounded down
+    y = y >> 3;
+    if (!squares.insert(CellAt(x, y)).second) {
+      return; // nor are larger ones new
+    }
+  }
+}
+
+bool WheelTracks::Reaches(const Eigen::AlignedBox2d& box) const {
+  CellRange range(box);
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  const auto any = [&range](const auto& squares) {
+    for (std::int64_t y = range.y0; y <= range.y1; ++y) {
+      for (std::int64_t x = range.x0; x <= range.x1; ++x) {
+        if (squares.count(CellAt(x, y)) != 0) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  constexpr double Few = 25.0;
+  if (range.Count() <= Few) {
+    return any(this->Cells_);
+  }
+  for (const std::unordered_set<Cell>& squares : this->Squares_) {
+    for (std::int64_t* end : {&range.x0, &range.y0, &range.x1, &range.y1}) {
+      *end = *end >> 3;
+    }
+    if (range.Count() <= Few) {
+      return any(squares);
+    }
+  }
+  return any(this->Squares_.back());
+}
+
+std::array<double, 2> WheelTracks::Changes() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  return this->Changes_;
+}
+
 void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
   if (draft.stroke == this->Strokes_.size()) {
     this->Strokes_.push_back({draft.name, draft.profile, {}, {}});
@@ -114,6 +159,11 @@ void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
   stroke.contacts.resize(draft.kept);
   stroke.contacts.insert(stroke.contacts.end(), draft.contacts.begin(), draft.contacts.end());
   stroke.skipped = std::move(draft.skipped);
+  for (const Contact& contact : draft.contacts) {
+    this->Changes_[0] =
+        std::min(this->Changes_[0], -double(contact.sinkage) - stroke.profile.treadDepth);
+  }
+  this->Changes_[1] = std::max(this->Changes_[1], stroke.profile.rimHeight);
   this->Bytes_ += (stroke.contacts.size() - before) * ContactBytes;
   const std::size_t lines = std::max<std::size_t>(stroke.contacts.size(), 2) - 1;
   for (std::size_t i = first; i < lines; ++i) {
@@ -122,7 +172,10 @@ void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
     CellRange(box).ForEach([&](Cell cell) {
       const auto [found, isNew] = this->Cells_.try_emplace(cell);
       std::vector<std::uint64_t>& entries = found->second;
-      this->Bytes_ += isNew ? CellBytes : 0;
+      if (isNew) {
+        this->Bytes_ += CellBytes;
+        this->TakeSquares(cell);
+      }
       if (std::find(entries.rbegin(), entries.rend(), entry) == entries.rend()) {
         entries.push_back(entry);
         this->Bytes_ += EntryBytes;
@@ -193,6 +246,10 @@ std::vector<TrackReach> WheelTracks::Clear() {
   this->Strokes_.clear();
   this->Latest_.clear();
   this->Cells_.clear();
+  for (std::unordered_set<Cell>& squares : this->Squares_) {
+    squares.clear();
+  }
+  this->Changes_ = {0.0, 0.0};
   this->Bytes_ = 0;
   return changed;
 }

@@ -2,6 +2,7 @@
 #ifndef DSPACE_TERRAIN_WHEELTRACKS_H
 #define DSPACE_TERRAIN_WHEELTRACKS_H
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -10,6 +11,7 @@
 #include <mutex>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include <dspace/terrain/TrackSegment.h>
@@ -67,6 +69,11 @@ public:
   bool Empty() const;
   TrackStatistics Statistics() const;
   std::vector<TrackStroke> Strokes() const;
+  // Whether anything may reach into a box; true more often than that, by some metres or, for large
+  // boxes, by their size.
+  bool Reaches(const Eigen::AlignedBox2d& box) const;
+  // By how much ruts change heights at most [m]: downwards (at most 0) and upwards.
+  std::array<double, 2> Changes() const;
   // What reaches into a box, of ruts at least `width` wide; in no order that depends on time.
   std::vector<TrackSegment> Near(const Eigen::AlignedBox2d& box, double width = 0.0) const;
 
@@ -102,6 +109,7 @@ private:
   TrackSegment SegmentOf(const Stroke& stroke, std::size_t index) const;
   std::size_t CostOf(const Draft& draft) const;
   void Commit(Draft& draft, std::vector<TrackReach>& changed);
+  void TakeSquares(Cell cell);
 
   std::string Name_;
   WheelTracksOptions Options_;
@@ -109,6 +117,9 @@ private:
   std::vector<Stroke> Strokes_;
   std::map<std::string, std::size_t> Latest_;                  // of a name
   std::unordered_map<Cell, std::vector<std::uint64_t>> Cells_; // stroke << 32 | first contact
+  // Squares that hold any such cells, each 8 times as wide as those before it; in a cell's price.
+  std::array<std::unordered_set<Cell>, 10> Squares_;
+  std::array<double, 2> Changes_ = {0.0, 0.0};
   std::size_t Bytes_ = 0;
 };
 

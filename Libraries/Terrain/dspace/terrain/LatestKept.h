@@ -1,0 +1,64 @@
+// The things that were used latest, by their keys.
+#ifndef DSPACE_TERRAIN_LATESTKEPT_H
+#define DSPACE_TERRAIN_LATESTKEPT_H
+
+#include <cstddef>
+#include <iterator>
+#include <list>
+#include <map>
+#include <utility>
+
+namespace dspace {
+
+// Not for several threads at once: whoever has it locks.
+template<typename Key, typename Value> class LatestKept {
+public:
+  explicit LatestKept(std::size_t most) : Most_(most) {}
+
+  // Null where it is not kept; used with this. Valid until the next call that is not const.
+  const Value* Find(const Key& key) {
+    const auto found = this->Entries_.find(key);
+    if (found == this->Entries_.end()) {
+      return nullptr;
+    }
+    this->Uses_.splice(this->Uses_.begin(), this->Uses_, found->second.use);
+    return &found->second.value;
+  }
+
+  // What is kept of that key stays.
+  void Keep(const Key& key, Value value) {
+    if (this->Find(key)) {
+      return;
+    }
+    this->Uses_.push_front(key);
+    this->Entries_.emplace(key, Entry{std::move(value), this->Uses_.begin()});
+    if (this->Uses_.size() > this->Most_) {
+      this->Entries_.erase(this->Uses_.back());
+      this->Uses_.pop_back();
+    }
+  }
+
+  template<typename Predicate> void DropIf(const Predicate& drop) {
+    for (auto it = this->Entries_.begin(); it != this->Entries_.end();) {
+      if (drop(it->first)) {
+        this->Uses_.erase(it->second.use);
+        it = this->Entries_.erase(it);
+      } else {
+        ++it;
+      }
+    }
+  }
+
+private:
+  struct Entry {
+    Value value;
+    typename std::list<Key>::iterator use;
+  };
+  std::size_t Most_;
+  std::map<Key, Entry> Entries_;
+  std::list<Key> Uses_; // latest first
+};
+
+} // namespace dspace
+
+#endif
