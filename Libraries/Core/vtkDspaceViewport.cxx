@@ -1,7 +1,5 @@
 #include "vtkDspaceViewport.h"
 
-#include <cmath>
-
 #include "vtkDspaceHubWindow.h"
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceRenderer.h"
@@ -10,6 +8,7 @@
 #include "vtkSmartPointer.h"
 
 #include <dspace/Error.h>
+#include <dspace/render/ColorBars.h>
 #include <dspace/render/ColorPicture.h>
 #include <dspace/render/CornerAxes.h>
 #include <dspace/render/LabelPicture.h>
@@ -20,19 +19,6 @@
 using dspace::Error;
 
 vtkStandardNewMacro(vtkDspaceViewport);
-
-namespace {
-
-void CheckColor(const std::string& viewport, const std::array<double, 3>& color) {
-  for (const double c : color) {
-    if (!(c >= 0.0 && c <= 1.0)) {
-      throw Error(Error::Kind::InvalidArgument, viewport,
-                  "background component " + std::to_string(c) + " is refused; 0 to 1");
-    }
-  }
-}
-
-} // namespace
 
 struct vtkDspaceViewport::Internals {
   vtkSmartPointer<vtkDspaceRenderContext> context;
@@ -48,6 +34,7 @@ struct vtkDspaceViewport::Internals {
   std::set<std::string> hidden;
   dspace::SceneDrawer::Background background;
   dspace::TextTables tables;
+  dspace::ColorBars bars;
   std::unique_ptr<dspace::CornerAxes> cornerAxes;
   dspace::LabelPicture labels;
   dspace::ColorPicture picture; // stands last: it gives the window back before the rest goes
@@ -207,6 +194,7 @@ void vtkDspaceViewport::Resize(int width, int height) {
   self.height = height;
   self.ViewChanged();
   self.tables.Resize(self.picture.Overlay(), width, height);
+  self.bars.Resize(self.picture.Overlay(), width, height);
 }
 
 void vtkDspaceViewport::SetVisible(bool visible) {
@@ -215,8 +203,8 @@ void vtkDspaceViewport::SetVisible(bool visible) {
 
 void vtkDspaceViewport::SetBackground(const std::array<double, 3>& bottom,
                                       const std::array<double, 3>& top) {
-  CheckColor(this->Impl->Object(), bottom);
-  CheckColor(this->Impl->Object(), top);
+  dspace::CheckColor(this->Impl->Object(), bottom);
+  dspace::CheckColor(this->Impl->Object(), top);
   this->Impl->background = {bottom, top};
   this->Impl->stale = true;
 }
@@ -258,6 +246,21 @@ void vtkDspaceViewport::RemoveTextTable(const std::string& name) {
   Internals& self = *this->Impl;
   if (!self.tables.Remove(name, self.picture.Overlay())) {
     throw Error(Error::Kind::NotFound, self.Object(), "has no text table '" + name + "'");
+  }
+  self.stale = true;
+}
+
+void vtkDspaceViewport::SetColorBar(const dspace::ColorBar& bar) {
+  Internals& self = *this->Impl;
+  if (self.bars.Set(bar, self.picture.Overlay(), self.width, self.height)) {
+    self.stale = true;
+  }
+}
+
+void vtkDspaceViewport::RemoveColorBar(const std::string& name) {
+  Internals& self = *this->Impl;
+  if (!self.bars.Remove(name, self.picture.Overlay())) {
+    throw Error(Error::Kind::NotFound, self.Object(), "has no colour bar '" + name + "'");
   }
   self.stale = true;
 }
@@ -319,14 +322,7 @@ dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& requ
 
 dspace::PickResult vtkDspaceViewport::Pick(double x, double y, int radius) {
   Internals& self = *this->Impl;
-  if (!std::isfinite(x) || !std::isfinite(y) || x < -0.5 || y < -0.5 || x >= self.width - 0.5 ||
-      y >= self.height - 0.5 || radius < 0 || radius > 256) {
-    throw Error(Error::Kind::InvalidArgument, self.Object(),
-                "pick at (" + std::to_string(x) + ", " + std::to_string(y) + ") with radius " +
-                    std::to_string(radius) + " is refused; pixels within " +
-                    std::to_string(self.width) + " x " + std::to_string(self.height) +
-                    ", radius 0 to 256");
-  }
+  dspace::CheckPick(self.Object(), x, y, radius, self.width, self.height);
   dspace::DrawFilter filter = self.Filter({});
   filter.pickableOnly = true;
   self.DrawLabels(filter);

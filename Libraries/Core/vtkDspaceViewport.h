@@ -20,6 +20,7 @@
 #include <functional>
 
 #include <dspace/render/Capture.h>
+#include <dspace/scene/ColorBar.h>
 #include <dspace/scene/Overlay.h>
 #include <dspace/scene/Scene.h>
 #endif
@@ -73,6 +74,8 @@ public:
   void SetFragmentVisible(const std::string& fragment, bool visible); // in this viewport only
   void SetTextTable(const dspace::TextTable& table); // creates or replaces, by name
   void RemoveTextTable(const std::string& name);
+  void SetColorBar(const dspace::ColorBar& bar); // creates or replaces, by name
+  void RemoveColorBar(const std::string& name);
   void SetCornerAxes(bool visible);
 
   /// Draws if something changed; returns whether it did. Nothing is done while hidden.

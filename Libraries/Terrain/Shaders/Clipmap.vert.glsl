@@ -48,6 +48,9 @@ uniform vec3 columnVC; // a post
 uniform vec3 rowVC;
 uniform vec3 slopeColumnVC; // what a slope of 1 a level-0 post takes from the normal
 uniform vec3 slopeRowVC;
+#ifdef DSPACE_FACING
+uniform mat2 slopePlane; // slopes east and north of those a level-0 column and row
+#endif
 #endif
 uniform vec3 upVC;
 uniform vec3 upNormalVC;
@@ -86,7 +89,12 @@ uniform vec2 originGrid; // of the first post, from a line near the camera on; 1
 uniform mat2 postGrid;
 #endif
 out vec4 styleAt;
-flat out int levelShown;
+#ifdef DSPACE_LEVELS
+out vec2 awayAt; // from the camera [posts]
+#endif
+#ifdef DSPACE_FACING
+out vec3 facingAt; // the normal, any length: local east, north, up; of a pole's chart in its axes
+#endif
 #ifdef DSPACE_TRACKS
 out float trackAt;
 #endif
@@ -207,7 +215,19 @@ void main()
 #elif defined(DSPACE_GRID)
   styleAt.zw = originGrid + postGrid * place;
 #endif
-  levelShown = coarser < 1.0 ? level : level + 1; // where two levels overlap both are the coarser
+#ifdef DSPACE_LEVELS
+  awayAt = at - cameraPost;
+#endif
+#ifdef DSPACE_FACING
+#ifdef DSPACE_SPHERE
+  facingAt = vec3(-here.y / (distance * max(cosLatitude, 1e-6) * stepBase.x),
+    -here.z / (distance * stepBase.y), 1.0);
+#elif defined(DSPACE_POLE)
+  facingAt = n;
+#else
+  facingAt = vec3(-(slopePlane * here.yz), 1.0);
+#endif
+#endif
 #endif
 #ifdef DSPACE_TRACKS
   trackAt = missing ? 0.0 : 2.0 * here.w;

@@ -1,6 +1,6 @@
-// What a terrain's style lays over its own colour: a ramp by height or slope, the levels, lines.
+// What a terrain's style lays over its own colour: a ramp by height, slope or aspect, normals, the
+// levels, lines.
 in vec4 styleAt; // height [m], slope [deg], grid lines along columns and rows (whole at a line)
-flat in int levelShown;
 
 #ifdef DSPACE_DETAILS
 in vec4 detailAt; // tiles
@@ -32,8 +32,14 @@ uniform vec4 trackColor; // linear light, opacity
 uniform sampler2D rampTexture;
 uniform vec4 ramp; // value of its left edge, 1 / range, opacity, 0: by height, 1: by slope
 #endif
+#ifdef DSPACE_FACING
+in vec3 facingAt;
+#endif
 #ifdef DSPACE_LEVELS
+in vec2 awayAt;
 uniform float levelOpacity;
+uniform int level;
+uniform vec3 blend;
 #endif
 #ifdef DSPACE_CONTOURS
 uniform vec2 contours; // lines a metre, half width [pixels]
@@ -101,7 +107,25 @@ vec4 mixedColor(vec4 color)
 #ifdef DSPACE_TRACKS
   color.rgb = mix(color.rgb, trackColor.rgb, trackColor.a * clamp(trackAt, 0.0, 1.0));
 #endif
-#ifdef DSPACE_RAMP
+#ifdef DSPACE_FACING
+#ifdef DSPACE_POLE
+  vec3 up = normalize(poleDirection);
+  vec3 east = normalize(poleSign * vec3(-up.y, up.x, 0.0));
+  vec3 facing = normalize(vec3(dot(facingAt, east), dot(facingAt, cross(up, east)), dot(facingAt, up)));
+#else
+  vec3 facing = normalize(facingAt);
+#endif
+#endif
+#ifdef DSPACE_BY_NORMAL
+  color.rgb = mix(color.rgb, linearFromSrgb(0.5 + 0.5 * facing), ramp.z);
+#elif defined(DSPACE_BY_ASPECT)
+  // Level ground has none. Not a smaller image of the ramp where 360 degrees become 0.
+  float aspect = degrees(atan(facing.x, facing.y));
+  aspect += aspect < 0.0 ? 360.0 : 0.0;
+  color.rgb = mix(color.rgb,
+    textureLod(rampTexture, vec2((aspect - ramp.x) * ramp.y, 0.5), 0.0).rgb,
+    dot(facing.xy, facing.xy) > 1e-12 ? ramp.z : 0.0);
+#elif defined(DSPACE_RAMP)
   float value = ramp.w == 0.0 ? styleAt.x : styleAt.y;
   color.rgb = mix(color.rgb, texture(rampTexture, vec2((value - ramp.x) * ramp.y, 0.5)).rgb, ramp.z);
 #endif
@@ -109,7 +133,10 @@ vec4 mixedColor(vec4 color)
   // Six hues in turn: neighbours differ much.
   vec3 hues[6] = vec3[6](vec3(0.8, 0.1, 0.1), vec3(0.9, 0.6, 0.05), vec3(0.35, 0.7, 0.1),
     vec3(0.05, 0.6, 0.6), vec3(0.1, 0.2, 0.8), vec3(0.6, 0.1, 0.6));
-  color.rgb = mix(color.rgb, hues[levelShown % 6], levelOpacity);
+  // As the vertex shader blends; where two levels overlap both are the coarser.
+  vec2 away = abs(awayAt);
+  bool coarser = (max(max(away.x, away.y), blend.z) - blend.x) * blend.y >= 1.0;
+  color.rgb = mix(color.rgb, hues[(coarser ? level + 1 : level) % 6], levelOpacity);
 #endif
 #ifdef DSPACE_CONTOURS
   color.rgb = mix(color.rgb, contourColor.rgb,

@@ -121,6 +121,60 @@ TEST_F(StyleFixture, ContoursAndGridLinesLieAtTheirValues) {
   EXPECT_GT(crossings, 100);
 }
 
+// A level's colour ends, to the pixel, where the level has turned into the next coarser one.
+TEST_F(StyleFixture, ColoursOfLevelsEndWhereTheirBlendingDoes) {
+  ClipmapStyle style;
+  style.levels = 1.0;
+  terrain->SetStyle(style);
+  // A wide lens sees several levels from above.
+  const Eigen::Vector3d eye(7.3, -4.1, HeightOf(50) + 90.0);
+  LookFrom(eye, {eye.x(), eye.y(), 0.0}, 160.0, Eigen::Vector3d::UnitY());
+  view->Resize(300, 300);
+  view->SetSamples(1);
+  const Capture capture = Shoot(view);
+  Keep(capture, "levels");
+  // The six hues, linear light: which one a pixel has.
+  const double hues[6][3] = {{0.8, 0.1, 0.1},  {0.9, 0.6, 0.05}, {0.35, 0.7, 0.1},
+                             {0.05, 0.6, 0.6}, {0.1, 0.2, 0.8},  {0.6, 0.1, 0.6}};
+  const auto srgb = [](double v) { return 255.0 * (1.055 * std::pow(v, 1 / 2.4) - 0.055); };
+  const auto hue = [&](int x, int y) {
+    for (int k = 0; k < 6; ++k) {
+      double away = 0.0;
+      for (int i = 0; i < 3; ++i) {
+        away = std::max(
+            away, std::abs(capture.color[4 * (std::size_t(y) * 300 + x) + i] - srgb(hues[k][i])));
+      }
+      if (away < 2.0) {
+        return k;
+      }
+    }
+    return -1;
+  };
+  const double edge = ClipmapGeometry(124).BlendTo();
+  const double above = (eye.z() - Rise * (eye.x() + 0.5 * Post * 1025)) / Post; // posts
+  std::array<int, 6> seen = {};
+  for (int y = 0; y < 300; ++y) {
+    for (int x = 0; x < 300; ++x) {
+      const Hit hit = HitAt(*scene, capture, x, y);
+      if (!hit.hit || hit.p.head<2>().cwiseAbs().maxCoeff() > 1000.0) {
+        continue;
+      }
+      const double away = (hit.p - eye).head<2>().cwiseAbs().maxCoeff() / Post;
+      const double level = std::max(std::ceil(std::log2(std::max(away, above) / edge)), 0.0);
+      // Positions are floats and a pixel's depth: nothing else may move the border.
+      const double nearest = edge * std::exp2(std::round(std::log2(std::max(away, above) / edge)));
+      if (std::abs(std::max(away, above) - nearest) < 0.003 * nearest) {
+        continue;
+      }
+      ASSERT_EQ(hue(x, y), int(level)) << x << ", " << y << ": " << away << " posts away";
+      ++seen[std::size_t(level)];
+    }
+  }
+  EXPECT_GT(seen[0], 500);
+  EXPECT_GT(seen[1], 500);
+  EXPECT_GT(seen[2], 500);
+}
+
 // Texels of 20 m, ten pixels.
 TEST_F(StyleFixture, DetailsTileTheMapWhereTheyAreWanted) {
   auto image = std::make_shared<Image>();

@@ -10,6 +10,7 @@ from dspace.objects import file_path
 from dspace.tracks import TrackMaking
 
 _MODES = ("auto", "triangles", "clipmap")  # in the order of OpenTerrain.Mode
+COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.Ramp.By
 
 
 class Terrain(TrackMaking, Strict):
@@ -239,8 +240,11 @@ class Terrain(TrackMaking, Strict):
                   contours=None, grid=None, details=(), tracks=None):
         """What is laid over a clipmap's own colour; replaces the style before, set_style() removes it.
 
-        color_by: "height" or "slope" (degrees from level), over `range` (low, high; the heights' own,
-        or 0 to 45), in `colors` evenly spaced (green over ochre to white), with `opacity` 0 to 1.
+        color_by: "height", "slope" (degrees from level) or "aspect" (azimuth of steepest descent,
+        degrees clockwise from north; level ground keeps its colour), over `range` (low, high; the
+        heights' own, 0 to 45, 0 to 360), in `colors` evenly spaced (green over ochre to white; of an
+        aspect a circle: end with the first), with `opacity` 0 to 1; or "normal": the colour is
+        0.5 + 0.5 n, n the normal in the place's east, north, up.
         levels: opacity of a colour for each clipmap level. contours: metres of height between lines,
         or a dict of interval, width (pixels), color, opacity. grid: the same for lines along the
         map's axes, in map units; on a body meridians and parallels, in degrees. details: up to two
@@ -253,7 +257,7 @@ class Terrain(TrackMaking, Strict):
         style = command.style_terrain
         put(style, label, terrain=self._name)
         if color_by is not None:
-            style.ramp.by = word(color_by, {"height": 0, "slope": 1}, "color_by", label)
+            style.ramp.by = word(color_by, COLOR_BY, "color_by", label)
             put(style.ramp, label, opacity=opacity)
             if range is not None:
                 low, high = numbers(range, 2, "the range", label, "low, high")
@@ -262,7 +266,7 @@ class Terrain(TrackMaking, Strict):
                 put_color(style.ramp.color.add(), value, "a colour of the ramp", label)
         elif range is not None or colors is not None:
             raise InvalidArgument(f"{label}: a range and colours are of color_by, which is not given; "
-                                  "accepted: color_by 'height' or 'slope'", label)
+                                  f"accepted: color_by {', '.join(map(repr, COLOR_BY))}", label)
         for detail in items(details, "details", label, "a list of dicts"):
             _put_detail(style.detail.add(), detail, f"{label}, a detail")
         if tracks is not None:
@@ -305,6 +309,18 @@ def _put_detail(message, detail, label):
 
 def _put_lines(message, lines, what, label):
     """A number or a dict into Lines; nothing for None."""
+    @property
+    def style(self):
+        """The false colour of a clipmap as it is drawn, a dict of color_by, range, colors (r, g, b) and
+        opacity; by normal range is None; {} without any."""
+        reply = self._scene._ask("describe_terrain_style", terrain=self._name).terrain_style
+        if not reply.HasField("ramp"):
+            return {}
+        ramp = reply.ramp
+        return {"color_by": list(COLOR_BY)[ramp.by],
+                "range": (ramp.low, ramp.high) if ramp.HasField("low") else None,
+                "colors": [(color.r, color.g, color.b) for color in ramp.color], "opacity": ramp.opacity}
+
     if lines is None:
         return
     lines = lines if isinstance(lines, dict) else {"interval": lines}

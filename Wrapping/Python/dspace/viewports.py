@@ -7,6 +7,7 @@ from dspace._fields import flag, integers, items, put, put_color, put_given, ref
 from dspace._strict import Strict
 from dspace.errors import Internal, WrongType
 from dspace.fragments import Fragment
+from dspace.legends import LegendMaking
 from dspace.objects import file_path
 from dspace.session import commands_pb2 as pb
 
@@ -36,7 +37,7 @@ class Pick:
     map: object = None  # its map x, y and height
 
 
-class Viewport(Strict):
+class Viewport(LegendMaking, Strict):
     """A picture of a scene. Pixel (0, 0) is the centre of the top-left pixel."""
 
     def __init__(self, client, name):

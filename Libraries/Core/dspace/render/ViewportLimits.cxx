@@ -1,6 +1,7 @@
 #include <dspace/render/ViewportLimits.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vtk_glew.h"
 
@@ -49,6 +50,23 @@ void CheckSamples(vtkDspaceHubWindow& window, const std::string& viewport, int w
                " samples; accepted: up to " + std::to_string(side) +
                " a side, which is what this OpenGL draws, and " + std::to_string(MaximumPicture) +
                " in all: " + (samples > 1 ? "samples=1, or a smaller size" : "a smaller size"));
+  }
+}
+
+void CheckColor(const std::string& viewport, const std::array<double, 3>& color) {
+  for (const double c : color) {
+    if (!(c >= 0.0 && c <= 1.0)) {
+      Refuse(viewport, "background component " + std::to_string(c) + " is refused; 0 to 1");
+    }
+  }
+}
+
+void CheckPick(const std::string& viewport, double x, double y, int radius, int width, int height) {
+  if (!std::isfinite(x) || !std::isfinite(y) || x < -0.5 || y < -0.5 || x >= width - 0.5 ||
+      y >= height - 0.5 || radius < 0 || radius > 256) {
+    Refuse(viewport, "pick at (" + std::to_string(x) + ", " + std::to_string(y) + ") with radius " +
+                         std::to_string(radius) + " is refused; pixels within " +
+                         Times(width, height) + ", radius 0 to 256");
   }
 }
 

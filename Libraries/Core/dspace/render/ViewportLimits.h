@@ -2,6 +2,7 @@
 #ifndef DSPACE_RENDER_VIEWPORT_LIMITS_H
 #define DSPACE_RENDER_VIEWPORT_LIMITS_H
 
+#include <array>
 #include <string>
 
 class vtkDspaceHubWindow;
@@ -15,6 +16,13 @@ void CheckSize(const std::string& viewport, int width, int height);
 // samples in all; makes the window current. Throws Error(InvalidArgument) about `viewport`.
 void CheckSamples(vtkDspaceHubWindow& window, const std::string& viewport, int width, int height,
                   int samples);
+
+// A background's colour, 0 to 1. Throws Error(InvalidArgument) about `viewport`.
+void CheckColor(const std::string& viewport, const std::array<double, 3>& color);
+
+// A place to pick at, in pixels of a picture of this size. Throws Error(InvalidArgument) about
+// `viewport`.
+void CheckPick(const std::string& viewport, double x, double y, int radius, int width, int height);
 
 } // namespace dspace
 

@@ -182,7 +182,8 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
     ClipmapStyle style;
     style.ramp.emplace();
     style.ramp->range = surface->HeightRange();
-    style.ramp->image = RampImage(TerrainRamp());
+    style.ramp->colors = TerrainRamp();
+    style.ramp->image = RampImage(style.ramp->colors);
     if (style.ramp->range[0] == style.ramp->range[1]) {
       style.ramp->range[1] += 1.0; // level ground
     }

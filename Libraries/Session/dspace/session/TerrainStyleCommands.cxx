@@ -21,17 +21,34 @@ ClipmapStyle::Lines ToLines(const v1::StyleTerrain::Lines& lines, const std::str
   return result;
 }
 
+// North blue, east green, south yellow, west red, and north again.
+ColorRamp AspectRamp() {
+  return {{0.23, 0.40, 0.85},
+          {0.25, 0.65, 0.40},
+          {0.95, 0.85, 0.30},
+          {0.80, 0.28, 0.30},
+          {0.23, 0.40, 0.85}};
+}
+
 ClipmapStyle::Ramp ToRamp(const v1::StyleTerrain::Ramp& ramp, const StreamedTerrain& surface,
                           const std::string& label) {
   using Ramp = v1::StyleTerrain::Ramp;
   ClipmapStyle::Ramp result;
   if (!Ramp::By_IsValid(ramp.by())) {
-    Refuse(label,
-           "a ramp by " + std::to_string(ramp.by()) + " is not known; accepted: height, slope");
+    Refuse(label, "a ramp by " + std::to_string(ramp.by()) +
+                      " is not known; accepted: height, slope, aspect, normal");
   }
-  const bool height = ramp.by() == Ramp::HEIGHT;
-  result.by = height ? ClipmapStyle::Ramp::By::Height : ClipmapStyle::Ramp::By::Slope;
-  result.range = height ? surface.HeightRange() : std::array<double, 2>{0.0, 45.0};
+  result.by = static_cast<ClipmapStyle::Ramp::By>(ramp.by());
+  result.opacity = ramp.opacity();
+  if (ramp.by() == Ramp::NORMAL) {
+    if (ramp.has_low() || ramp.has_high() || ramp.color_size() > 0) {
+      Refuse(label, "normals have colours of their own; accepted: no range and no colours");
+    }
+    return result;
+  }
+  result.range = ramp.by() == Ramp::HEIGHT   ? surface.HeightRange()
+                 : ramp.by() == Ramp::ASPECT ? std::array<double, 2>{0.0, 360.0}
+                                             : std::array<double, 2>{0.0, 45.0};
   if (ramp.has_low()) {
     result.range[0] = ramp.low();
   }
@@ -45,8 +62,11 @@ ClipmapStyle::Ramp ToRamp(const v1::StyleTerrain::Ramp& ramp, const StreamedTerr
   for (const v1::Color& color : ramp.color()) {
     colors.push_back(ToColor(color, label));
   }
-  result.image = RampImage(colors.empty() ? TerrainRamp() : colors);
-  result.opacity = ramp.opacity();
+  if (colors.empty()) {
+    colors = ramp.by() == Ramp::ASPECT ? AspectRamp() : TerrainRamp();
+  }
+  result.image = RampImage(colors);
+  result.colors = colors;
   return result;
 }
 
@@ -66,13 +86,39 @@ ClipmapStyle::Detail ToDetail(const Context& context, v1::StyleTerrain::Detail& 
   return result;
 }
 
-void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
-  const std::string label = "terrain '" + command.terrain() + "'";
-  auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&FindTerrain(context, command.terrain()));
+ClipmapTerrain& FindClipmap(const Context& context, const std::string& name) {
+  auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&FindTerrain(context, name));
   if (!terrain) {
-    throw Error(Error::Kind::Unsupported, label,
+    throw Error(Error::Kind::Unsupported, "terrain '" + name + "'",
                 "it is drawn as triangles, which have no style; accepted: mode clipmap");
   }
+  return terrain->Clipmap();
+}
+
+void DescribeTerrainStyle(const Context& context, v1::DescribeTerrainStyle& command) {
+  const ClipmapStyle& style = FindClipmap(context, command.terrain()).Style();
+  v1::TerrainStyleReply* reply = context.reply.mutable_terrain_style();
+  if (style.ramp) {
+    v1::StyleTerrain::Ramp* ramp = reply->mutable_ramp();
+    ramp->set_by(static_cast<v1::StyleTerrain::Ramp::By>(style.ramp->by));
+    if (style.ramp->by != ClipmapStyle::Ramp::By::Normal) {
+      ramp->set_low(style.ramp->range[0]);
+      ramp->set_high(style.ramp->range[1]);
+    }
+    for (const std::array<double, 3>& color : style.ramp->colors) {
+      v1::Color* to = ramp->add_color();
+      to->set_r(color[0]);
+      to->set_g(color[1]);
+      to->set_b(color[2]);
+    }
+    ramp->set_opacity(style.ramp->opacity);
+  }
+}
+
+void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
+  const std::string label = "terrain '" + command.terrain() + "'";
+  FindClipmap(context, command.terrain());
+  auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&FindTerrain(context, command.terrain()));
   ClipmapStyle style;
   for (v1::StyleTerrain::Detail& detail : *command.mutable_detail()) {
     style.details.push_back(ToDetail(context, detail));
@@ -102,6 +148,8 @@ void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
 void AddTerrainStyleCommands(Registry& registry) {
   using C = v1::Command;
   registry.Add(C::kStyleTerrain, &C::mutable_style_terrain, Effect::Change, StyleTerrain);
+  registry.Add(C::kDescribeTerrainStyle, &C::mutable_describe_terrain_style, Effect::Request,
+               DescribeTerrainStyle);
 }
 
 } // namespace dspace::session

@@ -273,6 +273,7 @@ void ViewportCommands::AddTo(Registry& registry) {
                bind(&V::Describe), none);
   registry.Add(C::kListViewports, &C::mutable_list_viewports, Effect::Request, bind(&V::List),
                none);
+  this->AddColorBarsTo(registry);
   this->AddRequestsTo(registry);
 }
 

@@ -50,6 +50,11 @@ private:
   void Describe(const Context& context, v1::DescribeViewport& command);
   void List(const Context& context, v1::ListViewports& command);
 
+  // ColorBarCommands.cxx
+  void AddColorBarsTo(Registry& registry);
+  void SetBar(const Context& context, v1::SetColorBar& command);
+  void RemoveBar(const Context& context, v1::RemoveColorBar& command);
+
   void Event(const Context& context, v1::ViewportEvent& command); // ViewportEvents.cxx
 
   // ViewportRequests.cxx

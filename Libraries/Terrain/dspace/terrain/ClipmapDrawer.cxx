@@ -144,7 +144,7 @@ void ClipmapDrawer::LoadTextures(const CustomDrawing& drawing) const {
   for (const ClipmapStyle::Detail& detail : style.details) {
     drawing.store.TextureOf(detail.image, true);
   }
-  if (style.ramp) {
+  if (style.ramp && style.ramp->image) {
     drawing.store.TextureOf(style.ramp->image, false);
   }
 }

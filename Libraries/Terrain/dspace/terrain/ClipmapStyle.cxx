@@ -50,7 +50,7 @@ void ClipmapStyle::Check(const std::string& terrain) const {
   }
   CheckOpacity(terrain, "its tracks", this->tracks.opacity);
   if (this->ramp) {
-    if (!this->ramp->image) {
+    if (!this->ramp->image && this->ramp->by != Ramp::By::Normal) {
       Refuse(terrain, "its ramp has no colours");
     }
     const auto [low, high] = this->ramp->range;

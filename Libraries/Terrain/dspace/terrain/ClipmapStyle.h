@@ -31,10 +31,17 @@ struct ClipmapStyle {
     double opacity = 0.35;
   };
   struct Ramp {
-    enum class By { Height, Slope }; // [m] above the vertical datum; [deg] from level
+    enum class By {
+      Height, // [m] above the vertical datum
+      Slope,  // [deg] from level
+      Aspect, // azimuth of steepest descent [deg] clockwise from north, 0 to 360; level ground,
+              // which has none, keeps its colour
+      Normal  // no ramp: the colour is 0.5 + 0.5 n, n in the place's east, north, up
+    };
     By by = By::Height;
     std::array<double, 2> range = {0, 1}; // values of its two ends; beyond them the end's colour
-    std::shared_ptr<const Image> image;   // a row of pixels: left is the first value
+    std::shared_ptr<const Image> image; // a row of pixels: left is the first value; none of Normal
+    std::vector<std::array<double, 3>> colors; // that the image shows, evenly spaced: for legends
     double opacity = 1.0;
   };
   struct Lines {

@@ -71,7 +71,11 @@ std::string ClipmapUniforms::Defines(const PostPlacement& placement, const Clipm
     if (!style->details.empty() && placement.GetKind() == PostPlacement::Kind::Plane) {
       defines += "#define DSPACE_DETAILS " + std::to_string(style->details.size()) + "\n";
     }
-    defines += style->ramp ? "#define DSPACE_RAMP\n" : "";
+    if (style->ramp) {
+      const char* const by[] = {"", "", "#define DSPACE_FACING\n#define DSPACE_BY_ASPECT\n",
+                                "#define DSPACE_FACING\n#define DSPACE_BY_NORMAL\n"};
+      defines += std::string("#define DSPACE_RAMP\n") + by[int(style->ramp->by)];
+    }
     defines += style->levels ? "#define DSPACE_LEVELS\n" : "";
     defines += style->contours ? "#define DSPACE_CONTOURS\n" : "";
     defines += style->grid ? "#define DSPACE_GRID\n" : "";
@@ -125,9 +129,11 @@ void ClipmapUniforms::SetStyle(const CustomDrawing& drawing) const {
     const float ramp[4] = {float(low), float(1.0 / (high - low)), float(style.ramp->opacity),
                            style.ramp->by == ClipmapStyle::Ramp::By::Height ? 0.0f : 1.0f};
     program->SetUniform4f("ramp", ramp);
-    BindTextureUnit(drawing.window, TerrainUnit + 1, GL_TEXTURE_2D,
-                    drawing.store.TextureOf(style.ramp->image, false));
-    program->SetUniformi("rampTexture", TerrainUnit + 1);
+    if (style.ramp->image) {
+      BindTextureUnit(drawing.window, TerrainUnit + 1, GL_TEXTURE_2D,
+                      drawing.store.TextureOf(style.ramp->image, false));
+      program->SetUniformi("rampTexture", TerrainUnit + 1);
+    }
   }
   if (program->IsUniformUsed("trackColor")) {
     const ClipmapStyle::Tracks& tracks = style.tracks;
@@ -170,6 +176,7 @@ void ClipmapUniforms::SetPlacement() const {
     Set(program, "slopeRowVC", Eigen::Vector3d(N.leftCols<2>() * dual.col(1)));
     return;
   }
+    Set(program, "slopePlane", dual); // where it is used
   const Eigen::Vector2d angles = placement.Angles(posts.head<2>());
   const double sl = std::sin(angles.x()), cl = std::cos(angles.x());
   const double sp = std::sin(angles.y()), cp = std::cos(angles.y());

@@ -1,0 +1,38 @@
+// The colour bars of one viewport, on its overlay renderer.
+#ifndef DSPACE_RENDER_COLOR_BARS_H
+#define DSPACE_RENDER_COLOR_BARS_H
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "vtkSmartPointer.h"
+
+#include <dspace/scene/ColorBar.h>
+
+class vtkProp;
+class vtkRenderer;
+
+namespace dspace {
+
+// Each stands in a corner of the picture. What changes is answered: the picture is old then.
+class ColorBars {
+public:
+  // Creates or replaces, by name; false where the same bar was there. `width` and `height` are the
+  // picture's. Throws Error(InvalidArgument) naming the bar and the value.
+  bool Set(const ColorBar& bar, vtkRenderer* overlay, int width, int height);
+  bool Remove(const std::string& name, vtkRenderer* overlay); // false where there is none
+  // All of them anew, in the corners of a picture of another size.
+  void Resize(vtkRenderer* overlay, int width, int height);
+
+private:
+  struct Placed {
+    ColorBar bar;
+    std::vector<vtkSmartPointer<vtkProp>> props;
+  };
+  std::map<std::string, Placed> Placed_;
+};
+
+} // namespace dspace
+
+#endif
