@@ -9,8 +9,8 @@ from dspace.errors import InvalidArgument, WrongType
 from dspace.objects import file_path
 from dspace.tracks import TrackMaking
 
-_MODES = ("auto", "triangles", "clipmap")  # in the order of OpenTerrain.Mode
 COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.Ramp.By
+_MODES = ("auto", "triangles", "clipmap")  # in the order of OpenTerrain.Mode
 
 
 class Terrain(TrackMaking, Strict):
@@ -279,6 +279,18 @@ class Terrain(TrackMaking, Strict):
         _put_lines(style.grid, grid, "grid", label)
         self._scene._execute(command)
 
+    @property
+    def style(self):
+        """The false colour of a clipmap as it is drawn, a dict of color_by, range, colors (r, g, b) and
+        opacity; by normal range is None; {} without any."""
+        reply = self._scene._ask("describe_terrain_style", terrain=self._name).terrain_style
+        if not reply.HasField("ramp"):
+            return {}
+        ramp = reply.ramp
+        return {"color_by": list(COLOR_BY)[ramp.by],
+                "range": (ramp.low, ramp.high) if ramp.HasField("low") else None,
+                "colors": [(color.r, color.g, color.b) for color in ramp.color], "opacity": ramp.opacity}
+
     def remove(self):
         self._scene._do("remove_terrain", terrain=self._name)
 
@@ -309,18 +321,6 @@ def _put_detail(message, detail, label):
 
 def _put_lines(message, lines, what, label):
     """A number or a dict into Lines; nothing for None."""
-    @property
-    def style(self):
-        """The false colour of a clipmap as it is drawn, a dict of color_by, range, colors (r, g, b) and
-        opacity; by normal range is None; {} without any."""
-        reply = self._scene._ask("describe_terrain_style", terrain=self._name).terrain_style
-        if not reply.HasField("ramp"):
-            return {}
-        ramp = reply.ramp
-        return {"color_by": list(COLOR_BY)[ramp.by],
-                "range": (ramp.low, ramp.high) if ramp.HasField("low") else None,
-                "colors": [(color.r, color.g, color.b) for color in ramp.color], "opacity": ramp.opacity}
-
     if lines is None:
         return
     lines = lines if isinstance(lines, dict) else {"interval": lines}

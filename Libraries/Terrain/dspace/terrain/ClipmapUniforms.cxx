@@ -174,9 +174,9 @@ void ClipmapUniforms::SetPlacement() const {
     Set(program, "upNormalVC", Eigen::Vector3d(N.col(2)));
     Set(program, "slopeColumnVC", Eigen::Vector3d(N.leftCols<2>() * dual.col(0)));
     Set(program, "slopeRowVC", Eigen::Vector3d(N.leftCols<2>() * dual.col(1)));
+    Set(program, "slopePlane", dual); // where it is used
     return;
   }
-    Set(program, "slopePlane", dual); // where it is used
   const Eigen::Vector2d angles = placement.Angles(posts.head<2>());
   const double sl = std::sin(angles.x()), cl = std::cos(angles.x());
   const double sp = std::sin(angles.y()), cp = std::cos(angles.y());
