@@ -92,8 +92,11 @@ void LayerStack::Remove(const std::string& name) {
   ++this->Revision_;
 }
 
-std::vector<StackedLayer> LayerStack::Layers() const {
+std::vector<StackedLayer> LayerStack::Layers(std::uint64_t* revision) const {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
+  if (revision) {
+    *revision = this->Revision_;
+  }
   return this->Layers_;
 }
 

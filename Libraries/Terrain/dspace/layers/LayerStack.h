@@ -38,7 +38,8 @@ public:
               std::optional<std::size_t> position);
   void Remove(const std::string& name); // throws Error(NotFound)
 
-  std::vector<StackedLayer> Layers() const; // a copy: bottom first
+  // A copy, bottom first; into `revision`, where it is given, which one they are of.
+  std::vector<StackedLayer> Layers(std::uint64_t* revision = nullptr) const;
   std::uint64_t Revision() const;
   // That is seen at all: visible, opacity over 0.
   bool Empty() const;

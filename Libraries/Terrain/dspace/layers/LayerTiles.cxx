@@ -1,0 +1,129 @@
+#include "LayerTiles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dspace {
+namespace {
+
+constexpr int Side = ColorTiles::Side;
+constexpr std::size_t Count = std::size_t(Side) * Side;
+constexpr double Tiny = 1e-6; // of a texel
+
+double Decoded(double v) {
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+double Encoded(double v) {
+  return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
+}
+
+// IEC 61966-2-1. An entry of the encoding table is at most a fifth of a step of the result.
+struct Tables {
+  static constexpr int Steps = 16384;
+  std::array<float, 256> decode;
+  std::array<std::uint8_t, Steps + 1> encode;
+  Tables() {
+    for (int i = 0; i < 256; ++i) {
+      this->decode[std::size_t(i)] = float(Decoded(i / 255.0));
+    }
+    for (int i = 0; i <= Steps; ++i) {
+      this->encode[std::size_t(i)] = std::uint8_t(std::lround(255.0 * Encoded(double(i) / Steps)));
+    }
+  }
+};
+
+const Tables& SrgbTables() {
+  static const Tables tables;
+  return tables;
+}
+
+// Of a tile's texels without its border, counted from its first: those with ground.
+Eigen::AlignedBox2d GroundIn(const ColorGrid& grid, const ColorTile& tile) {
+  const Eigen::Affine2d postToTexel = grid.TexelToPost(tile.zoom).inverse();
+  const Eigen::Vector2d first =
+      ColorGrid::TileTexels * Eigen::Vector2d(double(tile.column), double(tile.row));
+  Eigen::AlignedBox2d ground;
+  ground.extend(Eigen::Vector2d(postToTexel * grid.extent.min() - first));
+  ground.extend(Eigen::Vector2d(postToTexel * grid.extent.max() - first));
+  return ground;
+}
+
+} // namespace
+
+bool HasGround(const ColorGrid& grid, const ColorTile& tile) {
+  const Eigen::AlignedBox2d ground = GroundIn(grid, tile);
+  constexpr double End = ColorGrid::TileTexels + 1.0;
+  return ground.min().y() < End && ground.max().y() > -1.0 && tile.row >= 0 &&
+         tile.row < grid.RowsAt(tile.zoom) &&
+         (grid.periodic || (ground.min().x() < End && ground.max().x() > -1.0));
+}
+
+std::vector<std::uint8_t> ReadLayerTile(const ColorLayer& layer, const ColorGrid& grid,
+                                        const ColorTile& tile) {
+  std::vector<std::uint8_t> rgba(Count * 4);
+  const ColorBlock block{tile.zoom, tile.column * ColorGrid::TileTexels - 1,
+                         tile.row * ColorGrid::TileTexels - 1, Side, Side};
+  if (!layer.Read(grid, block, rgba.data())) {
+    return {};
+  }
+  const Eigen::AlignedBox2d ground = GroundIn(grid, tile);
+  const auto texel = [&](int x, int y) {
+    return rgba.begin() + 4 * (std::ptrdiff_t(y) * Side + x);
+  };
+  const auto copy = [&](int axis, double from, int to) { // a column or a row of the block
+    if (from >= 0.0 && from < Side && to >= 0 && to < Side) {
+      for (int i = 0; i < Side; ++i) {
+        axis == 0 ? std::copy_n(texel(int(from), i), 4, texel(to, i))
+                  : std::copy_n(texel(i, int(from)), 4, texel(i, to));
+      }
+    }
+  };
+  for (int axis = grid.periodic ? 1 : 0; axis < 2; ++axis) {
+    const double first = std::floor(ground.min()[axis] + Tiny) + 1.0; // in the block
+    const double last = std::ceil(ground.max()[axis] - Tiny);
+    if (first >= 1.0 && first < Side) {
+      copy(axis, first, int(first) - 1);
+    }
+    if (last >= 0.0 && last < Side - 1) {
+      copy(axis, last, int(last) + 1);
+    }
+  }
+  return rgba;
+}
+
+void TileComposer::Add(const std::vector<std::uint8_t>& rgba, double opacity) {
+  if (rgba.empty()) {
+    return;
+  }
+  const Tables& tables = SrgbTables();
+  this->Sums_.resize(Count * 4, 0.0f);
+  const auto part = float(opacity / 255.0);
+  float* sum = this->Sums_.data();
+  for (const std::uint8_t *p = rgba.data(), *end = p + Count * 4; p != end; p += 4, sum += 4) {
+    if (p[3] == 0) {
+      continue;
+    }
+    const float a = part * p[3];
+    for (int k = 0; k < 3; ++k) {
+      sum[k] += a * (tables.decode[p[k]] - sum[k]);
+    }
+    sum[3] += a * (1.0f - sum[3]);
+  }
+}
+
+std::vector<std::uint8_t> TileComposer::Encode() const {
+  std::vector<std::uint8_t> texels(this->Sums_.size());
+  const Tables& tables = SrgbTables();
+  bool any = false;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const float v = std::clamp(this->Sums_[i], 0.0f, 1.0f);
+    texels[i] = i % 4 == 3 ? std::uint8_t(std::lround(255.0f * v))
+                           : tables.encode[std::size_t(v * Tables::Steps + 0.5f)];
+    any = any || texels[i] != 0;
+  }
+  return any ? texels : std::vector<std::uint8_t>();
+}
+
+} // namespace dspace
