@@ -73,5 +73,5 @@ function(dspace_test name)
     set(label plain)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600
-    ENVIRONMENT "DISPLAY=;DSPACE_SHIPPED_DATA=${CMAKE_SOURCE_DIR}/Data;ASAN_OPTIONS=detect_leaks=0")
+    ENVIRONMENT "DISPLAY=;DSPACE_SHIPPED_DATA=${CMAKE_SOURCE_DIR}/Data;ASAN_OPTIONS=detect_leaks=0;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/Testing/cache")
 endfunction()

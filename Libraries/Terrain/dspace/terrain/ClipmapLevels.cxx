@@ -95,7 +95,7 @@ void ClipmapLevels::NoteChanges() {
       continue;
     }
     for (const PostRectangle& base : changes.rectangles) {
-      if (index < base.levels) { // and the neighbours, whose slopes change
+      if (index >= base.from && index < base.levels) { // and the neighbours, whose slopes change
         const PostRectangle posts = PostsTouched(base, index);
         level.changed.push_back(
             {posts.column - 1, posts.row - 1, posts.width + 2, posts.height + 2});
@@ -238,6 +238,7 @@ ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& uploa
   const PostLattice& lattice = this->Lattice();
   State state;
   state.place = view.place;
+  state.cellSize = view.cellSize;
   if (lattice.periodic) {
     const auto turn = double(lattice.columns);
     state.place.x() += turn * std::round((this->LastColumn_ - view.place.x()) / turn);

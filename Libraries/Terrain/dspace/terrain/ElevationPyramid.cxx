@@ -157,7 +157,7 @@ struct ElevationPyramid::Implementation {
       this->changes.Add(rectangle);
       std::vector<PostRectangle> posts;
       for (int level = 0; level < std::min(lattice.levels, rectangle.levels); ++level) {
-        posts.push_back(PostsTouched(rectangle, level));
+        posts.push_back(level < rectangle.from ? PostRectangle() : PostsTouched(rectangle, level));
       }
       const auto touched = [&](const TileKey& key) {
         return key[0] < std::int64_t(posts.size()) ? TouchedOfTile(lattice, posts[key[0]], key)

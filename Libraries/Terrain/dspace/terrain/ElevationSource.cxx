@@ -34,6 +34,7 @@ struct ElevationSource::Implementation {
   bool gaps = false;    // there may be some, see GivesZerosForGaps
   FileState file;
   std::shared_ptr<const OverviewFile> overviews;
+  std::string cached; // where they are, if they are; empty: nowhere
 
   // After a failed read GDAL may take what it could not read for blocks that the file leaves out,
   // and give zeros. With the mutex held.
@@ -64,6 +65,7 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   const NetworkScope scope(options.network, path);
   GDALDataset& dataset = *this->Impl_->dataset;
   this->Impl_->remote = IsRemote(path) || IsRemoteMosaic(dataset);
+  this->Info_.remote = this->Impl_->remote;
   GdalErrors errors;
   const int bands = dataset.GetRasterCount();
   if (bands == 0)
@@ -99,18 +101,13 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
         "they stand for 0, fill them (gdal_translate does)");
   errors.Check(Error::Kind::Corrupt, object);
   if (!options.overviewCache.empty() && this->Info_.overviews == 0) {
-    const std::string file = ElevationCache::FileFor(options.overviewCache, path, options.band);
+    this->Impl_->cached = ElevationCache::FileFor(options.overviewCache, path, options.band);
     try {
-      auto overviews = std::make_shared<OverviewFile>(file);
-      if (overviews->Header().identity == this->Identity()) {
-        this->Info_.overviews = overviews->Header().levels;
-        this->Info_.overviewsAreCached = true;
-        this->Impl_->overviews = std::move(overviews);
-      }
+      this->Info_.overviews = this->TakeOverviews();
+      this->Info_.overviewsAreCached = this->Info_.overviews > 0;
     } catch (const Error& error) {
-      if (error.GetKind() != Error::Kind::NotFound)
-        this->Info_.warnings.push_back(std::string(error.what()) +
-                                       "; far ground is read without it until it is built anew");
+      this->Info_.warnings.push_back(std::string(error.what()) +
+                                     "; far ground is read without it until it is built anew");
     }
   }
   this->Info_.warnings.insert(this->Info_.warnings.end(), errors.Warnings().begin(),
@@ -212,6 +209,27 @@ bool ElevationSource::ReadCached(const RasterWindow& w, int factor, double* valu
                     "; it is removed, and far ground read without it until it is built anew");
   }
   return true;
+}
+
+int ElevationSource::TakeOverviews() const {
+  if (this->Impl_->cached.empty()) {
+    return 0;
+  }
+  std::shared_ptr<const OverviewFile> overviews;
+  try {
+    overviews = std::make_shared<const OverviewFile>(this->Impl_->cached);
+  } catch (const Error& error) {
+    if (error.GetKind() != Error::Kind::NotFound)
+      throw;
+    return 0;
+  }
+  if (overviews->Header().identity != this->Identity()) {
+    return 0;
+  }
+  const int levels = overviews->Header().levels;
+  const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  this->Impl_->overviews = std::move(overviews);
+  return levels;
 }
 
 std::string ElevationSource::Identity() const {

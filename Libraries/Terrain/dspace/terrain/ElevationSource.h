@@ -71,6 +71,7 @@ struct ElevationInfo {
   std::string unit;            // as the file states it; may be empty
   int overviews = 0;           // the file's, or the cache's
   bool overviewsAreCached = false;
+  bool remote = false; // it, or what it is a mosaic of, is on a server
   std::vector<std::string> warnings; // each names what was assumed and how to state it
 };
 
@@ -96,6 +97,11 @@ public:
   // cache does and the window begins at a multiple of `factor` in the file; else the pixel's in
   // their middle. Throws Error(Corrupt) where the cache is damaged, once: it is then removed.
   std::vector<double> ReadReduced(const RasterWindow& window, int factor) const;
+
+  // Reads the overviews that ElevationOptions::overviewCache has by now, from the next ReadReduced
+  // on; Info() stays as it was. Their number of levels; 0 where there are none that fit, or the file
+  // has some of its own.
+  int TakeOverviews() const;
 
   // The band and the files that the raster consists of, with their sizes and times of change.
   std::string Identity() const;

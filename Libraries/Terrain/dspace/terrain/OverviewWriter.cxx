@@ -232,7 +232,7 @@ bool WriteOverviews(const ElevationSource& source, const std::string& identity,
   OverviewPreamble start = {};
   output.Append(reinterpret_cast<const char*>(&start), sizeof(start));
   Gatherer gatherer(header, output);
-  const int most = int(std::clamp<std::int64_t>((std::int64_t(1) << 25) / header.width, 1, 256));
+  const int most = int(std::clamp<std::int64_t>((std::int64_t(1) << 22) / header.width, 1, 256));
   for (int row = 0; row < header.height; row += most) {
     if (progress && !progress(double(row) / header.height)) {
       return false;

@@ -24,7 +24,8 @@ struct PostRectangle {
   std::int64_t row = 0;
   std::int64_t width = 0; // posts
   std::int64_t height = 0;
-  int levels = 64; // a change of level 0 reaches levels 0..levels-1
+  int levels = 64; // a change of level 0 reaches levels from..levels-1
+  int from = 0;
 };
 
 // The posts of a level whose cells reach into a rectangle of level 0.
@@ -36,7 +37,7 @@ inline PostRectangle PostsTouched(const PostRectangle& base, int level) {
   const std::int64_t column = FloorDiv(base.column, step) - 1;
   const std::int64_t row = FloorDiv(base.row, step) - 1;
   return {column, row, FloorDiv(base.column + base.width, step) + 3 - column,
-          FloorDiv(base.row + base.height, step) + 3 - row, base.levels};
+          FloorDiv(base.row + base.height, step) + 3 - row, base.levels, base.from};
 }
 
 // Abstract. Heights are metres above the terrain's vertical datum, floats: a step of 0.5 mm below

@@ -11,6 +11,16 @@ constexpr int FullReads = 3; // levels above the pixels whose means read every p
 
 } // namespace
 
+int RasterPosts::FirstReducedLevel() const {
+  return this->Subdivisions_ + FullReads + 1;
+}
+
+void RasterPosts::ForgetReduced() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  this->PoleHeights_.erase(this->PoleHeights_.lower_bound({this->FirstReducedLevel(), false}),
+                           this->PoleHeights_.end());
+}
+
 // Of all that a level's boxes about a pole reach; up to the raster's own posts, of the row next to
 // it.
 double RasterPosts::PoleHeight(int level, bool last) const {

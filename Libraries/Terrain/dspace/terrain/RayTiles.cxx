@@ -73,7 +73,7 @@ void RayTiles::DropChanged() {
                          ++posts.height;
                          --posts.column;
                          --posts.row;
-                         return key[0] < base.levels &&
+                         return key[0] >= base.from && key[0] < base.levels &&
                                 !TouchedOfTile(this->Pyramid_->Lattice(), posts, key).Empty();
                        });
   };

@@ -93,6 +93,10 @@ public:
 
   // What resampling costs; none where every pixel is a post.
   const std::optional<ResamplingReport>& Resampling() const { return this->Resampling_; }
+  // Reads the overviews that its cache folder has by now, here and in `others` (its pole charts),
+  // where coarse levels are read anew; finer ones and queries stay as they are. Their number of
+  // levels; 0 where there are none. Throws what ElevationSource::TakeOverviews throws.
+  int TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {}) const;
   // The level whose posts say all of the raster; those of a group's patches stand closer.
   int FullLevel() const { return this->FullLevel_; }
 
