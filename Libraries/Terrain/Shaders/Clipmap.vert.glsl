@@ -78,6 +78,11 @@ uniform vec2 originTexture;
 uniform mat2 postTexture;
 out vec2 tcoord;
 #endif
+#ifdef DSPACE_LAYERS
+uniform vec2 originLayer; // texels of the finest zoom, from a tile's corner near the camera on
+uniform vec2 postLayer;
+out vec2 layerAt;
+#endif
 #ifdef DSPACE_HOLES
 out float hole;
 #endif
@@ -207,6 +212,9 @@ void main()
 #endif
 #ifdef DSPACE_TEXTURE
   tcoord = originTexture + postTexture * place;
+#endif
+#ifdef DSPACE_LAYERS
+  layerAt = originLayer + postLayer * place;
 #endif
 #ifdef DSPACE_MIXED
   styleAt = vec4(here.x, degrees(acos(clamp(cosSlope, -1.0, 1.0))), 0.0, 0.0);

@@ -96,6 +96,9 @@ vec4 mixedColor(vec4 color)
   bool jump = dot(dx, dx) + dot(dy, dy) > dot(otherX, otherX) + dot(otherY, otherY);
   color *= textureGrad(colorTexture, t, jump ? otherX : dx, jump ? otherY : dy);
 #endif
+#ifdef DSPACE_LAYERS
+  color.rgb = layered(color.rgb);
+#endif
 #ifdef DSPACE_DETAILS
   color.rgb = detailed(color.rgb, texture(detailTexture0, detailAt.xy).rgb, detailMean0, detailRange0,
     detailLook.x, detailLook.z);

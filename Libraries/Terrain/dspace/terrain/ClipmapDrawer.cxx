@@ -8,6 +8,7 @@
 #include "vtk_glew.h"
 
 #include "ClipmapColor_frag.h"
+#include "ClipmapLayers_frag.h"
 #include "Clipmap_vert.h"
 
 #include "vtkDspaceHubWindow.h"
@@ -18,6 +19,7 @@
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/SurfaceShaders.h>
 #include <dspace/terrain/ClipmapBlocks.h>
+#include <dspace/terrain/ClipmapFocus.h>
 
 #include "ClipmapUniforms.h"
 
@@ -57,10 +59,43 @@ ClipmapSight SightOf(const ClipmapCamera& camera, const DrawView& view) {
   return sight;
 }
 
+FocusView FocusViewOf(const ClipmapCamera& camera, const DrawView& view) {
+  const Projection& projection = view.projection;
+  const Eigen::Matrix3d X_SV = camera.X_VS.linear().inverse(); // view axes: along -Z
+  FocusView focus;
+  focus.camera = camera.position;
+  focus.forward = (X_SV * -Eigen::Vector3d::UnitZ()).normalized();
+  focus.parallel = projection.kind == Projection::Kind::Orthographic;
+  if (focus.parallel) {
+    focus.half = 0.5 * projection.height * std::max(1.0, double(view.width) / view.height);
+    return focus;
+  }
+  focus.half = 0.0;
+  for (const auto& [x, y] : {std::pair(0.0, 0.0),
+                             {0.5, 0.0},
+                             {1.0, 0.0},
+                             {0.0, 0.5},
+                             {1.0, 0.5},
+                             {0.0, 1.0},
+                             {0.5, 1.0},
+                             {1.0, 1.0}}) {
+    // Sensor axes: X right, Y down, Z forward.
+    const Eigen::Vector3d direction =
+        projection.PixelRay(x * view.width - 0.5, y * view.height - 0.5, view.width, view.height)
+            .direction;
+    const Eigen::Vector3d inView(direction.x(), -direction.y(), -direction.z());
+    focus.rim.push_back((X_SV * inView).normalized());
+    const Eigen::Vector2d tangents = direction.head<2>().cwiseAbs() / direction.z();
+    focus.half = std::max(focus.half, tangents.maxCoeff());
+  }
+  return focus;
+}
+
 } // namespace
 
 ClipmapDrawer::ClipmapDrawer(const ClipmapTerrain& terrain)
-    : Terrain_(&terrain), Indices_(terrain.Options().cells), Charts_(terrain.Charts().size()) {}
+    : Terrain_(&terrain), Indices_(terrain.Options().cells), Charts_(terrain.Charts().size()),
+      Layers_(terrain) {}
 
 ClipmapDrawer::~ClipmapDrawer() {
   for (const auto& chart : this->Charts_) {
@@ -131,7 +166,21 @@ bool ClipmapDrawer::Prepare(const CustomDrawing& drawing) {
   } else { // the chart that the camera comes from is shown until some of the other is there
     this->Update(*this->Active_, drawing);
   }
-  return this->Active_ == chart.get() && chart->state.complete;
+  const bool layers = this->PrepareLayers(drawing);
+  return this->Active_ == chart.get() && chart->state.complete && layers;
+}
+
+bool ClipmapDrawer::PrepareLayers(const CustomDrawing& drawing) {
+  const Chart& chart = *this->Active_;
+  if (!chart.Drawable()) {
+    return true;
+  }
+  const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
+  const auto index =
+      std::find_if(this->Charts_.begin(), this->Charts_.end(),
+                   [this](const auto& other) { return other.get() == this->Active_; });
+  return this->Layers_.Prepare(drawing, std::size_t(index - this->Charts_.begin()), chart.levels,
+                               chart.state, SightOf(camera, drawing.view), chart.heights);
 }
 
 // Before any is bound for drawing: an upload ends with its unit unbound.
@@ -150,16 +199,36 @@ void ClipmapDrawer::LoadTextures(const CustomDrawing& drawing) const {
 }
 
 void ClipmapDrawer::Update(Chart& chart, const CustomDrawing& drawing) const {
-  const ClipmapCamera camera(drawing.object.X_VO, chart.placement, chart.levels.Lattice());
+  const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
+  const FocusView focus = FocusViewOf(camera, drawing.view);
+  chart.levels.SetNoise(this->Terrain_->Style().noise, chart.placement);
   BindTextureUnit(drawing.window, TerrainUnit, GL_TEXTURE_2D_ARRAY, chart.texture);
-  ClipmapLevels::View view;
-  view.place = camera.posts.head<2>();
-  view.height = camera.posts.z();
-  view.cellSize = camera.cellSize;
-  if (drawing.view.complete) {
-    view.wait = this->Terrain_->Options().deadline;
-  }
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  // The ground that a zoomed view meets is that which is there: a picture that is kept must not
+  // hang on what was drawn before, and brings that around the camera first.
+  if (drawing.view.complete || !IsZoomed(focus) || !chart.Drawable()) {
+    UpdateAbout(chart, focus.camera, drawing, this->Terrain_->Options().deadline);
+  }
+  if (IsZoomed(focus) && chart.Drawable()) {
+    const Eigen::Vector3d place =
+        FocusOf(focus, chart.placement, [&chart](const Eigen::Vector2d& post) {
+          return chart.levels.HeightNear(post, chart.state.finest)
+              .value_or(chart.state.groundHeight);
+        });
+    UpdateAbout(chart, place, drawing, this->Terrain_->Options().deadline);
+  }
+}
+
+void ClipmapDrawer::UpdateAbout(Chart& chart, const Eigen::Vector3d& p_S,
+                                const CustomDrawing& drawing, double deadline) {
+  const Eigen::Vector3d posts = chart.placement.ToPosts(p_S);
+  ClipmapLevels::View view;
+  view.place = posts.head<2>();
+  view.height = posts.z();
+  view.cellSize = CellSizeNear(chart.placement, chart.levels.Lattice(), view.place);
+  if (drawing.view.complete) {
+    view.wait = deadline;
+  }
   chart.state = chart.levels.Update(
       view, [&drawing, &chart](int level, const ClipmapUpdate& u, const ClipmapTexel* texels) {
         for (int i = 0; i < u.width * u.height; ++i) {
@@ -202,7 +271,7 @@ void ClipmapDrawer::DrawLabels(const CustomDrawing& drawing) {
 
 void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   const Chart& chart = *this->Active_;
-  const ClipmapCamera camera(drawing.object.X_VO, chart.placement, chart.levels.Lattice());
+  const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
   const bool labels = (features & SurfaceShaders::Label) != 0;
   const ClipmapStyle& style = this->Terrain_->Style();
   const bool pole = chart.placement.GetKind() == PostPlacement::Kind::Pole;
@@ -212,7 +281,8 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
     tracks |= !labels && chart.levels.HasTracks(level);
   }
-  const bool mixed = !labels && (poleTexture || tracks || !style.Empty());
+  const bool layers = !labels && this->Layers_.Shown();
+  const bool mixed = !labels && (poleTexture || tracks || layers || !style.Empty());
   ShaderPages pages;
   pages.vertex = Clipmap_vert;
   pages.defines = ClipmapUniforms::Defines(chart.placement, mixed ? &style : nullptr);
@@ -225,9 +295,13 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   if (tracks) {
     pages.defines += "#define DSPACE_TRACKS\n";
   }
+  if (layers) {
+    pages.defines += "#define DSPACE_LAYERS\n";
+  }
   if (mixed) {
+    static const std::string fragment = std::string(ClipmapLayers_frag) + ClipmapColor_frag;
     features |= SurfaceShaders::Mixed;
-    pages.fragment = ClipmapColor_frag;
+    pages.fragment = fragment.c_str();
   }
   if (poleTexture) {
     features &= ~unsigned(SurfaceShaders::Texture);
@@ -248,9 +322,13 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     uniforms.SetStyle(drawing);
   }
   uniforms.SetPlacement();
+  if (layers) {
+    this->Layers_.SetLook(program, drawing.samples);
+  }
 
   vtkOpenGLState* state = drawing.window->GetState();
-  if (camera.posts.z() > chart.state.groundHeight) {
+  if (camera.posts.z() > chart.levels.HeightNear(camera.posts.head<2>(), chart.state.finest)
+                             .value_or(chart.state.groundHeight)) {
     // From above no under side is seen but by rounding, at ridges.
     state->vtkglEnable(GL_CULL_FACE);
     state->vtkglCullFace(camera.mirrored > 0.0f ? GL_BACK : GL_FRONT);
@@ -273,6 +351,11 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
       continue;
     }
     uniforms.SetLevel(level);
+    if (layers) {
+      const ClipmapWindow& window = chart.levels.Window(level);
+      const Eigen::Vector2d first(double(window.column), double(window.row));
+      this->Layers_.SetLevel(program, first, std::ldexp(1.0, level));
+    }
     glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_SHORT, firsts.data(),
                         GLsizei(counts.size()));
     ++drawing.statistics.drawCalls;

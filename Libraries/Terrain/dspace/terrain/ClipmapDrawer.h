@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include <dspace/layers/LayerDrawing.h>
 #include <dspace/render/CustomDrawer.h>
 #include <dspace/terrain/ClipmapIndices.h>
 #include <dspace/terrain/ClipmapLevels.h>
@@ -45,6 +46,9 @@ private:
   };
   void LoadTextures(const CustomDrawing& drawing) const;
   void Update(Chart& chart, const CustomDrawing& drawing) const;
+  static void UpdateAbout(Chart& chart, const Eigen::Vector3d& p_S, const CustomDrawing& drawing,
+                          double deadline);
+  bool PrepareLayers(const CustomDrawing& drawing);
   void Create();
   static void CreateTexture(Chart& chart);
   void Draw(const CustomDrawing& drawing, unsigned features);
@@ -53,6 +57,7 @@ private:
   ClipmapIndices Indices_;
   std::vector<std::unique_ptr<Chart>> Charts_; // of the terrain's; null until the camera is there
   Chart* Active_ = nullptr;
+  LayerDrawing Layers_;
   unsigned int VertexArray_ = 0;
   unsigned int VertexBuffer_ = 0;
   unsigned int IndexBuffer_ = 0;

@@ -174,6 +174,10 @@ bool ClipmapLevels::Bring(int index, const std::vector<ClipmapUpdate>& updates,
   if (!complete) {
     return false;
   }
+  for (std::size_t i = 0; this->Noise_ && i < updates.size(); ++i) {
+    const ClipmapUpdate& u = updates[i];
+    this->Roughen({index, u.column - 1, u.row - 1, u.width + 2, u.height + 2}, heights[i]);
+  }
   const int side = this->Geometry_.Texels();
   level.texels.resize(std::size_t(side) * side);
   std::vector<ClipmapTexel> texels;
@@ -232,6 +236,30 @@ std::optional<double> ClipmapLevels::GroundAt(int level, const Eigen::Vector2d& 
     }
   }
   return weight > 0.0 ? std::optional<double>(sum / weight) : std::nullopt;
+}
+
+std::optional<double> ClipmapLevels::HeightNear(const Eigen::Vector2d& place, int finest) const {
+  const PostLattice& lattice = this->Lattice();
+  Eigen::Vector2d near = place;
+  if (lattice.periodic) { // windows are about the last column that the camera was at
+    const auto turn = double(lattice.columns);
+    near.x() += turn * std::round((this->LastColumn_ - place.x()) / turn);
+  }
+  const double cells = this->Geometry_.Cells();
+  for (int level = finest; level < this->Count(); ++level) {
+    const std::optional<ClipmapWindow>& window = this->Levels_[level].window;
+    if (!window) {
+      continue;
+    }
+    const Eigen::Vector2d at = near * std::ldexp(1.0, -level) -
+                               Eigen::Vector2d(double(window->column), double(window->row));
+    if (at.minCoeff() >= 0.0 && at.maxCoeff() <= cells) {
+      if (const std::optional<double> height = this->GroundAt(level, near)) {
+        return height;
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 ClipmapLevels::State ClipmapLevels::Update(const View& view, const Upload& upload) {

@@ -7,8 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include <dspace/terrain/ClipmapStyle.h>
 #include <dspace/terrain/ClipmapWindow.h>
 #include <dspace/terrain/ElevationPyramid.h>
+#include <dspace/terrain/PostPlacement.h>
 
 namespace dspace {
 
@@ -41,12 +43,18 @@ public:
                                                      // the last one where that is periodic
     double groundHeight = 0.0; // [m] below the camera, as the finest level has it that has some
     double distance = 0.0;     // [m] from the camera to that place on the ground
+    double cellSize = 1.0;     // the view's
   };
   using Upload = std::function<void(int level, const ClipmapUpdate& update, const ClipmapTexel*)>;
 
   // Throws what ClipmapGeometry throws, and Error(InvalidArgument) when the pyramid's coarsest
   // level is larger than a window.
   ClipmapLevels(std::shared_ptr<ElevationPyramid> pyramid, int cells);
+
+  // What posts are raised by from the next update on, with slopes to match; none at first. A change
+  // fills all levels anew. `placement` is where the posts stand. Throws what NoiseOptions::Check
+  // throws.
+  void SetNoise(const std::optional<ClipmapStyle::Noise>& noise, const PostPlacement& placement);
 
   // Throws what the pyramid's Read() throws when the view waits.
   State Update(const View& view, const Upload& upload);
@@ -62,6 +70,9 @@ public:
   // Whether it holds, or held, a post that is rolled over.
   bool HasTracks(int level) const { return this->Levels_[level].tracks; }
   const ClipmapTexel& Texel(int level, std::int64_t column, std::int64_t row) const;
+  // [m] of the ground at a place [level-0 posts], as the finest level from `finest` on has it whose
+  // window holds the place; none where none has.
+  std::optional<double> HeightNear(const Eigen::Vector2d& place, int finest) const;
 
   // The height distance of a level: `distance` in its posts.
   static double InPosts(double distance, double cellSize, int level);
@@ -75,7 +86,14 @@ private:
     std::vector<PostRectangle> changed; // posts of the level that it holds as they were before
   };
   enum class Filled { Not, Before, Wholly }; // Before: with posts as they were before a change
+  // What noise needs.
+  struct Roughening {
+    ClipmapStyle::Noise noise;
+    OctaveNoise octaves;
+    PostPlacement placement;
+  };
   void NoteChanges();
+  void Roughen(const PostBlock& block, std::vector<float>& heights) const;
   std::vector<ClipmapUpdate> ChangesIn(int level, const ClipmapWindow& window) const;
   bool Bring(int level, const std::vector<ClipmapUpdate>& updates,
              const std::optional<double>& wait, const Upload& upload);
@@ -91,6 +109,7 @@ private:
   std::vector<Level> Levels_;
   double LastColumn_ = 0.0;
   std::uint64_t Seen_ = 0; // change of the pyramid
+  std::optional<Roughening> Noise_;
 };
 
 // The most cells a side that the coarsest level may have: then one window shows all of it.

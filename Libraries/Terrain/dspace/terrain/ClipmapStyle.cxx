@@ -69,6 +69,11 @@ void ClipmapStyle::Check(const std::string& terrain) const {
   if (this->grid) {
     CheckLines(terrain, "its grid", *this->grid);
   }
+  if (this->noise) {
+    this->noise->options.Check(terrain);
+    Require(this->noise->amplitude > 0.0 && this->noise->amplitude <= 1e6, terrain,
+            "the amplitude of its noise", this->noise->amplitude, "more than 0, up to 1e6 m");
+  }
 }
 
 } // namespace dspace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dspace/import/Model.h>
+#include <dspace/layers/PerlinNoise.h>
 
 namespace dspace {
 
@@ -50,12 +51,25 @@ struct ClipmapStyle {
     std::array<double, 3> color = {0, 0, 0};
     double opacity = 1.0;
   };
+  // Heights of noise on what is drawn, below the data's resolution: decoration. Pictures, their
+  // depth images and labels, and this style's ramps and lines have it; queries, analyses, tracks
+  // and what stands on the ground do not. It is to be off where something is measured in a picture.
+  // A post has the octaves that its level's posts resolve (two to four posts a wavelength): with a
+  // `wavelength` of at most two of the data's pixels only posts closer than those differ.
+  struct Noise {
+    NoiseOptions options;
+    double amplitude = 0.1; // [m] that the longest octave adds at most, (0, 1e6]
+    bool operator==(const Noise& o) const {
+      return this->options == o.options && this->amplitude == o.amplitude;
+    }
+  };
   std::vector<Detail> details; // at most Detail::Most
   Tracks tracks;               // where there are any
   std::optional<Ramp> ramp;
   std::optional<double> levels; // opacity of a colour for each clipmap level
   std::optional<Lines> contours;
-  std::optional<Lines> grid; // along the map's axes
+  std::optional<Lines> grid;  // along the map's axes
+  std::optional<Noise> noise; // of the ground's shape
 
   bool Empty() const { return details.empty() && !ramp && !levels && !contours && !grid; }
   // Throws Error(InvalidArgument) naming `terrain` and the value.

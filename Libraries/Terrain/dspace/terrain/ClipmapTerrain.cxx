@@ -91,11 +91,28 @@ ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
 }
 
 std::uint64_t ClipmapTerrain::Revision() const {
-  std::uint64_t revision = this->StyleRevision_;
+  std::uint64_t revision = this->StyleRevision_ + (this->Layers_ ? this->Layers_->Revision() : 0);
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    revision += this->Tiles_ ? this->Tiles_->Arrivals() : 0;
+  }
   for (const ClipmapChart& chart : this->Charts_) {
     revision += chart.pyramid->Arrivals();
   }
   return revision;
+}
+
+ColorTiles& ClipmapTerrain::Tiles() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  if (!this->Tiles_) {
+    this->Tiles_ = std::make_unique<ColorTiles>(this->Layers_, this->Grids_);
+  }
+  return *this->Tiles_;
+}
+
+ColorTilesStatistics ClipmapTerrain::TileStatistics() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  return this->Tiles_ ? this->Tiles_->Statistics() : ColorTilesStatistics();
 }
 
 std::size_t ClipmapTerrain::ChartAt(const Eigen::Vector3d& p_S) const {

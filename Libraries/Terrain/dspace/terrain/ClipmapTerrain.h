@@ -4,9 +4,10 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <vector>
 
-#include <dspace/layers/LayerStack.h>
+#include <dspace/layers/ColorTiles.h>
 #include <dspace/scene/CustomGeometry.h>
 #include <dspace/scene/GraphicsObject.h>
 #include <dspace/terrain/ClipmapStyle.h>
@@ -56,6 +57,10 @@ public:
   // What is painted on it, under the style; it may change at any time. Null without grids.
   const std::shared_ptr<LayerStack>& Layers() const { return this->Layers_; }
   const std::vector<ColorGrid>& Grids() const { return this->Grids_; }
+  // Theirs; made at the first call, which starts threads. Not without grids.
+  ColorTiles& Tiles() const;
+  // As they are so far; nothing where no picture has asked for any.
+  ColorTilesStatistics TileStatistics() const;
 
   // The terrain's own, which comes first, then the poles'.
   const std::vector<ClipmapChart>& Charts() const { return this->Charts_; }
@@ -74,6 +79,8 @@ private:
   std::uint64_t StyleRevision_ = 0;
   std::vector<ColorGrid> Grids_;
   std::shared_ptr<LayerStack> Layers_;
+  mutable std::mutex Mutex_; // of what follows
+  mutable std::unique_ptr<ColorTiles> Tiles_;
 };
 
 } // namespace dspace

@@ -43,14 +43,16 @@ void SetLineColor(vtkShaderProgram* program, const char* name, const ClipmapStyl
 
 } // namespace
 
-ClipmapCamera::ClipmapCamera(const Eigen::Affine3d& viewFromTerrain, const PostPlacement& placement,
-                             const PostLattice& lattice)
+double CellSizeNear(const PostPlacement& placement, const PostLattice& lattice,
+                    const Eigen::Vector2d& post) {
+  return placement.CellSize(
+      post.cwiseMax(0.0).cwiseMin(Eigen::Vector2d(double(lattice.columns), double(lattice.rows))));
+}
+
+ClipmapCamera::ClipmapCamera(const Eigen::Affine3d& viewFromTerrain, const PostPlacement& placement)
     : X_VS(viewFromTerrain),
       position(viewFromTerrain.inverse(Eigen::Affine) * Eigen::Vector3d::Zero()),
       posts(placement.ToPosts(this->position)) {
-  const Eigen::Vector2d within = this->posts.head<2>().cwiseMax(0.0).cwiseMin(
-      Eigen::Vector2d(double(lattice.columns), double(lattice.rows)));
-  this->cellSize = placement.CellSize(within);
   double turn = -1.0; // of columns to rows, seen from above
   if (placement.GetKind() == PostPlacement::Kind::Plane) {
     turn = placement.PostToScene().linear().determinant();
@@ -310,18 +312,19 @@ void ClipmapUniforms::SetLevel(int level) const {
   this->SetExtent(level, first);
   const bool coarsest = level == this->Levels_.Count() - 1;
   Set(program, "blend",
-      Eigen::Vector3d(
-          coarsest ? 1e30 : geometry.BlendFrom(), 1.0 / (geometry.BlendTo() - geometry.BlendFrom()),
-          ClipmapLevels::InPosts(this->State_.distance, this->Camera_.cellSize, level)));
+      Eigen::Vector3d(coarsest ? 1e30 : geometry.BlendFrom(),
+                      1.0 / (geometry.BlendTo() - geometry.BlendFrom()),
+                      ClipmapLevels::InPosts(this->State_.distance, this->State_.cellSize, level)));
   switch (placement.GetKind()) {
   case PostPlacement::Kind::Sphere: {
     const Eigen::Vector2d angles =
         (first * step - this->State_.place).cwiseProduct(placement.Step());
-    Eigen::Vector2d apart = // the camera may stand outside the lattice
-        (this->State_.place - camera).cwiseProduct(placement.Step());
+    // The camera may stand outside the lattice, or turns away; levels may be about another place.
+    Eigen::Vector2d posts = this->State_.place - camera;
     if (lattice.periodic) {
-      apart.x() = 0.0; // whole turns
+      posts.x() = std::remainder(posts.x(), double(lattice.columns));
     }
+    const Eigen::Vector2d apart = posts.cwiseProduct(placement.Step());
     Set(program, "originAngles", Eigen::Vector2d(angles + apart));
     Set(program, "stepAngles", Eigen::Vector2d(placement.Step() * step));
     break;

@@ -17,12 +17,14 @@ struct ClipmapCamera {
   Eigen::Affine3d X_VS = Eigen::Affine3d::Identity(); // view axes from the terrain's frame
   Eigen::Vector3d position = Eigen::Vector3d::Zero(); // in the terrain's frame
   Eigen::Vector3d posts = Eigen::Vector3d::Zero();    // of it: column, row, height
-  double cellSize = 1.0;                              // [m] of a level-0 cell below it
   float mirrored = 1.0f; // 1 where triangles turn counter-clockwise seen from above
 
-  ClipmapCamera(const Eigen::Affine3d& X_VS, const PostPlacement& placement,
-                const PostLattice& lattice);
+  ClipmapCamera(const Eigen::Affine3d& X_VS, const PostPlacement& placement);
 };
+
+// [m] of a level-0 cell at the lattice's nearest place.
+double CellSizeNear(const PostPlacement& placement, const PostLattice& lattice,
+                    const Eigen::Vector2d& post);
 
 class ClipmapUniforms {
 public:
