@@ -7,38 +7,10 @@
 
 #include <dspace/scene/Checks.h>
 
+#include "TexelSides.h"
+
 namespace dspace {
 namespace {
-
-// The greater side of a texel on the ground [m].
-class TexelSide {
-public:
-  TexelSide(const PostPlacement& placement, const Eigen::Vector2d& texel)
-      : Placement_(placement), Texel_(texel.cwiseAbs()) {
-    if (!placement.OnBody()) {
-      const Eigen::Matrix2d side = placement.PostToScene().linear() * texel.asDiagonal();
-      this->Plane_ = std::max(side.col(0).norm(), side.col(1).norm());
-    }
-  }
-  double At(const Eigen::Vector2d& post) const {
-    switch (this->Placement_.GetKind()) {
-    case PostPlacement::Kind::Plane:
-      return this->Plane_;
-    case PostPlacement::Kind::Pole:
-      return this->Texel_.maxCoeff() * this->Placement_.CellSize(post);
-    case PostPlacement::Kind::Sphere:
-      break;
-    }
-    const Eigen::Vector2d step = this->Placement_.Step().cwiseAbs().cwiseProduct(this->Texel_);
-    const double cosine = std::abs(std::cos(this->Placement_.Angles(post).y()));
-    return this->Placement_.Radius() * std::max(step.x() * cosine, step.y());
-  }
-
-private:
-  const PostPlacement& Placement_;
-  Eigen::Vector2d Texel_; // [posts]
-  double Plane_ = 0.0;
-};
 
 class NoiseLayer : public ColorLayer {
 public:
@@ -53,7 +25,7 @@ public:
 
   bool Read(const ColorGrid& grid, const ColorBlock& block, std::uint8_t* rgba) const override {
     const Eigen::Affine2d toPost = grid.TexelToPost(block.zoom);
-    const TexelSide side(grid.placement, toPost.linear().diagonal());
+    const TexelSides sides(grid, block.zoom);
     // In the first turn: a place is the same in every one, to the last bit.
     const std::int64_t around =
         grid.periodic ? grid.ColumnsAt(block.zoom) * ColorGrid::TileTexels : 0;
@@ -68,7 +40,8 @@ public:
         const Eigen::Vector2d post =
             toPost * Eigen::Vector2d(double(column) + 0.5, double(block.row + y) + 0.5);
         const double value =
-            this->Noise_.At(grid.placement.ToScene(post, 0.0), side.At(post)) / this->Noise_.Most();
+            this->Noise_.At(grid.placement.ToScene(post, 0.0), sides.At(post).maxCoeff()) /
+            this->Noise_.Most();
         const auto opacity =
             static_cast<std::uint8_t>(std::lround(255.0 * this->Contrast_ * std::abs(value)));
         if (opacity > 0) {
