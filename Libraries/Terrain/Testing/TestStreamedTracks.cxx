@@ -6,6 +6,7 @@
 #include <iterator>
 #include <random>
 
+#include <Eigen/QR>
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
@@ -147,6 +148,48 @@ TEST_F(StreamedTracks, SavedAndLoadedTheyAreTheSame) {
       EXPECT_TRUE(std::isnan(a.heading) || std::abs(a.heading - b.heading) < 1e-6);
     }
   }
+}
+
+// Pixels are 8 posts apart: each counts as the ground is where it stands, not as its cell's mean.
+TEST_F(StreamedTracks, RoughnessIsOfThePixelsAsTheyAreInTheRuts) {
+  TrackAddition rut = Straight();
+  rut.profile.treadPitch = 0.17;
+  rut.profile.treadDepth = 0.02;
+  rut.profile.rimWidth = 0.2;
+  rut.profile.rimHeight = 0.03;
+  terrain->AddTracks({rut});
+  Rows3 points(3, 3);
+  points << 0.03, 2.05, 0.0, 4.9, 2.3, 0.0, -12.0, -9.0, 0.0; // in it, at its end, far from it
+  Eigen::VectorXd roughness(3);
+  const double radius = 1.1;
+  terrain->Roughness(points, radius, roughness);
+  Eigen::VectorXd bare(3);
+  terrain->Undisturbed().Roughness(points, radius, bare);
+  for (int i = 0; i < 3; ++i) {
+    std::vector<Eigen::Vector3d> pixels;
+    for (int r = 0; r < 201; ++r) {
+      for (int c = 0; c < 201; ++c) {
+        const Eigen::Vector2d place(-20.0 + 0.2 * c, 20.0 - 0.2 * r);
+        if ((place - points.row(i).head<2>().transpose()).norm() <= radius) {
+          pixels.emplace_back(place.x(), place.y(), Height(*terrain, place.x(), place.y()));
+        }
+      }
+    }
+    ASSERT_GT(pixels.size(), 80u);
+    Eigen::MatrixXd design(pixels.size(), 3);
+    Eigen::VectorXd heights(pixels.size());
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      design.row(Eigen::Index(k)) << 1.0, pixels[k].x(), pixels[k].y();
+      heights[Eigen::Index(k)] = pixels[k].z();
+    }
+    const Eigen::VectorXd plane = design.colPivHouseholderQr().solve(heights);
+    const double direct = std::sqrt((heights - design * plane).squaredNorm() / pixels.size());
+    EXPECT_NEAR(roughness[i], direct, 1e-6) << i; // heights are floats about 1 m
+    EXPECT_LT(bare[i], 1e-6) << i;
+  }
+  EXPECT_GT(roughness[0], 0.02);
+  EXPECT_GT(roughness[1], 0.01);
+  EXPECT_LT(roughness[2], 1e-6);
 }
 
 // Thousands of lines are told to the pyramid as a few rectangles, and no tile keeps old posts.

@@ -7,6 +7,8 @@
 #include <Eigen/Cholesky>
 #include <dspace/Error.h>
 
+#include <dspace/terrain/TrackPosts.h>
+
 #include "PostSurface.h"
 
 namespace dspace {
@@ -116,7 +118,12 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
     Footprint footprint;
     if (block.width > 0 && block.height > 0) {
       heights.resize(std::size_t(block.width) * block.height);
-      pyramid.Read(block, heights.data(), this->Deadline_);
+      if (this->Tracked()) { // ruts as they are, not the means that coarser posts show
+        this->Undisturbed().Pyramid_->Read(block, heights.data(), this->Deadline_);
+        this->TrackPosts_->Lower(block, heights.data());
+      } else {
+        pyramid.Read(block, heights.data(), this->Deadline_);
+      }
     }
     const Eigen::Vector3d up = this->DoUp(p_S);
     const Eigen::Vector3d north = this->DoNorth(p_S);

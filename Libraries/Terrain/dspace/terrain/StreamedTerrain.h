@@ -116,9 +116,10 @@ public:
   // Root mean square [m] of the heights of the raster's pixels within `radius` [m] of each point
   // about the plane that fits them best (least squares, of heights above the vertical datum): the
   // "RMS height" of Shepard et al., J. Geophys. Res. 106 (E12), 32777, 2001, detrended by a plane,
-  // over n. Distances are level: in the scene on a plane, along the sphere on a body. NaN where
-  // fewer than 4 pixels with data, or less than half of those there, span no plane. Throws
-  // Error(InvalidArgument) for a radius that is not positive or reaches over 4 million pixels.
+  // over n. Wheels' ruts count as deep as they are where a pixel stands. Distances are level: in
+  // the scene on a plane, along the sphere on a body. NaN where fewer than 4 pixels with data, or
+  // less than half of those there, span no plane. Throws Error(InvalidArgument) for a radius that
+  // is not positive or reaches over 4 million pixels.
   void Roughness(const Eigen::Ref<const Rows3>& points_S, double radius,
                  Eigen::Ref<Eigen::VectorXd> roughness) const;
 

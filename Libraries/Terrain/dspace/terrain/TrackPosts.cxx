@@ -20,9 +20,9 @@ constexpr double Widest = 4.0;         // rut widths that posts may be apart
 // Depths at places within the cells of a block, where there are any.
 class Canvas {
 public:
-  Canvas(const PostLattice& lattice, const PostBlock& block)
-      : Lattice_(lattice), Block_(block),
-        Places_(std::min(1 << std::min(block.level, 16), MostPlaces)),
+  // `places` along a side of each cell; 1 is the post's own.
+  Canvas(const PostLattice& lattice, const PostBlock& block, int places)
+      : Lattice_(lattice), Block_(block), Places_(places),
         First_(std::size_t(block.width) * block.height, None) {}
 
   void Draw(const TrackSegment& segment, const Eigen::Affine2d& postToScene,
@@ -123,7 +123,7 @@ double TrackPosts::Spacing(int level) const {
 }
 
 // What reaches into the cells of its posts.
-std::vector<TrackSegment> TrackPosts::Near(const PostBlock& block) const {
+std::vector<TrackSegment> TrackPosts::Near(const PostBlock& block, double width) const {
   const double step = std::ldexp(1.0, block.level);
   const Eigen::Vector2d first(double(block.column) - 2.0, double(block.row) - 2.0);
   const Eigen::Vector2d last(double(block.column + block.width) + 1.0,
@@ -133,7 +133,7 @@ std::vector<TrackSegment> TrackPosts::Near(const PostBlock& block) const {
   for (int i = 0; i < 4; ++i) {
     box.extend(this->PostToScene_ * posts.corner(Eigen::AlignedBox2d::CornerType(i)));
   }
-  return this->Tracks_->Near(box, this->Spacing(block.level) / Widest);
+  return this->Tracks_->Near(box, width);
 }
 
 std::shared_ptr<const std::vector<float>> TrackPosts::TileOf(const Key& key) const {
@@ -169,13 +169,13 @@ void TrackPosts::Read(const PostBlock& block, float* heights) const {
 }
 
 bool TrackPosts::ReadWithTracks(const PostBlock& block, float* heights, float* tracks) const {
-  const std::vector<TrackSegment> segments = this->Near(block);
+  const std::vector<TrackSegment> segments = this->Near(block, this->Spacing(block.level) / Widest);
   if (segments.empty()) {
     this->Source_->Read(block, heights);
     return false;
   }
   this->ReadSource(block, heights);
-  Canvas canvas(this->GetLattice(), block);
+  Canvas canvas(this->GetLattice(), block, std::min(1 << std::min(block.level, 16), MostPlaces));
   for (const TrackSegment& segment : segments) {
     canvas.Draw(segment, this->PostToScene_, this->SceneToPost_);
   }
@@ -184,6 +184,14 @@ bool TrackPosts::ReadWithTracks(const PostBlock& block, float* heights, float* t
   }
   canvas.Apply(heights, tracks);
   return true;
+}
+
+void TrackPosts::Lower(const PostBlock& block, float* heights) const {
+  Canvas canvas(this->GetLattice(), block, 1);
+  for (const TrackSegment& segment : this->Near(block, this->Spacing(0) / Widest)) {
+    canvas.Draw(segment, this->PostToScene_, this->SceneToPost_);
+  }
+  canvas.Apply(heights, nullptr);
 }
 
 std::vector<PostRectangle> TrackPosts::RectanglesOf(const std::vector<TrackReach>& changed) const {

@@ -32,13 +32,17 @@ public:
   void Read(const PostBlock& block, float* heights) const override;
   bool ReadWithTracks(const PostBlock& block, float* heights, float* tracks) const override;
 
+  // Lowers heights of the bare ground where posts of a level stand by the ruts there, as at level
+  // 0: no means are taken.
+  void Lower(const PostBlock& block, float* heights) const;
+
   // What to invalidate in a pyramid.
   std::vector<PostRectangle> RectanglesOf(const std::vector<TrackReach>& changed) const;
 
 private:
   using Key = std::array<std::int64_t, 3>; // level, tile column, tile row
   double Spacing(int level) const;         // [m] of posts, the lesser of the two
-  std::vector<TrackSegment> Near(const PostBlock& block) const;
+  std::vector<TrackSegment> Near(const PostBlock& block, double width) const; // ruts as wide [m]
   void ReadSource(const PostBlock& block, float* heights) const;
   std::shared_ptr<const std::vector<float>> TileOf(const Key& key) const;
 
