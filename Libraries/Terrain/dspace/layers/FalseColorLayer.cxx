@@ -13,6 +13,9 @@
 namespace dspace {
 namespace {
 
+constexpr double Digits =
+    64.0; // ranges further than so many times their length from 0 are found twice
+
 std::string Number(double value) {
   std::ostringstream text;
   text.precision(9);
@@ -48,7 +51,11 @@ std::array<double, 2> RangeOf(RasterLevels& levels, const FalseColorOptions& col
   bool exact = true;
   std::array<double, 2> range = {colors.low.value_or(0.0), colors.high.value_or(0.0)};
   if (!colors.low || !colors.high) {
-    const std::array<double, 2> all = levels.FindRange(exact);
+    std::array<double, 2> all = levels.FindRange(exact);
+    if (std::max(std::abs(all[0]), std::abs(all[1])) > Digits * (all[1] - all[0])) {
+      levels.SetBias(all[0]);
+      all = levels.FindRange(exact);
+    }
     range = {colors.low.value_or(all[0]), colors.high.value_or(all[1])};
     if (!exact) {
       levels.Warnings().push_back(levels.Object() + " is large: its range of " + Number(all[0]) +
