@@ -36,7 +36,7 @@ _HOMES = {
     "Joint": "robots", "Robot": "robots",
     "Scene": "scenes",
     "Session": "sessions",
-    "Terrain": "terrain",
+    "Terrain": "terrain", "TerrainLayer": "layers",
     "Pick": "viewports", "Viewport": "viewports",
 }
 

@@ -6,6 +6,7 @@ from dspace._fields import (Named, array_of, flag, items, keywords, numbers, put
                             put_vector, refuse, shown, word)
 from dspace._strict import Strict
 from dspace.errors import InvalidArgument, WrongType
+from dspace.layers import LayerMaking
 from dspace.objects import file_path
 from dspace.tracks import TrackMaking
 
@@ -13,7 +14,7 @@ COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.R
 _MODES = ("auto", "triangles", "clipmap")  # in the order of OpenTerrain.Mode
 
 
-class Terrain(TrackMaking, Strict):
+class Terrain(LayerMaking, TrackMaking, Strict):
     """A raster of heights in a frame S: X east, Y north, Z up from its origin [m]; on its body, the
     body-fixed frame (Z to the north pole, X to longitude 0).
 

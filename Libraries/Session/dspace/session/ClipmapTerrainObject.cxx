@@ -31,6 +31,12 @@ ClipmapTerrainObject::ClipmapTerrainObject(std::string name,
 
 void ClipmapTerrainObject::DescribeLayers(v1::TerrainLayerList& list) const {
   this->Layers_.Describe(list);
+  const ColorTilesStatistics statistics = this->Clipmap_->TileStatistics();
+  list.set_bytes(statistics.bytes);
+  list.set_reads(statistics.reads);
+  list.set_compositions(statistics.compositions);
+  list.set_failures(statistics.failures);
+  list.set_last_failure(statistics.lastFailure);
 }
 
 void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {

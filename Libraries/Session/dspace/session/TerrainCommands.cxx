@@ -298,6 +298,7 @@ void AddTerrainCommands(Registry& registry) {
   AddTerrainStyleCommands(registry);
   AddTerrainTrackCommands(registry);
   AddTerrainCacheCommands(registry);
+  AddTerrainLayerCommands(registry);
 }
 
 } // namespace dspace::session
