@@ -192,7 +192,52 @@ TEST(VectorBody, ARingOfAPolarCrsIsClosedOnTheDegreeGrid) {
     EXPECT_EQ(At(*layer, lon + 45.1, latitude(std::sqrt(2.0) * 500000.0) - 0.2), 0.0) << lon;
     EXPECT_EQ(At(*layer, lon + 0.1, 89.95), 1.0);
     EXPECT_EQ(AtPole(*layer, false, lon, 89.95), 1.0);
+    EXPECT_EQ(AtPole(*layer, true, lon, -80.0), 0.0); // the other pole's chart
     EXPECT_EQ(AtPole(*layer, false, lon + 0.1, latitude(500000.0) - 0.3), 0.0) << lon;
+  }
+}
+
+// So large that the other pole's chart has it as a hole in the middle.
+TEST(VectorBody, APolarAreaBeyondTheEquatorEndsWhereItEnds) {
+  const TemporaryFolder folder;
+  VectorLayerOptions options = FillOnly();
+  options.crs = "+proj=stere +lat_0=90 +lon_0=0 +R=3396190 +no_defs";
+  // About 30 degrees south: 2 R tan(60 degrees) from the middle, in chords of three degrees.
+  const double rho = 2.0 * Mars * std::tan(60.0 * M_PI / 180.0);
+  std::string ring;
+  for (int i = 0; i <= 120; ++i) {
+    const double a = (i % 120) * 3.0 * M_PI / 180.0;
+    ring += (i ? ",[" : "[") + std::to_string(rho * std::sin(a)) + "," +
+            std::to_string(rho * std::cos(a)) + "]";
+  }
+  const auto layer = Open(folder, Feature("Polygon", "[[" + ring + "]]"), options);
+  EXPECT_NEAR(Sum(*layer), 360.0 * 120.0, 30.0);
+  for (const double lon : {-170.0, -45.0, 3.0, 120.0}) {
+    EXPECT_EQ(At(*layer, lon, -29.0), 1.0);
+    EXPECT_EQ(At(*layer, lon, -31.0), 0.0);
+    EXPECT_EQ(AtPole(*layer, true, lon, -29.0), 1.0);
+    EXPECT_EQ(AtPole(*layer, true, lon, 20.0), 1.0);
+    EXPECT_EQ(AtPole(*layer, true, lon, -31.0), 0.0);
+    EXPECT_EQ(AtPole(*layer, true, lon, -89.9), 0.0);
+    EXPECT_EQ(AtPole(*layer, false, lon, 89.9), 1.0);
+  }
+}
+
+// The frame of a whole map in an equidistant cylindrical projection.
+TEST(VectorBody, AFrameInMetresCoversTheBody) {
+  const TemporaryFolder folder;
+  VectorLayerOptions options = FillOnly();
+  options.crs = "+proj=eqc +R=3396190 +units=m +no_defs";
+  const std::string x = std::to_string(M_PI * Mars), y = std::to_string(0.5 * M_PI * Mars);
+  const auto layer =
+      Open(folder,
+           Feature("Polygon", "[[[-" + x + ",-" + y + "],[" + x + ",-" + y + "],[" + x + "," + y +
+                                  "],[-" + x + "," + y + "],[-" + x + ",-" + y + "]]]"),
+           options);
+  EXPECT_NEAR(Sum(*layer), 360.0 * 180.0, 1.0);
+  for (const bool south : {false, true}) {
+    const Painted whole(*layer, BodyChart::Pole(south), {0, 0, 0, 256, 256});
+    EXPECT_NEAR(whole.Sum(), 256.0 * 256.0, 0.5) << south;
   }
 }
 

@@ -94,7 +94,7 @@ public:
     CheckOptions(options, this->Name_);
     this->File_ = ReadVectorFile(path, terrain, options);
     this->PixelSize_ = PixelSizeOf(this->File_, terrain, options);
-    const std::shared_ptr<const VectorPlaces> places = this->PlacesOn(terrain.crs);
+    const std::shared_ptr<const VectorPlaces> places = this->PlacesOn(terrain.crs, std::nullopt);
     if (places->lost > 0) {
       this->File_.warnings.push_back(this->Name_ + ": " + std::to_string(places->lost) +
                                      " shapes lie, at least in part, where the CRS of " +
@@ -116,7 +116,8 @@ public:
   const std::vector<std::string>& Warnings() const override { return this->File_.warnings; }
 
   bool Read(const ColorGrid& grid, const ColorBlock& block, std::uint8_t* rgba) const override {
-    const std::shared_ptr<const VectorPlaces> places = this->PlacesOn(grid.crs);
+    const std::shared_ptr<const VectorPlaces> places =
+        this->PlacesOn(grid.crs, FarPole(grid.placement));
     const VectorTracer tracer(grid, block, places->turn);
     std::unique_ptr<VectorCanvas> canvas; // most blocks of most layers have nothing
     std::pair<double, double> last = {-1.0, -1.0};
@@ -164,6 +165,9 @@ private:
     }
     if (shape.shape->kind == VectorShape::Kind::Area && look.fill[3] > 0.0) {
       std::vector<TexelChain> rings;
+      if (shape.outside) { // even-odd: what is not within its rings
+        rings.push_back(tracer.Block());
+      }
       for (const PlacedRing& ring : shape.rings) {
         for (const Eigen::Vector2d& turn : turns) {
           rings.push_back(tracer.Area(ring, conversion, turn));
@@ -182,12 +186,21 @@ private:
     }
   }
 
+  // Of a pole's chart the other one [deg].
+  static std::optional<double> FarPole(const PostPlacement& placement) {
+    if (placement.GetKind() != PostPlacement::Kind::Pole) {
+      return std::nullopt;
+    }
+    return placement.South() ? 90.0 : -90.0;
+  }
+
   // Made once for each CRS.
-  std::shared_ptr<const VectorPlaces> PlacesOn(const Crs& map) const {
+  std::shared_ptr<const VectorPlaces> PlacesOn(const Crs& map, std::optional<double> far) const {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
-    std::shared_ptr<const VectorPlaces>& places = this->Places_[map.GetWkt()];
+    std::shared_ptr<const VectorPlaces>& places =
+        this->Places_[(far ? "pole " : "") + map.GetWkt()];
     if (!places) {
-      places = std::make_shared<const VectorPlaces>(this->File_, map, this->Name_);
+      places = std::make_shared<const VectorPlaces>(this->File_, map, far, this->Name_);
     }
     return places;
   }

@@ -14,12 +14,30 @@ namespace {
 
 const Eigen::Vector2d Nowhere = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
-// Map y of the south and the north pole.
-std::array<double, 2> PolesOf(const Crs& map, const std::string& object) {
-  const Crs degrees = map.Geographic();
-  const double right = 90.0 / degrees.GetUnit() * NextToPole;
-  const MapConversion conversion(degrees, map, object);
-  return {conversion.Apply({0.0, -right}).y(), conversion.Apply({0.0, right}).y()};
+// Whether a place of the file's CRS is within a shape, even-odd.
+bool Contains(const VectorShape& shape, const Eigen::Vector2d& place) {
+  bool inside = false;
+  for (const VectorRing& ring : shape.rings) {
+    for (std::size_t i = 1; i < ring.places.size(); ++i) {
+      const Eigen::Vector2d &a = ring.places[i - 1], &b = ring.places[i];
+      if ((a.y() > place.y()) != (b.y() > place.y()) &&
+          place.x() < a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) {
+        inside = !inside;
+      }
+    }
+  }
+  return inside;
+}
+
+// Where that pole is in a file's CRS; nowhere where it goes once around, since areas are then
+// closed over poles as they are read.
+Eigen::Vector2d PoleIn(const Crs& crs, double latitude, const std::string& object) {
+  if (!crs.HasGeographic() || MapTurn(crs) > 0.0) {
+    return Nowhere;
+  }
+  const Crs degrees = crs.Geographic();
+  return MapConversion(degrees, crs, object)
+      .Apply({0.0, latitude / degrees.GetUnit() * NextToPole});
 }
 
 // A place a third of the way along each edge, where bends to one side and to both are seen.
@@ -43,6 +61,13 @@ double BendOf(const PlacedRing& placed, const MapConversion& conversion, double 
 }
 
 } // namespace
+
+std::array<double, 2> PolesOf(const Crs& crs, const std::string& object) {
+  const Crs degrees = crs.Geographic();
+  const double right = 90.0 / degrees.GetUnit() * NextToPole;
+  const MapConversion conversion(degrees, crs, object);
+  return {conversion.Apply({0.0, -right}).y(), conversion.Apply({0.0, right}).y()};
+}
 
 MapConversion::MapConversion(const Crs& from, const Crs& to, const std::string& object) {
   if (!from.Ogr() || !to.Ogr()) {
@@ -100,7 +125,8 @@ Eigen::Vector2d MapConversion::Apply(const Eigen::Vector2d& place) const {
   return done && std::isfinite(x) && std::isfinite(y) ? Eigen::Vector2d(x, y) : Nowhere;
 }
 
-VectorPlaces::VectorPlaces(const VectorFile& file, const Crs& map, const std::string& object)
+VectorPlaces::VectorPlaces(const VectorFile& file, const Crs& map, std::optional<double> far,
+                           const std::string& object)
     : turn(MapTurn(map)) {
   std::array<double, 2> poles = {0.0, 0.0};
   if (this->turn > 0.0) {
@@ -109,6 +135,11 @@ VectorPlaces::VectorPlaces(const VectorFile& file, const Crs& map, const std::st
   for (const VectorGroup& group : file.groups) {
     PlacedGroup placed;
     placed.conversion = std::make_unique<const MapConversion>(group.crs, map, object);
+    std::array<Eigen::Vector2d, 2> ends = {Nowhere, Nowhere}; // the poles
+    if (this->turn > 0.0) {
+      ends = {PoleIn(group.crs, -90.0, object), PoleIn(group.crs, 90.0, object)};
+    }
+    const Eigen::Vector2d pole = far ? PoleIn(group.crs, *far, object) : Nowhere;
     for (const VectorShape& shape : group.shapes) {
       PlacedShape on;
       on.shape = &shape;
@@ -123,7 +154,11 @@ VectorPlaces::VectorPlaces(const VectorFile& file, const Crs& map, const std::st
           BesideOf(on.rings.front().map, this->turn, moved.places);
         }
         if (shape.kind == VectorShape::Kind::Area && this->turn > 0.0) {
-          CloseOverPole(moved, this->turn, poles);
+          const bool south = ends[0].allFinite() && Contains(shape, ends[0]);
+          const bool north = ends[1].allFinite() && Contains(shape, ends[1]);
+          CloseOverPole(moved, this->turn,
+                        {north && !south ? poles[1] : poles[0],
+                         south && !north ? poles[0] : poles[1]}); // the nearer where neither is
         }
         PlacedRing result;
         result.ring = &ring;
@@ -142,6 +177,11 @@ VectorPlaces::VectorPlaces(const VectorFile& file, const Crs& map, const std::st
         on.rings.push_back(std::move(result));
       }
       this->lost += lost;
+      if (shape.kind == VectorShape::Kind::Area && pole.allFinite() && Contains(shape, pole)) {
+        on.outside = true;
+        on.box.extend(Eigen::Vector2d::Constant(-1e15));
+        on.box.extend(Eigen::Vector2d::Constant(1e15));
+      }
       // Of an area a part would be another area; of a path its parts are what there is.
       if (!on.box.isEmpty() && !(lost && shape.kind == VectorShape::Kind::Area)) {
         placed.shapes.push_back(std::move(on));

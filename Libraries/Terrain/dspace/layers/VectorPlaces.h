@@ -30,6 +30,9 @@ private:
   std::unique_ptr<OGRCoordinateTransformation> Way_;
 };
 
+// Map y of the south and the north pole, or all but, of a CRS in which x goes once around.
+std::array<double, 2> PolesOf(const Crs& crs, const std::string& object);
+
 struct PlacedRing {
   const VectorRing* ring = nullptr;
   std::vector<Eigen::Vector2d> map; // of ring->places, then what closes it over a pole of the map
@@ -41,6 +44,7 @@ struct PlacedShape {
   const VectorShape* shape = nullptr;
   std::vector<PlacedRing> rings;
   Eigen::AlignedBox2d box; // of all of it, on the map
+  bool outside = false;    // contains what the map has infinitely far out: all outside of its rings
 };
 
 struct PlacedGroup {
@@ -50,7 +54,9 @@ struct PlacedGroup {
 
 // Keeps pointers into `file`, which must stay.
 struct VectorPlaces {
-  VectorPlaces(const VectorFile& file, const Crs& map, const std::string& object);
+  // `far`: the latitude [deg] of the pole that the map has infinitely far out, if it has one.
+  VectorPlaces(const VectorFile& file, const Crs& map, std::optional<double> far,
+               const std::string& object);
 
   double turn = 0.0; // after how much of map x it repeats; 0: never
   std::vector<PlacedGroup> groups;

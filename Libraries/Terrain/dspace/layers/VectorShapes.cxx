@@ -6,9 +6,11 @@
 #include <ogrsf_frmts.h>
 
 #include <dspace/scene/Checks.h>
+#include <dspace/terrain/MapTurn.h>
 #include <dspace/terrain/OpenRaster.h>
 
 #include "VectorCrs.h"
+#include "VectorPlaces.h"
 
 namespace dspace {
 namespace {
@@ -26,7 +28,11 @@ public:
     this->Group_ = &group;
     const double unit = crs.GetUnit();
     const bool degrees = crs.GetKind() == Crs::Kind::Geographic;
-    this->Turn_ = degrees ? 360.0 / unit : 0.0;
+    this->Degrees_ = degrees;
+    this->Turn_ = MapTurn(crs);
+    if (this->Turn_ > 0.0) {
+      this->Poles_ = PolesOf(crs, this->Object_);
+    }
     this->Longest_ = degrees ? LongestEdge / unit
                      : crs.HasGeographic()
                          ? crs.GetAxes().semiMajor * LongestEdge * M_PI / 180.0 / unit
@@ -177,8 +183,7 @@ private:
       ring.places = this->Divided(places);
       ring.outline = ring.places.size();
       if (kind == VectorShape::Kind::Area && this->Turn_ > 0.0) {
-        const double pole = 0.25 * this->Turn_ * NextToPole;
-        CloseOverPole(ring, this->Turn_, {-pole, pole});
+        CloseOverPole(ring, this->Turn_, this->Poles_);
         ring.places = this->Divided(ring.places); // only what closes it is long
       }
       this->Count(ring.places.size());
@@ -205,20 +210,22 @@ private:
   }
 
   void CheckPlaces(std::vector<Eigen::Vector2d>& places) const {
-    const double right = 0.25 * this->Turn_;
+    const auto [low, high] = std::minmax(this->Poles_[0], this->Poles_[1]);
+    const double beyond = 1e-6 * (high - low); // rounded: at the pole
     for (Eigen::Vector2d& place : places) {
       if (!place.allFinite() || place.cwiseAbs().maxCoeff() > 1e12) {
         throw Error(Error::Kind::Corrupt, this->Object_,
                     "a vertex is (" + NumberText(place.x()) + ", " + NumberText(place.y()) + ")");
       }
-      if (this->Turn_ > 0.0) {
-        if (std::abs(place.y()) > right * 1.000001 || std::abs(place.x()) > 2.0 * this->Turn_) {
-          Refuse(this->Object_, "a vertex is (" + NumberText(place.x()) + ", " +
-                                    NumberText(place.y()) +
-                                    "), which is no longitude and latitude; accepted: a CRS "
-                                    "stated for the layer in which it is a place");
-        }
-        place.y() = std::clamp(place.y(), -right * NextToPole, right * NextToPole);
+      const bool inside = place.y() >= low - beyond && place.y() <= high + beyond;
+      if (this->Degrees_ && (!inside || std::abs(place.x()) > 2.0 * this->Turn_)) {
+        Refuse(this->Object_, "a vertex is (" + NumberText(place.x()) + ", " +
+                                  NumberText(place.y()) +
+                                  "), which is no longitude and latitude; accepted: a CRS "
+                                  "stated for the layer in which it is a place");
+      }
+      if (this->Turn_ > 0.0 && inside) {
+        place.y() = std::clamp(place.y(), low, high);
       }
     }
   }
@@ -245,7 +252,9 @@ private:
   const VectorLayerOptions& Options_;
   VectorFile& File_;
   VectorGroup* Group_ = nullptr;
+  bool Degrees_ = false;
   double Turn_ = 0.0;
+  std::array<double, 2> Poles_ = {0.0, 0.0};
   double Longest_ = 0.0;
   std::size_t Vertices_ = 0;
   bool Ignored_ = false;
@@ -266,59 +275,6 @@ DatasetPointer Open(const std::string& path, const std::string& object, GdalErro
 }
 
 } // namespace
-
-void Unwrap(std::vector<Eigen::Vector2d>& places, double turn, bool frames) {
-  std::optional<double> given, moved; // x of the place before
-  for (Eigen::Vector2d& place : places) {
-    if (!(turn > 0.0) || !place.allFinite()) {
-      continue;
-    }
-    const double x = place.x();
-    if (given) {
-      const bool along = frames && std::abs(std::abs(x - *given) - turn) <= 1e-9 * turn;
-      const double step = along ? x - *given : std::remainder(x - *given, turn);
-      place.x() = *moved + step;
-    }
-    given = x;
-    moved = place.x();
-  }
-}
-
-void BesideOf(const std::vector<Eigen::Vector2d>& other, double turn,
-              std::vector<Eigen::Vector2d>& places) {
-  const auto middle = [](const std::vector<Eigen::Vector2d>& ring) {
-    Eigen::AlignedBox<double, 1> box;
-    for (const Eigen::Vector2d& place : ring) {
-      box.extend(Eigen::Matrix<double, 1, 1>(place.x()));
-    }
-    return box.center().x();
-  };
-  const double apart = middle(places) - middle(other);
-  for (Eigen::Vector2d& place : places) {
-    place.x() -= turn * std::round(apart / turn);
-  }
-}
-
-void CloseOverPole(VectorRing& ring, double turn, const std::array<double, 2>& poles) {
-  if (ring.places.size() < 3) {
-    return;
-  }
-  const Eigen::Vector2d first = ring.places.front(), last = ring.places.back();
-  if (std::abs(std::abs(last.x() - first.x()) - turn) > 1e-6 * turn) {
-    return;
-  }
-  double sum = 0.0;
-  for (const Eigen::Vector2d& place : ring.places) {
-    sum += place.y();
-  }
-  const double mean = sum / double(ring.places.size());
-  const double pole = std::abs(poles[0] - mean) < std::abs(poles[1] - mean) ? poles[0] : poles[1];
-  // In steps that are no half turn, by which the way around would be lost.
-  for (int k = 0; k <= 8; ++k) {
-    ring.places.emplace_back(last.x() + (first.x() - last.x()) * (k / 8.0), pole);
-  }
-  ring.places.push_back(first);
-}
 
 VectorFile ReadVectorFile(const std::string& path, const RasterPlace& terrain,
                           const VectorLayerOptions& options) {

@@ -185,6 +185,14 @@ TexelChain VectorTracer::Follow(const PlacedRing& ring, std::size_t count,
   return chain;
 }
 
+TexelChain VectorTracer::Block() const {
+  const Eigen::AlignedBox2d window = this->Window(0.0);
+  return {window.corner(Eigen::AlignedBox2d::BottomLeft),
+          window.corner(Eigen::AlignedBox2d::BottomRight),
+          window.corner(Eigen::AlignedBox2d::TopRight),
+          window.corner(Eigen::AlignedBox2d::TopLeft)};
+}
+
 TexelChain VectorTracer::Area(const PlacedRing& ring, const MapConversion& conversion,
                               const Eigen::Vector2d& offset) const {
   return Clipped(this->Follow(ring, ring.map.size(), conversion, offset, 0.0), this->Window(0.0));

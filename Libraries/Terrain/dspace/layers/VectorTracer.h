@@ -31,6 +31,7 @@ public:
   std::vector<Eigen::Vector2d> Turns(const Eigen::AlignedBox2d& map, double reach) const;
 
   // Both follow the edges of the file's CRS to a quarter of a texel, as far as they may be seen.
+  TexelChain Block() const; // a little more than all of it
   TexelChain Area(const PlacedRing& ring, const MapConversion& conversion,
                   const Eigen::Vector2d& offset) const;
   void Path(const PlacedRing& ring, const MapConversion& conversion, const Eigen::Vector2d& offset,
