@@ -21,8 +21,11 @@ struct RasterLayerOptions {
   // file's geotransform.
   std::optional<std::array<double, 4>> extent; // left, top, right, bottom
   NetworkLimits network;
-  // A folder for averaged overviews of files that have none and are larger than 4096 pixels a side;
-  // empty: they are kept in memory of the process only.
+  // A folder for averaged overviews of local files that have none and are larger than 4096 pixels a
+  // side ("...-layer-N.tif", checked against the file's size and time); empty: they are kept in
+  // memory of the process only, a twelfth of the pixels, compressed. The first read of texels that
+  // are four pixels and more makes them, once; reads of such texels wait for it, others do not.
+  // Large files on a server without overviews are decimated far away, with a warning.
   std::string cacheFolder;
 };
 

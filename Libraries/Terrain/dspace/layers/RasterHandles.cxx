@@ -27,8 +27,7 @@ double Most(GDALRasterBand& band) {
 
 RasterLevels::RasterLevels(std::string object, std::string path, int band,
                            const RasterLayerOptions& options)
-    : Object_(std::move(object)), Path_(std::move(path)), Band_(band), Network_(options.network),
-      CacheFolder_(options.cacheFolder) {
+    : Object_(std::move(object)), Path_(std::move(path)), Band_(band), Network_(options.network) {
   CheckLimits(options.network, this->Object_);
   this->File_ = FileState::Of(this->Path_);
   DatasetPointer file = OpenRaster(this->Path_, this->Network_, this->Warnings_, this->Object_);
@@ -43,11 +42,17 @@ RasterLevels::RasterLevels(std::string object, std::string path, int band,
                               " has no overviews and lies on a server: far away single pixels of "
                               "it are shown, no means; build overviews (gdaladdo -r average)");
   }
+  this->PlanOverviews(*file, options.cacheFolder, handle->levels.size() > 1);
   handle->file = std::move(file);
   this->Idle_.push_back(std::move(handle));
 }
 
-RasterLevels::~RasterLevels() = default;
+RasterLevels::~RasterLevels() {
+  this->Idle_.clear();
+  if (this->InMemory_) {
+    this->RemoveOverviews();
+  }
+}
 
 void RasterLevels::Inspect(GDALDataset& file) {
   GdalErrors errors;
@@ -224,6 +229,7 @@ void RasterLevels::With(const std::function<void(Handle&)>& use) const {
     std::vector<std::string> known;
     handle = this->Open(known);
   }
+  this->AddOverviews(*handle);
   use(*handle);
   if (this->File_.ChangedInPlace(this->Path_)) {
     throw Error(Error::Kind::Io, this->Object_, Changed);

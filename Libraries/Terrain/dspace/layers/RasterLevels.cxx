@@ -59,6 +59,11 @@ void RasterLevels::ReadPixels(const Level& level, const RasterWindow& part, int 
       return;
     }
     const std::string message = errors.Message("GDAL gave no reason");
+    if (level.cached) {
+      this->RemoveOverviews();
+      throw Error(Error::Kind::Corrupt, this->Object_,
+                  "its overviews in the cache are damaged; they are made anew: " + message);
+    }
     if (this->Remote_) {
       ForgetAnswers(this->Path_);
       if (IsUnanswered(message)) {
@@ -78,7 +83,7 @@ void RasterLevels::ReadPixels(const Level& level, const RasterWindow& part, int 
     check(band->GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width, part.height,
                                         mask.data(), columns, rows, GDT_Byte, 0, 0, nullptr));
   };
-  const bool values = this->Band_ > 0 && !level.cached;
+  const bool values = this->Band_ > 0;
   if (values) { // may need more digits than a float has, until the bias is gone
     strip.values.resize(count);
     check(level.colors[0]->RasterIO(GF_Read, part.column, part.row, part.width, part.height,
@@ -110,7 +115,8 @@ void RasterLevels::ReadPixels(const Level& level, const RasterWindow& part, int 
     float* p = &strip.pixels[i * step];
     float opacity = level.alpha ? p[this->Channels_] * alphaScale : strip.mask[i] / 255.0f;
     if (values) {
-      const double value = strip.values[i] * this->Scale_ + this->Offset_;
+      const double value =
+          level.cached ? strip.values[i] : strip.values[i] * this->Scale_ + this->Offset_;
       opacity = std::isfinite(value) ? opacity : 0.0f;
       p[0] = opacity > 0.0f ? float(value - this->Bias_) * opacity : 0.0f;
     } else if (!this->Palette_.empty() && !level.cached) {
@@ -130,6 +136,7 @@ void RasterLevels::ReadPixels(const Level& level, const RasterWindow& part, int 
 }
 
 void RasterLevels::Read(const LevelWindow& window, float* cells) const {
+  this->MakeOverviews(window);
   this->With([&](Handle& handle) { this->ReadCells(handle, window, cells); });
 }
 

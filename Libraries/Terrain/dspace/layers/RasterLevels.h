@@ -3,6 +3,7 @@
 #ifndef DSPACE_LAYERS_RASTERLEVELS_H
 #define DSPACE_LAYERS_RASTERLEVELS_H
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -75,12 +76,12 @@ private:
     GDALRasterBand* alpha = nullptr;
     std::vector<GDALRasterBand*> masks; // opaque where any of them is
     bool gaps = false;                  // see GivesZerosForGaps
-    bool cached = false;                // of the averaged overviews: scaled already
+    bool cached = false;                // of our own overviews: scaled already
   };
   struct Handle {
     DatasetPointer file;
-    DatasetPointer overviews;
-    std::vector<Level> levels; // the raster itself, then ever coarser
+    std::vector<DatasetPointer> overviews; // made by us
+    std::vector<Level> levels;             // the raster itself, then ever coarser
   };
   struct Strip;
 
@@ -90,6 +91,14 @@ private:
   void InspectImage(GDALDataset& file);
   void InspectBand(GDALRasterBand& band);
   void With(const std::function<void(Handle&)>& use) const;
+  // Overviews of our own, in RasterOverviews.cxx.
+  void PlanOverviews(GDALDataset& file, const std::string& folder, bool hasOwn);
+  void MakeOverviews(const LevelWindow& window) const;
+  void AddOverviews(Handle& handle) const;
+  bool AddOverview(Handle& handle, int level) const;
+  void WriteOverview(Handle& handle, int level) const;
+  void RemoveOverviews() const;
+  std::string OverviewFileOf(int level) const;
   void ReadCells(Handle& handle, const LevelWindow& window, float* cells) const;
   void ReadPixels(const Level& level, const RasterWindow& part, int columns, int rows,
                   Strip& strip) const;
@@ -98,7 +107,6 @@ private:
   std::string Path_;
   int Band_ = 0;
   NetworkLimits Network_;
-  std::string CacheFolder_;
   FileState File_;
   bool Remote_ = false;
 
@@ -116,6 +124,13 @@ private:
   std::string Unit_;
   Georeference Place_;
   std::vector<std::string> Warnings_;
+
+  std::string OverviewStem_; // empty: none are needed
+  std::string Folder_;
+  std::string Identity_; // of what they are made from
+  bool InMemory_ = false;
+  mutable std::mutex Making_;
+  mutable std::atomic<bool> OverviewsReady_{false};
 
   mutable std::mutex Mutex_;
   mutable std::vector<std::unique_ptr<Handle>> Idle_;
