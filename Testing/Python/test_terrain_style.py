@@ -46,7 +46,48 @@ def test_contours_lie_at_their_heights(slope):
     np.testing.assert_array_equal(view.image(), plain)
 
 
+def test_noise_is_drawn_and_not_measured(scene, tmp_path):
+    z = np.tile(np.arange(128.0) * 2 * RISE, (128, 1)).astype(np.float32)
+    ground = scene.add_terrain(write_raster(tmp_path / "slope.tif", z, pixel=2.0), mode="clipmap",
+                               subdivisions=4, color=(0.5, 0.5, 0.5))  # posts of 12.5 cm
+    scene.add_camera(eye=(3.0, 1.0, 22.0), target=(3.0, 1.0, 0), up=(0, 1, 0), height=8)
+    view = scene.add_viewport(size=(200, 200), samples=1)
+    x, y = np.meshgrid(np.linspace(-20, 20, 41), np.linspace(-20, 20, 41))
+    plain, depth, heights = view.image(), view.depth(), ground.height(x, y)
+    noise = dict(wavelength=4.0, amplitude=0.2, octaves=3, gain=0.5, seed=7)
+    ground.set_style(noise=noise)
+    change = view.depth() - depth
+    most = 0.2 * (1 + 0.5 + 0.25)
+    # Seen from straight above a pixel's depth changes as its ground's height does.
+    assert np.abs(change).max() <= most
+    assert np.abs(change).max() > 0.1 * most and change.std() > 0.03 * most
+    np.testing.assert_array_equal(ground.height(x, y), heights)
+    assert (view.image() != plain).any(axis=-1).mean() > 0.5  # its normals follow
+    ground.set_style(noise=dict(noise, seed=8))
+    assert np.abs(view.depth() - depth - change).max() > 0.1 * most
+    ground.set_style(noise=noise)
+    np.testing.assert_array_equal(view.depth() - depth, change)
+    ground.set_style(noise=None)
+    np.testing.assert_array_equal(view.image(), plain)
+    np.testing.assert_array_equal(view.depth(), depth)
+    # Two pixels of the data a wavelength: posts that are no closer do not resolve it.
+    coarse = scene.add_terrain(write_raster(tmp_path / "coarse.tif", z, pixel=2.0), mode="clipmap",
+                               color=(0.5, 0.5, 0.5))
+    ground.remove()
+    depth = view.depth()
+    coarse.set_style(noise=noise)
+    np.testing.assert_array_equal(view.depth(), depth)
+
+
 @pytest.mark.parametrize("style, told", [
+    (dict(noise=0.1), "dict"),
+    (dict(noise=dict(wavelength=1.0)), "amplitude"),
+    (dict(noise=dict(wavelength=1.0, amplitude=0.1, lacunarity=2)), "lacunarity"),
+    (dict(noise=dict(wavelength=0.0, amplitude=0.1)), "1e-3 to 1e7"),
+    (dict(noise=dict(wavelength=1.0, amplitude=-0.1)), "amplitude"),
+    (dict(noise=dict(wavelength=1.0, amplitude=0.1, octaves=17)), "1 to 16"),
+    (dict(noise=dict(wavelength=1.0, amplitude=0.1, gain=0)), "gain"),
+    (dict(noise=dict(wavelength=1.0, amplitude=0.1, seed=-1)), "seed"),
     (dict(color_by="depth"), "'height', 'slope'"),
     (dict(range=(0, 1)), "color_by"),
     (dict(color_by="height", range=(3, 3)), "differ"),
