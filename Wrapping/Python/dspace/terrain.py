@@ -238,7 +238,7 @@ class Terrain(LayerMaking, TrackMaking, Strict):
         self._scene._execute(command)
 
     def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
-                  contours=None, grid=None, details=(), tracks=None):
+                  contours=None, grid=None, details=(), tracks=None, noise=None):
         """What is laid over a clipmap's own colour; replaces the style before, set_style() removes it.
 
         color_by: "height", "slope" (degrees from level) or "aspect" (azimuth of steepest descent,
@@ -252,7 +252,14 @@ class Terrain(LayerMaking, TrackMaking, Strict):
         tiling images that add structure closer than the posts, on a plane: dicts of image (a file),
         size (metres a tile), slope (low, high; degrees), height (low, high; metres), opacity
         (0.5). tracks: the ground's colour where wheels have rolled (see track()), or a dict of color
-        and opacity (black, 0.35)."""
+        and opacity (black, 0.35).
+
+        noise: decoration of the ground's drawn shape where posts are closer than the data's pixels
+        (on a plane: `subdivisions` of add_terrain): a dict of wavelength (metres, of the longest
+        octave; at most two of the data's pixels leave those as they are), amplitude (metres that it
+        adds at most), octaves of halved wavelength (4), gain of each over the one before it (0.5),
+        seed (0). Pictures, their depth images, contours and ramps have it, height() and every other
+        query and analysis, ruts and robots do not: leave it off where something is measured."""
         label = self._label()
         command = self._scene._command()
         style = command.style_terrain
@@ -278,6 +285,8 @@ class Terrain(LayerMaking, TrackMaking, Strict):
         put_given(style, label, levels=levels)
         _put_lines(style.contours, contours, "contours", label)
         _put_lines(style.grid, grid, "grid", label)
+        if noise is not None:
+            _put_noise(style.noise, noise, f"{label}, noise")
         self._scene._execute(command)
 
     @property
@@ -318,6 +327,18 @@ def _put_detail(message, detail, label):
     if "height" in detail:
         low, high = numbers(detail["height"], 2, "its height", label, "low, high")
         put(message, label, height_low=low, height_high=high)
+
+
+def _put_noise(message, noise, label):
+    """A dict into a Noise."""
+    accepted = ("wavelength", "amplitude", "octaves", "gain", "seed")
+    if not isinstance(noise, dict):
+        refuse(label, "it", noise, f"a dict of {', '.join(accepted)}", WrongType)
+    keywords(noise, accepted, label)
+    for needed in accepted[:2]:
+        if needed not in noise:
+            refuse(label, "it", noise, f"a dict with {needed!r}", WrongType)
+    put(message, label, **{"octaves": 4, "gain": 0.5, "seed": 0, **noise})
 
 
 def _put_lines(message, lines, what, label):

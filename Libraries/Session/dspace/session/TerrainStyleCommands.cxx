@@ -70,6 +70,16 @@ ClipmapStyle::Ramp ToRamp(const v1::StyleTerrain::Ramp& ramp, const StreamedTerr
   return result;
 }
 
+ClipmapStyle::Noise ToNoise(const v1::StyleTerrain::Noise& noise) {
+  ClipmapStyle::Noise result;
+  result.options.wavelength = noise.wavelength();
+  result.options.octaves = static_cast<int>(std::min(noise.octaves(), 1000U)); // then refused
+  result.options.gain = noise.gain();
+  result.options.seed = noise.seed();
+  result.amplitude = noise.amplitude();
+  return result;
+}
+
 ClipmapStyle::Detail ToDetail(const Context& context, v1::StyleTerrain::Detail& detail) {
   ClipmapStyle::Detail result;
   detail.set_path(AbsolutePath(detail.path()));
@@ -138,6 +148,9 @@ void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
   }
   if (command.has_grid()) {
     style.grid = ToLines(command.grid(), label);
+  }
+  if (command.has_noise()) {
+    style.noise = ToNoise(command.noise());
   }
   style.Check(label);
   terrain->Clipmap().SetStyle(style);
