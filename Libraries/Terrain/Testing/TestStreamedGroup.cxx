@@ -275,6 +275,26 @@ TEST(StreamedGroup, OnAPlane) {
     EXPECT_NEAR(terrain->Sample(p_S).height, height, 1e-6);
   }
   ExpectRaysMeetIt(*terrain, terrain->SampleMap(middle).position_S, 900.0);
+  // A few places in a tile are answered without it, as it would answer them.
+  const auto single = StreamedTerrain::Open(path, options);
+  const PostLattice& lattice = terrain->Pyramid()->Lattice();
+  std::vector<float> all(std::size_t(lattice.columns) * lattice.rows);
+  terrain->Pyramid()->Read({0, 0, 0, int(lattice.columns), int(lattice.rows)}, all.data());
+  Rows2 places(400, 2);
+  for (int i = 0; i < 400; ++i) {
+    places.row(i) = middle + 3000.0 * Eigen::Vector2d(unit(random), 0.8 * unit(random));
+  }
+  Eigen::VectorXd one(400), tiles(400);
+  const std::uint64_t before = single->Pyramid()->Statistics().loads;
+  single->HeightsMap(places, one);
+  EXPECT_LE(single->Pyramid()->Statistics().loads, before + 20); // where many lie in one
+  terrain->HeightsMap(places, tiles);
+  EXPECT_EQ(one, tiles);
+  for (int i = 0; i < 40; ++i) { // again and again in one tile, which then is read
+    EXPECT_EQ(single->SampleMap(middle + 0.5 * Eigen::Vector2d(i, i)).height,
+              terrain->SampleMap(middle + 0.5 * Eigen::Vector2d(i, i)).height);
+  }
+  EXPECT_GT(single->Pyramid()->Statistics().loads, before);
 }
 
 } // namespace

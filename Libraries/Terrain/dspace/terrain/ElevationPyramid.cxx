@@ -261,9 +261,9 @@ struct ElevationPyramid::Implementation {
     }
   }
 
-  // Copies what the pieces show, or asks for what is missing and returns false.
+  // Copies what the pieces show, or asks for what is missing (if `ask`) and returns false.
   bool Serve(const std::vector<TilePiece>& pieces, const PostBlock& block, const PostPlanes& planes,
-             std::vector<std::shared_ptr<const PyramidTile>>& held) {
+             std::vector<std::shared_ptr<const PyramidTile>>& held, bool ask = true) {
     bool complete = true;
     held.resize(pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -271,7 +271,9 @@ struct ElevationPyramid::Implementation {
         held[i] = this->Find(pieces[i]);
       }
       if (!held[i]) {
-        this->Ask(pieces[i].key);
+        if (ask) {
+          this->Ask(pieces[i].key);
+        }
         complete = false;
       }
     }
@@ -332,6 +334,13 @@ bool ElevationPyramid::TryRead(const PostBlock& block, float* heights, float* tr
     this->Impl_->wanted.notify_all();
   }
   return complete;
+}
+
+bool ElevationPyramid::ReadHeld(const PostBlock& block, float* heights) {
+  const std::vector<TilePiece> pieces = CutIntoTiles(this->Lattice(), block);
+  std::vector<std::shared_ptr<const PyramidTile>> held;
+  const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  return this->Impl_->Serve(pieces, block, {heights, nullptr}, held, false);
 }
 
 void ElevationPyramid::Read(const PostBlock& block, float* heights, double seconds) {

@@ -55,6 +55,8 @@ public:
   // The block as PostSource::Read gives it, from tiles in memory. False, and nothing written, where
   // one is missing: it is then asked for, latest requests first and of them the coarsest.
   bool TryRead(const PostBlock& block, float* heights);
+  // The same, and nothing is asked for.
+  bool ReadHeld(const PostBlock& block, float* heights);
   // Reads what is missing first. Throws Error: what the last of the failed attempts threw;
   // DeadlineExceeded when `seconds` ran out.
   void Read(const PostBlock& block, float* heights,

@@ -3,11 +3,18 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <mutex>
+#include <utility>
+
+#include <dspace/Error.h>
+
+#include "LatestKept.h"
 
 namespace dspace {
 namespace {
 
 constexpr int Size = ElevationPyramid::TileSize;
+constexpr std::size_t MostSingles = 16; // of a tile: then it is read
 
 // Posts with one of margin, so that the rims of holes can look around.
 struct Block {
@@ -30,6 +37,33 @@ CellRange CellsOf(const PostLattice& lattice, int level) {
 }
 
 } // namespace
+
+// How many places were asked for one by one in tiles, the latest of them.
+struct PostSurface::Singles {
+  std::mutex mutex;
+  LatestKept<std::pair<std::int64_t, std::int64_t>, std::shared_ptr<std::size_t>> tiles{4096};
+};
+
+PostSurface::PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, bool poles,
+                         double deadline, bool scattered)
+    : Pyramid_(std::move(pyramid)), Level_(level), Poles_(poles), Deadline_(deadline),
+      Singles_(scattered ? std::make_unique<Singles>() : nullptr) {}
+
+PostSurface::~PostSurface() = default;
+
+// Whether so many more places of a tile are to be read one by one: not where many were before.
+bool PostSurface::TakeSingles(std::size_t count, std::int64_t tileColumn,
+                              std::int64_t tileRow) const {
+  if (!this->Singles_ || count > MostSingles) {
+    return false;
+  }
+  const std::pair<std::int64_t, std::int64_t> key(tileColumn, tileRow);
+  const std::lock_guard<std::mutex> lock(this->Singles_->mutex);
+  this->Singles_->tiles.Keep(key, std::make_shared<std::size_t>(0));
+  std::size_t& before = **this->Singles_->tiles.Find(key);
+  before += count;
+  return before <= MostSingles;
+}
 
 HeightGrid::Facet PostSurface::At(const Eigen::Vector2d& post) const {
   Facet result;
@@ -74,6 +108,7 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
   };
   std::sort(items.begin(), items.end(), before);
   Block block;
+  std::vector<Facet> facets;
   for (std::size_t from = 0; from < items.size();) {
     std::size_t to = from;
     std::array<std::int64_t, 2> low = cellOf(posts[items[from].index]);
@@ -89,10 +124,37 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
                    int(high[1] - low[1]) + 4};
     block.heights.resize(std::size_t(block.place.width) * block.place.height);
     const double spent = std::chrono::duration<double>(Clock::now() - start).count();
-    this->Pyramid_->Read(block.place, block.heights.data(), std::max(0.0, this->Deadline_ - spent));
+    const double left = std::max(0.0, this->Deadline_ - spent);
     const auto cell = [&](std::int64_t c, std::int64_t r, bool below, double u, double v) {
       return this->OfCell(block, c, r, below, u, v);
     };
+    const bool singly = left > 0.0 &&
+                        this->TakeSingles(to - from, items[from].tileColumn, items[from].tileRow) &&
+                        !this->Pyramid_->ReadHeld(block.place, block.heights.data());
+    if (singly) {
+      try {
+        Block few;
+        for (std::size_t k = from; k < to; ++k) {
+          const auto [c, r] = cellOf(posts[items[k].index]);
+          few.place = {this->Level_, c - 1, r - 1, 4, 4};
+          few.heights.resize(16);
+          this->Pyramid_->Source().Read(few.place, few.heights.data());
+          const auto ofFew = [&](std::int64_t cc, std::int64_t rr, bool below, double u, double v) {
+            return this->OfCell(few, cc, rr, below, u, v);
+          };
+          facets.push_back(FacetNear(cells, posts[items[k].index] * scale, ofFew));
+        }
+        for (std::size_t k = 0; k < facets.size(); ++k) {
+          take(items[from + k].index, facets[k]);
+        }
+        facets.clear();
+        from = to;
+        continue;
+      } catch (const Error&) { // the pyramid makes its own attempts, and tells of them
+        facets.clear();
+      }
+    }
+    this->Pyramid_->Read(block.place, block.heights.data(), left);
     for (; from < to; ++from) {
       const std::size_t i = items[from].index;
       take(i, FacetNear(cells, posts[i] * scale, cell));

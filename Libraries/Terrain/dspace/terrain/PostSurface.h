@@ -22,9 +22,12 @@ public:
   using Facet = HeightGrid::Facet;
 
   // `level` says all, and divides the lattice evenly. `poles`: the first and the last row are
-  // poles. `deadline` [s] is what a call waits for tiles.
-  PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, bool poles, double deadline)
-      : Pyramid_(std::move(pyramid)), Level_(level), Poles_(poles), Deadline_(deadline) {}
+  // poles. `deadline` [s] is what a call waits for tiles. `scattered`: where few places lie in a
+  // tile that is not in memory, their posts alone are read, by the calling thread: worth it where
+  // tiles are dear and the source is no server's.
+  PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, bool poles, double deadline,
+              bool scattered = false);
+  ~PostSurface();
 
   // Not valid outside the lattice and in holes.
   Facet At(const Eigen::Vector2d& post) const;
@@ -47,10 +50,13 @@ public:
   double Deadline() const { return this->Deadline_; }
 
 private:
+  struct Singles;
+  bool TakeSingles(std::size_t count, std::int64_t tileColumn, std::int64_t tileRow) const;
   std::shared_ptr<ElevationPyramid> Pyramid_;
   int Level_;
   bool Poles_;
   double Deadline_;
+  std::unique_ptr<Singles> Singles_; // null: tiles are read
 };
 
 template<typename Posts>

@@ -6,6 +6,7 @@
 
 #include <dspace/Error.h>
 
+#include "PixelTiles.h"
 #include "PostsBetween.h"
 
 namespace dspace {
@@ -87,7 +88,8 @@ std::int64_t ColumnsAround(int columns, int rowCells, int coarsest) {
 
 RasterPosts::RasterPosts(std::shared_ptr<const ElevationSource> source,
                          const RasterPostsOptions& options)
-    : Source_(std::move(source)), Name_("raster '" + Source_->Info().path + "'"),
+    : Source_(std::move(source)), Few_(std::make_shared<const PixelTiles>(Source_)),
+      Name_("raster '" + Source_->Info().path + "'"),
       Lattice_(LatticeOf(Source_->Info(), options)), Subdivisions_(options.subdivisions),
       Poles_(options.poles) {
   const int width = this->Source_->Info().window.width;
@@ -120,7 +122,9 @@ std::vector<double> RasterPosts::ReadPixels(std::int64_t column, std::int64_t ro
     window.row = int(top * factor);
     window.width = int(std::min<std::int64_t>(run * factor, all.width - window.column));
     window.height = int(std::min<std::int64_t>((bottom - top) * factor, all.height - window.row));
-    const std::vector<double> part = this->Source_->ReadReduced(window, factor);
+    const bool few = factor == 1 && window.width * std::int64_t(window.height) <= PixelTiles::Most;
+    const std::vector<double> part =
+        few ? this->Few_->Read(window) : this->Source_->ReadReduced(window, factor);
     for (std::int64_t r = top; r < bottom; ++r) {
       std::copy_n(part.begin() + (r - top) * run, run,
                   pixels.begin() + (r - row) * width + (c - column));

@@ -15,6 +15,8 @@
 
 namespace dspace {
 
+class PixelTiles;
+
 struct RasterPostsOptions {
   // Each cell between four pixels is divided into 2^subdivisions a side, flat in each of the two
   // triangles that HeightGrid states: the surface is the same, its posts are closer. 0 to 24.
@@ -79,6 +81,7 @@ private:
   double PoleHeight(int level, bool last) const;
 
   std::shared_ptr<const ElevationSource> Source_;
+  std::shared_ptr<const PixelTiles> Few_; // of it
   std::string Name_;
   PostLattice Lattice_;
   int Subdivisions_;

@@ -8,11 +8,11 @@
 
 namespace dspace {
 
-// The raster's own posts: rays are spared reading finer ones where these say enough.
+// The ground without patches and tracks: rays are spared reading finer ones where these say enough.
 const PostSurface& StreamedTerrain::Bottom() const {
   std::call_once(this->BottomOnce_, [this] {
     this->Bottom_ = std::make_unique<PostSurface>(
-        std::make_shared<ElevationPyramid>(this->Posts_, this->BottomOptions_), this->FullLevel_,
+        std::make_shared<ElevationPyramid>(this->Ground_, this->BottomOptions_), this->FullLevel_,
         this->Poles_, this->Deadline_);
   });
   return *this->Bottom_;

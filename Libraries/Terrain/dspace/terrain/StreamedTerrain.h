@@ -169,6 +169,7 @@ private:
   std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
+  std::shared_ptr<const PostSource> Ground_; // without patches and tracks
   ElevationPyramidOptions BottomOptions_;
   mutable std::once_flag BottomOnce_; // made when the first ray needs it, as are rays
   mutable std::unique_ptr<PostSurface> Bottom_;

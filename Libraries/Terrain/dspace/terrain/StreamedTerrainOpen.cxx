@@ -10,6 +10,7 @@
 #include <dspace/terrain/RasterPosts.h>
 
 #include "DegreeGrid.h"
+#include "NetworkScope.h"
 #include "PostSurface.h"
 #include "ResamplingError.h"
 #include "SurfaceRay.h"
@@ -158,6 +159,7 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   this->PixelToPost_.translation() << -0.5 * across, poles ? 0.0 : -0.5 * parts;
   this->MapToPost_ = this->PixelToPost_ * info.pixelToMap.inverse();
   std::shared_ptr<const PostSource> source = raster;
+  this->Ground_ = raster;
   this->FullLevel_ = raster->FullLevel();
   int level = this->FullLevel_;
   if (patches) {
@@ -170,7 +172,14 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
     source = this->WithTracks(source, options);
   }
   this->Pyramid_ = std::make_shared<ElevationPyramid>(source, options.pyramid);
-  this->Surface_ = std::make_unique<PostSurface>(this->Pyramid_, level, poles, options.deadline);
+  // A group's tiles hold far more posts than pixels were read.
+  const bool local =
+      !IsRemote(GdalPath(info.path)) &&
+      std::none_of(options.patches.begin(), options.patches.end(),
+                   [](const TerrainPatch& patch) { return IsRemote(GdalPath(patch.path)); });
+  const bool scattered = this->Group_ && local;
+  this->Surface_ =
+      std::make_unique<PostSurface>(this->Pyramid_, level, poles, options.deadline, scattered);
   if (this->Group_) {
     this->Plain_ =
         std::make_unique<PostSurface>(this->Pyramid_, this->FullLevel_, poles, options.deadline);
@@ -179,7 +188,8 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   this->BottomOptions_.byteBudget = std::size_t(4) << 20; // rays keep what they need
   this->BottomOptions_.threads = 1;
   if (this->Tracks_) {
-    this->Tracked_ = std::make_unique<PostSurface>(this->Pyramid_, 0, poles, options.deadline);
+    this->Tracked_ =
+        std::make_unique<PostSurface>(this->Pyramid_, 0, poles, options.deadline, scattered);
   }
 }
 

@@ -96,6 +96,7 @@ const StreamedTerrain& StreamedTerrain::Undisturbed() const {
     }
     bare->Posts_ = this->Posts_;
     bare->FullLevel_ = this->FullLevel_;
+    bare->Ground_ = this->Ground_;
     bare->BottomOptions_ = this->BottomOptions_;
     bare->Placement_ = this->Placement_;
     bare->Frame_ = this->Frame_;
