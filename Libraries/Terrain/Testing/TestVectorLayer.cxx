@@ -324,6 +324,10 @@ TEST(VectorLayer, WhatCannotBePaintedIsRefused) {
   VectorLayerOptions options;
   options.mostVertices = 1;
   Refused(Kind::Resource, "more than 1 vertices", path, plain.place, options);
+  options.mostVertices = 50; // long edges are divided
+  Refused(Kind::Resource, "more than 50 vertices",
+          Write(folder / "long.json", Feature("LineString", "[[-180,60],[180,60]]")), mars.place,
+          options);
   options = {};
   options.crs = "EPSG:4326"; // of the Earth
   Refused(Kind::Unsupported, "body", Write(folder / "earth.json", Feature("Point", "[30,60]")),

@@ -104,9 +104,8 @@ private:
     return look;
   }
 
-  void Count(std::size_t vertices) {
-    this->Vertices_ += vertices;
-    if (this->Vertices_ > this->Options_.mostVertices) {
+  void CheckCount(std::size_t more) const {
+    if (this->Vertices_ + more > this->Options_.mostVertices) {
       throw Error(Error::Kind::Resource, this->Object_,
                   "it has more than " + std::to_string(this->Options_.mostVertices) +
                       " vertices, which is the limit");
@@ -186,7 +185,7 @@ private:
         CloseOverPole(ring, this->Turn_, this->Poles_);
         ring.places = this->Divided(ring.places); // only what closes it is long
       }
-      this->Count(ring.places.size());
+      this->Vertices_ += ring.places.size();
       if (ring.places.size() >= (kind == VectorShape::Kind::Point ? 1U : 2U)) {
         shape.rings.push_back(std::move(ring));
       }
@@ -244,6 +243,7 @@ private:
         }
       }
       result.push_back(places[i]);
+      this->CheckCount(result.size()); // before it is large
     }
     return result;
   }
