@@ -145,6 +145,46 @@ TEST(DamagedRaster, AFileRewrittenInPlaceIsOpenedAnew) {
   EXPECT_NO_THROW(ElevationSource(path).Read());
 }
 
+// GDAL gives other heights for some of them without a word.
+TEST(DamagedRaster, NoFlippedByteOfADeflatedFileIsReadAsHeights) {
+  const TemporaryFolder folder;
+  std::mt19937 random(1);
+  int unnoticed = 0; // by GDAL
+  for (const auto& [tiled, predictor] : {std::pair("NO", "1"), {"NO", "3"}, {"YES", "1"}}) {
+    const std::string plain = Write(folder / "plain.tif", "NONE");
+    const std::string path = folder / "flipped.tif";
+    CPLStringList options;
+    options.SetNameValue("COMPRESS", "DEFLATE");
+    options.SetNameValue("PREDICTOR", predictor);
+    options.SetNameValue("TILED", tiled);
+    auto* from = GDALDataset::Open(plain.c_str(), GDAL_OF_RASTER);
+    auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    GDALClose(driver->CreateCopy(path.c_str(), from, 0, options.List(), nullptr, nullptr));
+    GDALClose(from);
+    ExpectHeights(ElevationSource(path).Read());
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    for (int i = 0; i < 40; ++i) {
+      std::string flipped = bytes; // beyond the directory, which comes first
+      flipped[4096 + random() % (bytes.size() - 4096)] ^= char(1 + random() % 255);
+      std::ofstream(path, std::ios::binary) << flipped;
+      std::vector<float> given(std::size_t(Side) * Side);
+      CPLPushErrorHandler(CPLQuietErrorHandler);
+      auto* dataset = GDALDataset::Open(path.c_str(), GDAL_OF_RASTER);
+      const bool read =
+          dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, Side, Side, given.data(), Side, Side,
+                                              GDT_Float32, 0, 0, nullptr) == CE_None;
+      GDALClose(dataset);
+      CPLPopErrorHandler();
+      unnoticed += read;
+      const ElevationSource source(path);
+      const std::string said = Refusal(source, {0, 0, Side, Side}, Error::Kind::Corrupt);
+      EXPECT_TRUE(!read || said.find("checksum") != std::string::npos) << said;
+    }
+  }
+  EXPECT_GT(unnoticed, 10);
+}
+
 TEST(DamagedRaster, WhatIsRemovedOrReplacedByNameIsReadAsItWas) {
   const TemporaryFolder folder;
   for (const std::string kind : {"NONE", "DEFLATE"}) {

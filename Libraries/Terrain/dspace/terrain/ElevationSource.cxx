@@ -9,6 +9,7 @@
 #include <dspace/Error.h>
 #include <dspace/terrain/ElevationCache.h>
 
+#include "DeflateCheck.h"
 #include "ElevationMetadata.h"
 #include "GdalErrors.h"
 #include "NetworkScope.h"
@@ -33,6 +34,7 @@ struct ElevationSource::Implementation {
   bool suspect = false; // a read failed
   bool gaps = false;    // there may be some, see GivesZerosForGaps
   FileState file;
+  std::unique_ptr<DeflateCheck> checksums; // of a file on a disk
   std::shared_ptr<const OverviewFile> overviews;
   std::string cached; // where they are, if they are; empty: nowhere
 
@@ -50,6 +52,8 @@ struct ElevationSource::Implementation {
                   "it is another raster than when it was opened; open it anew");
     this->dataset = std::move(fresh);
     this->band = this->dataset->GetRasterBand(this->bandNumber);
+    if (this->checksums)
+      this->checksums = std::make_unique<DeflateCheck>(*this->dataset, *this->band);
     this->suspect = false;
   }
 };
@@ -86,6 +90,8 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   if (band.GetColorTable())
     this->Info_.warnings.push_back("band " + std::to_string(options.band) +
                                    " has a colour table: its indices are taken as heights");
+  if (!this->Impl_->remote)
+    this->Impl_->checksums = std::make_unique<DeflateCheck>(dataset, band);
   this->Impl_->gaps = GivesZerosForGaps(band);
   this->Info_.overviews = band.GetOverviewCount();
   ReadGeoreference(dataset, options, this->Info_);
@@ -272,6 +278,11 @@ void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, 
   }
   if (impl.file.ChangedInPlace(this->Info_.path))
     throw Error(Error::Kind::Io, object, Changed);
+  const std::string damage = impl.suspect || !impl.checksums || part.width != columns
+                                 ? std::string()
+                                 : impl.checksums->Check(band, part);
+  if (!damage.empty())
+    throw Error(Error::Kind::Corrupt, object, "cannot be read: " + damage);
   if (!impl.suspect)
     return;
   if (impl.remote)
