@@ -120,13 +120,11 @@ def test_a_body_shows_aspects_and_normals_of_each_place(scene, globe, toward):
     from_pole = np.degrees(np.arccos(np.abs(up[..., 2])))
     there = from_pole > 1.5
     error = np.abs(view.image() / 255.0 - (0.5 + 0.5 * local))[there]
-    print("normal", error.max(), error.mean())
     assert error.max() < 0.03 and error.mean() < 0.006
     globe.set_style(color_by="aspect", colors=["black", "white"])
     aspect = globe.aspect_deg(*np.moveaxis(points, -1, 0))
     steep = there & (globe.slope_deg(*np.moveaxis(points, -1, 0)) > 2)
     error = degrees_between(shown_aspects(view.image()), aspect)[steep]
-    print("aspect", error.max(), error.mean(), steep.mean())
     assert steep.mean() > 0.5 and error.mean() < 3 and np.quantile(error, 0.99) < 15
 
 

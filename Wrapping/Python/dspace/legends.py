@@ -1,10 +1,25 @@
-"""Legends over a viewport's picture: colour bars."""
-from dspace._fields import flag, items, number, put, put_color, put_given, refuse, word
+"""What is written over a viewport's picture: colour bars, labels of grids."""
+from dspace._fields import flag, items, keywords, number, put, put_color, put_given, refuse, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.session import commands_pb2 as pb
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 UNITS = {"height": "m", "slope": "deg", "aspect": "deg"}
+
+
+def put_grid_labels(message, look, label):
+    """True or a dict into StyleTerrain.GridLabels; nothing for False."""
+    label = f"{label}, grid_labels"
+    look = look if isinstance(look, dict) else {} if flag(look, "grid_labels", label) else None
+    if look is None:
+        return
+    keywords(look, ("font_size", "color", "background", "background_opacity"), label)
+    message.SetInParent()
+    put_given(message, label, font_size=look.get("font_size"),
+              background_opacity=look.get("background_opacity"))
+    for field in ("color", "background"):
+        if look.get(field) is not None:
+            put_color(getattr(message, field), look[field], field, label)
 
 
 class LegendMaking:

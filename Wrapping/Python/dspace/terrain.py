@@ -6,6 +6,7 @@ from dspace._fields import (Named, array_of, flag, items, keywords, numbers, put
                             put_vector, refuse, shown, word)
 from dspace._strict import Strict
 from dspace.errors import InvalidArgument, WrongType
+from dspace.legends import put_grid_labels
 from dspace.layers import LayerMaking
 from dspace.objects import file_path
 from dspace.tracks import TrackMaking
@@ -238,7 +239,7 @@ class Terrain(LayerMaking, TrackMaking, Strict):
         self._scene._execute(command)
 
     def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
-                  contours=None, grid=None, details=(), tracks=None, noise=None):
+                  contours=None, grid=None, details=(), tracks=None, noise=None, grid_labels=False):
         """What is laid over a clipmap's own colour; replaces the style before, set_style() removes it.
 
         color_by: "height", "slope" (degrees from level) or "aspect" (azimuth of steepest descent,
@@ -248,7 +249,9 @@ class Terrain(LayerMaking, TrackMaking, Strict):
         0.5 + 0.5 n, n the normal in the place's east, north, up.
         levels: opacity of a colour for each clipmap level. contours: metres of height between lines,
         or a dict of interval, width (pixels), color, opacity. grid: the same for lines along the
-        map's axes, in map units; on a body meridians and parallels, in degrees. details: up to two
+        map's axes, in map units; on a body meridians and parallels, in degrees. grid_labels: their
+        values over the picture ("12°E"; of projected maps "4,500 E", "-200 N"), True or a dict of
+        font_size (13), color, background, background_opacity (0.5). details: up to two
         tiling images that add structure closer than the posts, on a plane: dicts of image (a file),
         size (metres a tile), slope (low, high; degrees), height (low, high; metres), opacity
         (0.5). tracks: the ground's colour where wheels have rolled (see track()), or a dict of color
@@ -285,6 +288,7 @@ class Terrain(LayerMaking, TrackMaking, Strict):
         put_given(style, label, levels=levels)
         _put_lines(style.contours, contours, "contours", label)
         _put_lines(style.grid, grid, "grid", label)
+        put_grid_labels(style.grid_labels, grid_labels, label)
         if noise is not None:
             _put_noise(style.noise, noise, f"{label}, noise")
         self._scene._execute(command)

@@ -126,10 +126,14 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
       failure = std::current_exception();
     }
   };
+  std::vector<Caption> captions;
   this->Renderer_->DrawScene = [&] {
     try {
       this->Drawer_->DrawColor(this->List_, view, this->DrawnTarget(), samples,
                                &request.background);
+      if (request.overlays) { // the axes take the depth
+        captions = this->Drawer_->Captions(this->List_, view, this->DrawnTarget(), samples);
+      }
       if (request.axes) {
         request.axes->Draw(scene, view, this->DrawnTarget(), samples);
       }
@@ -142,6 +146,9 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   if (!failure) {
     if (this->SceneTarget_) {
       this->Drawer_->Downsample(*this->SceneTarget_, *this->DisplayTarget_, samples);
+    }
+    if (request.overlays) {
+      this->Captions_.Show(captions, this->Overlay_, view.height / samples);
     }
     if (request.overlays && this->Overlay_->GetViewProps()->GetNumberOfItems() > 0) {
       this->ActivateDisplay();

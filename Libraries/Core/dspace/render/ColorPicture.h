@@ -10,6 +10,7 @@
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
+#include <dspace/render/Captions.h>
 #include <dspace/render/DrawList.h>
 #include <dspace/render/SceneDrawer.h>
 
@@ -64,6 +65,7 @@ private:
   std::unique_ptr<RenderTarget> DisplayTarget_; // what is shown
   std::unique_ptr<SceneDrawer> Drawer_;
   DrawList List_;
+  CaptionActors Captions_;
   bool Complete_ = false;
   vtkNew<vtkDspaceRenderer> Renderer_;
   vtkNew<vtkOpenGLRenderer> Overlay_;

@@ -5,7 +5,9 @@
 #include <functional>
 #include <memory>
 #include <typeindex>
+#include <vector>
 
+#include <dspace/render/Captions.h>
 #include <dspace/render/DrawList.h>
 #include <dspace/scene/CustomGeometry.h>
 
@@ -14,6 +16,7 @@ class vtkDspaceHubWindow;
 namespace dspace {
 
 class GpuStore;
+class RenderTarget;
 class SurfaceShaders;
 struct RenderStatistics;
 
@@ -39,6 +42,10 @@ public:
   virtual bool Prepare(const CustomDrawing& drawing) = 0;
   virtual void DrawColor(const CustomDrawing& drawing) = 0;
   virtual void DrawLabels(const CustomDrawing& drawing) = 0;
+  // What is written over the picture whose colours and depth `target` has by now.
+  virtual std::vector<Caption> Captions(const CustomDrawing&, const RenderTarget& /*target*/) {
+    return {};
+  }
 };
 
 // Makes the drawer of a geometry of the class that it is registered for. The geometry outlives it.

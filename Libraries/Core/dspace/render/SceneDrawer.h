@@ -44,6 +44,9 @@ public:
   // `samples` is the supersampling factor: lines, points and billboards scale with it.
   void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples,
                  const Background* background = nullptr);
+  // What objects that draw themselves write over the picture that was drawn last.
+  std::vector<Caption> Captions(const DrawList& list, const DrawView& view,
+                                const RenderTarget& target, int samples);
   // Into `target` (Label, with depth), cleared first.
   void DrawLabels(const DrawList& list, const DrawView& view, RenderTarget& target);
   // Mean of the samples of `source` into `target` (both Display).

@@ -21,6 +21,24 @@ ClipmapStyle::Lines ToLines(const v1::StyleTerrain::Lines& lines, const std::str
   return result;
 }
 
+ClipmapStyle::GridLabels ToGridLabels(const v1::StyleTerrain::GridLabels& labels,
+                                      const std::string& label) {
+  ClipmapStyle::GridLabels result;
+  if (labels.has_font_size()) { // what is beyond int's range is refused as the largest int
+    result.fontSize = int(std::min<std::uint32_t>(labels.font_size(), 0x7fffffffu));
+  }
+  if (labels.has_color()) {
+    result.color = ToColor(labels.color(), label);
+  }
+  if (labels.has_background()) {
+    result.background = ToColor(labels.background(), label);
+  }
+  if (labels.has_background_opacity()) {
+    result.backgroundOpacity = labels.background_opacity();
+  }
+  return result;
+}
+
 // North blue, east green, south yellow, west red, and north again.
 ColorRamp AspectRamp() {
   return {{0.23, 0.40, 0.85},
@@ -148,6 +166,11 @@ void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
   }
   if (command.has_grid()) {
     style.grid = ToLines(command.grid(), label);
+  }
+  if (command.has_grid_labels()) {
+    style.gridLabels = ToGridLabels(command.grid_labels(), label);
+    style.gridLabels->degrees = terrain->Surface().Placement().OnBody() ||
+                                terrain->Surface().GetCrs().GetKind() == Crs::Kind::Geographic;
   }
   if (command.has_noise()) {
     style.noise = ToNoise(command.noise());

@@ -22,6 +22,7 @@
 #include <dspace/terrain/ClipmapFocus.h>
 
 #include "ClipmapUniforms.h"
+#include "GridCaptions.h"
 
 namespace dspace {
 
@@ -267,6 +268,15 @@ void ClipmapDrawer::DrawColor(const CustomDrawing& drawing) {
 
 void ClipmapDrawer::DrawLabels(const CustomDrawing& drawing) {
   this->Draw(drawing, SurfaceShaders::Label);
+}
+
+std::vector<Caption> ClipmapDrawer::Captions(const CustomDrawing& drawing,
+                                             const RenderTarget& target) {
+  const Chart& chart = *this->Active_;
+  if (!this->Terrain_->Style().grid || !this->Terrain_->Style().gridLabels || !chart.Drawable()) {
+    return {};
+  }
+  return GridCaptions(drawing, target, *this->Terrain_, chart.placement, chart.levels, chart.state);
 }
 
 void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {

@@ -29,6 +29,7 @@ public:
   bool Prepare(const CustomDrawing& drawing) override;
   void DrawColor(const CustomDrawing& drawing) override;
   void DrawLabels(const CustomDrawing& drawing) override;
+  std::vector<Caption> Captions(const CustomDrawing& drawing, const RenderTarget& target) override;
 
 private:
   // What is kept of one chart of the terrain.

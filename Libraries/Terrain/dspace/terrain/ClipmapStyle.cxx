@@ -69,6 +69,21 @@ void ClipmapStyle::Check(const std::string& terrain) const {
   if (this->grid) {
     CheckLines(terrain, "its grid", *this->grid);
   }
+  if (this->gridLabels) {
+    const GridLabels& labels = *this->gridLabels;
+    if (!this->grid) {
+      Refuse(terrain, "its grid's labels need a grid; accepted: both, or a grid alone");
+    }
+    Require(labels.fontSize >= 4 && labels.fontSize <= 200, terrain,
+            "the font size of its grid's labels", labels.fontSize, "4 to 200 pixels");
+    for (const auto& color : {labels.color, labels.background}) {
+      for (const double c : color) {
+        Require(c >= 0.0 && c <= 1.0, terrain, "a colour component of its grid's labels", c,
+                "0 to 1");
+      }
+    }
+    CheckOpacity(terrain, "its grid's labels' background", labels.backgroundOpacity);
+  }
   if (this->noise) {
     this->noise->options.Check(terrain);
     Require(this->noise->amplitude > 0.0 && this->noise->amplitude <= 1e6, terrain,

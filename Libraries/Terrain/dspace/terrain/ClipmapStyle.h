@@ -63,13 +63,22 @@ struct ClipmapStyle {
       return this->options == o.options && this->amplitude == o.amplitude;
     }
   };
+  // The values of the grid's lines, written over the picture.
+  struct GridLabels {
+    int fontSize = 13; // pixels, 4 to 200
+    std::array<double, 3> color = {1, 1, 1};
+    std::array<double, 3> background = {0, 0, 0}; // of the box behind a value
+    double backgroundOpacity = 0.5;
+    bool degrees = false; // "12°E", "30°S"; else map units, "4,500 E", "-200 N"
+  };
   std::vector<Detail> details; // at most Detail::Most
   Tracks tracks;               // where there are any
   std::optional<Ramp> ramp;
   std::optional<double> levels; // opacity of a colour for each clipmap level
   std::optional<Lines> contours;
-  std::optional<Lines> grid;  // along the map's axes
-  std::optional<Noise> noise; // of the ground's shape
+  std::optional<Lines> grid;            // along the map's axes
+  std::optional<GridLabels> gridLabels; // only with a grid
+  std::optional<Noise> noise;           // of the ground's shape
 
   bool Empty() const { return details.empty() && !ramp && !levels && !contours && !grid; }
   // Throws Error(InvalidArgument) naming `terrain` and the value.

@@ -1,0 +1,83 @@
+#include <dspace/render/Captions.h>
+
+#include "vtkCoordinate.h"
+#include "vtkRenderer.h"
+#include "vtkTextActor.h"
+#include "vtkTextProperty.h"
+
+#include <dspace/render/Fonts.h>
+#include <dspace/render/SceneDrawer.h>
+#include <dspace/scene/TextLimits.h>
+
+namespace dspace {
+namespace {
+
+std::string KeyOf(const Caption& caption) {
+  std::string key = std::to_string(caption.fontSize);
+  for (const auto& color : {caption.color, caption.background}) {
+    for (const double c : color) {
+      key += ' ' + NumberText(c);
+    }
+  }
+  return key + ' ' + caption.text;
+}
+
+vtkSmartPointer<vtkTextActor> MakeActor(const Caption& caption) {
+  auto actor = vtkSmartPointer<vtkTextActor>::New();
+  actor->SetInput((" " + caption.text + " ").c_str());
+  actor->SetTextScaleModeToNone();
+  vtkTextProperty* look = actor->GetTextProperty();
+  UseFont(look, Font::Mono);
+  look->SetFontSize(caption.fontSize);
+  look->SetColor(caption.color[0], caption.color[1], caption.color[2]);
+  look->SetOpacity(caption.color[3]);
+  look->SetBackgroundColor(caption.background[0], caption.background[1], caption.background[2]);
+  look->SetBackgroundOpacity(caption.background[3]);
+  look->SetJustificationToCentered();
+  look->SetVerticalJustificationToCentered();
+  actor->GetPositionCoordinate()->SetCoordinateSystemToDisplay();
+  return actor;
+}
+
+} // namespace
+
+std::array<double, 2> HalfSize(const Caption& caption) {
+  const double characters = double(CharacterCount(caption.text)) + 2.0; // a blank at both ends
+  return {0.5 * 0.61 * caption.fontSize * characters + 2.0, 0.65 * caption.fontSize + 2.0};
+}
+
+void CaptionActors::Show(const std::vector<Caption>& captions, vtkRenderer* overlay, int height) {
+  auto before = std::move(this->Shown_);
+  this->Shown_.clear();
+  for (const Caption& caption : captions) {
+    const std::string key = KeyOf(caption);
+    vtkSmartPointer<vtkTextActor> actor;
+    const auto found = before.find(key);
+    if (found != before.end()) {
+      actor = found->second;
+      before.erase(found);
+    } else {
+      actor = MakeActor(caption);
+      overlay->AddViewProp(actor);
+    }
+    // Display coordinates are pixels' lower left corners, y up.
+    actor->SetPosition(caption.at[0] + 0.5, height - 0.5 - caption.at[1]);
+    this->Shown_.emplace(key, actor);
+  }
+  for (const auto& old : before) {
+    overlay->RemoveViewProp(old.second);
+  }
+}
+
+std::vector<Caption> SceneDrawer::Captions(const DrawList& list, const DrawView& view,
+                                           const RenderTarget& target, int samples) {
+  std::vector<Caption> all;
+  for (const DrawCustom& object : list.Customs()) {
+    const std::vector<Caption> its = this->Customs_[object.object->custom.get()].drawer->Captions(
+        this->Drawing(object, list, view, samples), target);
+    all.insert(all.end(), its.begin(), its.end());
+  }
+  return all;
+}
+
+} // namespace dspace

@@ -1,0 +1,41 @@
+// Words over a picture that follow what is drawn in it.
+#ifndef DSPACE_RENDER_CAPTIONS_H
+#define DSPACE_RENDER_CAPTIONS_H
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "vtkSmartPointer.h"
+
+class vtkRenderer;
+class vtkTextActor;
+
+namespace dspace {
+
+struct Caption {
+  std::string text;                           // of characters that DejaVu Sans Mono has, one line
+  std::array<double, 2> at = {0, 0};          // its middle, in pixels of the picture
+  int fontSize = 13;                          // pixels
+  std::array<double, 4> color = {1, 1, 1, 1}; // sRGB and opacity, 0 to 1
+  std::array<double, 4> background = {0, 0, 0, 0.5}; // of the box behind it
+};
+
+// Half of the width and height of its box in pixels, for placing captions beside each other.
+std::array<double, 2> HalfSize(const Caption& caption);
+
+// The captions of one viewport's picture, on its overlay renderer.
+class CaptionActors {
+public:
+  // These and no others. Texts that were there before are moved, not drawn anew. `height` is the
+  // picture's.
+  void Show(const std::vector<Caption>& captions, vtkRenderer* overlay, int height);
+
+private:
+  std::multimap<std::string, vtkSmartPointer<vtkTextActor>> Shown_; // by look and text
+};
+
+} // namespace dspace
+
+#endif
