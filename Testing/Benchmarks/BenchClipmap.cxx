@@ -22,6 +22,7 @@
 #include <gdal_priv.h>
 #include <unistd.h>
 
+#include <dspace/layers/ImageLayer.h>
 #include <dspace/terrain/ClipmapDrawer.h>
 #include <dspace/terrain/ClipmapTerrain.h>
 #include <dspace/terrain/StreamedTerrain.h>
@@ -97,14 +98,44 @@ std::size_t ResidentBytes() {
   return resident * std::size_t(::sysconf(_SC_PAGESIZE));
 }
 
-// A scene with one clipmap, lit by a sun, with one colour layer (a texture) or without.
+// Colours with structure at every scale.
+std::string WriteImage(const std::filesystem::path& folder) {
+  constexpr int Side = 4096;
+  const std::string path = (folder / "image.tif").string();
+  char** options = CSLSetNameValue(nullptr, "TILED", "YES");
+  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      path.c_str(), Side, Side, 3, GDT_Byte, options);
+  CSLDestroy(options);
+  std::vector<std::uint8_t> pixels(std::size_t(Side) * Side);
+  for (int band = 1; band <= 3; ++band) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const std::uint32_t c = i % Side, r = std::uint32_t(i / Side);
+      const std::uint32_t noise =
+          (c * 2654435761u ^ r * 2246822519u) * 3266489917u * unsigned(band);
+      pixels[i] = std::uint8_t(64 + (c / 64 + r / 48) % 64 + (noise >> 25));
+    }
+    if (dataset->GetRasterBand(band)->RasterIO(GF_Write, 0, 0, Side, Side, pixels.data(), Side,
+                                               Side, GDT_Byte, 0, 0, nullptr) != CE_None) {
+      std::abort();
+    }
+  }
+  int levels[] = {2, 4, 8, 16};
+  dataset->BuildOverviews("AVERAGE", 4, levels, 0, nullptr, nullptr, nullptr);
+  GDALClose(dataset);
+  return path;
+}
+
+// What colours the ground besides its material.
+enum class Paint { None, Texture, Layer }; // one mip-mapped texture; a streamed colour layer
+
+// A scene with one clipmap, lit by a sun.
 struct Ground {
   std::shared_ptr<Scene> scene = std::make_shared<Scene>("ground");
   std::shared_ptr<const StreamedTerrain> surface;
   vtkSmartPointer<vtkDspaceViewport> viewport = vtkSmartPointer<vtkDspaceViewport>::New();
   ObjectId object = 0;
 
-  Ground(vtkDspaceRenderContext* context, const std::string& path, bool lit, bool textured) {
+  Ground(vtkDspaceRenderContext* context, const std::string& path, bool lit, Paint paint) {
     surface = StreamedTerrain::Open(path);
     ClipmapOptions options;
     options.heights = surface->HeightRange();
@@ -112,7 +143,7 @@ struct Ground {
     material->color = {0.8, 0.7, 0.6};
     material->roughness = 1.0;
     material->lit = lit;
-    if (textured) {
+    if (paint == Paint::Texture) {
       auto image = std::make_shared<Image>();
       image->width = image->height = 2048;
       image->channels = 3;
@@ -125,8 +156,19 @@ struct Ground {
     options.material = material;
     GraphicsObject ground;
     ground.name = "ground";
-    ground.custom =
-        std::make_shared<ClipmapTerrain>(surface->Pyramid(), surface->Placement(), options);
+    const auto terrain =
+        std::make_shared<ClipmapTerrain>(surface->Pyramid(), surface->Placement(), options,
+                                         std::vector<ClipmapChart>(), ColorGridsOf(*surface, {}));
+    if (paint == Paint::Layer) { // stretched over all of the raster
+      const ElevationInfo& info = surface->Info();
+      const std::filesystem::path image = std::filesystem::path(path).parent_path() / "image.tif";
+      StackedLayer layer;
+      layer.name = "image";
+      layer.layer = OpenImageLayer(image.string(), {surface->GetName(), info.crs, info.pixelToMap,
+                                                    info.window.width, info.window.height});
+      terrain->Layers()->Add(layer);
+    }
+    ground.custom = terrain;
     object = scene->AddObject(ground);
     Light sun;
     sun.name = "sun";
@@ -152,9 +194,9 @@ struct Ground {
   }
 };
 
-void AgainstBare(vtkDspaceRenderContext* context, const std::string& path, bool lit, bool textured,
+void AgainstBare(vtkDspaceRenderContext* context, const std::string& path, bool lit, Paint paint,
                  int pairs, const char* name, const char* goal) {
-  Ground ground(context, path, lit, textured);
+  Ground ground(context, path, lit, paint);
   bench::ReplayedDraws replay;
   replay.Begin();
   ground.viewport->ForceRender();
@@ -179,6 +221,28 @@ void AgainstBare(vtkDspaceRenderContext* context, const std::string& path, bool 
   bench::Print(name, turns, 1, behind);
 }
 
+// The same camera: a streamed layer, sharp wherever the camera goes, and one mip-mapped texture.
+void LayerAgainstTexture(vtkDspaceRenderContext* context, const std::string& path, int pairs) {
+  Ground layer(context, path, true, Paint::Layer);
+  Ground texture(context, path, true, Paint::Texture);
+  for (const double down : {0.25, 1.0}) {
+    layer.down = texture.down = down;
+    layer.Fly(0.0);
+    texture.Fly(0.0);
+    layer.viewport->GetCapture({});
+    texture.viewport->GetCapture({});
+    const auto draw = [context](Ground& ground) {
+      ground.viewport->ForceRender();
+      context->GetRenderWindow()->WaitForCompletion();
+    };
+    bench::Print(down < 0.5 ? "frame with one colour layer against one texture"
+                            : "the same, the ground filling the picture",
+                 bench::Alternate(
+                     pairs, [&] { draw(layer); }, [&] { draw(texture); }),
+                 1, "lit");
+  }
+}
+
 void SmallAndHuge(vtkDspaceRenderContext* context, const std::string& small,
                   const std::string& huge, int pairs) {
   const auto begin = std::chrono::steady_clock::now();
@@ -186,8 +250,8 @@ void SmallAndHuge(vtkDspaceRenderContext* context, const std::string& small,
   std::printf("opening 92160 x 46080: %.0f ms, goal < 1 s\n",
               1e3 *
                   std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  Ground a(context, huge, true, true);
-  Ground b(context, small, true, true);
+  Ground a(context, huge, true, Paint::Layer);
+  Ground b(context, small, true, Paint::Layer);
   std::size_t peak = 0;
   a.down = b.down = 1.0; // both fill the picture
   double t = 0.0;
@@ -231,7 +295,7 @@ void SmallAndHuge(vtkDspaceRenderContext* context, const std::string& small,
 
 // All posts of the small raster as one mesh in a plain vtkActor, from the same camera.
 void AgainstMesh(vtkDspaceRenderContext* context, const std::string& path, int pairs) {
-  Ground ground(context, path, true, false);
+  Ground ground(context, path, true, Paint::None);
   auto plain = std::make_shared<Scene>("plain");
   plain->CreateVantage("main");
   plain->SetCamera("main", ground.scene->Vantage("main").ActiveCamera());
@@ -289,7 +353,7 @@ void AgainstMesh(vtkDspaceRenderContext* context, const std::string& path, int p
 // Pixels between what is drawn and what is stated, up and down the screen, at distances of the
 // coarser rings: the surface's height where a pixel's ray met the clipmap, over metres a pixel.
 void ScreenSpaceError(vtkDspaceRenderContext* context, const std::string& path) {
-  Ground ground(context, path, false, false);
+  Ground ground(context, path, false, Paint::None);
   CaptureRequest request;
   request.depth = true;
   const Capture capture = ground.viewport->GetCapture(request);
@@ -367,16 +431,20 @@ int main() {
   std::filesystem::create_directories(folder);
   const std::string small = WriteTile(folder);
   const std::string huge = WriteMosaic(folder, 92160, 46080);
+  WriteImage(folder);
   {
     vtkNew<vtkDspaceRenderContext> context;
     context->Initialize();
     std::printf("renderer: %s\n", context->GetRendererName().c_str());
-    AgainstBare(context, small, false, false, 31, "clipmap frame unlit against bare OpenGL",
+    AgainstBare(context, small, false, Paint::None, 31, "clipmap frame unlit against bare OpenGL",
                 "<= 1.05");
-    AgainstBare(context, small, true, false, 31, "clipmap frame lit against bare OpenGL",
+    AgainstBare(context, small, true, Paint::None, 31, "clipmap frame lit against bare OpenGL",
                 "<= 1.15");
-    AgainstBare(context, small, true, true, 31,
+    AgainstBare(context, small, true, Paint::Texture, 31,
+                "clipmap frame lit, one texture, against bare OpenGL", "<= 1.15");
+    AgainstBare(context, small, true, Paint::Layer, 31,
                 "clipmap frame lit, one colour layer, against bare OpenGL", "<= 1.15");
+    LayerAgainstTexture(context, small, 31);
     AgainstMesh(context, small, 15);
     ScreenSpaceError(context, small);
     SmallAndHuge(context, small, huge, 101);

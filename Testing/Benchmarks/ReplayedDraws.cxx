@@ -39,6 +39,7 @@ std::vector<ReplayedDraws::Uniform> ReplayedDraws::UniformsOf(GLint program) {
       case GL_INT_VEC2:
       case GL_SAMPLER_2D:
       case GL_SAMPLER_2D_ARRAY:
+      case GL_INT_SAMPLER_2D_ARRAY:
         glGetUniformiv(GLuint(program), one.location, one.integers.data());
         break;
       default:
@@ -94,7 +95,8 @@ void GLAPIENTRY ReplayedDraws::Hook(GLenum mode, const GLsizei* counts, GLenum t
     GLint active = 0;
     glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
     for (const Uniform& uniform : UniformsOf(self.Program_)) {
-      if (uniform.type != GL_SAMPLER_2D && uniform.type != GL_SAMPLER_2D_ARRAY) {
+      if (uniform.type != GL_SAMPLER_2D && uniform.type != GL_SAMPLER_2D_ARRAY &&
+          uniform.type != GL_INT_SAMPLER_2D_ARRAY) {
         continue;
       }
       Texture texture{uniform.integers[0], GL_TEXTURE_2D, 0};

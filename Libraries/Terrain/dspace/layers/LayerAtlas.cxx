@@ -24,6 +24,8 @@ constexpr int Zooms = ColorGrid::MostZoom + 1;
 constexpr int UploadsAPicture = 24; // of an interactive one: 6 MB
 
 constexpr std::int32_t Nowhere = std::numeric_limits<std::int32_t>::min();
+constexpr std::int32_t NotThere = -2;
+constexpr std::array<std::int32_t, 4> Empty = {Nowhere, Nowhere, -1, NotThere};
 
 bool Same(const std::weak_ptr<const ColorTiles::Tile>& a, const ColorTiles::TilePointer& b) {
   return !a.owner_before(b) && !b.owner_before(a);
@@ -39,7 +41,7 @@ LayerAtlas::LayerAtlas(vtkDspaceHubWindow* window, int slots)
   }
   glGenTextures(1, &this->Tiles_);
   BindTextureUnit(window, TilesUnit, GL_TEXTURE_2D_ARRAY, this->Tiles_);
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_SRGB8_ALPHA8, Side, Side, this->Slots_, 0, GL_RGBA,
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA8, Side, Side, this->Slots_, 0, GL_RGBA,
                GL_UNSIGNED_BYTE, nullptr);
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
     glTexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_LINEAR);
@@ -61,7 +63,7 @@ LayerAtlas::~LayerAtlas() {
 }
 
 void LayerAtlas::ClearPages() {
-  std::fill(this->Table_.begin(), this->Table_.end(), Page{Nowhere, Nowhere, -1, 0});
+  std::fill(this->Table_.begin(), this->Table_.end(), Empty);
   BindTextureUnit(this->Window_, PagesUnit, GL_TEXTURE_2D_ARRAY, this->PageTable_);
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32I, Pages, Pages, Zooms, 0, GL_RGBA_INTEGER, GL_INT,
                this->Table_.data());
@@ -80,8 +82,17 @@ void LayerAtlas::UploadPage(const ColorTile& tile, const Page& page) const {
                   page.data());
 }
 
+int LayerAtlas::SlotOfParent(const ColorTile& tile) const {
+  const auto found =
+      tile.zoom == 0
+          ? this->Entries_.end()
+          : this->Entries_.find({tile.chart, tile.zoom - 1, tile.column / 2, tile.row / 2});
+  return found == this->Entries_.end() ? NotThere : found->second.slot;
+}
+
 void LayerAtlas::SetPage(const ColorTile& tile, int slot) {
-  const Page page{std::int32_t(tile.column), std::int32_t(tile.row), slot, 0};
+  const Page page{std::int32_t(tile.column), std::int32_t(tile.row), slot,
+                  this->SlotOfParent(tile)};
   Page& there = this->PageOf(tile);
   if (there != page) {
     there = page;
@@ -90,10 +101,23 @@ void LayerAtlas::SetPage(const ColorTile& tile, int slot) {
 }
 
 void LayerAtlas::ClearPage(const ColorTile& tile) {
-  Page& there = this->PageOf(tile);
-  if (tile.chart == this->Chart_ && there[0] == tile.column && there[1] == tile.row) {
-    there = {Nowhere, Nowhere, -1, 0};
-    this->UploadPage(tile, there);
+  if (tile.chart != this->Chart_) {
+    return;
+  }
+  const auto holds = [this](const ColorTile& other) {
+    const Page& page = this->PageOf(other);
+    return page[0] == other.column && page[1] == other.row;
+  };
+  if (holds(tile)) {
+    this->PageOf(tile) = Empty;
+    this->UploadPage(tile, Empty);
+  }
+  for (const int k : {0, 1, 2, 3}) {
+    const ColorTile part{tile.chart, tile.zoom + 1, 2 * tile.column + k % 2, 2 * tile.row + k / 2};
+    if (part.zoom < Zooms && holds(part)) {
+      this->PageOf(part)[3] = NotThere;
+      this->UploadPage(part, this->PageOf(part));
+    }
   }
 }
 
@@ -135,6 +159,7 @@ void LayerAtlas::Keep(const ColorTile& tile, const ColorTiles::TilePointer& show
   entry.shown = shown;
   if (shown->texels.empty()) {
     if (entry.slot >= 0) {
+      this->ClearPage(tile);
       this->Free_.push_back(entry.slot);
       entry.slot = -1;
     }

@@ -53,9 +53,11 @@ private:
             RenderStatistics& statistics);
   void Upload(int slot, const ColorTiles::Tile& tile, RenderStatistics& statistics) const;
   void SetPage(const ColorTile& tile, int slot);
-  void ClearPage(const ColorTile& tile);
+  void ClearPage(const ColorTile& tile); // nor is it told to be the parent of another
+  int SlotOfParent(const ColorTile& tile) const;
   void ClearPages();
-  using Page = std::array<std::int32_t, 4>; // column, row, slot (-1: transparent), 0
+  // Column, row, slot (-1: transparent), slot of the tile that it is a part of (-2: not there).
+  using Page = std::array<std::int32_t, 4>;
   Page& PageOf(const ColorTile& tile);
   void UploadPage(const ColorTile& tile, const Page& page) const;
 

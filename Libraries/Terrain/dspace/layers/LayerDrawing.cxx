@@ -71,24 +71,11 @@ bool LayerDrawing::Prepare(const CustomDrawing& drawing, std::size_t chart,
 void LayerDrawing::SetLook(vtkShaderProgram* program, int samples) const {
   this->Atlas_->Bind(program);
   program->SetUniformi("layerZoom", this->Finest_);
-  constexpr int Zooms = ColorGrid::MostZoom + 1;
-  float origins[Zooms][2] = {};
-  int columns[Zooms] = {};
-  int rows[Zooms] = {};
-  for (int zoom = 0; zoom <= this->Finest_; ++zoom) {
-    const Eigen::Vector2d tiles = this->Corner_ * std::ldexp(1.0, zoom - this->Finest_);
-    const Eigen::Vector2d below = tiles.array().floor();
-    origins[zoom][0] = float(tiles.x() - below.x());
-    origins[zoom][1] = float(tiles.y() - below.y());
-    // The camera may be turns away; floats of other kinds are not: whole turns are taken off.
-    const auto around = double(this->Grid_->ColumnsAt(zoom));
-    columns[zoom] =
-        int(below.x() - (this->Grid_->periodic ? std::floor(below.x() / around) * around : 0.0));
-    rows[zoom] = int(below.y());
-  }
-  program->SetUniform2fv("layerOrigin", Zooms, origins);
-  program->SetUniform1iv("layerColumn", Zooms, columns);
-  program->SetUniform1iv("layerRow", Zooms, rows);
+  // The camera may be turns away: whole turns are taken off.
+  const auto around = double(this->Grid_->ColumnsAt(this->Finest_));
+  const double turns = this->Grid_->periodic ? std::floor(this->Corner_.x() / around) : 0.0;
+  const int corner[2] = {int(this->Corner_.x() - turns * around), int(this->Corner_.y())};
+  program->SetUniform2i("layerCorner", corner);
   program->SetUniformi("layerAround", this->Grid_->periodic ? this->Grid_->rootColumns : 0);
   // Of a degree grid's texels, below the camera.
   Eigen::Vector2d metres;

@@ -15,28 +15,16 @@ double Decoded(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
-double Encoded(double v) {
-  return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
-}
-
-// IEC 61966-2-1. An entry of the encoding table is at most a fifth of a step of the result.
-struct Tables {
-  static constexpr int Steps = 16384;
-  std::array<float, 256> decode;
-  std::array<std::uint8_t, Steps + 1> encode;
-  Tables() {
-    for (int i = 0; i < 256; ++i) {
-      this->decode[std::size_t(i)] = float(Decoded(i / 255.0));
+// Linear light of sRGB bytes (IEC 61966-2-1).
+const std::array<float, 256>& LinearLight() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> light;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      light[i] = float(Decoded(double(i) / 255.0));
     }
-    for (int i = 0; i <= Steps; ++i) {
-      this->encode[std::size_t(i)] = std::uint8_t(std::lround(255.0 * Encoded(double(i) / Steps)));
-    }
-  }
-};
-
-const Tables& SrgbTables() {
-  static const Tables tables;
-  return tables;
+    return light;
+  }();
+  return table;
 }
 
 // Of a tile's texels without its border, counted from its first: those with ground.
@@ -97,7 +85,7 @@ void TileComposer::Add(const std::vector<std::uint8_t>& rgba, double opacity) {
   if (rgba.empty()) {
     return;
   }
-  const Tables& tables = SrgbTables();
+  const std::array<float, 256>& light = LinearLight();
   this->Sums_.resize(Count * 4, 0.0f);
   const auto part = float(opacity / 255.0);
   float* sum = this->Sums_.data();
@@ -107,7 +95,7 @@ void TileComposer::Add(const std::vector<std::uint8_t>& rgba, double opacity) {
     }
     const float a = part * p[3];
     for (int k = 0; k < 3; ++k) {
-      sum[k] += a * (tables.decode[p[k]] - sum[k]);
+      sum[k] += a * (light[p[k]] - sum[k]);
     }
     sum[3] += a * (1.0f - sum[3]);
   }
@@ -115,13 +103,16 @@ void TileComposer::Add(const std::vector<std::uint8_t>& rgba, double opacity) {
 
 std::vector<std::uint8_t> TileComposer::Encode() const {
   std::vector<std::uint8_t> texels(this->Sums_.size());
-  const Tables& tables = SrgbTables();
   bool any = false;
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    const float v = std::clamp(this->Sums_[i], 0.0f, 1.0f);
-    texels[i] = i % 4 == 3 ? std::uint8_t(std::lround(255.0f * v))
-                           : tables.encode[std::size_t(v * Tables::Steps + 0.5f)];
-    any = any || texels[i] != 0;
+  for (std::size_t i = 0; i < texels.size(); i += 4) {
+    const float* const sum = &this->Sums_[i];
+    const float opacity = std::clamp(sum[3], 0.0f, 1.0f);
+    for (std::size_t k = 0; k < 3; ++k) {
+      texels[i + k] =
+          std::uint8_t(255.0f * std::sqrt(std::clamp(sum[k] * opacity, 0.0f, 1.0f)) + 0.5f);
+    }
+    texels[i + 3] = std::uint8_t(255.0f * opacity + 0.5f);
+    any = any || texels[i + 3] != 0;
   }
   return any ? texels : std::vector<std::uint8_t>();
 }
