@@ -395,8 +395,9 @@ class TerrainMaking:
                     subdivisions=None, track_budget=None, cache=None):
         """A raster of heights (anything that GDAL opens) as a physical object.
 
-        image: a file to drape over it, with image_crs and image_extent (left, top, right, bottom in
-        map coordinates) where the file does not say; color: one colour; relief: shaded relief (the
+        image: a file to drape over it (of a clipmap the layer "drape", see add_image(): in full
+        resolution), with image_crs and image_extent (left, top, right, bottom in map coordinates)
+        where the file does not say; color: one colour; relief: shaded relief (the
         default), a dict of sun_azimuth_deg, sun_elevation_deg, color_by_height. lit: whether the
         scene's lights shade it as well. origin: map x, y[, height] that become the frame's origin,
         by default the raster's middle at height 0. triangles: the budget (200000).

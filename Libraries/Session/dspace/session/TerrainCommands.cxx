@@ -172,12 +172,15 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   }
   const auto surface = OpenStreamed(context, path, options);
   WarnOfOverviews(context, label, surface->Info(), command);
-  ClipmapOptions look = ClipmapLook(context, *surface, command);
+  ClipmapOptions look = ClipmapLook(*surface, command);
   look.cells = options.cells;
   look.heights = surface->DrawnHeights();
   look.deadline = options.deadline;
   auto terrain = std::make_unique<ClipmapTerrainObject>(name, surface, look, options.pyramid,
                                                         options.elevation.overviewCache);
+  if (command.has_drape()) {
+    AddDrape(context, *terrain, *command.mutable_drape());
+  }
   if (command.relief().color_by_height()) {
     ClipmapStyle style;
     style.ramp.emplace();

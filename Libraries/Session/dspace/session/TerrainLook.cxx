@@ -120,32 +120,13 @@ std::shared_ptr<const Material> MeshMaterial(const Context& context, const GridT
   return material;
 }
 
-ClipmapOptions ClipmapLook(const Context& context, const StreamedTerrain& surface,
-                           v1::OpenTerrain& command) {
-  const ElevationInfo& info = surface.Info();
-  const std::array<double, 3> ground = ShadedReliefOptions().ramp.front();
+ClipmapOptions ClipmapLook(const StreamedTerrain& surface, const v1::OpenTerrain& command) {
   ClipmapOptions options;
-  options.postToMap = info.pixelToMap * surface.PixelToPost().inverse();
+  options.postToMap = surface.Info().pixelToMap * surface.PixelToPost().inverse();
   auto material = MattMaterial(command);
-  material->color = ground;
+  material->color = ShadedReliefOptions().ramp.front();
   if (command.has_color()) {
     material->color = ToColor(command.color(), surface.GetName());
-  } else if (command.has_drape()) {
-    const RasterPlace place{surface.GetName(), info.crs, info.pixelToMap, info.window.width,
-                            info.window.height};
-    WarpOptions warp;
-    for (int k = 0; k < 3; ++k) {
-      warp.background[k] = static_cast<std::uint8_t>(255.0 * ground[k] + 0.5);
-    }
-    material->color = {1, 1, 1};
-    material->texture = ToImage(context, WarpImage(place, ToDrape(*command.mutable_drape()), warp),
-                                command.drape().path());
-    material->repeatTexture = surface.Pyramid()->Lattice().periodic;
-    // Pixels from the raster's top-left corner to fractions of it from the bottom left.
-    Eigen::Affine2d pixelToTexture = Eigen::Affine2d::Identity();
-    pixelToTexture.linear() << 1.0 / info.window.width, 0.0, 0.0, -1.0 / info.window.height;
-    pixelToTexture.translation() << 0.0, 1.0;
-    options.postToTexture = pixelToTexture * surface.PixelToPost().inverse();
   } else if (command.relief().has_sun_azimuth_deg() || command.relief().has_sun_elevation_deg()) {
     Refuse(surface.GetName(), "a clipmap's relief is lit by the scene's lights; accepted: no sun "
                               "angles, or mode triangles");

@@ -20,10 +20,9 @@ std::string AbsoluteRaster(const std::string& path);
 std::shared_ptr<const Material> MeshMaterial(const Context& context, const GridTerrain& grid,
                                              v1::OpenTerrain& command);
 
-// Of a clipmap: its material, and where its texture lies. Relief is the scene's own light on the
+// Of a clipmap: its material, under its colour layers. Relief is the scene's own light on the
 // posts' normals; its sun's angles are refused.
-ClipmapOptions ClipmapLook(const Context& context, const StreamedTerrain& surface,
-                           v1::OpenTerrain& command);
+ClipmapOptions ClipmapLook(const StreamedTerrain& surface, const v1::OpenTerrain& command);
 
 // A row of pixels: the ramp's colours, evenly spaced, linear between. At least one colour.
 std::shared_ptr<const Image> RampImage(const ColorRamp& ramp);
