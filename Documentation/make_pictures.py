@@ -100,6 +100,23 @@ def whole_mars(data):
         picture(scene, "terrain_mars", (420, 420), eye, (0, 0, 0), (0, 0, 1), light, 1.6, 36, 0.02)
 
 
+def labels(data):
+    """Mars by height, with a legend and the values of its grid."""
+    with dspace.Session() as session:
+        scene = session.scene()
+        terrain = mars(scene, data, False, vertical_scale=1)
+        terrain.set_style(color_by="height", range=(-8000, 20000), colors=SHADES, grid_labels=True,
+                          grid=dict(interval=15, color="white", opacity=0.6))
+        scene.lights["sun"].set(direction=(0.9, 0.35, -0.25), intensity=1.4)
+        scene.lights["sky"].set(intensity=0.15)
+        scene.add_camera("eye", eye=tuple(place(terrain, -100, 25, 8.2e6)), target=(0, 0, 0), up=(0, 0, 1),
+                         fov_deg=36, near=10.0)
+        view = scene.add_viewport((720, 560), "eye", samples=3)
+        view.set_background((0.02, 0.02, 0.03))
+        view.legend_of(terrain)
+        view.save(IMAGES / "terrain_labels.png")
+
+
 def valles_marineris(data):
     """By height and textured; heights tripled."""
     for name, viking in (("terrain_valles_height", False), ("terrain_valles", True)):
@@ -128,6 +145,7 @@ def main():
     if pathlib.Path(data, "terrain").is_dir():
         levels(data)
         whole_mars(data)
+        labels(data)
         valles_marineris(data)
 
 
