@@ -1,5 +1,5 @@
-// Rays and heights a second on plain, grouped and tracked streamed terrain, against each other,
-// against rays on a grid in memory, and against Embree on the same triangles where it is there.
+// Rays and heights a second on plain, grouped and tracked streamed terrain, against each other and
+// against rays on a grid in memory.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,10 +11,6 @@
 
 #include <dspace/terrain/GridTerrain.h>
 #include <dspace/terrain/StreamedTerrain.h>
-
-#ifdef DSPACE_EMBREE
-#include <embree3/rtcore.h>
-#endif
 
 #include "Alternate.h"
 
@@ -100,71 +96,6 @@ void Against(const char* name, const TerrainSurface& subject, const TerrainSurfa
   bench::Print(name, turns, Rays, behind);
 }
 
-#ifdef DSPACE_EMBREE
-void AgainstEmbree(const char* name, const StreamedTerrain& subject, const std::vector<Ray>& rays) {
-  RTCDevice device = rtcNewDevice(nullptr);
-  RTCScene scene = rtcNewScene(device);
-  RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* points = static_cast<float*>(
-      rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, Side * Side));
-  auto* corners = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                              std::size_t(2) * (Side - 1) * (Side - 1)));
-  std::vector<float> heights(std::size_t(Side) * Side);
-  subject.Pyramid()->Read({0, 0, 0, Side, Side}, heights.data());
-  for (int r = 0; r < Side; ++r) {
-    for (int c = 0; c < Side; ++c) {
-      const Eigen::Vector3d p =
-          subject.Placement().ToScene({double(c), double(r)}, heights[std::size_t(r) * Side + c]);
-      *points++ = float(p.x());
-      *points++ = float(p.y());
-      *points++ = float(p.z());
-      if (r + 1 < Side && c + 1 < Side) {
-        const unsigned a = unsigned(r * Side + c);
-        for (const unsigned corner : {a, a + Side, a + Side + 1, a, a + Side + 1, a + 1}) {
-          *corners++ = corner;
-        }
-      }
-    }
-  }
-  rtcCommitGeometry(mesh);
-  rtcAttachGeometry(scene, mesh);
-  rtcCommitScene(scene);
-  int hits[2] = {};
-  const bench::Turns turns = bench::Alternate(
-      9, [&] { hits[0] = Shoot(subject, rays); },
-      [&] {
-        hits[1] = 0;
-        for (const Ray& ray : rays) {
-          RTCIntersectContext context;
-          rtcInitIntersectContext(&context);
-          RTCRayHit hit = {};
-          hit.ray.org_x = float(ray.origin.x());
-          hit.ray.org_y = float(ray.origin.y());
-          hit.ray.org_z = float(ray.origin.z());
-          hit.ray.dir_x = float(ray.direction.x());
-          hit.ray.dir_y = float(ray.direction.y());
-          hit.ray.dir_z = float(ray.direction.z());
-          hit.ray.tfar = 1e30f;
-          hit.ray.mask = ~0u;
-          hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-          rtcIntersect1(scene, &context, &hit);
-          hits[1] += hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-        }
-      });
-  char behind[160];
-  std::snprintf(
-      behind, sizeof behind,
-      "%.3g rays a second in double precision against %.3g in single; %d and %d of %d hit",
-      Rays / bench::Median(turns.subject), Rays / bench::Median(turns.reference), hits[0], hits[1],
-      Rays);
-  bench::Print(name, turns, Rays, behind);
-  rtcReleaseGeometry(mesh);
-  rtcReleaseScene(scene);
-  rtcReleaseDevice(device);
-}
-#endif
-
 // Places that were never asked for before, in the patch that is coarser than the group's posts.
 void ScatteredHeights(const StreamedTerrain& group, const StreamedTerrain& plain, double reach) {
   constexpr int Count = 4000;
@@ -227,9 +158,6 @@ int main() {
     const std::vector<Ray> near = MakeRays(grazing, 400.0);
     Against((kind + "group against plain, over the patches").c_str(), *group, *plain, near);
     Against((kind + "tracked against plain, over the ruts").c_str(), *tracked, *plain, near);
-#ifdef DSPACE_EMBREE
-    AgainstEmbree((kind + "streamed against Embree").c_str(), *plain, rays);
-#endif
   }
   ScatteredHeights(*group, *plain, 1900.0);
   std::filesystem::remove_all(folder);

@@ -172,7 +172,7 @@ int main() {
                 1e-6 * (double(ResidentBytes()) - double(before)));
     double s = Length; // then without pictures, until the budget is used up
     try {
-      for (; s < 1e5; s += 0.1) {
+      for (; s < 1e5; s += 0.5) {
         terrain->AddTracks(StepAt(s));
       }
     } catch (const Error& error) {
