@@ -53,14 +53,22 @@ void BoxSums::Add(const std::vector<double>& values, int width, int height,
 }
 
 std::vector<double> BoxSums::Means(const std::vector<double>& widths,
-                                   const std::vector<BoxSpan>& rows) const {
+                                   const std::vector<BoxSpan>& rows,
+                                   std::vector<double>* shares) const {
   std::vector<double> means(widths.size() * rows.size());
+  if (shares) {
+    shares->resize(means.size());
+  }
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t c = 0; c < widths.size(); ++c) {
       const std::size_t i = r * widths.size() + c;
       const double area = (rows[r].to - rows[r].from) * widths[c];
       means[i] = this->Weights_[i] >= 0.5 * area ? this->Values_[i] / this->Weights_[i]
                                                  : std::numeric_limits<double>::quiet_NaN();
+      if (shares) {
+        const double share = this->Weights_[i] / area;
+        (*shares)[i] = share > 1.0 - 1e-9 ? 1.0 : share; // rounding
+      }
     }
   }
   return means;

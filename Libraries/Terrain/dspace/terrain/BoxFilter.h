@@ -25,9 +25,9 @@ public:
   explicit BoxSums(std::size_t boxes) : Values_(boxes, 0.0), Weights_(boxes, 0.0) {}
   void Add(const std::vector<double>& values, int width, int height,
            const std::vector<BoxSpan>& columns, const std::vector<BoxSpan>& rows);
-  // `widths` are those of the whole boxes.
-  std::vector<double> Means(const std::vector<double>& widths,
-                            const std::vector<BoxSpan>& rows) const;
+  // `widths` are those of the whole boxes. `shares`: how much of each has data, 0 to 1.
+  std::vector<double> Means(const std::vector<double>& widths, const std::vector<BoxSpan>& rows,
+                            std::vector<double>* shares = nullptr) const;
 
 private:
   std::vector<double> Values_;

@@ -53,7 +53,8 @@ double RasterPosts::PoleHeight(int level, bool last) const {
 // BoxMeans of the raster at `factor`, its columns of any turn. The last reduced pixel of a row may
 // be narrower than the others: each turn is summed by itself.
 std::vector<double> RasterPosts::MeansAround(const std::vector<BoxSpan>& columns,
-                                             const std::vector<BoxSpan>& rows, int factor) const {
+                                             const std::vector<BoxSpan>& rows, int factor,
+                                             std::vector<double>& shares) const {
   const RasterWindow all = this->Source_->Info().window;
   const auto top = std::int64_t(std::floor(rows.front().from / factor));
   const auto bottom = std::int64_t(std::ceil(rows.back().to / factor));
@@ -93,11 +94,11 @@ std::vector<double> RasterPosts::MeansAround(const std::vector<BoxSpan>& columns
     sums.Add(this->ReadPixels(left, top, width, height, factor), width, height, along, down);
   }
   const double area = (columns.front().to - columns.front().from) / factor;
-  return sums.Means(std::vector<double>(columns.size(), area), down);
+  return sums.Means(std::vector<double>(columns.size(), area), down, &shares);
 }
 
 std::vector<double> RasterPosts::MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows,
-                                         int factor) const {
+                                         int factor, std::vector<double>& shares) const {
   const std::int64_t left = FloorDiv(std::int64_t(std::floor(columns.front().from)), factor);
   const std::int64_t right = FloorDiv(std::int64_t(std::ceil(columns.back().to)) - 1, factor) + 1;
   const std::int64_t top = FloorDiv(std::int64_t(std::floor(rows.front().from)), factor);
@@ -111,10 +112,16 @@ std::vector<double> RasterPosts::MeansOf(std::vector<BoxSpan> columns, std::vect
   for (BoxSpan& span : rows) {
     span = {span.from / factor - double(top), span.to / factor - double(top)};
   }
-  return BoxMeans(pixels, width, height, columns, rows);
+  BoxSums sums(columns.size() * rows.size());
+  sums.Add(pixels, width, height, columns, rows);
+  std::vector<double> widths;
+  for (const BoxSpan& span : columns) {
+    widths.push_back(span.to - span.from);
+  }
+  return sums.Means(widths, rows, &shares);
 }
 
-void RasterPosts::ReadMeans(const PostBlock& block, float* heights) const {
+void RasterPosts::ReadMeans(const PostBlock& block, float* heights, float* shares) const {
   const RasterWindow all = this->Source_->Info().window;
   const int above = block.level - this->Subdivisions_;
   const double half = std::ldexp(0.5, above); // of a box [pixels]
@@ -141,21 +148,26 @@ void RasterPosts::ReadMeans(const PostBlock& block, float* heights) const {
   std::vector<BoxSpan> rows =
       spans(block.row, block.height, false, all.height, this->Poles_ ? 0.0 : 0.5);
   std::vector<double> means;
+  std::vector<double> parts;
   if (this->Stretch_ == 1.0) {
-    means = this->MeansOf(columns, rows, factor);
+    means = this->MeansOf(columns, rows, factor, parts);
   } else {
     for (int i = 0; i < block.width; ++i) {
       const double center = 0.5 + std::ldexp(double(block.column + i), above) * this->Stretch_;
       columns[i] = {center - half * this->Stretch_, center + half * this->Stretch_};
     }
-    means = this->MeansAround(columns, rows, factor);
+    means = this->MeansAround(columns, rows, factor, parts);
   }
-  std::transform(means.begin(), means.end(), heights, [](double h) { return float(h); });
+  const auto toFloat = [](double h) { return float(h); };
+  std::transform(means.begin(), means.end(), heights, toFloat);
+  std::transform(parts.begin(), parts.end(), shares, toFloat);
   const std::int64_t last = this->Lattice_.RowsAt(block.level) - 1;
   for (int j = 0; this->Poles_ && j < block.height; ++j) {
     if (block.row + j == 0 || block.row + j == last) {
-      std::fill_n(heights + std::size_t(j) * block.width, block.width,
-                  float(this->PoleHeight(block.level, block.row + j == last)));
+      const auto pole = float(this->PoleHeight(block.level, block.row + j == last));
+      std::fill_n(heights + std::size_t(j) * block.width, block.width, pole);
+      std::fill_n(shares + std::size_t(j) * block.width, block.width,
+                  std::isnan(pole) ? 0.0f : 1.0f);
     }
   }
 }

@@ -184,14 +184,20 @@ void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {
 }
 
 void RasterPosts::Read(const PostBlock& block, float* heights) const {
+  std::vector<float> shares(std::size_t(block.width) * block.height);
+  this->ReadWithShares(block, heights, shares.data());
+}
+
+void RasterPosts::ReadWithShares(const PostBlock& block, float* heights, float* shares) const {
+  const bool means = block.level > this->Subdivisions_ - (this->Poles_ ? 1 : 0);
   // With poles, the rows of level `subdivisions` already stand between those of pixels.
   if (this->Stretch_ != 1.0 && block.level < this->Full_) {
     const auto full = [this](const PostBlock& wanted, float* posts) { this->Read(wanted, posts); };
     ReadBetweenPosts(this->Lattice_, this->Poles_, this->Full_, full, block, heights);
-  } else if (block.level <= this->Subdivisions_ - (this->Poles_ ? 1 : 0)) {
+  } else if (!means) {
     this->ReadSubdivided(block, heights);
   } else {
-    this->ReadMeans(block, heights);
+    this->ReadMeans(block, heights, shares);
   }
   // What lies outside the lattice is no post.
   const std::int64_t columns = this->Lattice_.ColumnsAt(block.level);
@@ -203,6 +209,12 @@ void RasterPosts::Read(const PostBlock& block, float* heights) const {
           !this->Lattice_.periodic && (block.column + i < 0 || block.column + i >= columns);
       if (rowOutside || outside) {
         heights[std::size_t(j) * block.width + i] = std::numeric_limits<float>::quiet_NaN();
+      }
+      float& share = shares[std::size_t(j) * block.width + i];
+      if (rowOutside || outside) {
+        share = 0.0f;
+      } else if (!means) {
+        share = std::isnan(heights[std::size_t(j) * block.width + i]) ? 0.0f : 1.0f;
       }
     }
   }

@@ -55,6 +55,10 @@ public:
   const std::string& GetName() const override { return this->Name_; }
   const PostLattice& GetLattice() const override { return this->Lattice_; }
   void Read(const PostBlock& block, float* heights) const override;
+  // The same, and into `shares` how much of each post's cell has data, 0 to 1; of levels that are
+  // no means, and at poles, 0 or 1.
+  void ReadWithShares(const PostBlock& block, float* heights, float* shares) const;
+  bool Poles() const { return this->Poles_; }
 
   const ElevationSource& Source() const { return *this->Source_; }
   int Subdivisions() const { return this->Subdivisions_; }
@@ -73,11 +77,12 @@ private:
   std::vector<double> ReadPixels(std::int64_t column, std::int64_t row, int width, int height,
                                  int factor) const;
   void ReadSubdivided(const PostBlock& block, float* heights) const;
-  std::vector<double> MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows,
-                              int factor) const;
+  std::vector<double> MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows, int factor,
+                              std::vector<double>& shares) const;
   std::vector<double> MeansAround(const std::vector<BoxSpan>& columns,
-                                  const std::vector<BoxSpan>& rows, int factor) const;
-  void ReadMeans(const PostBlock& block, float* heights) const;
+                                  const std::vector<BoxSpan>& rows, int factor,
+                                  std::vector<double>& shares) const;
+  void ReadMeans(const PostBlock& block, float* heights, float* shares) const;
   double PoleHeight(int level, bool last) const;
 
   std::shared_ptr<const ElevationSource> Source_;

@@ -124,6 +124,13 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
       } else {
         pyramid.Read(block, heights.data(), this->Deadline_);
       }
+      if (this->Holed_ && !this->Pixels_) { // what is made up is no pixel
+        std::vector<float> own(heights.size());
+        this->Holed_->SharedPyramid()->Read(block, own.data(), this->Deadline_);
+        for (std::size_t k = 0; k < own.size(); ++k) {
+          heights[k] = std::isnan(own[k]) ? own[k] : heights[k];
+        }
+      }
     }
     const Eigen::Vector3d up = this->DoUp(p_S);
     const Eigen::Vector3d north = this->DoNorth(p_S);

@@ -136,8 +136,8 @@ SurfaceSample StreamedTerrain::DoSampleMap(const Eigen::Vector2d& map) const {
                                              : this->DoMapToScene({map.x(), map.y(), 0.0}));
 }
 
-void StreamedTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
-                                Eigen::Ref<Eigen::VectorXd> heights) const {
+std::vector<Eigen::Vector2d>
+StreamedTerrain::PostsOf(const Eigen::Ref<const Rows3>& points_S) const {
   const double none = std::numeric_limits<double>::quiet_NaN();
   std::vector<Eigen::Vector2d> posts(points_S.rows());
   for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
@@ -146,7 +146,12 @@ void StreamedTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
                    ? Eigen::Vector2d(none, none)
                    : Eigen::Vector2d(this->Placement_.ToPosts(p_S).head<2>());
   }
-  this->HeightsAt(posts, heights);
+  return posts;
+}
+
+void StreamedTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
+                                Eigen::Ref<Eigen::VectorXd> heights) const {
+  this->HeightsAt(this->PostsOf(points_S), heights);
 }
 
 void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,

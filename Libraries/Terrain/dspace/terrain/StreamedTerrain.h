@@ -20,6 +20,7 @@
 namespace dspace {
 
 struct DegreeGrid;
+class FilledPosts;
 class PostSurface;
 class RasterPosts;
 class SurfaceRay;
@@ -39,7 +40,11 @@ struct StreamedTerrainOptions {
   // centimetres apart. 0 to 12; on a body it follows from its size.
   int subdivisions = 0;
   WheelTracksOptions tracks; // on a plane
-  int cells = 124;           // of a clipmap level that it will be drawn with: how far it is halved
+  // Holes are filled where data are within so many of the raster's pixels, infinity for all of them
+  // (FilledPosts): drawn and answered alike, told apart by Filled(). Patches lie on it. > 0;
+  // absent: holes stay.
+  std::optional<double> fillHoles;
+  int cells = 124; // of a clipmap level that it will be drawn with: how far it is halved
   ElevationPyramidOptions pyramid;
   double deadline = 60.0; // [s] that a query waits for tiles
   // Of higher resolution, later ones on top; see GroupPosts. Level 0 is as fine as the finest.
@@ -113,6 +118,12 @@ public:
   // HeightRange() and as far as ruts and rims reach beyond it.
   std::array<double, 2> DrawnHeights() const;
 
+  // Into `filled` 1 where the ground is made up (StreamedTerrainOptions::fillHoles), 0 where it is
+  // between posts with data, NaN where there is none.
+  void Filled(const Eigen::Ref<const Rows3>& points_S, Eigen::Ref<Eigen::VectorXd> filled) const;
+  void FilledMap(const Eigen::Ref<const Rows2>& map, Eigen::Ref<Eigen::VectorXd> filled) const;
+  bool FillsHoles() const { return this->Filled_ != nullptr; }
+
   // Root mean square [m] of the heights of the raster's pixels within `radius` [m] of each point
   // about the plane that fits them best (least squares, of heights above the vertical datum): the
   // "RMS height" of Shepard et al., J. Geophys. Res. 106 (E12), 32777, 2001, detrended by a plane,
@@ -152,6 +163,9 @@ private:
   bool Tracked() const { return this->Tracks_ && !this->Tracks_->Empty(); }
   // What answers there.
   const PostSurface& SurfaceAt(const Eigen::Vector2d& post) const;
+  void FilledAt(const std::vector<Eigen::Vector2d>& posts,
+                Eigen::Ref<Eigen::VectorXd> filled) const;
+  std::vector<Eigen::Vector2d> PostsOf(const Eigen::Ref<const Rows3>& points_S) const;
   void HeightsAt(const std::vector<Eigen::Vector2d>& posts,
                  Eigen::Ref<Eigen::VectorXd> heights) const;
   const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
@@ -165,6 +179,8 @@ private:
 
   std::shared_ptr<const ElevationSource> Source_;
   std::shared_ptr<const RasterPosts> Posts_;
+  std::shared_ptr<const FilledPosts> Filled_;
+  std::unique_ptr<PostSurface> Holed_; // the surface as it is without what is filled
   std::shared_ptr<const GroupPosts> Group_;
   std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
   std::shared_ptr<ElevationPyramid> Pyramid_;

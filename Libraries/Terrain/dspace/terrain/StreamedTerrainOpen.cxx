@@ -7,6 +7,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/terrain/ClipmapLevels.h>
+#include <dspace/terrain/FilledPosts.h>
 #include <dspace/terrain/RasterPosts.h>
 
 #include "DegreeGrid.h"
@@ -159,14 +160,29 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   this->PixelToPost_.translation() << -0.5 * across, poles ? 0.0 : -0.5 * parts;
   this->MapToPost_ = this->PixelToPost_ * info.pixelToMap.inverse();
   std::shared_ptr<const PostSource> source = raster;
-  this->Ground_ = raster;
+  if (options.fillHoles) {
+    this->Filled_ = std::make_shared<const FilledPosts>(raster, *options.fillHoles);
+    source = this->Filled_;
+  }
+  const std::shared_ptr<const PostSource> base = source;
+  this->Ground_ = base;
   this->FullLevel_ = raster->FullLevel();
   int level = this->FullLevel_;
   if (patches) {
-    this->Group_ = std::make_shared<const GroupPosts>(raster, this->MapToPost_.inverse(), poles,
+    this->Group_ = std::make_shared<const GroupPosts>(base, this->MapToPost_.inverse(), poles,
                                                       std::move(*patches));
     source = this->Group_;
     level = 0; // patches have posts between those of the raster
+  }
+  if (this->Filled_) {
+    ElevationPyramidOptions small = options.pyramid;
+    small.byteBudget = std::max(options.pyramid.byteBudget / 16, std::size_t(4) << 20);
+    const std::shared_ptr<const PostSource> holed =
+        this->Group_ ? std::shared_ptr<const PostSource>(
+                           this->Group_->On(raster, info.crs, this->MapToPost_.inverse()))
+                     : std::shared_ptr<const PostSource>(raster);
+    this->Holed_ = std::make_unique<PostSurface>(std::make_shared<ElevationPyramid>(holed, small),
+                                                 level, poles, options.deadline);
   }
   if (this->Frame_) {
     source = this->WithTracks(source, options);
@@ -276,11 +292,15 @@ int StreamedTerrain::TakeOverviews(
   const int levels = this->Source_->TakeOverviews();
   if (levels > 0) {
     this->Posts_->ForgetReduced();
+    if (this->Filled_) {
+      this->Filled_->ForgetReduced();
+    }
     std::vector<std::shared_ptr<ElevationPyramid>> pyramids = others;
     pyramids.push_back(this->Pyramid_);
     for (const std::shared_ptr<ElevationPyramid>& pyramid : pyramids) {
       PostRectangle coarse{0, 0, pyramid->Lattice().columns, pyramid->Lattice().rows};
-      coarse.from = this->Posts_->FirstReducedLevel();
+      // What is filled follows from coarser levels.
+      coarse.from = this->Filled_ ? 0 : this->Posts_->FirstReducedLevel();
       pyramid->Invalidate({coarse});
     }
   }
