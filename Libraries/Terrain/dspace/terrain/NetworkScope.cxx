@@ -18,6 +18,9 @@ NetworkScope::NetworkScope(const NetworkLimits& limits, const std::string& path)
   this->Set("GDAL_HTTP_LOW_SPEED_LIMIT", "100");
   this->Set("GDAL_HTTP_MAX_RETRY", std::to_string(limits.retries));
   this->Set("GDAL_HTTP_RETRY_DELAY", std::to_string(limits.retryDelay));
+  // GDAL shares a mosaic's sources between all mosaics that one thread has opened, which then are
+  // read by several at once.
+  this->Set("VRT_SHARED_SOURCE", "NO");
   // A TIFF is one file: without this GDAL asks for half a dozen that might stand beside it, each
   // of which a stalling server keeps waiting.
   const std::size_t dot = path.rfind('.');

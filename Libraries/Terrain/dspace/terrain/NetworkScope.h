@@ -1,4 +1,4 @@
-// GDAL's settings of HTTP for one thread and one call. Not for public headers.
+// GDAL's settings, those of HTTP above all, for one thread and one call. Not for public headers.
 #ifndef DSPACE_TERRAIN_NETWORKSCOPE_H
 #define DSPACE_TERRAIN_NETWORKSCOPE_H
 
@@ -10,7 +10,8 @@ namespace dspace {
 
 struct NetworkLimits;
 
-// While it lives, what this thread asks of a server ends within the limits.
+// While it lives, what this thread asks of a server ends within the limits, and what it opens is
+// nobody else's.
 class NetworkScope {
 public:
   NetworkScope(const NetworkLimits& limits, const std::string& path);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include <ogr_spatialref.h>
-
 #include <dspace/Error.h>
+
+#include "MapTurn.h"
 
 namespace dspace {
 namespace {
@@ -14,20 +14,6 @@ namespace {
 constexpr double Degree = M_PI / 180.0;
 constexpr double OneBody = 0.01; // of an axis: what spheres of one body differ by at most
 const Eigen::Vector2d Nowhere = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-
-// Map units after which x repeats; 0 where it does not.
-double TurnOf(const Crs& crs) {
-  if (crs.GetKind() == Crs::Kind::Geographic) {
-    return 360.0 / crs.GetUnit();
-  }
-  const OGRSpatialReference* srs = crs.Ogr();
-  const char* projection = srs ? srs->GetAttrValue("PROJECTION") : nullptr;
-  if (!projection || std::string(projection) != SRS_PT_EQUIRECTANGULAR) {
-    return 0.0;
-  }
-  const double parallel = srs->GetNormProjParm(SRS_PP_STANDARD_PARALLEL_1, 0.0);
-  return 2.0 * M_PI * crs.GetAxes().semiMajor * std::cos(parallel * Degree) / crs.GetUnit();
-}
 
 std::string NameOf(const Crs& crs) {
   return crs.GetKind() == Crs::Kind::None
@@ -74,9 +60,9 @@ PatchPlace::PatchPlace(const std::string& object, const ElevationInfo& base,
   if (base.crs.Ogr() && base.crs.GetWkt() != patch.crs.GetWkt()) {
     this->Transform_ = std::make_shared<const CrsTransform>(base.crs, patch.crs);
   }
-  this->BaseTurn_ = TurnOf(base.crs);
+  this->BaseTurn_ = MapTurn(base.crs);
   if (this->MapToPixel_.linear()(1, 0) == 0.0) {
-    this->PatchTurn_ = TurnOf(patch.crs) * std::abs(this->MapToPixel_.linear()(0, 0));
+    this->PatchTurn_ = MapTurn(patch.crs) * std::abs(this->MapToPixel_.linear()(0, 0));
   }
   this->FindSizes();
 }
