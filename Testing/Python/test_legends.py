@@ -92,10 +92,19 @@ def test_a_legend_is_of_what_has_a_ramp(view, field):
     with pytest.raises(dspace.WrongType, match="Terrain"):
         view.legend_of("height")
 
-    class Layer:
-        name, colors, range, unit = "iron", [(0, 0, 0), (1, 0, 0)], (2.0, 14.0), "wt%"
-
-    assert view.legend_of(Layer()) == "iron"
+    field.set_style()
+    layer = field.add_false_color(FIELD, colors=SHADES, low=-1.0, high=4.0, name="heights")
+    without = view.image()
+    assert view.legend_of(layer, background=(0, 0, 0), background_opacity=1, length=100) == "heights"
+    image = view.image()
+    left, bottom = bar_of(image, 100, 16)
+    shown = image[bottom - np.arange(100), left + 5]
+    expected = 255 * np.stack([np.interp((np.arange(100) + 0.5) / 50, (0, 1, 2), part) for part in zip(*SHADES)], -1)
+    np.testing.assert_allclose(shown, expected, atol=1)
+    marks = [k for k in range(100) if (image[bottom - k, left + 17] == 255).all()]
+    assert marks == [0, 20, 40, 60, 80, 99]  # -1 to 4
+    view.remove_color_bar("heights")
+    np.testing.assert_array_equal(view.image(), without)
 
 
 @pytest.mark.parametrize("change, told", [
