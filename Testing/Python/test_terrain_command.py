@@ -188,6 +188,37 @@ def test_perspective_and_image(tmp_path):
     assert "height 3 m" in told and near[-20:].min() > 0
 
 
+def test_layers_in_the_order_given(tmp_path):
+    """A map of flat ground with a white sun above: colours of the layers are told apart."""
+    ground = write_raster(tmp_path / "ground.tif", np.full((64, 64), 5.0), -999)
+    g = gdal.Open(str(ground)).GetGeoTransform()
+
+    def image(name, color, columns):
+        """Over the left `columns` of the ground."""
+        data = gdal.GetDriverByName("GTiff").Create(str(tmp_path / name), columns, 64, 3)
+        data.SetGeoTransform(g)
+        data.SetProjection(gdal.Open(str(ground)).GetProjection())
+        for band, value in enumerate(color):
+            data.GetRasterBand(band + 1).WriteArray(np.full((64, columns), value, np.uint8))
+        return tmp_path / name
+
+    red, blue = image("red.tif", (255, 0, 0), 48), image("blue.tif", (0, 0, 255), 24)
+    x, y = g[0] + g[1] * 36, g[3] + g[5] * 32
+    (tmp_path / "point.geojson").write_text(json.dumps({"type": "Feature", "properties": {"marker-color": "#00ff00"},
+                                                        "geometry": {"type": "Point", "coordinates": [x, y]}}))
+    shown = {}
+    for order in ((red, blue), (blue, red)):
+        picture, _ = render(tmp_path / "map.png", ground, "--size", "128x128", "--sun", "0,90", "--false-color",
+                            f"{red}:1", "--image", order[0], "--image", order[1], "--shapes",
+                            tmp_path / "point.geojson")
+        # In both a point on the right part of the red one, and beside both the ground.
+        assert picture[64, 72].argmax() == 1 and picture[64, 72, 0] < 60
+        assert picture[20, 80].argmax() == 0 and picture[20, 80, 2] < 60
+        assert np.ptp(picture[64, 115].astype(int)) < 40
+        shown[order[1]] = picture[30, 20].argmax()
+    assert shown == {red: 0, blue: 2}
+
+
 def test_the_body_is_a_disc_without_gaps(tmp_path):
     path = real("mars_mola_megt90n000cb_4ppd_m.tif")
     picture, told = render(tmp_path / "mars.png", path, "--on-body", "--size", "300x300", "--sun", "0,90",
@@ -246,6 +277,10 @@ def test_patches_lie_on_it(tmp_path):
     (["terrain", "render", FIELD, "--out", "a.png", "--eye", "0,0,3"], 1, "perspective"),
     (["terrain", "render", FIELD, "--out", "a.png", "--image", "/no/such.png"], 1, "/no/such.png"),
     (["terrain", "render", FIELD, "--out", "a.png", "--image", "a", "--color-by-height"], 2, "--image"),
+    (["terrain", "render", FIELD, "--out", "a.png", "--shapes", "a", "--color-by-height"], 2, "--shapes"),
+    (["terrain", "render", FIELD, "--out", "a.png", "--image", "a", "--image", "b", "--image-crs", "c"], 2, "2 images"),
+    (["terrain", "render", FIELD, "--out", "a.png", "--false-color", f"{FIELD}:7"], 1, "7"),
+    (["terrain", "render", FIELD, "--out", "a.png", "--shapes", "/no/such.geojson"], 1, "/no/such.geojson"),
     (["terrain", "render", FIELD, "--out", "a.png", "--level-size", "13"], 1, "13"),
 ])
 def test_what_is_refused_is_told_in_one_line(arguments, code, text, tmp_path):

@@ -2,7 +2,7 @@
 import argparse
 import math
 
-from dspace.command_line import terrain_cache, terrain_info, terrain_render
+from dspace.command_line import terrain_cache, terrain_info, terrain_layers, terrain_render
 
 # What a patch's keys hold.
 PATCH = {"band": int, "crs": str, "vertical_datum": str, "vertical_scale": float, "vertical_offset": float,
@@ -26,12 +26,11 @@ def add_arguments(parser):
     render.add_argument("--size", type=size, metavar="WxH", help="pixels (default: 1024 on the longer side)")
     render.add_argument("--view", choices=("map", "perspective"), default="map")
     render.add_argument("--on-body", action="store_true", help="stands on its body, else on a plane")
-    look = render.add_mutually_exclusive_group()
-    look.add_argument("--image", metavar="IMG", help="an image that lies on it")
-    look.add_argument("--color-by-height", action="store_true", help="false colour")
-    render.add_argument("--image-crs", metavar="CRS", help="of the image, where its file does not say")
+    terrain_layers.add_arguments(render)
+    render.add_argument("--color-by-height", action="store_true", help="false colour of the heights")
+    render.add_argument("--image-crs", metavar="CRS", help="of the one image, where its file does not say")
     render.add_argument("--image-extent", type=numbers(4, "LEFT,TOP,RIGHT,BOTTOM"), metavar="L,T,R,B",
-                        help="of the image in map coordinates, where its file does not say")
+                        help="of the one image in map coordinates, where its file does not say")
     render.add_argument("--sun", type=sun, default=(315.0, 45.0), metavar="AZ,EL",
                         help="degrees clockwise from north and above the horizon, at the target or the middle (315,45)")
     render.add_argument("--eye", type=numbers(3, "LON,LAT,HEIGHT"), metavar="LON,LAT,HEIGHT",

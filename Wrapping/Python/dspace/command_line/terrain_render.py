@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 
-from dspace.command_line import Failed
+from dspace.command_line import Failed, terrain_layers
 from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, open_raster
 from dspace.command_line.terrain_map import draw_disc, draw_map
 
@@ -17,6 +17,7 @@ SKY = (0.0, 0.0, 0.0)
 def run(options):
     import dspace
     check(options)
+    terrain_layers.check(options)
     out = pathlib.Path(options.out)
     if out.suffix.lower() not in (".png", ".jpg", ".jpeg", ".tif", ".tiff"):
         raise Failed(f"'{out}': the picture's format is not known; accepted: .png, .jpg, .tif")
@@ -54,10 +55,7 @@ class Ground:
     def __init__(self, scene, options):
         gdal, osr = gdal_modules()
         look = {"color": GROUND}
-        if options.image:
-            look = {"image": options.image, "image_crs": options.image_crs,
-                    "image_extent": options.image_extent}
-        elif options.color_by_height:
+        if options.color_by_height:
             look = {"relief": {"color_by_height": True}}
         self.on_body = options.on_body
         self.terrains, self.maps = [], []
@@ -74,6 +72,7 @@ class Ground:
                 print(f"dspace: note: {path}: {warning}", file=sys.stderr)
             self.terrains.append(terrain)
             self.maps.append(map_extent(*open_raster(gdal, path, options)))
+        terrain_layers.paint(self.terrains, options)
         self.crs = degrees(osr, self.terrains[0].crs)
         self.heights = (min(terrain.height_range[0] for terrain in self.terrains),
                         max(terrain.height_range[1] for terrain in self.terrains))
