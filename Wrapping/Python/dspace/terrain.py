@@ -273,7 +273,7 @@ class Terrain(LayerMaking, TrackMaking, Strict):
             if range is not None:
                 low, high = numbers(range, 2, "the range", label, "low, high")
                 put(style.ramp, label, low=low, high=high)
-            for value in () if colors is None else colors:
+            for value in items(() if colors is None else colors, "the colours", label, "colours"):
                 put_color(style.ramp.color.add(), value, "a colour of the ramp", label)
         elif range is not None or colors is not None:
             raise InvalidArgument(f"{label}: a range and colours are of color_by, which is not given; "
