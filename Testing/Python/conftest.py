@@ -1,9 +1,18 @@
 """What the tests of the dspace package share."""
+import atexit
+import os
+import shutil
 import sys
+import tempfile
 import warnings
 
 import numpy as np
 import pytest
+
+
+# Nothing is written to the user's own cache, by no process that a test starts either.
+os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="dspace-test-cache-")
+atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 
 
 @pytest.fixture

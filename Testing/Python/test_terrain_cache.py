@@ -49,7 +49,7 @@ def opened(scene, path, **given):
     """The terrain and what was warned of overviews."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        terrain = scene.add_terrain(path, mode="clipmap", **given)
+        terrain = scene.add_terrain(path, **{"mode": "clipmap", "build_overviews": False, **given})
     return terrain, [text for text in (str(warning.message) for warning in caught) if "overviews" in text]
 
 
@@ -88,6 +88,67 @@ def test_far_ground_is_the_mean_of_all_pixels_with_the_cache(scene, folder, tmp_
     off, warned = opened(scene, path, cache=False)
     assert warned == []  # chosen
     np.testing.assert_array_equal(far_height(scene, off), one)
+
+
+def awaited(terrain):
+    """What its overviews say once nothing is under way any more."""
+    while terrain.overviews["build"] == "building":
+        time.sleep(0.01)
+    return terrain.overviews
+
+
+def test_overviews_are_built_in_the_background(scene, folder, tmp_path):
+    path = stripes(tmp_path / "stripes.tif")
+    terrain, warned = opened(scene, path, build_overviews=True)
+    assert len(warned) == 1 and "which has begun" in warned[0]
+    near = terrain.height([0.5, 1.5, 2.5], [0.5, 0.5, 0.5])
+    assert awaited(terrain) == {"levels": 4, "cached": True, "build": "built", "progress": 1.0, "failure": ""}
+    np.testing.assert_allclose(far_height(scene, terrain), 45, atol=0.01)
+    np.testing.assert_array_equal(terrain.height([0.5, 1.5, 2.5], [0.5, 0.5, 0.5]), near)
+    assert [each.suffix for each in folder.iterdir()] == [".overviews"]
+    terrain.remove()
+    again, warned = opened(scene, path, build_overviews=True)
+    assert warned == [] and again.overviews["build"] is None and again.overviews["levels"] == 4
+
+
+def test_a_build_ends_with_its_terrain(scene, folder, tmp_path):
+    path = tmp_path / "endless.vrt"
+    path.write_text('<VRTDataset rasterXSize="100000" rasterYSize="100000"><GeoTransform>0, 1, 0, 0, 0, -1'
+                    '</GeoTransform><VRTRasterBand dataType="Int16" band="1"><NoDataValue>-1</NoDataValue>'
+                    '</VRTRasterBand></VRTDataset>')
+    terrain, _ = opened(scene, path, build_overviews=True)
+    while terrain.overviews["progress"] == 0:  # until it is under way
+        time.sleep(0.01)
+    assert terrain.overviews["build"] == "building"
+    terrain.remove()
+    assert list(folder.iterdir()) == []  # nothing half-made
+    with dspace.Session() as other:  # ends while it builds
+        opened(other.scene(), path, build_overviews=True)
+    assert not folder.exists() or list(folder.iterdir()) == []
+
+
+def test_a_process_that_ends_without_a_word_ends_its_builds(folder, tmp_path):
+    test_path = tmp_path / "endless.vrt"
+    test_path.write_text('<VRTDataset rasterXSize="100000" rasterYSize="100000"><VRTRasterBand '
+                         'dataType="Int16" band="1"><NoDataValue>-1</NoDataValue></VRTRasterBand></VRTDataset>')
+    code = ("import dspace, time, warnings; warnings.simplefilter('ignore'); session = dspace.Session()\n"
+            f"terrain = session.scene().add_terrain({str(test_path)!r}, mode='clipmap')\n"
+            "while terrain.overviews['progress'] == 0: time.sleep(0.01)\n")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert list(folder.iterdir()) == []
+
+
+def test_overviews_that_cannot_be_built_are_told_of(scene, folder, tmp_path):
+    path = stripes(tmp_path / "stripes.tif")
+    terrain, _ = opened(scene, path, cache=path / "in a file", build_overviews=True)
+    found = awaited(terrain)
+    assert found["build"] == "failed" and "in a file" in found["failure"] and found["levels"] == 0
+    assert np.isin(np.round(far_height(scene, terrain), 3), (LOW, HIGH)).all()
+    terrain.remove()
+    off, _ = opened(scene, path, cache=False, build_overviews=True)
+    assert off.overviews["build"] is None
+    assert not folder.exists()
 
 
 def test_a_folder_of_ones_own(scene, folder, tmp_path):

@@ -99,6 +99,26 @@ class Terrain(LayerMaking, TrackMaking, Strict):
                 "last_failure": info.last_failure}
 
     @property
+    def overviews(self):
+        """Of a clipmap, a dict: levels (that it reads), cached (else they are the file's own), build
+        (of those that are missing, in the background: None, "building", "built", "failed"), progress
+        (0 to 1) and failure (why; drawing goes on without)."""
+        info = self._info()
+        return {"levels": info.overviews, "cached": info.overviews_are_cached,
+                "build": (None, "building", "built", "failed")[info.overview_build],
+                "progress": info.overview_progress, "failure": info.overview_failure}
+
+    @property
+    def resampling(self):
+        """Of a clipmap on its body whose raster's columns do not halve often enough, a dict: columns
+        (around the body instead of the raster's); rms_error and greatest_error [m] of the surface
+        against the raster's pixels, measured at `posts` of them taken at random. Else None."""
+        info = self._info()
+        return {"columns": info.resampled_columns, "posts": info.resampling_posts,
+                "rms_error": info.resampling_rms_error,
+                "greatest_error": info.resampling_greatest_error} if info.resampled_columns else None
+
+    @property
     def patches(self):
         """Of a clipmap, a dict for each patch: name; used (else it adds nothing, as a warning said);
         pixel_size and margin [m]; added [m] to its heights for its vertical datum; height_range [m];
@@ -148,6 +168,13 @@ class Terrain(LayerMaking, TrackMaking, Strict):
         """Unit normals (..., 3) in the terrain's frame, of the surface at x, y as for height()."""
         shape, values = self._query(x, y, "normal", map, z)
         return _unpack(values, "normal", shape + (3,))
+
+    def filled(self, x, y, z=None, map=False):
+        """Whether the ground at x, y (as for height()) is made up by add_terrain's fill_holes: True or
+        False, or an array; False as well where there is no ground. Clipmaps only."""
+        shape, values = self._query(x, y, "filled", map, z)
+        made = _wire.get_array(values, "filled").reshape(shape) == 1.0
+        return bool(made) if shape == () else made
 
     def _xy(self, points):
         array = array_of(points, "the points", "an array (n, 2)", self._label)
@@ -392,7 +419,7 @@ class TerrainMaking:
                     image_extent=None, band=None, crs=None, vertical_datum=None,
                     vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
                     on_body=False, level_size=None, byte_budget=None, deadline=None, patches=(),
-                    subdivisions=None, track_budget=None, cache=None):
+                    subdivisions=None, track_budget=None, cache=None, build_overviews=True, fill_holes=False):
         """A raster of heights (anything that GDAL opens) as a physical object.
 
         image: a file to drape over it (of a clipmap the layer "drape", see add_image(): in full
@@ -410,6 +437,10 @@ class TerrainMaking:
         (60).
         cache: the folder of averaged overviews that a clipmap reads where a raster has none (the user's
         cache folder, which `dspace terrain cache FILE` fills); False: none are read.
+        build_overviews: a local raster of over four million pixels that has none gets them there, in
+        the background; far ground changes once when they are there (Terrain.overviews tells).
+        fill_holes: True fills what has no data smoothly from the ground around it, a number only
+        within so many pixels of data (clipmaps only): drawn and answered alike, Terrain.filled tells.
         subdivisions: on a plane, how often a clipmap's cells between pixels are halved: wheel tracks
         (track()) need posts some centimetres apart. track_budget: bytes for them (64 MiB).
         band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and
@@ -457,6 +488,9 @@ class TerrainMaking:
                   subdivisions=subdivisions, track_byte_budget=track_budget)
         if cache is not None:
             message.overview_cache = "" if cache is False else _folder(cache, label)
+        if fill_holes is not False:
+            put(message, label, fill_holes=float("inf") if fill_holes is True else fill_holes)
+        message.build_overviews = flag(build_overviews, "build_overviews", label)
         _put_patches(message, label, patches)
         return Terrain(self, self._execute(command).terrain.name)
 

@@ -62,8 +62,24 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   reply.set_post_rows(std::uint64_t(surface.Pyramid()->Lattice().rows));
   reply.set_vertical_scale(info.verticalScale);
   reply.set_vertical_offset(info.verticalOffset);
-  reply.set_overviews(std::uint32_t(info.overviews));
-  reply.set_overviews_are_cached(info.overviewsAreCached);
+  const int built = this->Overviews_;
+  reply.set_overviews(std::uint32_t(built > 0 ? built : info.overviews));
+  reply.set_overviews_are_cached(built > 0 || info.overviewsAreCached);
+  if (this->Build_) {
+    using State = OverviewBuild::State;
+    const State state = this->Build_->GetState();
+    reply.set_overview_build(state == State::Building ? v1::TerrainReply::BUILDING
+                             : state == State::Built  ? v1::TerrainReply::BUILT
+                                                      : v1::TerrainReply::FAILED);
+    reply.set_overview_progress(this->Build_->Progress());
+    reply.set_overview_failure(this->Build_->Failure());
+  }
+  if (surface.Resampling()) {
+    reply.set_resampled_columns(std::uint64_t(surface.Resampling()->columns));
+    reply.set_resampling_posts(std::uint32_t(surface.Resampling()->posts));
+    reply.set_resampling_rms_error(surface.Resampling()->rmsError);
+    reply.set_resampling_greatest_error(surface.Resampling()->greatestError);
+  }
   const ElevationPyramidStatistics statistics = surface.Pyramid()->Statistics();
   reply.set_tile_bytes(statistics.bytes);
   reply.set_tile_loads(statistics.loads);
@@ -89,6 +105,19 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
     patch->set_rms_error(from.rmsError);
     patch->set_greatest_error(from.greatestError);
   }
+}
+
+void ClipmapTerrainObject::BuildOverviews(const std::string& folder,
+                                          const ElevationOptions& options) {
+  const auto built = [this] {
+    std::vector<std::shared_ptr<ElevationPyramid>> poles;
+    for (std::size_t i = 1; i < this->Clipmap_->Charts().size(); ++i) {
+      poles.push_back(this->Clipmap_->Charts()[i].pyramid);
+    }
+    this->Overviews_ = this->Surface_->TakeOverviews(poles);
+  };
+  this->Build_ =
+      std::make_unique<OverviewBuild>(folder, this->Surface_->Info().path, options, built);
 }
 
 bool ClipmapTerrainObject::Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) {

@@ -2,6 +2,7 @@
 #ifndef DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
 #define DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include <dspace/session/TerrainLayers.h>
 #include <dspace/session/TerrainObject.h>
 #include <dspace/terrain/ClipmapTerrain.h>
+#include <dspace/terrain/OverviewBuild.h>
 #include <dspace/terrain/StreamedTerrain.h>
 
 namespace dspace::session {
@@ -32,6 +34,8 @@ public:
   const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
   void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }
   void Describe(v1::TerrainReply& reply) const override;
+  // In the background, into `folder`; `options` as for ElevationCache::Build.
+  void BuildOverviews(const std::string& folder, const ElevationOptions& options);
   // Checks its arguments only: a clipmap's posts follow the cameras.
   bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) override;
 
@@ -40,6 +44,8 @@ private:
   std::shared_ptr<ClipmapTerrain> Clipmap_;
   TerrainLayers Layers_;
   std::string CacheFolder_;
+  std::atomic<int> Overviews_{0};        // that were built since it was opened
+  std::unique_ptr<OverviewBuild> Build_; // ends before what it changes
 };
 
 } // namespace dspace::session

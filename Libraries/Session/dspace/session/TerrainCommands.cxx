@@ -97,7 +97,7 @@ std::string CacheFolder(v1::OpenTerrain& command) {
 
 // Smaller rasters lose little.
 void WarnOfOverviews(const Context& context, const std::string& label, const ElevationInfo& info,
-                     const v1::OpenTerrain& command) {
+                     const v1::OpenTerrain& command, bool builds) {
   const bool off = command.has_overview_cache() && command.overview_cache().empty();
   if (off || info.overviewsAreCached || !ElevationCache::Needs(info) ||
       std::int64_t(info.window.width) * info.window.height <= MeshPixels) {
@@ -110,10 +110,12 @@ void WarnOfOverviews(const Context& context, const std::string& label, const Ele
   if (command.band() > 1) {
     build += "--band " + std::to_string(command.band()) + " ";
   }
-  context.reply.add_warning(label + ": its raster of " + std::to_string(info.window.width) + " x " +
-                            std::to_string(info.window.height) +
-                            " pixels has no overviews: far ground is every n-th pixel; `" + build +
-                            "'" + info.path + "'` builds overviews");
+  context.reply.add_warning(
+      label + ": its raster of " + std::to_string(info.window.width) + " x " +
+      std::to_string(info.window.height) +
+      " pixels has no overviews: far ground is every n-th pixel" +
+      (builds ? " until some are built, which has begun; `" : std::string("; `")) + build + "'" +
+      info.path + "'` builds overviews");
 }
 
 // Overviews that prove damaged are removed by the read that finds it: the next does without.
@@ -157,6 +159,12 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   if (command.byte_budget() != 0) {
     options.pyramid.byteBudget = std::size_t(command.byte_budget());
   }
+  if (command.has_fill_holes()) {
+    Require(command.fill_holes() > 0.0, label,
+            "the distance from data that holes are filled within", command.fill_holes(),
+            "more than 0 pixels");
+    options.fillHoles = command.fill_holes();
+  }
   options.subdivisions = int(std::min<std::uint32_t>(command.subdivisions(), 1u << 30));
   if (command.track_byte_budget() != 0) {
     options.tracks.byteBudget = std::size_t(command.track_byte_budget());
@@ -171,13 +179,19 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
     options.patches.back().elevation.overviewCache = options.elevation.overviewCache;
   }
   const auto surface = OpenStreamed(context, path, options);
-  WarnOfOverviews(context, label, surface->Info(), command);
+  const bool builds = !options.elevation.overviewCache.empty() &&
+                      (!command.has_build_overviews() || command.build_overviews()) &&
+                      OverviewBuild::Wanted(surface->Info());
+  WarnOfOverviews(context, label, surface->Info(), command, builds);
   ClipmapOptions look = ClipmapLook(*surface, command);
   look.cells = options.cells;
   look.heights = surface->DrawnHeights();
   look.deadline = options.deadline;
   auto terrain = std::make_unique<ClipmapTerrainObject>(name, surface, look, options.pyramid,
                                                         options.elevation.overviewCache);
+  if (builds) {
+    terrain->BuildOverviews(options.elevation.overviewCache, options.elevation);
+  }
   if (command.has_drape()) {
     AddDrape(context, *terrain, *command.mutable_drape());
   }
@@ -212,10 +226,14 @@ v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
   if (command.subdivisions() != 0 && command.mode() == Command::TRIANGLES) {
     Refuse(label, "triangles have no posts between pixels; accepted with subdivisions: a clipmap");
   }
+  if (command.has_fill_holes() && command.mode() == Command::TRIANGLES) {
+    Refuse(label, "triangles keep their holes; accepted with filled holes: a clipmap");
+  }
   if (command.mode() != Command::AUTO) {
     return command.mode();
   }
-  if (command.on_body() || command.patch_size() != 0 || command.subdivisions() != 0) {
+  if (command.on_body() || command.patch_size() != 0 || command.subdivisions() != 0 ||
+      command.has_fill_holes()) {
     return Command::CLIPMAP;
   }
   const RasterWindow window = ElevationSource(path, ToElevation(command)).Info().window;

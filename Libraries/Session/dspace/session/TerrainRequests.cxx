@@ -77,14 +77,19 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   const int size = command.spatial() ? 3 : 2;
   const std::size_t n = RowsOf(command.point_size(), size, label, "point");
   if (!command.height() && !command.normal() && !command.slope() && !command.aspect() &&
-      !command.has_roughness_radius()) {
-    Refuse(label, "nothing is asked for; accepted: height, normal, slope, aspect, roughness");
+      !command.has_roughness_radius() && !command.filled()) {
+    Refuse(label,
+           "nothing is asked for; accepted: height, normal, slope, aspect, roughness, filled");
   }
   RequireFinitePoints(label, command.point().data(), size, n);
   const auto* streamed = dynamic_cast<const StreamedTerrain*>(&surface);
   if (command.has_roughness_radius() && !streamed) {
     throw Error(Error::Kind::Unsupported, label,
                 "roughness is not answered by triangles; accepted: mode clipmap");
+  }
+  if (command.filled() && !streamed) {
+    throw Error(Error::Kind::Unsupported, label,
+                "triangles have no filled holes; accepted: mode clipmap");
   }
   const Rows3 points = PointsOf(surface, command, n);
   Eigen::VectorXd values(points.rows());
@@ -108,6 +113,15 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   if (command.has_roughness_radius()) {
     streamed->Roughness(points, command.roughness_radius(), values);
     Put(values, reply.mutable_roughness());
+  }
+  if (command.filled()) {
+    const auto* drawn = static_cast<const StreamedTerrain*>(&terrain.Surface());
+    if (command.map()) {
+      drawn->FilledMap(Eigen::Map<const Rows2>(command.point().data(), points.rows(), 2), values);
+    } else {
+      drawn->Filled(points, values);
+    }
+    Put(values, reply.mutable_filled());
   }
   context.reply.mutable_terrain_values()->Swap(&reply);
 }

@@ -153,14 +153,19 @@ def statistics(data, band, info):
 
 def pyramid(info, options):
     cells = options.level_size or 124
-    periodic = info.on_body and info.post_columns == info.columns << info.subdivisions
+    around = info.resampled_columns or info.columns
+    periodic = info.on_body and info.post_columns == around << info.subdivisions
     levels = []
     for level in range(info.levels):
         step = 1 << level
         wide = (info.post_columns >> level if periodic else -(-(info.post_columns - 1) // step) + 1)
         high = -(-(info.post_rows - 1) // step) + 1
         levels.append({"posts": [wide, high], "spacing": info.pixel_width * step / (1 << info.subdivisions)})
+    resampled = None if not info.resampled_columns else {
+        "columns": info.resampled_columns, "posts": info.resampling_posts,
+        "rms_error_m": info.resampling_rms_error, "greatest_error_m": info.resampling_greatest_error}
     return {"subdivisions": info.subdivisions, "closed": bool(periodic), "levels": levels,
+            "resampled": resampled,
             "level_size": cells, "triangles_at_most": 2 * cells * cells + (info.levels - 1) * 3 * cells * cells // 2,
             "bytes_of_all_tiles": 4 * info.columns * info.rows,
             "byte_budget": options.byte_budget or 256 << 20}
@@ -236,6 +241,10 @@ def pyramid_text(made, unit):
     text = [f"a clipmap of {len(made['levels'])} levels of {made['level_size']} x {made['level_size']} cells"
             f"{divided}{', closed around the body' if made['closed'] else ''}: at most "
             f"{made['triangles_at_most']} triangles a view"]
+    if made["resampled"]:
+        cost = made["resampled"]
+        text.append(f"resampled to {cost['columns']} columns, which halve: within {cost['greatest_error_m']:.3g} m "
+                    f"of its pixels (rms {cost['rms_error_m']:.3g} m, at {cost['posts']} of them)")
     for level, row in enumerate(made["levels"]):
         text.append(f"level {level:>2}: {row['posts'][0]} x {row['posts'][1]} posts, one every "
                     f"{row['spacing']:.6g} {unit}s")

@@ -45,7 +45,7 @@ def add(scene, path, options, **more):
     given = {name: getattr(options, name) for name in RASTER if getattr(options, name) is not None}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        terrain = scene.add_terrain(path, mode="clipmap", **{**given, **more})
+        terrain = scene.add_terrain(path, mode="clipmap", build_overviews=False, **{**given, **more})
     return terrain, [str(warning.message) for warning in caught]
 
 
