@@ -1,6 +1,7 @@
 """Makes the pictures of the documentation anew: ./dspace python Documentation/make_pictures.py
 
 Those of real data are made where DSPACE_DATA names it, and left as they are otherwise."""
+import json
 import os
 import pathlib
 import subprocess
@@ -82,6 +83,45 @@ def levels(data):
         picture(scene, "terrain_levels", (640, 400), eye, target, (0, 0, 1), (0.85, 0.2, -0.4), 1.9, 50, 0.08)
 
 
+def gale_shapes(data, folder):
+    """Curiosity's way, and 20 km about where it landed, as GeoJSON in degrees."""
+    drive = json.loads(pathlib.Path(data, "terrain/mars_gale_msl_traverse.json").read_text())
+    turn = np.arange(0, 361, 3) * np.pi / 180
+
+    def degrees(east, north):
+        metres = np.radians(3396190.0)
+        return np.column_stack((137.4417 + east / metres / np.cos(np.radians(4.5895)),
+                                -4.5895 + north / metres)).tolist()
+
+    way = degrees(*(np.array([(p["x"], -p["z"]) for p in drive["points"]]).T))
+    around = degrees(20e3 * np.cos(turn), 20e3 * np.sin(turn))
+    path = pathlib.Path(folder) / "gale.geojson"
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"stroke": "#ffffff", "fill": "#ffffff", "fill-opacity": 0.12},
+         "geometry": {"type": "Polygon", "coordinates": [around]}},
+        {"type": "Feature", "properties": {"stroke": "#ff2020"},
+         "geometry": {"type": "LineString", "coordinates": way}}]}))
+    return path
+
+
+def layers(data):
+    """Gale crater: heights in false colour, HRSC's image, shapes; heights doubled."""
+    with dspace.Session() as session, tempfile.TemporaryDirectory() as folder:
+        scene = session.scene()
+        path = f"{data}/terrain/mars_gale_mola_128ppd_m.tif"
+        terrain = scene.add_terrain(path, mode="clipmap", level_size=252, color=(0.8, 0.78, 0.75),
+                                    vertical_scale=2, vertical_datum="areoid")
+        terrain.add_false_color(path, colors=SHADES, opacity=0.8)
+        terrain.add_image(f"{data}/textures/mars_gale_hrsc_color_4096.jpg",
+                          crs="+proj=eqc +lat_ts=0 +lon_0=0 +R=3396190 +units=m",
+                          extent=(8068200, -223600, 8268200, -413600))
+        terrain.add_shapes(gale_shapes(data, folder), crs="IAU_2015:49900", width=900)
+        x, y, _ = place(terrain, 137.9, -5.0, 0.0)
+        eye = (x - 50e3, y - 175e3, terrain.height(x, y) + 125e3)
+        picture(scene, "terrain_layers", (640, 400), eye, (x, y - 10e3, -8000), (0, 0, 1), (0.8, 0.3, -0.5), 1.7,
+                48, 0.1)
+
+
 def mars(scene, data, viking, **settings):
     if viking:
         settings.update(image=f"{data}/textures/mars_viking_mdim21_color_2880.jpg", image_crs="IAU_2015:49900",
@@ -144,6 +184,7 @@ def main():
              f"{data}/models/viper_obj")
     if pathlib.Path(data, "terrain").is_dir():
         levels(data)
+        layers(data)
         whole_mars(data)
         labels(data)
         valles_marineris(data)
