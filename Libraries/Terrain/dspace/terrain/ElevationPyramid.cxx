@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <exception>
@@ -16,19 +14,19 @@
 #include <dspace/Error.h>
 
 #include "PyramidTiles.h"
+#include "TileQueue.h"
 
 namespace dspace {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr int Size = ElevationPyramid::TileSize;
 
-constexpr std::uint64_t StaleAfter = 1000; // later calls: nobody looks there any more
-constexpr double LongestDelay = 30.0;      // [s] between attempts
+constexpr std::uint64_t StaleAfter = 1000; // later calls
 
-Clock::duration Seconds(double seconds) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
+struct SinceRead {
+  TileBox since; // what changed while it is being read
+};
+using Queue = TileQueue<TileKey, SinceRead>;
 
 // A caller that has used up its time elsewhere has none left to name.
 std::string WithinSeconds(double seconds) {
@@ -48,15 +46,6 @@ struct ElevationPyramid::Implementation {
     std::list<TileKey>::iterator use; // in `uses`
     TileBox stale;                    // has changed since
   };
-  struct Request {
-    std::uint64_t stamp = 0; // of the latest call that asked for it
-    bool reading = false;
-    TileBox since; // what changed while it is being read
-    int failures = 0;
-    Clock::time_point notBefore = {}; // of the next attempt
-    std::exception_ptr error;         // of the last one
-  };
-
   const PostSource& source;
   ElevationPyramidOptions options;
   mutable std::mutex mutex;
@@ -64,43 +53,16 @@ struct ElevationPyramid::Implementation {
   std::condition_variable arrived; // a tile came, or an attempt failed
   std::map<TileKey, Resident> tiles;
   std::list<TileKey> uses; // latest first
-  std::map<TileKey, Request> requests;
-  std::uint64_t stamp = 0;
+  Queue queue;
   std::uint64_t arrivals = 0;
   PyramidChangeLog changes;
   std::atomic<std::uint64_t> changed{0}; // stamp of the latest change, for who does not lock
   ElevationPyramidStatistics statistics;
-  std::map<TileKey, int> waited; // by how many calls of Read(): not dropped meanwhile
   bool stopping = false;
   std::vector<std::thread> threads;
 
-  // Says, while it lives, that a call waits for tiles. With the lock held.
-  class Waiting {
-  public:
-    Waiting(Implementation& impl, const std::vector<TilePiece>& pieces)
-        : Impl_(impl), Pieces_(pieces) {
-      for (const TilePiece& piece : pieces) {
-        ++this->Impl_.waited[piece.key];
-      }
-    }
-    Waiting(const Waiting&) = delete;
-    Waiting& operator=(const Waiting&) = delete;
-    ~Waiting() {
-      for (const TilePiece& piece : this->Pieces_) {
-        const auto found = this->Impl_.waited.find(piece.key);
-        if (--found->second == 0) {
-          this->Impl_.waited.erase(found);
-        }
-      }
-    }
-
-  private:
-    Implementation& Impl_;
-    const std::vector<TilePiece>& Pieces_;
-  };
-
   Implementation(const PostSource& posts, const ElevationPyramidOptions& given)
-      : source(posts), options(given) {
+      : source(posts), options(given), queue(StaleAfter, given.retryDelay) {
     for (int i = 0; i < given.threads; ++i) {
       this->threads.emplace_back([this] { this->Work(); });
     }
@@ -128,7 +90,8 @@ struct ElevationPyramid::Implementation {
     return found->second.tile;
   }
 
-  void Ask(const TileKey& key) { this->requests[key].stamp = this->stamp; }
+  // Of one view the coarse levels come first.
+  void Ask(const TileKey& key) { this->queue.Ask(key, -key[0]); }
 
   void Forget(std::map<TileKey, Resident>::iterator found) {
     this->statistics.bytes -= found->second.tile->Bytes();
@@ -166,7 +129,7 @@ struct ElevationPyramid::Implementation {
       for (auto& [key, resident] : this->tiles) {
         resident.stale.Widen(touched(key));
       }
-      for (auto& [key, request] : this->requests) {
+      for (auto& [key, request] : this->queue.All()) {
         request.since.Widen(touched(key));
       }
     }
@@ -174,40 +137,12 @@ struct ElevationPyramid::Implementation {
     ++this->arrivals;
   }
 
-  // The request to serve next, or none; `soonest` is then when one becomes due.
-  std::map<TileKey, Request>::iterator Next(std::optional<Clock::time_point>& soonest) {
-    const Clock::time_point now = Clock::now();
-    auto best = this->requests.end();
-    for (auto it = this->requests.begin(); it != this->requests.end();) {
-      const Request& request = it->second;
-      const bool stale = !request.reading && this->stamp - request.stamp > StaleAfter &&
-                         this->waited.count(it->first) == 0;
-      it = stale ? this->requests.erase(it) : std::next(it);
-    }
-    for (auto it = this->requests.begin(); it != this->requests.end(); ++it) {
-      const Request& request = it->second;
-      if (request.reading) {
-        continue;
-      }
-      if (request.notBefore > now) {
-        soonest = std::min(soonest.value_or(request.notBefore), request.notBefore);
-        continue;
-      }
-      // The view has moved on from older requests; of one view the coarse levels come first.
-      if (best == this->requests.end() || request.stamp > best->second.stamp ||
-          (request.stamp == best->second.stamp && it->first[0] > best->first[0])) {
-        best = it;
-      }
-    }
-    return best;
-  }
-
   void Work() {
     std::unique_lock<std::mutex> lock(this->mutex);
     while (!this->stopping) {
-      std::optional<Clock::time_point> soonest;
-      const auto next = this->Next(soonest);
-      if (next == this->requests.end()) {
+      std::optional<Queue::Clock::time_point> soonest;
+      const auto next = this->queue.Next(soonest);
+      if (this->queue.IsNone(next)) {
         if (soonest) {
           this->wanted.wait_until(lock, *soonest);
         } else {
@@ -232,32 +167,15 @@ struct ElevationPyramid::Implementation {
       }
       lock.lock();
       if (error) {
-        this->Fail(key, error);
+        this->statistics.lastFailure = this->queue.Fail(key, error);
+        ++this->statistics.failures;
       } else {
-        const TileBox since = this->requests[key].since;
-        this->requests.erase(key);
+        const TileBox since = this->queue.Find(key)->since;
+        this->queue.Done(key);
         this->Store(key, std::move(tile), since);
         ++(patch ? this->statistics.patches : this->statistics.loads);
       }
       this->arrived.notify_all();
-    }
-  }
-
-  void Fail(const TileKey& key, const std::exception_ptr& error) {
-    Request& request = this->requests[key];
-    request.reading = false;
-    request.error = error;
-    const double delay = std::min(
-        LongestDelay, std::ldexp(this->options.retryDelay, std::min(request.failures, 20)));
-    ++request.failures;
-    request.notBefore = Clock::now() + Seconds(delay);
-    ++this->statistics.failures;
-    try {
-      std::rethrow_exception(error);
-    } catch (const std::exception& e) {
-      this->statistics.lastFailure = e.what();
-    } catch (...) {
-      this->statistics.lastFailure = "unknown error";
     }
   }
 
@@ -305,7 +223,8 @@ ElevationPyramid::ElevationPyramid(std::shared_ptr<const PostSource> source,
     throw Error(Error::Kind::InvalidArgument, object,
                 std::to_string(options.threads) + " threads are refused; accepted is 1 to 64");
   }
-  if (!(options.retryDelay > 0.0 && options.retryDelay <= LongestDelay) || options.attempts < 1) {
+  if (!(options.retryDelay > 0.0 && options.retryDelay <= Queue::LongestDelay) ||
+      options.attempts < 1) {
     throw Error(Error::Kind::InvalidArgument, object,
                 "a retry delay in (0, 30] s and at least 1 attempt are accepted");
   }
@@ -324,10 +243,10 @@ bool ElevationPyramid::TryRead(const PostBlock& block, float* heights, float* tr
   bool complete = false;
   {
     const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
-    ++this->Impl_->stamp;
+    this->Impl_->queue.BeginCall();
     complete = this->Impl_->Serve(pieces, block, {heights, tracks}, held);
     if (complete) {
-      --this->Impl_->stamp; // nothing was asked for: older requests are no older for it
+      this->Impl_->queue.ForgetCall();
     }
   }
   if (!complete) {
@@ -353,29 +272,22 @@ void ElevationPyramid::Read(const PostBlock& block, float* heights, float* track
   // Tiles are held as they come: a block larger than the budget is served all the same.
   std::vector<std::shared_ptr<const PyramidTile>> held;
   const bool forever = !(seconds < 1e9);
-  const Clock::time_point deadline = Clock::now() + Seconds(forever ? 0.0 : seconds);
+  const auto deadline = Queue::Clock::now() + Queue::Seconds(forever ? 0.0 : seconds);
   std::unique_lock<std::mutex> lock(impl.mutex);
-  ++impl.stamp;
+  impl.queue.BeginCall();
   if (impl.Serve(pieces, block, {heights, tracks}, held)) {
-    --impl.stamp; // nothing was asked for: older requests are no older for it
+    impl.queue.ForgetCall();
     return;
   }
-  const Implementation::Waiting waiting(impl, pieces);
-  // Failures of earlier callers are not this one's: it makes its own attempts, at once.
-  std::map<TileKey, int> before;
+  std::vector<TileKey> keys;
   for (const TilePiece& piece : pieces) {
-    const auto request = impl.requests.find(piece.key);
-    if (request != impl.requests.end()) {
-      before[piece.key] = request->second.failures;
-      request->second.notBefore = {};
-    }
+    keys.push_back(piece.key);
   }
+  Queue::Waiting waiting(impl.queue, std::move(keys));
   do {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const auto request = impl.requests.find(pieces[i].key);
-      if (!held[i] && request != impl.requests.end() && !request->second.reading &&
-          request->second.failures - before[pieces[i].key] >= impl.options.attempts) {
-        std::rethrow_exception(request->second.error);
+      if (!held[i]) {
+        waiting.Check(pieces[i].key, impl.options.attempts);
       }
     }
     impl.wanted.notify_all();
@@ -413,7 +325,7 @@ std::uint64_t ElevationPyramid::Arrivals() const {
 ElevationPyramidStatistics ElevationPyramid::Statistics() const {
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
   ElevationPyramidStatistics statistics = this->Impl_->statistics;
-  statistics.pending = this->Impl_->requests.size();
+  statistics.pending = this->Impl_->queue.Count();
   return statistics;
 }
 
