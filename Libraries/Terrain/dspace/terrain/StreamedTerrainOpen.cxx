@@ -287,26 +287,6 @@ void StreamedTerrain::TakePatches() {
   }
 }
 
-int StreamedTerrain::TakeOverviews(
-    const std::vector<std::shared_ptr<ElevationPyramid>>& others) const {
-  const int levels = this->Source_->TakeOverviews();
-  if (levels > 0) {
-    this->Posts_->ForgetReduced();
-    if (this->Filled_) {
-      this->Filled_->ForgetReduced();
-    }
-    std::vector<std::shared_ptr<ElevationPyramid>> pyramids = others;
-    pyramids.push_back(this->Pyramid_);
-    for (const std::shared_ptr<ElevationPyramid>& pyramid : pyramids) {
-      PostRectangle coarse{0, 0, pyramid->Lattice().columns, pyramid->Lattice().rows};
-      // What is filled follows from coarser levels.
-      coarse.from = this->Filled_ ? 0 : this->Posts_->FirstReducedLevel();
-      pyramid->Invalidate({coarse});
-    }
-  }
-  return levels;
-}
-
 TerrainBounds StreamedTerrain::DoGetBounds() const {
   const PostLattice& lattice = this->Pyramid_->Lattice();
   TerrainBounds bounds;
