@@ -38,8 +38,9 @@ public:
     std::uint64_t revision = 0; // of the stack that it shows
     // Side x Side texels of four bytes, top row first: opacity times the root of each colour in
     // linear light, then opacity. Interpolated, the first one's square over the second is linear
-    // light times opacity, right between colours of one opacity and towards transparency; a software
-    // renderer takes half of the time of sRGB textures for it. Empty where all of it is transparent.
+    // light times opacity, right between colours of one opacity and towards transparency; a
+    // software renderer takes half of the time of sRGB textures for it. Empty where all of it is
+    // transparent.
     std::vector<std::uint8_t> texels;
   };
   using TilePointer = std::shared_ptr<const Tile>;

@@ -32,11 +32,11 @@ struct RasterLayerOptions {
 // 1 band: grey, or with a colour table; 2: grey and opacity; 3: RGB; 4: RGBA; 8 or 16 bits a
 // channel. No-data and masks are transparent. One without georeference is stretched over `terrain`,
 // the extent of the terrain's own raster. A plate carree image that goes once around a body fits a
-// terrain whose left edge is elsewhere. A texel is the mean of the image's bilinear surface over it,
-// placed to a hundredth of a pixel, or of a texel where that is larger; means are of sRGB values, as
-// overviews are, weighted by opacity. What the file's overviews show far away is as good as they
-// are. Throws Error naming the file: NotFound, Corrupt, Io, Unsupported (bands; a CRS of another
-// body), InvalidArgument (extent, no overlap with the terrain).
+// terrain whose left edge is elsewhere. A texel is the mean of the image's bilinear surface over
+// it, placed to a hundredth of a pixel, or of a texel where that is larger; means are of sRGB
+// values, as overviews are, weighted by opacity. What the file's overviews show far away is as good
+// as they are. Throws Error naming the file: NotFound, Corrupt, Io, Unsupported (bands; a CRS of
+// another body), InvalidArgument (extent, no overlap with the terrain).
 std::shared_ptr<const ColorLayer> OpenImageLayer(const std::string& path,
                                                  const RasterPlace& terrain,
                                                  const RasterLayerOptions& options = {});
