@@ -171,6 +171,22 @@ def test_an_image_is_shown_in_full_resolution(scene, tmp_path):
         terrain.remove()
 
 
+def test_an_image_that_cannot_be_read_is_told_and_drawn_again_without(scene, tmp_path):
+    ground = write_raster(tmp_path / "ground.tif", np.zeros((256, 256), np.float32), 2.0)
+    terrain = scene.add_terrain(ground, mode="clipmap", lit=False, color=GROUND)
+    scene.add_camera(eye=(0, 0, 500), target=(0, 0, 0), up=(0, 1, 0), height=200)
+    view = scene.add_viewport((SIZE, SIZE), samples=1)
+    bare = view.image()
+    path = write(tmp_path / "cut.tif", RANDOM.integers(0, 255, (3, 512, 512), np.uint8), (0, 1, 0, 512, 0, -1))
+    path.write_bytes(path.read_bytes()[:400_000])  # its header is whole
+    layer = terrain.add_image(path, name="cut")
+    with pytest.raises(dspace.Error, match="cut.tif"):
+        view.image()
+    assert terrain.layer_tiles["failures"] > 0 and "cut.tif" in terrain.layer_tiles["last_failure"]
+    layer.visible = False
+    np.testing.assert_array_equal(view.image(), bare)
+
+
 def test_viking_on_mola(scene):
     """The whole of Mars: the picture's colours against GDAL's pixels at the same places."""
     terrain = scene.add_terrain(real("mars_mola_megt90n000cb_4ppd_m.tif"), on_body=True, lit=False,

@@ -156,11 +156,11 @@ class LayerMaking:
 
         line, fill: a colour, or red, green, blue and opacity (0 to 1), or None for none; features' own
         "stroke", "stroke-width", "stroke-opacity", "fill", "fill-opacity" and "marker-color"
-        (simplestyle) go before them. width: of lines, in metres on the ground; by default they are
-        `pixels` of the picture wide, about (2; 0.1 to 64, or 0: no lines). point: diameter of points in
-        pixels, or with `width` that many times it (6). layer: of a file with several (all). crs: replaces
-        the file's; GeoJSON without one is in longitude and latitude of the terrain's body. The rest as
-        for add_image()."""
+        (simplestyle) go before them. width: of lines, in metres on the ground, above 0 to 1e7; by default
+        they are `pixels` of the picture wide, about (2; 0.1 to 64, or 0: no lines). point: diameter of
+        points in pixels, or with `width` that many times it (6; above 0 to 256), in the lines' colour.
+        layer: of a file with several (all). crs: replaces the file's; GeoJSON without one is in longitude
+        and latitude of the terrain's body (of the Earth WGS 84's). The rest as for add_image()."""
         label = self._label()
         command = self._adding(label, name, opacity, visible, position)
         message = command.add_terrain_layer.shapes
