@@ -32,6 +32,7 @@ _HOMES = {
     "Frame": "frames",
     "GraphicsObject": "objects", "Primitive": "objects", "Text": "objects", "TiltMarker": "objects",
     "Trail": "objects",
+    "Movie": "movies",
     "Pose": "poses",
     "Joint": "robots", "Robot": "robots",
     "Scene": "scenes",

@@ -12,7 +12,8 @@ import warnings
 
 from dspace.errors import Error
 
-WORDS = {"terrain": "what a raster of heights is, and pictures of it"}
+WORDS = {"movie": "a movie of a run, from a text file of camera key frames",
+         "terrain": "what a raster of heights is, and pictures of it"}
 
 
 class Failed(Exception):

@@ -1,0 +1,77 @@
+"""`dspace movie`: a movie of a recorded run, from a text file of camera key frames."""
+import argparse
+import os
+import sys
+
+from dspace.command_line import terrain as values
+
+
+def add_arguments(parser):
+    parser.add_argument("file", metavar="FILE.toml", help="the movie: see Documentation/Movies.md")
+    parser.add_argument("--run", metavar="RUN", dest="source", required=True,
+                        help="a recording, or FILE.py:NAME, a function that returns what a movie is drawn of")
+    parser.add_argument("--out", required=True, metavar="X", help="X.mp4 (H.264), X.webm (VP9), or a folder of PNGs")
+    parser.add_argument("--size", type=values.size, metavar="WxH", help="pixels (default: the file's)")
+    parser.add_argument("--rate", type=float, help="pictures a second (default: the file's)")
+    parser.add_argument("--samples", type=int, metavar="N", help="N x N samples a pixel, 1 to 8 (default: the file's)")
+    parser.add_argument("--jobs", type=jobs, default=1, metavar="N", help="processes that share it (1)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers share it: tcp://HOST:PORT")
+    parser.add_argument("--work", metavar="DIR", help="folder for pictures (default: X.work)")
+    parser.add_argument("--keep", action="store_true", help="keeps the work folder when the movie is made")
+    parser.set_defaults(run=run)
+
+
+def jobs(text):
+    if not text.isdigit() or not 1 <= int(text) <= 64:
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: 1 to 64")
+    return int(text)
+
+
+def run(options):
+    from dspace.movies import Movie
+    given = {name: getattr(options, name) for name in ("size", "rate", "samples") if getattr(options, name) is not None}
+    movie = Movie.load(options.file, **given)
+    bar = Bar(sys.stderr)
+    try:
+        drawn = movie.make(options.source, options.out, jobs=options.jobs, scheduler=options.scheduler,
+                           work=options.work, keep=options.keep, progress=bar.show)
+    except KeyboardInterrupt:
+        bar.end()
+        print("dspace: ended; the same command goes on where this one was", file=sys.stderr)
+        return 130
+    bar.end()
+    before = movie.frames - drawn
+    print(f"{options.out}: {movie.frames} pictures of {movie.size[0]} x {movie.size[1]}, "
+          f"{movie.frames / movie.rate:g} s" + (f"; {before} were there" if before else ""))
+
+
+class Bar:
+    """How far a movie is and how long it takes yet: a bar on a terminal, else a line every tenth."""
+
+    def __init__(self, stream):
+        self.stream, self.terminal, self.tenth = stream, stream.isatty(), -1
+
+    def show(self, done, total, seconds, drawn):
+        words = f"{done} of {total}, {left_words(done, total, seconds, drawn)}"
+        if self.terminal:
+            width = max(10, min(40, os.get_terminal_size(self.stream.fileno()).columns - len(words) - 6))
+            full = width * done // total
+            print(f"\r  [{'=' * full}{' ' * (width - full)}] {words}\x1b[K", end="", file=self.stream, flush=True)
+        elif 10 * done // total != self.tenth:
+            self.tenth = 10 * done // total
+            print(f"dspace: {words}", file=self.stream, flush=True)
+
+    def end(self):
+        if self.terminal:
+            print("\r\x1b[K", end="", file=self.stream, flush=True)
+
+
+def left_words(done, total, seconds, drawn):
+    """The time left, of the pace so far."""
+    if done >= total:
+        return "all drawn"
+    if not drawn:
+        return "time left unknown"
+    rest = round((total - done) * seconds / drawn)
+    hours, rest = divmod(rest, 3600)
+    return (f"{hours}:{rest // 60:02d}" if hours else f"{rest // 60}") + f":{rest % 60:02d} left"

@@ -1,0 +1,341 @@
+"""Movies: cameras through key frames, several views in one picture, texts over it."""
+import math
+import os
+from dataclasses import dataclass, field
+
+from dspace import movies_file
+from dspace._fields import Named, flag, integers, number, numbers, refuse, text
+from dspace.cameras import Camera
+from dspace.errors import AlreadyExists, Error, InvalidArgument, NotFound, WrongType
+from dspace.movies_keys import CameraPath, Key, RunTime, in_order
+from dspace.poses import Pose, quaternion_of_matrix
+from dspace.viewports import ANCHORS
+
+SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": 2, "start": 0.0, "speed": 1.0, "duration": None}
+
+
+@dataclass
+class View:
+    """A part of the movie's picture.
+
+    rectangle: left, top, width, height as parts of the picture, 0 to 1. scene and vantage: by name.
+    camera: one of the scene's cameras that the view looks through; "": its keys. near, far: metres along
+    Z (0.05, infinity). hide: fragments that it leaves out. ornaments: whether ornamental objects are
+    drawn. background: sRGB, 0 to 1, or a name; background_top: for a gradient. corner_axes: whether the
+    root's axes are drawn in the corner."""
+    name: str = "main"
+    rectangle: tuple = (0.0, 0.0, 1.0, 1.0)
+    scene: str = "scene"
+    vantage: str = "main"
+    camera: str = ""
+    near: float = None
+    far: float = None
+    hide: tuple = ()
+    ornaments: bool = True
+    background: object = None
+    background_top: object = None
+    corner_axes: bool = False
+    keys: list = field(default_factory=list)
+
+    def __post_init__(self):
+        about = f"view {self.name!r}"
+        if not text(self.name, "the name", about):
+            refuse("a view", "the name", self.name, "one that is not empty")
+        self.rectangle = tuple(map(float, numbers(self.rectangle, 4, "the rectangle", about)))
+        x, y, width, height = self.rectangle
+        if not (0 <= x < 1 and 0 <= y < 1 and 0 < width <= 1 + 1e-9 - x and 0 < height <= 1 + 1e-9 - y):
+            refuse(about, "the rectangle", self.rectangle, "left, top, width, height within 0 to 1")
+        for name in ("scene", "vantage", "camera"):
+            text(getattr(self, name), name, about)
+        for name in ("ornaments", "corner_axes"):
+            flag(getattr(self, name), name, about)
+        if isinstance(self.hide, str) or not all(isinstance(each, str) for each in self.hide):
+            refuse(about, "hide", self.hide, "a list of fragments' names", WrongType)
+        self.hide = tuple(self.hide)
+        for name in ("background", "background_top"):
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, str):
+                setattr(self, name, tuple(map(float, numbers(value, 3, name, about))))
+
+    def pixels(self, size):
+        """(left, top, right, bottom) in a picture of that size."""
+        x, y, width, height = self.rectangle
+        left, top, right, bottom = (round(x * size[0]), round(y * size[1]), round((x + width) * size[0]),
+                                    round((y + height) * size[1]))
+        if right <= left or bottom <= top:
+            refuse(f"view {self.name!r}", "the rectangle", self.rectangle, f"a pixel or more of {size}")
+        return left, top, right, bottom
+
+
+@dataclass
+class Overlay:
+    """A title, or a table of texts and values, over a view.
+
+    rows: (label, value) pairs; a value may hold {movie} and {run} (times [s]), {FRAME.x} of y, z (a frame's
+    place in the root [m]), and names of the source's telemetry, each with a format: {run:.2f}. since, until:
+    movie times [s]. font_size: pixels; 0: a 40th of the picture's height."""
+    title: str = ""
+    rows: tuple = ()
+    view: str = ""
+    anchor: str = "top left"
+    font_size: int = 0
+    since: float = 0.0
+    until: float = None
+
+    def __post_init__(self):
+        about = f"overlay {self.title!r}"
+        text(self.title, "the title", about)
+        rows = []
+        for row in self.rows:
+            if not isinstance(row, (tuple, list)) or len(row) != 2 or not all(isinstance(c, str) for c in row):
+                refuse(about, "a row", row, "a label and a value, each a str", WrongType)
+            rows.append(tuple(row))
+        self.rows = tuple(rows)
+        if not self.title and not rows:
+            refuse(about, "what it says", "", "a title, or rows")
+        if self.anchor not in ANCHORS:
+            refuse(about, "anchor", self.anchor, ", ".join(map(repr, ANCHORS)))
+        integers((self.font_size,), 1, "font_size", about, "an integer, 0 or 4 to 200")
+        self.since = number(self.since, "since", about)
+        if self.until is not None:
+            self.until = number(self.until, "until", about)
+
+    def shows(self, time):
+        return self.since <= time and (self.until is None or time < self.until)
+
+
+class Movie:
+    """What a movie shows; make() draws it.
+
+        movie = dspace.Movie(size=(1920, 1080), rate=30)
+        movie.add_key(viewport, 0.0)                # where the viewport's camera is now
+        movie.add_key(viewport, 4.0, easing="rest")
+        movie.save("flight.toml")
+        movie.make("drive.dspace", "flight.mp4")
+
+    size: pixels; rate: pictures a second; samples: n x n a pixel, 1 to 8. Picture n shows movie time
+    n / rate, up to `duration` [s] (default: the last key's time), which itself is not shown any more. The
+    run's time is `start` + `speed` x movie time where no key states it; only one view's keys may."""
+
+    def __init__(self, size=SETTINGS["size"], rate=SETTINGS["rate"], samples=SETTINGS["samples"],
+                 start=SETTINGS["start"], speed=SETTINGS["speed"], duration=SETTINGS["duration"]):
+        about = "movie"
+        self.size = tuple(integers(size, 2, "the size", about, "(width, height)"))
+        if not all(1 <= each <= 16384 for each in self.size):
+            refuse(about, "the size", self.size, "(width, height), each 1 to 16384")
+        self.rate = number(rate, "the rate", about)
+        if not 0.01 <= self.rate <= 1000:
+            refuse(about, "the rate", rate, "0.01 to 1000 pictures a second")
+        self.samples = integers((samples,), 1, "samples", about, "an integer from 1 to 8")[0]
+        if not 1 <= self.samples <= 8:
+            refuse(about, "samples", samples, "an integer from 1 to 8")
+        self.start, self.speed = number(start, "start", about), number(speed, "speed", about)
+        if not (math.isfinite(self.start) and math.isfinite(self.speed)):
+            refuse(about, "start and speed", (start, speed), "finite numbers")
+        self._duration = None if duration is None else number(duration, "the duration", about)
+        if self._duration is not None and not 0 < self._duration <= 1e6:
+            refuse(about, "the duration", duration, "above 0, up to 1e6 seconds")
+        self.views, self.overlays = Named("view", {}), []
+
+    # --- What it shows -------------------------------------------------------------------------
+
+    def add_view(self, name="main", **settings):
+        """A part of the picture; settings: see View."""
+        if name in self.views:
+            raise AlreadyExists(f"view {name!r}: there is one; accepted: another name", name)
+        view = movies_file.take(View, {"name": name, **settings}, f"view {name!r}")
+        self.views[name] = view
+        return view
+
+    def add_key(self, viewport=None, time=0.0, view=None, **values):
+        """A key at a movie time [s]: where a viewport's camera (or a Camera) is now, or as the values say.
+
+        view: a view's name (default: the first, made now if there is none). values: see Key; frame= another
+        frame (a Frame or its path) than the one that the camera stands on."""
+        if view is None:
+            view = next(iter(self.views), None) or self._view_of(viewport).name
+        if view not in self.views:
+            raise NotFound(f"view {view!r}: there is no such view; there are: {', '.join(map(repr, self.views))}",
+                           view)
+        if viewport is not None:
+            values = {**_seen(viewport, values.pop("frame", None)), **values}
+        key = movies_file.take(Key, {"time": time, **values}, f"the key at {time!r} s")
+        target = self.views[view]
+        target.keys = in_order([*target.keys, key], f"view {view!r}")
+        return key
+
+    def _view_of(self, viewport):
+        settings = {}
+        if viewport is not None and not isinstance(viewport, Camera):
+            settings["scene"] = viewport.scene.name
+        elif viewport is not None:
+            settings["scene"] = viewport._scene.name
+        return self.add_view(**settings)
+
+    def add_overlay(self, title="", rows=(), **settings):
+        """A title or a table; settings: see Overlay."""
+        overlay = movies_file.take(Overlay, {"title": title, "rows": rows, **settings}, f"overlay {title!r}")
+        self.overlays.append(overlay)
+        return overlay
+
+    # --- Its time ------------------------------------------------------------------------------
+
+    @property
+    def duration(self):
+        """Seconds."""
+        last = max((key.time for view in self.views.values() for key in view.keys), default=0.0)
+        if self._duration is None and not last:
+            refuse("movie", "the duration", None, "seconds, where no key comes after 0 s")
+        return last if self._duration is None else self._duration
+
+    @property
+    def frames(self):
+        """The number of pictures."""
+        return max(1, round(self.duration * self.rate))
+
+    def run_time(self):
+        """A RunTime: at(movie time) is the run's time."""
+        stating = [view for view in self.views.values() if any(key.run is not None for key in view.keys)]
+        if len(stating) > 1:
+            raise InvalidArgument(f"view {stating[1].name!r}: its keys state run times, as those of view "
+                                  f"{stating[0].name!r} do; accepted: keys of one view", stating[1].name)
+        return RunTime(stating[0].keys if stating else [], self.start, self.speed)
+
+    def check(self):
+        """Raises what is wrong with it as a whole; a new view with keys or a camera is the least."""
+        if not self.views:
+            raise InvalidArgument("movie: it has no view; accepted: one or more")
+        for view in self.views.values():
+            if bool(view.camera) == bool(view.keys):
+                raise InvalidArgument(f"view {view.name!r}: it has " + ("a camera and keys" if view.camera else
+                                      "neither keys nor a camera") + "; accepted: one of them", view.name)
+            view.pixels(self.size)
+            if view.keys:
+                CameraPath(view.keys, f"view {view.name!r}")
+        for overlay in self.overlays:
+            if overlay.view and overlay.view not in self.views:
+                raise NotFound(f"overlay {overlay.title!r}: there is no view {overlay.view!r}; there are: "
+                               f"{', '.join(map(repr, self.views))}", overlay.view)
+        self.run_time()
+        return self.frames
+
+    # --- Its file ------------------------------------------------------------------------------
+
+    def settings(self):
+        """What was given besides views and overlays, without what is as usual."""
+        values = {**{name: getattr(self, name) for name in SETTINGS}, "duration": self._duration}
+        return {name: value for name, value in values.items() if value != SETTINGS[name]}
+
+    @property
+    def text(self):
+        """Its file's text."""
+        return movies_file.write(self)
+
+    def save(self, path):
+        """Writes its file (TOML), at once or not at all."""
+        self.check()
+        part = f"{os.fspath(path)}.part"
+        with open(part, "w", encoding="utf-8") as file:
+            file.write(self.text)
+        os.replace(part, path)
+
+    @classmethod
+    def load(cls, path, **settings):
+        """The movie of a file; settings (size, rate, samples, ...) replace the file's."""
+        about = f"movie {os.fspath(path)!r}"
+        values = movies_file.load(path)
+        try:
+            return cls._of(values, about, settings)
+        except Error as error:  # says in which file
+            if str(error).startswith(about):
+                raise
+            raise type(error)(f"{about}: {str(error).removeprefix('movie: ')}", about) from None
+
+    @classmethod
+    def of_text(cls, words):
+        """The movie of a file's text."""
+        return cls._of(movies_file.parse(words), "movie", {})
+
+    @classmethod
+    def _of(cls, values, about, settings):
+        unknown = sorted(set(values) - set(SETTINGS) - {"view", "overlay"})
+        if unknown:
+            raise InvalidArgument(f"{about}: unknown {unknown[0]!r}; accepted: {', '.join(SETTINGS)}, [[view]], "
+                                  "[[overlay]]", about)
+        movie = cls(**{**{name: value for name, value in values.items() if name in SETTINGS}, **settings})
+        for number_, each in enumerate(_tables(values, "view", about), 1):
+            view = movies_file.take(View, each, f"{about}, view {number_}", ("key",))
+            if view.name in movie.views:
+                raise InvalidArgument(f"{about}: two views {view.name!r}; accepted: other names", about)
+            where = f"{about}, view {view.name!r}"
+            keys = [movies_file.take(Key, key, f"{where}, key {count}")
+                    for count, key in enumerate(_tables(each, "key", where), 1)]
+            view.keys = in_order(keys, where)
+            movie.views[view.name] = view
+        movie.overlays = [movies_file.take(Overlay, each, f"{about}, overlay {count}")
+                          for count, each in enumerate(_tables(values, "overlay", about), 1)]
+        movie.check()
+        return movie
+
+    def make(self, run, out, **options):
+        """Draws it into a file (.mp4, .webm) or a folder of PNGs; see dspace.movies_make.make."""
+        from dspace.movies_make import make
+        return make(self, run, out, **options)
+
+    def __repr__(self):
+        return (f"<dspace.Movie of {self.size[0]} x {self.size[1]}, {len(self.views)} views, "
+                f"{sum(len(view.keys) for view in self.views.values())} keys>")
+
+
+def _tables(values, name, about):
+    tables = values.get(name, [])
+    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+        raise InvalidArgument(f"{about}: {name} is {tables!r}; accepted: tables, [[{name}]]", about)
+    return tables
+
+
+def _seen(viewport, frame):
+    """What a key has of a viewport's camera, or of a Camera."""
+    camera = viewport if isinstance(viewport, Camera) else viewport.camera
+    if camera is None:
+        camera = viewport.scene.vantages[viewport.vantage].active
+    if camera is None:
+        raise NotFound(f"{viewport!r}: it looks through no camera; accepted: one with a camera")
+    scene, fov_deg = camera._scene, camera.fov_deg
+    if fov_deg is None:
+        raise InvalidArgument(f"camera {camera.name!r}: it has no field of view; accepted: a perspective camera",
+                              camera.name)
+    base, pose = camera.frame, camera.pose
+    if pose is None:
+        if isinstance(viewport, Camera):
+            raise InvalidArgument(f"camera {camera.name!r}: it chases; accepted: a viewport that looks through "
+                                  "it", camera.name)
+        base, pose = (scene.root if frame is None else base), _drawn_from(viewport)
+        if frame is None:
+            frame = base
+        pose, base = scene.root.pose_in(frame) @ pose, frame
+    elif frame is not None:
+        pose, base = base.pose_in(frame) @ pose, frame
+    base = base if isinstance(base, str) else base.path
+    return {"position": tuple(pose.position), "quaternion": tuple(pose.quaternion), "fov_deg": fov_deg,
+            "frame": "" if base == "/" else base}
+
+
+def _drawn_from(viewport):
+    """The pose in the root of the camera that a viewport was drawn from."""
+    import numpy as np
+    from vtkmodules.vtkRenderingCore import vtkActor
+    renderer, nothing = viewport.vtk.GetRenderer(), vtkActor()
+    renderer.AddViewProp(nothing)  # VTK's camera is put in place where VTK has something to draw
+    viewport.capture()
+    renderer.RemoveViewProp(nothing)
+    camera = renderer.GetActiveCamera()
+    if max(map(abs, camera.GetPosition())) > 1e8:  # VTK's camera looks at a point a metre away
+        raise InvalidArgument(f"{viewport!r}: it chases {max(map(abs, camera.GetPosition())):.3g} m from the "
+                              "root; accepted: up to 1e8 m, or a camera that stands on a frame")
+    forward = np.array(camera.GetDirectionOfProjection())
+    up = np.array(camera.GetViewUp())
+    right = np.cross(forward, up)
+    right /= np.linalg.norm(right)
+    return Pose(camera.GetPosition(), quaternion_of_matrix(np.column_stack((right, np.cross(forward, right),
+                                                                            forward))))
