@@ -12,9 +12,10 @@ import warnings
 import numpy as np
 
 import dspace
+from dspace.movies_encode import Encoder
 from dspace.rover import Path, load_vehicle
 
-from movie import Movie, save_image, tile
+from movie import save_image, tile
 from vehicle import Ground, PlacedVehicle
 from views import Views
 
@@ -117,7 +118,8 @@ def main():
               f"set up in {time.perf_counter() - began:.1f} s", flush=True)
 
         worst = max(state.residual for state in states)
-        with Movie(options.out / "demo.mp4", options.size, STEPS_PER_SECOND / STEPS_PER_FRAME) as movie:
+        with Encoder(options.out / "demo.mp4", options.size, STEPS_PER_SECOND / STEPS_PER_FRAME,
+                     quick=True) as movie:
             sheet = []
             drawn = time.perf_counter()
             frames = steps // STEPS_PER_FRAME + 1

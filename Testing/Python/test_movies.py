@@ -319,6 +319,14 @@ def test_what_cannot_be_made_is_refused(run, tmp_path, session):
         movie.make(f"{broken}:run", tmp_path / "e", jobs=2)
 
 
+def test_a_process_that_says_much_is_heard_to_its_end(run, tmp_path):
+    """More than a pipe holds, on its error stream."""
+    path = tmp_path / "talks.py"
+    path.write_text(RUN.replace("    session = dspace.Session()", "    import sys\n    sys.stderr.write('word ' * 60000)\n"
+                                "    session = dspace.Session()"))
+    assert flight().make(f"{path}:run", tmp_path / "pictures", jobs=2) == 12
+
+
 def test_the_hash_tells_movies_and_runs_apart(run, tmp_path):
     movie = flight()
     first = identity(movie, run)
@@ -329,9 +337,10 @@ def test_the_hash_tells_movies_and_runs_apart(run, tmp_path):
     assert identity(movie, run) != first
 
 
-def test_encoder_takes_pictures_one_by_one(tmp_path):
-    path = tmp_path / "a.mp4"
-    with Encoder(path, SIZE, 25) as movie:
+@pytest.mark.parametrize("name, quick", [("a.mp4", False), ("a.mp4", True), ("a.webm", True)])
+def test_encoder_takes_pictures_one_by_one(tmp_path, name, quick):
+    path = tmp_path / name
+    with Encoder(path, SIZE, 25, quick=quick) as movie:
         for shade in range(5):
             movie.add(np.full((64, 96, 3), 40 * shade, np.uint8))
         with pytest.raises(dspace.InvalidArgument, match="accepted:"):
@@ -341,7 +350,7 @@ def test_encoder_takes_pictures_one_by_one(tmp_path):
         with Encoder(tmp_path / "b.mp4", SIZE, 25) as movie:
             movie.add(np.zeros((64, 96, 3), np.uint8))
             1 / 0
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["a.mp4"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == [name]
 
 
 def test_the_command_says_what_is_wrong_in_one_line(tmp_path, run):

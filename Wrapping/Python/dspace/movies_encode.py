@@ -39,13 +39,17 @@ def _ffmpeg():
 
 class Encoder:
     """A movie file that pictures are added to, in a `with` statement: arrays (h, w, 3) of sRGB bytes, one
-    after the other, `rate` a second. The file is there when all is written, never half of it."""
+    after the other, `rate` a second. The file is there when all is written, never half of it. quick: for
+    pictures that are drawn meanwhile; the file is larger."""
 
-    def __init__(self, path, size, rate):
+    def __init__(self, path, size, rate, quick=False):
         codec = codec_of(path, size)
         if codec is None:
             raise InvalidArgument(f"movie {str(path)!r}: accepted: a file that ends with {' or '.join(CODECS)}",
                                   str(path))
+        if quick:
+            codec = ["veryfast" if word == "medium" else word for word in codec]
+            codec = codec + ["-deadline", "realtime", "-cpu-used", "6"] if "libvpx-vp9" in codec else codec
         self._path, self._size = os.fspath(path), tuple(size)
         self._part = self._path + ".part"
         self._process = subprocess.Popen(

@@ -12,6 +12,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time as clock
 
 from dspace._fields import integers, refuse
@@ -179,24 +180,33 @@ class _Folder:
 
 def worker(script, run, folder, numbers):
     """A process that draws pictures of a movie's file into a folder; see main()."""
-    return subprocess.Popen(
+    said = tempfile.TemporaryFile()  # a pipe that nobody reads would stop it
+    process = subprocess.Popen(
         [sys.executable, "-c", "from dspace.movies_make import main; main()", script, run, folder,
-         str(os.getpid()), ",".join(map(str, numbers))],
-        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+         str(os.getpid())],
+        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
+    process.said = said
+    try:  # however many they are
+        process.stdin.write(json.dumps(numbers).encode())
+        process.stdin.close()
+    except BrokenPipeError:  # it has ended; finish() says why
+        pass
+    return process
 
 
 def main():
-    """python -c "..." SCRIPT RUN FOLDER PARENT NUMBERS"""
+    """python -c "..." SCRIPT RUN FOLDER PARENT, and the pictures' numbers on the input stream."""
     from dspace.movies import Movie
-    script, run, folder, parent, numbers = sys.argv[1:]
+    script, run, folder, parent = sys.argv[1:]
+    numbers = json.load(sys.stdin)
 
     def tell(left):
         if os.getppid() != int(parent):  # nobody waits for the rest
             os.kill(os.getpid(), signal.SIGTERM)
 
     try:
-        draw(Movie.load(script), run, list(map(int, numbers.split(","))), lambda name: os.path.join(folder, name),
+        draw(Movie.load(script), run, numbers, lambda name: os.path.join(folder, name),
              tell)
     except (Error, OSError) as error:
         sys.exit(f"{error}")
@@ -204,7 +214,10 @@ def main():
 
 def finish(process):
     """Waits for a worker; raises what it said."""
-    message = process.communicate()[1].decode(errors="replace").strip()
+    process.wait()
+    process.said.seek(0)
+    message = process.said.read().decode(errors="replace").strip()
+    process.said.close()
     if process.returncode != 0:
         words = message.splitlines()[-1] if message else "it said nothing"
         raise Io(f"a process that drew pictures ended with {process.returncode}: {words}")
