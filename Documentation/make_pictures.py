@@ -43,6 +43,17 @@ def demo(name, seconds, *arguments):
                         str(IMAGES / f"{name}.png")], check=True)
 
 
+def movie():
+    """A picture of the reference simulation's movie, 1.6 s after its start."""
+    sys.path.insert(0, str(ROOT / "Examples" / "rover_mobility"))
+    from dspace.movies_draw import Stage, open_run, png
+    import rover_mobility
+    flight = dspace.Movie.load(ROOT / "Examples" / "rover_mobility" / "flight.toml", size=(960, 540), samples=3)
+    simulation = rover_mobility.run()
+    with simulation.session:
+        (IMAGES / "movie.png").write_bytes(png(Stage(flight, open_run(simulation)).picture(40)))
+
+
 # --- Terrain ---------------------------------------------------------------------------------------
 
 SHADES = ("#3b0f70", "#2c56c8", "#1fa5c9", "#3fbf5f", "#e6d44a", "#e5832f", "#c03a2b", "#a98a84", "#f5f2f0")
@@ -174,6 +185,7 @@ def main():
     IMAGES.mkdir(exist_ok=True)
     first_picture()
     demo("demo", 9)
+    movie()
     data = os.environ.get("DSPACE_DATA", "")
     if pathlib.Path(data, "models").is_dir():
         demo("m2020_gale", 1, "--terrain", f"{data}/terrain/mars_gale_mola_128ppd_m.tif", "--model",
