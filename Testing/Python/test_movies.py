@@ -239,10 +239,12 @@ def test_one_process_two_processes_and_a_resumed_one_make_the_same(run, tmp_path
     assert movie.make(run, three) == 13
 
 
-def test_a_killed_movie_goes_on_where_it_was(run, tmp_path):
+@pytest.mark.parametrize("jobs", (1, 2))
+def test_a_killed_movie_goes_on_where_it_was(run, tmp_path, jobs):
     script, out = tmp_path / "a.toml", tmp_path / "pictures"
     flight(rate=20).save(script)
-    words = [sys.executable, "-W", "ignore", "-m", "dspace", "movie", str(script), "--run", run, "--out", str(out)]
+    words = [sys.executable, "-W", "ignore", "-m", "dspace", "movie", str(script), "--run", run, "--out", str(out),
+             "--jobs", str(jobs)]
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     end = time.monotonic() + 120
     while not (out / (FRAME % 4)).exists() and process.poll() is None and time.monotonic() < end:

@@ -203,7 +203,7 @@ def png(picture):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
     return (_MAGIC + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
-            + chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(filtered.tobytes(), 3)) + _END)
+            + chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(filtered.tobytes(), 1)) + _END)
 
 
 def is_whole(path):
