@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
-#include <dspace/Error.h>
 #include <dspace/terrain/PostLattice.h>
 
 #include "SquareReader.h"
@@ -44,11 +42,12 @@ PixelFinder::PixelFinder(const Crs& grid, const RasterPosition& raster)
   }
 }
 
-Eigen::Vector2d PixelFinder::Find(const Eigen::Vector2d& map) const {
-  try {
-    return this->MapToPixel_ * (this->Transform_ ? this->Transform_->Apply(map) : map);
-  } catch (const Error&) {
-    return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+void PixelFinder::Find(Eigen::Matrix2Xd& places) const {
+  if (this->Transform_) {
+    this->Transform_->TryApply(places);
+  }
+  for (Eigen::Index i = 0; i < places.cols(); ++i) {
+    places.col(i) = this->MapToPixel_ * Eigen::Vector2d(places.col(i));
   }
 }
 
@@ -80,16 +79,22 @@ bool BlockSampler::Sample(const ColorGrid& grid, const ColorBlock& block,
   std::unique_ptr<PixelFinder> finder = this->TakeFinder(grid.crs);
   const std::int64_t around =
       grid.periodic ? grid.ColumnsAt(block.zoom) * (ColorGrid::TileTexels / Side) : 0;
-  std::vector<TexelSquare> squares;
+  std::vector<std::unique_ptr<TexelSquare>> squares;
   std::map<std::pair<int, int>, std::vector<const TexelSquare*>> levels;
   for (std::int64_t row = FloorDiv(block.row, Side); row * Side < block.row + block.height; ++row) {
     for (std::int64_t column = FloorDiv(block.column, Side);
          column * Side < block.column + block.width; ++column) {
       const std::int64_t wrapped = around > 0 ? column - FloorDiv(column, around) * around : column;
-      TexelSquare square(grid, block.zoom, wrapped * Side, row * Side, *finder, this->Raster_.turn);
-      square.blockColumn = int(column * Side - block.column);
-      square.blockRow = int(row * Side - block.row);
-      if (reader.Settle(square)) {
+      const int left = int(column * Side - block.column);
+      const int top = int(row * Side - block.row);
+      auto square = std::make_unique<TexelSquare>(TexelSquare{
+          TexelPlaces(grid, block.zoom, wrapped * Side, row * Side, *finder, this->Raster_.turn),
+          {std::max(0, -left), std::max(0, -top), std::min(Side, block.width - left),
+           std::min(Side, block.height - top)},
+          left,
+          top,
+          {}});
+      if (reader.Settle(*square)) {
         squares.push_back(std::move(square));
       }
     }
@@ -98,8 +103,8 @@ bool BlockSampler::Sample(const ColorGrid& grid, const ColorBlock& block,
   if (squares.empty()) {
     return false;
   }
-  for (const TexelSquare& square : squares) {
-    levels[{square.window.levelX, square.window.levelY}].push_back(&square);
+  for (const auto& square : squares) {
+    levels[{square->window.levelX, square->window.levelY}].push_back(square.get());
   }
   texels.assign(std::size_t(block.width) * block.height * step, 0.0f);
   std::vector<float> cells;

@@ -30,7 +30,7 @@ class PixelFinder {
 public:
   // Throws Error(Unsupported) for CRS between which PROJ knows no way.
   PixelFinder(const Crs& grid, const RasterPosition& raster);
-  Eigen::Vector2d Find(const Eigen::Vector2d& map) const;
+  void Find(Eigen::Matrix2Xd& places) const; // in place
 
 private:
   std::unique_ptr<CrsTransform> Transform_; // null: the same
@@ -45,6 +45,7 @@ public:
   BlockSampler(std::shared_ptr<const RasterLevels> levels, RasterPosition raster);
 
   const RasterPosition& Raster() const { return this->Raster_; }
+  std::size_t KeptBytes() const { return this->Levels_->KeptBytes(); }
   // Channels times opacity, and opacity, one after the other; false where all opacity is 0. Any
   // thread may call.
   bool Sample(const ColorGrid& grid, const ColorBlock& block, std::vector<float>& texels) const;

@@ -2,6 +2,7 @@
 #ifndef DSPACE_LAYERS_COLORLAYER_H
 #define DSPACE_LAYERS_COLORLAYER_H
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,6 +32,8 @@ public:
   // Size of its finest detail [m] on the ground: closer texels show nothing more. Infinity where
   // any zoom will do.
   virtual double PixelSize() const = 0;
+  // In memory, of a file that is decoded as a whole.
+  virtual std::size_t KeptBytes() const { return 0; }
   // What was assumed when it was opened, each naming how to state it.
   virtual const std::vector<std::string>& Warnings() const = 0;
 };

@@ -335,8 +335,13 @@ std::uint64_t ColorTiles::Arrivals() const {
 }
 
 ColorTilesStatistics ColorTiles::Statistics() const {
+  std::size_t kept = 0;
+  for (const StackedLayer& stacked : this->Stack().Layers()) {
+    kept += stacked.layer->KeptBytes();
+  }
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
   ColorTilesStatistics statistics = this->Impl_->statistics;
+  statistics.keptBytes = kept;
   statistics.pending = this->Impl_->queue.Count();
   return statistics;
 }

@@ -20,8 +20,9 @@ struct ColorTilesOptions {
 };
 
 struct ColorTilesStatistics {
-  std::size_t bytes = 0;   // of tiles in memory: the layers' own and composed ones
-  std::uint64_t reads = 0; // of one tile of one layer
+  std::size_t bytes = 0;     // of tiles in memory: the layers' own and composed ones
+  std::size_t keptBytes = 0; // of files that are decoded as a whole, beside these
+  std::uint64_t reads = 0;   // of one tile of one layer
   std::uint64_t compositions = 0;
   std::uint64_t failures = 0;
   std::size_t pending = 0;

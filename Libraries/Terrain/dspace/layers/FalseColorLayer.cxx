@@ -87,6 +87,7 @@ public:
   const std::string& GetName() const override { return this->Name_; }
   double PixelSize() const override { return this->PixelSize_; }
   const std::vector<std::string>& Warnings() const override { return this->Warnings_; }
+  std::size_t KeptBytes() const override { return this->Sampler_.KeptBytes(); }
   const std::array<double, 2>& Range() const override { return this->Range_; }
   const ColorRamp& Ramp() const override { return this->Ramp_; }
   const std::string& Unit() const override { return this->Unit_; }

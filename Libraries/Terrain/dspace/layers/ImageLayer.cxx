@@ -18,6 +18,7 @@ public:
   const std::string& GetName() const override { return this->Name_; }
   double PixelSize() const override { return this->PixelSize_; }
   const std::vector<std::string>& Warnings() const override { return this->Warnings_; }
+  std::size_t KeptBytes() const override { return this->Sampler_.KeptBytes(); }
 
   bool Read(const ColorGrid& grid, const ColorBlock& block, std::uint8_t* rgba) const override {
     std::vector<float> texels;

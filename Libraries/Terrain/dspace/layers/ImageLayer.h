@@ -35,7 +35,10 @@ struct RasterLayerOptions {
 // terrain whose left edge is elsewhere. A texel is the mean of the image's bilinear surface over
 // it, placed to a hundredth of a pixel, or of a texel where that is larger; means are of sRGB
 // values, as overviews are, weighted by opacity. What the file's overviews show far away is as good
-// as they are. Throws Error naming the file: NotFound, Corrupt, Io, Unsupported (bands; a CRS of
+// as they are. Local files whose parts cannot be read by themselves (JPEG, PNG, GIF, WebP, a TIFF
+// in up to four blocks) are decoded once, whole, and stay in memory up to 64 million pixels: the
+// bytes of their samples, KeptBytes() has them; larger ones are decoded for each tile, with a
+// warning. Throws Error naming the file: NotFound, Corrupt, Io, Unsupported (bands; a CRS of
 // another body), InvalidArgument (extent, no overlap with the terrain).
 std::shared_ptr<const ColorLayer> OpenImageLayer(const std::string& path,
                                                  const RasterPlace& terrain,

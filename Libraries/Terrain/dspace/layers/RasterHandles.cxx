@@ -26,8 +26,9 @@ double Most(GDALRasterBand& band) {
 } // namespace
 
 RasterLevels::RasterLevels(std::string object, std::string path, int band,
-                           const RasterLayerOptions& options)
-    : Object_(std::move(object)), Path_(std::move(path)), Band_(band), Network_(options.network) {
+                           const RasterLayerOptions& options, Shown shown)
+    : Object_(std::move(object)), Path_(std::move(path)), Band_(band), Shown_(shown),
+      Network_(options.network) {
   CheckLimits(options.network, this->Object_);
   this->File_ = FileState::Of(this->Path_);
   DatasetPointer file = OpenRaster(this->Path_, this->Network_, this->Warnings_, this->Object_);
@@ -43,6 +44,8 @@ RasterLevels::RasterLevels(std::string object, std::string path, int band,
                               "it are shown, no means; build overviews (gdaladdo -r average)");
   }
   this->PlanOverviews(*file, options.cacheFolder, handle->levels.size() > 1);
+  this->PlanKeeping(*file);
+  this->Kept_.resize(handle->levels.size());
   handle->file = std::move(file);
   this->Idle_.push_back(std::move(handle));
 }

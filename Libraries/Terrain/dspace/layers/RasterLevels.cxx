@@ -5,9 +5,6 @@
 #include <limits>
 
 #include <dspace/Error.h>
-#include <dspace/layers/ImageLayer.h>
-
-#include "../terrain/NetworkScope.h"
 
 namespace dspace {
 namespace {
@@ -40,101 +37,6 @@ Cover CoverOf(int cell, double pixelsACell, int pixels) {
 
 } // namespace
 
-// Some rows of pixels of a level.
-struct RasterLevels::Strip {
-  std::vector<float> pixels; // channels times opacity, opacity
-  std::vector<double> values;
-  std::vector<std::uint8_t> mask;
-  std::vector<std::uint8_t> other;
-};
-
-void RasterLevels::ReadPixels(const Level& level, const RasterWindow& part, int columns, int rows,
-                              Strip& strip) const {
-  const std::size_t count = std::size_t(columns) * rows;
-  const int step = this->Channels_ + 1;
-  const auto pixel = GSpacing(step * sizeof(float));
-  GdalErrors errors;
-  const auto check = [&](CPLErr result) {
-    if (result == CE_None && !errors.Failed()) {
-      return;
-    }
-    const std::string message = errors.Message("GDAL gave no reason");
-    if (level.cached) {
-      this->RemoveOverviews();
-      throw Error(Error::Kind::Corrupt, this->Object_,
-                  "its overviews in the cache are damaged; they are made anew: " + message);
-    }
-    if (this->Remote_) {
-      ForgetAnswers(this->Path_);
-      if (IsUnanswered(message)) {
-        throw Error(Error::Kind::Io, this->Object_, "cannot be read: " + InWords(message));
-      }
-    }
-    throw Error(Error::Kind::Corrupt, this->Object_, "cannot be read: " + message);
-  };
-  strip.pixels.resize(count * step);
-  const auto read = [&](GDALRasterBand* band, int channel) {
-    check(band->RasterIO(GF_Read, part.column, part.row, part.width, part.height,
-                         strip.pixels.data() + channel, columns, rows, GDT_Float32, pixel,
-                         pixel * columns, nullptr));
-  };
-  const auto readMask = [&](GDALRasterBand* band, std::vector<std::uint8_t>& mask) {
-    mask.resize(count);
-    check(band->GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width, part.height,
-                                        mask.data(), columns, rows, GDT_Byte, 0, 0, nullptr));
-  };
-  const bool values = this->Band_ > 0;
-  if (values) { // may need more digits than a float has, until the bias is gone
-    strip.values.resize(count);
-    check(level.colors[0]->RasterIO(GF_Read, part.column, part.row, part.width, part.height,
-                                    strip.values.data(), columns, rows, GDT_Float64, 0, 0,
-                                    nullptr));
-  } else {
-    for (std::size_t k = 0; k < level.colors.size(); ++k) {
-      read(level.colors[k], int(k));
-    }
-  }
-  strip.mask.assign(count, 255);
-  if (level.alpha) {
-    read(level.alpha, this->Channels_);
-  } else if (level.gaps) {
-    MaskGaps(*level.colors[0], part, columns, rows, columns, strip.mask.data());
-    check(CE_None);
-  } else if (!level.masks.empty()) {
-    readMask(level.masks[0], strip.mask);
-    for (std::size_t k = 1; k < level.masks.size(); ++k) {
-      readMask(level.masks[k], strip.other);
-      for (std::size_t i = 0; i < count; ++i) {
-        strip.mask[i] = std::max(strip.mask[i], strip.other[i]);
-      }
-    }
-  }
-  const float scale = level.cached || values ? 1.0f : float(this->Scale_);
-  const float alphaScale = level.cached ? 1.0f / 255.0f : float(this->AlphaScale_);
-  for (std::size_t i = 0; i < count; ++i) {
-    float* p = &strip.pixels[i * step];
-    float opacity = level.alpha ? p[this->Channels_] * alphaScale : strip.mask[i] / 255.0f;
-    if (values) {
-      const double value =
-          level.cached ? strip.values[i] : strip.values[i] * this->Scale_ + this->Offset_;
-      opacity = std::isfinite(value) ? opacity : 0.0f;
-      p[0] = opacity > 0.0f ? float(value - this->Bias_) * opacity : 0.0f;
-    } else if (!this->Palette_.empty() && !level.cached) {
-      const auto index = std::clamp<long>(std::lround(p[0]), 0, long(this->Palette_.size()) - 1);
-      const std::array<float, 4>& color = this->Palette_[std::size_t(index)];
-      opacity *= color[3];
-      for (int k = 0; k < 3; ++k) {
-        p[k] = color[std::size_t(k)] * opacity;
-      }
-    } else {
-      for (int k = 0; k < this->Channels_; ++k) {
-        p[k] = opacity > 0.0f ? p[k] * scale * opacity : 0.0f;
-      }
-    }
-    p[this->Channels_] = opacity;
-  }
-}
-
 void RasterLevels::Read(const LevelWindow& window, float* cells) const {
   this->MakeOverviews(window);
   this->With([&](Handle& handle) { this->ReadCells(handle, window, cells); });
@@ -152,37 +54,56 @@ void RasterLevels::ReadCells(Handle& handle, const LevelWindow& window, float* c
   const double pixelsX = double(level->width) / columns;
   const double pixelsY = double(level->height) / rows;
   const int step = this->Channels_ + 1;
-  const std::size_t count = std::size_t(window.width) * window.height * step;
   std::vector<Cover> across;
+  std::vector<float> parts; // of all pixels of all of them
   for (int i = 0; i < window.width; ++i) {
     across.push_back(CoverOf(window.column + i, pixelsX, level->width));
+    for (int x = across.back().first; x <= across.back().last; ++x) {
+      parts.push_back(float(across.back().Part(x) / pixelsX));
+    }
   }
   const int top = CoverOf(window.row, pixelsY, level->height).first;
   const int bottom = CoverOf(window.row + window.height - 1, pixelsY, level->height).last + 1;
   RasterWindow part{across.front().first, top, across.back().last + 1 - across.front().first, 0};
-  Strip strip;
+  Raw raw;
   if (this->Remote_ && std::max(pixelsX, pixelsY) > ManyPixels) {
     part.height = bottom - top;
-    this->ReadPixels(*level, part, window.width, window.height, strip);
-    std::copy_n(strip.pixels.begin(), count, cells);
+    this->ReadRaw(*level, part, window.width, window.height, raw);
+    this->Convert(*level, raw, 0, std::size_t(window.width) * window.height, cells);
     return;
   }
-  std::fill_n(cells, count, 0.0f);
+  const std::shared_ptr<const Raw> kept = this->KeptOf(handle, *level);
+  const bool same = level->width == columns && level->height == rows;
+  if (!same) {
+    std::fill_n(cells, std::size_t(window.width) * window.height * step, 0.0f);
+  }
+  std::vector<float> row(std::size_t(part.width) * step);
   std::vector<float> line(std::size_t(window.width) * step);
   int cell = 0; // the first whose rows are not all there
   const int most = int(std::clamp<std::size_t>(StripPixels / part.width, 1, 65536));
   for (part.row = top; part.row < bottom; part.row += part.height) {
     part.height = std::min(most, bottom - part.row);
-    this->ReadPixels(*level, part, part.width, part.height, strip);
+    if (!kept) {
+      this->ReadRaw(*level, part, part.width, part.height, raw);
+    }
     for (int y = part.row; y < part.row + part.height; ++y) {
-      const float* pixels = &strip.pixels[std::size_t(y - part.row) * part.width * step];
+      const std::size_t first = kept ? std::size_t(y) * level->width + part.column
+                                     : std::size_t(y - part.row) * part.width;
+      if (same) {
+        this->Convert(*level, kept ? *kept : raw, first, part.width,
+                      cells + std::size_t(y - top) * row.size());
+        continue;
+      }
+      this->Convert(*level, kept ? *kept : raw, first, part.width, row.data());
       std::fill(line.begin(), line.end(), 0.0f);
+      const float* share = parts.data();
       for (int i = 0; i < window.width; ++i) {
         const Cover& cover = across[std::size_t(i)];
-        for (int x = cover.first; x <= cover.last; ++x) {
-          const auto partX = float(cover.Part(x) / pixelsX);
+        float* to = &line[std::size_t(i) * step];
+        for (int x = cover.first; x <= cover.last; ++x, ++share) {
+          const float* pixel = &row[std::size_t(x - part.column) * step];
           for (int k = 0; k < step; ++k) {
-            line[std::size_t(i) * step + k] += partX * pixels[(x - part.column) * step + k];
+            to[k] += *share * pixel[k];
           }
         }
       }

@@ -31,9 +31,12 @@ struct LevelWindow {
 // Immutable; called from several threads at once, each with a handle of its own of GDAL's.
 class RasterLevels {
 public:
+  // Of a band: its values, opaque where it has data, or what is no data, opaque, and values of 0.
+  enum class Shown : std::uint8_t { Data, Holes };
   // `band`: its values, scaled and less Bias(); 0: the raster is an image, its colours 0 to 255.
   // Throws Error naming `object`, see ImageLayer.h.
-  RasterLevels(std::string object, std::string path, int band, const RasterLayerOptions& options);
+  RasterLevels(std::string object, std::string path, int band, const RasterLayerOptions& options,
+               Shown shown = Shown::Data);
   ~RasterLevels();
   RasterLevels(const RasterLevels&) = delete;
   RasterLevels& operator=(const RasterLevels&) = delete;
@@ -49,6 +52,8 @@ public:
   // mean over the cell, from the file's overviews where they are as fine. Throws Error(Io,
   // Corrupt).
   void Read(const LevelWindow& window, float* cells) const;
+  // Of pixels that are kept, of formats whose parts cannot be read by themselves.
+  std::size_t KeptBytes() const { return this->KeptBytes_; }
 
   // Values are kept as floats: those around it are the most exact.
   void SetBias(double bias) { this->Bias_ = bias; }
@@ -83,7 +88,12 @@ private:
     std::vector<DatasetPointer> overviews; // made by us
     std::vector<Level> levels;             // the raster itself, then ever coarser
   };
-  struct Strip;
+  // Pixels as the file has them: of its type, colours and opacity one after the other; `mask` is
+  // empty where all is opaque.
+  struct Raw {
+    std::vector<std::uint8_t> samples;
+    std::vector<std::uint8_t> mask;
+  };
 
   std::unique_ptr<Handle> Open(std::vector<std::string>& warnings) const;
   void AddLevels(GDALDataset& file, std::vector<Level>& levels) const;
@@ -100,12 +110,17 @@ private:
   void RemoveOverviews() const;
   std::string OverviewFileOf(int level) const;
   void ReadCells(Handle& handle, const LevelWindow& window, float* cells) const;
-  void ReadPixels(const Level& level, const RasterWindow& part, int columns, int rows,
-                  Strip& strip) const;
+  // Pixels, in RasterPixels.cxx.
+  void PlanKeeping(GDALDataset& file);
+  void ReadRaw(const Level& level, const RasterWindow& part, int columns, int rows, Raw& raw) const;
+  std::shared_ptr<const Raw> KeptOf(const Handle& handle, const Level& level) const;
+  void Convert(const Level& level, const Raw& raw, std::size_t first, std::size_t count,
+               float* pixels) const;
 
   std::string Object_;
   std::string Path_;
   int Band_ = 0;
+  Shown Shown_ = Shown::Data;
   NetworkLimits Network_;
   FileState File_;
   bool Remote_ = false;
@@ -131,6 +146,11 @@ private:
   bool InMemory_ = false;
   mutable std::mutex Making_;
   mutable std::atomic<bool> OverviewsReady_{false};
+
+  bool Keeps_ = false; // levels that are read are decoded once and stay in memory
+  mutable std::atomic<std::size_t> KeptBytes_{0};
+  mutable std::mutex Keeping_;
+  mutable std::vector<std::shared_ptr<const Raw>> Kept_; // a level each
 
   mutable std::mutex Mutex_;
   mutable std::vector<std::unique_ptr<Handle>> Idle_;

@@ -12,6 +12,8 @@
 #include <dspace/layers/ImageLayer.h>
 #include <dspace/terrain/ElevationCache.h>
 
+#include "../terrain/CachedLayers.h"
+
 namespace dspace {
 namespace {
 
@@ -28,14 +30,16 @@ void RasterLevels::PlanOverviews(GDALDataset& file, const std::string& folder, b
     return;
   }
   static std::atomic<int> count{0};
-  this->Identity_ = "1: band " + std::to_string(this->Band_) + " of " +
-                    std::to_string(this->Width_) + " x " + std::to_string(this->Height_) + " x " +
-                    std::to_string(this->Bands_) + FilesOf(file);
+  const bool holes = this->Shown_ == Shown::Holes;
+  this->Identity_ = std::string("1: ") + (holes ? "holes of " : "") + "band " +
+                    std::to_string(this->Band_) + " of " + std::to_string(this->Width_) + " x " +
+                    std::to_string(this->Height_) + " x " + std::to_string(this->Bands_) +
+                    FilesOf(file);
   this->InMemory_ = folder.empty();
   const std::string place =
       this->InMemory_ ? "/vsimem/dspace-layer-" + std::to_string(count++) : folder;
   const std::string name = ElevationCache::FileFor(place, this->Path_, this->Band_);
-  this->OverviewStem_ = name.substr(0, name.rfind('.')) + "-layer-";
+  this->OverviewStem_ = name.substr(0, name.rfind('.')) + (holes ? "-layer-holes-" : "-layer-");
   this->Folder_ = place;
 }
 
@@ -149,6 +153,7 @@ void RasterLevels::WriteOverview(Handle& handle, int level) const {
                              : nullptr);
   check(file != nullptr);
   file->SetMetadataItem(IdentityItem, this->Identity_.c_str());
+  file->SetMetadataItem(LayerPathItem, this->Path_.c_str());
   const int height = int(std::clamp<std::size_t>(PartCells / columns / 256 * 256, 256, 4096));
   std::vector<float> cells;
   std::vector<double> straight;

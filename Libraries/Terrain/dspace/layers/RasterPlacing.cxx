@@ -177,11 +177,18 @@ double PixelSize(const RasterPosition& raster, const Eigen::Affine2d& pixelToMap
 
 PlacedRaster PlaceRaster(RasterLevels& levels, const RasterPlace& terrain,
                          const RasterLayerOptions& options) {
+  Crs crs;
+  const Eigen::Affine2d pixelToMap = PixelToMap(levels, terrain, options, crs);
+  return PlaceRasterAt(levels, terrain, crs, pixelToMap);
+}
+
+PlacedRaster PlaceRasterAt(RasterLevels& levels, const RasterPlace& terrain, const Crs& crs,
+                           Eigen::Affine2d pixelToMap) {
   PlacedRaster placed;
   RasterPosition& position = placed.position;
   position.width = levels.Width();
   position.height = levels.Height();
-  Eigen::Affine2d pixelToMap = PixelToMap(levels, terrain, options, position.crs);
+  position.crs = crs;
   RefuseAnotherBody(levels.Object(), position.crs, terrain);
   CloseAround(position, pixelToMap);
   position.mapToPixel = pixelToMap.inverse();

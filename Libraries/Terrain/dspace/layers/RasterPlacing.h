@@ -17,6 +17,10 @@ struct PlacedRaster {
 PlacedRaster PlaceRaster(RasterLevels& levels, const RasterPlace& terrain,
                          const RasterLayerOptions& options);
 
+// The same, of a place that is known.
+PlacedRaster PlaceRasterAt(RasterLevels& levels, const RasterPlace& terrain, const Crs& crs,
+                           Eigen::Affine2d pixelToMap);
+
 } // namespace dspace
 
 #endif

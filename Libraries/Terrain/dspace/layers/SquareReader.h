@@ -9,17 +9,21 @@
 
 namespace dspace {
 
+// Of a square's texels: from left and top up to before right and bottom.
+struct TexelRange {
+  int left = 0;
+  int top = 0;
+  int right = TexelPlaces::Side;
+  int bottom = TexelPlaces::Side;
+};
+
 // Places of a square, and the cells that they lie in.
 struct TexelSquare {
-  TexelSquare(const ColorGrid& grid, int zoom, std::int64_t column, std::int64_t row,
-              const PixelFinder& finder, double turn)
-      : places(grid, zoom, column, row, finder, turn) {}
-
   TexelPlaces places;
-  std::vector<Eigen::Vector2d> torn; // places in each torn texel, in their order
-  LevelWindow window;
+  TexelRange wanted;   // that lie in the block
   int blockColumn = 0; // of its first texel in the block; may lie outside
   int blockRow = 0;
+  LevelWindow window; // that holds what is wanted
 };
 
 class SquareReader {
@@ -27,14 +31,15 @@ public:
   SquareReader(const RasterLevels& levels, const RasterPosition& raster)
       : Levels_(levels), Raster_(raster) {}
 
-  // False where it does not meet the raster.
+  // False where what is wanted does not meet the raster. The level is that of the whole square, so
+  // that it is the same for all blocks.
   bool Settle(TexelSquare& square) const;
   void Read(const LevelWindow& window, std::vector<float>& cells) const;
   void Sample(const TexelSquare& square, const LevelWindow& window, const std::vector<float>& cells,
               const ColorBlock& block, float* texels) const;
 
 private:
-  Eigen::AlignedBox2d Reach(TexelSquare& square, Eigen::Vector2d& texel) const;
+  bool Rows(const Eigen::AlignedBox2d& reach, LevelWindow& window) const;
   bool Columns(const Eigen::AlignedBox2d& reach, LevelWindow& window) const;
   Eigen::Vector2d CellsAPixel(const LevelWindow& window) const {
     return {double(this->Levels_.ColumnsAt(window.levelX)) / this->Raster_.width,

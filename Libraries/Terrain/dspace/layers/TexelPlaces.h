@@ -12,8 +12,8 @@ namespace dspace {
 
 class PixelFinder;
 
-// A texel's corners in pixels: top left, top right, bottom left, bottom right; x in any turn, but
-// all four in one.
+// Corners in pixels: top left, top right, bottom left, bottom right; x in any turn, but all four in
+// one.
 struct TexelCorners {
   std::array<Eigen::Vector2d, 4> at;
   Eigen::Vector2d Across() const {
@@ -28,40 +28,49 @@ struct TexelCorners {
   }
 };
 
+// Texels x to x + size - 1 of a square, and as many rows: between the corners their places are
+// bilinear. One that is torn is a texel at a pole or at an edge of a projection, each of whose
+// places is asked for.
+struct TexelPatch {
+  static constexpr int TornPlaces = 4; // a side
+
+  int x = 0;
+  int y = 0;
+  int size = 1;
+  int torn = -1; // the first of its places, row by row, in TexelPlaces::Torn(); else -1
+  TexelCorners corners;
+
+  // Of texel coordinates in the square.
+  Eigen::Vector2d At(double across, double down) const {
+    return this->corners.Inside((across - this->x) / this->size, (down - this->y) / this->size);
+  }
+};
+
 // PROJ is asked at the corners, edges and middles of squares of texels, and what lies between is
 // interpolated where that is right to a hundredth of a pixel, or of a texel where that is larger;
 // else the square is quartered.
 class TexelPlaces {
 public:
   static constexpr int Side = 64;
-  enum class State : std::uint8_t {
-    Absent,  // outside the grid's extent
-    Regular, // its corners say where all of it is
-    Torn     // at a pole or an edge of a projection: ask the finder
-  };
 
   // Texels column..column + Side - 1, and as many rows. `turn`: of the raster [pixels], or 0.
   TexelPlaces(const ColorGrid& grid, int zoom, std::int64_t column, std::int64_t row,
               const PixelFinder& finder, double turn);
 
-  State StateOf(int x, int y) const { return this->States_[std::size_t(y) * Side + x]; }
-  TexelCorners CornersOf(int x, int y) const;
-  // Exactly, of texel coordinates from the square's corner.
-  Eigen::Vector2d Exact(double x, double y) const;
+  // Of all texels but those outside the grid's extent.
+  const std::vector<TexelPatch>& Patches() const { return this->Patches_; }
+  const std::vector<Eigen::Vector2d>& Torn() const { return this->Torn_; }
 
 private:
-  void Fill(int x, int y, int size);
+  void Fill(const PixelFinder& finder, int x, int y, int size, const TexelCorners& corners);
+  void Tear(const PixelFinder& finder);
   Eigen::Vector2d Near(const Eigen::Vector2d& p, const Eigen::Vector2d& to) const;
-  Eigen::Vector2d& Corner(int x, int y) {
-    return this->Corners_[std::size_t(y) * (Side + 1) + std::size_t(x)];
-  }
 
-  const PixelFinder& Finder_;
   Eigen::Affine2d TexelToMap_;
   Eigen::AlignedBox2d Extent_; // in texels from the square's corner
   double Turn_ = 0.0;
-  std::vector<Eigen::Vector2d> Corners_;
-  std::vector<State> States_;
+  std::vector<TexelPatch> Patches_;
+  std::vector<Eigen::Vector2d> Torn_;
 };
 
 } // namespace dspace

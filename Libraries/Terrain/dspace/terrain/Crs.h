@@ -80,6 +80,8 @@ public:
   // Throws Error(InvalidArgument) naming the point where the projection has no value for it.
   Eigen::Vector2d Apply(const Eigen::Vector2d& p) const;
   Eigen::Vector2d ApplyInverse(const Eigen::Vector2d& p) const;
+  // Many points at once; NaN where the projection has no value.
+  void TryApply(Eigen::Matrix2Xd& points) const;
 
 private:
   struct Implementation;

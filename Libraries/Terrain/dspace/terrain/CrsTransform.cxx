@@ -1,6 +1,7 @@
 #include <dspace/terrain/Crs.h>
 
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <sstream>
 
@@ -56,6 +57,25 @@ Eigen::Vector2d CrsTransform::Apply(const Eigen::Vector2d& p) const {
 
 Eigen::Vector2d CrsTransform::ApplyInverse(const Eigen::Vector2d& p) const {
   return this->Impl_->Run(*this->Impl_->inverse, p);
+}
+
+void CrsTransform::TryApply(Eigen::Matrix2Xd& points) const {
+  const auto count = int(points.cols());
+  std::vector<double> x(points.cols()), y(points.cols());
+  std::vector<int> good(points.cols());
+  for (int i = 0; i < count; ++i) {
+    x[std::size_t(i)] = points(0, i);
+    y[std::size_t(i)] = points(1, i);
+  }
+  const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  const GdalErrors quiet;
+  this->Impl_->forward->Transform(count, x.data(), y.data(), nullptr, good.data());
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d to(x[std::size_t(i)], y[std::size_t(i)]);
+    points.col(i) = good[std::size_t(i)] && to.allFinite()
+                        ? to
+                        : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
 }
 
 } // namespace dspace

@@ -11,6 +11,7 @@
 
 #include <dspace/Error.h>
 
+#include "CachedLayers.h"
 #include "NetworkScope.h"
 #include "OverviewFile.h"
 
@@ -174,6 +175,7 @@ ElevationCache::Build(const std::string& path, const ElevationOptions& options,
 
 std::vector<ElevationCacheEntry> ElevationCache::Entries() const {
   std::vector<ElevationCacheEntry> entries;
+  std::vector<std::string> layers;
   std::error_code failure;
   fs::directory_iterator files(this->Folder_, failure);
   if (failure && failure != std::errc::no_such_file_or_directory) {
@@ -182,6 +184,9 @@ std::vector<ElevationCacheEntry> ElevationCache::Entries() const {
   for (const auto& found : files) {
     ElevationCacheEntry entry;
     entry.file = found.path().string();
+    if (IsLayerFile(entry.file)) {
+      layers.push_back(entry.file);
+    }
     if (!EndsWith(entry.file, Ending)) {
       continue;
     }
@@ -200,6 +205,9 @@ std::vector<ElevationCacheEntry> ElevationCache::Entries() const {
     }
     entries.push_back(std::move(entry));
   }
+  for (ElevationCacheEntry& entry : LayerEntries(layers)) {
+    entries.push_back(std::move(entry));
+  }
   return entries;
 }
 
@@ -212,7 +220,10 @@ std::uint64_t ElevationCache::SizeBytes() const {
 }
 
 void ElevationCache::Verify(const ElevationCacheEntry& entry) {
-  OverviewFile(entry.file).Verify();
+  if (entry.layerFiles.empty()) {
+    OverviewFile(entry.file).Verify();
+  }
+  std::for_each(entry.layerFiles.begin(), entry.layerFiles.end(), VerifyLayerFile);
 }
 
 void ElevationCache::Clear() const {
@@ -223,7 +234,7 @@ void ElevationCache::Clear() const {
   }
   for (const auto& found : files) {
     const std::string name = found.path().string();
-    if (!EndsWith(name, Ending) && !EndsWith(name, Unfinished)) {
+    if (!EndsWith(name, Ending) && !EndsWith(name, Unfinished) && !IsLayerFile(name)) {
       continue;
     }
     if (!fs::remove(found.path(), failure) && failure) {

@@ -18,6 +18,9 @@ struct ElevationCacheEntry {
   std::uint64_t bytes = 0;
   int levels = 0;
   bool damaged = false; // its index; tiles are checked by Verify and as they are read
+  // Not empty: overviews of a colour layer (RasterLayerOptions::cacheFolder), a file each, `file`
+  // the first of them.
+  std::vector<std::string> layerFiles;
 };
 
 // A file holds the overviews of one band of one raster: means over 2 x 2, 4 x 4, ... pixels, each
@@ -59,7 +62,8 @@ public:
   std::uint64_t SizeBytes() const;
   // Reads all of an entry. Throws Error(Corrupt) naming it.
   static void Verify(const ElevationCacheEntry& entry);
-  // Removes what is the cache's own, also what a build that was killed left, and nothing else.
+  // Removes what is the cache's own (overviews of colour layers, too), also what a build that was
+  // killed left, and nothing else.
   void Clear() const;
 
 private:
