@@ -56,6 +56,8 @@ class Mobility:
         self.wheels = model.wheels
         self.steering = np.array([self.parents[k] if model.bodies[self.parents[k]].joint == "steering" else -1
                                   for k in self.wheels])
+        self._positions = np.array([body.position for body in model.bodies])
+        self._axes = np.array([body.axis for body in model.bodies])
         self._levels = self._sort()
         self._columns = {joint: np.array([k for k, body in enumerate(model.bodies) if body.joint == joint], int)
                          for joint in ("rocker", "bogie", "steering", "wheel")}
@@ -80,12 +82,11 @@ class Mobility:
         levels = []
         for d in range(1, depth.max() + 1):
             which = np.flatnonzero(depth == d)
-            axes = np.array([self.model.bodies[k].axis for k in which])
+            axes = self._axes[which]
             K = np.zeros((len(which), 3, 3))
             K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = -axes[:, 2], axes[:, 1], -axes[:, 0]
             K -= K.transpose(0, 2, 1)
-            offsets = np.array([self.model.bodies[k].position for k in which])
-            levels.append((which, self.parents[which], offsets, K, K @ K))
+            levels.append((which, self.parents[which], self._positions[which], K, K @ K))
         return levels
 
     # --- Kinematics ----------------------------------------------------------------------------
@@ -185,12 +186,8 @@ class Mobility:
 
     def rows(self):
         """Local poses (bodies, 7): px py pz qw qx qy qz, the chassis' in the world."""
-        out = np.empty((len(self.parents), 7))
-        for k, body in enumerate(self.model.bodies):
-            out[k, :3] = body.position
         half = 0.5 * self.angles
-        out[:, 3] = np.cos(half)
-        out[:, 4:] = np.sin(half)[:, None] * np.array([body.axis for body in self.model.bodies])
+        out = np.column_stack((self._positions, np.cos(half), np.sin(half)[:, None] * self._axes))
         out[0, :3] = self.origins[0]
         out[0, 3:] = attitude_quaternion(self._pose[2], self._free[1], self._free[2])
         return out

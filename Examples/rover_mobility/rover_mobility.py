@@ -91,11 +91,13 @@ def main():
     parser.add_argument("--connect", metavar="ADDRESS", help="of a server; else the scene is in this process")
     parser.add_argument("--real-time", action="store_true", help="no faster than the clock")
     parser.add_argument("--wheelbase", type=float, default=RoverModel.wheelbase, help="metres (1.1)")
+    parser.add_argument("--folder", type=pathlib.Path,
+                        help="where the ground's raster is written, so that a server finds it (a temporary one)")
     parser.add_argument("--out", type=pathlib.Path, help="a picture at the end")
     options = parser.parse_args()
     session = dspace.connect(options.connect) if options.connect else dspace.Session()
     with session:
-        simulation = Simulation(session, RoverModel(wheelbase=options.wheelbase))
+        simulation = Simulation(session, RoverModel(wheelbase=options.wheelbase), folder=options.folder)
         began = time.perf_counter()
         while simulation.mobility.time < options.seconds - STEP / 2:
             simulation.step()

@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time as clock
 
+import dspace
 from dspace._fields import integers, refuse
 from dspace.errors import Error, InvalidArgument, Io, Resource
 from dspace.movies_draw import Stage, is_whole, open_run, png
@@ -99,7 +100,7 @@ def put(path, data):
 def identity(movie, run):
     """What tells one movie of one run from all others: a hash of its text, its size and the run's file."""
     state = {"movie": movie.text, "size": movie.size, "samples": movie.samples, "rate": movie.rate,
-             "frames": movie.frames}
+             "frames": movie.frames, "dspace": dspace.__version__}
     if isinstance(run, (str, os.PathLike)):
         name = os.fspath(run)
         script, _, function = name.rpartition(":")
