@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 #include "vtkActor.h"
@@ -22,182 +21,21 @@
 #include <gdal_priv.h>
 #include <unistd.h>
 
-#include <dspace/layers/ImageLayer.h>
 #include <dspace/terrain/ClipmapDrawer.h>
-#include <dspace/terrain/ClipmapTerrain.h>
-#include <dspace/terrain/StreamedTerrain.h>
 
 #include "Alternate.h"
+#include "BenchGround.h"
 #include "ReplayedDraws.h"
 
 using namespace dspace;
+using namespace dspace::bench;
 
 namespace {
-
-constexpr int Width = 1280;
-constexpr int Height = 720;
-constexpr int Tile = 1024;    // pixels a side of what the rasters repeat
-constexpr double Pixel = 2.0; // [m]
-
-// Periodic in a tile, so that it may be repeated.
-double Analytic(int column, int row) {
-  const double u = 2.0 * M_PI * (column % Tile) / Tile;
-  const double v = 2.0 * M_PI * (row % Tile) / Tile;
-  return 60.0 * std::sin(u) * std::cos(v) + 14.0 * std::sin(5.0 * u + 3.0 * v) +
-         3.0 * std::sin(23.0 * u) * std::sin(19.0 * v);
-}
-
-std::string WriteTile(const std::filesystem::path& folder) {
-  GDALAllRegister();
-  const std::string path = (folder / "tile.tif").string();
-  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      path.c_str(), Tile, Tile, 1, GDT_Float32, nullptr);
-  double geo[6] = {0.0, Pixel, 0.0, 0.0, 0.0, -Pixel};
-  dataset->SetGeoTransform(geo);
-  std::vector<float> values(std::size_t(Tile) * Tile);
-  for (int r = 0; r < Tile; ++r) {
-    for (int c = 0; c < Tile; ++c) {
-      values[std::size_t(r) * Tile + c] = float(Analytic(c, r));
-    }
-  }
-  if (dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, Tile, Tile, values.data(), Tile, Tile,
-                                          GDT_Float32, 0, 0, nullptr) != CE_None) {
-    std::abort();
-  }
-  GDALClose(dataset);
-  return path;
-}
-
-// The tile again and again: a raster of any size that takes no space.
-std::string WriteMosaic(const std::filesystem::path& folder, int width, int height) {
-  const std::string path = (folder / "mosaic.vrt").string();
-  std::ofstream out(path);
-  out << "<VRTDataset rasterXSize=\"" << width << "\" rasterYSize=\"" << height
-      << "\"><GeoTransform>0," << Pixel << ",0,0,0," << -Pixel
-      << "</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">";
-  for (int y = 0; y < height; y += Tile) {
-    for (int x = 0; x < width; x += Tile) {
-      out << "<SimpleSource><SourceFilename relativeToVRT=\"1\" "
-             "shared=\"0\">tile.tif</SourceFilename>"
-             "<SourceBand>1</SourceBand><SourceProperties RasterXSize=\"1024\" "
-             "RasterYSize=\"1024\" "
-             "DataType=\"Float32\" BlockXSize=\"1024\" BlockYSize=\"2\"/>"
-             "<SrcRect xOff=\"0\" yOff=\"0\" xSize=\"1024\" ySize=\"1024\"/><DstRect xOff=\""
-          << x << "\" yOff=\"" << y << "\" xSize=\"1024\" ySize=\"1024\"/></SimpleSource>";
-    }
-  }
-  out << "</VRTRasterBand></VRTDataset>";
-  return path;
-}
-
-std::size_t ResidentBytes() {
-  std::ifstream in("/proc/self/statm");
-  std::size_t total = 0;
-  std::size_t resident = 0;
-  in >> total >> resident;
-  return resident * std::size_t(::sysconf(_SC_PAGESIZE));
-}
-
-// Colours with structure at every scale.
-std::string WriteImage(const std::filesystem::path& folder) {
-  constexpr int Side = 4096;
-  const std::string path = (folder / "image.tif").string();
-  char** options = CSLSetNameValue(nullptr, "TILED", "YES");
-  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      path.c_str(), Side, Side, 3, GDT_Byte, options);
-  CSLDestroy(options);
-  std::vector<std::uint8_t> pixels(std::size_t(Side) * Side);
-  for (int band = 1; band <= 3; ++band) {
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const std::uint32_t c = i % Side, r = std::uint32_t(i / Side);
-      const std::uint32_t noise =
-          (c * 2654435761u ^ r * 2246822519u) * 3266489917u * unsigned(band);
-      pixels[i] = std::uint8_t(64 + (c / 64 + r / 48) % 64 + (noise >> 25));
-    }
-    if (dataset->GetRasterBand(band)->RasterIO(GF_Write, 0, 0, Side, Side, pixels.data(), Side,
-                                               Side, GDT_Byte, 0, 0, nullptr) != CE_None) {
-      std::abort();
-    }
-  }
-  int levels[] = {2, 4, 8, 16};
-  dataset->BuildOverviews("AVERAGE", 4, levels, 0, nullptr, nullptr, nullptr);
-  GDALClose(dataset);
-  return path;
-}
-
-// What colours the ground besides its material.
-enum class Paint { None, Texture, Layer }; // one mip-mapped texture; a streamed colour layer
-
-// A scene with one clipmap, lit by a sun.
-struct Ground {
-  std::shared_ptr<Scene> scene = std::make_shared<Scene>("ground");
-  std::shared_ptr<const StreamedTerrain> surface;
-  vtkSmartPointer<vtkDspaceViewport> viewport = vtkSmartPointer<vtkDspaceViewport>::New();
-  ObjectId object = 0;
-
-  Ground(vtkDspaceRenderContext* context, const std::string& path, bool lit, Paint paint) {
-    surface = StreamedTerrain::Open(path);
-    ClipmapOptions options;
-    options.heights = surface->HeightRange();
-    auto material = std::make_shared<Material>();
-    material->color = {0.8, 0.7, 0.6};
-    material->roughness = 1.0;
-    material->lit = lit;
-    if (paint == Paint::Texture) {
-      auto image = std::make_shared<Image>();
-      image->width = image->height = 2048;
-      image->channels = 3;
-      for (std::size_t i = 0; i < std::size_t(3) * 2048 * 2048; ++i) {
-        image->pixels.push_back(std::uint8_t((i * 2654435761u) >> 24));
-      }
-      material->texture = image;
-      options.postToTexture = Eigen::Affine2d(Eigen::Scaling(1.0 / 1024, -1.0 / 1024));
-    }
-    options.material = material;
-    GraphicsObject ground;
-    ground.name = "ground";
-    const auto terrain =
-        std::make_shared<ClipmapTerrain>(surface->Pyramid(), surface->Placement(), options,
-                                         std::vector<ClipmapChart>(), ColorGridsOf(*surface, {}));
-    if (paint == Paint::Layer) { // stretched over all of the raster
-      const ElevationInfo& info = surface->Info();
-      const std::filesystem::path image = std::filesystem::path(path).parent_path() / "image.tif";
-      StackedLayer layer;
-      layer.name = "image";
-      layer.layer = OpenImageLayer(image.string(), {surface->GetName(), info.crs, info.pixelToMap,
-                                                    info.window.width, info.window.height});
-      terrain->Layers()->Add(layer);
-    }
-    ground.custom = terrain;
-    object = scene->AddObject(ground);
-    Light sun;
-    sun.name = "sun";
-    sun.direction = Eigen::Vector3d(-0.6, 0.3, -0.5).normalized();
-    scene->SetLight(sun);
-    scene->CreateVantage("main");
-    Fly(0.0);
-    viewport->Initialize(context, scene, "ground", "main", Width, Height);
-    viewport->SetSamples(1);
-    viewport->GetCapture({}); // all tiles are there
-  }
-  // `t` metres along a line over the ground's middle.
-  double down = 0.25; // of the look: the horizon is in sight
-  void Fly(double t) {
-    Camera camera;
-    camera.name = "camera";
-    camera.projection.verticalFov_deg = 60.0;
-    camera.projection.nearDistance = 0.1;
-    camera.projection.farDistance = 1e7;
-    const Eigen::Vector3d eye(t, 0.3 * t, 120.0);
-    camera.mount.X_FC = LookAt("camera", eye, eye + Eigen::Vector3d(1.0, 0.35, -down), {0, 0, 1});
-    scene->SetCamera("main", camera);
-  }
-};
 
 void AgainstBare(vtkDspaceRenderContext* context, const std::string& path, bool lit, Paint paint,
                  int pairs, const char* name, const char* goal) {
   Ground ground(context, path, lit, paint);
-  bench::ReplayedDraws replay;
+  ReplayedDraws replay;
   replay.Begin();
   ground.viewport->ForceRender();
   replay.End();
@@ -214,11 +52,11 @@ void AgainstBare(vtkDspaceRenderContext* context, const std::string& path, bool 
     context->GetHub()->GetState()->Reset();
     context->GetHub()->GetState()->PopFramebufferBindings();
   };
-  const bench::Turns turns = bench::Alternate(pairs, ours, bare);
+  const Turns turns = Alternate(pairs, ours, bare);
   char behind[160];
   std::snprintf(behind, sizeof behind, "%zu triangles in %zu draws, goal %s", replay.Triangles(),
                 replay.Count(), goal);
-  bench::Print(name, turns, 1, behind);
+  Print(name, turns, 1, behind);
 }
 
 // The same camera: a streamed layer, sharp wherever the camera goes, and one mip-mapped texture.
@@ -235,11 +73,11 @@ void LayerAgainstTexture(vtkDspaceRenderContext* context, const std::string& pat
       ground.viewport->ForceRender();
       context->GetRenderWindow()->WaitForCompletion();
     };
-    bench::Print(down < 0.5 ? "frame with one colour layer against one texture"
-                            : "the same, the ground filling the picture",
-                 bench::Alternate(
-                     pairs, [&] { draw(layer); }, [&] { draw(texture); }),
-                 1, "lit");
+    Print(down < 0.5 ? "frame with one colour layer against one texture"
+                     : "the same, the ground filling the picture",
+          Alternate(
+              pairs, [&] { draw(layer); }, [&] { draw(texture); }),
+          1, "lit");
   }
 }
 
@@ -262,7 +100,7 @@ void SmallAndHuge(vtkDspaceRenderContext* context, const std::string& small,
     context->GetRenderWindow()->WaitForCompletion();
     peak = std::max(peak, ResidentBytes());
   };
-  const bench::Turns turns = bench::Alternate(
+  const Turns turns = Alternate(
       pairs,
       [&] {
         t += 2.0;
@@ -275,9 +113,9 @@ void SmallAndHuge(vtkDspaceRenderContext* context, const std::string& small,
       behind, sizeof behind,
       "moving 2 m a frame, lit, one colour layer; %.0f and %.0f frames a second, goal 30; "
       "%llu frames with tiles on their way; goal <= 1.1",
-      1.0 / bench::Median(turns.subject), 1.0 / bench::Median(turns.reference),
+      1.0 / Median(turns.subject), 1.0 / Median(turns.reference),
       static_cast<unsigned long long>(incomplete));
-  bench::Print("clipmap frame, 92160 x 46080 against 1024 x 1024", turns, 1, behind);
+  Print("clipmap frame, 92160 x 46080 against 1024 x 1024", turns, 1, behind);
   const ElevationPyramidStatistics statistics = a.surface->Pyramid()->Statistics();
   std::printf("memory: %.0f MB resident at most, tiles %.1f MB of a budget of 256 MB\n",
               1e-6 * peak, 1e-6 * statistics.bytes);
@@ -336,7 +174,7 @@ void AgainstMesh(vtkDspaceRenderContext* context, const std::string& path, int p
   actor->SetMapper(mapper);
   viewport->GetRenderer()->AddActor(actor);
   const auto finish = [context] { context->GetRenderWindow()->WaitForCompletion(); };
-  const bench::Turns turns = bench::Alternate(
+  const Turns turns = Alternate(
       pairs,
       [&] {
         ground.viewport->ForceRender();
@@ -346,45 +184,42 @@ void AgainstMesh(vtkDspaceRenderContext* context, const std::string& path, int p
         viewport->ForceRender();
         finish();
       });
-  bench::Print("clipmap frame against all posts as a vtkActor", turns, 1,
-               "2093058 triangles in the mesh; lit; the error of the clipmap stands below");
+  Print("clipmap frame against all posts as a vtkActor", turns, 1,
+        "2093058 triangles in the mesh; lit; the error of the clipmap stands below");
 }
 
-// Pixels between what is drawn and what is stated, up and down the screen, at distances of the
-// coarser rings: the surface's height where a pixel's ray met the clipmap, over metres a pixel.
-void ScreenSpaceError(vtkDspaceRenderContext* context, const std::string& path) {
-  Ground ground(context, path, false, Paint::None);
+// At distances of the coarser rings: against the surface that is stated.
+PixelErrors ScreenSpaceError(Ground& ground) {
   CaptureRequest request;
   request.depth = true;
-  const Capture capture = ground.viewport->GetCapture(request);
-  const Camera& camera = ground.scene->Vantage("main").ActiveCamera();
-  const Pose X = ground.scene->PlaceCamera("main").X_FC;
-  std::vector<double> errors;
-  for (int y = 0; y < Height; y += 4) {
-    for (int x = 0; x < Width; x += 4) {
-      const float depth = capture.depth[std::size_t(y) * Width + x];
-      if (!std::isfinite(depth)) {
-        continue;
-      }
-      const Projection::Ray ray = camera.projection.PixelRay(x, y, Width, Height);
-      const Eigen::Vector3d p = X.Apply(ray.direction * (double(depth) / ray.direction.z()));
-      const SurfaceSample sample = ground.surface->Sample(p);
-      if (sample.valid) {
-        const double metres = camera.projection.MetresPerPixel(depth, Height);
-        errors.push_back(std::abs(p.z() - sample.position_S.z()) / metres);
-      }
-    }
+  PixelErrors errors;
+  AddErrors(errors, ground.viewport->GetCapture(request).depth,
+            ground.scene->Vantage("main").ActiveCamera(), [&](const Eigen::Vector3d& p) {
+              const SurfaceSample sample = ground.surface->Sample(p);
+              return sample.valid ? sample.position_S.z() : std::nan("");
+            });
+  return errors;
+}
+
+// Levels of 252 cells against the default's 124: what finer ground costs, and what it gains.
+void LevelSizes(vtkDspaceRenderContext* context, const std::string& path, int pairs) {
+  Ground fine(context, path, true, Paint::None, 252);
+  Ground usual(context, path, true, Paint::None, 124);
+  const auto draw = [context](Ground& ground) {
+    ground.viewport->ForceRender();
+    context->GetRenderWindow()->WaitForCompletion();
+  };
+  Print("clipmap frame, level size 252 against 124",
+        Alternate(
+            pairs, [&] { draw(fine); }, [&] { draw(usual); }),
+        1, "lit");
+  for (Ground* ground : {&usual, &fine}) {
+    const PixelErrors errors = ScreenSpaceError(*ground);
+    std::printf("screen-space error against the full-resolution surface, level size %d: rms %.3f, "
+                "99%% %.3f, greatest %.2f pixels over %zu pixels\n",
+                ground == &usual ? 124 : 252, errors.Rms(), errors.Share(0.99), errors.Greatest(),
+                errors.all.size());
   }
-  std::sort(errors.begin(), errors.end());
-  double sum = 0.0;
-  for (const double e : errors) {
-    sum += e * e;
-  }
-  std::printf(
-      "screen-space error against the full-resolution surface: rms %.3f, 99%% %.3f, greatest "
-      "%.2f pixels over %zu pixels\n",
-      std::sqrt(sum / double(errors.size())), errors[errors.size() * 99 / 100], errors.back(),
-      errors.size());
 }
 
 void HeightQueries(const std::string& path, int pairs) {
@@ -400,7 +235,7 @@ void HeightQueries(const std::string& path, int pairs) {
   GDALDataset* dataset = GDALDataset::Open(path.c_str());
   GDALRasterBand* band = dataset->GetRasterBand(1);
   double sum = 0.0;
-  const bench::Turns turns = bench::Alternate(
+  const Turns turns = Alternate(
       pairs, [&] { surface->HeightsMap(points, heights); },
       [&] { // the four posts about each point, as a script would read them; GDAL caches blocks
         for (int i = 0; i < Count; ++i) {
@@ -413,9 +248,8 @@ void HeightQueries(const std::string& path, int pairs) {
         }
       });
   char behind[120];
-  std::snprintf(behind, sizeof behind, "%.2g queries a second",
-                Count / bench::Median(turns.subject));
-  bench::Print("height queries against GDAL's RasterIO of four posts", turns, Count, behind);
+  std::snprintf(behind, sizeof behind, "%.2g queries a second", Count / Median(turns.subject));
+  Print("height queries against GDAL's RasterIO of four posts", turns, Count, behind);
   GDALClose(dataset);
   if (sum == 0.123) {
     std::puts(""); // the sum is used
@@ -446,7 +280,7 @@ int main() {
                 "clipmap frame lit, one colour layer, against bare OpenGL", "<= 1.15");
     LayerAgainstTexture(context, small, 31);
     AgainstMesh(context, small, 15);
-    ScreenSpaceError(context, small);
+    LevelSizes(context, small, 15);
     SmallAndHuge(context, small, huge, 101);
   }
   HeightQueries(small, 7);
