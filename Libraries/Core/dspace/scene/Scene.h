@@ -128,6 +128,12 @@ public:
   void SetTime(double time_s);
   double Time() const { return this->Time_; }
 
+  // What chase cameras with smoothing go on from, by vantage and camera, for whoever brings a scene
+  // back to a state. SetLags throws Error(NotFound) for a camera that is not there.
+  using Lags = std::map<std::pair<std::string, std::string>, ChaseState>;
+  const Lags& GetLags() const { return this->Lags_; }
+  void SetLags(Lags lags);
+
   // Raised by every change of anything above, poses included.
   std::uint64_t Revision() const;
   // Raised by changes of objects, fragments and lights only (not poses, cameras or time).
@@ -162,7 +168,7 @@ private:
   std::vector<std::shared_ptr<const CustomGeometry>> Customs_; // of the objects
   std::vector<SceneVantage> Vantages_;
   // Lags of chase cameras at the time before the present one, by vantage and camera.
-  std::map<std::pair<std::string, std::string>, ChaseState> Lags_;
+  Lags Lags_;
   double Time_ = 0.0;
   std::uint64_t Revision_ = 1;
   std::uint64_t ContentRevision_ = 1;

@@ -169,6 +169,14 @@ CameraPose Scene::PlaceCamera(const std::string& vantage, const std::string& cam
   return dspace::PlaceCamera(found, this->Frames_, this->Time_, state);
 }
 
+void Scene::SetLags(Lags lags) {
+  for (const auto& [key, lag] : lags) {
+    this->Vantage(key.first).GetCamera(key.second);
+  }
+  this->Lags_ = std::move(lags);
+  ++this->Revision_;
+}
+
 void Scene::SetTime(double time_s) {
   RequireFinite("scene '" + this->Name_ + "'", "time", time_s);
   if (time_s == this->Time_) {

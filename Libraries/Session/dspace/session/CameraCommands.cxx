@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <dspace/scene/Checks.h>
+#include <dspace/session/CameraTools.h>
 #include <dspace/session/Convert.h>
 #include <dspace/session/Registry.h>
 
@@ -42,25 +43,6 @@ void ListVantages(const Context& context, v1::ListVantages&) {
   }
 }
 
-void PutProjection(const Projection& from, v1::Projection* to) {
-  switch (from.kind) {
-  case Projection::Kind::Perspective:
-    to->mutable_perspective()->set_vertical_fov_deg(from.verticalFov_deg);
-    break;
-  case Projection::Kind::Orthographic:
-    to->mutable_orthographic()->set_height(from.height);
-    break;
-  case Projection::Kind::Frustum:
-    to->mutable_frustum()->set_left(from.left);
-    to->mutable_frustum()->set_right(from.right);
-    to->mutable_frustum()->set_top(from.top);
-    to->mutable_frustum()->set_bottom(from.bottom);
-    break;
-  }
-  to->set_near(from.nearDistance);
-  to->set_far(from.farDistance);
-}
-
 CameraMount::ChaseAxes ToAxes(v1::Mount::Chase::Axes axes, const std::string& camera) {
   switch (axes) {
   case v1::Mount::Chase::HEADING:
@@ -72,18 +54,6 @@ CameraMount::ChaseAxes ToAxes(v1::Mount::Chase::Axes axes, const std::string& ca
   default:
     Refuse(camera, "its chase axes are " + std::to_string(int(axes)) + "; accepted: 0 to 2");
   }
-}
-
-v1::Mount::Chase::Axes FromAxes(CameraMount::ChaseAxes axes) {
-  switch (axes) {
-  case CameraMount::ChaseAxes::Followed:
-    return v1::Mount::Chase::FOLLOWED;
-  case CameraMount::ChaseAxes::Parent:
-    return v1::Mount::Chase::PARENT;
-  case CameraMount::ChaseAxes::Heading:
-    break;
-  }
-  return v1::Mount::Chase::HEADING;
 }
 
 Eigen::Vector3d UpOr(bool given, const v1::Vector3& up) {
@@ -120,20 +90,6 @@ CameraMount ToMount(const v1::Mount& from, const std::string& name) {
   return to;
 }
 
-void PutMount(const CameraMount& from, v1::Mount* to) {
-  to->set_frame(from.frame);
-  if (from.kind == CameraMount::Kind::Fixed) {
-    Put(from.X_FC, to->mutable_pose());
-    return;
-  }
-  v1::Mount::Chase* chase = to->mutable_chase();
-  chase->set_axes(FromAxes(from.axes));
-  Put(from.offset, chase->mutable_offset());
-  Put(from.target, chase->mutable_target());
-  Put(from.up, chase->mutable_up());
-  chase->set_smoothing_s(from.smoothing_s);
-}
-
 void SetCamera(const Context& context, v1::SetCamera& command) {
   Scene& scene = context.TheScene();
   const std::string vantage = VantageName(command.vantage());
@@ -150,6 +106,7 @@ void SetCamera(const Context& context, v1::SetCamera& command) {
     camera.mount = ToMount(command.mount(), command.name());
   }
   scene.SetCamera(vantage, camera);
+  DescribeCamera(context.sceneName, scene, vantage, camera.name, context.reply.mutable_camera());
 }
 
 void RemoveCamera(const Context& context, v1::RemoveCamera& command) {
@@ -168,20 +125,38 @@ void SetActiveCamera(const Context& context, v1::SetActiveCamera& command) {
   context.TheScene().SetActiveCamera(VantageName(command.vantage()), command.name());
 }
 
-void DescribeCamera(const Context& context, v1::DescribeCamera& command) {
-  const std::string name = VantageName(command.vantage());
-  const SceneVantage& vantage = context.TheScene().Vantage(name);
-  const Camera& camera =
-      command.name().empty() ? vantage.ActiveCamera() : vantage.GetCamera(command.name());
-  v1::CameraInfo* info = context.reply.mutable_camera();
-  info->set_vantage(name);
-  info->set_name(camera.name);
-  PutProjection(camera.projection, info->mutable_projection());
-  PutMount(camera.mount, info->mutable_mount());
-  info->set_active(vantage.ActiveCamera().name == camera.name);
+void AnswerCamera(const Context& context, v1::DescribeCamera& command) {
+  DescribeCamera(context.sceneName, context.TheScene(), VantageName(command.vantage()),
+                 command.name(), context.reply.mutable_camera());
 }
 
 } // namespace
+
+void PutLag(const std::pair<std::string, std::string>& camera, const ChaseState& from,
+            v1::CameraLag* to) {
+  to->set_vantage(camera.first);
+  to->set_camera(camera.second);
+  to->set_time_s(from.time_s);
+  to->set_frame(from.frame);
+  to->set_parent(from.parent);
+  Put(from.p_PC, to->mutable_position());
+}
+
+void DescribeCamera(const std::string& sceneName, const Scene& scene, const std::string& vantage,
+                    const std::string& name, v1::CameraInfo* info) {
+  const SceneVantage& views = scene.Vantage(vantage);
+  const Camera& camera = name.empty() ? views.ActiveCamera() : views.GetCamera(name);
+  info->set_scene(sceneName);
+  info->set_vantage(vantage);
+  info->set_name(camera.name);
+  Put(camera.projection, info->mutable_projection());
+  Put(camera.mount, info->mutable_mount());
+  info->set_active(views.ActiveCamera().name == camera.name);
+  const auto lag = scene.GetLags().find({vantage, camera.name});
+  if (lag != scene.GetLags().end() && lag->second.started) {
+    PutLag(lag->first, lag->second, info->mutable_lag());
+  }
+}
 
 void AddCameraCommands(Registry& registry) {
   using C = v1::Command;
@@ -191,7 +166,7 @@ void AddCameraCommands(Registry& registry) {
   registry.Add(C::kSetCamera, &C::mutable_set_camera, Effect::Change, SetCamera);
   registry.Add(C::kRemoveCamera, &C::mutable_remove_camera, Effect::Change, RemoveCamera);
   registry.Add(C::kSetActiveCamera, &C::mutable_set_active_camera, Effect::Change, SetActiveCamera);
-  registry.Add(C::kDescribeCamera, &C::mutable_describe_camera, Effect::Request, DescribeCamera);
+  registry.Add(C::kDescribeCamera, &C::mutable_describe_camera, Effect::Request, AnswerCamera);
 }
 
 } // namespace dspace::session

@@ -120,6 +120,55 @@ Projection ToProjection(const v1::Projection& from) {
   return to;
 }
 
+void Put(const Projection& from, v1::Projection* to) {
+  switch (from.kind) {
+  case Projection::Kind::Perspective:
+    to->mutable_perspective()->set_vertical_fov_deg(from.verticalFov_deg);
+    break;
+  case Projection::Kind::Orthographic:
+    to->mutable_orthographic()->set_height(from.height);
+    break;
+  case Projection::Kind::Frustum:
+    to->mutable_frustum()->set_left(from.left);
+    to->mutable_frustum()->set_right(from.right);
+    to->mutable_frustum()->set_top(from.top);
+    to->mutable_frustum()->set_bottom(from.bottom);
+    break;
+  }
+  to->set_near(from.nearDistance);
+  to->set_far(from.farDistance);
+}
+
+namespace {
+
+v1::Mount::Chase::Axes FromAxes(CameraMount::ChaseAxes axes) {
+  switch (axes) {
+  case CameraMount::ChaseAxes::Followed:
+    return v1::Mount::Chase::FOLLOWED;
+  case CameraMount::ChaseAxes::Parent:
+    return v1::Mount::Chase::PARENT;
+  case CameraMount::ChaseAxes::Heading:
+    break;
+  }
+  return v1::Mount::Chase::HEADING;
+}
+
+} // namespace
+
+void Put(const CameraMount& from, v1::Mount* to) {
+  to->set_frame(from.frame);
+  if (from.kind == CameraMount::Kind::Fixed) {
+    Put(from.X_FC, to->mutable_pose());
+    return;
+  }
+  v1::Mount::Chase* chase = to->mutable_chase();
+  chase->set_axes(FromAxes(from.axes));
+  Put(from.offset, chase->mutable_offset());
+  Put(from.target, chase->mutable_target());
+  Put(from.up, chase->mutable_up());
+  chase->set_smoothing_s(from.smoothing_s);
+}
+
 void Put(const Eigen::Vector3d& from, v1::Vector3* to) {
   to->set_x(from.x());
   to->set_y(from.y());

@@ -35,6 +35,8 @@ Eigen::Quaterniond RotationToZUp(v1::UpAxis up, const std::string& object);
 void Put(const Eigen::Vector3d& from, v1::Vector3* to);
 void Put(const Pose& from, v1::Pose* to);
 void Put(const std::array<double, 3>& from, v1::Color* to);
+void Put(const Projection& from, v1::Projection* to);
+void Put(const CameraMount& from, v1::Mount* to);
 v1::Nature FromNature(Nature nature);
 v1::Error::Kind FromKind(Error::Kind kind);
 

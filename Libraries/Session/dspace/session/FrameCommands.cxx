@@ -6,6 +6,13 @@
 namespace dspace::session {
 namespace {
 
+void AddPose(const Pose& X, google::protobuf::RepeatedField<double>* out) {
+  for (const double value : {X.position.x(), X.position.y(), X.position.z(), X.rotation.w(),
+                             X.rotation.x(), X.rotation.y(), X.rotation.z(), X.scale}) {
+    out->Add(value);
+  }
+}
+
 void CreateFrame(const Context& context, v1::CreateFrame& command) {
   const FrameId parent = ToFrame(command.parent());
   const Pose X_PF = ToPose(command.pose(), "frame '" + command.name() + "'");
@@ -51,6 +58,8 @@ void ReparentFrame(const Context& context, v1::ReparentFrame& command) {
     RefuseRobotsLink(context, command.frame(), "moved to another parent");
   }
   context.Frames().Reparent(command.frame(), ToFrame(command.parent()), command.keep_world_pose());
+  AddPose(context.Frames().LocalPose(command.frame()),
+          context.reply.mutable_poses()->mutable_pose());
 }
 
 void RenameFrame(const Context& context, v1::RenameFrame& command) {
@@ -83,11 +92,7 @@ void GetPoses(const Context& context, v1::GetPoses& command) {
   google::protobuf::RepeatedField<double>* out = context.reply.mutable_poses()->mutable_pose();
   out->Reserve(command.frame_size() * PoseSize);
   for (const FrameId id : command.frame()) {
-    const Pose X = command.local() ? frames.LocalPose(id) : frames.RelativePose(W, id);
-    for (const double value : {X.position.x(), X.position.y(), X.position.z(), X.rotation.w(),
-                               X.rotation.x(), X.rotation.y(), X.rotation.z(), X.scale}) {
-      out->AddAlreadyReserved(value);
-    }
+    AddPose(command.local() ? frames.LocalPose(id) : frames.RelativePose(W, id), out);
   }
 }
 

@@ -68,6 +68,8 @@ void Describe(const Robot& robot, v1::RobotReply* reply) {
     joint->set_position(robot.Position(i));
     if (from.mimic >= 0) {
       joint->set_mimic(std::uint32_t(from.mimic));
+      joint->set_mimic_multiplier(from.mimicMultiplier);
+      joint->set_mimic_offset(from.mimicOffset);
     }
   }
 }
@@ -84,6 +86,11 @@ std::size_t VisualCount(const Urdf& urdf) {
 void CheckIds(const v1::LoadRobot& command, const Urdf& urdf, const std::string& label) {
   const bool given =
       command.base_id() != 0 || command.link_id_size() > 0 || command.object_id_size() > 0;
+  if (command.object_name_size() != 0 &&
+      std::size_t(command.object_name_size()) != VisualCount(urdf)) {
+    Refuse(label, "object_name does not fit the file; accepted: none, or " +
+                      std::to_string(VisualCount(urdf)) + " of them");
+  }
   if (given &&
       (command.base_id() == 0 || std::size_t(command.link_id_size()) != urdf.links.size() ||
        std::size_t(command.object_id_size()) != VisualCount(urdf))) {
@@ -142,8 +149,11 @@ private:
     object.id = this->NextVisual_ < this->Command_.object_id_size()
                     ? this->Command_.object_id(this->NextVisual_)
                     : 0;
+    const bool named = this->NextVisual_ < this->Command_.object_name_size();
+    object.name =
+        named ? this->Command_.object_name(this->NextVisual_)
+              : FreeObjectName(scene, this->Command_.name() + "/" + this->Urdf_.links[link].name);
     ++this->NextVisual_;
-    object.name = FreeObjectName(scene, this->Command_.name() + "/" + this->Urdf_.links[link].name);
     object.frame = this->LinkFrames_[link];
     object.nature = ToNature(this->Command_.nature(), RobotLabel(this->Command_.name()));
     object.fragment = this->Command_.fragment();
@@ -156,10 +166,12 @@ private:
     this->Command_.set_base_id(base);
     this->Command_.clear_link_id();
     this->Command_.clear_object_id();
+    this->Command_.clear_object_name();
     for (std::size_t i = 0; i < this->LinkFrames_.size(); ++i) {
       this->Command_.add_link_id(this->LinkFrames_[i]);
       for (const ObjectId id : this->LinkObjects_[i]) {
         this->Command_.add_object_id(id);
+        this->Command_.add_object_name(this->Context_.TheScene().Object(id).name);
       }
     }
   }

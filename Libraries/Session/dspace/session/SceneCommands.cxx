@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <dspace/scene/Checks.h>
+#include <dspace/session/CameraTools.h>
 #include <dspace/session/Convert.h>
 #include <dspace/session/Registry.h>
 
@@ -60,7 +61,23 @@ void ListScenes(const Context& context, v1::ListScenes&) {
 
 void SetTime(const Context& context, v1::SetTime& command) {
   RequireFinite("scene '" + context.sceneName + "'", "the time", command.time_s());
-  context.TheScene().SetTime(command.time_s());
+  Scene& scene = context.TheScene();
+  Scene::Lags lags;
+  for (const v1::CameraLag& lag : command.lag()) {
+    const Camera& camera = scene.Vantage(lag.vantage()).GetCamera(lag.camera());
+    RequirePosition("camera '" + camera.name + "'", "its lag", ToVector(lag.position()));
+    RequireFinite("camera '" + camera.name + "'", "the time of its lag", lag.time_s());
+    lags[{lag.vantage(), lag.camera()}] = {true, lag.time_s(), lag.frame(), lag.parent(),
+                                           ToVector(lag.position())};
+  }
+  scene.SetTime(command.time_s());
+  if (command.put_lags()) {
+    scene.SetLags(std::move(lags));
+  }
+  context.reply.mutable_time()->set_time_s(command.time_s());
+  for (const auto& [camera, lag] : scene.GetLags()) {
+    PutLag(camera, lag, context.reply.mutable_time()->add_lag());
+  }
 }
 
 void GetTime(const Context& context, v1::GetTime&) {

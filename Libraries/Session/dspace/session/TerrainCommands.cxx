@@ -195,6 +195,9 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   if (command.has_drape()) {
     AddDrape(context, *terrain, *command.mutable_drape());
   }
+  if (options.fillHoles) {
+    AddFilled(context, *terrain, options);
+  }
   if (command.relief().color_by_height()) {
     ClipmapStyle style;
     style.ramp.emplace();
@@ -253,7 +256,8 @@ ObjectId AddTerrainObject(const Context& context, const v1::OpenTerrain& command
                           const TerrainObject& terrain) {
   GraphicsObject object;
   object.id = command.object_id();
-  object.name = FreeObjectName(context.TheScene(), terrain.Name());
+  object.name = command.object_name().empty() ? FreeObjectName(context.TheScene(), terrain.Name())
+                                              : command.object_name();
   object.frame = ToFrame(command.frame());
   object.fragment = command.fragment();
   terrain.Draw(object);
@@ -281,6 +285,7 @@ void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
   command.set_path(path);
   command.set_name(name);
   command.set_object_id(terrain->Object());
+  command.set_object_name(context.TheScene().Object(terrain->Object()).name);
   DescribeTo(context, *terrain, context.reply.mutable_terrain());
   context.scene->terrains[name] = std::move(terrain);
 }

@@ -3,6 +3,7 @@
 
 #include <dspace/scene/Checks.h>
 #include <dspace/scene/CustomGeometry.h>
+#include <dspace/session/CameraTools.h>
 #include <dspace/session/ViewportCommands.h>
 
 #include "vtkDspaceViewport.h"
@@ -100,6 +101,9 @@ void ViewportCommands::Event(const Context& context, v1::ViewportEvent& command)
     pick.set_x(result.x);
     pick.set_y(result.y);
     this->Pick(context, pick);
+  } else if (result.changed) {
+    DescribeCamera(place.scene, scene, place.vantage, result.camera.name,
+                   context.reply.mutable_camera());
   }
 }
 

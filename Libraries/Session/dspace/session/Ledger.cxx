@@ -1,0 +1,174 @@
+#include <dspace/session/Ledger.h>
+
+#include <map>
+#include <string>
+
+#include <dspace/session/LedgerFrames.h>
+#include <dspace/session/LedgerObjects.h>
+#include <dspace/session/LedgerViews.h>
+#include <dspace/session/State.h>
+
+namespace dspace::session {
+namespace {
+
+struct LedgerScene {
+  explicit LedgerScene(const v1::CreateScene& create) : names(create) {}
+  LedgerNames names;
+  LedgerFrames frames;
+  LedgerObjects objects;
+
+  void Remove(LedgerId frame) {
+    const LedgerFrames::Removed removed = this->frames.Remove(frame);
+    this->objects.RemoveOn(removed);
+    this->names.RemoveLightsOn(removed.frames);
+  }
+
+  bool AddFrames(const v1::Command& command, const v1::Reply& reply) {
+    using C = v1::Command;
+    switch (command.command_case()) {
+    case C::kCreateFrame:
+      this->frames.Create(command);
+      return true;
+    case C::kRemoveFrame:
+      this->Remove(command.remove_frame().frame());
+      return true;
+    case C::kReparentFrame:
+      this->frames.Reparent(command.reparent_frame(), reply);
+      return true;
+    case C::kRenameFrame:
+      this->frames.Rename(command.rename_frame());
+      return true;
+    case C::kSetPoses:
+      this->frames.SetPoses(command.set_poses());
+      return true;
+    case C::kLoadRobot:
+      this->frames.Load(command, reply.robot());
+      this->objects.Load(command.load_robot(), reply.robot());
+      return true;
+    case C::kRemoveRobot:
+      this->Remove(this->frames.Robots().at(command.remove_robot().robot()).about.base());
+      return true;
+    case C::kSetJoints:
+      this->frames.SetJoints(command.set_joints());
+      return true;
+    default:
+      return false;
+    }
+  }
+
+  bool AddObjects(const v1::Command& command, const v1::Reply& reply) {
+    using C = v1::Command;
+    switch (command.command_case()) {
+    case C::kImportObject:
+      this->objects.Create(command, command.import_object().object());
+      return true;
+    case C::kCreatePrimitive:
+      this->objects.Create(command, command.create_primitive().object());
+      return true;
+    case C::kCreateText:
+      this->objects.Create(command, command.create_text().object());
+      return true;
+    case C::kCreateTrail:
+      this->objects.Create(command, command.create_trail().object());
+      return true;
+    case C::kRemoveObject:
+      this->objects.RemoveObject(command.remove_object().object());
+      return true;
+    case C::kOpenTerrain:
+      this->objects.Open(command);
+      return true;
+    case C::kRemoveTerrain:
+      this->objects.RemoveTerrain(command.remove_terrain().terrain());
+      return true;
+    default:
+      return this->objects.Change(command, reply);
+    }
+  }
+
+  void Put(const std::string& name, std::vector<v1::Command>& out) const {
+    this->names.PutFirst(name, out);
+    const std::vector<std::string> fragments = this->names.Fragments();
+    this->objects.PutOrphans(name, fragments, out);
+    this->frames.Put(name, fragments, out);
+    this->objects.Put(name, this->frames, fragments, out);
+    this->names.PutLast(name, out);
+  }
+};
+
+} // namespace
+
+struct Ledger::Impl {
+  std::map<std::string, LedgerScene> scenes;
+  LedgerViewports viewports;
+  std::vector<v1::Command> others; // of kinds that are not known here
+};
+
+Ledger::Ledger() : Impl_(std::make_unique<Impl>()) {}
+Ledger::~Ledger() = default;
+Ledger::Ledger(Ledger&&) noexcept = default;
+Ledger& Ledger::operator=(Ledger&&) noexcept = default;
+
+void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
+  v1::Command recorded;
+  if (accepted.has_viewport_event()) {
+    if (ToRecorded(accepted, reply, recorded)) {
+      this->Add(recorded, reply);
+    }
+    return;
+  }
+  const std::string name = accepted.scene().empty() ? DefaultScene : accepted.scene();
+  if (accepted.has_create_scene()) {
+    this->Impl_->scenes.erase(name);
+    this->Impl_->scenes.emplace(name, accepted.create_scene());
+    return;
+  }
+  if (accepted.has_remove_scene()) {
+    this->Impl_->scenes.erase(name);
+    return;
+  }
+  if (this->Impl_->viewports.Add(accepted)) {
+    return;
+  }
+  const auto found = this->Impl_->scenes.find(name);
+  if (found == this->Impl_->scenes.end() ||
+      !(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
+        found->second.names.Add(accepted, reply))) {
+    this->Impl_->others.push_back(accepted);
+  }
+}
+
+std::vector<v1::Command> Ledger::Commands() const {
+  std::vector<v1::Command> out;
+  for (const auto& [name, scene] : this->Impl_->scenes) {
+    scene.Put(name, out);
+  }
+  this->Impl_->viewports.Put(
+      [this](const std::string& scene) {
+        const auto found = this->Impl_->scenes.find(scene.empty() ? DefaultScene : scene);
+        return found == this->Impl_->scenes.end() ? std::vector<std::string>()
+                                                  : found->second.names.Fragments();
+      },
+      out);
+  out.insert(out.end(), this->Impl_->others.begin(), this->Impl_->others.end());
+  return out;
+}
+
+bool ToRecorded(const v1::Command& accepted, const v1::Reply& reply, v1::Command& recorded) {
+  if (!accepted.has_viewport_event()) {
+    recorded = accepted;
+    return true;
+  }
+  recorded.Clear();
+  if (!reply.has_camera()) {
+    return false;
+  }
+  recorded.set_scene(reply.camera().scene());
+  v1::SetCamera* set = recorded.mutable_set_camera();
+  set->set_vantage(reply.camera().vantage());
+  set->set_name(reply.camera().name());
+  *set->mutable_projection() = reply.camera().projection();
+  *set->mutable_mount() = reply.camera().mount();
+  return true;
+}
+
+} // namespace dspace::session

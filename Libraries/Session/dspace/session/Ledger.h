@@ -1,0 +1,43 @@
+// The shortest list of commands that brings a new interpreter to the present state.
+#ifndef DSPACE_SESSION_LEDGER_H
+#define DSPACE_SESSION_LEDGER_H
+
+#include <memory>
+#include <vector>
+
+#include <dspace/session/commands.pb.h>
+
+namespace dspace::session {
+
+// Hears every accepted command (Interpreter::AddListener) from an empty interpreter on, and keeps
+// of it what the present state is made of: what is superseded or removed is forgotten. Snapshots of
+// recordings and of servers are its Commands().
+//
+// The state is the same in everything that requests answer and pictures show, poses to the bit.
+// Three things are not part of it: the order of the objects within a fragment; that ids of what was
+// removed are taken; a drag that is under way in a viewport.
+//
+// Commands that it does not know are kept all, in their order, at the end. Wheel tracks are kept
+// contact by contact until they are cleared or their terrain goes. Not synchronised.
+class Ledger {
+public:
+  Ledger();
+  ~Ledger();
+  Ledger(Ledger&&) noexcept;
+  Ledger& operator=(Ledger&&) noexcept;
+
+  void Add(const v1::Command& accepted, const v1::Reply& reply);
+  std::vector<v1::Command> Commands() const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> Impl_;
+};
+
+// The command that has the same effect, whatever was drawn and whoever drags: a viewport's event
+// becomes the camera that it led to. False for an event that led to nothing: nothing is to be kept.
+bool ToRecorded(const v1::Command& accepted, const v1::Reply& reply, v1::Command& recorded);
+
+} // namespace dspace::session
+
+#endif

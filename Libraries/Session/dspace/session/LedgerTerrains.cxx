@@ -1,0 +1,107 @@
+// The terrains among the ledger's objects.
+#include <algorithm>
+
+#include <dspace/session/LedgerObjects.h>
+
+namespace dspace::session {
+
+bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& reply) {
+  using C = v1::Command;
+  const auto ground = [this](const std::string& name) -> Ground& {
+    return this->Grounds_.at(name);
+  };
+  const auto layerOf = [](Ground& of, const std::string& name) {
+    return std::find_if(of.layers.begin(), of.layers.end(),
+                        [&](const v1::AddTerrainLayer& layer) { return layer.name() == name; });
+  };
+  const auto insert = [&reply](Ground& into, const v1::AddTerrainLayer& layer) {
+    const std::size_t at =
+        std::min<std::size_t>(reply.terrain_layer().position(), into.layers.size());
+    v1::AddTerrainLayer& added =
+        *into.layers.insert(into.layers.begin() + std::ptrdiff_t(at), layer);
+    added.clear_position();
+    added.set_opacity(reply.terrain_layer().opacity());
+    added.set_hidden(!reply.terrain_layer().visible());
+  };
+  switch (command.command_case()) {
+  case C::kFocusTerrain:
+    ground(command.focus_terrain().terrain()).focus = command.focus_terrain();
+    return true;
+  case C::kStyleTerrain:
+    ground(command.style_terrain().terrain()).style = command.style_terrain();
+    return true;
+  case C::kTrackWheels:
+    ground(command.track_wheels().terrain()).tracks.push_back(command);
+    return true;
+  case C::kLoadTracks:
+    ground(command.load_tracks().terrain()).tracks.push_back(command);
+    return true;
+  case C::kClearTracks:
+    ground(command.clear_tracks().terrain()).tracks.clear();
+    return true;
+  case C::kAddTerrainLayer:
+    insert(ground(command.add_terrain_layer().terrain()), command.add_terrain_layer());
+    return true;
+  case C::kChangeTerrainLayer: {
+    Ground& of = ground(command.change_terrain_layer().terrain());
+    const auto found = layerOf(of, command.change_terrain_layer().name());
+    const v1::AddTerrainLayer layer = *found;
+    of.layers.erase(found);
+    insert(of, layer);
+    return true;
+  }
+  case C::kRemoveTerrainLayer: {
+    Ground& of = ground(command.remove_terrain_layer().terrain());
+    const auto found = layerOf(of, command.remove_terrain_layer().name());
+    if (found->kind_case() == v1::AddTerrainLayer::KIND_NOT_SET) {
+      of.draped = false;
+    }
+    of.layers.erase(found);
+    return true;
+  }
+  default:
+    return false;
+  }
+}
+
+void LedgerObjects::PutTerrains(const std::string& scene, Emit out) const {
+  const auto add = [&]() -> v1::Command& {
+    out.emplace_back().set_scene(scene);
+    return out.back();
+  };
+  for (const auto& [name, ground] : this->Grounds_) {
+    v1::Command open = ground.open;
+    const Thing& thing = this->Things_.at(open.open_terrain().object_id());
+    open.mutable_open_terrain()->set_frame(thing.frame);
+    open.mutable_open_terrain()->set_fragment(thing.fragment);
+    out.push_back(open);
+    if (ground.focus) {
+      *add().mutable_focus_terrain() = *ground.focus;
+    }
+    if (open.open_terrain().has_drape() && open.open_terrain().mode() == v1::OpenTerrain::CLIPMAP &&
+        !ground.draped) {
+      add().mutable_remove_terrain_layer()->set_terrain(name);
+      out.back().mutable_remove_terrain_layer()->set_name("drape");
+    }
+    for (std::size_t i = 0; i < ground.layers.size(); ++i) {
+      const v1::AddTerrainLayer& layer = ground.layers[i];
+      if (layer.kind_case() != v1::AddTerrainLayer::KIND_NOT_SET) {
+        v1::AddTerrainLayer* added = add().mutable_add_terrain_layer();
+        *added = layer;
+        added->set_position(std::uint32_t(i));
+      } else if (layer.has_opacity()) { // the drape, changed; others push it to its place
+        v1::ChangeTerrainLayer* change = add().mutable_change_terrain_layer();
+        change->set_terrain(name);
+        change->set_name("drape");
+        change->set_opacity(layer.opacity());
+        change->set_visible(!layer.hidden());
+      }
+    }
+    if (ground.style) {
+      *add().mutable_style_terrain() = *ground.style;
+    }
+    out.insert(out.end(), ground.tracks.begin(), ground.tracks.end());
+  }
+}
+
+} // namespace dspace::session
