@@ -25,7 +25,7 @@ using namespace dspace::bench;
 
 namespace {
 
-constexpr int Side = 8192; // posts of the ground: 16.4 km, the horizon is beyond it
+constexpr int Side = 8192; // posts of the ground: 16.4 km
 constexpr double Share = 0.99;
 constexpr int UsualCells = 64;     // a side of osgdem's tiles
 constexpr double Tolerance = 0.15; // of what equal errors may differ by
