@@ -1,11 +1,13 @@
 // Overviews that are made of large files without any: right, used again, and made anew in time.
 #include <cmath>
+#include <fstream>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
 #include <dspace/layers/ImageLayer.h>
+#include <dspace/terrain/ElevationCache.h>
 
 #include "ColorBlocks.h"
 #include "RasterFile.h"
@@ -164,4 +166,36 @@ TEST_F(Overviews, ThreadsMakeThemOnce) {
     thread.join();
   for (const auto& rgba : got)
     EXPECT_EQ(rgba, got[0]);
+}
+
+TEST_F(Overviews, TheCacheListsVerifiesAndClearsThem) {
+  this->Write();
+  const std::string folder = this->Folder / "cache";
+  this->Worst(*this->Open(folder));
+  std::uint64_t bytes = 0;
+  int files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    bytes += file.file_size();
+    ++files;
+  }
+  const dspace::ElevationCache cache(folder);
+  const auto entries = cache.Entries();
+  ASSERT_EQ(entries.size(), 1u);
+  EXPECT_EQ(entries[0].path, this->Data + "/large.tif");
+  EXPECT_EQ(entries[0].bytes, bytes);
+  EXPECT_EQ(entries[0].levels, files);
+  EXPECT_FALSE(entries[0].damaged);
+  EXPECT_NO_THROW(dspace::ElevationCache::Verify(entries[0]));
+  std::filesystem::resize_file(entries[0].file, 600);
+  EXPECT_THROW(dspace::ElevationCache::Verify(entries[0]), dspace::Error);
+  const std::string hash = std::filesystem::path(entries[0].file).filename().string().substr(0, 32);
+  std::ofstream(folder + "/" + hash + "-layer-part-1-0.tif") << "killed";
+  std::ofstream(folder + "/mine-layer-2.tif") << "of somebody";
+  std::ofstream(folder + "/" + hash + ".tif") << "of somebody";
+  EXPECT_EQ(cache.Entries().size(), 1u);
+  cache.Clear();
+  EXPECT_TRUE(cache.Entries().empty());
+  EXPECT_TRUE(std::filesystem::exists(folder + "/mine-layer-2.tif"));
+  EXPECT_TRUE(std::filesystem::exists(folder + "/" + hash + ".tif"));
+  EXPECT_FALSE(std::filesystem::exists(folder + "/" + hash + "-layer-part-1-0.tif"));
 }

@@ -9,6 +9,11 @@
 namespace dspace {
 namespace {
 
+// Rounded, half up.
+std::uint8_t ByteOf(float value) {
+  return std::uint8_t(std::clamp(double(value) + 0.5, 0.0, 255.0));
+}
+
 class RasterImageLayer : public ColorLayer {
 public:
   RasterImageLayer(std::shared_ptr<RasterLevels> levels, const PlacedRaster& placed)
@@ -28,10 +33,10 @@ public:
     const float* from = texels.data();
     for (std::size_t i = 0; i < std::size_t(block.width) * block.height; ++i) {
       const float opacity = from[this->Channels_];
-      const auto alpha = std::uint8_t(std::clamp(std::lround(255.0f * opacity), 0l, 255l));
+      const std::uint8_t alpha = ByteOf(255.0f * opacity);
       for (int k = 0; k < 3; ++k) {
         const float color = alpha ? from[this->Channels_ == 1 ? 0 : k] / opacity : 0.0f;
-        rgba[4 * i + k] = std::uint8_t(std::clamp(std::lround(color), 0l, 255l));
+        rgba[4 * i + k] = ByteOf(color);
       }
       rgba[4 * i + 3] = alpha;
       from += this->Channels_ + 1;
