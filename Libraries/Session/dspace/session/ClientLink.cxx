@@ -1,0 +1,264 @@
+#include <dspace/session/ClientLink.h>
+
+#include <algorithm>
+#include <random>
+
+#include <dspace/Error.h>
+
+namespace dspace::session {
+namespace {
+
+using std::chrono::milliseconds;
+
+Error::Kind ToKind(v1::Error::Kind kind) {
+  switch (kind) {
+  case v1::Error::INVALID_ARGUMENT:
+    return Error::Kind::InvalidArgument;
+  case v1::Error::NOT_FOUND:
+    return Error::Kind::NotFound;
+  case v1::Error::ALREADY_EXISTS:
+    return Error::Kind::AlreadyExists;
+  case v1::Error::UNSUPPORTED:
+    return Error::Kind::Unsupported;
+  case v1::Error::CORRUPT:
+    return Error::Kind::Corrupt;
+  case v1::Error::IO:
+    return Error::Kind::Io;
+  case v1::Error::RESOURCE:
+    return Error::Kind::Resource;
+  case v1::Error::DEADLINE_EXCEEDED:
+    return Error::Kind::DeadlineExceeded;
+  default:
+    return Error::Kind::Internal;
+  }
+}
+
+} // namespace
+
+void Raise(const v1::Error& error) {
+  const std::string& text = error.message();
+  const std::string prefix = error.object() + ": ";
+  throw Error(ToKind(error.kind()), error.object(),
+              text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text);
+}
+
+std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address,
+                                           const LinkSecurity& security) {
+  const LinkAddress parsed = LinkAddress::Parse(address);
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);                  // pictures
+  arguments.SetMaxSendMessageSize(-1);                     // the server has its limit
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // a connection of one's own
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 20000);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10000);
+  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  return grpc::CreateCustomChannel(parsed.target, MakeClientCredentials(parsed, security),
+                                   arguments);
+}
+
+v1::Error ToError(const std::string& address, const grpc::Status& status, bool& final) {
+  v1::Error error;
+  error.set_object("server '" + address + "'");
+  const auto say = [&](v1::Error::Kind kind, const std::string& message, bool last) {
+    error.set_kind(kind);
+    error.set_message(error.object() + ": " + message);
+    final = last;
+    return error;
+  };
+  using Code = grpc::StatusCode;
+  switch (status.error_code()) {
+  case Code::ALREADY_EXISTS:
+    return say(v1::Error::ALREADY_EXISTS, status.error_message(), true);
+  case Code::FAILED_PRECONDITION:
+    return say(v1::Error::UNSUPPORTED, status.error_message(), true);
+  case Code::UNIMPLEMENTED:
+    return say(v1::Error::UNSUPPORTED, "it does not speak protocol 'dspace.v1'", true);
+  case Code::INVALID_ARGUMENT:
+    return say(v1::Error::INVALID_ARGUMENT, status.error_message(), true);
+  case Code::RESOURCE_EXHAUSTED:
+    return say(v1::Error::RESOURCE, status.error_message(), true);
+  case Code::OK:
+  case Code::CANCELLED:
+  case Code::UNAVAILABLE:
+    return say(v1::Error::IO,
+               status.error_message().empty() ? "it has gone" : status.error_message(), false);
+  default:
+    return say(v1::Error::IO, "the connection failed: " + status.error_message(), true);
+  }
+}
+
+std::string RandomKey() {
+  std::random_device device;
+  std::string key;
+  for (int i = 0; i < 8; ++i) {
+    const unsigned value = device();
+    key.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  return key;
+}
+
+RemoteClient::Link::Link(const RemoteClientOptions& from) : options(from), key(RandomKey()) {
+  if (!(this->options.timeout_s > 0 && this->options.timeout_s <= 1e6)) {
+    throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
+                "the timeout is " + std::to_string(this->options.timeout_s) +
+                    " s; accepted: above 0, up to 1e6");
+  }
+  this->channel = MakeChannel(this->options.address, this->options.security);
+  this->stub = v1::Dspace::NewStub(this->channel);
+}
+
+void RemoteClient::Link::Break(v1::Error::Kind kind, const std::string& message) {
+  this->error = this->Fault(kind, message).error();
+  this->broken = true;
+  this->changed.notify_all();
+  this->toSend.notify_all();
+}
+
+void RemoteClient::Link::End() {
+  {
+    const std::lock_guard lock(this->mutex);
+    this->ending = true;
+    if (this->context) {
+      this->context->TryCancel();
+    }
+    this->toSend.notify_all();
+  }
+  if (this->thread.joinable()) {
+    this->thread.join();
+  }
+}
+
+void RemoteClient::Link::Keep() {
+  auto lost = LinkClock::now();
+  std::unique_lock lock(this->mutex);
+  while (!this->ending && !this->broken) {
+    lock.unlock();
+    grpc::Status status;
+    const bool opened = this->Drive(status);
+    lock.lock();
+    if (opened) {
+      lost = LinkClock::now();
+    }
+    if (this->ending || this->broken) {
+      break;
+    }
+    bool final = false;
+    const v1::Error error = ToError(this->options.address, status, final);
+    // A client that was let in once is not sent away because its former self is still there.
+    if (final || LinkClock::now() - lost > std::chrono::duration<double>(this->options.timeout_s)) {
+      this->error = error;
+      this->broken = true;
+      this->changed.notify_all();
+      break;
+    }
+    this->toSend.wait_for(lock, milliseconds(50));
+  }
+}
+
+bool RemoteClient::Link::Drive(grpc::Status& status) {
+  const auto soon = std::chrono::system_clock::now() + milliseconds(200);
+  if (!this->channel->WaitForConnected(soon)) {
+    status = {grpc::StatusCode::UNAVAILABLE, "nobody answers, or nobody who may"};
+    return false;
+  }
+  grpc::ClientContext drive;
+  std::unique_ptr<Stream> stream;
+  v1::DriveRequest open;
+  {
+    const std::lock_guard lock(this->mutex);
+    if (this->ending) {
+      return false;
+    }
+    this->context = &drive;
+    open.mutable_open()->set_protocol(LinkProtocol);
+    open.mutable_open()->set_client(this->options.name);
+    open.mutable_open()->set_key(this->key);
+    open.mutable_open()->set_take_over(this->options.takeOver && !this->opened);
+    open.mutable_open()->set_acknowledged(this->acknowledged);
+  }
+  stream = this->stub->Drive(&drive);
+  v1::DriveReply message;
+  const bool answered = stream->Write(open) && stream->Read(&message);
+  bool good = answered && message.has_opened();
+  bool over = !answered; // there is a status, or soon
+  if (good) {
+    const std::lock_guard lock(this->mutex);
+    good = this->Resume(message.opened());
+    this->changed.notify_all();
+  }
+  std::thread writer;
+  if (good) {
+    writer = std::thread([&] { this->Write(*stream); });
+    over = true;
+    while (stream->Read(&message)) {
+      const std::lock_guard lock(this->mutex);
+      this->Hear(message);
+      if (this->broken) {
+        over = false;
+        break;
+      }
+    }
+  }
+  {
+    const std::lock_guard lock(this->mutex);
+    this->connected = false;
+    this->toSend.notify_all();
+  }
+  if (!over) {
+    drive.TryCancel();
+  }
+  if (writer.joinable()) {
+    writer.join();
+  }
+  status = stream->Finish();
+  const std::lock_guard lock(this->mutex);
+  this->context = nullptr;
+  return good;
+}
+
+bool RemoteClient::Link::Resume(const v1::Opened& message) {
+  if (message.protocol() != LinkProtocol) {
+    this->Break(v1::Error::UNSUPPORTED, "it speaks protocol '" + message.protocol() +
+                                            "'; accepted: '" + LinkProtocol + "'");
+    return false;
+  }
+  if (this->opened && !message.resumed()) {
+    this->Break(v1::Error::IO,
+                "it was started anew, or somebody else has driven it since: what was "
+                "made there is gone or not known; accepted: to connect again");
+    return false;
+  }
+  this->counts.reconnections += this->opened ? 1 : 0;
+  this->opened = this->connected = true;
+  this->maximumMessage = message.maximum_message();
+  this->next = 0; // what has come there already is not sent again
+  while (this->next < this->pending.size() && this->pending[this->next].number <= message.last()) {
+    ++this->next;
+  }
+  return true;
+}
+
+void RemoteClient::Link::Write(Stream& stream) {
+  std::unique_lock lock(this->mutex);
+  while (true) {
+    this->toSend.wait(lock, [&] {
+      return this->ending || this->broken || !this->connected || this->next < this->pending.size();
+    });
+    if (this->ending || this->broken || !this->connected) {
+      return;
+    }
+    const auto request = this->pending[this->next].request;
+    ++this->next;
+    lock.unlock();
+    const bool written = stream.Write(*request);
+    lock.lock();
+    if (!written) {
+      return; // reading ends too
+    }
+  }
+}
+
+} // namespace dspace::session

@@ -1,0 +1,250 @@
+#include <dspace/session/Confinement.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <set>
+
+#include <google/protobuf/descriptor.h>
+
+#include <dspace/Error.h>
+
+namespace dspace::session {
+namespace {
+
+namespace fs = std::filesystem;
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+// Plain for all that their message's own name says: paths of frames, not of files.
+const std::set<std::string> FramePaths = {"dspace.v1.FindFrame.path"};
+
+enum class FieldKind { Path, Crs, Plain, Unknown };
+
+bool Has(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+FieldKind KindOf(const FieldDescriptor& field) {
+  if (Has(PathFields(), field.full_name())) {
+    return FieldKind::Path;
+  }
+  if (Has(CrsFields(), field.name())) {
+    return FieldKind::Crs;
+  }
+  const bool plain = Has(PlainFields(), field.name()) || FramePaths.count(field.full_name()) > 0;
+  return plain ? FieldKind::Plain : FieldKind::Unknown;
+}
+
+bool IsText(const FieldDescriptor& field) {
+  return field.type() == FieldDescriptor::TYPE_STRING ||
+         field.type() == FieldDescriptor::TYPE_BYTES;
+}
+
+// What may hold texts, for each kind of message that a command can hold: others need no look.
+class TextTree {
+public:
+  static const TextTree& Get() {
+    static const TextTree tree;
+    return tree;
+  }
+  const std::vector<const FieldDescriptor*>& FieldsOf(const Descriptor* message) const {
+    static const std::vector<const FieldDescriptor*> none;
+    const auto found = this->Fields_.find(message);
+    return found == this->Fields_.end() ? none : found->second;
+  }
+  FieldKind Kind(const FieldDescriptor* field) const { return this->Kinds_.at(field); }
+  const std::map<const FieldDescriptor*, FieldKind>& Texts() const { return this->Kinds_; }
+
+private:
+  TextTree() {
+    std::set<const Descriptor*> open;
+    this->Visit(v1::Command::descriptor(), open);
+  }
+  bool Visit(const Descriptor* message, std::set<const Descriptor*>& seen) {
+    if (!seen.insert(message).second) {
+      return !this->FieldsOf(message).empty();
+    }
+    std::vector<const FieldDescriptor*> fields;
+    for (int i = 0; i < message->field_count(); ++i) {
+      const FieldDescriptor* field = message->field(i);
+      if (IsText(*field)) {
+        this->Kinds_[field] = KindOf(*field);
+        fields.push_back(field);
+      } else if (field->message_type() && this->Visit(field->message_type(), seen)) {
+        fields.push_back(field);
+      }
+    }
+    const bool any = !fields.empty();
+    this->Fields_[message] = std::move(fields);
+    return any;
+  }
+  std::map<const Descriptor*, std::vector<const FieldDescriptor*>> Fields_;
+  std::map<const FieldDescriptor*, FieldKind> Kinds_;
+};
+
+using Change = std::function<std::string(const std::string&, const FieldDescriptor&, FieldKind)>;
+
+void ForEachText(Message& message, const Change& change) {
+  const auto* reflection = message.GetReflection();
+  std::string scratch;
+  for (const FieldDescriptor* field : TextTree::Get().FieldsOf(message.GetDescriptor())) {
+    const int n = field->is_repeated() ? reflection->FieldSize(message, field) : 0;
+    if (!IsText(*field)) {
+      if (field->is_repeated()) {
+        for (int i = 0; i < n; ++i) {
+          ForEachText(*reflection->MutableRepeatedMessage(&message, field, i), change);
+        }
+      } else if (reflection->HasField(message, field)) {
+        ForEachText(*reflection->MutableMessage(&message, field), change);
+      }
+      continue;
+    }
+    const FieldKind kind = TextTree::Get().Kind(field);
+    if (field->is_repeated()) {
+      for (int i = 0; i < n; ++i) {
+        const std::string before =
+            reflection->GetRepeatedStringReference(message, field, i, &scratch);
+        reflection->SetRepeatedString(&message, field, i, change(before, *field, kind));
+      }
+    } else if (reflection->HasField(message, field)) {
+      const std::string before = reflection->GetStringReference(message, field, &scratch);
+      const std::string after = change(before, *field, kind);
+      if (after != before) {
+        reflection->SetString(&message, field, after);
+      }
+    }
+  }
+}
+
+bool Within(const fs::path& path, const fs::path& root) {
+  const auto [end, at] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
+  return end == root.end();
+}
+
+[[noreturn]] void RefusePath(const std::string& value, const std::string& field,
+                             const std::string& why) {
+  throw Error(Error::Kind::InvalidArgument, "file '" + value.substr(0, 1000) + "'",
+              "as " + field + " it " + why);
+}
+
+} // namespace
+
+const std::vector<std::string>& PathFields() {
+  static const std::vector<std::string> fields = {"dspace.v1.AddTerrainLayer.FalseColor.path",
+                                                  "dspace.v1.AddTerrainLayer.Image.path",
+                                                  "dspace.v1.AddTerrainLayer.Shapes.path",
+                                                  "dspace.v1.BuildTerrainCache.folder",
+                                                  "dspace.v1.BuildTerrainCache.path",
+                                                  "dspace.v1.ClearTerrainCache.folder",
+                                                  "dspace.v1.ClearTerrainCache.path",
+                                                  "dspace.v1.ImportObject.Level.path",
+                                                  "dspace.v1.ListTerrainCache.folder",
+                                                  "dspace.v1.LoadRobot.path",
+                                                  "dspace.v1.LoadTracks.path",
+                                                  "dspace.v1.Material.texture",
+                                                  "dspace.v1.OpenTerrain.Drape.path",
+                                                  "dspace.v1.OpenTerrain.Patch.path",
+                                                  "dspace.v1.OpenTerrain.overview_cache",
+                                                  "dspace.v1.OpenTerrain.path",
+                                                  "dspace.v1.SaveImage.path",
+                                                  "dspace.v1.SaveTracks.path",
+                                                  "dspace.v1.StyleTerrain.Detail.path",
+                                                  "dspace.v1.VerifyTerrainCache.folder"};
+  return fields;
+}
+
+const std::vector<std::string>& CrsFields() {
+  static const std::vector<std::string> fields = {"crs", "vertical_datum"};
+  return fields;
+}
+
+const std::vector<std::string>& PlainFields() {
+  static const std::vector<std::string> fields = {
+      "camera", "fragment",    "hidden_fragment", "key",     "label",   "layer",
+      "name",   "object_name", "robot",           "scene",   "terrain", "text",
+      "title",  "unit",        "value",           "vantage", "viewport"};
+  return fields;
+}
+
+std::vector<std::string> UnlistedFields() {
+  std::vector<std::string> unlisted;
+  for (const auto& [field, kind] : TextTree::Get().Texts()) {
+    if (kind == FieldKind::Unknown) {
+      unlisted.push_back(field->full_name());
+    }
+  }
+  return unlisted;
+}
+
+void MakePathsAbsolute(v1::Command& command) {
+  ForEachText(command, [](const std::string& text, const FieldDescriptor&, FieldKind kind) {
+    std::error_code error;
+    return kind == FieldKind::Path && !text.empty() &&
+                   (text.find(':') == std::string::npos || fs::exists(text, error))
+               ? fs::absolute(text).lexically_normal().string()
+               : text;
+  });
+}
+
+Confinement::Confinement(const std::vector<std::string>& roots) {
+  for (const std::string& root : roots) {
+    std::error_code error;
+    const fs::path path = fs::canonical(root, error);
+    if (error || !fs::is_directory(path)) {
+      throw Error(Error::Kind::NotFound, "folder '" + root + "'",
+                  "there is no such folder; accepted as a root: one that there is");
+    }
+    this->Roots_.push_back(path);
+  }
+}
+
+void Confinement::Apply(v1::Command& command) const {
+  ForEachText(
+      command,
+      [this](const std::string& text, const FieldDescriptor& field, FieldKind kind) -> std::string {
+        if (text.empty() || kind == FieldKind::Plain) {
+          return text;
+        }
+        if (kind == FieldKind::Path) {
+          return this->Check(text, field.full_name());
+        }
+        if (kind == FieldKind::Unknown) {
+          RefusePath(text, field.full_name(), "is of no kind that a server knows");
+        }
+        std::error_code error;
+        const bool proj = text.find('+') == 0 && text.find('/') != std::string::npos;
+        if (text[0] == '/' || text[0] == '.' || text[0] == '@' || proj ||
+            text.find("://") != std::string::npos || fs::exists(text, error)) {
+          RefusePath(text, field.full_name(), "names a file; accepted: WKT, PROJ, AUTHORITY:CODE");
+        }
+        return text;
+      });
+}
+
+std::string Confinement::Check(const std::string& text, const std::string& field) const {
+  if (text.find('\0') != std::string::npos) {
+    RefusePath(text, field, "holds a zero byte");
+  }
+  // What is opened is what was looked at: the same absolute path.
+  const fs::path path = fs::absolute(text).lexically_normal();
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(path, error);
+  const bool plain = path.string().rfind("/vsi", 0) != 0;
+  for (const std::string& root : this->Roots_) {
+    if (!error && plain && Within(real, root)) {
+      return path;
+    }
+  }
+  std::string accepted;
+  for (const std::string& root : this->Roots_) {
+    accepted += (accepted.empty() ? "" : ", ") + root;
+  }
+  RefusePath(text, field,
+             "lies outside of what the server allows; accepted: files in " +
+                 (accepted.empty() ? "no folder" : accepted));
+}
+
+} // namespace dspace::session

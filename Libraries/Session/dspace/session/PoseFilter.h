@@ -1,0 +1,50 @@
+// Leaves out of steps what the other side has already.
+#ifndef DSPACE_SESSION_POSE_FILTER_H
+#define DSPACE_SESSION_POSE_FILTER_H
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <unordered_map>
+
+#include <dspace/session/commands.pb.h>
+
+namespace dspace::session {
+
+// Remembers the poses that were sent, and when. A pose is left out only if the very same bytes were
+// sent in a step that is known to be accepted and nothing since can have moved the frame, so that
+// the other side's state is the same to the byte as if everything were sent.
+class PoseFilter {
+public:
+  // Takes poses out of a set_poses that need not be sent; of other commands it notes what they may
+  // move. False when nothing is left to send.
+  bool Pass(v1::Command& command);
+  // The command was sent with this number: its poses count once Accepted reaches it.
+  void Sent(const v1::Command& command, std::uint64_t number);
+  void Accepted(std::uint64_t number) { this->Accepted_ = number; }
+  // Something went wrong, or somebody else may have changed things.
+  void Forget() { this->Scenes_.clear(); }
+
+  std::uint64_t LeftOut() const { return this->LeftOut_; }
+
+private:
+  struct Entry {
+    std::array<double, 8> pose;
+    std::uint64_t number = 0; // of the command that set it
+    std::uint64_t step = 0;   // in which it was seen last
+  };
+  using Frames = std::unordered_map<std::uint64_t, Entry>;
+  bool PassPoses(Frames& frames, v1::SetPoses& poses);
+  std::map<std::string, Frames> Scenes_;
+  std::uint64_t Accepted_ = 0;
+  std::uint64_t Step_ = 0;
+  std::uint64_t LeftOut_ = 0;
+};
+
+// Whether the command leaves all local poses as they are, for certain.
+bool LeavesPoses(const v1::Command& command);
+
+} // namespace dspace::session
+
+#endif

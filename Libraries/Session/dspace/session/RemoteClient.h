@@ -1,0 +1,74 @@
+// Drives a server's session: the same commands and replies as an Interpreter's, over the link.
+#ifndef DSPACE_SESSION_REMOTE_CLIENT_H
+#define DSPACE_SESSION_REMOTE_CLIENT_H
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <dspace/session/LinkAddress.h>
+#include <dspace/session/commands.pb.h>
+#include <dspace/session/service.pb.h>
+
+namespace dspace::session {
+
+struct RemoteClientOptions {
+  std::string address; // see LinkAddress::Parse
+  LinkSecurity security;
+  std::string name = "simulation"; // told to the server, for people; up to 256 bytes
+  double timeout_s = 30;   // of every wait: for the connection, a reply, room to send; > 0, to 1e6
+  bool takeOver = false;   // drives even if somebody else does
+  bool onlyChanges = true; // poses that the server has already are not sent again
+  // What may be on its way without an answer; a sender that is ahead of either waits.
+  std::size_t windowCommands = 1024;
+  std::size_t windowBytes = 16 << 20;
+};
+
+// For one thread at a time. A connection that is lost is made again while somebody waits, up to the
+// timeout; each command is carried out once, whatever happened to the connection. When the server
+// itself was started anew the scene is gone, and everything answers with an error that says so.
+class RemoteClient {
+public:
+  // Connects. Throws Error: InvalidArgument (address, certificates, timeout), AlreadyExists
+  // (somebody drives), Unsupported (another protocol), Io (nobody there, not let in),
+  // DeadlineExceeded.
+  explicit RemoteClient(const RemoteClientOptions& options);
+  ~RemoteClient(); // waits for nothing: Flush before
+  RemoteClient(const RemoteClient&) = delete;
+  RemoteClient& operator=(const RemoteClient&) = delete;
+
+  // Carries out one command and waits for its reply. Never throws: errors of the link (Io,
+  // DeadlineExceeded) come as an error reply; after a deadline it is not known whether it was done.
+  // Paths in the command that are relative are those of this process's working folder. An error
+  // that a command before it left, which nobody waited for, comes in its stead; it is then not
+  // carried out.
+  v1::Reply Execute(v1::Command command);
+  // The same without waiting. Empty, or the error of the link or of an earlier command.
+  v1::Reply Send(v1::Command command);
+  // Waits until all that was sent is done: with the first error, the warnings and the frame events
+  // of what nobody waited for.
+  v1::Reply Flush();
+
+  // What viewers said since the last call, in order: each is handed to `hear`. They are there after
+  // any reply; `wait_s` waits for the first. Returns how many. At most 10,000 wait; older ones go.
+  std::size_t TakeEvents(const std::function<void(const v1::ViewerEvent&)>& hear,
+                         double wait_s = 0);
+
+  struct Counts {
+    std::uint64_t sent = 0;         // commands
+    std::uint64_t bytes = 0;        // of them
+    std::uint64_t posesLeftOut = 0; // that had not changed
+    std::uint64_t reconnections = 0;
+  };
+  Counts GetCounts() const;
+
+private:
+  struct Link;
+  std::unique_ptr<Link> Link_;
+};
+
+} // namespace dspace::session
+
+#endif

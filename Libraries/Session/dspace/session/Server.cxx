@@ -1,0 +1,201 @@
+#include <dspace/session/Server.h>
+
+#include <algorithm>
+
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <grpcpp/resource_quota.h>
+
+#include <dspace/Error.h>
+#include <dspace/session/ServerHub.h>
+
+namespace dspace::session {
+namespace {
+
+// Room for a message's own fields around a command.
+constexpr int Slack = 4096;
+// Acknowledgements of commands without replies come at least so often.
+constexpr std::uint64_t AcknowledgeEvery = 16;
+
+void Check(const ServerOptions& options) {
+  const auto refuse = [](const char* what, const std::string& value, const char* accepted) {
+    throw Error(Error::Kind::InvalidArgument, "server",
+                std::string(what) + " is " + value + "; accepted: " + accepted);
+  };
+  if (options.maximumMessage < 1024 || options.maximumMessage > (std::size_t(1) << 30)) {
+    refuse("the largest message", std::to_string(options.maximumMessage), "1 KiB to 1 GiB");
+  }
+  if (options.maximumConnections < 1 || options.maximumConnections > 1000) {
+    refuse("the number of connections", std::to_string(options.maximumConnections), "1 to 1000");
+  }
+  if (!(options.maximumRate > 0)) {
+    refuse("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
+  }
+}
+
+// gRPC would take a living server's socket away from it.
+void RefuseTakenSocket(const LinkAddress& address) {
+  if (address.path.empty()) {
+    return;
+  }
+  sockaddr_un place = {};
+  place.sun_family = AF_UNIX;
+  std::copy(address.path.begin(), address.path.end(), place.sun_path);
+  struct stat info = {};
+  if (lstat(address.path.c_str(), &info) != 0) {
+    return;
+  }
+  bool taken = !S_ISSOCK(info.st_mode);
+  const int probe = taken ? -1 : socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (probe >= 0) {
+    taken = connect(probe, reinterpret_cast<const sockaddr*>(&place), sizeof(place)) == 0;
+    close(probe);
+  }
+  if (taken) {
+    throw Error(Error::Kind::Io, "address '" + address.target + "'",
+                "something is there already; accepted: a path that is free");
+  }
+}
+
+} // namespace
+
+Server::Server(const ServerOptions& options) : Hub_(new Hub) {
+  Check(options);
+  Hub& hub = *this->Hub_;
+  hub.options = options;
+  const LinkAddress address = LinkAddress::Parse(options.listen);
+  const auto credentials = MakeServerCredentials(address, options.security);
+  RefuseTakenSocket(address);
+  hub.service = std::make_unique<Service>(hub);
+  grpc::ServerBuilder builder;
+  int port = 0;
+  builder.AddListeningPort(address.target, credentials, &port);
+  builder.RegisterService(hub.service.get());
+  builder.SetMaxReceiveMessageSize(int(options.maximumMessage) + Slack);
+  builder.SetMaxSendMessageSize(-1); // pictures
+  // No thread is left for a connection beyond the limit to hold one up.
+  grpc::ResourceQuota quota("dspace");
+  quota.SetMaxThreads(int(options.maximumConnections) + 8);
+  builder.SetResourceQuota(quota);
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0); // two servers of one port are an error
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 20000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10000);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5000);
+  const mode_t mask = umask(0077); // a Unix socket is its owner's
+  hub.server = builder.BuildAndStart();
+  umask(mask);
+  if (!hub.server || (address.path.empty() && port == 0)) {
+    throw Error(Error::Kind::Io, "address '" + address.target + "'",
+                "the system does not let a server listen there");
+  }
+  hub.address = address.target;
+  if (address.path.empty()) {
+    hub.address.replace(hub.address.rfind(':') + 1, std::string::npos, std::to_string(port));
+  }
+}
+
+Server::~Server() {
+  this->Stop();
+  if (this->Hub_->server) {
+    this->Hub_->server->Shutdown(std::chrono::system_clock::now() + std::chrono::milliseconds(200));
+    this->Hub_->server->Wait();
+  }
+}
+
+const std::string& Server::Address() const {
+  return this->Hub_->address;
+}
+
+void Server::Stop() {
+  const std::lock_guard lock(this->Hub_->mutex);
+  Hub& hub = *this->Hub_;
+  hub.stopping = true;
+  hub.work.notify_all();
+  hub.space.notify_all();
+  for (ViewerStream* viewer : hub.viewers) {
+    viewer->out.ended = true;
+    viewer->out.ready.notify_all();
+  }
+  if (hub.writer.stream) {
+    hub.writer.stream->out.ended = true;
+    hub.writer.stream->out.ready.notify_all();
+  }
+}
+
+Server::Counts Server::GetCounts() const {
+  const std::lock_guard lock(this->Hub_->mutex);
+  Counts counts = this->Hub_->counts;
+  counts.connections = this->Hub_->connections;
+  counts.viewers = unsigned(this->Hub_->viewers.size());
+  counts.waitingBytes = this->Hub_->taskBytes + this->Hub_->writer.keptBytes;
+  for (const ViewerStream* viewer : this->Hub_->viewers) {
+    counts.waitingBytes += viewer->out.bytes;
+  }
+  return counts;
+}
+
+bool Server::Run(const SessionWork& work, double seconds) {
+  const auto until = LinkClock::now() + std::chrono::duration_cast<LinkClock::duration>(
+                                            std::chrono::duration<double>(seconds));
+  Hub& hub = *this->Hub_;
+  std::unique_lock lock(hub.mutex);
+  while (!hub.stopping) {
+    hub.PutSnapshots(work, lock);
+    hub.CutOffLate();
+    if (hub.tasks.empty()) {
+      const auto now = LinkClock::now();
+      if (now >= until) {
+        break;
+      }
+      hub.work.wait_until(lock, std::min(until, now + std::chrono::milliseconds(200)));
+      continue;
+    }
+    Task task = std::move(hub.tasks.front());
+    hub.tasks.pop_front();
+    hub.taskBytes -= task.bytes;
+    hub.space.notify_all();
+    lock.unlock();
+    v1::Reply reply = work.execute(task.command);
+    lock.lock();
+    ++hub.counts.commands;
+    if (task.generation == hub.writer.generation) {
+      hub.writer.done = task.number;
+      const bool more = !hub.tasks.empty() && task.number % AcknowledgeEvery != 0;
+      hub.Answer(task.number, task.noReply, std::move(reply), more);
+    }
+    if (LinkClock::now() >= until) {
+      break;
+    }
+  }
+  return !hub.stopping;
+}
+
+void Server::Publish(const v1::Command& command) {
+  Hub& hub = *this->Hub_;
+  const std::lock_guard lock(hub.mutex);
+  ++hub.sequence;
+  std::shared_ptr<v1::WatchReply> message;
+  std::size_t size = 0;
+  for (ViewerStream* viewer : hub.viewers) {
+    if (viewer->behind) {
+      continue;
+    }
+    if (!message) { // one for all of them
+      message = std::make_shared<v1::WatchReply>();
+      message->set_sequence(hub.sequence);
+      *message->mutable_command() = command;
+      size = message->ByteSizeLong() + 64;
+    }
+    if (viewer->out.bytes + size > hub.options.unreadBytes) {
+      viewer->out.Clear(); // it will begin anew, once it reads again
+      viewer->behind = true;
+    } else {
+      viewer->out.Put(message, size);
+    }
+  }
+}
+
+} // namespace dspace::session

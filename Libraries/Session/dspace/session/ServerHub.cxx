@@ -1,0 +1,144 @@
+#include <dspace/session/ServerHub.h>
+
+#include <utility>
+
+namespace dspace::session {
+namespace {
+
+constexpr std::size_t KeptReplies = 1024;
+constexpr std::size_t LargestReply = std::size_t(2000) << 20; // protobuf's own limit is 2 GiB
+
+} // namespace
+
+grpc::Status CheckClient(const std::string& protocol, const std::string& name) {
+  if (protocol != LinkProtocol) {
+    return {grpc::StatusCode::FAILED_PRECONDITION, "the client speaks protocol '" +
+                                                       protocol.substr(0, 64) + "'; accepted: '" +
+                                                       LinkProtocol + "'"};
+  }
+  if (name.size() > 256) {
+    return {grpc::StatusCode::INVALID_ARGUMENT, "the client's name is " +
+                                                    std::to_string(name.size()) +
+                                                    " bytes long; accepted: up to 256"};
+  }
+  return grpc::Status::OK;
+}
+
+void Server::Hub::Acknowledge(std::uint64_t number) {
+  Writer& to = this->writer;
+  while (!to.kept.empty() && to.kept.begin()->first <= number) {
+    to.keptBytes -= to.kept.begin()->second.second;
+    to.kept.erase(to.kept.begin());
+  }
+}
+
+void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply, bool more) {
+  const bool silent =
+      noReply && !reply.has_error() && reply.warning().empty() && reply.frame_event().empty();
+  if (silent && more) {
+    return; // the next one acknowledges this one too
+  }
+  auto message = std::make_shared<v1::DriveReply>();
+  message->mutable_done()->set_number(number);
+  if (silent) {
+    this->PutToWriter(std::move(message), 64);
+    return;
+  }
+  std::size_t size = reply.ByteSizeLong() + 64;
+  if (size > LargestReply) {
+    v1::Error* error = message->mutable_done()->mutable_reply()->mutable_error();
+    error->set_kind(v1::Error::RESOURCE);
+    error->set_object("reply");
+    error->set_message("reply: it has " + std::to_string(size) +
+                       " bytes; accepted: up to 2000 MiB in one");
+    size = 256;
+  } else {
+    message->mutable_done()->mutable_reply()->Swap(&reply);
+  }
+  Writer& to = this->writer;
+  to.kept[number] = {message, size};
+  to.keptBytes += size;
+  while (to.kept.size() > 1 &&
+         (to.kept.size() > KeptReplies || to.keptBytes > this->options.unreadBytes)) {
+    this->Acknowledge(to.kept.begin()->first);
+  }
+  this->PutToWriter(std::move(message), size);
+}
+
+void Server::Hub::PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size) {
+  const std::shared_ptr<DriveStream>& stream = this->writer.stream;
+  if (!stream) {
+    return; // it asks again when it comes back
+  }
+  auto& out = stream->out;
+  const auto silent = [](const v1::DriveReply& m) { return m.has_done() && !m.done().has_reply(); };
+  if (!out.messages.empty() && silent(*reply) && silent(*out.messages.back().first)) {
+    out.messages.back().first = std::move(reply); // the newer number says it all
+    return;
+  }
+  if (!out.messages.empty() && out.bytes + size > this->options.unreadBytes) {
+    out.Clear();
+    out.ended = true;
+    out.ready.notify_one();
+    stream->context->TryCancel(); // it does not read: its replies are kept, and it may come back
+    return;
+  }
+  out.Put(std::move(reply), size);
+}
+
+void Server::Hub::TellWriterName() {
+  auto message = std::make_shared<v1::WatchReply>();
+  message->set_sequence(this->sequence);
+  message->mutable_writer()->set_name(this->writer.name);
+  message->mutable_writer()->set_connected(this->writer.stream != nullptr);
+  for (ViewerStream* viewer : this->viewers) {
+    if (!viewer->behind) {
+      viewer->out.Put(message, message->ByteSizeLong() + 64);
+    }
+  }
+}
+
+void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock) {
+  bool asked = false;
+  for (const ViewerStream* viewer : this->viewers) {
+    asked = asked || viewer->wantsSnapshot;
+  }
+  if (!asked) {
+    return;
+  }
+  // Nobody else publishes meanwhile: that is this thread's.
+  lock.unlock();
+  auto message = std::make_shared<v1::WatchReply>();
+  for (v1::Command& command : work.snapshot()) {
+    message->mutable_snapshot()->add_command()->Swap(&command);
+  }
+  message->mutable_snapshot();
+  const std::size_t size = message->ByteSizeLong() + 64;
+  lock.lock();
+  ++this->counts.snapshots;
+  message->set_sequence(this->sequence);
+  for (ViewerStream* viewer : this->viewers) {
+    if (viewer->wantsSnapshot) {
+      viewer->wantsSnapshot = viewer->behind = false;
+      viewer->out.Put(message, size);
+    }
+  }
+  this->TellWriterName();
+}
+
+void Server::Hub::CutOffLate() {
+  if (this->deadlines.empty()) {
+    return;
+  }
+  const auto now = LinkClock::now();
+  for (auto it = this->deadlines.begin(); it != this->deadlines.end();) {
+    if (it->second <= now) {
+      it->first->TryCancel();
+      it = this->deadlines.erase(it);
+    } else {
+      ++it;
+    }
+  }
+}
+
+} // namespace dspace::session

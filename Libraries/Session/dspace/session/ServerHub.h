@@ -1,0 +1,153 @@
+// What the threads of a server share. Inside the library only.
+#ifndef DSPACE_SESSION_SERVER_HUB_H
+#define DSPACE_SESSION_SERVER_HUB_H
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <set>
+
+#include <grpcpp/grpcpp.h>
+
+#include <dspace/session/Server.h>
+#include <dspace/session/service.grpc.pb.h>
+
+namespace dspace::session {
+
+using LinkClock = std::chrono::steady_clock;
+
+// What waits for one client: written by its own thread, one message after the other.
+template<class Message> struct Outbox {
+  std::deque<std::pair<std::shared_ptr<const Message>, std::size_t>> messages;
+  std::size_t bytes = 0;
+  std::condition_variable ready;
+  bool ended = false; // the stream is over, or about to be once `messages` is empty
+
+  void Put(std::shared_ptr<const Message> message, std::size_t size) {
+    this->messages.emplace_back(std::move(message), size);
+    this->bytes += size;
+    this->ready.notify_one();
+  }
+  std::shared_ptr<const Message> Take() {
+    auto [message, size] = std::move(this->messages.front());
+    this->messages.pop_front();
+    this->bytes -= size;
+    return std::move(message);
+  }
+  void Clear() {
+    this->messages.clear();
+    this->bytes = 0;
+  }
+};
+
+struct DriveStream {
+  explicit DriveStream(grpc::ServerContext* of) : context(of) {}
+  grpc::ServerContext* context;
+  Outbox<v1::DriveReply> out;
+};
+
+struct ViewerStream {
+  Outbox<v1::WatchReply> out;
+  bool behind = true;        // gets nothing before the next snapshot,
+  bool wantsSnapshot = true; // which it is ready for
+};
+
+// Who drives, or drove last: outlives its connection.
+struct Writer {
+  std::string key;
+  std::string name;
+  std::uint64_t generation = 0; // of keys; what older ones sent is not carried out
+  std::uint64_t queued = 0;     // the last number that has come
+  std::uint64_t done = 0;       // the last one carried out
+  std::map<std::uint64_t, std::pair<std::shared_ptr<const v1::DriveReply>, std::size_t>> kept;
+  std::size_t keptBytes = 0;           // of `kept`: replies that the client has not said it has
+  std::shared_ptr<DriveStream> stream; // null while disconnected
+};
+
+struct Task {
+  std::uint64_t generation;
+  std::uint64_t number;
+  bool noReply;
+  std::size_t bytes;
+  v1::Command command;
+};
+
+struct Server::Hub {
+  ServerOptions options;
+  std::string address;
+
+  mutable std::mutex mutex;      // of all below
+  std::condition_variable work;  // for Run
+  std::condition_variable space; // for whoever queues
+  std::deque<Task> tasks;
+  std::size_t taskBytes = 0;
+  Writer writer;
+  std::set<ViewerStream*> viewers;
+  std::uint64_t sequence = 0; // of published commands
+  unsigned connections = 0;
+  Counts counts;
+  bool stopping = false;
+  // Streams that must show life by then, else they are cut off.
+  std::map<grpc::ServerContext*, LinkClock::time_point> deadlines;
+
+  std::unique_ptr<Service> service;
+  std::unique_ptr<grpc::Server> server;
+
+  // All of these with the mutex held.
+  void Acknowledge(std::uint64_t number);
+  void Answer(std::uint64_t number, bool noReply, v1::Reply reply, bool more);
+  void PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size);
+  void TellWriterName();
+  void PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock);
+  void CutOffLate();
+};
+
+class Server::Service : public v1::Dspace::Service {
+public:
+  explicit Service(Hub& hub) : Hub_(hub) {}
+  grpc::Status Hello(grpc::ServerContext*, const v1::HelloRequest*, v1::HelloReply*) override;
+  grpc::Status Drive(grpc::ServerContext*,
+                     grpc::ServerReaderWriter<v1::DriveReply, v1::DriveRequest>* stream) override;
+  grpc::Status Watch(grpc::ServerContext*, const v1::WatchRequest*,
+                     grpc::ServerWriter<v1::WatchReply>* stream) override;
+  grpc::Status Tell(grpc::ServerContext*, const v1::TellRequest*, v1::TellReply*) override;
+
+private:
+  using Stream = grpc::ServerReaderWriter<v1::DriveReply, v1::DriveRequest>;
+  grpc::Status Open(const v1::OpenDrive& open, const std::shared_ptr<DriveStream>& me);
+  grpc::Status Read(Stream& stream, DriveStream& me, std::uint64_t generation);
+  Hub& Hub_;
+};
+
+// OK, or what is wrong with the protocol and the name of a client.
+grpc::Status CheckClient(const std::string& protocol, const std::string& name);
+
+// Counts a connection as long as it lives.
+class Connection {
+public:
+  Connection(unsigned& count, std::mutex& mutex, unsigned maximum) : Count_(count), Mutex_(mutex) {
+    const std::lock_guard lock(mutex);
+    this->Good_ = count < maximum;
+    count += this->Good_ ? 1 : 0;
+  }
+  ~Connection() {
+    if (this->Good_) {
+      const std::lock_guard lock(this->Mutex_);
+      --this->Count_;
+    }
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  bool Good() const { return this->Good_; }
+
+private:
+  unsigned& Count_;
+  std::mutex& Mutex_;
+  bool Good_ = false;
+};
+
+} // namespace dspace::session
+
+#endif

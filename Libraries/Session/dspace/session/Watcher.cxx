@@ -1,0 +1,183 @@
+#include <dspace/session/Watcher.h>
+
+#include <algorithm>
+
+#include <dspace/Error.h>
+#include <dspace/session/ClientLink.h>
+
+namespace dspace::session {
+namespace {
+
+using std::chrono::milliseconds;
+
+LinkClock::duration Seconds(double seconds) {
+  return std::chrono::duration_cast<LinkClock::duration>(std::chrono::duration<double>(seconds));
+}
+
+} // namespace
+
+struct Watcher::Link {
+  WatcherOptions options;
+  std::shared_ptr<grpc::Channel> channel;
+  std::unique_ptr<v1::Dspace::Stub> stub;
+  std::thread thread;
+
+  mutable std::mutex mutex; // of all below
+  std::condition_variable changed;
+  std::deque<std::pair<v1::WatchReply, std::size_t>> messages;
+  std::size_t bytes = 0;
+  grpc::ClientContext* context = nullptr;
+  bool connected = false;
+  bool once = false;  // connected
+  bool final = false; // never will be
+  bool ending = false;
+  v1::Error error; // why it is not connected
+
+  // One stream, until it is lost.
+  void Watch() {
+    const auto soon = std::chrono::system_clock::now() + milliseconds(200);
+    grpc::Status status(grpc::StatusCode::UNAVAILABLE, "nobody answers, or nobody who may");
+    if (this->channel->WaitForConnected(soon)) {
+      grpc::ClientContext watch;
+      {
+        const std::lock_guard lock(this->mutex);
+        this->context = &watch;
+        if (this->ending) {
+          watch.TryCancel();
+        }
+      }
+      v1::WatchRequest request;
+      request.set_protocol(LinkProtocol);
+      request.set_viewer(this->options.name);
+      const auto stream = this->stub->Watch(&watch, request);
+      v1::WatchReply message;
+      while (stream->Read(&message)) {
+        const std::size_t size = message.ByteSizeLong() + 64;
+        std::unique_lock lock(this->mutex);
+        this->connected = this->once = true;
+        this->changed.notify_all();
+        this->changed.wait(lock, [&] {
+          return this->ending || this->messages.empty() ||
+                 this->bytes + size <= this->options.waitingBytes;
+        });
+        if (this->ending) {
+          break;
+        }
+        this->messages.emplace_back(std::move(message), size);
+        this->bytes += size;
+        message.Clear();
+        this->changed.notify_all();
+      }
+      status = stream->Finish();
+    }
+    const std::lock_guard lock(this->mutex);
+    this->context = nullptr;
+    this->connected = false;
+    bool useless = false;
+    this->error = ToError(this->options.address, status, useless);
+    this->final = useless && !this->once;
+    this->changed.notify_all();
+  }
+
+  void Keep() {
+    std::unique_lock lock(this->mutex);
+    while (!this->ending && !this->final) {
+      lock.unlock();
+      this->Watch();
+      lock.lock();
+      this->changed.wait_for(lock, milliseconds(100), [this] { return this->ending; });
+    }
+  }
+
+  void End() {
+    {
+      const std::lock_guard lock(this->mutex);
+      this->ending = true;
+      if (this->context) {
+        this->context->TryCancel();
+      }
+      this->changed.notify_all();
+    }
+    if (this->thread.joinable()) {
+      this->thread.join();
+    }
+  }
+};
+
+Watcher::Watcher(const WatcherOptions& options) : Link_(new Link) {
+  Link& link = *this->Link_;
+  if (!(options.timeout_s > 0 && options.timeout_s <= 1e6)) {
+    throw Error(Error::Kind::InvalidArgument, "server '" + options.address + "'",
+                "the timeout is " + std::to_string(options.timeout_s) +
+                    " s; accepted: above 0, up to 1e6");
+  }
+  link.options = options;
+  link.channel = MakeChannel(options.address, options.security);
+  link.stub = v1::Dspace::NewStub(link.channel);
+  link.thread = std::thread([&link] { link.Keep(); });
+  std::unique_lock lock(link.mutex);
+  link.changed.wait_for(lock, Seconds(options.timeout_s), [&] { return link.once || link.final; });
+  if (!link.once) {
+    v1::Error error = link.error;
+    if (!link.final) {
+      error.set_kind(v1::Error::DEADLINE_EXCEEDED);
+      error.set_object("server '" + options.address + "'");
+      error.set_message("nobody answers within " + std::to_string(options.timeout_s) + " s");
+    }
+    lock.unlock();
+    link.End();
+    Raise(error);
+  }
+}
+
+Watcher::~Watcher() {
+  this->Link_->End();
+}
+
+bool Watcher::Take(v1::WatchReply& message, double wait_s) {
+  Link& link = *this->Link_;
+  std::unique_lock lock(link.mutex);
+  link.changed.wait_for(lock, Seconds(std::clamp(wait_s, 0.0, 1e6)),
+                        [&] { return !link.messages.empty(); });
+  if (link.messages.empty()) {
+    return false;
+  }
+  message = std::move(link.messages.front().first);
+  link.bytes -= link.messages.front().second;
+  link.messages.pop_front();
+  link.changed.notify_all();
+  return true;
+}
+
+bool Watcher::Connected(std::string* why) const {
+  const std::lock_guard lock(this->Link_->mutex);
+  if (why) {
+    *why = this->Link_->connected ? "" : this->Link_->error.message();
+  }
+  return this->Link_->connected;
+}
+
+bool Watcher::Tell(const v1::ViewerEvent& event) {
+  Link& link = *this->Link_;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() +
+                       std::chrono::duration_cast<std::chrono::milliseconds>(
+                           std::chrono::duration<double>(link.options.timeout_s)));
+  v1::TellRequest request;
+  request.set_protocol(LinkProtocol);
+  *request.mutable_event() = event;
+  request.mutable_event()->set_from(link.options.name);
+  v1::TellReply reply;
+  const grpc::Status status = link.stub->Tell(&context, request, &reply);
+  if (!status.ok()) {
+    bool final = false;
+    v1::Error error = ToError(link.options.address, status, final);
+    if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {
+      error.set_kind(v1::Error::DEADLINE_EXCEEDED);
+    }
+    Raise(error);
+  }
+  return reply.delivered();
+}
+
+} // namespace dspace::session

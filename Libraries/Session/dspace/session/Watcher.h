@@ -1,0 +1,47 @@
+// Watches a server: what rebuilds its state, and then every accepted command.
+#ifndef DSPACE_SESSION_WATCHER_H
+#define DSPACE_SESSION_WATCHER_H
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include <dspace/session/LinkAddress.h>
+#include <dspace/session/service.pb.h>
+
+namespace dspace::session {
+
+struct WatcherOptions {
+  std::string address; // see LinkAddress::Parse
+  LinkSecurity security;
+  std::string name = "viewer";         // told to the server, for people; up to 256 bytes
+  double timeout_s = 30;               // for the first connection; > 0, to 1e6
+  std::size_t waitingBytes = 64 << 20; // of messages not taken yet; beyond, the server keeps them
+};
+
+// Connects again by itself, for ever, whenever the connection is lost: the server then sends a new
+// snapshot. For one thread at a time.
+class Watcher {
+public:
+  // Throws Error as RemoteClient does.
+  explicit Watcher(const WatcherOptions& options);
+  ~Watcher();
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
+
+  // The next message; waits up to wait_s for it. False when there is none yet.
+  bool Take(v1::WatchReply& message, double wait_s);
+  // Whether there is a connection, and a word on why not.
+  bool Connected(std::string* why = nullptr) const;
+  // Sends an event to whoever drives, waiting up to timeout_s; false when nobody does. Throws
+  // Error.
+  bool Tell(const v1::ViewerEvent& event);
+
+private:
+  struct Link;
+  std::unique_ptr<Link> Link_;
+};
+
+} // namespace dspace::session
+
+#endif

@@ -1,0 +1,115 @@
+#include "vtkDspaceRemoteSession.h"
+
+#include <deque>
+
+#include <dspace/session/ErrorReply.h>
+#include <dspace/session/RemoteClient.h>
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkDspaceRemoteSession);
+
+struct vtkDspaceRemoteSession::Internals {
+  dspace::session::RemoteClientOptions options;
+  std::unique_ptr<dspace::session::RemoteClient> client;
+  std::deque<std::string> events;
+
+  template<class Work> std::string With(Work work) {
+    if (!this->client) {
+      return dspace::session::ErrorReply(dspace::v1::Error::IO, "session",
+                                         "session: it is not connected")
+          .SerializeAsString();
+    }
+    return dspace::session::Catch([&] { return work(*this->client); }).SerializeAsString();
+  }
+};
+
+vtkDspaceRemoteSession::vtkDspaceRemoteSession() : Impl(new Internals) {}
+vtkDspaceRemoteSession::~vtkDspaceRemoteSession() = default;
+
+void vtkDspaceRemoteSession::SetCertificates(const std::string& certificate, const std::string& key,
+                                             const std::string& authority) {
+  this->Impl->options.security.certificate = certificate;
+  this->Impl->options.security.key = key;
+  this->Impl->options.security.authority = authority;
+}
+
+void vtkDspaceRemoteSession::SetInsecure(bool insecure) {
+  this->Impl->options.security.insecure = insecure;
+}
+
+void vtkDspaceRemoteSession::SetTimeout(double seconds) {
+  this->Impl->options.timeout_s = seconds;
+}
+
+void vtkDspaceRemoteSession::SetTakeOver(bool takeOver) {
+  this->Impl->options.takeOver = takeOver;
+}
+
+void vtkDspaceRemoteSession::SetOnlyChanges(bool onlyChanges) {
+  this->Impl->options.onlyChanges = onlyChanges;
+}
+
+std::string vtkDspaceRemoteSession::Connect(const std::string& address, const std::string& name) {
+  this->Impl->options.address = address;
+  this->Impl->options.name = name;
+  return dspace::session::Catch([&] {
+           this->Impl->client.reset();
+           this->Impl->client =
+               std::make_unique<dspace::session::RemoteClient>(this->Impl->options);
+           return dspace::v1::Reply();
+         })
+      .SerializeAsString();
+}
+
+std::string vtkDspaceRemoteSession::Execute(const std::string& bytes) {
+  return this->Impl->With([&](dspace::session::RemoteClient& client) {
+    dspace::v1::Command command;
+    return command.ParseFromString(bytes) ? client.Execute(std::move(command))
+                                          : dspace::session::NotACommand();
+  });
+}
+
+std::string vtkDspaceRemoteSession::Send(const std::string& bytes) {
+  return this->Impl->With([&](dspace::session::RemoteClient& client) {
+    dspace::v1::Command command;
+    return command.ParseFromString(bytes) ? client.Send(std::move(command))
+                                          : dspace::session::NotACommand();
+  });
+}
+
+std::string vtkDspaceRemoteSession::Flush() {
+  return this->Impl->With([](dspace::session::RemoteClient& client) { return client.Flush(); });
+}
+
+std::string vtkDspaceRemoteSession::TakeEvent(double wait) {
+  auto& events = this->Impl->events;
+  if (events.empty() && this->Impl->client) {
+    this->Impl->client->TakeEvents(
+        [&events](const dspace::v1::ViewerEvent& event) {
+          events.push_back(event.SerializeAsString());
+        },
+        wait);
+  }
+  if (events.empty()) {
+    return {};
+  }
+  const std::string event = std::move(events.front());
+  events.pop_front();
+  return event;
+}
+
+long long vtkDspaceRemoteSession::GetPosesLeftOut() {
+  return this->Impl->client ? static_cast<long long>(this->Impl->client->GetCounts().posesLeftOut)
+                            : 0;
+}
+
+void vtkDspaceRemoteSession::Close() {
+  this->Impl->client.reset();
+}
+
+void vtkDspaceRemoteSession::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Address: " << this->Impl->options.address << "\n"
+     << indent << "Connected: " << (this->Impl->client ? "yes" : "no") << "\n";
+}

@@ -1,0 +1,166 @@
+#include "vtkDspaceServer.h"
+
+#include <vector>
+
+#include <dspace/session/Confinement.h>
+#include <dspace/session/ErrorReply.h>
+#include <dspace/session/Ledger.h>
+#include <dspace/session/Server.h>
+
+#include "vtkDspaceSession.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkDspaceServer);
+
+struct vtkDspaceServer::Internals {
+  dspace::session::ServerOptions options;
+  std::vector<std::string> roots;
+  long long maximumFrames = 1000000;
+  vtkNew<vtkDspaceSession> session;
+  dspace::session::Ledger ledger;
+  std::unique_ptr<dspace::session::Confinement> confinement;
+  std::unique_ptr<dspace::session::Server> server; // goes first: it calls what is above
+
+  dspace::session::Server::SessionWork Work() {
+    return {[this](dspace::v1::Command& command) { return this->Execute(command); },
+            [this] { return this->ledger.Commands(); }};
+  }
+
+  dspace::v1::Reply Execute(dspace::v1::Command& command) {
+    return dspace::session::Catch([&] {
+      this->confinement->Apply(command);
+      this->CheckFrames(command);
+      if (command.has_capture()) {
+        command.mutable_capture()->set_inline_data(true); // the planes are wanted elsewhere
+      }
+      return this->session->GetInterpreter().Execute(command);
+    });
+  }
+
+  void CheckFrames(const dspace::v1::Command& command) const {
+    if (!command.has_create_frame() && !command.has_load_robot()) {
+      return;
+    }
+    const std::string name =
+        command.scene().empty() ? dspace::session::DefaultScene : command.scene();
+    const auto scene = this->session->GetInterpreter().FindScene(name);
+    const long long frames = scene ? static_cast<long long>(scene->Frames().Size()) : 0;
+    if (frames >= this->maximumFrames) {
+      throw dspace::Error(dspace::Error::Kind::Resource, "scene '" + name + "'",
+                          "it has " + std::to_string(frames) +
+                              " frames; accepted by this server: up to " +
+                              std::to_string(this->maximumFrames));
+    }
+  }
+
+  void Hear(const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
+    this->ledger.Add(command, reply);
+    dspace::v1::Command recorded;
+    if (this->server && dspace::session::ToRecorded(command, reply, recorded)) {
+      this->server->Publish(recorded);
+    }
+  }
+};
+
+vtkDspaceServer::vtkDspaceServer() : Impl(new Internals) {
+  this->Impl->session->GetInterpreter().AddListener(
+      [impl = this->Impl.get()](const dspace::v1::Command& command,
+                                const dspace::v1::Reply& reply) { impl->Hear(command, reply); });
+}
+
+vtkDspaceServer::~vtkDspaceServer() = default;
+
+void vtkDspaceServer::SetListen(const std::string& address) {
+  this->Impl->options.listen = address;
+}
+
+void vtkDspaceServer::SetName(const std::string& name) {
+  this->Impl->options.name = name;
+}
+
+void vtkDspaceServer::SetCertificates(const std::string& certificate, const std::string& key,
+                                      const std::string& authority) {
+  this->Impl->options.security.certificate = certificate;
+  this->Impl->options.security.key = key;
+  this->Impl->options.security.authority = authority;
+}
+
+void vtkDspaceServer::SetInsecure(bool insecure) {
+  this->Impl->options.security.insecure = insecure;
+}
+
+void vtkDspaceServer::AddAllowedRoot(const std::string& folder) {
+  this->Impl->roots.push_back(folder);
+}
+
+void vtkDspaceServer::SetMaximumMessage(long long bytes) {
+  this->Impl->options.maximumMessage = bytes < 0 ? 0 : std::size_t(bytes);
+}
+
+void vtkDspaceServer::SetMaximumConnections(int connections) {
+  this->Impl->options.maximumConnections = connections < 0 ? 0 : unsigned(connections);
+}
+
+void vtkDspaceServer::SetMaximumRate(double commands) {
+  this->Impl->options.maximumRate = commands;
+}
+
+void vtkDspaceServer::SetMaximumFrames(long long frames) {
+  this->Impl->maximumFrames = frames;
+}
+
+std::string vtkDspaceServer::Start() {
+  if (this->Impl->server) {
+    return "server: it has been started";
+  }
+  const dspace::v1::Reply reply = dspace::session::Catch([this] {
+    this->Impl->confinement = std::make_unique<dspace::session::Confinement>(this->Impl->roots);
+    this->Impl->server = std::make_unique<dspace::session::Server>(this->Impl->options);
+    return dspace::v1::Reply();
+  });
+  return reply.error().message();
+}
+
+std::string vtkDspaceServer::GetAddress() {
+  return this->Impl->server ? this->Impl->server->Address() : std::string();
+}
+
+bool vtkDspaceServer::Run(double seconds) {
+  return this->Impl->server && this->Impl->server->Run(this->Impl->Work(), seconds);
+}
+
+void vtkDspaceServer::Stop() {
+  if (this->Impl->server) {
+    this->Impl->server->Stop();
+  }
+}
+
+vtkDspaceSession* vtkDspaceServer::GetSession() {
+  return this->Impl->session;
+}
+
+long long vtkDspaceServer::GetCount(const std::string& what) {
+  if (!this->Impl->server) {
+    return 0;
+  }
+  const dspace::session::Server::Counts counts = this->Impl->server->GetCounts();
+  const std::pair<const char*, unsigned long long> known[] = {
+      {"commands", counts.commands},
+      {"snapshots", counts.snapshots},
+      {"connections", counts.connections},
+      {"viewers", counts.viewers},
+      {"waiting_bytes", counts.waitingBytes}};
+  for (const auto& [name, value] : known) {
+    if (what == name) {
+      return static_cast<long long>(value);
+    }
+  }
+  return -1;
+}
+
+void vtkDspaceServer::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Address: " << this->GetAddress() << "\n"
+     << indent << "Connections: " << this->GetCount("connections") << "\n";
+}

@@ -1,0 +1,67 @@
+/**
+ * @class vtkDspaceWatcher
+ * @brief A read-only session that follows a server's and draws for itself.
+ *
+ * Update applies what the server has accepted; between two calls nothing changes. Viewports of the
+ * watcher's own, named "viewer:...", may be made; all other changes are refused. Where the
+ * simulation or the server is gone the last picture stays, and every viewport says so. No C++
+ * exception leaves a method; what can fail returns a serialized Reply. See
+ * <dspace/session/Watcher.h>.
+ */
+#ifndef vtkDspaceWatcher_h
+#define vtkDspaceWatcher_h
+
+#include <memory>
+#include <string>
+
+#include "vtkDspaceSessionModule.h"
+#include "vtkObject.h"
+
+class vtkDspaceSession;
+
+class VTKDSPACESESSION_EXPORT vtkDspaceWatcher : public vtkObject {
+public:
+  static vtkDspaceWatcher* New();
+  vtkTypeMacro(vtkDspaceWatcher, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// To be set before Connect, as for vtkDspaceRemoteSession.
+  void SetCertificates(const std::string& certificate, const std::string& key,
+                       const std::string& authority);
+  void SetInsecure(bool insecure);
+  void SetTimeout(double seconds);
+  std::string Connect(const std::string& address, const std::string& name);
+
+  /// Applies all that has come; waits up to so many seconds for something. Returns how many
+  /// messages.
+  int Update(double wait);
+  /// The number of the last command that is in the state: it grows by one a command.
+  long long GetSequence();
+  /// Of the server, and of the simulation that drives it.
+  bool GetConnected();
+  bool GetWriterConnected();
+  std::string GetWriterName();
+  /// What could not be applied since the last snapshot; empty: nothing.
+  std::string GetTrouble();
+
+  /// Carries out a serialized Command: requests, and commands on viewports of one's own.
+  std::string Execute(const std::string& command);
+  /// Sends a serialized ViewerEvent to the simulation. The reply's error is NOT_FOUND when nobody
+  /// drives.
+  std::string Tell(const std::string& event);
+  /// What draws; another one after each snapshot.
+  vtkDspaceSession* GetSession();
+  void Close();
+
+protected:
+  vtkDspaceWatcher();
+  ~vtkDspaceWatcher() override;
+
+private:
+  vtkDspaceWatcher(const vtkDspaceWatcher&) = delete;
+  void operator=(const vtkDspaceWatcher&) = delete;
+  struct Internals;
+  std::unique_ptr<Internals> Impl;
+};
+
+#endif
