@@ -4,7 +4,7 @@ from dspace._strict import Strict
 from dspace.errors import NotFound, WrongType
 from dspace.objects import file_path
 
-KINDS = ("image", "false_color", "shapes", "noise")  # in the order of TerrainLayerReply.Kind
+KINDS = ("image", "false_color", "shapes", "noise", "filled")  # in the order of TerrainLayerReply.Kind
 _SHADE = "a colour, or red, green, blue and opacity from 0 to 1, or None"
 
 
@@ -37,7 +37,7 @@ class TerrainLayer(Strict):
 
     @property
     def kind(self):
-        """"image", "false_color", "shapes" or "noise"."""
+        """"image", "false_color", "shapes", "noise" or "filled" (add_terrain's fill_holes)."""
         return KINDS[self._info().kind]
 
     @property
@@ -206,11 +206,13 @@ class LayerMaking:
 
     @property
     def layer_tiles(self):
-        """Of the colour layers, a dict of bytes (in memory), reads (of one tile of one layer),
-        compositions (of tiles of all layers), failures and last_failure (a message, or "")."""
+        """Of the colour layers, a dict of bytes (in memory), kept_bytes (of JPEG, PNG and other files that
+        are decoded as a whole), reads (of one tile of one layer), compositions (of tiles of all layers),
+        failures and last_failure (a message, or "")."""
         info = self._layers_info()
-        return {"bytes": info.bytes, "reads": info.reads, "compositions": info.compositions,
-                "failures": info.failures, "last_failure": info.last_failure}
+        return {"bytes": info.bytes, "kept_bytes": info.kept_bytes, "reads": info.reads,
+                "compositions": info.compositions, "failures": info.failures,
+                "last_failure": info.last_failure}
 
     def _layers_info(self):
         return self._scene._ask("list_terrain_layers", terrain=self._name).terrain_layers

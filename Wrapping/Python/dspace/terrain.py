@@ -440,7 +440,8 @@ class TerrainMaking:
         build_overviews: a local raster of over four million pixels that has none gets them there, in
         the background; far ground changes once when they are there (Terrain.overviews tells).
         fill_holes: True fills what has no data smoothly from the ground around it, a number only
-        within so many pixels of data (clipmaps only): drawn and answered alike, Terrain.filled tells.
+        within so many pixels of data (clipmaps only): drawn and answered alike, Terrain.filled tells,
+        and the layer "filled" marks it in pictures.
         subdivisions: on a plane, how often a clipmap's cells between pixels are halved: wheel tracks
         (track()) need posts some centimetres apart. track_budget: bytes for them (64 MiB).
         band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and

@@ -33,6 +33,7 @@ void ClipmapTerrainObject::DescribeLayers(v1::TerrainLayerList& list) const {
   this->Layers_.Describe(list);
   const ColorTilesStatistics statistics = this->Clipmap_->TileStatistics();
   list.set_bytes(statistics.bytes);
+  list.set_kept_bytes(statistics.keptBytes);
   list.set_reads(statistics.reads);
   list.set_compositions(statistics.compositions);
   list.set_failures(statistics.failures);

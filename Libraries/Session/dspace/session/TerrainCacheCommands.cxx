@@ -84,10 +84,14 @@ void ClearTerrainCache(const Context& context, v1::ClearTerrainCache& command) {
       if (entry.path.empty() || !SameRaster(entry.path, AbsoluteRaster(command.path()))) {
         continue;
       }
-      std::error_code failure;
-      if (!fs::remove(entry.file, failure) && failure) {
-        throw Error(Error::Kind::Io, "cache file '" + entry.file + "'",
-                    "cannot be removed: " + failure.message());
+      std::vector<std::string> files = entry.layerFiles;
+      files.push_back(entry.file);
+      for (const std::string& file : files) { // the first of a layer's twice
+        std::error_code failure;
+        if (!fs::remove(file, failure) && failure) {
+          throw Error(Error::Kind::Io, "cache file '" + file + "'",
+                      "cannot be removed: " + failure.message());
+        }
       }
     }
     Tell(context, entry);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <dspace/layers/FilledLayer.h>
 #include <dspace/layers/ImageLayer.h>
 #include <dspace/layers/NoiseLayer.h>
 #include <dspace/layers/VectorLayer.h>
@@ -184,6 +185,17 @@ void Warn(const Context& context, const ColorLayer& layer) {
   }
 }
 
+// What marks ground that is made up stays on top, unless it is told otherwise.
+std::optional<std::size_t> UnderFilled(const TerrainLayers& layers) {
+  v1::TerrainLayerList list;
+  layers.Describe(list);
+  const int top = list.layer_size() - 1;
+  if (top >= 0 && list.layer(top).kind() == v1::TerrainLayerReply::FILLED) {
+    return std::size_t(top);
+  }
+  return std::nullopt;
+}
+
 void AddTerrainLayer(const Context& context, Add& command) {
   ClipmapTerrainObject& terrain = FindLayered(context, command.terrain());
   TerrainLayers& layers = terrain.Layers();
@@ -202,6 +214,8 @@ void AddTerrainLayer(const Context& context, Add& command) {
   std::optional<std::size_t> position;
   if (command.has_position()) {
     position = command.position();
+  } else {
+    position = UnderFilled(layers);
   }
   Opened opened = Open(terrain, command, label);
   stacked.layer = opened.layer;
@@ -250,6 +264,28 @@ void AddDrape(const Context& context, ClipmapTerrainObject& terrain,
   stacked.name = "drape";
   stacked.layer = opened.layer;
   terrain.Layers().Add(std::move(stacked), 0, std::move(opened.about));
+}
+
+void AddFilled(const Context& context, ClipmapTerrainObject& terrain,
+               const StreamedTerrainOptions& options) {
+  FilledLayerOptions holes;
+  holes.network = options.elevation.network;
+  holes.cacheFolder = terrain.CacheFolder();
+  std::vector<FilledLayerPatch> patches;
+  for (const TerrainPatch& patch : options.patches) {
+    patches.push_back({patch.path, patch.elevation.band, patch.elevation.crs});
+  }
+  const ElevationInfo& info = terrain.Surface().Info();
+  StackedLayer stacked;
+  stacked.name = "filled";
+  stacked.opacity = 0.4;
+  stacked.layer = OpenFilledLayer(info.path, options.elevation.band, PlaceOf(terrain.Surface()),
+                                  info.window, holes, patches);
+  Warn(context, *stacked.layer);
+  v1::TerrainLayerReply about;
+  about.set_kind(v1::TerrainLayerReply::FILLED);
+  about.set_path(info.path);
+  terrain.Layers().Add(std::move(stacked), std::nullopt, std::move(about));
 }
 
 void AddTerrainLayerCommands(Registry& registry) {

@@ -6,6 +6,10 @@
 
 #include <dspace/session/Registry.h>
 
+namespace dspace {
+struct StreamedTerrainOptions;
+}
+
 namespace dspace::session {
 
 class ClipmapTerrainObject;
@@ -22,6 +26,10 @@ void RequireFinitePoints(const std::string& label, const double* values, int siz
 // The layer "drape", at the bottom. Its path is made absolute, warnings go to the reply. Throws what
 // OpenImageLayer throws.
 void AddDrape(const Context& context, ClipmapTerrainObject& terrain, v1::OpenTerrain::Drape& drape);
+
+// The layer "filled", on top: where the raster has no data. Throws what OpenFilledLayer throws.
+void AddFilled(const Context& context, ClipmapTerrainObject& terrain,
+               const StreamedTerrainOptions& options);
 
 void AddTerrainRequests(Registry& registry);
 void AddTerrainStyleCommands(Registry& registry);
