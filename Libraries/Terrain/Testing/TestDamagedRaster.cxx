@@ -253,6 +253,29 @@ TEST(DamagedRaster, BlocksThatAreNotInTheFileAreHoles) {
   EXPECT_FALSE(WarnsOfGaps(ElevationSource(Write(folder / "whole.tif", "TILED"))));
 }
 
+// Level ground at height 0, which file systems keep as holes of the file.
+TEST(DamagedRaster, ZerosThatAreInTheFileAreHeights) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "level.tif";
+  GDALAllRegister();
+  auto* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  auto* dataset = driver->Create(path.c_str(), 512, 512, 1, GDT_Float32, nullptr);
+  double place[] = {0, 1, 0, 0, 0, -1};
+  dataset->SetGeoTransform(place);
+  std::vector<float> zeros(512 * 512, 0.0f);
+  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, 512, 512, zeros.data(), 512, 512,
+                                                GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+  const ElevationSource source(path);
+  EXPECT_FALSE(WarnsOfGaps(source));
+  for (const int factor : {1, 4}) {
+    for (const double height : source.ReadReduced({0, 0, 512, 512}, factor)) {
+      ASSERT_EQ(height, 0.0);
+    }
+  }
+}
+
 TEST(DamagedRaster, GapsOfAMosaicAreHoles) {
   const TemporaryFolder folder;
   const std::string left = Write(folder / "left.tif", "TILED");

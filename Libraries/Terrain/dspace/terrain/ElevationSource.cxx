@@ -99,9 +99,7 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   const RasterWindow& all = this->Info_.window;
   // Of a mosaic each file would be opened, of a server's all offsets sent.
   if (this->Impl_->gaps && !this->Impl_->remote && this->Info_.driver == "GTiff" &&
-      (band.GetDataCoverageStatus(all.column, all.row, all.width, all.height,
-                                  GDAL_DATA_COVERAGE_STATUS_EMPTY, nullptr) &
-       GDAL_DATA_COVERAGE_STATUS_EMPTY))
+      LeavesBlocksOut(band, all))
     this->Info_.warnings.push_back(
         "blocks of it are left out (a sparse or unfinished file): they are taken as no data; if "
         "they stand for 0, fill them (gdal_translate does)");

@@ -25,9 +25,38 @@ Error::Kind KindOfAnswer(const std::string& message) {
   return has("not recognized") ? Error::Kind::Unsupported : Error::Kind::Corrupt;
 }
 
+bool IsTiff(GDALRasterBand& band) {
+  GDALDataset* dataset = band.GetDataset();
+  return dataset && dataset->GetDriver() && EQUAL(dataset->GetDriver()->GetDescription(), "GTiff");
+}
+
+// GDAL_DATA_COVERAGE_STATUS_... of pixels. GDAL itself also takes blocks of a TIFF for empty that
+// are there, where the file system keeps their zeros as a hole of the file: those are zeros.
+int Coverage(GDALRasterBand& band, bool tiff, const RasterWindow& w, int until = 0) {
+  if (!tiff) {
+    return band.GetDataCoverageStatus(w.column, w.row, w.width, w.height, until, nullptr);
+  }
+  int blockX = 1;
+  int blockY = 1;
+  band.GetBlockSize(&blockX, &blockY);
+  int status = 0;
+  for (int y = w.row / blockY; y <= (w.row + w.height - 1) / blockY; ++y) {
+    for (int x = w.column / blockX; x <= (w.column + w.width - 1) / blockX; ++x) {
+      const std::string item = "BLOCK_OFFSET_" + std::to_string(x) + "_" + std::to_string(y);
+      status |= band.GetMetadataItem(item.c_str(), "TIFF") ? GDAL_DATA_COVERAGE_STATUS_DATA
+                                                           : GDAL_DATA_COVERAGE_STATUS_EMPTY;
+      if (status & until) {
+        return status;
+      }
+    }
+  }
+  return status;
+}
+
 // Columns [left, right) and rows [top, bottom) of the mask.
 struct Gaps {
   GDALRasterBand& band;
+  const bool tiff;
   const RasterWindow& part;
   int columns, rows, stride;
   std::uint8_t* mask;
@@ -42,8 +71,9 @@ struct Gaps {
 
   void Mark(int left, int top, int right, int bottom) const {
     const int x = this->X(left), y = this->Y(top);
-    const int status = this->band.GetDataCoverageStatus(
-        x, y, std::max(1, this->X(right) - x), std::max(1, this->Y(bottom) - y), 0, nullptr);
+    const int status =
+        Coverage(this->band, this->tiff,
+                 {x, y, std::max(1, this->X(right) - x), std::max(1, this->Y(bottom) - y)});
     if (!(status & GDAL_DATA_COVERAGE_STATUS_EMPTY))
       return;
     const int width = right - left, height = bottom - top;
@@ -144,9 +174,14 @@ bool GivesZerosForGaps(GDALRasterBand& band) {
   return band.GetMaskFlags() == GMF_ALL_VALID;
 }
 
+bool LeavesBlocksOut(GDALRasterBand& band, const RasterWindow& part) {
+  constexpr int Empty = GDAL_DATA_COVERAGE_STATUS_EMPTY;
+  return (Coverage(band, IsTiff(band), part, Empty) & Empty) != 0;
+}
+
 void MaskGaps(GDALRasterBand& band, const RasterWindow& part, int columns, int rows, int stride,
               std::uint8_t* mask) {
-  Gaps{band, part, columns, rows, stride, mask}.Mark(0, 0, columns, rows);
+  Gaps{band, IsTiff(band), part, columns, rows, stride, mask}.Mark(0, 0, columns, rows);
 }
 
 } // namespace dspace

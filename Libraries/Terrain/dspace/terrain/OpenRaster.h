@@ -50,6 +50,9 @@ std::string FilesOf(GDALDataset& dataset);
 // gaps of a mosaic), since it has neither a no-data value nor a mask.
 bool GivesZerosForGaps(GDALRasterBand& band);
 
+// Whether there are such parts.
+bool LeavesBlocksOut(GDALRasterBand& band, const RasterWindow& part);
+
 // No data, in a mask of `columns` x `rows` that was read of `part`, where a pixel is left out.
 void MaskGaps(GDALRasterBand& band, const RasterWindow& part, int columns, int rows, int stride,
               std::uint8_t* mask);
