@@ -1,8 +1,10 @@
 #include "vtkDspaceSession.h"
 
 #include <map>
+#include <stdexcept>
 #include <vector>
 
+#include <dspace/session/RecordingWriter.h>
 #include <dspace/session/ViewportCommands.h>
 #include <dspace/terrain/ClipmapDrawer.h>
 
@@ -44,6 +46,23 @@ struct vtkDspaceSession::Internals {
   dspace::session::ViewportCommands viewports;
   dspace::v1::Command command;
   std::map<std::string, vtkSmartPointer<vtkDataArray>> planes;
+  dspace::session::Ledger ledger;
+  double time_s = 0.0; // that was set last, in whatever scene
+  std::unique_ptr<dspace::session::RecordingWriter> recording;
+  dspace::session::RecordingCounts counts; // of the last one
+
+  void Note(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply) {
+    this->ledger.Add(accepted, reply);
+    if (accepted.has_set_time()) {
+      this->time_s = accepted.set_time().time_s();
+    }
+    if (this->recording) {
+      const std::string failure = this->recording->Add(accepted, reply, this->ledger);
+      if (!failure.empty()) {
+        throw std::runtime_error(failure + "; recording has stopped, what was written stays");
+      }
+    }
+  }
 
   void TakePlanes() {
     dspace::Capture& capture = this->viewports.LastCapture();
@@ -60,6 +79,10 @@ vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
   this->Impl->viewports.AddTo(commands);
   dspace::session::AddTextCommands(commands);
   dspace::RegisterClipmapDrawer();
+  this->Impl->interpreter.AddListener(
+      [this](const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
+        this->Impl->Note(command, reply);
+      });
 }
 
 vtkDspaceSession::~vtkDspaceSession() = default;
@@ -127,6 +150,61 @@ void vtkDspaceSession::SetRenderContext(vtkDspaceRenderContext* context) {
 
 vtkDspaceRenderContext* vtkDspaceSession::GetRenderContext() {
   return this->Impl->viewports.GetRenderContext();
+}
+
+std::string vtkDspaceSession::Record(const std::string& path, double commitEvery) {
+  if (this->Impl->recording) {
+    return "recording '" + path + "': the session records into '" + this->Impl->recording->Path() +
+           "'; accepted: one recording at a time";
+  }
+  try {
+    dspace::session::RecordingOptions options;
+    options.commitEvery_s = commitEvery;
+    this->Impl->recording = std::make_unique<dspace::session::RecordingWriter>(
+        path, this->Impl->ledger, this->Impl->time_s, options);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::string vtkDspaceSession::StopRecording() {
+  std::string failure = this->FlushRecording();
+  if (this->Impl->recording) {
+    this->Impl->counts = this->Impl->recording->Counts();
+  }
+  this->Impl->recording.reset();
+  return failure;
+}
+
+std::string vtkDspaceSession::FlushRecording() {
+  return this->Impl->recording ? this->Impl->recording->Flush() : std::string();
+}
+
+unsigned long long vtkDspaceSession::GetRecordingCount(const std::string& name) {
+  if (this->Impl->recording) {
+    this->Impl->counts = this->Impl->recording->Counts();
+  }
+  const dspace::session::RecordingCounts& counts = this->Impl->counts;
+  return name == "accepted"  ? counts.accepted
+         : name == "written" ? counts.written
+         : name == "bytes"   ? counts.bytes
+                             : counts.snapshots;
+}
+
+std::string vtkDspaceSession::GetRecordingPath() {
+  return this->Impl->recording ? this->Impl->recording->Path() : std::string();
+}
+
+std::string vtkDspaceSession::GetRecordingFailure() {
+  if (this->Impl->recording) {
+    this->Impl->counts = this->Impl->recording->Counts();
+  }
+  return this->Impl->counts.failure;
+}
+
+const dspace::session::Ledger& vtkDspaceSession::GetLedger() {
+  return this->Impl->ledger;
 }
 
 dspace::session::Interpreter& vtkDspaceSession::GetInterpreter() {

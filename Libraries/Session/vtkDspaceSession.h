@@ -16,6 +16,7 @@
 
 #ifndef __VTK_WRAP__
 #include <dspace/session/Interpreter.h>
+#include <dspace/session/Ledger.h>
 #endif
 
 class vtkDataArray;
@@ -52,8 +53,24 @@ public:
   void SetRenderContext(vtkDspaceRenderContext* context);
   vtkDspaceRenderContext* GetRenderContext();
 
+  /// Records from the present state on into a new file, whose name ends as it likes. Every accepted
+  /// command is written by a thread of its own, at most `commitEvery` seconds later (0.001 to 60);
+  /// where that fails, one reply warns, the session goes on, and what was written stays. Both
+  /// return what went wrong, or an empty string. One recording at a time.
+  std::string Record(const std::string& path, double commitEvery);
+  std::string StopRecording();
+  /// Waits until all that was accepted is written.
+  std::string FlushRecording();
+  /// Of the present recording, or of the one before: "accepted", "written", "bytes", "snapshots".
+  unsigned long long GetRecordingCount(const std::string& name);
+  /// Empty when nothing is being recorded.
+  std::string GetRecordingPath();
+  std::string GetRecordingFailure();
+
 #ifndef __VTK_WRAP__
   dspace::session::Interpreter& GetInterpreter();
+  /// What makes the present state.
+  const dspace::session::Ledger& GetLedger();
 #endif
 
 protected:

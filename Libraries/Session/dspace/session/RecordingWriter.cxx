@@ -1,0 +1,289 @@
+#include <dspace/session/RecordingWriter.h>
+
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include <google/protobuf/util/delimited_message_util.h>
+
+#include <dspace/Error.h>
+#include <dspace/session/RecordingFile.h>
+
+namespace dspace::session {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double WallTime() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void Check(const RecordingOptions& options, const std::string& path) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(Error::Kind::InvalidArgument, "recording '" + path + "'", what);
+  };
+  if (!(options.commitEvery_s >= 0.001 && options.commitEvery_s <= 60.0)) {
+    refuse("the time from commit to commit is " + std::to_string(options.commitEvery_s) +
+           " s; accepted: 0.001 to 60");
+  }
+  if (options.queueBytes < (1u << 20)) {
+    refuse("the queue has " + std::to_string(options.queueBytes) + " bytes; accepted: 1 MiB on");
+  }
+  if (options.snapshotBytes == 0 || options.snapshotCommands == 0) {
+    refuse("a snapshot after nothing; accepted: 1 byte and 1 command on");
+  }
+}
+
+// Files that a command names: absolute paths in its fields, at any depth.
+void FindPaths(const google::protobuf::Message& message, std::set<std::string>& paths) {
+  const google::protobuf::Reflection* reflection = message.GetReflection();
+  std::vector<const google::protobuf::FieldDescriptor*> fields;
+  reflection->ListFields(message, &fields);
+  for (const google::protobuf::FieldDescriptor* field : fields) {
+    if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
+      const int n = field->is_repeated() ? reflection->FieldSize(message, field) : 1;
+      for (int i = 0; i < n; ++i) {
+        FindPaths(field->is_repeated() ? reflection->GetRepeatedMessage(message, field, i)
+                                       : reflection->GetMessage(message, field),
+                  paths);
+      }
+    } else if (!field->is_repeated() && (field->name() == "path" || field->name() == "texture")) {
+      const std::string path = reflection->GetString(message, field);
+      if (path.size() > 1 && path[0] == '/') {
+        paths.insert(path);
+      }
+    }
+  }
+}
+
+} // namespace
+
+struct RecordingWriter::Impl {
+  Impl(const std::string& filePath, const RecordingOptions& given)
+      : path(filePath), options(given), file(filePath, given.maximumPages) {}
+
+  const std::string path;
+  const RecordingOptions options;
+  RecordingFile file; // the thread's, once it runs
+
+  // The simulation's side.
+  std::uint64_t seq = 0;
+  double time_s = 0.0;
+  std::size_t bytesSince = 0;
+  std::uint64_t commandsSince = 0;
+  std::size_t lastSnapshot = 0;
+  bool told = false;
+  std::set<std::string> assets;
+
+  mutable std::mutex mutex;
+  std::condition_variable news; // for the thread
+  std::condition_variable room; // for the simulation
+  std::deque<RecordingRow> queue;
+  std::deque<std::string> newAssets;
+  std::size_t queued = 0; // bytes
+  bool idle = true;
+  bool stop = false;
+  bool flush = false;
+  RecordingCounts counts;
+  std::thread thread;
+
+  // Blocks while the queue is full; nothing after a failure.
+  void Hand(RecordingRow row) {
+    std::unique_lock<std::mutex> lock(this->mutex);
+    this->room.wait(lock, [this] {
+      return this->queued < this->options.queueBytes || !this->counts.failure.empty();
+    });
+    if (!this->counts.failure.empty()) {
+      return;
+    }
+    this->queued += row.payload.size() + 64;
+    this->counts.accepted += row.snapshot ? 0 : 1;
+    this->queue.push_back(std::move(row));
+    lock.unlock();
+    this->news.notify_one();
+  }
+
+  void TakeSnapshot(const Ledger& ledger) {
+    RecordingRow row;
+    row.snapshot = true;
+    row.seq = this->seq;
+    row.time_s = this->time_s;
+    row.wall_s = WallTime();
+    std::ostringstream out;
+    const std::vector<v1::Command> commands = ledger.Commands();
+    for (const v1::Command& command : commands) {
+      google::protobuf::util::SerializeDelimitedToOstream(command, &out);
+    }
+    row.kind = std::int32_t(commands.size());
+    row.payload = out.str();
+    this->lastSnapshot = row.payload.size();
+    this->bytesSince = 0;
+    this->commandsSince = 0;
+    this->Hand(std::move(row));
+  }
+
+  // Whole transactions only are ever seen: what is in one that fails is rolled back.
+  void Write(const std::deque<RecordingRow>& rows, const std::deque<std::string>& files) {
+    this->file.Begin();
+    try {
+      for (const std::string& asset : files) {
+        this->file.PutAsset(asset);
+      }
+      for (const RecordingRow& row : rows) {
+        this->file.Put(row);
+      }
+      this->file.Commit();
+    } catch (...) {
+      this->file.Rollback();
+      throw;
+    }
+  }
+
+  void Run() {
+    std::unique_lock<std::mutex> lock(this->mutex);
+    for (;;) {
+      this->news.wait(lock, [this] { return this->stop || !this->queue.empty(); });
+      if (this->queue.empty()) {
+        return;
+      }
+      if (!this->stop && !this->flush) { // gathers a transaction
+        const auto until =
+            Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                               std::chrono::duration<double>(this->options.commitEvery_s));
+        this->news.wait_until(lock, until, [this] {
+          return this->stop || this->flush || this->queued >= this->options.queueBytes / 2;
+        });
+      }
+      std::deque<RecordingRow> rows;
+      std::deque<std::string> files;
+      rows.swap(this->queue);
+      files.swap(this->newAssets);
+      this->queued = 0;
+      this->idle = false;
+      lock.unlock();
+      this->room.notify_all();
+      std::string failure;
+      try {
+        this->Write(rows, files);
+      } catch (const std::exception& error) {
+        failure = error.what();
+      }
+      lock.lock();
+      this->idle = true;
+      if (failure.empty()) {
+        for (const RecordingRow& row : rows) {
+          this->counts.written += row.snapshot ? 0 : 1;
+          this->counts.bytes += row.snapshot ? 0 : row.payload.size();
+          this->counts.snapshots += row.snapshot ? 1 : 0;
+        }
+      } else {
+        this->counts.failure = failure;
+        this->queue.clear();
+        this->queued = 0;
+      }
+      this->room.notify_all();
+    }
+  }
+};
+
+RecordingWriter::RecordingWriter(const std::string& path, const Ledger& initial, double time_s,
+                                 const RecordingOptions& options) {
+  Check(options, path);
+  this->Impl_ = std::make_unique<Impl>(path, options);
+  this->Impl_->time_s = time_s;
+  this->Impl_->thread = std::thread([impl = this->Impl_.get()] { impl->Run(); });
+  for (const v1::Command& command : initial.Commands()) {
+    FindPaths(command, this->Impl_->assets);
+  }
+  {
+    const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+    this->Impl_->newAssets.assign(this->Impl_->assets.begin(), this->Impl_->assets.end());
+  }
+  this->Impl_->TakeSnapshot(initial);
+}
+
+RecordingWriter::~RecordingWriter() {
+  {
+    const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+    this->Impl_->stop = true;
+  }
+  this->Impl_->news.notify_one();
+  this->Impl_->thread.join();
+}
+
+std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& reply,
+                                 const Ledger& ledger) {
+  Impl& impl = *this->Impl_;
+  {
+    const std::lock_guard<std::mutex> lock(impl.mutex);
+    if (!impl.counts.failure.empty()) {
+      const std::string failure = impl.told ? std::string() : impl.counts.failure;
+      impl.told = true;
+      return failure;
+    }
+  }
+  v1::Command made;
+  const v1::Command* recorded = &accepted;
+  if (accepted.has_viewport_event()) {
+    if (!ToRecorded(accepted, reply, made)) {
+      return {};
+    }
+    recorded = &made;
+  }
+  if (recorded->has_set_time()) {
+    impl.time_s = recorded->set_time().time_s();
+  }
+  if (!recorded->has_set_poses()) { // which names no file and is most of all
+    std::set<std::string> paths;
+    FindPaths(*recorded, paths);
+    for (const std::string& path : paths) {
+      if (impl.assets.insert(path).second) {
+        const std::lock_guard<std::mutex> lock(impl.mutex);
+        impl.newAssets.push_back(path);
+      }
+    }
+  }
+  RecordingRow row;
+  row.seq = ++impl.seq;
+  row.time_s = impl.time_s;
+  row.wall_s = WallTime();
+  row.kind = std::int32_t(recorded->command_case());
+  row.payload = recorded->SerializeAsString();
+  impl.bytesSince += row.payload.size();
+  ++impl.commandsSince;
+  impl.Hand(std::move(row));
+  // Not oftener than four times their own size: a large state costs a part of the file at most.
+  if (impl.bytesSince >= std::max(impl.options.snapshotBytes, 4 * impl.lastSnapshot) ||
+      (impl.commandsSince >= impl.options.snapshotCommands &&
+       impl.bytesSince >= impl.lastSnapshot)) {
+    impl.TakeSnapshot(ledger);
+  }
+  return {};
+}
+
+std::string RecordingWriter::Flush() {
+  Impl& impl = *this->Impl_;
+  std::unique_lock<std::mutex> lock(impl.mutex);
+  impl.flush = true;
+  impl.news.notify_one();
+  impl.room.wait(
+      lock, [&impl] { return !impl.counts.failure.empty() || (impl.queue.empty() && impl.idle); });
+  impl.flush = false;
+  return impl.counts.failure;
+}
+
+RecordingCounts RecordingWriter::Counts() const {
+  const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  return this->Impl_->counts;
+}
+
+const std::string& RecordingWriter::Path() const {
+  return this->Impl_->path;
+}
+
+} // namespace dspace::session

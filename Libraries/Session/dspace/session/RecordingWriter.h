@@ -1,0 +1,63 @@
+// Writes a session's commands into a file that can be read meanwhile.
+#ifndef DSPACE_SESSION_RECORDING_WRITER_H
+#define DSPACE_SESSION_RECORDING_WRITER_H
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <dspace/session/Ledger.h>
+
+namespace dspace::session {
+
+// The version of the schema that Documentation/Recording.md describes.
+constexpr int RecordingFormat = 1;
+
+struct RecordingOptions {
+  double commitEvery_s = 0.1;           // seconds, 0.001 to 60: what a dead process loses at most,
+                                        // besides what waits in the queue
+  std::size_t queueBytes = 64u << 20;   // then the simulation waits for the disk; 1 MiB and more
+  std::size_t snapshotBytes = 8u << 20; // of commands from one snapshot to the next, at least,
+  std::uint64_t snapshotCommands = 20000; // or so many commands
+  std::int64_t maximumPages = 0;          // of 4096 bytes, for the file; 0: as the disk has
+};
+
+// What a recording holds; `written` and `bytes` are safe on disk up to a crash of the process.
+struct RecordingCounts {
+  std::uint64_t accepted = 0; // commands that were handed over
+  std::uint64_t written = 0;
+  std::uint64_t bytes = 0; // of their payload
+  std::uint64_t snapshots = 0;
+  std::string failure; // empty: none; nothing more is written after one
+};
+
+// A thread of its own writes, in transactions. It ends with what is queued when it is destroyed.
+// Add, Snapshot and the destructor belong to one thread.
+class RecordingWriter {
+public:
+  // Makes the file; one that is there already is refused with Error(AlreadyExists). `initial` is
+  // the present state, at simulation time `time_s`. Throws Error(Io) where it cannot be written and
+  // Error(InvalidArgument) for the options.
+  RecordingWriter(const std::string& path, const Ledger& initial, double time_s,
+                  const RecordingOptions& options = {});
+  ~RecordingWriter();
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  // An accepted command, after `ledger` has it. After a failure nothing is kept; the first call
+  // then returns what failed, all others an empty string. Never throws for the disk.
+  std::string Add(const v1::Command& accepted, const v1::Reply& reply, const Ledger& ledger);
+  // Waits until all that was handed over is written; what failed, or an empty string.
+  std::string Flush();
+  RecordingCounts Counts() const;
+  const std::string& Path() const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> Impl_;
+};
+
+} // namespace dspace::session
+
+#endif
