@@ -69,8 +69,12 @@ class Simulation:
         self.send()
 
     def advance(self, at):
-        """Steps until a time [s]; it goes forward only."""
-        for _ in range(round(at / STEP) - self.steps):
+        """Steps until a time [s], to a millisecond."""
+        ahead = round(at / STEP) - self.steps
+        if ahead < 0:
+            raise ValueError(f"the simulation is asked for {at:g} s at {self.mobility.time:g} s; accepted: later times, "
+                             "for it goes forward only")
+        for _ in range(ahead):
             self.step()
 
     def telemetry(self):
@@ -98,12 +102,17 @@ def main():
     session = dspace.connect(options.connect) if options.connect else dspace.Session()
     with session:
         simulation = Simulation(session, RoverModel(wheelbase=options.wheelbase), folder=options.folder)
+        if options.connect:
+            session.wait = False  # a server takes steps as they come; what it refuses is told later
         began = time.perf_counter()
         while simulation.mobility.time < options.seconds - STEP / 2:
             simulation.step()
             ahead = simulation.mobility.time - (time.perf_counter() - began)
             if options.real_time and ahead > 0:
                 time.sleep(ahead)
+        if options.connect:
+            session.wait = True
+            session.flush()
         taken = time.perf_counter() - began
         print(f"{simulation.steps} steps of 1 ms in {taken:.2f} s; rolled "
               f"{simulation.mobility.rolled.mean():.3f} m; wheels turned "

@@ -325,11 +325,7 @@ def _drawn_from(viewport):
     """The pose in the root of the camera that a viewport was drawn from."""
     import numpy as np
     from vtkmodules.vtkRenderingCore import vtkActor
-    try:
-        renderer, nothing = viewport.vtk.GetRenderer(), vtkActor()
-    except AttributeError:  # drawn elsewhere
-        raise InvalidArgument(f"{viewport!r}: where its camera is that chases is known where it is drawn; "
-                              "accepted: a local session, or a camera that stands on a frame") from None
+    renderer, nothing = viewport.vtk.GetRenderer(), vtkActor()
     renderer.AddViewProp(nothing)  # VTK's camera is put in place where VTK has something to draw
     viewport.capture()
     renderer.RemoveViewProp(nothing)

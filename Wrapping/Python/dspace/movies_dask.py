@@ -1,13 +1,17 @@
 """Pictures of a movie drawn by the workers of a Dask scheduler (Debian: python3-distributed)."""
+import hashlib
 import os
+import socket
 import subprocess
 import tempfile
 
-from dspace.errors import Internal, Io, NotFound
+import dspace
+from dspace.errors import Internal, InvalidArgument, Io, NotFound
 from dspace.movies_draw import is_whole
-from dspace.movies_make import FRAME, finish, put, worker
+from dspace.movies_make import FRAME, file_of, finish, put, worker
 
 _AT_ONCE = 24  # pictures that a worker draws of one request
+_END = 1 << 20  # bytes of either end of a run's file that are compared
 
 
 def share(scheduler, words, run, missing, folder, tell):
@@ -26,7 +30,8 @@ def share(scheduler, words, run, missing, folder, tell):
         workers = max(1, len(client.scheduler_info()["workers"]))
         size = max(1, min(_AT_ONCE, -(-len(missing) // workers)))
         parts = [missing[k:k + size] for k in range(0, len(missing), size)]
-        futures = [client.submit(pictures, words, run, part, pure=False) for part in parts]
+        expected = fingerprint(run)
+        futures = [client.submit(pictures, words, run, part, expected, pure=False) for part in parts]
         left = len(missing)
         try:
             for _, drawn in as_completed(futures, loop=client.loop, with_results=True):
@@ -41,9 +46,24 @@ def share(scheduler, words, run, missing, folder, tell):
             client.cancel(futures)
 
 
-def pictures(words, run, numbers):
+def fingerprint(run):
+    """What tells a run's file from another one of its path: Dspace's version, its size, its ends."""
+    path, _ = file_of(run)
+    with open(path, "rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        ends = hashlib.sha256()
+        for at in (0, max(0, size - _END)):
+            file.seek(at)
+            ends.update(file.read(_END))
+    return dspace.__version__, size, ends.hexdigest()
+
+
+def pictures(words, run, numbers, expected):
     """[(number, the bytes of its PNG)], on a worker; in a process of its own, since a graphics context
     serves one thread."""
+    if fingerprint(run) != expected:
+        raise InvalidArgument(f"run {run!r}: on the worker {socket.gethostname()!r} it is another file, or Dspace "
+                              f"another version than {expected[0]}; accepted: the same on each machine", run)
     with tempfile.TemporaryDirectory(prefix="dspace-movie-") as folder:
         script = os.path.join(folder, "movie.toml")
         with open(script, "w", encoding="utf-8") as file:

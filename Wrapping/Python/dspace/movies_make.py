@@ -103,14 +103,19 @@ def identity(movie, run):
              "frames": movie.frames, "dspace": dspace.__version__}
     if isinstance(run, (str, os.PathLike)):
         name = os.fspath(run)
-        script, _, function = name.rpartition(":")
-        file = script if script.endswith(".py") and function.isidentifier() else name
+        file, function = file_of(name)
         try:
             status = os.stat(file)
         except OSError as error:
             raise Io(f"run {name!r}: {error.strerror}; accepted: a file that can be read", name) from None
         state["run"] = [os.path.abspath(file), function, status.st_size, status.st_mtime_ns]
     return hashlib.sha256(json.dumps(state, sort_keys=True).encode()).hexdigest()
+
+
+def file_of(run):
+    """The file of a run, and the function's name where it is FILE.py:NAME."""
+    script, _, function = run.rpartition(":")
+    return (script, function) if script.endswith(".py") and function.isidentifier() else (run, "")
 
 
 class _Folder:
