@@ -130,6 +130,8 @@ def test_a_step_is_one_message_of_poses(session, tmp_path):
         simulation.step()
     finally:
         session._client.execute = execute
+    with pytest.raises(ValueError, match="forward only"):
+        simulation.advance(0.0)
     assert [command.WhichOneof("command") for command in sent] == ["set_time", "set_poses"]
     assert len(sent[1].set_poses.frame) == len(simulation.model.bodies)
     assert len(sent[1].set_poses.pose) == 8 * len(simulation.model.bodies)
@@ -175,6 +177,32 @@ def test_the_script_runs_by_itself(tmp_path):
                            "--out", tmp_path / "rover.png"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert "200 steps of 1 ms" in done.stdout and (tmp_path / "rover.png").stat().st_size > 10000
+
+
+def test_in_its_own_process_over_the_wire(tmp_path):
+    """The server's frames are those of a run in this process, its picture that of a local one, to the byte."""
+    if not hasattr(dspace, "connect"):
+        pytest.skip("this build has no dspace.connect")
+    from served_support import Served
+    words = [sys.executable, "-W", "ignore", EXAMPLE / "rover_mobility.py", "--seconds", "0.3", "--folder", tmp_path]
+    with Served(tmp_path, "--allow-root", str(tmp_path)) as server:
+        done = subprocess.run([*words, "--connect", server.address, "--out", tmp_path / "served.png"],
+                              capture_output=True, text=True)
+        assert done.returncode == 0 and "300 steps of 1 ms" in done.stdout, done.stderr
+        with dspace.connect(server.address) as session:
+            scene = session.scene()
+            poses = scene.poses(list(scene.frames["rover"].children) + [scene["rover"]])
+            names = [frame.name for frame in scene["rover"].children] + ["rover"]
+            assert scene.time == pytest.approx(0.3, abs=1e-12)
+    alone = Mobility(RoverModel(), Hills())
+    for _ in range(300):
+        alone.step(STEP, *command(alone.time))
+    numbers = [alone.model.number(name) for name in names]
+    np.testing.assert_array_equal(poses[:, :3], alone.rows()[numbers][:, :3])
+    np.testing.assert_allclose(poses[:, 3:7], alone.rows()[numbers][:, 3:], rtol=0, atol=1e-15)  # normalized
+    done = subprocess.run([*words, "--out", tmp_path / "local.png"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "served.png").read_bytes() == (tmp_path / "local.png").read_bytes()
 
 
 def test_its_movie(tmp_path):

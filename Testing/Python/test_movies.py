@@ -286,6 +286,39 @@ def test_movie_files(run, tmp_path, ending, codec):
     assert sorted(path.name for path in tmp_path.iterdir() if path.is_dir() and "pycache" not in path.name) == []
 
 
+def test_a_recording_makes_the_movie_of_the_live_run(run, tmp_path):
+    """Its run begins at 100 s; that is where the movie begins if nothing is said."""
+    if not hasattr(dspace, "Playback"):
+        pytest.skip("this build plays no recordings back")
+    made = {}
+    exec(RUN, made)
+    session, advance, _ = made["run"]()
+    path = tmp_path / "run.dspace"
+    with session, session.record(path):
+        for number in range(13):
+            advance(100 + number / 10)
+    movie = dspace.Movie(size=SIZE, rate=10, samples=1)
+    movie.add_view(background=(0.1, 0.1, 0.3))
+    movie.add_key(time=0.0, position=(103, -6, 3), target=(0, 0, 0), target_frame="cube")
+    movie.add_key(time=1.2, position=(106, -4, 3), target=(0, 0, 0), target_frame="cube")
+    movie.add_overlay("", [("run", "{run:.2f} s"), ("x", "{cube.x:.3f} m")])
+    assert movie.make(path, tmp_path / "played", jobs=2) == 12
+    movie.start = 100.0
+    movie.make(run, tmp_path / "live")
+    assert files(tmp_path / "played", 12) == files(tmp_path / "live", 12)
+    movie.start = None
+    assert movie.make(path, tmp_path / "played") == 0  # reading does not change it
+    # And backwards: a playback seeks.
+    movie.start, movie.speed = 101.1, -1.0  # 100.9 and others are not what the run's times are, to a rounding
+    movie.overlays[0].rows = (("x", "{cube.x:.3f} m"),)
+    movie.views["main"].keys = movie.views["main"].keys[:1] + [movie.views["main"].keys[0].__class__(
+        1.2, (103, -6, 3), target=(0, 0, 0), target_frame="cube")]
+    movie.make(path, tmp_path / "back")
+    movie.start, movie.speed = 100.0, 1.0
+    movie.make(path, tmp_path / "forth")
+    assert files(tmp_path / "back", 12) == files(tmp_path / "forth", 12)[::-1]
+
+
 def test_dask_workers_make_the_same(run, tmp_path):
     distributed = pytest.importorskip("distributed", reason="python3-distributed is not installed")
     movie = flight()

@@ -11,7 +11,7 @@ from dspace.movies_keys import CameraPath, Key, RunTime, in_order
 from dspace.poses import Pose, quaternion_of_matrix
 from dspace.viewports import ANCHORS
 
-SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": 2, "start": 0.0, "speed": 1.0, "duration": None}
+SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": 2, "start": None, "speed": 1.0, "duration": None}
 
 
 @dataclass
@@ -115,7 +115,8 @@ class Movie:
 
     size: pixels; rate: pictures a second; samples: n x n a pixel, 1 to 8. Picture n shows movie time
     n / rate, up to `duration` [s] (default: the last key's time), which itself is not shown any more. The
-    run's time is `start` + `speed` x movie time where no key states it; only one view's keys may."""
+    run's time is `start` (default: its beginning) + `speed` x movie time where no key states it; only one
+    view's keys may."""
 
     def __init__(self, size=SETTINGS["size"], rate=SETTINGS["rate"], samples=SETTINGS["samples"],
                  start=SETTINGS["start"], speed=SETTINGS["speed"], duration=SETTINGS["duration"]):
@@ -129,8 +130,9 @@ class Movie:
         self.samples = integers((samples,), 1, "samples", about, "an integer from 1 to 8")[0]
         if not 1 <= self.samples <= 8:
             refuse(about, "samples", samples, "an integer from 1 to 8")
-        self.start, self.speed = number(start, "start", about), number(speed, "speed", about)
-        if not (math.isfinite(self.start) and math.isfinite(self.speed)):
+        self.start = None if start is None else number(start, "start", about)
+        self.speed = number(speed, "speed", about)
+        if not (math.isfinite(self.start or 0.0) and math.isfinite(self.speed)):
             refuse(about, "start and speed", (start, speed), "finite numbers")
         self._duration = None if duration is None else number(duration, "the duration", about)
         if self._duration is not None and not 0 < self._duration <= 1e6:
@@ -193,13 +195,14 @@ class Movie:
         """The number of pictures."""
         return max(1, round(self.duration * self.rate))
 
-    def run_time(self):
-        """A RunTime: at(movie time) is the run's time."""
+    def run_time(self, beginning=0.0):
+        """A RunTime: at(movie time) is the run's time. beginning: of the run [s]."""
         stating = [view for view in self.views.values() if any(key.run is not None for key in view.keys)]
         if len(stating) > 1:
             raise InvalidArgument(f"view {stating[1].name!r}: its keys state run times, as those of view "
                                   f"{stating[0].name!r} do; accepted: keys of one view", stating[1].name)
-        return RunTime(stating[0].keys if stating else [], self.start, self.speed)
+        start = beginning if self.start is None else self.start
+        return RunTime(stating[0].keys if stating else [], start, self.speed)
 
     def check(self):
         """Raises what is wrong with it as a whole; a new view with keys or a camera is the least."""

@@ -20,10 +20,10 @@ class Source:
 
     session: a dspace.Session. advance(time): takes the run to a time [s]; called with the times of the
     pictures, in their order. telemetry(): a dict of names to numbers or texts for overlays, now. close():
-    called at the end."""
+    called at the end. beginning: the run's first time [s]."""
 
-    def __init__(self, session, advance=None, telemetry=None, close=None):
-        self.session = session
+    def __init__(self, session, advance=None, telemetry=None, close=None, beginning=0.0):
+        self.session, self.beginning = session, beginning
         self.advance = advance or (lambda time: None)
         self.telemetry = telemetry or dict
         self.close = close or (lambda: None)
@@ -61,7 +61,13 @@ def open_run(run):
 
 def _of_playback(playback):
     telemetry = getattr(playback, "telemetry", None)
-    return Source(playback.session, playback.seek, telemetry if callable(telemetry) else None)
+
+    def seek(time):
+        # The last step that is not after it: a simulation that adds up its steps is a rounding off.
+        playback.seek(time + max(1e-9, 8 * np.spacing(abs(time))))
+
+    return Source(playback.session, seek, telemetry if callable(telemetry) else None,
+                  beginning=min(playback.times, default=0.0))
 
 
 def _made_by(path, name):
@@ -85,7 +91,7 @@ class Stage:
     def __init__(self, movie, source):
         movie.check()
         self.movie, self.source = movie, source
-        self.runs = movie.run_time()
+        self.runs = movie.run_time(source.beginning)
         self.paths = {name: CameraPath(view.keys, f"view {name!r}")
                       for name, view in movie.views.items() if view.keys}
         self.shown = {name: [] for name in movie.views}
