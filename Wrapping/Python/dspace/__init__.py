@@ -35,8 +35,10 @@ _HOMES = {
     "Movie": "movies",
     "Pose": "poses",
     "Joint": "robots", "Robot": "robots",
+    "Playback": "playback", "Recording": "recordings", "RecordingFile": "recording_file",
     "Scene": "scenes",
-    "Session": "sessions",
+    "Session": "sessions", "RemoteSession": "remote", "connect": "remote",
+    "Watcher": "watching", "watch": "watching",
     "Terrain": "terrain", "TerrainLayer": "layers",
     "Pick": "viewports", "Viewport": "viewports",
 }

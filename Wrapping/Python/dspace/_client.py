@@ -26,6 +26,15 @@ def warn(message):
     warnings.warn(message, DspaceWarning, stacklevel=level)
 
 
+def to_bytes(answer):
+    """VTK makes a str of bytes that happen to be UTF-8."""
+    return answer.encode() if isinstance(answer, str) else answer
+
+
+def to_reply(answer):
+    return pb.Reply.FromString(to_bytes(answer))
+
+
 class LocalClient:
     """Hands commands to an interpreter in this process."""
 
@@ -33,6 +42,7 @@ class LocalClient:
         self._thread = threading.get_ident()
         self.vtk = _vtk.vtkDspaceSession()
         self.frame_listeners = FrameListeners()
+        self.recording = None  # the last one that was begun
 
     def local(self):
         """The vtkDspaceSession; raises when it is closed."""
@@ -50,9 +60,12 @@ class LocalClient:
     def execute(self, command):
         """The Reply to a Command; raises what its error says, or, with the change made, what a
         callback raised that heard of it."""
-        answer = self.local().Execute(command.SerializeToString())
-        # VTK makes a str of bytes that happen to be UTF-8.
-        reply = pb.Reply.FromString(answer.encode() if isinstance(answer, str) else answer)
+        return self._finish(command, self._carry(command))
+
+    def _carry(self, command):
+        return to_reply(self.local().Execute(command.SerializeToString()))
+
+    def _finish(self, command, reply):
         if reply.HasField("error"):
             raise make_error(reply.error)
         listeners = self.frame_listeners

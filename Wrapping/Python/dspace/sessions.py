@@ -2,6 +2,7 @@
 from dspace._client import LocalClient
 from dspace._fields import Named, flag, refuse, text
 from dspace.errors import AlreadyExists
+from dspace.recordings import Recording
 from dspace.scenes import Scene
 from dspace.session import commands_pb2 as pb
 from dspace.viewports import Viewport
@@ -71,6 +72,24 @@ class Session:
         command = pb.Command()
         command.render.SetInParent()
         return self._client.execute(command).render.drawn
+
+    def record(self, path, commit_every=0.1):
+        """Records from the present state on into a new file; returns the Recording, which ends with its
+        `with` statement, with stop(), or with the session.
+
+            with session.record("run.dspace"):
+                ...
+
+        commit_every: seconds, 0.001 to 60. A process that dies loses at most what it did in the last so many,
+        and what the disk was behind.
+        """
+        return Recording(self._client, path, commit_every)
+
+    @property
+    def recording(self):
+        """The Recording that is under way, or None."""
+        recording = self._client.recording
+        return recording if recording is not None and recording.active else None
 
     @property
     def statistics(self):

@@ -12,7 +12,10 @@ import warnings
 
 from dspace.errors import Error
 
-WORDS = {"movie": "a movie of a run, from a text file of camera key frames",
+WORDS = {"log": "what recordings hold, where two part, what survives damage",
+         "movie": "a movie of a run, from a text file of camera key frames",
+         "play": "pictures of a recording, with no simulation",
+         "serve": "a session for simulations and viewers in other processes",
          "terrain": "what a raster of heights is, and pictures of it"}
 
 

@@ -1,0 +1,172 @@
+"""What a recording holds: Documentation/Recording.md says how. Nothing is drawn here."""
+import hashlib
+import os
+import sqlite3
+import struct
+from typing import NamedTuple
+
+from dspace.errors import AlreadyExists, Corrupt, NotFound, Unsupported
+
+FORMAT = 1
+SCHEMA = """
+CREATE TABLE meta(key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+CREATE TABLE command(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT NULL,
+  kind INTEGER NOT NULL, payload BLOB NOT NULL, checksum BLOB NOT NULL);
+CREATE TABLE snapshot(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT NULL,
+  kind INTEGER NOT NULL, payload BLOB NOT NULL, checksum BLOB NOT NULL);
+CREATE INDEX step ON command(time) WHERE kind = 13;
+CREATE TABLE asset(path TEXT PRIMARY KEY, sha256 BLOB, size INTEGER, content BLOB);
+"""
+COLUMNS = "seq, time, wall, kind, payload, checksum"
+
+
+class Row(NamedTuple):
+    """A command, or a snapshot: the commands that make the state after command `seq`."""
+
+    seq: int
+    time: float  # of the simulation [s]
+    wall: float  # seconds past 1970 UTC
+    kind: int    # field number in Command; of a snapshot: the number of its commands
+    payload: bytes
+
+
+def checksum(row, table):
+    head = (b"S" if table == "snapshot" else b"C") + struct.pack("<Qddi", row.seq, row.time, row.wall, row.kind)
+    return hashlib.sha256(head + row.payload).digest()[:16]
+
+
+def commands_of(snapshot):
+    """The serialized commands of a snapshot's payload: each after its length as a varint."""
+    data, at, found = snapshot.payload, 0, []
+    while at < len(data):
+        length = shift = 0
+        while True:
+            byte = data[at]
+            at += 1
+            length |= (byte & 127) << shift
+            shift += 7
+            if byte < 128:
+                break
+        found.append(data[at:at + length])
+        at += length
+    return found
+
+
+class RecordingFile:
+    """A recording, to be read, also while it is written. Every row is checked against its checksum when it
+    is read: a damaged one is dspace.Corrupt, which names the file and the command."""
+
+    def __init__(self, path):
+        self.path = os.path.abspath(os.fspath(path))
+        self.label = f"recording {self.path!r}"
+        if not os.path.isfile(self.path):
+            raise NotFound(f"{self.label}: there is no such file", self.label)
+        quoted = self.path.replace("%", "%25").replace("?", "%3f").replace("#", "%23")
+        self._database = sqlite3.connect(f"file:{quoted}?mode=ro", uri=True, timeout=10)
+        try:
+            found = self.ask("SELECT value FROM meta WHERE key = 'format'")
+            if not found or found[0][0] != FORMAT:
+                said = found[0][0] if found else None
+                raise Unsupported(f"{self.label}: its format is {said!r}; accepted: {FORMAT}", self.label)
+        except BaseException:
+            self._database.close()
+            raise
+
+    def close(self):
+        self._database.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.close()
+
+    def ask(self, sql, *values):
+        try:
+            return self._database.execute(sql, values).fetchall()
+        except (sqlite3.DatabaseError, OverflowError) as error:
+            raise self.corrupt(str(error)) from None
+
+    def corrupt(self, what):
+        return Corrupt(f"{self.label}: {what}; `dspace log salvage` brings back what survives", self.label)
+
+    def _check(self, values, table):
+        row = Row(*values[:5])
+        try:
+            good = isinstance(row.payload, bytes) and checksum(row, table) == values[5]
+        except (struct.error, TypeError):
+            good = False
+        if not good:
+            raise self.corrupt(f"{table} {row.seq} is damaged")
+        return row
+
+    def rows(self, first=1, last=None, table="command"):
+        """The rows first..last in their order; commands with none missing between."""
+        try:
+            cursor = self._database.execute(
+                f"SELECT {COLUMNS} FROM {table} WHERE seq BETWEEN ? AND ? ORDER BY seq",
+                (first, 2 ** 62 if last is None else last))
+            expected = first
+            for values in cursor:
+                row = self._check(values, table)
+                if table == "command" and row.seq != expected:
+                    raise self.corrupt(f"commands {expected} to {row.seq - 1} are missing")
+                expected = row.seq + 1
+                yield row
+        except (sqlite3.DatabaseError, OverflowError) as error:
+            raise self.corrupt(str(error)) from None
+        if table == "command" and last is not None and expected <= last:
+            raise self.corrupt(f"commands {expected} to {last} are missing")
+
+    @property
+    def last(self):
+        """The last command's number; 0 without any."""
+        return self.ask("SELECT max(seq) FROM command")[0][0] or 0
+
+    def steps(self):
+        """(seq, time) of every command that set the time, in order."""
+        return sorted(self.ask("SELECT seq, time FROM command INDEXED BY step WHERE kind = 13"))
+
+    def snapshot(self, seq):
+        """The last snapshot at or before a command."""
+        found = self.ask(f"SELECT {COLUMNS} FROM snapshot WHERE seq <= ? ORDER BY seq DESC LIMIT 1", seq)
+        if not found:
+            raise self.corrupt(f"the state before command {seq} is not there")
+        return self._check(found[0], "snapshot")
+
+    @property
+    def assets(self):
+        """(path, SHA-256 or None, bytes or None) of the files that its commands name."""
+        return self.ask("SELECT path, sha256, size FROM asset ORDER BY path")
+
+    def check(self):
+        """Reads all of it; raises at the first damage."""
+        for _ in self.rows(self.first):
+            pass
+        for _ in self.rows(0, table="snapshot"):
+            pass
+        said = self.ask("PRAGMA integrity_check(1)")
+        if said != [("ok",)]:
+            raise self.corrupt(said[0][0])
+
+    @property
+    def first(self):
+        """The first command's number: 1, unless it was cut."""
+        return self.ask("SELECT min(seq) FROM command")[0][0] or 1
+
+
+def write_recording(path, commands, snapshots, assets=()):
+    """A new recording of rows that were read or salvaged."""
+    if os.path.lexists(path):
+        raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
+    database = sqlite3.connect(path)
+    try:
+        database.executescript("PRAGMA page_size=4096; PRAGMA journal_mode=WAL;" + SCHEMA)
+        with database:
+            database.execute("INSERT INTO meta VALUES('format', ?)", (FORMAT,))
+            for table, rows in (("command", commands), ("snapshot", snapshots)):
+                database.executemany(f"INSERT INTO {table} VALUES(?,?,?,?,?,?)",
+                                     ((*row, checksum(row, table)) for row in rows))
+            database.executemany("INSERT INTO asset VALUES(?,?,?,NULL)", assets)
+    finally:
+        database.close()

@@ -1,0 +1,70 @@
+"""A session that is being recorded."""
+import os
+
+from dspace._fields import number, text
+from dspace.errors import AlreadyExists, InvalidArgument, Io, NotFound
+
+COUNTS = ("accepted", "written", "bytes", "snapshots")
+
+
+class Recording:
+    """What Session.record() returns. `counts` says how far it is."""
+
+    def __init__(self, client, path, commit_every):
+        path = os.path.abspath(text(os.fspath(path), "the path", "recording"))
+        self._client = client
+        self._vtk = client.local()
+        self._last = None
+        if os.path.lexists(path):
+            raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
+        if not os.path.isdir(os.path.dirname(path)):
+            raise NotFound(f"recording {path!r}: there is no such folder", "recording")
+        every = number(commit_every, "the time from commit to commit", "recording")
+        if not 0.001 <= every <= 60:
+            raise InvalidArgument(f"recording {path!r}: commit_every is {every!r} s; accepted: 0.001 to 60", "recording")
+        self._raise(self._vtk.Record(path, every))
+        self.path = path
+        client.recording = self
+
+    def _raise(self, problem):
+        if problem:
+            raise Io(problem, f"recording {getattr(self, 'path', '')!r}")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.stop()
+
+    @property
+    def active(self):
+        """Whether commands are still recorded: not after stop() or a failure."""
+        return self._last is None and self._client.vtk is self._vtk and not self.failure
+
+    @property
+    def counts(self):
+        """Commands accepted and written (safe from then on when this process dies), bytes of these, snapshots."""
+        if self._last is not None:
+            return dict(self._last)
+        return {name: self._client.local().GetRecordingCount(name) for name in COUNTS}
+
+    @property
+    def failure(self):
+        """What ended it, or an empty string."""
+        return self._client.vtk.GetRecordingFailure() if self._last is None and self._client.vtk else ""
+
+    def flush(self):
+        """Waits until all that was accepted is written."""
+        if self._last is None:
+            self._raise(self._client.local().FlushRecording())
+
+    def stop(self):
+        """Writes what is left and closes the file. Twice is no error."""
+        if self._last is not None or self._client.vtk is None:
+            return
+        problem = self._client.local().StopRecording()
+        self._last = {name: self._client.local().GetRecordingCount(name) for name in COUNTS}
+        self._raise(problem)
+
+    def __repr__(self):
+        return f"<dspace.Recording {self.path!r}>"
