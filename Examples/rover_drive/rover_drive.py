@@ -4,6 +4,7 @@ Makes, in the folder given by --out: demo.mp4 (the four views tiled), one PNG a 
 sheet and report.txt. The simulation runs at 60 steps a second, the movie at 30 frames a second.
 """
 import argparse
+import contextlib
 import pathlib
 import sys
 import time
@@ -14,6 +15,7 @@ import numpy as np
 import dspace
 from dspace.movies_encode import Encoder
 from dspace.rover import Path, load_vehicle
+from dspace.serving import ServerProcess
 
 from movie import save_image, tile
 from vehicle import Ground, PlacedVehicle
@@ -64,7 +66,24 @@ def arguments():
     parser.add_argument("--seconds", type=read_seconds, default=12.0)
     parser.add_argument("--size", type=read_size, default=(1280, 720),
                         help="of the movie, WIDTHxHEIGHT (default 1280x720)")
+    parser.add_argument("--served", action="store_true",
+                        help="the scene is in a server process of its own, driven over the wire")
     return parser.parse_args()
+
+
+@contextlib.contextmanager
+def open_session(options):
+    """A session here, or in a server process that is ended with it."""
+    if not options.served:
+        with open_session(options) as session:
+            yield session
+        return
+    files = [options.terrain, options.model] + ([options.image] if options.image else [])
+    roots = {DATA} | {file.resolve().parent for file in files} | {options.out.resolve()}
+    with ServerProcess(sorted(roots)) as server, \
+            dspace.connect(server.address, name="rover_drive") as session:
+        print(f"dspace demo: served by process {server.pid} at {server.address}", flush=True)
+        yield session
 
 
 def route(options, terrain, length):

@@ -177,6 +177,9 @@ struct vtkDspaceWatcher::Internals {
     if (command.has_create_viewport() && command.create_viewport().name().empty()) {
       command.mutable_create_viewport()->set_name(Own + std::to_string(++this->lastOwn));
     }
+    if (command.has_capture()) {
+      command.mutable_capture()->set_inline_data(true); // the session does not see this one
+    }
     const auto* entry = this->Interpreter().Commands().Find(command.command_case());
     if (!entry || entry->effect == Effect::Request || command.has_follow_frames()) {
       return this->Interpreter().Execute(command);

@@ -58,7 +58,7 @@ TEST_F(LinkKills, TheWriterDiesAndTheStateIsWhole) {
   this->StartServer();
   std::mt19937 random(11);
   double before = -1;
-  for (int i = 0; i < 25; ++i) {
+  for (int i = 0; i < 12; ++i) { // a process takes a while to start
     {
       Child driver("drive", this->Server->Address());
       std::this_thread::sleep_for(std::chrono::microseconds(random() % 40000));
@@ -77,7 +77,7 @@ TEST_F(LinkKills, TheWriterDiesAndTheStateIsWhole) {
 
 TEST_F(LinkKills, TheServerDiesAndTheClientIsToldInTime) {
   std::mt19937 random(12);
-  for (int i = 0; i < 25; ++i) {
+  for (int i = 0; i < 12; ++i) { // a process takes a while to start
     Child server("serve", this->Options.listen);
     auto options = this->ClientOptions();
     options.timeout_s = 20;

@@ -95,7 +95,8 @@ class Viewport(LegendMaking, Strict):
     def _plane(self, plane, reply):
         shape = (reply.height, reply.width) + ((plane.channels,) if plane.channels > 1 else ())
         if plane.data:
-            return np.frombuffer(plane.data, TYPES[plane.type]).reshape(shape)
+            # Of one's own, as a local session's is: it may be written to.
+            return np.frombuffer(bytearray(plane.data), TYPES[plane.type]).reshape(shape)
         from vtkmodules.util.numpy_support import vtk_to_numpy
         return vtk_to_numpy(self._client.vtk.GetPlane(plane.name)).reshape(shape)
 

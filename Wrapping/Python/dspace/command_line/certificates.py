@@ -1,0 +1,50 @@
+"""A test authority and certificates, by the openssl command."""
+import os
+import pathlib
+import shutil
+import subprocess
+
+from dspace.command_line import Failed
+
+DAYS = "30"
+
+
+def make_test_certificates(folder):
+    """Writes ca.pem, server.pem, server.key, client.pem and client.key into `folder`, which must not have
+    them. The authority's own key is not kept: nobody else can be let in later."""
+    openssl = shutil.which("openssl")
+    if not openssl:
+        raise Failed("--make-test-certificates needs the openssl command (Debian: openssl)")
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    names = ("ca.pem", "server.pem", "server.key", "client.pem", "client.key")
+    there = [name for name in names if (folder / name).exists()]
+    if there:
+        raise Failed(f"folder '{folder}': it has {', '.join(there)}; accepted: a folder without them")
+    mask = os.umask(0o077)
+    try:
+        _make(openssl, folder)
+    finally:
+        os.umask(mask)
+        for name in ("ca.key", "ca.srl", "request.pem", "extensions.txt"):
+            (folder / name).unlink(missing_ok=True)
+
+
+def _make(openssl, folder):
+    def run(*arguments):
+        done = subprocess.run((openssl,) + arguments, cwd=folder, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if done.returncode:
+            raise Failed(f"openssl {arguments[0]} failed: {done.stdout.strip()[-300:]}")
+
+    new_key = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes")
+    run("req", "-x509", *new_key, "-keyout", "ca.key", "-out", "ca.pem", "-days", DAYS,
+        "-subj", "/CN=Dspace test authority", "-addext", "basicConstraints=critical,CA:TRUE",
+        "-addext", "keyUsage=critical,keyCertSign")
+    for name, use in (("server", "serverAuth"), ("client", "clientAuth")):
+        run("req", *new_key, "-keyout", f"{name}.key", "-out", "request.pem",
+            "-subj", f"/CN=Dspace test {name}")
+        (folder / "extensions.txt").write_text(
+            f"extendedKeyUsage={use}\nsubjectAltName=DNS:localhost,IP:127.0.0.1,IP:::1\n")
+        run("x509", "-req", "-in", "request.pem", "-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial",
+            "-out", f"{name}.pem", "-days", DAYS, "-extfile", "extensions.txt")

@@ -1,0 +1,65 @@
+"""`dspace serve`: a session for simulations and viewers in other processes."""
+import os
+import signal
+import sys
+
+from dspace.command_line import Failed
+from dspace.command_line.certificates import make_test_certificates
+
+
+def add_arguments(parser):
+    parser.add_argument("--listen", default="127.0.0.1:0", metavar="ADDRESS",
+                        help="unix:PATH or host:port, port 0 for a free one (default 127.0.0.1:0); beyond "
+                        "this machine only with certificates")
+    parser.add_argument("--name", default="dspace", help="told to clients")
+    parser.add_argument("--cert", default="", metavar="PEM", help="the server's certificate")
+    parser.add_argument("--key", default="", metavar="PEM", help="its key")
+    parser.add_argument("--ca", default="", metavar="PEM", help="the authority of clients' certificates")
+    parser.add_argument("--insecure", action="store_true",
+                        help="listens beyond this machine for anybody, unencrypted")
+    parser.add_argument("--allow-root", action="append", metavar="DIR",
+                        help="a folder whose files commands may name, for reading and writing; may be "
+                        "given several times (default: the working folder)")
+    parser.add_argument("--max-message", type=int, default=64 << 20, metavar="BYTES",
+                        help="of a message to the server (default 64 MiB)")
+    parser.add_argument("--max-connections", type=int, default=32, metavar="N", help="default 32")
+    parser.add_argument("--max-frames", type=int, default=1000000, metavar="N",
+                        help="of one scene (default 1,000,000)")
+    parser.add_argument("--max-rate", type=float, default=100000.0, metavar="N",
+                        help="commands a second; a faster simulation is slowed down (default 100,000)")
+    parser.add_argument("--make-test-certificates", metavar="DIR",
+                        help="writes an authority and certificates for server and clients of this machine "
+                        "into DIR, and ends; for tests, not for operations")
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    if options.make_test_certificates:
+        make_test_certificates(options.make_test_certificates)
+        return 0
+    from dspace import vtk
+    server = vtk.vtkDspaceServer()
+    server.SetListen(options.listen)
+    server.SetName(options.name)
+    server.SetCertificates(options.cert, options.key, options.ca)
+    server.SetInsecure(options.insecure)
+    for root in options.allow_root or [os.getcwd()]:
+        server.AddAllowedRoot(root)
+    server.SetMaximumMessage(max(-1, min(options.max_message, 1 << 62)))
+    server.SetMaximumConnections(max(-1, min(options.max_connections, 1 << 30)))
+    server.SetMaximumFrames(max(0, min(options.max_frames, 1 << 62)))
+    server.SetMaximumRate(options.max_rate)
+    stop = []
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stop.append(True))
+    trouble = server.Start()
+    if trouble:
+        raise Failed(trouble)
+    if options.insecure and not options.cert:
+        print("dspace: note: --insecure: nothing is encrypted, and whoever reaches the server may drive it",
+              file=sys.stderr, flush=True)
+    print(f"dspace serve: listening on {server.GetAddress()}", flush=True)
+    while not stop and server.Run(0.2):
+        pass
+    server.Stop()
+    return 0

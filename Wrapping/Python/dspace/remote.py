@@ -1,0 +1,180 @@
+"""Sessions in a server process: the same script as with dspace.Session(), one line changed."""
+import os
+import time
+
+from dspace import vtk as _vtk
+from dspace._client import LocalClient, make_error, to_bytes, to_reply, warn
+from dspace._fields import flag, number, refuse, text
+from dspace.errors import Closed, Unsupported, WrongType
+from dspace.session import commands_pb2 as pb
+from dspace.session import service_pb2
+from dspace.sessions import Session
+
+# Commands whose replies say nothing but whether they were done.
+SILENT = {"set_time", "set_poses", "append_trail", "set_joints", "set_tilt", "set_text", "set_text_table",
+          "set_object_visible", "set_material", "set_object_offset", "set_light", "track_wheels"}
+
+
+class RemoteClient(LocalClient):
+    """Hands commands to a server."""
+
+    def __init__(self, link, address):
+        super().__init__()
+        self.vtk = None
+        self.link = link
+        self.address = address
+        self.wait = True
+        self.event_callbacks = []
+        self.pace = None  # (rate, simulation time, wall time) once time was set
+
+    def local(self):
+        raise Unsupported(f"the session is in the server at {self.address}: its VTK objects are there; "
+                          "accepted: commands, or a local dspace.Session()", "session")
+
+    def _open(self):
+        if self.link is None:
+            raise Closed("the session is closed; accepted: a new dspace.connect()", "session")
+        self._require_thread()
+        return self.link
+
+    def _carry(self, command):
+        link = self._open()
+        kind = command.WhichOneof("command")
+        if kind == "set_time":
+            self._keep_pace(command.set_time.time_s)
+        if not self.wait and kind in SILENT:
+            return to_reply(link.Send(command.SerializeToString()))
+        return to_reply(link.Execute(command.SerializeToString()))
+
+    def _keep_pace(self, time_s):
+        if self.pace is None:
+            return
+        rate, began, wall = self.pace
+        if began is None or time_s < began:
+            self.pace = (rate, time_s, time.monotonic())
+            return
+        ahead = (time_s - began) / rate - (time.monotonic() - wall)
+        if ahead > 0:
+            time.sleep(ahead)
+
+    def flush(self):
+        self._finish(pb.Command(), to_reply(self._open().Flush()))
+
+    def close(self):
+        if self.link is not None:
+            self._require_thread()
+            self.link.Close()
+        self.link = None
+        self.frame_listeners.clear()
+        self.event_callbacks.clear()
+
+
+class RemoteSession(Session):
+    """What connect() returns: a Session whose scenes are in a server process.
+
+    Closing it leaves the scenes there. Paths of files that are relative are those of this process's
+    working folder; the server must allow and have them.
+    """
+
+    def __init__(self, client):
+        self._client = client
+
+    @property
+    def wait(self):
+        """Whether every command waits for its reply: then, with a capture or render() each step, picture
+        and simulation are in lockstep. False: poses, time, joints, trails, texts and the like are sent
+        without waiting; when one of them is refused, the next command that waits raises what it says,
+        and is not carried out itself."""
+        return self._client.wait
+
+    @wait.setter
+    def wait(self, wait):
+        self._client.wait = flag(wait, "wait", "session")
+
+    def flush(self):
+        """Waits until everything that was sent is done; raises what of it was refused first."""
+        self._client.flush()
+
+    @property
+    def pace(self):
+        """Simulation seconds a wall second: setting a scene's time then waits until it is due. None
+        (the default): as fast as it goes."""
+        return None if self._client.pace is None else self._client.pace[0]
+
+    @pace.setter
+    def pace(self, rate):
+        if rate is not None:
+            rate = number(rate, "the pace", "session")
+            if not 0 < rate < float("inf"):
+                refuse("session", "the pace", rate, "None, or a finite number above 0")
+        self._client.pace = None if rate is None else (rate, None, 0.0)
+
+    def on_event(self, callback):
+        """Calls `callback` with a ViewerEvent (dspace.session.service_pb2) for everything that viewers
+        say: what was picked or selected, an answer, an edited value. Called by process_events()."""
+        if not callable(callback):
+            refuse("session", "the callback", callback, "a function of one ViewerEvent", WrongType)
+        self._client.event_callbacks.append(callback)
+
+    def process_events(self, wait=0.0):
+        """Hands what viewers have said to the callbacks of on_event; waits up to `wait` seconds for the
+        first. Returns the events. A callback that raises leaves the rest for the next call."""
+        wait = number(wait, "the wait", "session")
+        events = []
+        while True:
+            data = to_bytes(self._client._open().TakeEvent(0.0 if events else wait))
+            if not data:
+                return events
+            events.append(service_pb2.ViewerEvent.FromString(data))
+            for callback in list(self._client.event_callbacks):
+                callback(events[-1])
+
+    @property
+    def poses_left_out(self):
+        """How many poses were not sent because the server had them already."""
+        return self._client._open().GetPosesLeftOut()
+
+    @property
+    def vtk(self):
+        """The vtkDspaceRemoteSession behind it."""
+        return self._client.link
+
+    def __repr__(self):
+        state = "closed" if self._client.link is None else f"served at {self._client.address}"
+        return f"<dspace.RemoteSession, {state}>"
+
+
+def prepare(link, address, certificate, key, authority, insecure, timeout, label):
+    """What connect() and watch() share: checks, and sets what both kinds of links take."""
+    text(address, "the address", label)
+    files = []
+    for value, what in ((certificate, "certificate"), (key, "key"), (authority, "authority")):
+        if value is not None and not isinstance(value, (str, os.PathLike)):
+            refuse(label, what, value, "the path of a PEM file", WrongType)
+        files.append("" if value is None else os.path.abspath(os.fspath(value)))
+    link.SetCertificates(*files)
+    link.SetInsecure(flag(insecure, "insecure", label))
+    if insecure:
+        warn(f"{label}: nothing is encrypted, and nobody knows who is there")
+    link.SetTimeout(number(timeout, "the timeout", label))
+
+
+def connect(address, certificate=None, key=None, authority=None, insecure=False, timeout=30.0,
+            name="simulation", take_over=False, only_changes=True):
+    """Drives the session of a `dspace serve` process at "host:port" or "unix:PATH".
+
+    certificate, key, authority: PEM files for mutual TLS, all three; without them only an address of
+    this machine is accepted, unless `insecure` is spelled out. timeout: seconds of every wait. One
+    simulation drives a server: a second is refused, unless it says take_over=True. only_changes: poses
+    that the server has already are not sent again.
+    """
+    label = f"server {address!r}"
+    link = _vtk.vtkDspaceRemoteSession()
+    prepare(link, address, certificate, key, authority, insecure, timeout, label)
+    text(name, "the name", label)
+    link.SetTakeOver(flag(take_over, "take_over", label))
+    link.SetOnlyChanges(flag(only_changes, "only_changes", label))
+    reply = to_reply(link.Connect(address, name))
+    if reply.HasField("error"):
+        raise make_error(reply.error)
+    return RemoteSession(RemoteClient(link, address))
