@@ -3,9 +3,11 @@ thousand times a second its poses are sent, all in one message.
 
     ./dspace python Examples/rover_mobility/rover_mobility.py --seconds 10 --out rover.png
     ./dspace python Examples/rover_mobility/rover_mobility.py --connect HOST:PORT --real-time
+    ./dspace python Examples/rover_mobility/rover_mobility.py --seconds 8 --record run.dspace
     ./dspace movie Examples/rover_mobility/flight.toml --run Examples/rover_mobility/rover_mobility.py:run --out rover.mp4
 """
 import argparse
+import contextlib
 import pathlib
 import sys
 import tempfile
@@ -97,11 +99,15 @@ def main():
     parser.add_argument("--wheelbase", type=float, default=RoverModel.wheelbase, help="metres (1.1)")
     parser.add_argument("--folder", type=pathlib.Path,
                         help="where the ground's raster is written, so that a server finds it (a temporary one)")
+    parser.add_argument("--record", type=pathlib.Path, metavar="FILE", help="records the run; the ground beside it")
     parser.add_argument("--out", type=pathlib.Path, help="a picture at the end")
     options = parser.parse_args()
     session = dspace.connect(options.connect) if options.connect else dspace.Session()
-    with session:
-        simulation = Simulation(session, RoverModel(wheelbase=options.wheelbase), folder=options.folder)
+    folder = options.folder
+    if options.record and folder is None:
+        folder = options.record.resolve().parent  # a recording names the ground's file
+    with session, session.record(options.record) if options.record else contextlib.nullcontext():
+        simulation = Simulation(session, RoverModel(wheelbase=options.wheelbase), folder=folder)
         if options.connect:
             session.wait = False  # a server takes steps as they come; what it refuses is told later
         began = time.perf_counter()

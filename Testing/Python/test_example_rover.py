@@ -205,6 +205,22 @@ def test_in_its_own_process_over_the_wire(tmp_path):
     assert (tmp_path / "served.png").read_bytes() == (tmp_path / "local.png").read_bytes()
 
 
+def test_its_recording_is_the_run(tmp_path):
+    if not hasattr(dspace, "Playback"):
+        pytest.skip("this build plays no recordings back")
+    done = subprocess.run([sys.executable, "-W", "ignore", EXAMPLE / "rover_mobility.py", "--seconds", "0.3", "--record",
+                           tmp_path / "run.dspace"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    alone = Mobility(RoverModel(), Hills())
+    with dspace.Playback(tmp_path / "run.dspace") as run:
+        assert run.duration == pytest.approx(0.3, abs=1e-12)
+        for at in (0.1, 0.3):
+            while alone.time < at - STEP / 2:
+                alone.step(STEP, *command(alone.time))
+            run.seek(at + STEP / 2)
+            np.testing.assert_array_equal(run.session.scene()["rover"].position, alone.origins[0])
+
+
 def test_its_movie(tmp_path):
     movie = dspace.Movie.load(EXAMPLE / "flight.toml", size=(64, 36), rate=4, samples=1, duration=0.5)
     assert movie.make(f"{EXAMPLE / 'rover_mobility.py'}:run", tmp_path / "pictures") == 2
