@@ -55,14 +55,37 @@ bool LeavesPoses(const v1::Command& command) {
 
 bool PoseFilter::Pass(v1::Command& command) {
   if (command.has_set_poses()) {
-    const auto found = this->Scenes_.find(SceneOf(command));
-    return found == this->Scenes_.end() ||
-           this->PassPoses(found->second, *command.mutable_set_poses());
+    return this->PassPoses(this->Scenes_[SceneOf(command)], *command.mutable_set_poses());
   }
   if (!LeavesPoses(command)) {
     this->Forget();
   }
   return true;
+}
+
+// Finds the places of the frames; false when one stands twice.
+bool PoseFilter::Look(Frames& frames, const v1::SetPoses& poses) {
+  const std::size_t n = std::size_t(poses.frame_size());
+  if (frames.ids.size() == n &&
+      std::memcmp(frames.ids.data(), poses.frame().data(), n * sizeof(std::uint64_t)) == 0) {
+    return frames.unique;
+  }
+  frames.ids.assign(poses.frame().begin(), poses.frame().end());
+  frames.order.resize(n);
+  frames.unique = true;
+  ++this->Step_;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto [place, made] =
+        frames.places.emplace(frames.ids[i], std::uint32_t(frames.entries.size()));
+    if (made) {
+      frames.entries.emplace_back();
+    }
+    frames.order[i] = place->second;
+    std::uint64_t& step = frames.entries[place->second].step;
+    frames.unique = frames.unique && step != this->Step_;
+    step = this->Step_;
+  }
+  return frames.unique;
 }
 
 bool PoseFilter::PassPoses(Frames& frames, v1::SetPoses& poses) {
@@ -71,44 +94,30 @@ bool PoseFilter::PassPoses(Frames& frames, v1::SetPoses& poses) {
       poses.GetReflection()->GetUnknownFields(poses).field_count() > 0) {
     return true; // to be refused, or judged, by whoever carries it out
   }
-  ++this->Step_;
-  // First whether anything may go: a frame that stands twice is to be refused.
-  int kept = 0;
-  std::string stays(std::size_t(n), '\0');
-  for (int i = 0; i < n; ++i) {
-    const auto found = frames.find(poses.frame(i));
-    if (found == frames.end()) {
-      stays[std::size_t(i)] = 1;
-      ++kept;
-      continue;
-    }
-    Entry& entry = found->second;
-    if (entry.step == this->Step_) {
-      return true;
-    }
-    entry.step = this->Step_;
-    const bool same =
-        entry.number <= this->Accepted_ &&
-        std::memcmp(entry.pose.data(), poses.pose().data() + i * PoseSize, sizeof(entry.pose)) == 0;
-    stays[std::size_t(i)] = same ? 0 : 1;
-    kept += same ? 0 : 1;
+  if (frames.entries.size() + std::size_t(n) > MostFrames) {
+    frames = {};
   }
-  if (kept == n) {
-    return true;
+  if (!this->Look(frames, poses)) {
+    return true; // likewise
   }
-  this->LeftOut_ += std::uint64_t(n - kept);
   int to = 0;
   for (int i = 0; i < n; ++i) {
-    if (stays[std::size_t(i)]) {
-      poses.set_frame(to, poses.frame(i));
-      std::memmove(poses.mutable_pose()->mutable_data() + to * PoseSize,
-                   poses.pose().data() + i * PoseSize, PoseSize * sizeof(double));
-      ++to;
+    const Entry& entry = frames.entries[frames.order[std::size_t(i)]];
+    const double* pose = poses.pose().data() + i * PoseSize;
+    if (entry.number > 0 && entry.number <= this->Accepted_ &&
+        std::memcmp(entry.pose.data(), pose, sizeof(entry.pose)) == 0) {
+      continue; // it is there
     }
+    if (to < i) {
+      poses.set_frame(to, poses.frame(i));
+      std::memmove(poses.mutable_pose()->mutable_data() + to * PoseSize, pose, sizeof(entry.pose));
+    }
+    ++to;
   }
-  poses.mutable_frame()->Truncate(kept);
-  poses.mutable_pose()->Truncate(kept * PoseSize);
-  return kept > 0;
+  poses.mutable_frame()->Truncate(to);
+  poses.mutable_pose()->Truncate(to * PoseSize);
+  this->LeftOut_ += std::uint64_t(n - to);
+  return to > 0;
 }
 
 void PoseFilter::Sent(const v1::Command& command, std::uint64_t number) {
@@ -117,13 +126,20 @@ void PoseFilter::Sent(const v1::Command& command, std::uint64_t number) {
     return;
   }
   Frames& frames = this->Scenes_[SceneOf(command)];
-  if (frames.size() + std::size_t(poses.frame_size()) > MostFrames) {
-    frames.clear();
-  }
+  // Those of the step that has just passed, less what was left out: in the same order.
+  std::size_t at = 0;
   for (int i = 0; i < poses.frame_size(); ++i) {
-    Entry& entry = frames[poses.frame(i)];
+    while (at < frames.ids.size() && frames.ids[at] != poses.frame(i)) {
+      ++at;
+    }
+    if (at == frames.ids.size()) {
+      this->Forget(); // Pass has not seen it
+      return;
+    }
+    Entry& entry = frames.entries[frames.order[at]];
     std::memcpy(entry.pose.data(), poses.pose().data() + i * PoseSize, sizeof(entry.pose));
     entry.number = number;
+    ++at;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include <dspace/session/commands.pb.h>
 
@@ -31,10 +32,18 @@ public:
 private:
   struct Entry {
     std::array<double, 8> pose;
-    std::uint64_t number = 0; // of the command that set it
+    std::uint64_t number = 0; // of the command that set it; 0: none did
     std::uint64_t step = 0;   // in which it was seen last
   };
-  using Frames = std::unordered_map<std::uint64_t, Entry>;
+  struct Frames {
+    std::vector<Entry> entries;
+    std::unordered_map<std::uint64_t, std::uint32_t> places; // of ids in `entries`
+    // Of the step that Pass saw last: a simulation sends the same frames again and again.
+    std::vector<std::uint64_t> ids;
+    std::vector<std::uint32_t> order;
+    bool unique = false; // no frame stands twice in it
+  };
+  bool Look(Frames& frames, const v1::SetPoses& poses);
   bool PassPoses(Frames& frames, v1::SetPoses& poses);
   std::map<std::string, Frames> Scenes_;
   std::uint64_t Accepted_ = 0;

@@ -17,8 +17,8 @@ namespace {
 
 // Room for a message's own fields around a command.
 constexpr int Slack = 4096;
-// Acknowledgements of commands without replies come at least so often.
-constexpr std::uint64_t AcknowledgeEvery = 16;
+// How long a client whose commands want no reply waits to hear that the last one is done.
+constexpr std::chrono::microseconds ToTell{500};
 
 void Check(const ServerOptions& options) {
   const auto refuse = [](const char* what, const std::string& value, const char* accepted) {
@@ -145,6 +145,12 @@ bool Server::Run(const SessionWork& work, double seconds) {
   while (!hub.stopping) {
     hub.PutSnapshots(work, lock);
     hub.CutOffLate();
+    if (hub.tasks.empty() && hub.writer.untold > 0) {
+      hub.work.wait_for(lock, ToTell, [&] { return hub.stopping || !hub.tasks.empty(); });
+      if (hub.tasks.empty() && hub.writer.untold > 0) {
+        hub.TellDone();
+      }
+    }
     if (hub.tasks.empty()) {
       const auto now = LinkClock::now();
       if (now >= until) {
@@ -163,8 +169,7 @@ bool Server::Run(const SessionWork& work, double seconds) {
     ++hub.counts.commands;
     if (task.generation == hub.writer.generation) {
       hub.writer.done = task.number;
-      const bool more = !hub.tasks.empty() && task.number % AcknowledgeEvery != 0;
-      hub.Answer(task.number, task.noReply, std::move(reply), more);
+      hub.Answer(task.number, task.noReply, std::move(reply));
     }
     if (LinkClock::now() >= until) {
       break;

@@ -6,6 +6,7 @@ namespace dspace::session {
 namespace {
 
 constexpr std::size_t KeptReplies = 1024;
+constexpr std::uint64_t TellEvery = 32;                       // commands without replies, at least
 constexpr std::size_t LargestReply = std::size_t(2000) << 20; // protobuf's own limit is 2 GiB
 
 } // namespace
@@ -32,18 +33,19 @@ void Server::Hub::Acknowledge(std::uint64_t number) {
   }
 }
 
-void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply, bool more) {
+void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply) {
   const bool silent =
       noReply && !reply.has_error() && reply.warning().empty() && reply.frame_event().empty();
-  if (silent && more) {
-    return; // the next one acknowledges this one too
-  }
-  auto message = std::make_shared<v1::DriveReply>();
-  message->mutable_done()->set_number(number);
   if (silent) {
-    this->PutToWriter(std::move(message), 64);
+    this->writer.untold = number; // a later one tells of this one too
+    if (number % TellEvery == 0) {
+      this->TellDone();
+    }
     return;
   }
+  this->writer.untold = 0;
+  auto message = std::make_shared<v1::DriveReply>();
+  message->mutable_done()->set_number(number);
   std::size_t size = reply.ByteSizeLong() + 64;
   if (size > LargestReply) {
     v1::Error* error = message->mutable_done()->mutable_reply()->mutable_error();
@@ -63,6 +65,12 @@ void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply, bo
     this->Acknowledge(to.kept.begin()->first);
   }
   this->PutToWriter(std::move(message), size);
+}
+
+void Server::Hub::TellDone() {
+  auto message = std::make_shared<v1::DriveReply>();
+  message->mutable_done()->set_number(std::exchange(this->writer.untold, 0));
+  this->PutToWriter(std::move(message), 64);
 }
 
 void Server::Hub::PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size) {

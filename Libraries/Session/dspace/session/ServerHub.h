@@ -61,6 +61,7 @@ struct Writer {
   std::uint64_t generation = 0; // of keys; what older ones sent is not carried out
   std::uint64_t queued = 0;     // the last number that has come
   std::uint64_t done = 0;       // the last one carried out
+  std::uint64_t untold = 0;     // the same, if its client does not know yet; else 0
   std::map<std::uint64_t, std::pair<std::shared_ptr<const v1::DriveReply>, std::size_t>> kept;
   std::size_t keptBytes = 0;           // of `kept`: replies that the client has not said it has
   std::shared_ptr<DriveStream> stream; // null while disconnected
@@ -97,7 +98,8 @@ struct Server::Hub {
 
   // All of these with the mutex held.
   void Acknowledge(std::uint64_t number);
-  void Answer(std::uint64_t number, bool noReply, v1::Reply reply, bool more);
+  void Answer(std::uint64_t number, bool noReply, v1::Reply reply);
+  void TellDone();
   void PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size);
   void TellWriterName();
   void PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock);
