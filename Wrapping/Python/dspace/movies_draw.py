@@ -67,7 +67,13 @@ def _of_playback(playback):
         playback.seek(time + max(1e-9, 8 * np.spacing(abs(time))))
 
     return Source(playback.session, seek, telemetry if callable(telemetry) else None,
-                  beginning=min(playback.times, default=0.0))
+                  beginning=_first_time(playback))
+
+
+def _first_time(playback):
+    """The first time that the simulation set: what was there before it has the time 0 that nobody set."""
+    steps = playback.file.steps() if hasattr(playback, "file") else []
+    return steps[0][1] if steps else min(playback.times, default=0.0)
 
 
 def _made_by(path, name):
