@@ -68,15 +68,21 @@ def arguments():
                         help="of the movie, WIDTHxHEIGHT (default 1280x720)")
     parser.add_argument("--served", action="store_true",
                         help="the scene is in a server process of its own, driven over the wire")
-    return parser.parse_args()
+    parser.add_argument("--record", type=pathlib.Path, metavar="FILE",
+                        help="records the session into a new file, for `dspace play`")
+    options = parser.parse_args()
+    if options.record and options.served:
+        parser.error("--record with --served; accepted: one of them")
+    return options
 
 
 @contextlib.contextmanager
 def open_session(options):
     """A session here, or in a server process that is ended with it."""
     if not options.served:
-        with open_session(options) as session:
-            yield session
+        with dspace.Session() as session:
+            with session.record(options.record) if options.record else contextlib.nullcontext():
+                yield session
         return
     files = [options.terrain, options.model] + ([options.image] if options.image else [])
     roots = {DATA} | {file.resolve().parent for file in files} | {options.out.resolve()}
