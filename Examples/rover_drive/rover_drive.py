@@ -120,7 +120,7 @@ def main():
             sys.exit(f"dspace demo: there is no file {path}")
     options.out.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
-    with dspace.Session() as session:
+    with open_session(options) as session:
         scene = session.scene("demo")
         terrain = add_terrain(scene, options)
         description = load(scene, options)
