@@ -121,7 +121,7 @@ def test_dask_workers_make_the_same(run, tmp_path):
     distributed = pytest.importorskip("distributed", reason="python3-distributed is not installed")
     movie = flight()
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False, protocol="tcp://",
-                                  dashboard_address=None) as cluster:
+                                  dashboard_address=None, local_directory=str(tmp_path / "workers")) as cluster:
         assert movie.make(run, tmp_path / "dask", scheduler=cluster.scheduler_address) == 12
     movie.make(run, tmp_path / "one")
     assert files(tmp_path / "dask", 12) == files(tmp_path / "one", 12)
