@@ -2,6 +2,8 @@
 import random
 import shutil
 import sqlite3
+import subprocess
+import sys
 import warnings
 
 import numpy
@@ -262,3 +264,37 @@ def test_log_and_play_commands(tmp_path, capsys):
     assert len(list((tmp_path / "some").iterdir())) == 3
     assert main(["play", a, "--at", "-3"]) == 1
     assert main(["play", a, "--viewport", "no such", "--out", str(tmp_path / "two")]) == 1
+
+
+def test_a_full_disk_is_told_once_and_the_session_goes_on(tmp_path):
+    script = tmp_path / "full.py"
+    script.write_text(f"""
+import resource, signal, warnings
+import dspace
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+warnings.simplefilter("always")
+with dspace.Session() as session, warnings.catch_warnings(record=True) as told:
+    frame = session.scene().add_frame("rover")
+    recording = session.record({str(tmp_path / "run.dspace")!r}, commit_every=0.001)
+    recording.flush()
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+    for i in range(20000):
+        frame.pose = dspace.Pose((i, 0, 0))
+    assert frame.pose.position[0] == 19999
+    assert len(told) == 1 and "run.dspace" in str(told[0].message), [str(w.message) for w in told]
+    assert recording.failure and not recording.active and session.recording is None
+    try:
+        recording.stop()
+    except dspace.Io:
+        pass
+    assert 100 < recording.counts["written"] < 20000
+    print(recording.counts["written"])
+""")
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    with RecordingFile(tmp_path / "run.dspace") as file:
+        file.check()
+        assert file.last == int(done.stdout)
+    with dspace.Playback(tmp_path / "run.dspace") as run:
+        run.step(10)
+        assert run.session.scene().frame("rover").pose.position[0] == int(done.stdout) - 1

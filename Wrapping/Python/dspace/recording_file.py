@@ -5,6 +5,7 @@ import sqlite3
 import struct
 from typing import NamedTuple
 
+from dspace._fields import refuse, text
 from dspace.errors import AlreadyExists, Corrupt, NotFound, Unsupported
 
 FORMAT = 1
@@ -18,6 +19,15 @@ CREATE INDEX step ON command(time) WHERE kind = 13;
 CREATE TABLE asset(path TEXT PRIMARY KEY, sha256 BLOB, size INTEGER, content BLOB);
 """
 COLUMNS = "seq, time, wall, kind, payload, checksum"
+
+
+def path_of(path):
+    """An absolute path, of a str or a path object."""
+    path = text(os.fspath(path) if isinstance(path, os.PathLike) else path, "the path", "recording",
+                "a str or a path")
+    if not path or "\0" in path:
+        refuse("recording", "the path", path, "one that is not empty and holds no zero bytes")
+    return os.path.abspath(path)
 
 
 class Row(NamedTuple):
@@ -57,7 +67,7 @@ class RecordingFile:
     is read: a damaged one is dspace.Corrupt, which names the file and the command."""
 
     def __init__(self, path):
-        self.path = os.path.abspath(os.fspath(path))
+        self.path = path_of(path)
         self.label = f"recording {self.path!r}"
         if not os.path.isfile(self.path):
             raise NotFound(f"{self.label}: there is no such file", self.label)

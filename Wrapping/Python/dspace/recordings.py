@@ -1,8 +1,9 @@
 """A session that is being recorded."""
 import os
 
-from dspace._fields import number, text
+from dspace._fields import number
 from dspace.errors import AlreadyExists, InvalidArgument, Io, NotFound
+from dspace.recording_file import path_of
 
 COUNTS = ("accepted", "written", "bytes", "snapshots")
 
@@ -11,7 +12,7 @@ class Recording:
     """What Session.record() returns. `counts` says how far it is."""
 
     def __init__(self, client, path, commit_every):
-        path = os.path.abspath(text(os.fspath(path), "the path", "recording"))
+        self.path = path = path_of(path)
         self._client = client
         self._vtk = client.local()
         self._last = None
@@ -23,12 +24,11 @@ class Recording:
         if not 0.001 <= every <= 60:
             raise InvalidArgument(f"recording {path!r}: commit_every is {every!r} s; accepted: 0.001 to 60", "recording")
         self._raise(self._vtk.Record(path, every))
-        self.path = path
         client.recording = self
 
     def _raise(self, problem):
         if problem:
-            raise Io(problem, f"recording {getattr(self, 'path', '')!r}")
+            raise Io(problem, f"recording {self.path!r}")
 
     def __enter__(self):
         return self
