@@ -55,6 +55,9 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address,
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 20000);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10000);
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  // Steps are large: fewer and larger reads and frames.
+  arguments.SetInt(GRPC_ARG_TCP_READ_CHUNK_SIZE, LinkReadBytes);
+  arguments.SetInt(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, LinkFrameBytes);
   return grpc::CreateCustomChannel(parsed.target, MakeClientCredentials(parsed, security),
                                    arguments);
 }
@@ -252,8 +255,12 @@ void RemoteClient::Link::Write(Stream& stream) {
     }
     const auto request = this->pending[this->next].request;
     ++this->next;
+    grpc::WriteOptions options;
+    if (this->next < this->pending.size()) {
+      options.set_buffer_hint(); // what follows takes it along
+    }
     lock.unlock();
-    const bool written = stream.Write(*request);
+    const bool written = stream.Write(*request, options);
     lock.lock();
     if (!written) {
       return; // reading ends too

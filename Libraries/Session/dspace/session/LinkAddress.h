@@ -26,6 +26,11 @@ struct LinkSecurity {
   bool HasCertificates() const { return !this->certificate.empty(); }
 };
 
+// Of the transport: what is read at once, a frame, and what may be on its way unread.
+constexpr int LinkReadBytes = 128 << 10;
+constexpr int LinkFrameBytes = 256 << 10;
+constexpr int LinkAheadBytes = 2 << 20;
+
 struct LinkAddress {
   std::string target;    // as gRPC has it: "unix:/tmp/socket", "127.0.0.1:4000", "[::1]:4000"
   std::string path;      // of a Unix socket, else empty
