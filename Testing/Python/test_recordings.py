@@ -298,3 +298,23 @@ with dspace.Session() as session, warnings.catch_warnings(record=True) as told:
     with dspace.Playback(tmp_path / "run.dspace") as run:
         run.step(10)
         assert run.session.scene().frame("rover").pose.position[0] == int(done.stdout) - 1
+
+
+def test_a_served_session_is_recorded(tmp_path):
+    path, address = tmp_path / "served.dspace", f"unix:{tmp_path}/socket"
+    command = [sys.executable, "-m", "dspace", "serve", "--listen", address, "--record", path]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        try:
+            assert "listening" in server.stdout.readline()
+            with dspace.connect(address) as session:
+                with pytest.raises(dspace.Unsupported):
+                    session.record(tmp_path / "here.dspace")
+                drive(session, 4)
+                live = session.viewports["view"].image()
+        finally:
+            server.terminate()
+            server.wait(timeout=60)
+    with dspace.Playback(path) as run:
+        run.step(100)
+        assert run.time == 1.5
+        assert numpy.array_equal(run.session.viewports["view"].image(), live)

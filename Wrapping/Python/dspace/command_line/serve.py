@@ -27,6 +27,7 @@ def add_arguments(parser):
                         help="of one scene (default 1,000,000)")
     parser.add_argument("--max-rate", type=float, default=100000.0, metavar="N",
                         help="commands a second; a faster simulation is slowed down (default 100,000)")
+    parser.add_argument("--record", metavar="FILE", help="records the session into a new file, for `dspace play`")
     parser.add_argument("--make-test-certificates", metavar="DIR",
                         help="writes an authority and certificates for server and clients of this machine "
                         "into DIR, and ends; for tests, not for operations")
@@ -52,6 +53,12 @@ def run(options):
     stop = []
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.append(True))
+    if options.record is not None:
+        if os.path.lexists(options.record):
+            raise Failed(f"--record {options.record!r}: there is such a file; accepted: a new one")
+        trouble = server.GetSession().Record(os.path.abspath(options.record), 0.1)
+        if trouble:
+            raise Failed(trouble)
     trouble = server.Start()
     if trouble:
         raise Failed(trouble)
@@ -62,4 +69,7 @@ def run(options):
     while not stop and server.Run(0.2):
         pass
     server.Stop()
+    trouble = server.GetSession().StopRecording()
+    if trouble:
+        raise Failed(trouble)
     return 0
