@@ -226,3 +226,15 @@ def test_it_ends_cleanly(tmp_path, number):
         with pytest.raises((dspace.Io, dspace.DeadlineExceeded)):
             session.scene().add_frame("late")
     assert not os.path.exists(server.listen[len("unix:"):])
+
+
+def test_the_demo_is_the_same_when_it_is_served(tmp_path):
+    demo = pathlib.Path(__file__).parents[2] / "Examples" / "rover_drive" / "rover_drive.py"
+    sheets = []
+    for served in ((), ("--served",)):
+        out = tmp_path / f"out{len(sheets)}"
+        run = subprocess.run([sys.executable, demo, "--out", out, "--seconds", "0.1", "--size", "160x120",
+                              "--mode", "triangles", *served], check=True, stdout=subprocess.PIPE, text=True)
+        assert ("served by process" in run.stdout) == bool(served)
+        sheets.append((out / "contact_sheet.png").read_bytes())
+    assert sheets[0] == sheets[1]
