@@ -16,6 +16,9 @@ from dspace.recording_file import RecordingFile, Row, checksum, write_recording
 from dspace.session import commands_pb2 as pb
 
 
+PAGE = 65536
+
+
 def drive(session, steps, begin=0, size=(96, 64)):
     """A rover, made and driven: all that moves in a picture, seen by a camera that lags behind."""
     scene = session.scene()
@@ -46,7 +49,7 @@ def drive(session, steps, begin=0, size=(96, 64)):
     return scene
 
 
-def made(path, n=120):
+def made(path, n=400):
     """A recording of n commands of all sizes, whose content follows from their numbers, and its rows."""
     rows = []
     for i in range(1, n + 1):
@@ -54,7 +57,7 @@ def made(path, n=120):
         if i % 5 == 0:
             command.set_time.time_s = i / 5
         else:
-            command.create_frame.name = f"{i} " * (30 * (i % 7) + (3000 if i % 17 == 0 else 0))
+            command.create_frame.name = f"{i} " * (30 * (i % 7) + (30000 if i % 31 == 0 else 0))
         kind = command.ListFields()[0][0].number
         rows.append(Row(i, float(i // 5) if i >= 5 else 0.0, 1e9 + i / 3, kind, command.SerializeToString()))
     snapshots = [Row(0, 0.0, 1e9, 0, b""), Row(60, 12.0, 1e9, 0, b"")]
@@ -93,19 +96,16 @@ def test_cut_anywhere_it_reports_and_salvages(tmp_path):
     rows = made(whole)
     data = whole.read_bytes()
     chance = random.Random(1)
-    ends = [*range(0, len(data), 4096), *(chance.randrange(len(data)) | 1 for _ in range(40))]
+    ends = [*range(0, len(data), PAGE), *range(0, len(data), 9 * 4096), *(chance.randrange(len(data)) | 1 for _ in range(40))]
     part = tmp_path / "part.dspace"
-    most = 0
-    for end in ends:
+    before = set()
+    for end in sorted(ends):
         part.write_bytes(data[:end])
-        said = damaged(part)
-        assert said is True, end
+        assert damaged(part) is True, end
         got = survivors(part, rows) if end else set()
-        most = max(most, len(got))
-        # All whose pages, overflow pages too, lie before the cut come back: they lie in order.
-        if end > 8 * 4096:
-            assert len(got) > 0.5 * len(rows) * end / len(data) - 30, end
-    assert most > 100
+        assert got >= before, end  # what a longer part has more can only add
+        before = got
+    assert 100 < len(before) < len(rows)
 
 
 def test_flipped_bits_are_reported_and_no_wrong_command_comes_back(tmp_path):
@@ -115,7 +115,7 @@ def test_flipped_bits_are_reported_and_no_wrong_command_comes_back(tmp_path):
     chance = random.Random(2)
     bad = tmp_path / "bad.dspace"
     reported = 0
-    for _ in range(150):
+    for _ in range(120):
         flipped = bytearray(data)
         for _ in range(chance.choice((1, 1, 3, 30))):
             flipped[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
@@ -125,7 +125,7 @@ def test_flipped_bits_are_reported_and_no_wrong_command_comes_back(tmp_path):
         assert said is True or said == rows
         reported += said is True
         survivors(bad, rows)
-    assert reported > 100
+    assert reported > 80
 
 
 def test_a_zeroed_page_loses_only_its_own(tmp_path, capsys):
@@ -133,12 +133,12 @@ def test_a_zeroed_page_loses_only_its_own(tmp_path, capsys):
     rows = made(whole)
     data = whole.read_bytes()
     lost_most = 0
-    for page in range(1, len(data) // 4096):
+    for page in range(1, len(data) // PAGE):
         bad = tmp_path / "bad.dspace"
-        bad.write_bytes(data[:4096 * page] + bytes(4096) + data[4096 * (page + 1):])
+        bad.write_bytes(data[:PAGE * page] + bytes(PAGE) + data[PAGE * (page + 1):])
         got = survivors(bad, rows)
         lost_most = max(lost_most, len(rows) - len(got))
-    assert 0 < lost_most < 40  # the rows of one leaf
+    assert 0 < lost_most < 0.7 * len(rows)  # the rows of one leaf
     # The command says what is lost.
     assert main(["log", "salvage", str(bad), "--out", str(tmp_path / "new.dspace")]) in (0, 1)
     missing = gaps(sorted(got), max(rows))
@@ -277,7 +277,7 @@ with dspace.Session() as session, warnings.catch_warnings(record=True) as told:
     frame = session.scene().add_frame("rover")
     recording = session.record({str(tmp_path / "run.dspace")!r}, commit_every=0.001)
     recording.flush()
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8 << 20, 8 << 20))
     for i in range(20000):
         frame.pose = dspace.Pose((i, 0, 0))
     assert frame.pose.position[0] == 19999

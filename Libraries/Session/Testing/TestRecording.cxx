@@ -187,7 +187,7 @@ TEST_F(Recording, KilledAtAnyMomentItIsAPrefix) {
 // The simulation is told once and goes on; what was written stays.
 TEST_F(Recording, ADiskThatIsFullEndsItWithOneWarning) {
   RecordingOptions options;
-  options.maximumPages = 200;
+  options.maximumPages = 30;
   options.commitEvery_s = 0.001;
   RecordingWriter writer(this->Path_, Ledger(), 0.0, options);
   int told = 0;
@@ -219,7 +219,7 @@ TEST_F(Recording, AFileThatMayNotGrowEndsIt) {
   if (child == 0) {
     std::signal(SIGXFSZ, SIG_IGN);
     RecordingWriter writer(this->Path_, Ledger(), 0.0);
-    const rlimit limit = {1 << 20, 1 << 20};
+    const rlimit limit = {3 << 20, 3 << 20};
     setrlimit(RLIMIT_FSIZE, &limit);
     int told = 0;
     for (std::uint64_t i = 1; i <= 2000; ++i) {

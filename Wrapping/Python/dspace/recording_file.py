@@ -171,7 +171,7 @@ def write_recording(path, commands, snapshots, assets=()):
         raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
     database = sqlite3.connect(path)
     try:
-        database.executescript("PRAGMA page_size=4096; PRAGMA journal_mode=WAL;" + SCHEMA)
+        database.executescript("PRAGMA page_size=65536; PRAGMA journal_mode=WAL;" + SCHEMA)
         with database:
             database.execute("INSERT INTO meta VALUES('format', ?)", (FORMAT,))
             for table, rows in (("command", commands), ("snapshot", snapshots)):

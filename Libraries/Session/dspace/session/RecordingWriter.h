@@ -20,7 +20,7 @@ struct RecordingOptions {
   std::size_t queueBytes = 64u << 20;   // then the simulation waits for the disk; 1 MiB and more
   std::size_t snapshotBytes = 8u << 20; // of commands from one snapshot to the next, at least,
   std::uint64_t snapshotCommands = 20000; // or so many commands
-  std::int64_t maximumPages = 0;          // of 4096 bytes, for the file; 0: as the disk has
+  std::int64_t maximumPages = 0;          // of 64 KiB, for the file; 0: as the disk has
 };
 
 // What a recording holds; `written` and `bytes` are safe on disk up to a crash of the process.

@@ -1,6 +1,6 @@
 """`dspace log salvage`: commands out of the raw pages of a damaged recording.
 
-SQLite's file format (sqlite.org/fileformat2.html): pages of 4096 bytes; a leaf page of a table begins with
+SQLite's file format (sqlite.org/fileformat2.html): pages of one size; a leaf page of a table begins with
 byte 13, the number of its cells at 3, their places from 8 on. A cell is the payload's length, the row's id (both
 varints), the payload, and where it does not fit, the number of the first page of a chain that holds the rest.
 The payload is a record: types of its columns, then their values. What is found is believed only where the
@@ -12,7 +12,7 @@ import struct
 from dspace.command_line import Failed
 from dspace.recording_file import Row, checksum, write_recording
 
-PAGE = 4096
+SIZES = (65536, 4096)  # of pages: ours, and a common one
 LEAF = 13
 
 
@@ -46,44 +46,47 @@ def rows_in(path):
     """Commands and snapshots by number: of the file's pages, and of those that its log holds."""
     with open(path, "rb") as file:
         data = file.read()
-    versions = [pages_of(data)]
+    log = b""
     if os.path.exists(path + "-wal"):
         with open(path + "-wal", "rb") as file:
-            versions.append({**versions[0], **log_pages(file.read())})
+            log = file.read()
     commands, snapshots = {}, {}
-    for pages in reversed(versions):
-        for page in pages.values():
-            for row, table in rows_of(page, pages):
-                (snapshots if table == "snapshot" else commands).setdefault(row.seq, row)
+    for size in SIZES:  # the head that states it may be damaged
+        whole = pages_of(data, size)
+        newest = {**whole, **log_pages(log, size)}
+        for pages in (newest, whole) if log else (whole,):
+            for page in pages.values():
+                for row, table in rows_of(page, pages, size):
+                    (snapshots if table == "snapshot" else commands).setdefault(row.seq, row)
     return commands, snapshots
 
 
-def pages_of(data):
-    return {n + 1: data[n * PAGE:(n + 1) * PAGE] for n in range((len(data) + PAGE - 1) // PAGE)}
+def pages_of(data, size):
+    return {n + 1: data[n * size:(n + 1) * size] for n in range((len(data) + size - 1) // size)}
 
 
-def log_pages(data):
+def log_pages(data, size):
     """The last version of every page in a write-ahead log: frames of a head of 24 bytes and a page, those
     whose salt is the log's own (others are of an earlier turn)."""
     pages, salt = {}, data[16:24]
-    for at in range(32, len(data) - 24, 24 + PAGE):
+    for at in range(32, len(data) - 24, 24 + size):
         if data[at + 8:at + 16] == salt:
-            pages[struct.unpack(">I", data[at:at + 4])[0]] = data[at + 24:at + 24 + PAGE]
+            pages[struct.unpack(">I", data[at:at + 4])[0]] = data[at + 24:at + 24 + size]
     return pages
 
 
-def rows_of(page, pages):
+def rows_of(page, pages, size):
     """(row, table) of a leaf page, those whose checksum holds."""
     for start in (0, 100):  # the first page begins with the file's head
         if len(page) < start + 8 or page[start] != LEAF:
             continue
         count = struct.unpack(">H", page[start + 3:start + 5])[0]
-        for n in range(min(count, PAGE // 2)):
+        for n in range(min(count, size // 2)):
             place = page[start + 8 + 2 * n:start + 10 + 2 * n]
             if len(place) < 2:
                 break
             try:
-                found = row_at(page, struct.unpack(">H", place)[0], pages)
+                found = row_at(page, struct.unpack(">H", place)[0], pages, size)
             except (IndexError, struct.error, ValueError, OverflowError):
                 continue  # no such row, or one that is damaged
             if found is not None:
@@ -102,10 +105,10 @@ def varint(data, at):
     raise ValueError
 
 
-def row_at(page, at, pages):
+def row_at(page, at, pages, page_size):
     size, at = varint(page, at)
     seq, at = varint(page, at)
-    record = payload_at(page, at, size, pages)
+    record = payload_at(page, at, size, pages, page_size)
     head, place = varint(record, 0)
     values = head
     columns = []
@@ -122,15 +125,15 @@ def row_at(page, at, pages):
     return None
 
 
-def payload_at(page, at, size, pages):
+def payload_at(page, at, size, pages, page_size):
     """With its overflow pages; how much is on the leaf itself is SQLite's rule."""
-    most = PAGE - 35
+    most = page_size - 35
     if size <= most:
         if at + size > len(page):
             raise ValueError
         return page[at:at + size]
-    least = (PAGE - 12) * 32 // 255 - 23
-    local = least + (size - least) % (PAGE - 4)
+    least = (page_size - 12) * 32 // 255 - 23
+    local = least + (size - least) % (page_size - 4)
     local = local if local <= most else least
     parts, got = [page[at:at + local]], local
     following = struct.unpack(">I", page[at + local:at + local + 4])[0]
@@ -140,9 +143,9 @@ def payload_at(page, at, size, pages):
         if chained is None or following in seen:
             raise ValueError
         seen.add(following)
-        parts.append(chained[4:4 + min(size - got, PAGE - 4)])
+        parts.append(chained[4:4 + min(size - got, page_size - 4)])
         got += len(parts[-1])
-        if len(chained) < PAGE and got < size:
+        if len(chained) < page_size and got < size:
             raise ValueError
         following = struct.unpack(">I", chained[:4])[0]
     return b"".join(parts)
