@@ -154,6 +154,8 @@ TEST_F(Recording, KilledAtAnyMomentItIsAPrefix) {
   std::size_t held = 0;
   for (int round = 0; round < 30; ++round) {
     this->Remove();
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
@@ -161,6 +163,9 @@ TEST_F(Recording, KilledAtAnyMomentItIsAPrefix) {
       options.commitEvery_s = 0.002;
       options.snapshotCommands = 50;
       RecordingWriter writer(this->Path_, Ledger(), 0.0, options);
+      if (write(ends[1], "", 1) != 1) { // it is a recording from here on
+        _exit(1);
+      }
       for (std::uint64_t i = 1;; ++i) {
         writer.Add(Numbered(i), {}, Ledger());
         if (i % 100 == 0) {
@@ -168,10 +173,11 @@ TEST_F(Recording, KilledAtAnyMomentItIsAPrefix) {
         }
       }
     }
-    while (access((this->Path_ + "-wal").c_str(), F_OK) != 0) { // it has begun
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    std::this_thread::sleep_for(std::chrono::microseconds(20000 + random() % 80000));
+    char begun = 1;
+    ASSERT_EQ(read(ends[0], &begun, 1), 1);
+    close(ends[0]);
+    close(ends[1]);
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 100000));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     const std::vector<RecordingRow> rows = ReadRows(this->Path_);

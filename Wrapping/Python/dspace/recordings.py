@@ -22,7 +22,8 @@ class Recording:
             raise NotFound(f"recording {path!r}: there is no such folder", "recording")
         every = number(commit_every, "the time from commit to commit", "recording")
         if not 0.001 <= every <= 60:
-            raise InvalidArgument(f"recording {path!r}: commit_every is {every!r} s; accepted: 0.001 to 60", "recording")
+            raise InvalidArgument(f"recording {path!r}: commit_every is {every!r} s; accepted: 0.001 to 60",
+                                  "recording")
         self._raise(self._vtk.Record(path, every))
         client.recording = self
 

@@ -76,7 +76,7 @@ RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages)
   }
   try {
     sqlite3_busy_timeout(this->Database_, 10000); // a reader that checkpoints
-    this->Run("PRAGMA page_size=65536"); // a step of a thousand poses in few pages
+    this->Run("PRAGMA page_size=65536");          // a step of a thousand poses in few pages
     this->Run("PRAGMA journal_mode=WAL");
     this->Run("PRAGMA synchronous=NORMAL");
     this->Run("PRAGMA wal_autocheckpoint=2048"); // 128 MiB: the disk is waited for seldom

@@ -20,8 +20,8 @@ struct RecordingRow {
   std::string payload;
 };
 
-// The first 16 bytes of the SHA-256 of 'C' (a command) or 'S' (a snapshot), seq (8 bytes), time_s, wall_s (doubles), kind (4 bytes), all
-// little-endian, and the payload.
+// The first 16 bytes of the SHA-256 of the letter C (a command) or S (a snapshot), seq (8 bytes),
+// time_s, wall_s (doubles) and kind (4 bytes), all little-endian, and the payload.
 std::string RecordingChecksum(const RecordingRow& row);
 
 // Throws Error(Io) with SQLite's words.
