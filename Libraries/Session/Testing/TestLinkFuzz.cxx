@@ -154,6 +154,66 @@ TEST_F(LinkTest, WhatIsNotTheProtocolIsRefusedByName) {
   EXPECT_EQ(this->Server->GetCounts().commands, 0u);
 }
 
+TEST_F(LinkTest, AWriterThatDoesNotReadIsCutOffAndMemoryIsBounded) {
+  this->Options.unreadBytes = 1 << 20;
+  this->StartServer();
+  {
+    session::RemoteClient client(this->ClientOptions());
+    Accept(client.Execute(MakeScene()));
+    for (std::uint64_t id = 2; id < 3002; ++id) {
+      Accept(client.Send(MakeFrame(id)));
+    }
+    Accept(client.Flush());
+  }
+  const std::uint64_t before = this->Server->GetCounts().commands;
+  grpc::GenericStub stub(
+      grpc::CreateChannel(this->Server->Address(), grpc::InsecureChannelCredentials()));
+  grpc::ClientContext context;
+  context.set_deadline(Clock::now() + std::chrono::seconds(60));
+  grpc::CompletionQueue queue;
+  const auto call = stub.PrepareCall(&context, "/dspace.v1.Dspace/Drive", &queue);
+  void* tag = nullptr;
+  bool good = false;
+  const auto write = [&](const std::string& bytes) {
+    const grpc::Slice slice(bytes);
+    call->Write(grpc::ByteBuffer(&slice, 1), nullptr);
+    return queue.Next(&tag, &good) && good;
+  };
+  call->StartCall(nullptr);
+  ASSERT_TRUE(queue.Next(&tag, &good) && good);
+  ASSERT_TRUE(write(OpenBytes()));
+  // Answers of 150 kB each, two hundred times what may wait, none of them read.
+  std::size_t most = 0;
+  std::uint64_t number = 0;
+  const auto cut = [&] {
+    const auto counts = this->Server->GetCounts();
+    return counts.commands > before && counts.connections == 0;
+  };
+  while (!cut() && number < 1400) {
+    v1::DriveRequest request;
+    request.mutable_send()->set_number(++number);
+    request.mutable_send()->mutable_command()->mutable_list_frames();
+    const grpc::Slice slice(request.SerializeAsString());
+    call->Write(grpc::ByteBuffer(&slice, 1), nullptr);
+    // A client that reads nothing does not hear that it was cut off.
+    while (queue.AsyncNext(&tag, &good, Clock::now() + std::chrono::milliseconds(100)) ==
+               grpc::CompletionQueue::TIMEOUT &&
+           !cut()) {
+    }
+    most = std::max(most, this->Server->GetCounts().waitingBytes);
+  }
+  EXPECT_TRUE(cut());
+  EXPECT_LT(most, std::size_t(3) << 20);
+  EXPECT_GT(this->Server->GetCounts().commands, before + 5);
+  context.TryCancel();
+  queue.Shutdown();
+  while (queue.AsyncNext(&tag, &good, Clock::now() + std::chrono::seconds(20)) ==
+         grpc::CompletionQueue::GOT_EVENT) {
+  }
+  session::RemoteClient client(this->ClientOptions()); // others go on
+  Accept(client.Execute(MakeFrame(9999)));
+}
+
 TEST_F(LinkTest, ConnectionsAreLimited) {
   this->Options.maximumConnections = 3;
   this->StartServer();

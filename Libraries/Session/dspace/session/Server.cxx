@@ -134,6 +134,9 @@ Server::Counts Server::GetCounts() const {
   counts.connections = this->Hub_->connections;
   counts.viewers = unsigned(this->Hub_->viewers.size());
   counts.waitingBytes = this->Hub_->taskBytes + this->Hub_->writer.keptBytes;
+  if (this->Hub_->writer.stream) {
+    counts.waitingBytes += this->Hub_->writer.stream->out.bytes;
+  }
   for (const ViewerStream* viewer : this->Hub_->viewers) {
     counts.waitingBytes += viewer->out.bytes;
   }
