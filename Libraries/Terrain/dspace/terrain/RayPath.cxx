@@ -28,7 +28,8 @@ RayPath::RayPath(const PostPlacement& placement, const PostLattice& lattice,
                  double low, double high)
     : Placement_(placement), Curved_(placement.GetKind() == PostPlacement::Kind::Sphere),
       Last_(maximum), Origin_(origin_S), Direction_(unit_S) {
-  const double pad = 1e-6 * (1.0 + high - low);
+  // The bounds are of heights as doubles, posts are floats.
+  const double pad = 1e-6 * (1.0 + high - low) + 1.2e-7 * std::max(std::abs(low), std::abs(high));
   low -= pad;
   high += pad;
   bool meets = true;
