@@ -190,6 +190,33 @@ TEST_F(LayersFixture, LayersAreMixedInLinearLight) {
   }
 }
 
+// Tiles that earlier pictures brought are on the GPU still, and none of them shows.
+TEST_F(LayersFixture, APictureHangsOnItsOwnViewAlone) {
+  AddPlaneWithGrid(Hills, {-60.0, 60.0});
+  Paint(
+      "zooms",
+      [](const Eigen::Vector3d&, int zoom) {
+        return Color{zoom / 16.0, 0.3, 0, 1};
+      },
+      0.01);
+  view = View(160, 120);
+  const auto far = [this] { LookFrom({0, -900, 260}, {0, 0, 0}, 40.0); };
+  far();
+  const Capture first = Shoot(view);
+  for (const double height : {70.0, 120.0, 200.0}) { // on what the first one sees from afar
+    LookFrom({10, -60, height}, {10, 0, 0});
+    Shoot(view);
+  }
+  view->Resize(640, 480); // more slots, too
+  Shoot(view);
+  view->Resize(160, 120);
+  terrain->Layers()->Change("zooms", 0.5, std::nullopt, std::nullopt);
+  far();
+  Shoot(view);
+  terrain->Layers()->Change("zooms", 1.0, std::nullopt, std::nullopt);
+  EXPECT_EQ(Shoot(view).color, first.color);
+}
+
 TEST_F(LayersFixture, AroundABodyThereIsNoSeam) {
   constexpr double Radius = 1e6;
   constexpr int Columns = 4096;

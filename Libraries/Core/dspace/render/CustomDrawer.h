@@ -30,6 +30,7 @@ struct CustomDrawing {
   SurfaceShaders& shaders;
   GpuStore& store;
   RenderStatistics& statistics;
+  bool labels = false; // no colours are drawn: labels and depths only
 };
 
 // One a picture and geometry; made, used and destroyed with the window's context current. Depth is

@@ -29,7 +29,7 @@ void LabelPicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, con
   this->Target_->Resize(view.width, view.height);
   const std::uint64_t revision = scene.Revision(); // before: what changes meanwhile is not in it
   this->List_.Build(scene, view, filter);
-  const bool complete = this->Drawer_->Prepare(this->List_, view, 1);
+  const bool complete = this->Drawer_->Prepare(this->List_, view, 1, true);
   this->Drawer_->DrawLabels(this->List_, view, *this->Target_);
   this->Revision_ = complete ? revision : 0;
 }

@@ -192,7 +192,7 @@ CustomDrawing SceneDrawer::Drawing(const DrawCustom& object, const DrawList& lis
           this->Window_, this->Shaders_, this->Store_, this->Statistics_};
 }
 
-bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int samples) {
+bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int samples, bool labels) {
   for (auto it = this->Customs_.begin(); it != this->Customs_.end();) {
     it = it->second.geometry.expired() ? this->Customs_.erase(it) : std::next(it);
   }
@@ -202,7 +202,9 @@ bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int sample
     if (!custom.drawer) {
       custom = {object.object->custom, MakeCustomDrawer(object.object->custom)};
     }
-    complete &= custom.drawer->Prepare(this->Drawing(object, list, view, samples));
+    CustomDrawing drawing = this->Drawing(object, list, view, samples);
+    drawing.labels = labels;
+    complete &= custom.drawer->Prepare(drawing);
   }
   return complete;
 }

@@ -40,7 +40,7 @@ public:
   void Clear(const Background& background);
   // Uploads what objects that draw themselves need for the pictures that follow; before any target
   // is bound. False where some of it is not there yet.
-  bool Prepare(const DrawList& list, const DrawView& view, int samples);
+  bool Prepare(const DrawList& list, const DrawView& view, int samples, bool labels = false);
   // `samples` is the supersampling factor: lines, points and billboards scale with it.
   void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples,
                  const Background* background = nullptr);

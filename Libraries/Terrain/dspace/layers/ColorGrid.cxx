@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <dspace/terrain/ClipmapTerrain.h>
 #include <dspace/terrain/PoleCharts.h>
@@ -76,15 +75,15 @@ Eigen::Affine2d ColorGrid::TexelToPost(int zoom) const {
 double ColorGrid::RootTexelSize() const {
   const Eigen::Vector2d middle = this->extent.center();
   const Eigen::Vector2d texel = this->rootPosts / TileTexels;
-  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
   for (int axis = 0; axis < 2; ++axis) { // from a small step: zoom 0 may be large on its body
     constexpr double Part = 1e-3;
     const Eigen::Vector2d half = 0.5 * Part * texel[axis] * Eigen::Vector2d::Unit(axis);
     const Eigen::Vector3d across =
         this->placement.ToScene(middle + half, 0.0) - this->placement.ToScene(middle - half, 0.0);
-    least = std::min(least, across.norm() / Part);
+    most = std::max(most, across.norm() / Part);
   }
-  return least;
+  return most;
 }
 
 int ColorGrid::ZoomFor(double pixel) const {

@@ -52,7 +52,7 @@ struct ColorGrid {
   // (0.5, 0.5)), to posts and to the map.
   Eigen::Affine2d TexelToPost(int zoom) const;
   Eigen::Affine2d TexelToMap(int zoom) const { return this->postToMap * this->TexelToPost(zoom); }
-  // The lesser side of a texel of zoom 0 [m] on the ground in the middle of the extent.
+  // The greater side of a texel of zoom 0 [m] on the ground in the middle of the extent.
   double RootTexelSize() const;
   // The least zoom whose texels are no larger than `pixel` [m]; at most MostZoom.
   int ZoomFor(double pixel) const;

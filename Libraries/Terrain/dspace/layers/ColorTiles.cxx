@@ -331,6 +331,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::Get(const std::vector<ColorTile
 
 std::uint64_t ColorTiles::Arrivals() const {
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
+  this->Impl_->TakeStack(); // once the last layer is gone nobody else asks
   return this->Impl_->arrivals + this->Impl_->stack->Revision();
 }
 

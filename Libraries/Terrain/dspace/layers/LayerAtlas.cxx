@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <string>
 
 #include "vtk_glew.h"
 
 #include "vtkDspaceHubWindow.h"
 #include "vtkShaderProgram.h"
 
+#include <dspace/Error.h>
 #include <dspace/render/Capture.h>
 #include <dspace/render/SurfaceShaders.h>
 
@@ -31,18 +33,32 @@ bool Same(const std::weak_ptr<const ColorTiles::Tile>& a, const ColorTiles::Tile
   return !a.owner_before(b) && !b.owner_before(a);
 }
 
+// OpenGL guarantees 256 layers, and most drivers have 2048.
+int Allowed(int slots) {
+  GLint most = 256;
+  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most);
+  return std::clamp(slots, 16, std::min(int(most), 1024));
+}
+
 } // namespace
 
 LayerAtlas::LayerAtlas(vtkDspaceHubWindow* window, int slots)
-    : Window_(window), Slots_(std::clamp(slots, 16, 1024)),
-      Table_(std::size_t(Pages) * Pages * Zooms) {
+    : Window_(window), Slots_(Allowed(slots)), Table_(std::size_t(Pages) * Pages * Zooms) {
   for (int slot = this->Slots_; slot-- > 0;) {
     this->Free_.push_back(slot);
   }
   glGenTextures(1, &this->Tiles_);
   BindTextureUnit(window, TilesUnit, GL_TEXTURE_2D_ARRAY, this->Tiles_);
+  while (glGetError() != GL_NO_ERROR) {
+  }
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA8, Side, Side, this->Slots_, 0, GL_RGBA,
                GL_UNSIGNED_BYTE, nullptr);
+  if (glGetError() != GL_NO_ERROR) {
+    glDeleteTextures(1, &this->Tiles_);
+    throw Error(Error::Kind::Resource, "colour layers",
+                "the graphics driver has no room for " + std::to_string(this->Slots_) +
+                    " tiles; a smaller viewport needs fewer");
+  }
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
     glTexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_LINEAR);
   }
@@ -194,6 +210,7 @@ bool LayerAtlas::Show(ColorTiles& tiles, const std::vector<ColorTile>& wanted,
   }
   bool complete = true;
   int uploads = 0;
+  std::vector<ColorTile> shown;
   std::set<const Page*> taken; // two tiles may share a page: the first one is nearer
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const ColorTile& tile = wanted[i];
@@ -210,8 +227,16 @@ bool LayerAtlas::Show(ColorTiles& tiles, const std::vector<ColorTile>& wanted,
     }
     if (found != this->Entries_.end() && taken.insert(&this->PageOf(tile)).second) {
       this->SetPage(tile, found->second.slot);
+      shown.push_back(tile);
     }
   }
+  // What was wanted earlier is not shown: a picture hangs on its own view alone.
+  for (const ColorTile& tile : this->Shown_) {
+    if (tile.chart == this->Chart_ && taken.count(&this->PageOf(tile)) == 0) {
+      this->ClearPage(tile);
+    }
+  }
+  this->Shown_ = std::move(shown);
   // Transparent ones take no slot: they are forgotten when they are many.
   for (auto it = this->Entries_.begin();
        this->Entries_.size() > 4096 && it != this->Entries_.end();) {

@@ -69,7 +69,8 @@ private:
   std::uint64_t Calls_ = 0;
   std::map<ColorTile, Entry> Entries_;
   std::vector<int> Free_;
-  std::vector<Page> Table_; // as it is on the GPU
+  std::vector<Page> Table_;      // as it is on the GPU
+  std::vector<ColorTile> Shown_; // whose pages it has: of the latest call of Show()
 };
 
 } // namespace dspace

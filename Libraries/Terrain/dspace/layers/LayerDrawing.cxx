@@ -15,10 +15,11 @@ namespace {
 
 constexpr int Texels = ColorGrid::TileTexels;
 
-// Four to six times what covers the picture, since ground lies at an angle and tiles hold others.
-int SlotsFor(const DrawView& view) {
-  const double pixels = double(view.width) * view.height;
-  return 64 + int(std::min(12.0 * pixels / (Texels * Texels), 448.0));
+// A chain of some twenty zooms with their neighbours, and several times what covers the picture,
+// since ground lies at an angle and tiles hold others. The same for the same view.
+int SlotsFor(const DrawView& view, int samples) {
+  const double pixels = double(view.width) * view.height / (samples * samples);
+  return 160 + int(std::min(12.0 * pixels / (Texels * Texels), 864.0));
 }
 
 } // namespace
@@ -32,8 +33,11 @@ bool LayerDrawing::Prepare(const CustomDrawing& drawing, std::size_t chart,
     return true;
   }
   const DrawView& drawn = drawing.view;
-  if (!this->Atlas_ || this->Atlas_->Slots() < SlotsFor(drawn)) {
-    this->Atlas_ = std::make_unique<LayerAtlas>(drawing.window, SlotsFor(drawn));
+  const int slots = SlotsFor(drawn, drawing.samples);
+  if (!this->Atlas_ || this->Slots_ < slots) {
+    this->Atlas_.reset();
+    this->Atlas_ = std::make_unique<LayerAtlas>(drawing.window, slots);
+    this->Slots_ = slots;
   }
   this->Grid_ = &this->Terrain_.Grids()[chart];
   this->Finest_ = this->Grid_->ZoomFor(stack->PixelSize());
@@ -47,7 +51,7 @@ bool LayerDrawing::Prepare(const CustomDrawing& drawing, std::size_t chart,
   view.forward = (X_OV * -Eigen::Vector3d::UnitZ()).normalized();
   const Projection& projection = drawn.projection;
   view.parallel = projection.kind == Projection::Kind::Orthographic;
-  view.pixel = projection.MetresPerPixel(1.0, drawn.height) * X_OV.col(0).norm();
+  view.pixel = drawing.samples * projection.MetresPerPixel(1.0, drawn.height) * X_OV.col(0).norm();
   view.cosCorner = 1.0;
   for (const double x : {-0.5, drawn.width - 0.5}) {
     for (const double y : {-0.5, drawn.height - 0.5}) {
@@ -60,7 +64,8 @@ bool LayerDrawing::Prepare(const CustomDrawing& drawing, std::size_t chart,
     return levels.HeightNear(post, state.finest).value_or(state.groundHeight);
   };
   const std::vector<ColorTile> tiles =
-      SeenTiles(*this->Grid_, int(chart), view, this->Finest_, std::size_t(this->Atlas_->Slots()));
+      SeenTiles(*this->Grid_, int(chart), view, this->Finest_,
+                std::size_t(std::min(slots, this->Atlas_->Slots())));
   std::optional<double> wait;
   if (drawn.complete) {
     wait = this->Terrain_.Options().deadline;

@@ -34,6 +34,7 @@ public:
 private:
   const ClipmapTerrain& Terrain_;
   std::unique_ptr<LayerAtlas> Atlas_;
+  int Slots_ = 0; // that it was asked for
   bool Shown_ = false;
   // Of the latest Prepare().
   const ColorGrid* Grid_ = nullptr;

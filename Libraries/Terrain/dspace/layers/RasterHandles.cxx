@@ -210,6 +210,10 @@ std::unique_ptr<RasterLevels::Handle> RasterLevels::Open(std::vector<std::string
                 "it is another raster than when it was opened; open it anew");
   }
   this->AddLevels(file, handle->levels);
+  if (handle->levels.size() != this->Kept_.size()) {
+    throw Error(Error::Kind::Io, this->Object_,
+                "it has other overviews than when it was opened; open it anew");
+  }
   return handle;
 }
 

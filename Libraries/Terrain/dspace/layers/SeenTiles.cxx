@@ -133,14 +133,14 @@ private:
     const double depth = std::max(to.dot(forward) - ball.radius, distance * this->View_.cosCorner);
     const double pixel =
         this->View_.parallel ? this->View_.pixel : std::max(this->View_.pixel * depth, 1e-9);
-    // Ground seen at a low angle is drawn out in the pixel; slopes of up to 20 degrees may face it.
+    // Ground seen at a low angle is drawn out in the pixel; slopes of up to 30 degrees may face it.
     const Eigen::Vector3d ray = this->View_.parallel ? forward : Eigen::Vector3d(to.normalized());
     const double range = std::max(distance, 1e-9);
     // The vertical turns across a large tile of a body.
     const double turn = this->Grid_.placement.OnBody() ? ball.radius / ball.center.norm() : 0.0;
     const double rise = this->View_.parallel ? std::abs(ray.dot(up)) + turn
                                              : (std::abs(to.dot(up)) + ball.radius) / range;
-    return pixel / std::clamp(rise + 0.35, 0.35, 1.0);
+    return pixel / std::clamp(rise + 0.5, 0.5, 1.0);
   }
 
   const ColorGrid& Grid_;

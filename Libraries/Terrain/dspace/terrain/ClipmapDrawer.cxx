@@ -173,7 +173,7 @@ bool ClipmapDrawer::Prepare(const CustomDrawing& drawing) {
 
 bool ClipmapDrawer::PrepareLayers(const CustomDrawing& drawing) {
   const Chart& chart = *this->Active_;
-  if (!chart.Drawable()) {
+  if (!chart.Drawable() || drawing.labels) {
     return true;
   }
   const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
