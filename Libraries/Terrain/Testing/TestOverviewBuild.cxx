@@ -6,6 +6,7 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <dspace/terrain/ElevationCache.h>
 #include <dspace/terrain/OverviewBuild.h>
@@ -172,6 +173,36 @@ TEST(OverviewBuild, AFailureIsToldAndTheGroundStaysAsItWas) {
   EXPECT_EQ(absent.GetState(), OverviewBuild::State::Failed);
   EXPECT_NE(absent.Failure().find("absent.tif"), std::string::npos) << absent.Failure();
 }
+
+#ifdef __GLIBC__
+// Threads with more stack than there are addresses cannot be started.
+TEST(OverviewBuild, AThreadThatCannotBeStartedIsAFailure) {
+  const TemporaryFolder folder;
+  pthread_attr_t usual;
+  pthread_attr_t greedy;
+  ASSERT_EQ(pthread_getattr_default_np(&usual), 0);
+  ASSERT_EQ(pthread_getattr_default_np(&greedy), 0);
+  ASSERT_EQ(pthread_attr_setstacksize(&greedy, std::size_t(1) << 50), 0);
+  ASSERT_EQ(pthread_setattr_default_np(&greedy), 0);
+  std::atomic<int> calls{0};
+  const auto build = [&]() -> std::unique_ptr<OverviewBuild> {
+    try {
+      return std::make_unique<OverviewBuild>(folder / "cache", folder / "any.tif",
+                                             ElevationOptions{}, [&] { ++calls; });
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << error.what();
+      return nullptr;
+    }
+  }();
+  ASSERT_EQ(pthread_setattr_default_np(&usual), 0);
+  pthread_attr_destroy(&usual);
+  pthread_attr_destroy(&greedy);
+  ASSERT_TRUE(build);
+  EXPECT_EQ(build->GetState(), OverviewBuild::State::Failed);
+  EXPECT_NE(build->Failure().find("thread"), std::string::npos) << build->Failure();
+  EXPECT_EQ(calls, 0);
+}
+#endif
 
 TEST(OverviewBuild, TwoAtOnceLeaveOne) {
   const TemporaryFolder folder;

@@ -55,13 +55,6 @@ FilledPosts::FilledPosts(std::shared_ptr<const RasterPosts> posts, double reach)
 
 FilledPosts::~FilledPosts() = default;
 
-void FilledPosts::ForgetReduced() const {
-  this->Posts_->ForgetReduced();
-  const std::lock_guard<std::mutex> lock(this->Mutex_);
-  this->Top_.reset();
-  this->Tiles_->DropIf([](const Key&) { return true; });
-}
-
 // The whole coarsest level: each post without data the mean of its neighbours, by over-relaxation.
 FilledPosts::Heights FilledPosts::Top() const {
   {

@@ -23,7 +23,8 @@ template<typename Key, typename Value> class LatestKept;
 // of it has. On a plane the filled ground is the plane but for what such cells lean to their data's
 // side, a thirtieth of a post's spacing times the slope; curved ground is seen from some pixels
 // outside the rim, in the middle of a hole from a tenth of its radius; where a hole reaches the
-// raster's edge, it runs out level there. What a post is depends on the raster alone. Where the
+// raster's edge, it runs out level there. What a post is depends on the raster and its overviews
+// alone, which must stay the same. Where the
 // coarsest level has no data, or nothing is within reach, holes stay.
 class FilledPosts : public PostSource {
 public:
@@ -36,8 +37,6 @@ public:
   const std::string& GetName() const override { return this->Posts_->GetName(); }
   const PostLattice& GetLattice() const override { return this->Posts_->GetLattice(); }
   void Read(const PostBlock& block, float* heights) const override;
-  // The raster reads other overviews from now on.
-  void ForgetReduced() const;
 
 private:
   using Key = std::array<std::int64_t, 3>; // level, tile column, tile row

@@ -8,6 +8,7 @@ namespace dspace {
 namespace {
 
 constexpr double ReachPosts = 64.0; // distances are told in posts no finer than that
+constexpr int Far = 1 << 28;        // posts; no data in that row
 constexpr float None = std::numeric_limits<float>::quiet_NaN();
 
 } // namespace
@@ -31,16 +32,31 @@ void FilledPosts::DropBeyondReach(const PostBlock& block, std::vector<float>& he
       above == 0 ? block.level : std::clamp(pixels + above, block.level, lattice.levels - 1);
   const int down = level - block.level;
   const double reach = std::ldexp(this->Reach_, pixels - level); // in its posts
-  const int most = int(std::min(std::ceil(reach), 4096.0));
+  // No further than the lattice goes, or around it once.
+  const std::int64_t columns = lattice.ColumnsAt(level);
+  const std::int64_t rows = lattice.RowsAt(level);
+  const auto most = std::int64_t(std::min(std::ceil(reach), double(std::max(columns, rows))));
   const std::int64_t step = std::int64_t(1) << down;
   const auto nearest = [&](std::int64_t k) { return FloorDiv(2 * k + step, 2 * step); };
-  PostBlock around{level, nearest(block.column) - most, nearest(block.row) - most, 0, 0};
-  around.width = int(nearest(block.column + block.width - 1) - around.column) + most + 1;
-  around.height = int(nearest(block.row + block.height - 1) - around.row) + most + 1;
+  const auto within = [](std::int64_t at, std::int64_t count) {
+    return std::clamp<std::int64_t>(at, 0, count - 1);
+  };
+  std::int64_t left = nearest(block.column);
+  std::int64_t right = nearest(block.column + block.width - 1);
+  if (lattice.periodic) {
+    left -= std::min(most, columns / 2 + 1);
+    right += std::min(most, columns / 2 + 1);
+  } else {
+    left = within(left - most, columns);
+    right = within(right + most, columns);
+  }
+  const std::int64_t top = within(nearest(block.row) - most, rows);
+  const std::int64_t bottom = within(nearest(block.row + block.height - 1) + most, rows);
+  const PostBlock around{level, left, top, int(right - left) + 1, int(bottom - top) + 1};
   std::vector<float> data(std::size_t(around.width) * around.height);
   this->Posts_->Read(around, data.data());
   // Along each row, how far it is to data.
-  std::vector<int> aside(data.size(), 2 * most + 2);
+  std::vector<int> aside(data.size(), Far);
   for (int j = 0; j < around.height; ++j) {
     int* row = aside.data() + std::size_t(j) * around.width;
     const float* posts = data.data() + std::size_t(j) * around.width;
@@ -59,12 +75,13 @@ void FilledPosts::DropBeyondReach(const PostBlock& block, std::vector<float>& he
       }
       const std::int64_t c = nearest(block.column + i) - around.column;
       const std::int64_t r = nearest(block.row + j) - around.row;
-      bool within = false;
-      for (std::int64_t d = -most; d <= most && !within; ++d) {
-        const double away = aside[std::size_t(r + d) * around.width + std::size_t(c)];
-        within = away * away + double(d * d) <= reach * reach;
+      bool near = false;
+      const std::int64_t last = std::min<std::int64_t>(r + most, around.height - 1);
+      for (std::int64_t k = std::max<std::int64_t>(r - most, 0); k <= last && !near; ++k) {
+        const double away = aside[std::size_t(k) * around.width + std::size_t(c)];
+        near = away * away + double((k - r) * (k - r)) <= reach * reach;
       }
-      if (!within) {
+      if (!near) {
         heights[at] = None;
       }
     }

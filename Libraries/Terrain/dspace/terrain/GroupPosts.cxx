@@ -37,8 +37,8 @@ OpenPatches::OpenPatches(OpenPatches&&) noexcept = default;
 OpenPatches::~OpenPatches() = default;
 
 GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base, const Eigen::Affine2d& postToMap,
-                       bool poles, OpenPatches patches)
-    : Base_(std::move(base)), Name_(Base_->GetName()) {
+                       bool poles, OpenPatches patches, std::shared_ptr<const PostSource> data)
+    : Base_(std::move(base)), Data_(std::move(data)), Name_(Base_->GetName()) {
   this->Report_.warnings = patches.Warnings_;
   for (const std::shared_ptr<Patch>& opened : patches.Patches_) {
     if (opened->Settle(this->GetLattice(), postToMap, poles, this->Report_.warnings)) {
@@ -49,15 +49,16 @@ GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base, const Eigen::Affi
   }
 }
 
-GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base)
-    : Base_(std::move(base)), Name_(Base_->GetName()) {}
+GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base,
+                       std::shared_ptr<const PostSource> data)
+    : Base_(std::move(base)), Data_(std::move(data)), Name_(Base_->GetName()) {}
 
 GroupPosts::~GroupPosts() = default;
 
 std::shared_ptr<const GroupPosts> GroupPosts::On(std::shared_ptr<const PostSource> posts,
-                                                 const Crs& crs,
-                                                 const Eigen::Affine2d& postToMap) const {
-  const std::shared_ptr<GroupPosts> group(new GroupPosts(std::move(posts)));
+                                                 const Crs& crs, const Eigen::Affine2d& postToMap,
+                                                 std::shared_ptr<const PostSource> data) const {
+  const std::shared_ptr<GroupPosts> group(new GroupPosts(std::move(posts), std::move(data)));
   ElevationInfo info;
   info.crs = crs;
   info.pixelToMap = postToMap; // for sizes
@@ -73,8 +74,22 @@ std::shared_ptr<const GroupPosts> GroupPosts::On(std::shared_ptr<const PostSourc
 
 void GroupPosts::ReadUpTo(std::size_t count, const PostBlock& block, float* heights) const {
   this->Base_->Read(block, heights);
+  std::vector<char> made;
+  Patch::MadeUp madeUp;
+  if (this->Data_) {
+    madeUp = [&]() -> std::vector<char>& {
+      if (made.empty()) {
+        std::vector<float> data(std::size_t(block.width) * block.height);
+        this->Data_->Read(block, data.data());
+        made.resize(data.size());
+        std::transform(data.begin(), data.end(), made.begin(),
+                       [](float height) { return char(std::isnan(height)); });
+      }
+      return made;
+    };
+  }
   for (std::size_t i = 0; i < count; ++i) {
-    this->Patches_[i]->Blend(block, heights);
+    this->Patches_[i]->Blend(block, heights, madeUp);
   }
 }
 

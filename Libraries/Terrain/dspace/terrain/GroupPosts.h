@@ -72,13 +72,14 @@ private:
 // posts is that of HeightGrid's triangles; on level l it is that of the level of its own
 // RasterPosts whose posts are about as far apart, and the weight is the mean over as many pixels.
 // Its posts are found by PROJ to within 0.01 of a pixel (of that level). Where there is nothing
-// under it, it is shown alone.
+// under it, or what is made up, it is shown alone.
 class GroupPosts : public PostSource {
 public:
   // `postToMap` takes level-0 posts of `base` to its map; with `poles` its first and last rows are
-  // a pole each. Reads the patches once, for their weights and errors.
+  // a pole each. `data` is the base without what is made up in it; null: nothing is. Reads the
+  // patches once, for their weights and errors.
   GroupPosts(std::shared_ptr<const PostSource> base, const Eigen::Affine2d& postToMap, bool poles,
-             OpenPatches patches);
+             OpenPatches patches, std::shared_ptr<const PostSource> data = nullptr);
   ~GroupPosts() override;
 
   const std::string& GetName() const override { return this->Name_; }
@@ -95,19 +96,22 @@ public:
   bool Reaches(const Eigen::AlignedBox2d& posts) const;
   std::array<double, 2> PatchHeights(const Eigen::AlignedBox2d& posts) const;
 
-  // The same patches over other posts of the same body, of another map.
+  // The same patches over other posts of the same body, of another map; `data` as above.
   std::shared_ptr<const GroupPosts> On(std::shared_ptr<const PostSource> posts, const Crs& crs,
-                                       const Eigen::Affine2d& postToMap) const;
+                                       const Eigen::Affine2d& postToMap,
+                                       std::shared_ptr<const PostSource> data = nullptr) const;
   const std::shared_ptr<const PostSource>& Base() const { return this->Base_; }
+  const std::shared_ptr<const PostSource>& Data() const { return this->Data_; } // may be null
 
   const GroupReport& Report() const { return this->Report_; }
 
 private:
-  explicit GroupPosts(std::shared_ptr<const PostSource> base);
+  GroupPosts(std::shared_ptr<const PostSource> base, std::shared_ptr<const PostSource> data);
   void ReadUpTo(std::size_t count, const PostBlock& block, float* heights) const;
   void Measure(std::size_t index, PatchReport& report) const;
 
   std::shared_ptr<const PostSource> Base_;
+  std::shared_ptr<const PostSource> Data_;
   std::string Name_;
   std::vector<std::shared_ptr<Patch>> Patches_; // those that are used
   GroupReport Report_;

@@ -110,10 +110,16 @@ OverviewBuild::OverviewBuild(std::string folder, std::string path, const Elevati
                              std::function<void()> built)
     : Impl_(std::make_unique<Implementation>()) {
   Implementation* impl = this->Impl_.get();
-  Unended::Instance().Add(impl);
-  impl->thread =
-      std::thread([impl, folder = std::move(folder), path = std::move(path), options,
-                   built = std::move(built)] { impl->Run(folder, path, options, built); });
+  Unended& unended = Unended::Instance();
+  try {
+    impl->thread =
+        std::thread([impl, folder = std::move(folder), path = std::move(path), options,
+                     built = std::move(built)] { impl->Run(folder, path, options, built); });
+  } catch (const std::exception& error) {
+    impl->End(State::Failed, std::string("a thread for it could not be started: ") + error.what());
+    return;
+  }
+  unended.Add(impl); // it lives as long as this, and what has no thread needs no end
 }
 
 OverviewBuild::~OverviewBuild() {

@@ -25,7 +25,8 @@ public:
   static bool Wanted(const ElevationInfo& info);
 
   // Of the raster `path` into `folder`; `options` as for ElevationCache::Build. `built` is called
-  // in the thread, once the overviews can be read; what it throws is a failure. Returns at once.
+  // in the thread, once the overviews can be read; what it throws is a failure, as
+  // is a thread that cannot be started. Returns at once.
   OverviewBuild(std::string folder, std::string path, const ElevationOptions& options,
                 std::function<void()> built);
   OverviewBuild(const OverviewBuild&) = delete;

@@ -209,7 +209,7 @@ private:
   std::vector<float> Posts_;
 };
 
-void Patch::Blend(const PostBlock& block, float* heights) const {
+void Patch::Blend(const PostBlock& block, float* heights, const MadeUp& madeUp) const {
   const int wanted = this->LevelFor(block.level);
   const int level = std::min(wanted, this->Posts_->GetLattice().levels - 1);
   std::vector<Eigen::Vector2d> pixels;
@@ -232,6 +232,7 @@ void Patch::Blend(const PostBlock& block, float* heights) const {
   if (places.isEmpty()) {
     return;
   }
+  std::vector<char>* made = madeUp ? &madeUp() : nullptr;
   const Heights own(*this->Posts_, level, places);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!(weights[i] > 0.0)) {
@@ -240,7 +241,11 @@ void Patch::Blend(const PostBlock& block, float* heights) const {
     const double height = own.At(pixels[i]) + this->Report_.addedTo;
     const double under = heights[i];
     if (!std::isnan(height)) {
-      heights[i] = float(std::isnan(under) ? height : under + weights[i] * (height - under));
+      const bool alone = std::isnan(under) || (made && (*made)[i]);
+      heights[i] = float(alone ? height : under + weights[i] * (height - under));
+      if (made) {
+        (*made)[i] = 0;
+      }
     }
   }
 }

@@ -3,6 +3,7 @@
 #define DSPACE_TERRAIN_PATCH_H
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,8 +37,11 @@ public:
   // What its heights lie between in a box of places of level 0; least above greatest where it does
   // not reach, infinite where nothing is known.
   std::array<double, 2> HeightsIn(const Eigen::AlignedBox2d& posts) const;
-  // Over the heights of a block of that lattice.
-  void Blend(const PostBlock& block, float* heights) const;
+  // Which posts of a block are made up so far; asked for by the first patch that reaches it.
+  using MadeUp = std::function<std::vector<char>&()>;
+  // Over the heights of a block of that lattice, alone where they are none or made up. `madeUp` may
+  // be empty: nothing is.
+  void Blend(const PostBlock& block, float* heights, const MadeUp& madeUp) const;
   // Of one that was settled elsewhere: its weights are known. False where it does not lie within.
   bool SettleAgain(const PostLattice& lattice, const Eigen::Affine2d& postToMap);
 

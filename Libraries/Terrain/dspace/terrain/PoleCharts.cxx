@@ -48,8 +48,12 @@ std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells
                                                           south, CoarsestFor(cells));
     std::shared_ptr<const PostSource> source = posts;
     if (group) {
-      source =
-          group->On(posts, PolarCrs(terrain, south), PostToPolarMap(terrain, posts->Placement()));
+      const auto data =
+          group->Data() ? std::make_shared<const PolarPosts>(group->Data(), terrain.Placement(),
+                                                             complete, south, CoarsestFor(cells))
+                        : nullptr;
+      source = group->On(posts, PolarCrs(terrain, south),
+                         PostToPolarMap(terrain, posts->Placement()), data);
     }
     charts.push_back({std::make_shared<ElevationPyramid>(source, quarter), posts->Placement()});
   }

@@ -41,8 +41,8 @@ struct StreamedTerrainOptions {
   int subdivisions = 0;
   WheelTracksOptions tracks; // on a plane
   // Holes are filled where data are within so many of the raster's pixels, infinity for all of them
-  // (FilledPosts): drawn and answered alike, told apart by Filled(). Patches lie on it. > 0;
-  // absent: holes stay.
+  // (FilledPosts): drawn and answered alike, told apart by Filled(). Patches lie on it, and over
+  // holes of the raster alone, without a margin. > 0; absent: holes stay.
   std::optional<double> fillHoles;
   int cells = 124; // of a clipmap level that it will be drawn with: how far it is halved
   ElevationPyramidOptions pyramid;
@@ -100,7 +100,8 @@ public:
   const std::optional<ResamplingReport>& Resampling() const { return this->Resampling_; }
   // Reads the overviews that its cache folder has by now, here and in `others` (its pole charts),
   // where coarse levels are read anew; finer ones and queries stay as they are. Their number of
-  // levels; 0 where there are none. Throws what ElevationSource::TakeOverviews throws.
+  // levels; 0 where there are none, and where holes are filled: fills are made from what the raster
+  // had when it was opened. Throws what ElevationSource::TakeOverviews throws.
   int TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {}) const;
   // The level whose posts say all of the raster; those of a group's patches stand closer.
   int FullLevel() const { return this->FullLevel_; }
@@ -180,7 +181,7 @@ private:
   std::shared_ptr<const ElevationSource> Source_;
   std::shared_ptr<const RasterPosts> Posts_;
   std::shared_ptr<const FilledPosts> Filled_;
-  std::unique_ptr<PostSurface> Holed_; // the surface as it is without what is filled
+  std::shared_ptr<const PostSurface> Holed_; // the surface as it is without what is filled
   std::shared_ptr<const GroupPosts> Group_;
   std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
   std::shared_ptr<ElevationPyramid> Pyramid_;

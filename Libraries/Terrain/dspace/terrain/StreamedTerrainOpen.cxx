@@ -169,8 +169,9 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
   this->FullLevel_ = raster->FullLevel();
   int level = this->FullLevel_;
   if (patches) {
-    this->Group_ = std::make_shared<const GroupPosts>(base, this->MapToPost_.inverse(), poles,
-                                                      std::move(*patches));
+    this->Group_ =
+        std::make_shared<const GroupPosts>(base, this->MapToPost_.inverse(), poles,
+                                           std::move(*patches), this->Filled_ ? raster : nullptr);
     source = this->Group_;
     level = 0; // patches have posts between those of the raster
   }
@@ -181,8 +182,8 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
         this->Group_ ? std::shared_ptr<const PostSource>(
                            this->Group_->On(raster, info.crs, this->MapToPost_.inverse()))
                      : std::shared_ptr<const PostSource>(raster);
-    this->Holed_ = std::make_unique<PostSurface>(std::make_shared<ElevationPyramid>(holed, small),
-                                                 level, poles, options.deadline);
+    this->Holed_ = std::make_shared<const PostSurface>(
+        std::make_shared<ElevationPyramid>(holed, small), level, poles, options.deadline);
   }
   if (this->Frame_) {
     source = this->WithTracks(source, options);

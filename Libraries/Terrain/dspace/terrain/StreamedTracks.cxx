@@ -95,6 +95,8 @@ const StreamedTerrain& StreamedTerrain::Undisturbed() const {
                                                    this->Poles_, this->Deadline_);
     }
     bare->Posts_ = this->Posts_;
+    bare->Filled_ = this->Filled_;
+    bare->Holed_ = this->Holed_;
     bare->FullLevel_ = this->FullLevel_;
     bare->Ground_ = this->Ground_;
     bare->BottomOptions_ = this->BottomOptions_;
