@@ -78,9 +78,16 @@ void LedgerObjects::Open(const v1::Command& command) {
   const v1::OpenTerrain& open = command.open_terrain();
   Ground& ground = this->Grounds_[open.name()];
   ground.open = command;
-  ground.draped = open.has_drape() && open.mode() == v1::OpenTerrain::CLIPMAP;
-  if (ground.draped) {
-    ground.layers.emplace_back().set_name("drape");
+  if (open.mode() == v1::OpenTerrain::CLIPMAP) {
+    if (open.has_drape()) {
+      ground.opened.emplace_back("drape");
+    }
+    if (open.has_fill_holes()) {
+      ground.opened.emplace_back("filled");
+    }
+  }
+  for (const std::string& name : ground.opened) {
+    ground.layers.emplace_back().set_name(name);
   }
   Thing& thing = this->Things_[open.object_id()];
   thing.terrain = open.name();

@@ -57,8 +57,8 @@ private:
     std::optional<v1::FocusTerrain> focus;
     std::optional<v1::StyleTerrain> style;
     std::vector<v1::Command> tracks;         // TrackWheels and LoadTracks
-    std::vector<v1::AddTerrainLayer> layers; // bottom first; of no kind: the drape
-    bool draped = false;                     // opened with the layer "drape"
+    std::vector<v1::AddTerrainLayer> layers; // bottom first; of no kind: those that it opens with
+    std::vector<std::string> opened;         // names of these: "drape", "filled"
   };
   // A robot that is gone, with visuals that stay since they hang on other frames.
   struct Orphans {

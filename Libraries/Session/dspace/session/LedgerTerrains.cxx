@@ -1,6 +1,7 @@
 // The terrains among the ledger's objects.
 #include <algorithm>
 
+#include <dspace/Error.h>
 #include <dspace/session/LedgerObjects.h>
 
 namespace dspace::session {
@@ -11,8 +12,13 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
     return this->Grounds_.at(name);
   };
   const auto layerOf = [](Ground& of, const std::string& name) {
-    return std::find_if(of.layers.begin(), of.layers.end(),
-                        [&](const v1::AddTerrainLayer& layer) { return layer.name() == name; });
+    const auto found =
+        std::find_if(of.layers.begin(), of.layers.end(),
+                     [&](const v1::AddTerrainLayer& layer) { return layer.name() == name; });
+    if (found == of.layers.end()) {
+      throw Error(Error::Kind::Internal, "ledger", "it knows no layer '" + name + "'");
+    }
+    return found;
   };
   const auto insert = [&reply](Ground& into, const v1::AddTerrainLayer& layer) {
     const std::size_t at =
@@ -52,11 +58,7 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
   }
   case C::kRemoveTerrainLayer: {
     Ground& of = ground(command.remove_terrain_layer().terrain());
-    const auto found = layerOf(of, command.remove_terrain_layer().name());
-    if (found->kind_case() == v1::AddTerrainLayer::KIND_NOT_SET) {
-      of.draped = false;
-    }
-    of.layers.erase(found);
+    of.layers.erase(layerOf(of, command.remove_terrain_layer().name()));
     return true;
   }
   default:
@@ -78,10 +80,15 @@ void LedgerObjects::PutTerrains(const std::string& scene, Emit out) const {
     if (ground.focus) {
       *add().mutable_focus_terrain() = *ground.focus;
     }
-    if (open.open_terrain().has_drape() && open.open_terrain().mode() == v1::OpenTerrain::CLIPMAP &&
-        !ground.draped) {
-      add().mutable_remove_terrain_layer()->set_terrain(name);
-      out.back().mutable_remove_terrain_layer()->set_name("drape");
+    for (const std::string& opened : ground.opened) { // unless it has been removed
+      if (std::none_of(ground.layers.begin(), ground.layers.end(),
+                       [&opened](const v1::AddTerrainLayer& layer) {
+                         return layer.name() == opened &&
+                                layer.kind_case() == v1::AddTerrainLayer::KIND_NOT_SET;
+                       })) {
+        add().mutable_remove_terrain_layer()->set_terrain(name);
+        out.back().mutable_remove_terrain_layer()->set_name(opened);
+      }
     }
     for (std::size_t i = 0; i < ground.layers.size(); ++i) {
       const v1::AddTerrainLayer& layer = ground.layers[i];
@@ -89,10 +96,11 @@ void LedgerObjects::PutTerrains(const std::string& scene, Emit out) const {
         v1::AddTerrainLayer* added = add().mutable_add_terrain_layer();
         *added = layer;
         added->set_position(std::uint32_t(i));
-      } else if (layer.has_opacity()) { // the drape, changed; others push it to its place
+      } else if (layer.has_opacity()) { // one that it opens with, changed
         v1::ChangeTerrainLayer* change = add().mutable_change_terrain_layer();
         change->set_terrain(name);
-        change->set_name("drape");
+        change->set_name(layer.name());
+        change->set_position(std::uint32_t(i));
         change->set_opacity(layer.opacity());
         change->set_visible(!layer.hidden());
       }
