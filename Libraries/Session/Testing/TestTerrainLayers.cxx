@@ -5,6 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include <dspace/session/Ledger.h>
+
 #include "CommandTestSupport.h"
 
 namespace dspace::testing {
@@ -268,6 +270,47 @@ TEST_F(TerrainLayers, AreAtMost64) {
     this->Add(Noise());
   }
   this->RefuseLayer(Noise(), v1::Error::INVALID_ARGUMENT, "64");
+}
+
+TEST_F(TerrainLayers, ALedgerRebuildsThem) {
+  session::Ledger ledger;
+  this->Interpreter_.AddListener([&ledger](const v1::Command& command, const v1::Reply& reply) {
+    ledger.Add(command, reply);
+  });
+  v1::Command anew; // from nothing on, as a ledger needs it
+  anew.mutable_remove_scene();
+  this->Accept(anew);
+  anew.mutable_create_scene();
+  this->Accept(anew);
+  v1::Command open;
+  open.mutable_open_terrain()->set_path(this->Ground_.Path());
+  open.mutable_open_terrain()->set_mode(v1::OpenTerrain::CLIPMAP);
+  open.mutable_open_terrain()->set_fill_holes(5.0);
+  open.mutable_open_terrain()->mutable_drape()->set_path(this->Image_.Path());
+  this->Accept(open);
+  const auto same = [&](const char* when) {
+    session::Interpreter second;
+    for (v1::Command command : ledger.Commands()) {
+      const v1::Reply reply = second.Execute(command);
+      ASSERT_FALSE(reply.has_error()) << when << ": " << reply.error().message();
+    }
+    EXPECT_EQ(LayersOf(second).DebugString(), LayersOf(this->Interpreter_).DebugString()) << when;
+  };
+  same("opened");
+  this->Add(Noise("a"));
+  this->Add(Noise("b"));
+  same("with more");
+  EXPECT_FALSE(this->Change("filled", [](auto& c) { c.set_opacity(0.7); }).has_error());
+  same("changed");
+  EXPECT_FALSE(this->Change("filled", [](auto& c) { c.set_position(0); }).has_error());
+  EXPECT_FALSE(this->Change("drape", [](auto& c) { c.set_visible(false); }).has_error());
+  EXPECT_FALSE(this->Change("a", [](auto& c) { c.set_position(3); }).has_error());
+  same("moved");
+  v1::Command remove;
+  remove.mutable_remove_terrain_layer()->set_terrain("terrain");
+  remove.mutable_remove_terrain_layer()->set_name("drape");
+  this->Accept(remove);
+  same("removed");
 }
 
 } // namespace
