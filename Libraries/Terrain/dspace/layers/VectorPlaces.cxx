@@ -8,6 +8,7 @@
 
 #include <dspace/terrain/GdalErrors.h>
 #include <dspace/terrain/MapTurn.h>
+#include <dspace/terrain/OgrLock.h>
 
 namespace dspace {
 namespace {
@@ -78,6 +79,7 @@ MapConversion::MapConversion(const Crs& from, const Crs& to, const std::string& 
     }
     return;
   }
+  const std::lock_guard<std::mutex> lock(OgrMutex());
   if (from.GetWkt() == to.GetWkt() || from.Ogr()->IsSame(to.Ogr())) {
     return;
   }

@@ -9,6 +9,7 @@
 #include <dspace/Error.h>
 
 #include "GdalErrors.h"
+#include "OgrLock.h"
 
 namespace dspace {
 
@@ -102,6 +103,7 @@ Crs Crs::Geographic() const {
                 "it has no longitude and latitude; give a geographic or projected CRS");
   if (this->Kind_ == Kind::Geographic)
     return *this;
+  const std::lock_guard<std::mutex> lock(OgrMutex());
   GdalErrors errors;
   std::unique_ptr<OGRSpatialReference> base(this->Srs_->CloneGeogCS());
   if (!base)

@@ -10,6 +10,7 @@
 #include <dspace/Error.h>
 
 #include "GdalErrors.h"
+#include "OgrLock.h"
 
 namespace dspace {
 
@@ -41,6 +42,7 @@ CrsTransform::CrsTransform(const Crs& from, const Crs& to)
   this->Impl_->name = "conversion '" + from.GetName() + "' to '" + to.GetName() + "'";
   if (!from.Ogr() || !to.Ogr())
     throw Error(Error::Kind::Unsupported, this->Impl_->name, "both sides need a CRS");
+  const std::lock_guard<std::mutex> lock(OgrMutex());
   GdalErrors errors;
   this->Impl_->forward.reset(OGRCreateCoordinateTransformation(from.Ogr(), to.Ogr()));
   this->Impl_->inverse.reset(OGRCreateCoordinateTransformation(to.Ogr(), from.Ogr()));

@@ -4,12 +4,15 @@
 
 #include <ogr_spatialref.h>
 
+#include "OgrLock.h"
+
 namespace dspace {
 
 double MapTurn(const Crs& crs) {
   if (crs.GetKind() == Crs::Kind::Geographic) {
     return 360.0 / crs.GetUnit();
   }
+  const std::lock_guard<std::mutex> lock(OgrMutex());
   const OGRSpatialReference* srs = crs.Ogr();
   const char* projection = srs ? srs->GetAttrValue("PROJECTION") : nullptr;
   if (!projection || std::string(projection) != SRS_PT_EQUIRECTANGULAR) {
