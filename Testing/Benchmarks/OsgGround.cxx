@@ -24,21 +24,11 @@
 #include <osgViewer/Renderer>
 #include <osgViewer/Viewer>
 
+#include "OsgGround_frag.h"
+#include "OsgGround_vert.h"
+
 namespace dspace::bench {
 namespace {
-
-constexpr const char* VertexShader = R"(#version 120
-varying vec3 normal;
-void main() {
-  normal = gl_NormalMatrix * gl_Normal;
-  gl_Position = ftransform();
-})";
-constexpr const char* FragmentShader = R"(#version 120
-varying vec3 normal;
-void main() {
-  float light = max(dot(normalize(normal), gl_LightSource[0].position.xyz), 0.0);
-  gl_FragColor = vec4(gl_FrontMaterial.diffuse.rgb * light, 1.0);
-})";
 
 constexpr const char* Extension = "dspaceground";
 
@@ -229,8 +219,8 @@ OsgGround::OsgGround(const OsgGroundOptions& options) : Parts_(std::make_unique<
   Parts& p = *this->Parts_;
   p.context.MakeCurrent();
   osgDB::Registry::instance()->addReaderWriter(p.reader);
-  p.program->addShader(new osg::Shader(osg::Shader::VERTEX, VertexShader));
-  p.program->addShader(new osg::Shader(osg::Shader::FRAGMENT, FragmentShader));
+  p.program->addShader(new osg::Shader(osg::Shader::VERTEX, OsgGround_vert));
+  p.program->addShader(new osg::Shader(osg::Shader::FRAGMENT, OsgGround_frag));
   p.viewer = new osgViewer::Viewer;
   p.viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
   p.viewer->setUpViewerAsEmbeddedInWindow(0, 0, options.width, options.heightPixels);
