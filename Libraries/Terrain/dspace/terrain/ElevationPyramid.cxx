@@ -139,16 +139,10 @@ struct ElevationPyramid::Implementation {
 
   void Work() {
     std::unique_lock<std::mutex> lock(this->mutex);
-    while (!this->stopping) {
-      std::optional<Queue::Clock::time_point> soonest;
-      const auto next = this->queue.Next(soonest);
+    while (true) {
+      const auto next = this->queue.Wait(lock, this->wanted, this->stopping);
       if (this->queue.IsNone(next)) {
-        if (soonest) {
-          this->wanted.wait_until(lock, *soonest);
-        } else {
-          this->wanted.wait(lock);
-        }
-        continue;
+        return;
       }
       const TileKey key = next->first;
       next->second.reading = true;

@@ -3,18 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "Patch.h"
 #include "PostFacets.h"
+#include "RandomPixels.h"
 
 namespace dspace {
 namespace {
 
 constexpr int MostSubdivisions = 24;
-constexpr int Spots = 16; // of the resampling error, and posts in each
-constexpr int SpotPosts = 16;
-constexpr int SpotSize = 32; // pixels a side
 
 } // namespace
 
@@ -121,41 +118,31 @@ std::array<double, 2> GroupPosts::PatchHeights(const Eigen::AlignedBox2d& posts)
 // At posts of the patch near a number of places, so that few of its tiles are read.
 void GroupPosts::Measure(std::size_t index, PatchReport& report) const {
   const Patch& patch = *this->Patches_[index];
-  const RasterWindow window = patch.Source().Info().window;
-  std::mt19937 random(1);
-  const auto below = [&](int n) { return int(random() % std::uint32_t(std::max(1, n))); };
   double squares = 0.0;
-  for (int spot = 0; spot < Spots; ++spot) {
-    const RasterWindow part{below(window.width - SpotSize + 1), below(window.height - SpotSize + 1),
-                            std::min(SpotSize, window.width), std::min(SpotSize, window.height)};
-    const std::vector<double> own = patch.Source().Read(part);
-    for (int i = 0; i < SpotPosts; ++i) {
-      const int c = below(part.width);
-      const int r = below(part.height);
-      const double height = own[std::size_t(r) * part.width + c] + report.addedTo;
-      const Eigen::Vector2d pixel(part.column + c + 0.5, part.row + r + 0.5);
-      const Eigen::Vector2d post = patch.Place().PostOf(pixel);
-      if (std::isnan(height) || !post.allFinite() || patch.Weight().At(pixel, 0) < 1.0 - 1e-6) {
-        continue;
-      }
-      const Eigen::Vector2d cell = post.array().floor();
-      const PostBlock block{0, std::int64_t(cell.x()), std::int64_t(cell.y()), 2, 2};
-      std::array<float, 4> posts = {};
-      this->ReadUpTo(index + 1, block, posts.data());
-      const auto at = [&](std::int64_t k, std::int64_t j) -> double {
-        return posts[std::size_t(2 * (j - block.row) + k - block.column)];
-      };
-      const Eigen::Vector2d place = post - cell;
-      const HeightGrid::Facet facet =
-          FacetOfCell(at, block.column, block.row, place.y() > place.x(), place.x(), place.y());
-      if (facet.valid) {
-        const double error = facet.height - height;
-        squares += error * error;
-        report.greatestError = std::max(report.greatestError, std::abs(error));
-        ++report.posts;
-      }
+  AtRandomPixels(patch.Source(), [&](int c, int r, double own) {
+    const double height = own + report.addedTo;
+    const Eigen::Vector2d pixel(c + 0.5, r + 0.5);
+    const Eigen::Vector2d post = patch.Place().PostOf(pixel);
+    if (std::isnan(height) || !post.allFinite() || patch.Weight().At(pixel, 0) < 1.0 - 1e-6) {
+      return;
     }
-  }
+    const Eigen::Vector2d cell = post.array().floor();
+    const PostBlock block{0, std::int64_t(cell.x()), std::int64_t(cell.y()), 2, 2};
+    std::array<float, 4> posts = {};
+    this->ReadUpTo(index + 1, block, posts.data());
+    const auto at = [&](std::int64_t k, std::int64_t j) -> double {
+      return posts[std::size_t(2 * (j - block.row) + k - block.column)];
+    };
+    const Eigen::Vector2d place = post - cell;
+    const HeightGrid::Facet facet =
+        FacetOfCell(at, block.column, block.row, place.y() > place.x(), place.x(), place.y());
+    if (facet.valid) {
+      const double error = facet.height - height;
+      squares += error * error;
+      report.greatestError = std::max(report.greatestError, std::abs(error));
+      ++report.posts;
+    }
+  });
   report.rmsError = report.posts > 0 ? std::sqrt(squares / report.posts) : 0.0;
 }
 

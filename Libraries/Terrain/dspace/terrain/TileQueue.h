@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdint>
 #include <exception>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,6 +82,24 @@ public:
     return best;
   }
   bool IsNone(typename Requests::iterator it) { return it == this->Requests_.end(); }
+
+  // Waits for a request that is due; none once `stopping` is set. `wanted` is told of new ones.
+  typename Requests::iterator Wait(std::unique_lock<std::mutex>& lock,
+                                   std::condition_variable& wanted, const bool& stopping) {
+    while (!stopping) {
+      std::optional<Clock::time_point> soonest;
+      const auto next = this->Next(soonest);
+      if (!this->IsNone(next)) {
+        return next;
+      }
+      if (soonest) {
+        wanted.wait_until(lock, *soonest);
+      } else {
+        wanted.wait(lock);
+      }
+    }
+    return this->Requests_.end();
+  }
 
   void Done(const Key& key) { this->Requests_.erase(key); }
 
