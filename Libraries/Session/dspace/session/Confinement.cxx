@@ -140,6 +140,10 @@ const std::vector<std::string>& PathFields() {
                                                   "dspace.v1.BuildTerrainCache.path",
                                                   "dspace.v1.ClearTerrainCache.folder",
                                                   "dspace.v1.ClearTerrainCache.path",
+                                                  "dspace.v1.CameraModel.model_path",
+                                                  "dspace.v1.HorizonMap.path",
+                                                  "dspace.v1.IlluminationMap.horizon_path",
+                                                  "dspace.v1.IlluminationMap.path",
                                                   "dspace.v1.ImportObject.Level.path",
                                                   "dspace.v1.ListTerrainCache.folder",
                                                   "dspace.v1.LoadRobot.path",
@@ -151,8 +155,10 @@ const std::vector<std::string>& PathFields() {
                                                   "dspace.v1.OpenTerrain.path",
                                                   "dspace.v1.SaveImage.path",
                                                   "dspace.v1.SaveTracks.path",
+                                                  "dspace.v1.SimulateImage.path",
                                                   "dspace.v1.StyleTerrain.Detail.path",
-                                                  "dspace.v1.VerifyTerrainCache.folder"};
+                                                  "dspace.v1.VerifyTerrainCache.folder",
+                                                  "dspace.v1.Viewshed.path"};
   return fields;
 }
 
@@ -163,9 +169,11 @@ const std::vector<std::string>& CrsFields() {
 
 const std::vector<std::string>& PlainFields() {
   static const std::vector<std::string> fields = {
-      "camera", "fragment",    "hidden_fragment", "key",     "label",   "layer",
-      "name",   "object_name", "robot",           "scene",   "terrain", "text",
-      "title",  "unit",        "value",           "vantage", "viewport"};
+      "answer",      "axes",     "below",      "body",      "camera",          "choice",
+      "description", "fragment", "frame_path", "from",      "hidden_fragment", "key",
+      "kind",        "label",    "layer",      "name",      "object_name",     "observer",
+      "robot",       "scene",    "target",     "telemetry", "terrain",         "text",
+      "title",       "unit",     "value",      "vantage",   "viewport"};
   return fields;
 }
 

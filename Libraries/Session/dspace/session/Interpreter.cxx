@@ -51,6 +51,9 @@ Interpreter::Interpreter() {
   AddFragmentCommands(this->Registry_);
   AddCameraCommands(this->Registry_);
   AddTerrainCommands(this->Registry_);
+  AddTelemetryCommands(this->Registry_);
+  AddMessageCommands(this->Registry_);
+  AddLaterCommands(this->Registry_);
 }
 
 v1::Reply Interpreter::Execute(v1::Command& command) {

@@ -6,7 +6,9 @@
 #include <dspace/session/LedgerFrames.h>
 #include <dspace/session/LedgerObjects.h>
 #include <dspace/session/LedgerViews.h>
+#include <dspace/session/MessageLog.h>
 #include <dspace/session/State.h>
+#include <dspace/session/Telemetry.h>
 
 namespace dspace::session {
 namespace {
@@ -16,6 +18,8 @@ struct LedgerScene {
   LedgerNames names;
   LedgerFrames frames;
   LedgerObjects objects;
+  Telemetry telemetry;
+  MessageLog messages;
 
   void Remove(LedgerId frame) {
     const LedgerFrames::Removed removed = this->frames.Remove(frame);
@@ -85,6 +89,43 @@ struct LedgerScene {
     }
   }
 
+  // What a simulation says; ids, numbers and times of events stand in the accepted commands.
+  bool AddMessages(const v1::Command& command) {
+    using C = v1::Command;
+    switch (command.command_case()) {
+    case C::kCreateTelemetry:
+      this->telemetry.Create(command.create_telemetry(), 0);
+      return true;
+    case C::kSetTelemetryLimits:
+      this->telemetry.SetLimits(command.set_telemetry_limits());
+      return true;
+    case C::kSetTelemetry:
+      this->telemetry.Set(command.set_telemetry(), this->names.Time());
+      return true;
+    case C::kSetTelemetryTexts:
+      this->telemetry.SetTexts(command.set_telemetry_texts(), this->names.Time());
+      return true;
+    case C::kRemoveTelemetry:
+      this->telemetry.Remove(command.remove_telemetry());
+      return true;
+    case C::kLogEvent: {
+      v1::LogEvent event = command.log_event();
+      this->messages.Log(event, this->names.Time());
+      return true;
+    }
+    case C::kAskOperator: {
+      v1::AskOperator question = command.ask_operator();
+      this->messages.Ask(question, this->names.Time());
+      return true;
+    }
+    case C::kCloseQuestion:
+      this->messages.Close(command.close_question());
+      return true;
+    default:
+      return false;
+    }
+  }
+
   void Put(const std::string& name, std::vector<v1::Command>& out) const {
     this->names.PutFirst(name, out);
     const std::vector<std::string> fragments = this->names.Fragments();
@@ -92,6 +133,9 @@ struct LedgerScene {
     this->frames.Put(name, fragments, out);
     this->objects.Put(name, this->frames, fragments, out);
     this->names.PutLast(name, out);
+    this->telemetry.Put(name, out);
+    this->messages.Put(
+        name, [this](LedgerId frame) { return this->frames.Contains(frame); }, out);
   }
 };
 
@@ -132,7 +176,7 @@ void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
   const auto found = this->Impl_->scenes.find(name);
   if (found == this->Impl_->scenes.end() ||
       !(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
-        found->second.names.Add(accepted, reply))) {
+        found->second.AddMessages(accepted) || found->second.names.Add(accepted, reply))) {
     this->Impl_->others.push_back(accepted);
   }
 }

@@ -46,6 +46,7 @@ public:
   // Frames, robots, joints, poses. `scene` is the name that commands bear, `fragments` those that
   // there are: where a robot's is gone its visuals are moved later.
   void Put(const std::string& scene, const std::vector<std::string>& fragments, Emit out) const;
+  bool Contains(LedgerId frame) const { return this->Nodes_.count(frame) > 0; }
   // A name that no child of the root has.
   std::string FreeName() const;
 

@@ -24,6 +24,7 @@ public:
   bool Add(const v1::Command& command, const v1::Reply& reply);
   void RemoveLightsOn(const std::unordered_set<std::uint64_t>& frames);
   std::vector<std::string> Fragments() const; // that there are
+  double Time() const { return this->Time_.value_or(0.0); }
 
   void PutFirst(const std::string& scene, Emit out) const; // the scene, its time, fragments
   void PutLast(const std::string& scene, Emit out) const;  // lights, vantages, cameras, lags

@@ -47,6 +47,17 @@ bool LeavesPoses(const v1::Command& command) {
   case C::kQueryTerrain:
   case C::kTrackWheels:
   case C::kFocusTerrain:
+  case C::kCreateTelemetry:
+  case C::kSetTelemetryLimits:
+  case C::kSetTelemetry:
+  case C::kSetTelemetryTexts:
+  case C::kRemoveTelemetry:
+  case C::kListTelemetry:
+  case C::kLogEvent:
+  case C::kAskOperator:
+  case C::kCloseQuestion:
+  case C::kListEvents:
+  case C::kListQuestions:
     return true;
   default:
     return false;

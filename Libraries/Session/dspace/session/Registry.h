@@ -46,6 +46,8 @@ public:
                               handler(context, *(command.*get)());
                             }};
   }
+  // A command that is typed and not carried out yet: answered with Error.UNIMPLEMENTED, which names it.
+  void AddLater(v1::Command::CommandCase kind);
   const Entry* Find(v1::Command::CommandCase kind) const {
     const auto found = this->Entries_.find(kind);
     return found == this->Entries_.end() ? nullptr : &found->second;
@@ -66,6 +68,9 @@ void AddRobotCommands(Registry& registry);
 void AddFragmentCommands(Registry& registry);
 void AddCameraCommands(Registry& registry);
 void AddTerrainCommands(Registry& registry);
+void AddTelemetryCommands(Registry& registry);
+void AddMessageCommands(Registry& registry);
+void AddLaterCommands(Registry& registry);
 void AddTextCommands(Registry& registry); // needs VTK: in the module, not in the plain library
 
 } // namespace dspace::session

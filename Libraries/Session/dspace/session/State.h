@@ -12,8 +12,10 @@
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/Trail.h>
 #include <dspace/session/FrameEventLog.h>
+#include <dspace/session/MessageLog.h>
 #include <dspace/session/ModelCache.h>
 #include <dspace/session/Robot.h>
+#include <dspace/session/Telemetry.h>
 #include <dspace/session/TerrainObject.h>
 #include <dspace/session/objects.pb.h>
 
@@ -31,6 +33,8 @@ struct SceneState {
   std::set<ObjectId> primitives;                       // objects whose shape may be replaced
   std::map<ObjectId, std::pair<double, double>> tilts; // warning and limit of tilt markers [deg]
   std::map<ObjectId, v1::CreateText> texts;            // with their style
+  Telemetry telemetry;
+  MessageLog messages;
   std::unique_ptr<FrameFollower> follower;             // null while nobody follows the frames
 
   // Drops the robots, terrains, trails and primitives whose frames or objects are gone.
@@ -56,6 +60,7 @@ struct State {
   std::map<std::string, SceneState> scenes;
   std::map<std::string, ViewportPlace> viewports;
   ModelCache models;
+  std::uint64_t lastTelemetryId = 0; // of all scenes that there were
 
   // Throws Error(NotFound) naming the scenes there are.
   SceneState& FindScene(const std::string& name);

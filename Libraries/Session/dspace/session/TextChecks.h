@@ -1,0 +1,45 @@
+// Texts of commands, refused where they are too long or hold what a line cannot. Inside the library
+// only.
+#ifndef DSPACE_SESSION_TEXT_CHECKS_H
+#define DSPACE_SESSION_TEXT_CHECKS_H
+
+#include <string>
+
+#include <dspace/scene/Checks.h>
+#include <dspace/scene/TextCharacters.h>
+
+namespace dspace::session {
+
+// Up to `most` bytes; line breaks where `lines` says so, no other control characters.
+inline void RequireShortText(const std::string& object, const char* what, const std::string& text,
+                             std::size_t most, bool lines) {
+  if (text.size() > most) {
+    Refuse(object, std::string(what) + " has " + std::to_string(text.size()) +
+                       " bytes; accepted: up to " + std::to_string(most));
+  }
+  RequirePlainText(object, what, text, lines);
+}
+
+inline void RequireLine(const std::string& object, const char* what, const std::string& text,
+                        std::size_t most) {
+  RequireShortText(object, what, text, most, false);
+}
+
+inline void RequireLines(const std::string& object, const char* what, const std::string& text,
+                         std::size_t most) {
+  RequireShortText(object, what, text, most, true);
+}
+
+// A line that is not empty.
+inline void RequireWord(const std::string& object, const char* what, const std::string& text,
+                        std::size_t most) {
+  if (text.empty()) {
+    Refuse(object, std::string(what) + " is empty; accepted: 1 to " + std::to_string(most) +
+                       " bytes without control characters");
+  }
+  RequireLine(object, what, text, most);
+}
+
+} // namespace dspace::session
+
+#endif
