@@ -1,9 +1,10 @@
 #include "vtkDspaceWatcher.h"
 
-#include <algorithm>
+#include <map>
 #include <vector>
 
 #include <dspace/session/ErrorReply.h>
+#include <dspace/session/OwnViews.h>
 #include <dspace/session/Watcher.h>
 
 #include "vtkDspaceRenderContext.h"
@@ -15,43 +16,7 @@ vtkStandardNewMacro(vtkDspaceWatcher);
 
 namespace {
 
-constexpr const char* Own = "viewer:";        // begins the names of a watcher's own viewports
 constexpr const char* Banner = "dspace.link"; // the table that says what is wrong
-constexpr int MostOwnCommands = 1000;
-
-// "viewer:1" of a command on that viewport, else empty.
-std::string OwnViewport(const dspace::v1::Command& command) {
-  std::string name;
-  switch (command.command_case()) {
-  case dspace::v1::Command::kCreateViewport:
-    name = command.create_viewport().name();
-    break;
-  case dspace::v1::Command::kRemoveViewport:
-    name = command.remove_viewport().viewport();
-    break;
-  case dspace::v1::Command::kResizeViewport:
-    name = command.resize_viewport().viewport();
-    break;
-  case dspace::v1::Command::kMoveViewport:
-    name = command.move_viewport().viewport();
-    break;
-  case dspace::v1::Command::kSetViewport:
-    name = command.set_viewport().viewport();
-    break;
-  case dspace::v1::Command::kSetViewportFragment:
-    name = command.set_viewport_fragment().viewport();
-    break;
-  case dspace::v1::Command::kSetTextTable:
-    name = command.set_text_table().viewport();
-    break;
-  case dspace::v1::Command::kRemoveTextTable:
-    name = command.remove_text_table().viewport();
-    break;
-  default:
-    break;
-  }
-  return name.rfind(Own, 0) == 0 ? name : std::string();
-}
 
 } // namespace
 
@@ -59,13 +24,12 @@ struct vtkDspaceWatcher::Internals {
   dspace::session::WatcherOptions options;
   std::unique_ptr<dspace::session::Watcher> watcher;
   vtkSmartPointer<vtkDspaceSession> session = vtkSmartPointer<vtkDspaceSession>::New();
-  std::vector<dspace::v1::Command> own; // on one's own viewports, in order
-  int lastOwn = 0;
+  dspace::session::OwnViews own;
   std::uint64_t sequence = 0;
   std::string writer;
   bool writerConnected = false;
   std::string trouble;
-  std::string banner; // that is shown
+  std::map<std::string, std::string> banners; // that are shown, by viewport
 
   dspace::session::Interpreter& Interpreter() { return this->session->GetInterpreter(); }
 
@@ -82,24 +46,22 @@ struct vtkDspaceWatcher::Internals {
   }
 
   void Begin(dspace::v1::WatchReply::Snapshot& snapshot) {
+    this->own.Leave(this->Interpreter());
     // The context goes on, with what is on the GPU already.
     const vtkSmartPointer<vtkDspaceRenderContext> context = this->session->GetRenderContext();
     this->session = vtkSmartPointer<vtkDspaceSession>::New();
     this->session->SetRenderContext(context);
     this->trouble.clear();
-    this->banner.clear();
+    this->banners.clear();
     for (dspace::v1::Command& command : *snapshot.mutable_command()) {
       this->Apply(command);
     }
-    for (dspace::v1::Command command : this->own) {
-      this->Interpreter().Execute(command); // what is shown there may be gone: then it is too
-    }
+    this->own.Enter(this->Interpreter());
   }
 
   void Apply(dspace::v1::Command& command) {
     dspace::v1::Reply reply = this->Interpreter().Execute(command);
-    if (reply.has_error() && !this->own.empty()) {
-      this->RemoveOwn(); // one that shows what is to be removed is in the way
+    if (reply.has_error() && this->own.MakeRoom(this->Interpreter(), command)) {
       reply = this->Interpreter().Execute(command);
     }
     if (reply.has_error() && this->trouble.empty()) {
@@ -114,30 +76,24 @@ struct vtkDspaceWatcher::Internals {
     return {reply.viewports().name().begin(), reply.viewports().name().end()};
   }
 
-  void RemoveOwn() {
-    for (const std::string& name : this->Viewports()) {
-      if (name.rfind(Own, 0) == 0) {
-        dspace::v1::Command command;
-        command.mutable_remove_viewport()->set_viewport(name);
-        this->Interpreter().Execute(command);
-      }
+  // What every viewport says of the link.
+  std::string BannerText() const {
+    if (this->watcher && !this->watcher->Connected()) {
+      return "SERVER LOST: last state; waiting for it";
     }
-    this->own.clear();
+    if (!this->writerConnected && !this->writer.empty()) {
+      return "SIMULATION '" + this->writer + "' HAS GONE: last state";
+    }
+    return {};
   }
 
   void ShowBanner() {
-    std::string text;
-    std::string why;
-    if (this->watcher && !this->watcher->Connected(&why)) {
-      text = "server lost: waiting for it";
-    } else if (!this->writerConnected && !this->writer.empty()) {
-      text = "simulation '" + this->writer + "' has gone: last state";
-    }
-    if (text == this->banner) {
-      return;
-    }
-    this->banner = text;
+    const std::string text = this->BannerText();
     for (const std::string& viewport : this->Viewports()) {
+      std::string& shown = this->banners[viewport];
+      if (shown == text) {
+        continue;
+      }
       dspace::v1::Command command;
       if (text.empty()) {
         command.mutable_remove_text_table()->set_viewport(viewport);
@@ -153,30 +109,12 @@ struct vtkDspaceWatcher::Internals {
         table->set_background_opacity(0.8);
       }
       this->Interpreter().Execute(command);
-    }
-  }
-
-  void Remember(const dspace::v1::Command& command) {
-    const auto kind = command.command_case();
-    const std::string name = OwnViewport(command);
-    const bool gone = command.has_remove_viewport();
-    const bool newer = command.has_resize_viewport() || command.has_move_viewport();
-    this->own.erase(std::remove_if(this->own.begin(), this->own.end(),
-                                   [&](const dspace::v1::Command& each) {
-                                     return OwnViewport(each) == name &&
-                                            (gone || (newer && each.command_case() == kind));
-                                   }),
-                    this->own.end());
-    if (!gone) {
-      this->own.push_back(command);
+      shown = text;
     }
   }
 
   dspace::v1::Reply Execute(dspace::v1::Command& command) {
     using dspace::session::Effect;
-    if (command.has_create_viewport() && command.create_viewport().name().empty()) {
-      command.mutable_create_viewport()->set_name(Own + std::to_string(++this->lastOwn));
-    }
     if (command.has_capture()) {
       command.mutable_capture()->set_inline_data(true); // the session does not see this one
     }
@@ -184,26 +122,38 @@ struct vtkDspaceWatcher::Internals {
     if (!entry || entry->effect == Effect::Request || command.has_follow_frames()) {
       return this->Interpreter().Execute(command);
     }
-    if (OwnViewport(command).empty()) {
+    if (!this->own.Owns(command)) {
       const std::string name = dspace::session::CommandName(command);
       return dspace::session::ErrorReply(
           dspace::v1::Error::UNSUPPORTED, "command " + name,
           "command " + name +
-              ": who watches changes nothing; accepted: requests, and viewports "
-              "of one's own, whose names begin with '" +
-              std::string(Own) + "'");
+              ": who watches changes nothing; accepted: requests, and viewports, vantages and "
+              "cameras of one's own, whose names begin with '" +
+              std::string(dspace::session::OwnViews::Prefix) + "'");
     }
-    if (int(this->own.size()) >= MostOwnCommands) {
-      return dspace::session::ErrorReply(
-          dspace::v1::Error::RESOURCE, "watcher",
-          "watcher: it has given " + std::to_string(MostOwnCommands) +
-              " commands to viewports of its own; accepted: no more");
+    const dspace::v1::Reply reply = this->own.Execute(this->Interpreter(), command);
+    if (command.has_viewport_event() && reply.pick().object() != 0) {
+      this->TellPick(command.viewport_event().viewport(), reply.pick());
     }
-    dspace::v1::Reply reply = this->Interpreter().Execute(command);
-    if (!reply.has_error()) {
-      this->Remember(command);
+    if (command.has_create_viewport()) {
+      this->ShowBanner();
     }
     return reply;
+  }
+
+  // What a person has clicked on. Nobody is there to hear it: then it is for the viewer alone.
+  void TellPick(const std::string& viewport, const dspace::v1::PickReply& pick) {
+    if (!this->watcher || !this->watcher->Connected() || !this->writerConnected) {
+      return;
+    }
+    dspace::v1::ViewerEvent event;
+    event.mutable_picked()->set_scene(this->Interpreter().GetState().viewports[viewport].scene);
+    event.mutable_picked()->set_viewport(viewport);
+    *event.mutable_picked()->mutable_pick() = pick;
+    dspace::session::Catch([&] {
+      this->watcher->Tell(event);
+      return dspace::v1::Reply();
+    });
   }
 };
 

@@ -2,11 +2,11 @@
  * @class vtkDspaceWatcher
  * @brief A read-only session that follows a server's and draws for itself.
  *
- * Update applies what the server has accepted; between two calls nothing changes. Viewports of the
- * watcher's own, named "viewer:...", may be made; all other changes are refused. Where the
- * simulation or the server is gone the last picture stays, and every viewport says so. No C++
- * exception leaves a method; what can fail returns a serialized Reply. See
- * <dspace/session/Watcher.h>.
+ * Update applies what the server has accepted; between two calls nothing changes. Viewports,
+ * vantages and cameras of the watcher's own, named "viewer:...", may be made, and outlast snapshots
+ * (<dspace/session/OwnViews.h>); all other changes are refused. Where the simulation or the server
+ * is gone the last picture stays, and every viewport says so. No C++ exception leaves a method;
+ * what can fail returns a serialized Reply. See <dspace/session/Watcher.h>.
  */
 #ifndef vtkDspaceWatcher_h
 #define vtkDspaceWatcher_h
@@ -44,7 +44,8 @@ public:
   /// What could not be applied since the last snapshot; empty: nothing.
   std::string GetTrouble();
 
-  /// Carries out a serialized Command: requests, and commands on viewports of one's own.
+  /// Carries out a serialized Command: requests, and commands on views of one's own. An event that
+  /// clicks on something in a viewport of one's own also tells the simulation (ViewerEvent.Picked).
   std::string Execute(const std::string& command);
   /// Sends a serialized ViewerEvent to the simulation. The reply's error is NOT_FOUND when nobody
   /// drives.

@@ -5,7 +5,7 @@ import warnings
 
 from dspace import vtk as _vtk
 from dspace.errors import KINDS, Closed, DspaceWarning, Internal, WrongThread
-from dspace.events import FrameListeners
+from dspace.events import EventQueue, FrameListeners
 from dspace.session import commands_pb2 as pb
 
 DEFAULT_SCENE = "scene"  # what a command means that names no scene
@@ -42,6 +42,7 @@ class LocalClient:
         self._thread = threading.get_ident()
         self.vtk = _vtk.vtkDspaceSession()
         self.frame_listeners = FrameListeners()
+        self.events = EventQueue()
         self.recording = None  # the last one that was begun
 
     def local(self):
@@ -79,8 +80,19 @@ class LocalClient:
             listeners.deliver()
         return reply
 
+    def tell(self, event):
+        """A ViewerEvent for who drives: in a session of one's own, for oneself."""
+        self.local()
+        self.events.put(event)
+
+    def take_event(self, wait):
+        """The next ViewerEvent, or None; nothing comes meanwhile."""
+        self.local()
+        return self.events.take()
+
     def close(self):
         if self.vtk is not None:
             self._require_thread()
         self.vtk = None
         self.frame_listeners.clear()
+        self.events.clear()

@@ -1,4 +1,4 @@
-"""What a scene tells those who follow its frames, and how it is delivered."""
+"""What a scene tells those who follow its frames, how it is delivered, and what waits of viewers' events."""
 from collections import deque
 
 import numpy as np
@@ -144,3 +144,23 @@ class FrameListeners:
         return Resource(f"on_frame_change: the commands of {callback!r} cause further ones without end "
                         f"(round {self._round}, {self._caused} changes); accepted: up to "
                         f"{MAXIMUM_ROUNDS} rounds and {MAXIMUM_CAUSED} changes", "on_frame_change")
+
+
+class EventQueue:
+    """The ViewerEvents that a session itself was told, and the callbacks of whoever hears any."""
+
+    def __init__(self):
+        self._told = deque()
+        self.callbacks = []  # (kind or None, callback), in the order they came
+
+    def put(self, event):
+        copy = type(event)()
+        copy.CopyFrom(event)
+        self._told.append(copy)
+
+    def take(self):
+        return self._told.popleft() if self._told else None
+
+    def clear(self):
+        self._told.clear()
+        self.callbacks.clear()

@@ -24,7 +24,6 @@ class RemoteClient(LocalClient):
         self.link = link
         self.address = address
         self.wait = True
-        self.event_callbacks = []
         self.pace = None  # (rate, simulation time, wall time) once time was set
 
     def local(self):
@@ -57,6 +56,18 @@ class RemoteClient(LocalClient):
         if ahead > 0:
             time.sleep(ahead)
 
+    def tell(self, event):
+        self._open()
+        self.events.put(event)
+
+    def take_event(self, wait):
+        link = self._open()
+        event = self.events.take()
+        if event is None:
+            data = to_bytes(link.TakeEvent(wait))
+            event = service_pb2.ViewerEvent.FromString(data) if data else None
+        return event
+
     def flush(self):
         self._finish(pb.Command(), to_reply(self._open().Flush()))
 
@@ -66,7 +77,7 @@ class RemoteClient(LocalClient):
             self.link.Close()
         self.link = None
         self.frame_listeners.clear()
-        self.event_callbacks.clear()
+        self.events.clear()
 
 
 class RemoteSession(Session):
@@ -108,26 +119,6 @@ class RemoteSession(Session):
             if not 0 < rate < float("inf"):
                 refuse("session", "the pace", rate, "None, or a finite number above 0")
         self._client.pace = None if rate is None else (rate, None, 0.0)
-
-    def on_event(self, callback):
-        """Calls `callback` with a ViewerEvent (dspace.session.service_pb2) for everything that viewers
-        say: what was picked or selected, an answer, an edited value. Called by process_events()."""
-        if not callable(callback):
-            refuse("session", "the callback", callback, "a function of one ViewerEvent", WrongType)
-        self._client.event_callbacks.append(callback)
-
-    def process_events(self, wait=0.0):
-        """Hands what viewers have said to the callbacks of on_event; waits up to `wait` seconds for the
-        first. Returns the events. A callback that raises leaves the rest for the next call."""
-        wait = number(wait, "the wait", "session")
-        events = []
-        while True:
-            data = to_bytes(self._client._open().TakeEvent(0.0 if events else wait))
-            if not data:
-                return events
-            events.append(service_pb2.ViewerEvent.FromString(data))
-            for callback in list(self._client.event_callbacks):
-                callback(events[-1])
 
     @property
     def poses_left_out(self):

@@ -5,10 +5,11 @@ from dspace.errors import AlreadyExists
 from dspace.recordings import Recording
 from dspace.scenes import Scene
 from dspace.session import commands_pb2 as pb
+from dspace.viewer_events import ViewerEvents
 from dspace.viewports import Viewport
 
 
-class Session:
+class Session(ViewerEvents):
     """Scenes and viewports in this process. Use it in a `with` statement, or close() it.
 
         with dspace.Session() as session:

@@ -1,11 +1,14 @@
 """Watching a simulation that another process drives, through a server."""
 from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_reply
-from dspace._fields import number, text
-from dspace.errors import Closed
+from dspace._fields import number, refuse, text
+from dspace.errors import Closed, WrongType
 from dspace.remote import prepare
-from dspace.session import service_pb2
+from dspace.scenes import Scene
 from dspace.sessions import Session
+
+
+OWN = "viewer:"  # begins the names of what is a watcher's own
 
 
 class WatchClient(LocalClient):
@@ -30,6 +33,15 @@ class WatchClient(LocalClient):
         self.local()  # whose planes a capture is read from
         return to_reply(self.watcher().Execute(command.SerializeToString()))
 
+    def tell(self, event):
+        reply = to_reply(self.watcher().Tell(event.SerializeToString()))
+        if reply.HasField("error"):
+            raise make_error(reply.error)
+
+    def take_event(self, wait):
+        self.watcher()
+        return None  # they are the simulation's
+
     def close(self):
         super().close()
         if self._watcher is not None:
@@ -40,8 +52,13 @@ class WatchClient(LocalClient):
 class Watcher(Session):
     """What watch() returns: a read-only Session that is what the server's was at the last update().
 
-    It draws for itself. Nothing changes between two calls of update(). Viewports of one's own may be
-    made, named "viewer:..."; everything else that would change the scene raises dspace.Unsupported.
+    It draws for itself. Nothing changes between two calls of update(). Views of one's own may be made:
+    add_view(), or viewports, vantages and cameras whose names begin with "viewer:". They are nobody
+    else's, and outlast snapshots: a camera whose frame is removed stays where it was, a viewport goes
+    with its scene. Everything else that would change the scene raises dspace.Unsupported.
+
+    What a person does goes to whoever drives: tell(), answer(), edited(), select(), dragged(),
+    Viewport.pick(tell=True), and clicks in viewports of one's own (Viewport.event).
     """
 
     def __init__(self, client):
@@ -74,35 +91,28 @@ class Watcher(Session):
         """What could not be applied since the last snapshot; empty: nothing."""
         return self._client.watcher().GetTrouble()
 
-    def tell(self, event):
-        """Sends a dspace.session.service_pb2.ViewerEvent to the simulation; dspace.NotFound when nobody
-        drives."""
-        reply = to_reply(self._client.watcher().Tell(event.SerializeToString()))
-        if reply.HasField("error"):
-            raise make_error(reply.error)
-
-    def answer(self, question, answer):
-        """Answers a question of the simulation."""
-        event = service_pb2.ViewerEvent()
-        event.answer.question = text(question, "the question", "watcher")
-        event.answer.answer = text(answer, "the answer", "watcher")
-        self.tell(event)
-
-    def edited(self, name, value, unit=""):
-        """Tells the simulation a value that a person has entered."""
-        event = service_pb2.ViewerEvent()
-        event.edited.name = text(name, "the name", "watcher")
-        event.edited.value = number(value, "the value", "watcher")
-        event.edited.unit = text(unit, "the unit", "watcher")
-        self.tell(event)
-
-    def select(self, objects):
-        """Tells the simulation which objects of a scene are selected."""
-        event = service_pb2.ViewerEvent()
-        objects = list(objects)
-        event.selection.scene = objects[0].scene.name if objects else ""
-        event.selection.object.extend(each.id for each in objects)
-        self.tell(event)
+    def add_view(self, name, scene=None, size=(1280, 720), samples=None, **camera):
+        """A viewport "viewer:NAME" of one's own. With what Scene.add_camera takes (eye and target, pose,
+        chase, frame, fov_deg, ...) it has a camera of its own; without, it looks through the scene's
+        active one until Viewport.event moves it. scene: default the server's only one."""
+        label = f"view {text(name, 'the name', 'watcher')!r}"
+        if scene is None:
+            scenes = self.scenes
+            if len(scenes) != 1:
+                refuse(label, "the scene", None, "one of " + (", ".join(map(repr, scenes)) or "none yet"))
+            scene = next(iter(scenes.values()))
+        elif not isinstance(scene, Scene) or scene._client is not self._client:
+            refuse(label, "the scene", scene, "a scene of this watcher", WrongType)
+        name = OWN + name
+        if not camera:
+            return scene.add_viewport(size, name=name, samples=samples)
+        vantage = scene.add_vantage(name)
+        try:
+            own = scene.add_camera(vantage=vantage, **camera)
+            return scene.add_viewport(size, own, name=name, samples=samples)
+        except Exception:
+            vantage.remove()
+            raise
 
     def __repr__(self):
         return "<dspace.Watcher>"

@@ -1,6 +1,8 @@
 // The calls of the service, each in a thread of gRPC's.
 #include <thread>
 
+#include <dspace/scene/Checks.h>
+#include <dspace/session/Convert.h>
 #include <dspace/session/ServerHub.h>
 
 namespace dspace::session {
@@ -13,6 +15,7 @@ using std::chrono::seconds;
 
 constexpr seconds ToOpen{10};
 constexpr seconds ToSayGoodbye{2};
+constexpr std::size_t LargestEvent = 1 << 20; // of viewers, bytes
 
 Status TooMany(unsigned maximum) {
   return {StatusCode::RESOURCE_EXHAUSTED,
@@ -26,6 +29,15 @@ std::shared_ptr<v1::DriveReply> MakeClosed(v1::Error::Kind kind, const std::stri
   error->set_object("link");
   error->set_message("link: " + message);
   return reply;
+}
+
+// What a simulation would otherwise take for a person's wish.
+void CheckEvent(const v1::ViewerEvent& event) {
+  if (event.has_edited()) {
+    RequireFinite("value '" + event.edited().name() + "'", "the value", event.edited().value());
+  } else if (event.has_dragged()) {
+    ToPose(event.dragged().pose(), "goal '" + event.dragged().goal() + "'");
+  }
 }
 
 } // namespace
@@ -263,11 +275,22 @@ Status Server::Service::Tell(grpc::ServerContext*, const v1::TellRequest* reques
   }
   auto message = std::make_shared<v1::DriveReply>();
   *message->mutable_event() = request->event();
+  const std::size_t size = message->ByteSizeLong() + 64;
+  if (size > LargestEvent) {
+    return {StatusCode::INVALID_ARGUMENT, "the event has " + std::to_string(size) +
+                                              " bytes; accepted: up to " +
+                                              std::to_string(LargestEvent)};
+  }
+  try {
+    CheckEvent(request->event());
+  } catch (const Error& error) {
+    return {StatusCode::INVALID_ARGUMENT, error.what()};
+  }
   const std::lock_guard lock(this->Hub_.mutex);
   const auto& writer = this->Hub_.writer.stream;
   // A simulation that does not read is not to be cut off for its viewers' sake.
-  if (writer && writer->out.messages.size() < 1000) {
-    const std::size_t size = message->ByteSizeLong() + 64;
+  if (writer && writer->out.messages.size() < 1000 &&
+      writer->out.bytes + size <= this->Hub_.options.unreadBytes / 2) {
     writer->out.Put(std::move(message), size);
     reply->set_delivered(true);
   }

@@ -1,0 +1,151 @@
+// A viewer's own vantages and cameras beside what a simulation does (viewports: Python.watching).
+#include <dspace/session/OwnViews.h>
+
+#include "CommandTestSupport.h"
+
+namespace dspace::testing {
+namespace {
+
+using session::Interpreter;
+using session::OwnViews;
+
+constexpr const char* Mine = "viewer:mine";
+
+v1::Command CreateVantage(const std::string& name) {
+  v1::Command command;
+  command.mutable_create_vantage()->set_name(name);
+  return command;
+}
+
+// At (x, 0, 0) of a frame, looking along its Z.
+v1::Command SetCamera(const std::string& vantage, FrameId frame, double x) {
+  v1::Command command;
+  v1::SetCamera* set = command.mutable_set_camera();
+  set->set_vantage(vantage);
+  set->set_name("camera");
+  set->mutable_mount()->set_frame(frame);
+  set->mutable_mount()->mutable_pose()->mutable_position()->set_x(x);
+  return command;
+}
+
+class OwnViewsTest : public CommandTest {
+protected:
+  // Two frames, the child turned by 90 degrees about Z, and a camera of the viewer's on it.
+  void SetUp() override {
+    this->Parent = this->AddFrame("parent");
+    this->Child = this->AddFrame("child", this->Parent);
+    this->Put(this->Interpreter_);
+    v1::Command create = CreateVantage(Mine);
+    ASSERT_TRUE(this->Own.Owns(create));
+    ASSERT_FALSE(this->Own.Execute(this->Interpreter_, create).has_error());
+    v1::Command set = SetCamera(Mine, this->Child, 5);
+    ASSERT_TRUE(this->Own.Owns(set));
+    ASSERT_FALSE(this->Own.Execute(this->Interpreter_, set).has_error());
+  }
+
+  void Put(Interpreter& interpreter) {
+    v1::Command command;
+    const double h = std::sqrt(0.5);
+    command.mutable_set_poses()->add_frame(this->Parent);
+    command.mutable_set_poses()->add_frame(this->Child);
+    for (const double v : {100.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) {
+      command.mutable_set_poses()->add_pose(v);
+    }
+    for (const double v : {0.0, 10.0, 0.0, h, 0.0, 0.0, h, 1.0}) {
+      command.mutable_set_poses()->add_pose(v);
+    }
+    EXPECT_FALSE(interpreter.Execute(command).has_error());
+  }
+
+  // By hand: the parent's 100, the child's 10, and X of the child is Y of the root.
+  void ExpectInRoot(Interpreter& interpreter) {
+    const Camera& camera = interpreter.FindScene("scene")->Vantage(Mine).GetCamera("camera");
+    EXPECT_EQ(camera.mount.frame, RootFrame);
+    EXPECT_LT((camera.mount.X_FC.position - Eigen::Vector3d(100, 15, 0)).norm(), 1e-12);
+    EXPECT_NEAR(camera.mount.X_FC.rotation.w(), std::sqrt(0.5), 1e-12);
+    EXPECT_NEAR(camera.mount.X_FC.rotation.z(), std::sqrt(0.5), 1e-12);
+  }
+
+  FrameId Parent = 0, Child = 0;
+  OwnViews Own;
+};
+
+TEST_F(OwnViewsTest, OwnsItsOwnAlone) {
+  for (v1::Command command : {CreateVantage("main 2"), SetCamera("main", 1, 0), SetCamera("", 1, 0),
+                              SetCamera("viewer:another's", 1, 0)}) {
+    EXPECT_FALSE(this->Own.Owns(command)) << command.ShortDebugString();
+  }
+  v1::Command remove;
+  remove.mutable_remove_viewport()->set_viewport("view");
+  EXPECT_FALSE(this->Own.Owns(remove));
+  remove.mutable_remove_vantage()->set_name("main");
+  EXPECT_FALSE(this->Own.Owns(remove));
+  remove.mutable_remove_vantage()->set_name(Mine);
+  EXPECT_TRUE(this->Own.Owns(remove));
+  remove.set_scene("other");
+  EXPECT_FALSE(this->Own.Owns(remove));
+  EXPECT_FALSE(this->Own.Owns(v1::Command()));
+}
+
+TEST_F(OwnViewsTest, OutlastASnapshotAndLoseNothingOfTheCamera) {
+  v1::Command project;
+  project.mutable_set_camera()->set_vantage(Mine);
+  project.mutable_set_camera()->set_name("camera");
+  project.mutable_set_camera()->mutable_projection()->mutable_perspective()->set_vertical_fov_deg(
+      20);
+  ASSERT_FALSE(this->Own.Execute(this->Interpreter_, project).has_error());
+  this->Own.Leave(this->Interpreter_);
+  Interpreter next;
+  v1::Command scene;
+  scene.mutable_create_scene();
+  next.Execute(scene);
+  for (const auto& [id, parent] :
+       {std::pair{this->Parent, FrameId(1)}, {this->Child, this->Parent}}) {
+    v1::Command frame;
+    frame.mutable_create_frame()->set_id(id);
+    frame.mutable_create_frame()->set_parent(parent);
+    frame.mutable_create_frame()->set_name(std::to_string(id));
+    ASSERT_FALSE(next.Execute(frame).has_error());
+  }
+  this->Put(next);
+  this->Own.Enter(next);
+  const Camera& camera = next.FindScene("scene")->Vantage(Mine).GetCamera("camera");
+  EXPECT_EQ(camera.mount.frame, this->Child); // it follows on
+  EXPECT_EQ(camera.mount.X_FC.position.x(), 5);
+  EXPECT_EQ(camera.projection.verticalFov_deg, 20);
+}
+
+TEST_F(OwnViewsTest, WithoutItsFrameACameraStaysWhereItWas) {
+  this->Own.Leave(this->Interpreter_);
+  Interpreter next;
+  v1::Command scene;
+  scene.mutable_create_scene();
+  next.Execute(scene);
+  this->Own.Enter(next);
+  this->ExpectInRoot(next);
+}
+
+TEST_F(OwnViewsTest, AFrameThatTheSimulationRemovesGoes) {
+  v1::Command remove;
+  remove.mutable_remove_frame()->set_frame(this->Parent);
+  ASSERT_TRUE(this->Interpreter_.Execute(remove).has_error());
+  ASSERT_TRUE(this->Own.MakeRoom(this->Interpreter_, remove));
+  EXPECT_FALSE(this->Interpreter_.Execute(remove).has_error());
+  this->ExpectInRoot(this->Interpreter_);
+  EXPECT_FALSE(this->Own.MakeRoom(this->Interpreter_, remove)); // nothing is in the way any more
+}
+
+TEST_F(OwnViewsTest, ASceneThatIsRemovedTakesItsViewsAlong) {
+  v1::Command remove;
+  remove.mutable_remove_scene();
+  this->Own.MakeRoom(this->Interpreter_, remove);
+  EXPECT_FALSE(this->Interpreter_.Execute(remove).has_error());
+  EXPECT_FALSE(this->Own.Owns(SetCamera(Mine, 1, 0)));
+  this->Own.Leave(this->Interpreter_);
+  Interpreter next;
+  this->Own.Enter(next);
+  EXPECT_TRUE(next.GetState().scenes.empty());
+}
+
+} // namespace
+} // namespace dspace::testing

@@ -1,0 +1,72 @@
+// What somebody who watches has for himself beside the scenes that he follows.
+#ifndef DSPACE_SESSION_OWN_VIEWS_H
+#define DSPACE_SESSION_OWN_VIEWS_H
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <dspace/session/Interpreter.h>
+#include <dspace/session/LedgerViews.h>
+
+namespace dspace::session {
+
+// Viewports, vantages and cameras whose names begin with Prefix. They are made in the interpreter
+// that follows a server's, and made again when a snapshot takes its place. What the simulation does
+// goes before: a camera whose frame is removed stays where it was, in the root; a viewport whose
+// scene is removed goes with it. The lag of a chase camera begins anew with a snapshot.
+class OwnViews {
+public:
+  static constexpr const char* Prefix = "viewer:";
+
+  // Whether the command changes nothing but views of one's own, or makes one.
+  bool Owns(const v1::Command& command) const;
+
+  // Carries out a command that Owns() and keeps what it leads to; names a viewport that has no
+  // name. An event that moves the camera of a viewport that looks through one of the scene's own
+  // cameras first gives the viewport a vantage of its own name with a copy of that camera.
+  v1::Reply Execute(Interpreter& interpreter, v1::Command& command);
+
+  // The interpreter that was followed is about to be replaced by one made from a snapshot: notes
+  // where cameras stand.
+  void Leave(Interpreter& interpreter);
+  // Makes everything again in the new one.
+  void Enter(Interpreter& interpreter);
+
+  // A command of the simulation was refused. Gets views of one's own out of its way; true: another
+  // try is worth while.
+  bool MakeRoom(Interpreter& interpreter, const v1::Command& refused);
+
+private:
+  using Name = std::pair<std::string, std::string>; // scene and vantage
+  struct Place {
+    v1::Projection projection;
+    v1::Mount mount;
+  };
+
+  bool OwnsVantage(const std::string& scene, const std::string& vantage) const;
+  void Keep(const v1::Command& command, const v1::Reply& reply);
+  v1::Reply ExecuteEvent(Interpreter& interpreter, v1::Command& command);
+  bool GiveCamera(Interpreter& interpreter, const std::string& viewport, const v1::SetCamera& to);
+  void MakeAgain(Interpreter& interpreter, v1::Command& command);
+  std::vector<v1::Command> Commands(Interpreter& interpreter) const;
+  std::vector<std::string> ViewportsIn(Interpreter& interpreter, const std::string& scene) const;
+  bool FreeCameras(Interpreter& interpreter, const std::string& scene, std::uint64_t frame);
+  bool FreeViewports(Interpreter& interpreter, const std::string& scene, const std::string& vantage,
+                     const std::string& camera);
+
+  std::set<std::string> Viewports_;
+  std::set<std::string> Pressed_; // viewports in which a button is down
+  std::set<Name> Vantages_;
+  std::map<std::string, LedgerNames> Names_; // of vantages alone, by scene
+  LedgerViewports Ledger_;
+  int Last_ = 0; // number of the last viewport that was named here
+  // Noted by Leave.
+  std::map<std::pair<Name, std::string>, Place> Cameras_;
+  std::map<std::string, Place> Views_; // by viewport
+};
+
+} // namespace dspace::session
+
+#endif
