@@ -13,6 +13,7 @@ from dspace.poses import multiply
 
 _X, _W = np.polynomial.legendre.leggauss(16)
 _PARTS = 8  # of a piece of the spline, each integrated with 16 points
+_QUARTER = 1.5 * np.pi  # a third of a span at this over its time is a quarter turn: with the chord under two pi
 
 
 def monotone_slopes(times, values):
@@ -165,6 +166,15 @@ def logarithm(q):
     return 2 * np.arctan2(sine, q[0]) / sine * q[1:]
 
 
+def _long_logarithm(q):
+    """The rotation vector [rad], less than two pi long, of a unit quaternion; that of -q goes the other way
+    round."""
+    sine = np.linalg.norm(q[1:])
+    if sine < 1e-12:
+        return 2 * q[1:]
+    return 2 * np.arctan2(sine, q[0]) / sine * q[1:]
+
+
 def _inverse(q):
     return q * (1, -1, -1, -1)
 
@@ -188,17 +198,24 @@ class TurnPath:
             at_keys[0], at_keys[-1] = rates[0], rates[-1]
         for k in range(1, len(rates)):
             rate = (h[k] * rates[k - 1] + h[k - 1] * rates[k]) / (h[k - 1] + h[k])
-            # What waits on one side rests here; neither side swings far beyond its keys.
-            limit = 3 * min(np.linalg.norm(rates[k - 1]), np.linalg.norm(rates[k]))
+            before, after = np.linalg.norm(rates[k - 1]), np.linalg.norm(rates[k])
+            if not before or not after:
+                continue  # what waits on one side rests here
+            # Neither side swings far beyond its keys: slower where the turn goes back by more than a right
+            # angle (at a full reversal it halts), and less than a quarter turn of each side is this rate's.
+            slowing = np.clip(1 + rates[k - 1] @ rates[k] / (before * after), 0.0, 1.0)
+            limit = min(3 * before, 3 * after, _QUARTER / h[k - 1], _QUARTER / h[k])
             size = np.linalg.norm(rate)
-            at_keys[k] = rate * (limit / size) if size > limit else rate
+            at_keys[k] = rate * (slowing * min(1.0, limit / size)) if size else 0.0
         at_keys[np.asarray(rests, bool)] = 0.0
         self.parts = []
         for k, step in enumerate(h):
             first, last = at_keys[k] * step / 3, at_keys[k + 1] * step / 3
             middle = multiply(multiply(exponential(-first), multiply(_inverse(q[k]), q[k + 1])),
                               exponential(-last))
-            self.parts.append((first, logarithm(middle), last))
+            # Up to two pi long: what is left of a chord that first and last go against may be more than half a
+            # turn, and the shorter way to its end would go round the other side.
+            self.parts.append((first, _long_logarithm(middle), last))
 
     def at(self, time):
         if len(self.times) == 1:
