@@ -152,7 +152,7 @@ vtkDspaceRenderContext* vtkDspaceSession::GetRenderContext() {
   return this->Impl->viewports.GetRenderContext();
 }
 
-std::string vtkDspaceSession::Record(const std::string& path, double commitEvery) {
+std::string vtkDspaceSession::Record(const std::string& path, double commitEvery, bool pack) {
   if (this->Impl->recording) {
     return "recording '" + path + "': the session records into '" + this->Impl->recording->Path() +
            "'; accepted: one recording at a time";
@@ -160,8 +160,10 @@ std::string vtkDspaceSession::Record(const std::string& path, double commitEvery
   try {
     dspace::session::RecordingOptions options;
     options.commitEvery_s = commitEvery;
+    options.pack = pack;
     this->Impl->recording = std::make_unique<dspace::session::RecordingWriter>(
-        path, this->Impl->ledger, this->Impl->time_s, options);
+        path, this->Impl->ledger, this->Impl->time_s, options,
+        &this->Impl->interpreter.GetState().files);
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -201,6 +203,34 @@ std::string vtkDspaceSession::GetRecordingFailure() {
     this->Impl->counts = this->Impl->recording->Counts();
   }
   return this->Impl->counts.failure;
+}
+
+std::string vtkDspaceSession::GetRecordingMissing() {
+  if (this->Impl->recording) {
+    this->Impl->counts = this->Impl->recording->Counts();
+  }
+  std::string lines;
+  for (const std::string& path : this->Impl->counts.missing) {
+    lines += (lines.empty() ? "" : "\n") + path;
+  }
+  return lines;
+}
+
+std::string vtkDspaceSession::Replay(const std::string& bytes) {
+  dspace::v1::Command command;
+  const auto* entry = command.ParseFromString(bytes)
+                          ? this->Impl->interpreter.Commands().Find(command.command_case())
+                          : nullptr;
+  if (entry && entry->effect == dspace::session::Effect::Request) {
+    const std::string name = dspace::session::CommandName(command);
+    dspace::v1::Reply reply;
+    reply.mutable_error()->set_kind(dspace::v1::Error::CORRUPT);
+    reply.mutable_error()->set_object("command " + name);
+    reply.mutable_error()->set_message("command " + name +
+                                       ": it changes nothing, and no recording holds such a one");
+    return reply.SerializeAsString();
+  }
+  return this->Execute(bytes);
 }
 
 const dspace::session::Ledger& vtkDspaceSession::GetLedger() {

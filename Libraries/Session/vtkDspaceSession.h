@@ -56,8 +56,10 @@ public:
   /// Records from the present state on into a new file, whose name ends as it likes. Every accepted
   /// command is written by a thread of its own, at most `commitEvery` seconds later (0.001 to 60);
   /// where that fails, one reply warns, the session goes on, and what was written stays. Both
-  /// return what went wrong, or an empty string. One recording at a time.
-  std::string Record(const std::string& path, double commitEvery);
+  /// return what went wrong, or an empty string. One recording at a time. `pack`: the files that the
+  /// commands need become part of it; GetRecordingMissing() has those that could not be read, a
+  /// line each.
+  std::string Record(const std::string& path, double commitEvery, bool pack = false);
   std::string StopRecording();
   /// Waits until all that was accepted is written.
   std::string FlushRecording();
@@ -66,6 +68,11 @@ public:
   /// Empty when nothing is being recorded.
   std::string GetRecordingPath();
   std::string GetRecordingFailure();
+  std::string GetRecordingMissing();
+
+  /// As Execute, for commands out of a recording: those that change nothing are refused, since none
+  /// is ever recorded and some write files.
+  std::string Replay(const std::string& command);
 
 #ifndef __VTK_WRAP__
   dspace::session::Interpreter& GetInterpreter();

@@ -1,14 +1,16 @@
 """Recordings played back, with no simulation."""
-import bisect
-import hashlib
-import os
 import time
 
-from dspace._fields import number, refuse
-from dspace.errors import Corrupt, InvalidArgument, NotFound
+from dspace._client import to_reply, warn
+from dspace._fields import number, refuse, text
+from dspace.errors import Corrupt, InvalidArgument
+from dspace.playback_steps import index_at, runs_of, steps_of
+from dspace.recording_assets import Unpacked, check_assets as check_files, is_packed
 from dspace.recording_file import RecordingFile, commands_of
-from dspace.session import commands_pb2 as pb
+from dspace.session import commands_pb2 as pb, terrain_pb2
 from dspace.sessions import Session
+
+BUILDING = terrain_pb2.TerrainReply.BUILDING
 
 
 class Playback:
@@ -18,49 +20,52 @@ class Playback:
             run.seek(12.5)
             run.session.viewports["main"].save("at_12_5.png")
 
-    Its steps are the times that the simulation set, each with all that came until the next one. The session
-    shows what the recorded one did, to the byte. What is added to it is gone with the next seek back.
+    Its steps are the times that the simulation set, in whatever scene or in the one named, each with all that
+    came until the next one. The session shows what the recorded one did, to the byte. What is added to it is gone
+    with the next seek back.
 
-    check_assets: files that the recording names must be what they were, else dspace.Corrupt names the one
-    that is not.
+    Files that were packed into it are unpacked into a folder of their own, removed by close(). check_assets: files
+    that were not must be what they were, else dspace.Corrupt or dspace.NotFound names the one that is not.
+
+    A salvaged recording lacks commands: `gaps` has the spans of which nothing can be shown, up to the next snapshot;
+    steps that may lack a command are among them. A dspace.DspaceWarning tells of them.
     """
 
-    def __init__(self, path, check_assets=True):
+    def __init__(self, path, check_assets=True, scene=None):
         self.file = RecordingFile(path)
-        self.session = None
+        self.session = self._unpacked = None
         try:
-            if check_assets:
-                self._check_assets()
-            self._begin()
+            if is_packed(self.file.assets):
+                self._unpacked = Unpacked(self.file)
+            elif check_assets:
+                check_files(self.file)
+            self._scene = None if scene is None else text(scene, "the scene", self.file.label)
+            self._read_steps()
+            if self.gaps:
+                warn(f"{self.file.label}: {len(self.gaps)} spans are lost: "
+                     + "; ".join(str(gap) for gap in self.gaps))
+            self.session = Session()
+            self._at = None  # the command after which the session is
+            self.index = 0
+            self._go(0)
         except BaseException:
             self.close()
             raise
 
-    def _check_assets(self):
-        for path, digest, size in self.file.assets:
-            if digest is None:  # it could not be read then: a folder, or not of this machine
-                continue
-            if not os.path.isfile(path):
-                raise NotFound(f"{self.file.label}: file {path!r}, which it names, is not there", path)
-            if os.path.getsize(path) != size or _sha256(path) != digest:
-                raise Corrupt(f"{self.file.label}: file {path!r} has changed since it was recorded; accepted: "
-                              f"its {size} bytes of SHA-256 {digest.hex()}", path)
+    def _read_steps(self):
+        steps, self.gaps = steps_of(self.file, self._scene)
+        if not steps:
+            raise self.file.corrupt("no step of it is whole")
+        self._ends = [step.end for step in steps]
+        self.times = [step.time for step in steps]  # [s], of each step
+        self._runs = runs_of(self.times)
 
-    def _begin(self):
-        first = self.file.first
-        start = self.file.snapshot(first - 1)
-        last = max(self.file.last, first - 1)
-        steps = self.file.steps()
-        seqs = [seq for seq, _ in steps]
-        self.times = [at for _, at in steps]  # [s], of each step
-        self._ends = [seq - 1 for seq in seqs[1:]] + [last]
-        if not seqs or seqs[0] > first or start.payload:  # what was there and done before time was first set
-            self.times.insert(0, start.time)
-            self._ends.insert(0, seqs[0] - 1 if seqs else last)
-        self.session = Session()
-        self._at = None  # the command after which the session is
-        self.index = 0
-        self._go(0)
+    def update(self):
+        """Takes in what has been recorded since, of a recording that is being written; returns how many steps came.
+        The last one may have grown: seek to it again to see all of it."""
+        before = len(self.times)
+        self._read_steps()
+        return len(self.times) - before
 
     def __enter__(self):
         return self
@@ -71,6 +76,8 @@ class Playback:
     def close(self):
         if self.session is not None:
             self.session.close()
+        if self._unpacked is not None:
+            self._unpacked.close()
         self.file.close()
 
     @property
@@ -84,15 +91,17 @@ class Playback:
         return self.times[self.index]
 
     def seek(self, at):
-        """To the last step that is not after `at` [s]; returns its time. Before the first step: an error."""
+        """To the last step that is not after `at` [s]; returns its time. Where time went back in the recording (a
+        simulation that was reset), in the latest run of steps that reaches `at`, else in the latest that begins
+        before it. An error before the first step (dspace.InvalidArgument) and in a gap (dspace.Corrupt)."""
         at = number(at, "the time", self.file.label)
         if at < min(self.times):
             raise InvalidArgument(f"{self.file.label}: the time is {at!r} s; accepted: {min(self.times)!r} on",
                                   self.file.label)
-        if all(a <= b for a, b in zip(self.times, self.times[1:])):
-            index = bisect.bisect_right(self.times, at) - 1
-        else:  # time went back in it
-            index = max(i for i, each in enumerate(self.times) if each <= at)
+        index = index_at(self.times, self._runs, at)
+        for gap in self.gaps:
+            if gap.before == index + 1 and gap.begin is not None and at >= gap.begin:
+                raise Corrupt(f"{self.file.label}: at {at!r} s its commands are lost: {gap}", self.file.label)
         self._go(index)
         return self.time
 
@@ -154,15 +163,19 @@ class Playback:
             self.session.execute(command)
 
     def _carry_out(self, payload, what):
-        answer = self.session.vtk.Execute(payload)
-        reply = pb.Reply.FromString(answer.encode() if isinstance(answer, str) else answer)
+        if self._unpacked is not None:
+            payload = self._unpacked.map(payload)
+        reply = to_reply(self.session.vtk.Replay(payload))
         if reply.HasField("error"):
             raise Corrupt(f"{self.file.label}: {what} is refused: {reply.error.message}", self.file.label)
+        if self._unpacked is not None and b"/overviews" in payload:
+            self._wait_for_overviews(pb.Command.FromString(payload))
 
-
-def _sha256(path):
-    digest = hashlib.sha256()
-    with open(path, "rb") as file:
-        for block in iter(lambda: file.read(1 << 20), b""):
-            digest.update(block)
-    return digest.digest()
+    def _wait_for_overviews(self, opened):
+        """What was drawn of a large raster was its overviews, which are built anew beside the unpacked file."""
+        while opened.HasField("open_terrain"):
+            asked = pb.Command(scene=opened.scene)
+            asked.describe_terrain.terrain = opened.open_terrain.name
+            if self.session.execute(asked).terrain.overview_build != BUILDING:
+                return
+            time.sleep(0.01)

@@ -1,4 +1,5 @@
 """What a recording holds: Documentation/Recording.md says how. Nothing is drawn here."""
+import contextlib
 import hashlib
 import os
 import sqlite3
@@ -7,6 +8,7 @@ from typing import NamedTuple
 
 from dspace._fields import refuse, text
 from dspace.errors import AlreadyExists, Corrupt, NotFound, Unsupported
+from dspace.recording_assets import assets_of, part_numbers, parts_of
 
 FORMAT = 1
 SCHEMA = """
@@ -16,7 +18,10 @@ CREATE TABLE command(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT 
 CREATE TABLE snapshot(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT NULL,
   kind INTEGER NOT NULL, payload BLOB NOT NULL, checksum BLOB NOT NULL);
 CREATE INDEX step ON command(time) WHERE kind = 13;
-CREATE TABLE asset(path TEXT PRIMARY KEY, sha256 BLOB, size INTEGER, content BLOB);
+CREATE TABLE asset(id INTEGER PRIMARY KEY, path TEXT NOT NULL, state TEXT NOT NULL,
+  size INTEGER NOT NULL, sha256 BLOB NOT NULL, packed INTEGER NOT NULL, checksum BLOB NOT NULL);
+CREATE TABLE content(id INTEGER PRIMARY KEY, asset INTEGER NOT NULL, place INTEGER NOT NULL,
+  size INTEGER NOT NULL, data BLOB NOT NULL, checksum BLOB NOT NULL);
 """
 COLUMNS = "seq, time, wall, kind, payload, checksum"
 
@@ -73,6 +78,7 @@ class RecordingFile:
             raise NotFound(f"{self.label}: there is no such file", self.label)
         quoted = self.path.replace("%", "%25").replace("?", "%3f").replace("#", "%23")
         self._database = sqlite3.connect(f"file:{quoted}?mode=ro", uri=True, timeout=10)
+        self._database.text_factory = os.fsdecode  # paths may be any bytes
         try:
             found = self.ask("SELECT value FROM meta WHERE key = 'format'")
             if not found or found[0][0] != FORMAT:
@@ -90,6 +96,13 @@ class RecordingFile:
 
     def __exit__(self, *exception):
         self.close()
+
+    def copy_to(self, database):
+        """All of it into an empty database, also while it is written."""
+        try:
+            self._database.backup(database)
+        except sqlite3.DatabaseError as error:
+            raise self.corrupt(str(error)) from None
 
     def ask(self, sql, *values):
         try:
@@ -146,15 +159,31 @@ class RecordingFile:
 
     @property
     def assets(self):
-        """(path, SHA-256 or None, bytes or None) of the files that its commands name."""
-        return self.ask("SELECT path, sha256, size FROM asset ORDER BY path")
+        """The files that its commands need (recording_assets.Asset), by path."""
+        return assets_of(self)
+
+    @property
+    def lost(self):
+        """Ranges (first, last) of commands that salvaging it did not bring back."""
+        found = self.ask("SELECT value FROM meta WHERE key = 'lost'")
+        try:
+            return [tuple(map(int, each.split("-"))) for each in found[0][0].split()] if found else []
+        except (ValueError, AttributeError):
+            raise self.corrupt("what it says of lost commands is damaged") from None
 
     def check(self):
         """Reads all of it; raises at the first damage."""
-        for _ in self.rows(self.first):
-            pass
+        first = self.first
+        for lost, after in [*self.lost, (None, None)]:
+            for _ in self.rows(first, lost and lost - 1):
+                pass
+            first = after and after + 1
         for _ in self.rows(0, table="snapshot"):
             pass
+        numbers = part_numbers(self)
+        for asset in self.assets:
+            for _ in parts_of(self, asset, numbers.get(asset.id, ())) if asset.packed else ():
+                pass
         said = self.ask("PRAGMA integrity_check(1)")
         if said != [("ok",)]:
             raise self.corrupt(said[0][0])
@@ -165,18 +194,34 @@ class RecordingFile:
         return self.ask("SELECT min(seq) FROM command")[0][0] or 1
 
 
-def write_recording(path, commands, snapshots, assets=()):
-    """A new recording of rows that were read or salvaged."""
+def create_recording(path):
+    """A new recording with empty tables: its open database."""
     if os.path.lexists(path):
         raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
     database = sqlite3.connect(path)
     try:
-        database.executescript("PRAGMA page_size=65536; PRAGMA journal_mode=WAL;" + SCHEMA)
+        database.executescript("PRAGMA page_size=65536; PRAGMA journal_mode=WAL; PRAGMA cache_size=-65536;" + SCHEMA)
         with database:
             database.execute("INSERT INTO meta VALUES('format', ?)", (FORMAT,))
-            for table, rows in (("command", commands), ("snapshot", snapshots)):
-                database.executemany(f"INSERT INTO {table} VALUES(?,?,?,?,?,?)",
-                                     ((*row, checksum(row, table)) for row in rows))
-            database.executemany("INSERT INTO asset VALUES(?,?,?,NULL)", assets)
-    finally:
+    except BaseException:
         database.close()
+        raise
+    return database
+
+
+def put_rows(database, table, rows):
+    """Commands or snapshots; those whose number is there already are left out."""
+    database.executemany(f"INSERT OR IGNORE INTO {table} VALUES(?,?,?,?,?,?)",
+                         ((*row, checksum(row, table)) for row in rows))
+
+
+def write_recording(path, commands, snapshots, assets_from=None):
+    """A new recording of rows that were read, with the files of the recording `assets_from`."""
+    with contextlib.closing(create_recording(path)) as database:
+        if assets_from is not None:
+            database.execute("ATTACH ? AS other", (assets_from,))
+        with database:
+            put_rows(database, "command", commands)
+            put_rows(database, "snapshot", snapshots)
+            for table in ("asset", "content") if assets_from is not None else ():
+                database.execute(f"INSERT INTO {table} SELECT * FROM other.{table}")

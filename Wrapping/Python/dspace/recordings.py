@@ -1,7 +1,8 @@
 """A session that is being recorded."""
 import os
 
-from dspace._fields import number
+from dspace._client import warn
+from dspace._fields import flag, number
 from dspace.errors import AlreadyExists, InvalidArgument, Io, NotFound
 from dspace.recording_file import path_of
 
@@ -11,7 +12,7 @@ COUNTS = ("accepted", "written", "bytes", "snapshots")
 class Recording:
     """What Session.record() returns. `counts` says how far it is."""
 
-    def __init__(self, client, path, commit_every):
+    def __init__(self, client, path, commit_every, pack=False):
         self.path = path = path_of(path)
         self._client = client
         self._vtk = client.local()
@@ -24,7 +25,7 @@ class Recording:
         if not 0.001 <= every <= 60:
             raise InvalidArgument(f"recording {path!r}: commit_every is {every!r} s; accepted: 0.001 to 60",
                                   "recording")
-        self._raise(self._vtk.Record(path, every))
+        self._raise(self._vtk.Record(path, every, flag(pack, "pack", "recording")))
         client.recording = self
 
     def _raise(self, problem):
@@ -65,6 +66,9 @@ class Recording:
             return
         problem = self._client.local().StopRecording()
         self._last = {name: self._client.local().GetRecordingCount(name) for name in COUNTS}
+        missing = self._client.local().GetRecordingMissing()
+        if missing:
+            warn(f"recording {self.path!r}: files that could not be packed: " + ", ".join(missing.split("\n")))
         self._raise(problem)
 
     def __repr__(self):

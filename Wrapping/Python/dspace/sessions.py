@@ -74,7 +74,7 @@ class Session(ViewerEvents):
         command.render.SetInParent()
         return self._client.execute(command).render.drawn
 
-    def record(self, path, commit_every=0.1):
+    def record(self, path, commit_every=0.1, pack=False):
         """Records from the present state on into a new file; returns the Recording, which ends with its
         `with` statement, with stop(), or with the session.
 
@@ -83,8 +83,11 @@ class Session(ViewerEvents):
 
         commit_every: seconds, 0.001 to 60. A process that dies loses at most what it did in the last so many,
         and what the disk was behind.
+
+        pack: the files that its commands need (models with their textures, rasters with their side files, ...)
+        become part of it, so that it replays anywhere. `dspace log pack` does the same later.
         """
-        return Recording(self._client, path, commit_every)
+        return Recording(self._client, path, commit_every, pack)
 
     @property
     def recording(self):

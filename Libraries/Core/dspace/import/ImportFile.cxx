@@ -1,6 +1,7 @@
 #include "ImportFile.h"
 
 #include <dspace/Error.h>
+#include <dspace/FilesRead.h>
 
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@ std::string FileObject(const std::string& path) {
 
 std::string ReadFileBytes(const std::string& path, std::size_t maximum) {
   namespace fs = std::filesystem;
+  NoteFileRead(path); // before it is read: a change meanwhile shows
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {

@@ -11,7 +11,7 @@ namespace dspace {
 std::string FileObject(const std::string& path);
 
 // Bytes of a regular file. Throws Error: NotFound, Io (no regular file, not readable), Corrupt
-// (empty), Resource (more than `maximum` bytes).
+// (empty), Resource (more than `maximum` bytes). Notes the file (FilesRead.h).
 std::string ReadFileBytes(const std::string& path, std::size_t maximum = std::size_t(1) << 32);
 
 } // namespace dspace

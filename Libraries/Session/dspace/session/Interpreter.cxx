@@ -86,7 +86,9 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   }
   const std::string name = command.scene().empty() ? DefaultScene : command.scene();
   SceneState* scene = entry->needs == Needs::Scene ? &this->State_.FindScene(name) : nullptr;
+  const FilesReadScope read;
   entry->run(Context{this->State_, scene, name, reply}, command);
+  this->State_.files.Note(command, read.Files());
   if (this->Depth_ == 1) {
     this->State_.frameEvents.MoveTo(reply); // before it is told: listeners pass the reply on
   }

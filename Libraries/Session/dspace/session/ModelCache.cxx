@@ -19,43 +19,38 @@ std::string FileKey(const std::string& path) {
          std::to_string(error ? 0 : time.time_since_epoch().count());
 }
 
-template<class T> void DropExpired(std::map<std::string, std::weak_ptr<const T>>& cache) {
-  for (auto it = cache.begin(); it != cache.end();) {
-    it = it->second.expired() ? cache.erase(it) : std::next(it);
-  }
-}
-
 } // namespace
+
+template<class T, class Read>
+std::shared_ptr<const T> ModelCache::Load(std::map<std::string, Kept<T>>& cache,
+                                          const std::string& key, const Read& read) {
+  const auto found = cache.find(key);
+  if (found != cache.end()) {
+    if (auto value = found->second.value.lock()) {
+      NoteFilesRead(found->second.files);
+      return value;
+    }
+  }
+  const FilesReadScope scope;
+  const std::shared_ptr<const T> value = read();
+  for (auto it = cache.begin(); it != cache.end();) {
+    it = it->second.value.expired() ? cache.erase(it) : std::next(it);
+  }
+  cache[key] = {value, scope.Files()};
+  return value;
+}
 
 std::shared_ptr<const Model> ModelCache::LoadModel(const std::string& path,
                                                    const ImportOptions& options) {
   const std::string key = FileKey(path) + "\n" + std::to_string(options.strict) + "\n" +
                           std::to_string(options.maximumTriangles) + "\n" +
                           std::to_string(options.pointCloud);
-  const auto found = this->Models_.find(key);
-  if (found != this->Models_.end()) {
-    if (auto model = found->second.lock()) {
-      return model;
-    }
-  }
-  auto model = std::make_shared<const Model>(ReadModel(path, options));
-  DropExpired(this->Models_);
-  this->Models_[key] = model;
-  return model;
+  return Load(this->Models_, key,
+              [&] { return std::make_shared<const Model>(ReadModel(path, options)); });
 }
 
 std::shared_ptr<const Image> ModelCache::LoadImage(const std::string& path) {
-  const std::string key = FileKey(path);
-  const auto found = this->Images_.find(key);
-  if (found != this->Images_.end()) {
-    if (auto image = found->second.lock()) {
-      return image;
-    }
-  }
-  std::shared_ptr<const Image> image = ReadImage(path);
-  DropExpired(this->Images_);
-  this->Images_[key] = image;
-  return image;
+  return Load(this->Images_, FileKey(path), [&] { return ReadImage(path); });
 }
 
 std::string AbsolutePath(const std::string& path) {

@@ -6,20 +6,29 @@
 #include <memory>
 #include <string>
 
+#include <dspace/FilesRead.h>
 #include <dspace/import/Model.h>
 
 namespace dspace::session {
 
 // A file counts as the same while its path, size, time of change and options do; it is kept for as
-// long as somebody holds what it gave. Errors are those of ReadModel and ReadImage.
+// long as somebody holds what it gave. Errors are those of ReadModel and ReadImage. What was read
+// is noted (FilesRead.h), from the cache too.
 class ModelCache {
 public:
   std::shared_ptr<const Model> LoadModel(const std::string& path, const ImportOptions& options);
   std::shared_ptr<const Image> LoadImage(const std::string& path);
 
 private:
-  std::map<std::string, std::weak_ptr<const Model>> Models_;
-  std::map<std::string, std::weak_ptr<const Image>> Images_;
+  template<class T> struct Kept {
+    std::weak_ptr<const T> value;
+    FilesRead files;
+  };
+  template<class T, class Read>
+  static std::shared_ptr<const T> Load(std::map<std::string, Kept<T>>& cache,
+                                       const std::string& key, const Read& read);
+  std::map<std::string, Kept<Model>> Models_;
+  std::map<std::string, Kept<Image>> Images_;
 };
 
 // The path made absolute, without "." and ".."; links are not followed.

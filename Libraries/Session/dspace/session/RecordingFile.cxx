@@ -3,8 +3,6 @@
 #include <array>
 #include <cstring>
 #include <fstream>
-#include <memory>
-#include <vector>
 
 #include <openssl/evp.h>
 #include <sqlite3.h>
@@ -24,42 +22,80 @@ CREATE TABLE snapshot(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT
   kind INTEGER NOT NULL, payload BLOB NOT NULL, checksum BLOB NOT NULL);
 -- The steps of the simulation: SetTime is command 13.
 CREATE INDEX step ON command(time) WHERE kind = 13;
-CREATE TABLE asset(path TEXT PRIMARY KEY, sha256 BLOB, size INTEGER, content BLOB);
+CREATE TABLE asset(id INTEGER PRIMARY KEY, path TEXT NOT NULL, state TEXT NOT NULL,
+  size INTEGER NOT NULL, sha256 BLOB NOT NULL, packed INTEGER NOT NULL, checksum BLOB NOT NULL);
+CREATE TABLE content(id INTEGER PRIMARY KEY, asset INTEGER NOT NULL, place INTEGER NOT NULL,
+  size INTEGER NOT NULL, data BLOB NOT NULL, checksum BLOB NOT NULL);
 )";
 
-class Sha256 {
-public:
-  Sha256() : Context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    if (!this->Context_ || EVP_DigestInit_ex(this->Context_.get(), EVP_sha256(), nullptr) != 1) {
-      throw Error(Error::Kind::Internal, "recording", "SHA-256 is not available");
-    }
-  }
-  void Add(const void* data, std::size_t size) {
-    EVP_DigestUpdate(this->Context_.get(), data, size);
-  }
-  std::string Finish() {
-    std::string digest(32, '\0');
-    EVP_DigestFinal_ex(this->Context_.get(), reinterpret_cast<unsigned char*>(digest.data()),
-                       nullptr);
-    return digest;
-  }
+template<class Number> void Add(Sha256& sum, Number value) {
+  sum.Add(&value, sizeof value); // little-endian, as are the machines that Dspace runs on
+}
 
-private:
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> Context_;
-};
-
-} // namespace
-
-std::string RecordingChecksum(const RecordingRow& row) {
-  std::array<char, 29> head; // little-endian, as are the machines that Dspace runs on
+std::string Checksum(Sha256& sum, const RecordingRow& row) {
+  std::array<char, 29> head;
   head[0] = row.snapshot ? 'S' : 'C';
   std::memcpy(head.data() + 1, &row.seq, 8);
   std::memcpy(head.data() + 9, &row.time_s, 8);
   std::memcpy(head.data() + 17, &row.wall_s, 8);
   std::memcpy(head.data() + 25, &row.kind, 4);
-  Sha256 sum;
   sum.Add(head.data(), head.size());
   sum.Add(row.payload.data(), row.payload.size());
+  return sum.Finish().substr(0, ChecksumBytes);
+}
+
+} // namespace
+
+Sha256::Sha256() : Context_(EVP_MD_CTX_new()) {
+  if (!this->Context_ ||
+      EVP_DigestInit_ex(static_cast<EVP_MD_CTX*>(this->Context_), EVP_sha256(), nullptr) != 1) {
+    throw Error(Error::Kind::Internal, "recording", "SHA-256 is not available");
+  }
+}
+
+Sha256::~Sha256() {
+  EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(this->Context_));
+}
+
+void Sha256::Add(const void* data, std::size_t size) {
+  EVP_DigestUpdate(static_cast<EVP_MD_CTX*>(this->Context_), data, size);
+}
+
+std::string Sha256::Finish() {
+  const auto context = static_cast<EVP_MD_CTX*>(this->Context_);
+  std::string digest(32, '\0');
+  EVP_DigestFinal_ex(context, reinterpret_cast<unsigned char*>(digest.data()), nullptr);
+  EVP_DigestInit_ex(context, nullptr, nullptr); // the same digest anew
+  return digest;
+}
+
+std::string RecordingChecksum(const RecordingRow& row) {
+  Sha256 sum;
+  return Checksum(sum, row);
+}
+
+std::string RecordingChecksum(const RecordingAsset& asset) {
+  Sha256 sum;
+  sum.Add("A", 1);
+  Add(sum, asset.id);
+  Add(sum, asset.size);
+  Add(sum, char(asset.packed));
+  for (const std::string* text : {&asset.state, &asset.path, &asset.sha256}) {
+    Add(sum, std::uint64_t(text->size()));
+  }
+  for (const std::string* text : {&asset.state, &asset.path, &asset.sha256}) {
+    sum.Add(text->data(), text->size());
+  }
+  return sum.Finish().substr(0, ChecksumBytes);
+}
+
+std::string RecordingChecksum(const RecordingContent& content) {
+  Sha256 sum;
+  sum.Add("P", 1);
+  for (const std::int64_t number : {content.id, content.asset, content.place, content.size}) {
+    Add(sum, number);
+  }
+  sum.Add(content.data.data(), content.data.size());
   return sum.Finish().substr(0, ChecksumBytes);
 }
 
@@ -90,7 +126,8 @@ RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages)
     this->Commit();
     this->Command_ = this->Prepare("INSERT INTO command VALUES(?,?,?,?,?,?)");
     this->Snapshot_ = this->Prepare("INSERT INTO snapshot VALUES(?,?,?,?,?,?)");
-    this->Asset_ = this->Prepare("INSERT OR IGNORE INTO asset VALUES(?,?,?,NULL)");
+    this->Asset_ = this->Prepare("INSERT INTO asset VALUES(?,?,?,?,?,?,?)");
+    this->Content_ = this->Prepare("INSERT INTO content VALUES(?,?,?,?,?,?)");
   } catch (...) {
     this->Close();
     throw;
@@ -102,7 +139,7 @@ RecordingFile::~RecordingFile() {
 }
 
 void RecordingFile::Close() noexcept {
-  for (sqlite3_stmt* statement : {this->Command_, this->Snapshot_, this->Asset_}) {
+  for (sqlite3_stmt* statement : {this->Command_, this->Snapshot_, this->Asset_, this->Content_}) {
     sqlite3_finalize(statement);
   }
   sqlite3_close(this->Database_);
@@ -149,7 +186,7 @@ void RecordingFile::Rollback() noexcept {
 
 void RecordingFile::Put(const RecordingRow& row) {
   sqlite3_stmt* statement = row.snapshot ? this->Snapshot_ : this->Command_;
-  const std::string checksum = RecordingChecksum(row);
+  const std::string checksum = Checksum(this->Sum_, row);
   sqlite3_bind_int64(statement, 1, sqlite3_int64(row.seq));
   sqlite3_bind_double(statement, 2, row.time_s);
   sqlite3_bind_double(statement, 3, row.wall_s);
@@ -159,26 +196,29 @@ void RecordingFile::Put(const RecordingRow& row) {
   this->Step(statement);
 }
 
-void RecordingFile::PutAsset(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> block(1u << 20);
-  Sha256 sum;
-  std::int64_t size = 0;
-  while (file.read(block.data(), std::streamsize(block.size())), file.gcount() > 0) {
-    sum.Add(block.data(), std::size_t(file.gcount()));
-    size += file.gcount();
-  }
-  const bool read = file.eof() && !file.bad();
-  const std::string digest = sum.Finish();
-  sqlite3_bind_text(this->Asset_, 1, path.data(), int(path.size()), SQLITE_STATIC);
-  if (read) {
-    sqlite3_bind_blob64(this->Asset_, 2, digest.data(), digest.size(), SQLITE_STATIC);
-    sqlite3_bind_int64(this->Asset_, 3, size);
-  } else {
-    sqlite3_bind_null(this->Asset_, 2);
-    sqlite3_bind_null(this->Asset_, 3);
-  }
-  this->Step(this->Asset_);
+void RecordingFile::Put(const RecordingAsset& asset) {
+  const std::string checksum = RecordingChecksum(asset);
+  sqlite3_stmt* statement = this->Asset_;
+  sqlite3_bind_int64(statement, 1, asset.id);
+  sqlite3_bind_text(statement, 2, asset.path.data(), int(asset.path.size()), SQLITE_STATIC);
+  sqlite3_bind_text(statement, 3, asset.state.data(), int(asset.state.size()), SQLITE_STATIC);
+  sqlite3_bind_int64(statement, 4, asset.size);
+  sqlite3_bind_blob64(statement, 5, asset.sha256.data(), asset.sha256.size(), SQLITE_STATIC);
+  sqlite3_bind_int(statement, 6, asset.packed ? 1 : 0);
+  sqlite3_bind_blob64(statement, 7, checksum.data(), checksum.size(), SQLITE_STATIC);
+  this->Step(statement);
+}
+
+void RecordingFile::Put(const RecordingContent& content) {
+  const std::string checksum = RecordingChecksum(content);
+  sqlite3_stmt* statement = this->Content_;
+  sqlite3_bind_int64(statement, 1, content.id);
+  sqlite3_bind_int64(statement, 2, content.asset);
+  sqlite3_bind_int64(statement, 3, content.place);
+  sqlite3_bind_int64(statement, 4, content.size);
+  sqlite3_bind_blob64(statement, 5, content.data.data(), content.data.size(), SQLITE_STATIC);
+  sqlite3_bind_blob64(statement, 6, checksum.data(), checksum.size(), SQLITE_STATIC);
+  this->Step(statement);
 }
 
 } // namespace dspace::session

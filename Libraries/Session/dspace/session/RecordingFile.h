@@ -24,6 +24,44 @@ struct RecordingRow {
 // time_s, wall_s (doubles) and kind (4 bytes), all little-endian, and the payload.
 std::string RecordingChecksum(const RecordingRow& row);
 
+// A file that commands need, before its checksum.
+struct RecordingAsset {
+  std::int64_t id = 0;
+  std::string path;  // absolute, as it was opened
+  std::string state; // "read"; "absent", "unreadable" (a folder, a server's file), "changed" (it
+                     // is not what the commands were carried out with): these without the rest
+  std::int64_t size = 0; // bytes
+  std::string sha256;    // 32 bytes
+  bool packed = false;   // its content is in the recording
+};
+
+// A part of a packed file's content.
+struct RecordingContent {
+  std::int64_t id = 0;
+  std::int64_t asset = 0;
+  std::int64_t place = 0; // byte of the file that it begins with
+  std::int64_t size = 0;  // bytes of the file; where `data` has fewer, it is zlib's
+  std::string data;
+};
+
+class Sha256 {
+public:
+  Sha256();
+  ~Sha256();
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+  void Add(const void* data, std::size_t size);
+  std::string Finish(); // 32 bytes; ready for the next one
+
+private:
+  void* Context_;
+};
+
+// As above, each number after its letter: A, id, size, packed (1 byte), the lengths of state, path
+// and hash, these. P, id, asset, place, size, data. Numbers have 8 bytes.
+std::string RecordingChecksum(const RecordingAsset& asset);
+std::string RecordingChecksum(const RecordingContent& content);
+
 // Throws Error(Io) with SQLite's words.
 class RecordingFile {
 public:
@@ -34,9 +72,8 @@ public:
 
   void Begin();
   void Put(const RecordingRow& row);
-  // A file that commands name: its size and SHA-256, once a path. One that cannot be read is noted
-  // without them.
-  void PutAsset(const std::string& path);
+  void Put(const RecordingAsset& asset);
+  void Put(const RecordingContent& content);
   void Commit();
   void Rollback() noexcept;
 
@@ -52,6 +89,8 @@ private:
   sqlite3_stmt* Command_ = nullptr;
   sqlite3_stmt* Snapshot_ = nullptr;
   sqlite3_stmt* Asset_ = nullptr;
+  sqlite3_stmt* Content_ = nullptr;
+  Sha256 Sum_;
 };
 
 } // namespace dspace::session

@@ -5,13 +5,13 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
-#include <set>
 #include <sstream>
 #include <thread>
 
 #include <google/protobuf/util/delimited_message_util.h>
 
 #include <dspace/Error.h>
+#include <dspace/session/RecordingAssets.h>
 #include <dspace/session/RecordingFile.h>
 
 namespace dspace::session {
@@ -39,37 +39,17 @@ void Check(const RecordingOptions& options, const std::string& path) {
   }
 }
 
-// Files that a command names: absolute paths in its fields, at any depth.
-void FindPaths(const google::protobuf::Message& message, std::set<std::string>& paths) {
-  const google::protobuf::Reflection* reflection = message.GetReflection();
-  std::vector<const google::protobuf::FieldDescriptor*> fields;
-  reflection->ListFields(message, &fields);
-  for (const google::protobuf::FieldDescriptor* field : fields) {
-    if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
-      const int n = field->is_repeated() ? reflection->FieldSize(message, field) : 1;
-      for (int i = 0; i < n; ++i) {
-        FindPaths(field->is_repeated() ? reflection->GetRepeatedMessage(message, field, i)
-                                       : reflection->GetMessage(message, field),
-                  paths);
-      }
-    } else if (!field->is_repeated() && (field->name() == "path" || field->name() == "texture")) {
-      const std::string path = reflection->GetString(message, field);
-      if (path.size() > 1 && path[0] == '/') {
-        paths.insert(path);
-      }
-    }
-  }
-}
-
 } // namespace
 
 struct RecordingWriter::Impl {
   Impl(const std::string& filePath, const RecordingOptions& given)
-      : path(filePath), options(given), file(filePath, given.maximumPages) {}
+      : path(filePath), options(given), file(filePath, given.maximumPages),
+        assets(file, given.pack) {}
 
   const std::string path;
   const RecordingOptions options;
   RecordingFile file; // the thread's, once it runs
+  RecordingAssets assets;
 
   // The simulation's side.
   std::uint64_t seq = 0;
@@ -78,19 +58,32 @@ struct RecordingWriter::Impl {
   std::uint64_t commandsSince = 0;
   std::size_t lastSnapshot = 0;
   bool told = false;
-  std::set<std::string> assets;
+  const CommandFiles* files = nullptr;
+  FilesRead handed; // to be noted
 
   mutable std::mutex mutex;
   std::condition_variable news; // for the thread
   std::condition_variable room; // for the simulation
   std::deque<RecordingRow> queue;
-  std::deque<std::string> newAssets;
+  std::deque<std::pair<std::string, FileStamp>> newFiles;
   std::size_t queued = 0; // bytes
   bool idle = true;
   bool stop = false;
   bool flush = false;
   RecordingCounts counts;
   std::thread thread;
+
+  void HandFiles(const v1::Command& command) {
+    const CommandFiles none;
+    for (const auto& [file, stamp] : (this->files ? *this->files : none).Of(command)) {
+      const auto known = this->handed.find(file);
+      if (known == this->handed.end() || !(known->second == stamp)) {
+        this->handed[file] = stamp;
+        const std::lock_guard<std::mutex> lock(this->mutex);
+        this->newFiles.push_back({file, stamp});
+      }
+    }
+  }
 
   // Blocks while the queue is full; nothing after a failure.
   void Hand(RecordingRow row) {
@@ -128,11 +121,12 @@ struct RecordingWriter::Impl {
   }
 
   // Whole transactions only are ever seen: what is in one that fails is rolled back.
-  void Write(const std::deque<RecordingRow>& rows, const std::deque<std::string>& files) {
+  void Write(const std::deque<RecordingRow>& rows,
+             const std::deque<std::pair<std::string, FileStamp>>& files) {
     this->file.Begin();
     try {
-      for (const std::string& asset : files) {
-        this->file.PutAsset(asset);
+      for (const auto& [path, stamp] : files) {
+        this->assets.Put(path, stamp);
       }
       for (const RecordingRow& row : rows) {
         this->file.Put(row);
@@ -160,9 +154,9 @@ struct RecordingWriter::Impl {
         });
       }
       std::deque<RecordingRow> rows;
-      std::deque<std::string> files;
+      std::deque<std::pair<std::string, FileStamp>> files;
       rows.swap(this->queue);
-      files.swap(this->newAssets);
+      files.swap(this->newFiles);
       this->queued = 0;
       this->idle = false;
       lock.unlock();
@@ -176,6 +170,7 @@ struct RecordingWriter::Impl {
       lock.lock();
       this->idle = true;
       if (failure.empty()) {
+        this->counts.missing = this->assets.Missing();
         for (const RecordingRow& row : rows) {
           this->counts.written += row.snapshot ? 0 : 1;
           this->counts.bytes += row.snapshot ? 0 : row.payload.size();
@@ -192,18 +187,15 @@ struct RecordingWriter::Impl {
 };
 
 RecordingWriter::RecordingWriter(const std::string& path, const Ledger& initial, double time_s,
-                                 const RecordingOptions& options) {
+                                 const RecordingOptions& options, const CommandFiles* files) {
   Check(options, path);
   this->Impl_ = std::make_unique<Impl>(path, options);
   this->Impl_->time_s = time_s;
-  this->Impl_->thread = std::thread([impl = this->Impl_.get()] { impl->Run(); });
+  this->Impl_->files = files;
   for (const v1::Command& command : initial.Commands()) {
-    FindPaths(command, this->Impl_->assets);
+    this->Impl_->HandFiles(command);
   }
-  {
-    const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
-    this->Impl_->newAssets.assign(this->Impl_->assets.begin(), this->Impl_->assets.end());
-  }
+  this->Impl_->thread = std::thread([impl = this->Impl_.get()] { impl->Run(); });
   this->Impl_->TakeSnapshot(initial);
 }
 
@@ -239,14 +231,7 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
     impl.time_s = recorded->set_time().time_s();
   }
   if (!recorded->has_set_poses()) { // which names no file and is most of all
-    std::set<std::string> paths;
-    FindPaths(*recorded, paths);
-    for (const std::string& path : paths) {
-      if (impl.assets.insert(path).second) {
-        const std::lock_guard<std::mutex> lock(impl.mutex);
-        impl.newAssets.push_back(path);
-      }
-    }
+    impl.HandFiles(*recorded);
   }
   RecordingRow row;
   row.seq = ++impl.seq;

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include <dspace/session/CommandFiles.h>
 #include <dspace/session/Ledger.h>
 
 namespace dspace::session {
@@ -21,6 +23,7 @@ struct RecordingOptions {
   std::size_t snapshotBytes = 8u << 20; // of commands from one snapshot to the next, at least,
   std::uint64_t snapshotCommands = 20000; // or so many commands
   std::int64_t maximumPages = 0;          // of 64 KiB, for the file; 0: as the disk has
+  bool pack = false; // the files that the commands need become part of the recording
 };
 
 // What a recording holds; `written` and `bytes` are safe on disk up to a crash of the process.
@@ -29,7 +32,8 @@ struct RecordingCounts {
   std::uint64_t written = 0;
   std::uint64_t bytes = 0; // of their payload
   std::uint64_t snapshots = 0;
-  std::string failure; // empty: none; nothing more is written after one
+  std::string failure;              // empty: none; nothing more is written after one
+  std::vector<std::string> missing; // files that were to be packed and could not be read
 };
 
 // A thread of its own writes, in transactions. It ends with what is queued when it is destroyed.
@@ -37,10 +41,11 @@ struct RecordingCounts {
 class RecordingWriter {
 public:
   // Makes the file; one that is there already is refused with Error(AlreadyExists). `initial` is
-  // the present state, at simulation time `time_s`. Throws Error(Io) where it cannot be written and
-  // Error(InvalidArgument) for the options.
+  // the present state, at simulation time `time_s`. `files` says what commands have read; null:
+  // only the files that they name are noted. It must outlive this, and is the caller's thread's.
+  // Throws Error(Io) where it cannot be written and Error(InvalidArgument) for the options.
   RecordingWriter(const std::string& path, const Ledger& initial, double time_s,
-                  const RecordingOptions& options = {});
+                  const RecordingOptions& options = {}, const CommandFiles* files = nullptr);
   ~RecordingWriter();
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;

@@ -11,6 +11,7 @@
 
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/Trail.h>
+#include <dspace/session/CommandFiles.h>
 #include <dspace/session/FrameEventLog.h>
 #include <dspace/session/MessageLog.h>
 #include <dspace/session/ModelCache.h>
@@ -61,6 +62,7 @@ struct State {
   std::map<std::string, ViewportPlace> viewports;
   ModelCache models;
   std::uint64_t lastTelemetryId = 0; // of all scenes that there were
+  CommandFiles files;
 
   // Throws Error(NotFound) naming the scenes there are.
   SceneState& FindScene(const std::string& name);

@@ -6,6 +6,7 @@
 #include <ogrsf_frmts.h>
 
 #include <dspace/scene/Checks.h>
+#include <dspace/terrain/DatasetFiles.h>
 #include <dspace/terrain/MapTurn.h>
 #include <dspace/terrain/OpenRaster.h>
 
@@ -282,6 +283,7 @@ VectorFile ReadVectorFile(const std::string& path, const RasterPlace& terrain,
   VectorFile result;
   GdalErrors errors;
   const DatasetPointer file = Open(path, object, errors);
+  NoteDataset(*file);
   Reader reader(object, options, result);
   std::string names;
   bool found = !options.layer;

@@ -6,6 +6,7 @@
 #include <cpl_vsi.h>
 
 #include <dspace/Error.h>
+#include <dspace/terrain/DatasetFiles.h>
 
 #include "NetworkScope.h"
 
@@ -124,6 +125,7 @@ DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
     throw Error(type ? Error::Kind::Unsupported : Error::Kind::Corrupt, object,
                 message + "; any raster that GDAL opens is accepted");
   }
+  NoteDataset(*dataset);
   errors.DemoteFailures();
   warnings.insert(warnings.end(), errors.Warnings().begin(), errors.Warnings().end());
   return dataset;

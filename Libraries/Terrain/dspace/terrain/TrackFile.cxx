@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <dspace/Error.h>
+#include <dspace/terrain/DatasetFiles.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
@@ -241,6 +242,7 @@ ReadTracks(const std::string& path, const Crs& crs,
     throw Error(Error::Kind::Corrupt, object,
                 errors.Message("it is no GeoJSON of lines") + "; accepted: as save_tracks writes");
   }
+  NoteDataset(*dataset);
   std::vector<TrackAddition> strokes;
   OGRLayer* layer = dataset->GetLayer(0);
   layer->ResetReading();

@@ -4,6 +4,7 @@ import itertools
 import os
 
 from dspace.command_line import Failed
+from dspace.command_line.log_pack import pack
 from dspace.command_line.log_salvage import salvage
 from dspace.recording_file import RecordingFile, write_recording
 from dspace.session import commands_pb2 as pb
@@ -33,6 +34,12 @@ def add_arguments(parser):
     cut.add_argument("--to", dest="end", type=float, metavar="T")
     cut.add_argument("--out", required=True, metavar="FILE")
     cut.set_defaults(run=cut_out)
+    packing = what.add_parser("pack", help="takes the files that it needs into it, so that it replays anywhere; exit "
+                                           "code 1 where some cannot be had")
+    packing.add_argument("file", metavar="FILE")
+    packing.add_argument("--out", metavar="FILE", help="the packed recording; absent: FILE itself, which nobody may "
+                                                       "be writing or reading")
+    packing.set_defaults(run=pack)
     rescue = what.add_parser("salvage", help="every command of a damaged one that its own checksum vouches for; "
                                              "exit code 1 where some are lost")
     rescue.add_argument("file", metavar="FILE")
@@ -59,8 +66,11 @@ def show(options):
                   f"from {when:%Y-%m-%d %H:%M:%S} UTC")
         for kind, count, size in counts:
             print(f"{count:10} {name_of(kind):24} {size:12} bytes")
-        for path, digest, size in file.assets:
-            print(f"file {path}: {f'{size} bytes, SHA-256 {digest.hex()}' if digest else 'was not readable'}")
+        for asset in file.assets:
+            said = f"{asset.size} bytes, SHA-256 {asset.sha256.hex()}" if asset.state == "read" else asset.state
+            print(f"file {asset.path}: {said}{', packed' if asset.packed else ''}")
+        for first, last in file.lost:
+            print(f"lost: commands {first} to {last}")
     return 0
 
 
@@ -132,6 +142,6 @@ def cut_out(options):
         snapshot = file.snapshot(first - 1)
         rows = list(file.rows(snapshot.seq + 1, last)) if last > snapshot.seq else []
         later = [row for row in file.rows(snapshot.seq + 1, last, "snapshot")]
-        write_recording(os.path.abspath(options.out), rows, [snapshot, *later], file.assets)
+        write_recording(os.path.abspath(options.out), rows, [snapshot, *later], file.path)
         print(f"{options.out}: commands {snapshot.seq + 1} to {last}")
     return 0

@@ -6,77 +6,162 @@ varints), the payload, and where it does not fit, the number of the first page o
 The payload is a record: types of its columns, then their values. What is found is believed only where the
 row's own checksum holds.
 """
+import collections
+import contextlib
+import mmap
 import os
 import struct
 
 from dspace.command_line import Failed
-from dspace.recording_file import Row, checksum, write_recording
+from dspace.recording_assets import Asset, Content
+from dspace.recording_file import Row, checksum, create_recording
 
-SIZES = (65536, 4096)  # of pages: ours, and a common one
+SIZES = (65536, 4096)  # of pages: ours, and a common one, where ours finds nothing
 LEAF = 13
+TURNS = 8  # of a log: pages of how many are looked at
 
 
 def salvage(options):
     if not os.path.isfile(options.file):
         raise Failed(f"recording {options.file!r}: there is no such file")
-    commands, snapshots = rows_in(options.file)
-    if not commands and not snapshots:
+    with contextlib.closing(create_recording(os.path.abspath(options.out))) as database:
+        with database:
+            for table, row in found_rows(options.file):
+                put(database, table, row)
+        counts = {table: database.execute(f"SELECT count(*), max({key}) FROM {table}").fetchone()
+                  for table, key in (("command", "seq"), ("snapshot", "seq"), ("asset", "id"))}
+        if not any(count for count, _ in counts.values()):
+            empty = True
+        else:
+            empty = False
+            last = max(counts["command"][1] or 0, counts["snapshot"][1] or 0)
+            lost = gaps((seq for seq, in database.execute("SELECT seq FROM command ORDER BY seq")), last)
+            broken = unpackable(database)
+            with database:
+                database.execute("INSERT INTO meta VALUES('lost', ?)", (" ".join(f"{a}-{b}" for a, b in lost),))
+    if empty:
+        os.remove(options.out)
         raise Failed(f"recording {options.file!r}: nothing in it survives")
-    write_recording(os.path.abspath(options.out), [commands[seq] for seq in sorted(commands)],
-                    [snapshots[seq] for seq in sorted(snapshots)])
-    print(f"{options.out}: {len(commands)} commands, {len(snapshots)} snapshots")
-    lost = gaps(sorted(commands), max([*commands, *snapshots]))
-    for first, last in lost:
-        print(f"lost: commands {first} to {last}")
-    print(f"what came after {max([*commands, 0])} is not known")
-    return 1 if lost else 0
+    print(f"{options.out}: {counts['command'][0]} commands, {counts['snapshot'][0]} snapshots, "
+          f"{counts['asset'][0]} files")
+    for first, end in lost:
+        print(f"lost: commands {first} to {end}")
+    for path in broken:
+        print(f"lost: the packed content of {path!r}")
+    print(f"what came after {counts['command'][1] or 0} is not known")
+    return 1 if lost or broken else 0
+
+
+def put(database, table, row):
+    if table == "asset":
+        database.execute("INSERT OR IGNORE INTO asset VALUES(?,CAST(? AS TEXT),?,?,?,?,?)",
+                         (row.id, os.fsencode(row.path), *row[2:], row.checksum))
+    else:
+        proof = row.checksum if table == "content" else checksum(row, table)
+        database.execute(f"INSERT OR IGNORE INTO {table} VALUES(?,?,?,?,?,?)", (*row, proof))
+
+
+def unpackable(database):
+    """Packed files of which parts are lost. Such a file is no longer told to be packed."""
+    sizes = dict(database.execute("SELECT asset, sum(size) FROM content GROUP BY asset"))
+    found = []
+    with database:
+        for values in database.execute("SELECT id, CAST(path AS BLOB), state, size, sha256, packed FROM asset "
+                                       "WHERE packed").fetchall():
+            asset = Asset(values[0], os.fsdecode(values[1]), *values[2:5], True)
+            if sizes.get(asset.id, 0) != asset.size:
+                found.append(asset.path)
+                database.execute("UPDATE asset SET packed = 0, checksum = ? WHERE id = ?",
+                                 (asset._replace(packed=False).checksum, asset.id))
+    return found
 
 
 def gaps(seqs, last):
     """Ranges of 1..last that are not there."""
     found, expected = [], 1
-    for seq in [*seqs, last + 1]:
+    for seq in seqs:
         if seq > expected:
             found.append((expected, seq - 1))
         expected = seq + 1
+    if last >= expected:
+        found.append((expected, last))
     return found
 
 
 def rows_in(path):
-    """Commands and snapshots by number: of the file's pages, and of those that its log holds."""
-    with open(path, "rb") as file:
-        data = file.read()
-    log = b""
-    if os.path.exists(path + "-wal"):
-        with open(path + "-wal", "rb") as file:
-            log = file.read()
-    commands, snapshots = {}, {}
-    for size in SIZES:  # the head that states it may be damaged
-        whole = pages_of(data, size)
-        newest = {**whole, **log_pages(log, size)}
-        for pages in (newest, whole) if log else (whole,):
-            for page in pages.values():
-                for row, table in rows_of(page, pages, size):
-                    (snapshots if table == "snapshot" else commands).setdefault(row.seq, row)
-    return commands, snapshots
+    """Commands and snapshots by number."""
+    found = {"command": {}, "snapshot": {}}
+    for table, row in found_rows(path):
+        if table in found:
+            found[table].setdefault(row.seq, row)
+    return found["command"], found["snapshot"]
 
 
-def pages_of(data, size):
-    return {n + 1: data[n * size:(n + 1) * size] for n in range((len(data) + size - 1) // size)}
+def found_rows(path):
+    """(table, row) of everything in a recording's pages, and in those that its log holds, whose checksum holds.
+    One that is there several times may come as often."""
+    with opened(path) as data, opened(path + "-wal") as log:
+        for size in SIZES:  # the head that states it may be damaged
+            sources = [Pages(data, log, size, turn) for turn in turns_of(log, size)]
+            any_found = False
+            for page in every_page(data, log, size):
+                for found in rows_of(page, sources, size):
+                    any_found = True
+                    yield found
+            if any_found:
+                return
 
 
-def log_pages(data, size):
-    """The last version of every page in a write-ahead log: frames of a head of 24 bytes and a page, those
-    whose salt is the log's own (others are of an earlier turn)."""
-    pages, salt = {}, data[16:24]
-    for at in range(32, len(data) - 24, 24 + size):
-        if data[at + 8:at + 16] == salt:
-            pages[struct.unpack(">I", data[at:at + 4])[0]] = data[at + 24:at + 24 + size]
-    return pages
+@contextlib.contextmanager
+def opened(path):
+    """A file's bytes, mapped; none where there is no such file, or it is empty."""
+    if not os.path.exists(path) or not os.path.getsize(path):
+        yield b""
+        return
+    with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        yield data
 
 
-def rows_of(page, pages, size):
-    """(row, table) of a leaf page, those whose checksum holds."""
+def frames_of(log, size):
+    """(page number, salt, place of the page) of every frame in a write-ahead log."""
+    for at in range(32, len(log) - 24, 24 + size):
+        yield struct.unpack(">I", log[at:at + 4])[0], log[at + 8:at + 16], at + 24
+
+
+def turns_of(log, size):
+    """Which pages a log holds in each of its turns, told by their salts: the log's own first, then the others (the
+    head may be damaged); and none, which leaves the file itself."""
+    turns = collections.defaultdict(dict)
+    for number, salt, place in frames_of(log, size):
+        turns[salt][number] = place
+    own = log[16:24]
+    order = sorted(turns, key=lambda salt: (salt != own, -len(turns[salt])))
+    return [turns[salt] for salt in order[:TURNS]] + [{}]
+
+
+class Pages:
+    """Pages by number, the log's before the file's."""
+
+    def __init__(self, data, log, size, turn):
+        self.data, self.log, self.size, self.turn = data, log, size, turn
+
+    def get(self, number):
+        if number in self.turn:
+            place = self.turn[number]
+            return self.log[place:place + self.size]
+        return self.data[(number - 1) * self.size:number * self.size] if number > 0 else b""
+
+
+def every_page(data, log, size):
+    """Of the file, and all versions in the log."""
+    for place in range(0, len(data), size):
+        yield data[place:place + size]
+    for _, _, place in frames_of(log, size):
+        yield log[place:place + size]
+
+
+def rows_of(page, sources, size):
+    """(table, row) of a leaf page, those whose checksum holds."""
     for start in (0, 100):  # the first page begins with the file's head
         if len(page) < start + 8 or page[start] != LEAF:
             continue
@@ -85,12 +170,14 @@ def rows_of(page, pages, size):
             place = page[start + 8 + 2 * n:start + 10 + 2 * n]
             if len(place) < 2:
                 break
-            try:
-                found = row_at(page, struct.unpack(">H", place)[0], pages, size)
-            except (IndexError, struct.error, ValueError, OverflowError):
-                continue  # no such row, or one that is damaged
-            if found is not None:
-                yield found
+            for pages in sources:
+                try:
+                    found = row_at(page, struct.unpack(">H", place)[0], pages, size)
+                except (IndexError, struct.error, ValueError, OverflowError):
+                    continue  # no such row, or one that is damaged
+                if found is not None:
+                    yield found
+                    break
 
 
 def varint(data, at):
@@ -116,12 +203,27 @@ def row_at(page, at, pages, page_size):
         kind, place = varint(record, place)
         value, values = column(record, kind, values)
         columns.append(value)
+    return believed(seq, columns)
+
+
+def believed(key, columns):
+    """(table, row) of a record whose checksum holds, or None."""
+    if len(columns) == 7 and isinstance(columns[1], bytes) and isinstance(columns[2], bytes):
+        asset = Asset(key, os.fsdecode(columns[1]), columns[2].decode(), columns[3], columns[4], bool(columns[5]))
+        if isinstance(asset.size, int) and isinstance(asset.sha256, bytes) and asset.checksum == columns[6]:
+            return "asset", asset
     if len(columns) != 6 or columns[0] is not None or not isinstance(columns[4], bytes):
         return None
-    row = Row(seq, float(columns[1]), float(columns[2]), columns[3], columns[4])
+    if all(isinstance(each, int) for each in columns[1:4]):
+        content = Content(key, *columns[1:5])
+        if content.checksum == columns[5]:
+            return "content", content
+    if not all(isinstance(each, (int, float)) for each in columns[1:4]):
+        return None
+    row = Row(key, float(columns[1]), float(columns[2]), columns[3], columns[4])
     for table in ("command", "snapshot"):
         if checksum(row, table) == columns[5]:
-            return row, table
+            return table, row
     return None
 
 
@@ -140,7 +242,7 @@ def payload_at(page, at, size, pages, page_size):
     seen = set()
     while got < size:
         chained = pages.get(following)
-        if chained is None or following in seen:
+        if len(chained) < 4 or following in seen:
             raise ValueError
         seen.add(following)
         parts.append(chained[4:4 + min(size - got, page_size - 4)])

@@ -1,0 +1,49 @@
+// Which files are read for a command: a recording notes them, whoever names them.
+#ifndef DSPACE_FILES_READ_H
+#define DSPACE_FILES_READ_H
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace dspace {
+
+// A file when it was read: what is recorded of it later must still be that.
+struct FileStamp {
+  std::int64_t size = -1;       // bytes; -1: it could not be asked
+  std::int64_t changed_ns = -1; // time of the last change, past 1970 UTC
+
+  static FileStamp Of(const std::string& path);
+  bool operator==(const FileStamp& other) const {
+    return this->size == other.size && this->changed_ns == other.changed_ns;
+  }
+};
+
+// By absolute path, as it was opened: ".." behind a link is the operating system's to resolve.
+using FilesRead = std::map<std::string, FileStamp>;
+
+// Gathers what this thread reads while it lives. What an inner one gathers, the outer one has too.
+class FilesReadScope {
+public:
+  FilesReadScope();
+  ~FilesReadScope();
+  FilesReadScope(const FilesReadScope&) = delete;
+  FilesReadScope& operator=(const FilesReadScope&) = delete;
+
+  const FilesRead& Files() const { return this->Files_; }
+
+private:
+  friend void NoteFileRead(const std::string& path);
+  friend void NoteFilesRead(const FilesRead& files);
+  FilesRead Files_;
+  FilesReadScope* Outer_;
+};
+
+// Told by whoever opens a file; nothing happens where no scope lives. The first stamp of a file
+// stays. Files of a cache count too: say again what was read when it was filled.
+void NoteFileRead(const std::string& path);
+void NoteFilesRead(const FilesRead& files);
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,64 @@
+#include <dspace/session/CommandFiles.h>
+
+#include <vector>
+
+namespace dspace::session {
+namespace {
+
+void Gather(const google::protobuf::Message& message, std::set<std::string>& paths) {
+  const google::protobuf::Reflection* reflection = message.GetReflection();
+  std::vector<const google::protobuf::FieldDescriptor*> fields;
+  reflection->ListFields(message, &fields);
+  for (const google::protobuf::FieldDescriptor* field : fields) {
+    if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
+      const int n = field->is_repeated() ? reflection->FieldSize(message, field) : 1;
+      for (int i = 0; i < n; ++i) {
+        Gather(field->is_repeated() ? reflection->GetRepeatedMessage(message, field, i)
+                                    : reflection->GetMessage(message, field),
+               paths);
+      }
+    } else if (!field->is_repeated() && (field->name() == "path" || field->name() == "texture")) {
+      const std::string path = reflection->GetString(message, field);
+      if (path.size() > 1 && path[0] == '/') {
+        paths.insert(path);
+      }
+    }
+  }
+}
+
+} // namespace
+
+std::set<std::string> PathsIn(const v1::Command& command) {
+  std::set<std::string> paths;
+  if (!command.has_set_poses()) { // which names no file and is most of all
+    Gather(command, paths);
+  }
+  return paths;
+}
+
+void CommandFiles::Note(const v1::Command& accepted, const FilesRead& files) {
+  if (files.empty()) {
+    return;
+  }
+  for (const std::string& path : PathsIn(accepted)) {
+    FilesRead& known = this->ByPath_[path];
+    for (const auto& [file, stamp] : files) {
+      known[file] = stamp;
+    }
+  }
+}
+
+FilesRead CommandFiles::Of(const v1::Command& command) const {
+  FilesRead files;
+  for (const std::string& path : PathsIn(command)) {
+    const auto found = this->ByPath_.find(path);
+    if (found != this->ByPath_.end()) {
+      files.insert(found->second.begin(), found->second.end());
+    } else {
+      files.emplace(path, FileStamp::Of(path));
+    }
+  }
+  return files;
+}
+
+} // namespace dspace::session

@@ -1,0 +1,106 @@
+"""Which steps of a recording can be shown whole, and what is lost between them."""
+import bisect
+from typing import NamedTuple, Optional
+
+from dspace.session import commands_pb2 as pb
+
+
+class Step(NamedTuple):
+    """The state after command `end`: a time that was set, and all that came until the next one."""
+
+    time: float  # [s]
+    end: int
+
+
+class Gap(NamedTuple):
+    """A span of which nothing can be shown: commands first..last are lost or cannot be made use of.
+
+    begin, end: simulation time [s] of the first step that may lack a command, and of the next one that is whole;
+    None: the recording's own begin or end. before: how many whole steps come before it.
+    """
+
+    first: int
+    last: int
+    begin: Optional[float]
+    end: Optional[float]
+    before: int
+
+    def __str__(self):
+        begin = "the beginning" if self.begin is None else f"{self.begin:g} s"
+        return f"{begin} to {'the end' if self.end is None else f'{self.end:g} s'} (commands {self.first} to {self.last})"
+
+
+def blocks_of(file):
+    """Ranges (first, last) of commands that are there, with none missing within one."""
+    if not file.last:  # a state and nothing after it
+        seq = file.ask("SELECT max(seq) FROM snapshot")[0][0] or 0
+        return [(seq + 1, seq)]
+    lost = file.lost
+    if not lost:
+        return [(file.first, file.last)]
+    starts = [1] + [last + 1 for _, last in lost]
+    ends = [first - 1 for first, _ in lost]
+    # Where a snapshot is the last of all, its state and nothing after it.
+    return [(a, b) for a, b in zip(starts, ends) if a <= b] + [(starts[-1], max(file.last, starts[-1] - 1))]
+
+
+def set_times(file, scene):
+    """(command, time) of each step, of one scene or of all."""
+    if scene is None:
+        return file.steps()
+    found = []
+    for seq, time, payload in file.ask("SELECT seq, time, payload FROM command INDEXED BY step WHERE kind = 13"):
+        if (pb.Command.FromString(payload).scene or "scene") == scene:
+            found.append((seq, time))
+    return sorted(found)
+
+
+def steps_of(file, scene=None):
+    """The Steps of a RecordingFile, and its Gaps. After lost commands the next snapshot goes on."""
+    times = set_times(file, scene)
+    snapshots = [seq for seq, in file.ask("SELECT seq FROM snapshot ORDER BY seq")]
+    blocks = blocks_of(file)
+    steps, gaps = [], []
+    begin, first = None, 1 if file.lost else blocks[0][0]  # of the gap that is open
+    is_open = bool(file.lost) and first > 1 and first - 1 not in snapshots
+    for number, (a, b) in enumerate(blocks):
+        place = bisect.bisect_left(snapshots, a - 1)
+        if place == len(snapshots) or snapshots[place] > max(b, a - 1):
+            is_open = True  # no state to begin with
+            continue
+        base = file.snapshot(snapshots[place])
+        is_open = is_open or base.seq > a - 1
+        inside = [(seq, time) for seq, time in times if base.seq < seq <= b]
+        # What was there and done before time was first set, or after what is lost.
+        if is_open or number or base.payload or not inside or inside[0][0] > base.seq + 1:
+            inside.insert(0, (base.seq + 1, base.time))
+        found = [Step(time, following - 1) for (_, time), (following, _) in zip(inside, [*inside[1:], (b + 1, None)])]
+        cut = None if number == len(blocks) - 1 else found.pop()
+        if found:
+            if is_open:
+                gaps.append(Gap(first, base.seq, begin, found[0].time, len(steps)))
+            steps += found
+        if cut is not None and (found or not is_open):
+            begin, first = cut.time, b + 1
+        is_open = is_open and not found or cut is not None
+    if is_open:
+        gaps.append(Gap(first, max([file.last, *snapshots]), begin, None, len(steps)))
+    return steps, gaps
+
+
+def runs_of(times):
+    """Ranges [begin, end) of steps whose times do not go back."""
+    turns = [i for i in range(1, len(times)) if times[i] < times[i - 1]]
+    return list(zip([0, *turns], [*turns, len(times)]))
+
+
+def index_at(times, runs, at):
+    """Of the latest run that reaches a time, or else the latest that begins before it, the last step not after it;
+    None before all of them."""
+    begun = None
+    for begin, end in reversed(runs):
+        if times[begin] <= at:
+            if at <= times[end - 1]:
+                return bisect.bisect_right(times, at, begin, end) - 1
+            begun = end - 1 if begun is None else begun
+    return begun
