@@ -11,6 +11,7 @@ import tempfile
 import numpy as np
 
 import dspace
+from dspace.serving import ServerProcess
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "Documentation" / "images"
@@ -52,6 +53,31 @@ def movie():
     simulation = rover_mobility.run()
     with simulation.session:
         (IMAGES / "movie.png").write_bytes(png(Stage(flight, open_run(simulation)).picture(40)))
+
+
+def banner():
+    """What a viewer shows of a simulation that was killed."""
+    drive = ("import sys, time, dspace, rover_mobility\n"
+             "session = dspace.connect(sys.argv[1], name='rover mobility')\n"
+             "simulation = rover_mobility.Simulation(session, folder=sys.argv[2])\n"
+             "simulation.scene.add_camera('side', frame='rover', eye=(1.6, -2.6, 1.1), target=(0, 0, 0), fov_deg=38)\n"
+             "view = simulation.scene.add_viewport((640, 360), 'side', name='side', samples=3)\n"
+             "view.set_background((0.75, 0.6, 0.5), top=(0.45, 0.4, 0.4))\n"
+             "simulation.advance(4.0)\n"
+             "view.set_table('state', {'time': '4.00 s', 'speed': '0.40 m/s'}, anchor='bottom left')\n"
+             "print('driven', flush=True)\n"
+             "time.sleep(600)\n")
+    with tempfile.TemporaryDirectory() as folder, ServerProcess([folder]) as server:
+        path = os.pathsep.join([str(ROOT / "Examples" / "rover_mobility"), os.environ.get("PYTHONPATH", "")])
+        simulation = subprocess.Popen([sys.executable, "-c", drive, server.address, folder], stdout=subprocess.PIPE,
+                                      env={**os.environ, "PYTHONPATH": path})
+        simulation.stdout.readline()
+        with dspace.watch(server.address) as watcher:
+            simulation.kill()
+            simulation.communicate()
+            while watcher.simulation is not None:
+                watcher.update(1.0)
+            watcher.viewports["side"].save(IMAGES / "banner.png")
 
 
 # --- Terrain ---------------------------------------------------------------------------------------
@@ -186,6 +212,7 @@ def main():
     first_picture()
     demo("demo", 9)
     movie()
+    banner()
     data = os.environ.get("DSPACE_DATA", "")
     if pathlib.Path(data, "models").is_dir():
         demo("m2020_gale", 1, "--terrain", f"{data}/terrain/mars_gale_mola_128ppd_m.tif", "--model",

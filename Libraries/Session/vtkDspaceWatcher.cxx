@@ -1,9 +1,7 @@
 #include "vtkDspaceWatcher.h"
 
-#include <map>
-#include <vector>
-
 #include <dspace/session/ErrorReply.h>
+#include <dspace/session/LinkBanner.h>
 #include <dspace/session/OwnViews.h>
 #include <dspace/session/Watcher.h>
 
@@ -14,12 +12,6 @@
 
 vtkStandardNewMacro(vtkDspaceWatcher);
 
-namespace {
-
-constexpr const char* Banner = "dspace.link"; // the table that says what is wrong
-
-} // namespace
-
 struct vtkDspaceWatcher::Internals {
   dspace::session::WatcherOptions options;
   std::unique_ptr<dspace::session::Watcher> watcher;
@@ -29,7 +21,7 @@ struct vtkDspaceWatcher::Internals {
   std::string writer;
   bool writerConnected = false;
   std::string trouble;
-  std::map<std::string, std::string> banners; // that are shown, by viewport
+  dspace::session::LinkBanner banner;
 
   dspace::session::Interpreter& Interpreter() { return this->session->GetInterpreter(); }
 
@@ -52,7 +44,7 @@ struct vtkDspaceWatcher::Internals {
     this->session = vtkSmartPointer<vtkDspaceSession>::New();
     this->session->SetRenderContext(context);
     this->trouble.clear();
-    this->banners.clear();
+    this->banner.Follow(this->Interpreter());
     for (dspace::v1::Command& command : *snapshot.mutable_command()) {
       this->Apply(command);
     }
@@ -69,48 +61,15 @@ struct vtkDspaceWatcher::Internals {
     }
   }
 
-  std::vector<std::string> Viewports() {
-    dspace::v1::Command command;
-    command.mutable_list_viewports();
-    const dspace::v1::Reply reply = this->Interpreter().Execute(command);
-    return {reply.viewports().name().begin(), reply.viewports().name().end()};
-  }
-
-  // What every viewport says of the link.
-  std::string BannerText() const {
-    if (this->watcher && !this->watcher->Connected()) {
-      return "SERVER LOST: last state; waiting for it";
-    }
-    if (!this->writerConnected && !this->writer.empty()) {
-      return "SIMULATION '" + this->writer + "' HAS GONE: last state";
-    }
-    return {};
-  }
-
   void ShowBanner() {
-    const std::string text = this->BannerText();
-    for (const std::string& viewport : this->Viewports()) {
-      std::string& shown = this->banners[viewport];
-      if (shown == text) {
-        continue;
-      }
-      dspace::v1::Command command;
-      if (text.empty()) {
-        command.mutable_remove_text_table()->set_viewport(viewport);
-        command.mutable_remove_text_table()->set_name(Banner);
-      } else {
-        dspace::v1::SetTextTable* table = command.mutable_set_text_table();
-        table->set_viewport(viewport);
-        table->set_name(Banner);
-        table->set_title(text);
-        table->set_anchor(dspace::v1::SetTextTable::BOTTOM_LEFT);
-        table->mutable_color()->set_r(1);
-        table->mutable_color()->set_g(0.8);
-        table->set_background_opacity(0.8);
-      }
-      this->Interpreter().Execute(command);
-      shown = text;
+    using dspace::session::LinkBanner;
+    LinkBanner::Text text;
+    if (this->watcher && !this->watcher->Connected()) {
+      text = LinkBanner::ServerLost();
+    } else if (!this->writerConnected && !this->writer.empty()) {
+      text = LinkBanner::SimulationGone(this->writer);
     }
+    this->banner.Show(this->Interpreter(), text);
   }
 
   dspace::v1::Reply Execute(dspace::v1::Command& command) {
@@ -135,7 +94,7 @@ struct vtkDspaceWatcher::Internals {
     if (command.has_viewport_event() && reply.pick().object() != 0) {
       this->TellPick(command.viewport_event().viewport(), reply.pick());
     }
-    if (command.has_create_viewport()) {
+    if (command.has_create_viewport() || command.has_resize_viewport()) {
       this->ShowBanner();
     }
     return reply;
@@ -157,7 +116,9 @@ struct vtkDspaceWatcher::Internals {
   }
 };
 
-vtkDspaceWatcher::vtkDspaceWatcher() : Impl(new Internals) {}
+vtkDspaceWatcher::vtkDspaceWatcher() : Impl(new Internals) {
+  this->Impl->banner.Follow(this->Impl->Interpreter());
+}
 vtkDspaceWatcher::~vtkDspaceWatcher() = default;
 
 void vtkDspaceWatcher::SetCertificates(const std::string& certificate, const std::string& key,

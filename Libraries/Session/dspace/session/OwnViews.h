@@ -3,9 +3,11 @@
 #define DSPACE_SESSION_OWN_VIEWS_H
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <dspace/session/Interpreter.h>
 #include <dspace/session/LedgerViews.h>
@@ -45,6 +47,13 @@ private:
     v1::Mount mount;
   };
 
+  // The camera as it is; absent where there is none.
+  static std::optional<v1::SetCamera> CameraOf(Interpreter& interpreter, const std::string& scene,
+                                               const std::string& vantage,
+                                               const std::string& camera);
+  // Where a camera stands now, in the root.
+  static v1::Mount RootMount(const Scene& scene, const std::string& vantage,
+                             const std::string& camera);
   bool OwnsVantage(const std::string& scene, const std::string& vantage) const;
   void Keep(const v1::Command& command, const v1::Reply& reply);
   v1::Reply ExecuteEvent(Interpreter& interpreter, v1::Command& command);
