@@ -16,7 +16,8 @@ WORDS = {"log": "what recordings hold, where two part, what survives damage",
          "movie": "a movie of a run, from a text file of camera key frames",
          "play": "pictures of a recording, with no simulation",
          "serve": "a session for simulations and viewers in other processes",
-         "terrain": "what a raster of heights is, and pictures of it"}
+         "terrain": "what a raster of heights is, and pictures of it",
+         "watch": "pictures of a simulation that runs, from a server"}
 
 
 class Failed(Exception):

@@ -1,0 +1,193 @@
+"""Makes Commands.md anew from the comments of the .proto files: python3 Documentation/make_commands.py
+
+protoc reads the files; nothing of Dspace need be built. --check: exit code 1 where Commands.md is out of date.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from google.protobuf import descriptor_pb2
+from google.protobuf.descriptor_pb2 import FieldDescriptorProto as Field
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+PROTOS = ROOT / "Libraries" / "Session"
+PAGE = ROOT / "Documentation" / "Commands.md"
+FILES = ("commands", "frames", "objects", "robots", "cameras", "viewports", "terrain", "layers", "telemetry",
+         "messages", "measurements", "common", "service")
+TYPES = {getattr(Field, name): name[5:].lower() for name in dir(Field) if name.startswith("TYPE_")}
+HEAD = """# The commands
+
+Made by `Documentation/make_commands.py` from the comments of `Libraries/Session/dspace/session/*.proto`, which say the
+same: change those. [Wire.md](Wire.md) says how commands are sent.
+
+Units are in the comments: metres [m], seconds [s], degrees where the name ends in `_deg`, pixels. "absent" is what is
+meant by a field that is left out. The number of a command or field is what stands for it on the wire; none is ever used
+twice.
+"""
+
+# The result in a command's Reply, of several one or none; of the others none. A test holds it against what commands
+# answer.
+ANSWERS = {
+    "create_scene": "scenes", "list_scenes": "scenes", "set_time": "time", "get_time": "time",
+    "create_frame": "frame", "remove_frame": "removed_frames", "reparent_frame": "poses", "find_frame": "frame",
+    "get_poses": "poses", "list_frames": "frames", "import_object": "object", "create_primitive": "object",
+    "create_trail": "object", "find_object": "object", "describe_object": "object_info", "list_objects": "objects",
+    "create_text": "object", "load_robot": "robot", "describe_robot": "robot", "list_robots": "robots",
+    "list_fragments": "fragments", "list_lights": "lights", "list_vantages": "vantages", "set_camera": "camera",
+    "describe_camera": "camera", "create_viewport": "viewport", "viewport_event": "camera pick",
+    "capture": "capture", "render": "render", "pick": "pick", "describe_viewport": "viewport_info",
+    "list_viewports": "viewports", "get_statistics": "statistics", "open_terrain": "terrain",
+    "query_terrain": "terrain_values", "convert_terrain": "terrain_points", "describe_terrain": "terrain",
+    "list_terrains": "terrains", "intersect_terrain": "terrain_rays", "describe_terrain_style": "terrain_style",
+    "build_terrain_cache": "terrain_cache", "list_terrain_cache": "terrain_cache",
+    "clear_terrain_cache": "terrain_cache", "verify_terrain_cache": "terrain_cache",
+    "add_terrain_layer": "terrain_layer", "change_terrain_layer": "terrain_layer",
+    "list_terrain_layers": "terrain_layers", "create_telemetry": "telemetry", "list_telemetry": "telemetry",
+    "log_event": "event", "list_events": "events", "list_questions": "questions", "line_of_sight": "line_of_sight",
+    "lit_area": "lit_area", "horizon": "horizon", "horizon_map": "map", "viewshed": "map",
+    "illumination_map": "map", "simulate_image": "capture", "project_points": "project",
+    "unproject_pixels": "unproject", "ephemeris": "ephemeris", "sky_state": "sky",
+}
+
+
+def read_protos():
+    """The files' descriptors with their comments, by name."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "all.pb"
+        subprocess.run(["protoc", f"-I{PROTOS}", "--include_source_info", f"--descriptor_set_out={out}",
+                        *[f"dspace/session/{name}.proto" for name in FILES]], check=True, cwd=PROTOS)
+        files = descriptor_pb2.FileDescriptorSet.FromString(out.read_bytes()).file
+    return {pathlib.Path(file.name).stem: file for file in files}
+
+
+class Page:
+    def __init__(self):
+        self.lines = [HEAD]
+        self.comments = {}
+        self.headings = set()
+
+    def add(self, *lines):
+        self.lines.extend(lines)
+
+    def comment(self, path):
+        """What stands before and behind a thing, as one text."""
+        place = self.comments.get(tuple(path))
+        if place is None:
+            return ""
+        texts = [place.leading_comments, place.trailing_comments]
+        text = " ".join(re.sub(r"\s+", " ", text).strip() for text in texts if text.strip())
+        # A rule that parts a file in two belongs to no thing; of a table | would end the cell.
+        return re.sub(r"(Requests|Replies|Types) -{5,}\s*", "", text).replace("|", "\\|").strip()
+
+    def file_comment(self, file):
+        for place in file.source_code_info.location:
+            if list(place.path) == [12]:  # the syntax line
+                return "\n\n".join(" ".join(part.split()) for part in place.leading_comments.split("\n\n"))
+        return ""
+
+    def type_of(self, field):
+        if field.type in (Field.TYPE_MESSAGE, Field.TYPE_ENUM):
+            name = field.type_name.split(".dspace.v1.")[-1]
+            word = f"[{name}](#{anchor(name)})"
+        else:
+            word = TYPES[field.type]
+        if field.label == Field.LABEL_REPEATED:
+            return f"repeated {word}"
+        return f"optional {word}" if field.proto3_optional else word
+
+    def message(self, message, path, title, level):
+        self.add(f"{'#' * level} {title}", "")
+        about = self.comment(path)
+        if about:
+            self.add(about, "")
+
+    def fields(self, message, path):
+        if message.field:
+            self.add("| field | number | type | meaning |", "| --- | --- | --- | --- |")
+            oneofs = [one.name for one in message.oneof_decl]
+            for index, field in enumerate(message.field):
+                if message.name == "Command" and field.number >= 10:
+                    continue  # in the table above
+                meaning = self.comment([*path, 2, index])
+                if field.HasField("oneof_index") and not field.proto3_optional:
+                    meaning = f"one of `{oneofs[field.oneof_index]}`" + (f": {meaning}" if meaning else "")
+                self.add(f"| `{field.name}` | {field.number} | {self.type_of(field)} | {meaning} |")
+            self.add("")
+
+    def enum(self, enum, path, title, level):
+        self.message(enum, path, title, level)
+        self.add("| value | number | meaning |", "| --- | --- | --- |")
+        for index, value in enumerate(enum.value):
+            self.add(f"| `{value.name}` | {value.number} | {self.comment([*path, 2, index])} |")
+        self.add("")
+
+    def nested(self, message, path, name, level):
+        for index, each in enumerate(message.nested_type):
+            self.whole(each, [*path, 3, index], f"{name}.{each.name}", level)
+        for index, each in enumerate(message.enum_type):
+            self.enum(each, [*path, 4, index], f"{name}.{each.name}", level)
+
+    def whole(self, message, path, name, level):
+        self.message(message, path, name, level)
+        self.fields(message, path)
+        self.nested(message, path, name, min(level + 1, 5))
+
+
+def anchor(title):
+    return re.sub(r"[^a-z0-9_ -]", "", title.lower()).replace(" ", "-")
+
+
+def make():
+    files = read_protos()
+    command = next(each for each in files["commands"].message_type if each.name == "Command")
+    reply = next(each for each in files["commands"].message_type if each.name == "Reply")
+    kinds = {field.type_name.split(".")[-1]: field for field in command.field if field.number >= 10}
+    results = {field.name: field for field in reply.field if field.number >= 10}
+    page = Page()
+    page.add("| command | number | what it does |", "| --- | --- | --- |")
+    table = len(page.lines)
+    rows = []
+    for name in FILES:
+        file = files[name]
+        page.comments = {tuple(place.path): place for place in file.source_code_info.location}
+        page.add(f"## {name}.proto", "", page.file_comment(file), "")
+        others = []
+        for index, message in enumerate(file.message_type):
+            field = kinds.get(message.name)
+            if field is None:
+                others.append((index, message))
+                continue
+            page.message(message, [4, index], message.name, 3)
+            told = " or ".join(f"`{answer}` ({page.type_of(results[answer])})"
+                               for answer in ANSWERS.get(field.name, "").split())
+            page.add(f"`{field.name}`, {field.number} in Command; result: {told or 'none'}.", "")
+            page.fields(message, [4, index])
+            page.nested(message, [4, index], message.name, 4)
+            about = page.comment([4, index])
+            rows.append((field.number, f"| [{field.name}](#{anchor(message.name)}) | {field.number} | "
+                                       f"{first_sentence(about)} |"))
+        for index, message in others:
+            page.whole(message, [4, index], message.name, 3)
+        for index, enum in enumerate(file.enum_type):
+            page.enum(enum, [5, index], enum.name, 3)
+    page.lines[table:table] = [row for _, row in sorted(rows)] + [""]
+    return "\n".join(page.lines).rstrip() + "\n"
+
+
+def first_sentence(text):
+    return re.split(r"(?<=[a-z0-9)])[.:;] ", text + " ")[0].strip().rstrip(".")
+
+
+def main():
+    page = make()
+    if "--check" in sys.argv[1:]:
+        if not PAGE.is_file() or PAGE.read_text() != page:
+            sys.exit("Documentation/Commands.md is out of date; accepted: as Documentation/make_commands.py makes it")
+        return
+    PAGE.write_text(page)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,125 @@
+"""`dspace watch` saves pictures of a simulation that runs, and says when it has gone."""
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+import dspace
+from served_support import Served
+
+RUN = [sys.executable, "-W", "ignore", "-m", "dspace", "watch"]
+
+
+class Watched:
+    """The command, as a process whose lines are read."""
+
+    def __init__(self, *arguments):
+        self.process = subprocess.Popen([*RUN, *map(str, arguments)], stdout=subprocess.PIPE, text=True)
+
+    def line(self):
+        return self.process.stdout.readline().strip()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.process.kill()
+        self.process.communicate()
+
+
+def build(session, step=0):
+    scene = session.scene()
+    scene.add_sphere(1.0, frame=scene.add_frame("ball"), color="#e02020")
+    scene.add_camera("main", eye=(6.0, 0.0, 2.0), target=(0.0, 0.0, 0.0))
+    scene.add_viewport((160, 120), "main", name="view")
+    return scene
+
+
+def test_pictures_of_a_run_until_it_ends(tmp_path):
+    out, reference = tmp_path / "out", tmp_path / "reference.png"
+    with Served(tmp_path, "--allow-root", str(tmp_path)) as server, \
+            dspace.connect(server.address, name="drive") as session:
+        with Watched(server.address, "--out", out, "--every", "0.01") as watch:
+            scene = build(session)  # it waits for a viewport
+            while not os.path.exists(out / "000000.png"):
+                assert watch.process.poll() is None
+            for step in range(1, 4):
+                scene.time = step
+                scene.set_poses(["ball"], [[0.0, 0.3 * step, 0.0, 1.0, 0.0, 0.0, 0.0]])
+                while not watch.line().endswith(f": {step:.3f} s"):
+                    assert watch.process.poll() is None
+            session.viewports["view"].save(reference)
+            last = sorted(os.listdir(out))[-1]
+            assert (out / last).read_bytes() == reference.read_bytes()
+            session.close()
+            lines = watch.process.stdout.read().splitlines()
+            count = len(os.listdir(out))
+            assert lines[-1] == f"dspace watch: simulation 'drive' has gone; {count} pictures in {out}"
+            assert watch.process.wait(timeout=60) == 0
+            assert sorted(os.listdir(out))[-1] != last  # one with the banner
+
+
+def test_a_view_of_ones_own_and_the_ways_to_end(tmp_path):
+    with Served(tmp_path) as server, dspace.connect(server.address, name="drive") as session:
+        build(session)
+        own = ("--eye", "-6,1,2", "--target", "0,0,0", "--frame", "ball", "--fov", "30", "--size", "80x60")
+        run = subprocess.run([*RUN, server.address, "--out", tmp_path / "own", *own, "--count", "1"], check=True,
+                             stdout=subprocess.PIPE, text=True, timeout=120)
+        assert run.stdout.splitlines()[-1] == f"dspace watch: ended; 1 pictures in {tmp_path / 'own'}"
+        with dspace.Session() as local:
+            scene = build(local)
+            camera = scene.add_camera("own", frame="ball", eye=(-6.0, 1.0, 2.0), target=(0.0, 0.0, 0.0), fov_deg=30.0)
+            scene.add_viewport((80, 60), camera).save(tmp_path / "wanted.png")
+        assert (tmp_path / "own" / "000000.png").read_bytes() == (tmp_path / "wanted.png").read_bytes()
+        with Watched(server.address, "--out", tmp_path / "ended") as watch:
+            assert watch.line().endswith("000000.png: 0.000 s")
+            watch.process.send_signal(signal.SIGINT)
+            assert watch.process.wait(timeout=60) == 0 and "ended; 1 pictures" in watch.line()
+        with Watched(server.address, "--out", tmp_path / "lost") as watch:
+            assert watch.line().endswith("000000.png: 0.000 s")
+            server.kill()
+            lines = watch.process.stdout.read().splitlines()
+            assert lines[-1] == f"dspace watch: the server has gone; 2 pictures in {tmp_path / 'lost'}"
+
+
+def test_it_stays_for_the_next_simulation(tmp_path):
+    with Served(tmp_path) as server:
+        with dspace.connect(server.address, name="first") as session:
+            build(session)
+            watch = Watched(server.address, "--out", tmp_path / "out", "--every", "0.01", "--stay")
+            assert watch.line().endswith("000000.png: 0.000 s")
+        with watch:
+            while watch.line() != "dspace watch: simulation 'first' has gone; waiting":
+                assert watch.process.poll() is None
+            with dspace.connect(server.address, name="second", timeout=20.0) as session:
+                session.scene().time = 7.0
+                while not watch.line().endswith(": 7.000 s"):
+                    assert watch.process.poll() is None
+            while watch.line() != "dspace watch: simulation 'second' has gone; waiting":
+                assert watch.process.poll() is None
+
+
+@pytest.mark.parametrize("arguments, text", [
+    (("--every", "0"), "--every 0; accepted: more than 0 s"),
+    (("--count", "0"), "--count 0; accepted: 1 and more"),
+    (("--eye", "1,2,3"), "accepted: both"),
+    (("--fov", "30"), "--fov belongs to a view of one's own"),
+    (("--eye", "1,2,3", "--target", "0,0,0", "--viewport", "view"), "one or the other")])
+def test_what_is_wrong_is_said(tmp_path, arguments, text):
+    run = subprocess.run([*RUN, f"unix:{tmp_path}/nobody", "--out", tmp_path / "out", *arguments],
+                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120)
+    assert run.returncode == 1 and text in run.stderr and len(run.stderr.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_of_several_viewports_one_is_named(tmp_path):
+    with Served(tmp_path) as server, dspace.connect(server.address) as session:
+        build(session).add_viewport((80, 60), "main", name="other")
+        run = subprocess.run([*RUN, server.address, "--out", tmp_path / "out"], stdout=subprocess.PIPE,
+                             stderr=subprocess.PIPE, text=True, timeout=120)
+        assert run.returncode == 1 and "'other', 'view'" in run.stderr and "--viewport" in run.stderr
+        subprocess.run([*RUN, server.address, "--out", tmp_path / "out", "--viewport", "other", "--count", "1"],
+                       check=True, stdout=subprocess.DEVNULL, timeout=120)
+        assert (tmp_path / "out" / "000000.png").exists()

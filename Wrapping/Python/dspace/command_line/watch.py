@@ -1,0 +1,145 @@
+"""`dspace watch`: pictures of a simulation that runs, from a server."""
+import math
+import os
+import signal
+import sys
+import time
+
+from dspace.command_line import Failed
+from dspace.command_line import terrain as values
+
+ABOUT = (
+    "Follows a simulation through its server (dspace serve), draws it here, and saves a picture whenever --every "
+    "seconds of wall time have passed and something has changed. It ends when the simulation does, or with Ctrl-C; "
+    "the last picture is then saved, too. --viewport is one that the simulation has made; with --eye and --target it "
+    "looks from elsewhere, which changes nothing for the simulation and for others.")
+
+
+def add_arguments(parser):
+    parser.description = ABOUT
+    parser.add_argument("address", metavar="ADDRESS", help="of the server: unix:PATH or host:port")
+    parser.add_argument("--out", required=True, metavar="DIR",
+                        help="folder for the pictures, PNG; made if it is not there")
+    parser.add_argument("--every", type=float, default=1.0, metavar="S",
+                        help="seconds of wall time between pictures (1)")
+    parser.add_argument("--viewport", metavar="NAME", help="absent: the server's only one")
+    parser.add_argument("--count", type=int, metavar="N", help="ends after so many pictures")
+    parser.add_argument("--stay", action="store_true",
+                        help="goes on when the simulation or the server has gone, for the next")
+    view = parser.add_argument_group("a view of one's own, instead of --viewport")
+    view.add_argument("--eye", type=values.numbers(3, "X,Y,Z"), metavar="X,Y,Z", help="where the camera stands [m]")
+    view.add_argument("--target", type=values.numbers(3, "X,Y,Z"), metavar="X,Y,Z", help="what it looks at [m]")
+    view.add_argument("--frame", metavar="PATH", help="the frame that both are in, which it moves with (the root)")
+    view.add_argument("--fov", type=float, metavar="DEG", help="vertical field of view (45)")
+    view.add_argument("--size", type=values.size, metavar="WxH", help="pixels (1280x720)")
+    view.add_argument("--scene", metavar="NAME", help="absent: the server's only one")
+    link = parser.add_argument_group("beyond this machine")
+    link.add_argument("--cert", metavar="PEM", help="the viewer's certificate")
+    link.add_argument("--key", metavar="PEM", help="its key")
+    link.add_argument("--ca", metavar="PEM", help="the authority of the server's certificate")
+    link.add_argument("--insecure", action="store_true", help="unencrypted, from nobody knows whom")
+    parser.set_defaults(run=run)
+
+
+def check(options):
+    if not (options.every > 0 and math.isfinite(options.every)):
+        raise Failed(f"--every {options.every:g}; accepted: more than 0 s")
+    if options.count is not None and options.count < 1:
+        raise Failed(f"--count {options.count}; accepted: 1 and more")
+    if (options.eye is None) != (options.target is None):
+        raise Failed("--eye and --target: one is given; accepted: both, or none of them")
+    own = [word for word in ("frame", "fov", "size", "scene") if getattr(options, word) is not None]
+    if options.eye is None and own:
+        raise Failed(f"--{own[0]} belongs to a view of one's own; accepted: with --eye and --target")
+    if options.eye is not None and options.viewport is not None:
+        raise Failed("--viewport and --eye are given; accepted: one or the other")
+
+
+class Pictures:
+    """Saves them, numbered from 0."""
+
+    def __init__(self, watcher, options):
+        self.watcher, self.options = watcher, options
+        self.count = 0
+        self._own = None
+        self._seen = None  # what the last picture shows
+
+    def view(self):
+        """The viewport, or None while there is none."""
+        options, viewports = self.options, self.watcher.viewports
+        if options.eye is not None:
+            if self._own is None or self._own.name not in viewports:
+                self._own = self._make()
+            return self._own
+        if options.viewport is not None:
+            return viewports.get(options.viewport)
+        if len(viewports) > 1:
+            raise Failed(f"the viewports are {', '.join(map(repr, viewports))}; accepted: --viewport with one of them")
+        return next(iter(viewports.values()), None)
+
+    def _make(self):
+        options, scenes = self.options, self.watcher.scenes
+        if options.scene is None and len(scenes) > 1:
+            raise Failed(f"the scenes are {', '.join(map(repr, scenes))}; accepted: --scene with one of them")
+        scene = scenes.get(options.scene) if options.scene else next(iter(scenes.values()), None)
+        if scene is None or options.frame is not None and options.frame not in scene.frames:
+            return None  # it will come
+        return self.watcher.add_view("watch", scene, options.size or (1280, 720), frame=options.frame, eye=options.eye,
+                                     target=options.target, fov_deg=options.fov)
+
+    def save(self):
+        """Whether there was something new to save."""
+        view = self.view()
+        state = (self.watcher.sequence, self.watcher.connected, self.watcher.simulation)
+        if view is None or state == self._seen:
+            return False
+        path = os.path.join(self.options.out, f"{self.count:06d}.png")
+        view.save(path)
+        self._seen = state
+        self.count += 1
+        print(f"{path}: {view.scene.time:.3f} s", flush=True)
+        return True
+
+
+def run(options):
+    check(options)
+    from dspace.watching import watch  # needs the compiled part
+
+    stop = []
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stop.append(True))
+    with watch(options.address, options.cert, options.key, options.ca, options.insecure) as watcher:
+        os.makedirs(options.out, exist_ok=True)
+        pictures = Pictures(watcher, options)
+        driver, due, told = watcher.simulation, time.monotonic(), ""
+        while not stop and pictures.count != options.count:
+            watcher.update(min(0.2, max(0.0, due - time.monotonic())))
+            if watcher.trouble != told:
+                told = watcher.trouble
+                if told:
+                    print(f"dspace: note: the pictures lack what could not be done here: {told}", file=sys.stderr)
+            gone = what_has_gone(watcher, driver)
+            driver = watcher.simulation or driver
+            if gone or time.monotonic() >= due:
+                pictures.save()
+                due = max(due + options.every, time.monotonic())
+            if gone:
+                if not options.stay:
+                    return end(pictures, gone)
+                print(f"dspace watch: {gone}; waiting", flush=True)
+                driver = None
+        if pictures.count != options.count:
+            pictures.save()
+        return end(pictures, "ended")
+
+
+def what_has_gone(watcher, driver):
+    """In words; None while all that was there is there."""
+    if driver is None or watcher.simulation is not None:
+        return None
+    return f"simulation {driver!r} has gone" if watcher.connected else "the server has gone"
+
+
+def end(pictures, why):
+    print(f"dspace watch: {why}; {pictures.count} pictures in {pictures.options.out}", flush=True)
+    return 0
