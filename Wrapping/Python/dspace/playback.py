@@ -42,8 +42,8 @@ class Playback:
             self._scene = None if scene is None else text(scene, "the scene", self.file.label)
             self._read_steps()
             if self.gaps:
-                warn(f"{self.file.label}: {len(self.gaps)} spans are lost: "
-                     + "; ".join(str(gap) for gap in self.gaps))
+                warn(f"{self.file.label}: commands are lost, and nothing is shown from "
+                     + ", nor from ".join(str(gap) for gap in self.gaps))
             self.session = Session()
             self._at = None  # the command after which the session is
             self.index = 0
