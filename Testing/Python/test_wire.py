@@ -140,3 +140,30 @@ def test_the_same_in_ruby(tmp_path):
                              check=True, stdout=subprocess.PIPE, text=True, timeout=300)
     check_poses(rows_of(run.stdout))
     assert np.array_equal(read_ppm(out), package_picture())
+
+
+def test_a_viewer_of_the_proto_files_alone(tmp_path, stubs):
+    with Served(tmp_path) as server, dspace.connect(server.address, name="drive") as session:
+        scene = session.scene()
+        rover = scene.add_frame("rover", position=(1.0, 2.0, 3.0))
+        scene.add_frame("other", position=(7.0, 7.0, 7.0))
+        follow = subprocess.Popen([sys.executable, str(EXAMPLE / "follow.py"), server.address, "rover"], text=True,
+                                  stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(stubs)})
+        try:
+            lines = [follow.stdout.readline() for _ in range(2)]  # the snapshot has come
+            assert lines == ["0.000 s: rover at 1.0 2.0 3.0\n", "simulation 'drive' drives\n"]
+            x = [0.1 * step for step in range(1, 101)]
+            session.wait = False
+            for step, at in enumerate(x, 1):
+                scene.time = 0.01 * step
+                scene.set_poses([rover], [[at, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0]])
+            session.flush()
+            rover.remove()
+            session.close()
+            lines = follow.communicate(timeout=60)[0].splitlines()
+        finally:
+            follow.kill()
+            follow.wait()
+        assert lines == [f"{0.01 * step:.3f} s: rover at {at!r} 0.0 0.5" for step, at in enumerate(x, 1)] + [
+            "simulation 'drive' has gone"]
+        assert follow.returncode == 0
