@@ -1,5 +1,7 @@
 // CRS, scene frame and vertical datum against PROJ called directly and against closed forms.
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -66,6 +68,11 @@ TEST(Crs, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(KindOf([] { Crs::FromText("no such thing"); }), Error::Kind::InvalidArgument);
   EXPECT_EQ(KindOf([] { Crs::FromText("EPSG:4978"); }), Error::Kind::Unsupported); // geocentric
   EXPECT_EQ(KindOf([] { Crs().Geographic(); }), Error::Kind::Unsupported);
+  // A file is not read, whatever it holds.
+  const std::string file = ::testing::TempDir() + "dspace-test-crs.prj";
+  std::ofstream(file) << Crs::FromText("EPSG:32633").GetWkt();
+  EXPECT_EQ(KindOf([&] { Crs::FromText(file); }), Error::Kind::InvalidArgument);
+  std::remove(file.c_str());
   // The Moon is not Mars.
   EXPECT_EQ(KindOf([] {
               CrsTransform(Crs::FromText("IAU_2015:30100"), Crs::FromText("IAU_2015:49900"));

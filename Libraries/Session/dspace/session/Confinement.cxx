@@ -1,6 +1,7 @@
 #include <dspace/session/Confinement.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -124,6 +125,41 @@ bool Within(const fs::path& path, const fs::path& root) {
   return end == root.end();
 }
 
+// Texts that say where a file is to be written, or a folder that need not be there: all others are
+// of what is there to be read.
+const std::set<std::string> NewPaths = {"dspace.v1.BuildTerrainCache.folder",
+                                        "dspace.v1.ClearTerrainCache.folder",
+                                        "dspace.v1.HorizonMap.path",
+                                        "dspace.v1.IlluminationMap.path",
+                                        "dspace.v1.ListTerrainCache.folder",
+                                        "dspace.v1.OpenTerrain.overview_cache",
+                                        "dspace.v1.SaveImage.path",
+                                        "dspace.v1.SaveTracks.path",
+                                        "dspace.v1.SimulateImage.path",
+                                        "dspace.v1.VerifyTerrainCache.folder",
+                                        "dspace.v1.Viewshed.path"};
+
+// Whether a coordinate system names a file, which PROJ would open: by itself, as a grid of shifts
+// or a file of parameters in WKT or PROJ, as PROJ within WKT 1, or as a definition in a file.
+bool NamesFile(const std::string& crs) {
+  std::string text;
+  for (const char c : crs) {
+    if (!std::isspace(static_cast<unsigned char>(c)) && c != '"' && c != '\'') {
+      text += char(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  for (const char* word : {"grids=", "file=", "model=", "init=", "parameterfile", "extension[",
+                           "extension(", "dict:", "/vsi", "://"}) {
+    if (text.find(word) != std::string::npos) {
+      return true;
+    }
+  }
+  const bool proj = text.find("+") == 0 || text.find("proj=") != std::string::npos;
+  std::error_code error;
+  return text.empty() || std::string("/.@~\\").find(text[0]) != std::string::npos ||
+         (proj && text.find('/') != std::string::npos) || fs::exists(crs, error);
+}
+
 [[noreturn]] void RefusePath(const std::string& value, const std::string& field,
                              const std::string& why) {
   throw Error(Error::Kind::InvalidArgument, "file '" + value.substr(0, 1000) + "'",
@@ -225,19 +261,38 @@ void Confinement::Apply(v1::Command& command) const {
         if (kind == FieldKind::Unknown) {
           RefusePath(text, field.full_name(), "is of no kind that a server knows");
         }
-        std::error_code error;
-        const bool proj = text.find('+') == 0 && text.find('/') != std::string::npos;
-        if (text[0] == '/' || text[0] == '.' || text[0] == '@' || proj ||
-            text.find("://") != std::string::npos || fs::exists(text, error)) {
-          RefusePath(text, field.full_name(), "names a file; accepted: WKT, PROJ, AUTHORITY:CODE");
+        if (NamesFile(text)) {
+          RefusePath(
+              text, field.full_name(),
+              "names a file; accepted: AUTHORITY:CODE, WKT and PROJ without grids, parameter "
+              "files, EXTENSION and init=");
         }
         return text;
       });
 }
 
+// What is not there may mean something else than a file to the library that is to read it, and what
+// is no plain file may never end.
+void Confinement::RequireThere(const std::string& real, const std::string& text,
+                               const std::string& field) const {
+  std::error_code error;
+  const fs::file_status status = fs::status(real, error);
+  if (!fs::exists(status)) {
+    throw Error(Error::Kind::NotFound, "file '" + text.substr(0, 1000) + "'",
+                "as " + field + " there is no such file; accepted: one that there is");
+  }
+  if (!fs::is_regular_file(status) && !fs::is_directory(status)) {
+    RefusePath(text, field, "is neither a file nor a folder");
+  }
+}
+
 std::string Confinement::Check(const std::string& text, const std::string& field) const {
   if (text.find('\0') != std::string::npos) {
     RefusePath(text, field, "holds a zero byte");
+  }
+  // GDAL takes a name with "<VRTDataset" anywhere in it for that document itself.
+  if (text.find_first_of("<>") != std::string::npos) {
+    RefusePath(text, field, "holds '<' or '>'; accepted: names without");
   }
   // What is opened is what was looked at: the same absolute path.
   const fs::path path = fs::absolute(text).lexically_normal();
@@ -246,6 +301,9 @@ std::string Confinement::Check(const std::string& text, const std::string& field
   const bool plain = path.string().rfind("/vsi", 0) != 0;
   for (const std::string& root : this->Roots_) {
     if (!error && plain && Within(real, root)) {
+      if (NewPaths.count(field) == 0) {
+        this->RequireThere(real, text, field);
+      }
       return path;
     }
   }

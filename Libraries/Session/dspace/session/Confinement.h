@@ -34,15 +34,20 @@ public:
   explicit Confinement(const std::vector<std::string>& roots);
 
   // Makes every path of the command absolute, and throws Error(InvalidArgument) for one that leads
-  // out of the roots: by "..", by a link, or because it is no plain path (URLs, GDAL's "/vsi...");
-  // and for a coordinate system that is a file or a URL. An empty path is left to the command. A
-  // link that is changed meanwhile by somebody who may write into a root is not guarded against.
+  // out of the roots: by "..", by a link, or because it is no plain path (URLs, GDAL's "/vsi...", a
+  // document in the place of a name); for one to be read that is neither a file nor a folder; and
+  // for a coordinate system that is or names a file or a URL (grids of shifts, parameter files).
+  // Throws Error(NotFound) for one to be read that is not there. An empty path is left to the
+  // command. A link that is changed meanwhile by somebody who may write into a root is not guarded
+  // against.
   void Apply(v1::Command& command) const;
 
   const std::vector<std::string>& Roots() const { return this->Roots_; }
 
 private:
   std::string Check(const std::string& path, const std::string& field) const;
+  void RequireThere(const std::string& real, const std::string& text,
+                    const std::string& field) const;
   std::vector<std::string> Roots_;
 };
 
