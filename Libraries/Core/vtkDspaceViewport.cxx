@@ -36,6 +36,7 @@ struct vtkDspaceViewport::Internals {
   dspace::TextTables tables;
   dspace::ColorBars bars;
   std::unique_ptr<dspace::CornerAxes> cornerAxes;
+  std::function<void()> prepare; // before drawing; may be empty
   dspace::LabelPicture labels;
   dspace::ColorPicture picture; // stands last: it gives the window back before the rest goes
 
@@ -273,7 +274,14 @@ void vtkDspaceViewport::SetCornerAxes(bool visible) {
   }
 }
 
+void vtkDspaceViewport::SetBeforeDrawing(std::function<void()> prepare) {
+  this->Impl->prepare = std::move(prepare);
+}
+
 bool vtkDspaceViewport::IsOutdated() {
+  if (this->Impl->prepare) {
+    this->Impl->prepare();
+  }
   return this->Impl->stale || this->Impl->drawnRevision != this->Impl->scene->Revision();
 }
 
@@ -290,6 +298,7 @@ bool vtkDspaceViewport::Render() {
 }
 
 void vtkDspaceViewport::ForceRender() {
+  this->IsOutdated(); // overlays as they are now
   this->Impl->DrawOwn(false);
 }
 
@@ -301,6 +310,7 @@ dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& requ
   const dspace::DrawFilter filter = self.Filter(request);
   if (request.color) {
     if (request.physicalOnly || !request.hiddenFragments.empty()) {
+      this->IsOutdated(); // overlays as they are now
       self.Draw(filter, !request.physicalOnly, true);
       self.stale = true; // this picture is the request's, not the viewport's
     } else if (this->IsOutdated() || !self.picture.Complete()) {

@@ -65,6 +65,9 @@ protected:
     ask([](v1::Command& c) { c.mutable_list_robots(); });
     ask([](v1::Command& c) { c.mutable_list_terrains(); });
     ask([](v1::Command& c) { c.mutable_get_time(); });
+    ask([](v1::Command& c) { c.mutable_list_telemetry(); });
+    ask([](v1::Command& c) { c.mutable_list_events(); });
+    ask([](v1::Command& c) { c.mutable_list_questions(); });
     const v1::VantageList vantages =
         ask([](v1::Command& c) { c.mutable_list_vantages(); }).vantages();
     for (const v1::VantageInfo& vantage : vantages.vantage()) {

@@ -141,7 +141,9 @@ TEST_F(LedgerTest, RandomCommandsAreRebuilt) {
         C::kSetPrimitive,    C::kSetObjectOffset,  C::kAttachObject,       C::kMoveToFragment,
         C::kCreateFragment,  C::kRemoveFragment,   C::kSetFragmentVisible, C::kSetLight,
         C::kRemoveLight,     C::kSetTime,          C::kCreateVantage,      C::kRemoveVantage,
-        C::kSetCamera,       C::kRemoveCamera,     C::kSetActiveCamera}) {
+        C::kSetCamera,       C::kRemoveCamera,     C::kSetActiveCamera,    C::kCreateTelemetry,
+        C::kRemoveTelemetry, C::kSetTelemetry,     C::kSetTelemetryTexts,  C::kSetTelemetryLimits,
+        C::kLogEvent,        C::kAskOperator,      C::kCloseQuestion}) {
     EXPECT_GE(this->Kinds_[kind], 10) << "command " << kind;
   }
 }

@@ -44,6 +44,7 @@ class LocalClient:
         self.frame_listeners = FrameListeners()
         self.events = EventQueue()
         self.recording = None  # the last one that was begun
+        self.telemetry = {}  # by scene: {name: (id, kind)} of the channels that are known
 
     def local(self):
         """The vtkDspaceSession; raises when it is closed."""
@@ -69,6 +70,8 @@ class LocalClient:
     def _finish(self, command, reply):
         if reply.HasField("error"):
             raise make_error(reply.error)
+        if command.HasField("remove_scene"):
+            self.telemetry.pop(command.scene or DEFAULT_SCENE, None)
         listeners = self.frame_listeners
         if listeners and command.HasField("remove_scene"):
             listeners.forget_scene(command.scene or DEFAULT_SCENE)

@@ -43,6 +43,10 @@ class Unsupported(Error, NotImplementedError):
     """A format, command or feature that is not known."""
 
 
+class Unimplemented(Unsupported):
+    """A command that is typed, and that this version does not carry out yet."""
+
+
 class Corrupt(Error, ValueError):
     """A file that is damaged or not of its type."""
 
@@ -77,4 +81,4 @@ class DspaceWarning(UserWarning):
 
 # By the number of Error.Kind in common.proto.
 KINDS = {1: InvalidArgument, 2: NotFound, 3: AlreadyExists, 4: Unsupported, 5: Corrupt, 6: Io,
-         7: Resource, 8: DeadlineExceeded, 9: Internal}
+         7: Resource, 8: DeadlineExceeded, 9: Internal, 10: Unimplemented}

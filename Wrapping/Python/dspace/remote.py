@@ -12,7 +12,8 @@ from dspace.sessions import Session
 
 # Commands whose replies say nothing but whether they were done.
 SILENT = {"set_time", "set_poses", "append_trail", "set_joints", "set_tilt", "set_text", "set_text_table",
-          "set_object_visible", "set_material", "set_object_offset", "set_light", "track_wheels"}
+          "set_object_visible", "set_material", "set_object_offset", "set_light", "track_wheels", "set_telemetry",
+          "set_telemetry_texts"}
 
 
 class RemoteClient(LocalClient):

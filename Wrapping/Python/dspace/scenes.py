@@ -11,17 +11,19 @@ from dspace.cameras import CHASE, Camera, Vantage, put_chase, put_projection
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.fragments import Fragment, Light, put_light
 from dspace.frames import Frame, put_ids, put_pose
+from dspace.messages import Messages
 from dspace.objects import GraphicsObject
 from dspace.poses import to_pose
 from dspace.robots import Robot
 from dspace.session import commands_pb2 as pb
+from dspace.telemetry import Telemetry
 from dspace.terrain import TerrainMaking
 from dspace.viewports import SIZE, Viewport
 
 MAIN = "main"  # the vantage that always exists
 
 
-class Scene(Belonging, ObjectMaking, TerrainMaking, Strict):
+class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
     """One scene of a session.
 
     Functions that make an object take, besides their own arguments: frame (a Frame, a path; default
@@ -165,6 +167,11 @@ class Scene(Belonging, ObjectMaking, TerrainMaking, Strict):
         if not listeners.follows(self):
             self._do("follow_frames", stop=True)
         return True
+
+    @property
+    def telemetry(self):
+        """Named values, for tables, plots and overlays: see dspace.Telemetry."""
+        return Telemetry(self)
 
     # --- Objects -------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@ from dspace.fragments import Fragment
 from dspace.legends import LegendMaking
 from dspace.objects import file_path
 from dspace.session import commands_pb2 as pb
+from dspace.telemetry import Channel
 from dspace.session import service_pb2
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
@@ -36,6 +37,18 @@ class Pick:
     in_given: object = None  # in the frame that was asked for
     terrain: object = None  # Terrain, where one was hit
     map: object = None  # its map x, y and height
+
+
+def put_value(row, value, viewport, table):
+    """A value of a text table's row: anything, or a channel of telemetry with or without digits."""
+    channel, digits = value if isinstance(value, tuple) and len(value) == 2 else (value, None)
+    if not isinstance(channel, Channel):
+        row.value = str(value)
+        return
+    if channel.scene != viewport.scene:
+        refuse(table, "the scene of " + repr(channel.name), channel.scene.name, "the viewport's")
+    row.telemetry = channel.name
+    put_given(row, table, digits=digits)
 
 
 class Viewport(LegendMaking, Strict):
@@ -273,6 +286,8 @@ class Viewport(LegendMaking, Strict):
                   color=None, background=None, background_opacity=None):
         """Labels and values over the picture: rows is a dict or pairs of anything with a str.
 
+        A value that is a dspace.Channel, or a pair of one and the digits after its decimal point, shows what
+        the channel has whenever the picture is drawn, with its unit; where it has no value, "–".
         Creates the table or replaces the one of that name. font_size and margin in pixels. Letters
         as for add_text, of DejaVu Sans Mono; no line breaks or tabs."""
         table = f"text table {name!r}"
@@ -284,7 +299,7 @@ class Viewport(LegendMaking, Strict):
         for row in items(rows, "rows", table, "a dict or pairs of a label and a value"):
             if not isinstance(row, (tuple, list)) or len(row) != 2:
                 refuse(table, "a row", row, "a label and a value", WrongType)
-            message.row.add(label=str(row[0]), value=str(row[1]))
+            put_value(message.row.add(label=str(row[0])), row[1], self, table)
         put_given(message, table, font_size=font_size, margin=margin,
                   background_opacity=background_opacity)
         for field, value in (("color", color), ("background", background)):

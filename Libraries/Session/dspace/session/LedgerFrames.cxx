@@ -249,7 +249,7 @@ void LedgerFrames::PutTree(const std::string& scene, const std::vector<std::stri
   }
 }
 
-// To the final names, over others where two have changed theirs.
+// To the final names: first, whatever bears another one's goes out of its way.
 void LedgerFrames::PutRenames(const std::string& scene,
                               std::vector<std::pair<LedgerId, std::string>> present,
                               Emit out) const {
@@ -260,8 +260,10 @@ void LedgerFrames::PutRenames(const std::string& scene,
   }
   for (auto& [id, name] : present) {
     const std::string& final = this->Nodes_.at(id).name;
-    const auto bears = [&](const auto& other) { return other.second == final; };
-    if (name != final && std::any_of(present.begin(), present.end(), bears)) {
+    const auto wants = [&, &taken = name](const auto& other) {
+      return this->Nodes_.at(other.first).name == taken;
+    };
+    if (name != final && std::any_of(present.begin(), present.end(), wants)) {
       std::string other = final + "~";
       while (!names.insert(other).second) {
         other += "~";

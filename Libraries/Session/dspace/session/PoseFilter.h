@@ -13,13 +13,13 @@
 
 namespace dspace::session {
 
-// Remembers the poses that were sent, and when. A pose is left out only if the very same bytes were
-// sent in a step that is known to be accepted and nothing since can have moved the frame, so that
-// the other side's state is the same to the byte as if everything were sent.
+// Remembers the poses and values of telemetry that were sent, and when. One is left out only if the
+// very same bytes were sent in a step that is known to be accepted and nothing since can have moved
+// the frame, so that the other side's state is the same to the byte as if everything were sent.
 class PoseFilter {
 public:
-  // Takes poses out of a set_poses that need not be sent; of other commands it notes what they may
-  // move. False when nothing is left to send.
+  // Takes what need not be sent out of a set_poses or set_telemetry; of other commands it notes
+  // what they may move. False when nothing is left to send.
   bool Pass(v1::Command& command);
   // The command was sent with this number: its poses count once Accepted reaches it.
   void Sent(const v1::Command& command, std::uint64_t number);
@@ -31,9 +31,9 @@ public:
 
 private:
   struct Entry {
-    std::array<double, 8> pose;
-    std::uint64_t number = 0; // of the command that set it; 0: none did
-    std::uint64_t step = 0;   // in which it was seen last
+    std::array<double, 8> row; // a pose, or one value
+    std::uint64_t number = 0;  // of the command that set it; 0: none did
+    std::uint64_t step = 0;    // in which it was seen last
   };
   struct Frames {
     std::vector<Entry> entries;
@@ -43,15 +43,19 @@ private:
     std::vector<std::uint32_t> order;
     bool unique = false; // no frame stands twice in it
   };
-  bool Look(Frames& frames, const v1::SetPoses& poses);
-  bool PassPoses(Frames& frames, v1::SetPoses& poses);
+  using Ids = google::protobuf::RepeatedField<std::uint64_t>;
+  using Numbers = google::protobuf::RepeatedField<double>;
+  bool Look(Frames& frames, const Ids& ids);
+  bool PassRows(Frames& frames, Ids& ids, Numbers& rows, int size);
+  void SentRows(const v1::Command& command, const Ids& ids, const Numbers& rows, int size,
+                std::uint64_t number);
   std::map<std::string, Frames> Scenes_;
   std::uint64_t Accepted_ = 0;
   std::uint64_t Step_ = 0;
   std::uint64_t LeftOut_ = 0;
 };
 
-// Whether the command leaves all local poses as they are, for certain.
+// Whether the command leaves all local poses and values of telemetry as they are, for certain.
 bool LeavesPoses(const v1::Command& command);
 
 } // namespace dspace::session

@@ -43,6 +43,9 @@ ViewportCommands::~ViewportCommands() {
 }
 
 void ViewportCommands::Clear() {
+  for (const auto& [name, viewport] : this->Viewports_) {
+    viewport->SetBeforeDrawing({}); // somebody may keep it
+  }
   this->Viewports_.clear();
   this->RenderContext_ = nullptr;
 }
@@ -89,6 +92,14 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
     viewport->SetCamera(command.camera());
   }
   viewport->SetVisible(!command.hidden());
+  const State& state = context.state;
+  viewport->SetBeforeDrawing(
+      [this, &state, name, scene = context.sceneName, drawn = viewport.Get()] {
+        const auto found = state.scenes.find(scene);
+        if (found != state.scenes.end()) {
+          this->LiveTables_.Update(name, found->second.telemetry, *drawn);
+        }
+      });
   command.set_name(name);
   this->Viewports_[name] = viewport;
   ViewportPlace& place = context.state.viewports[name];
@@ -99,7 +110,8 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
 }
 
 void ViewportCommands::Remove(const Context& context, v1::RemoveViewport& command) {
-  this->Get(command.viewport());
+  this->Get(command.viewport()).SetBeforeDrawing({});
+  this->LiveTables_.RemoveViewport(command.viewport());
   this->Controllers_.erase(command.viewport());
   this->Viewports_.erase(command.viewport());
   context.state.viewports.erase(command.viewport());
@@ -180,44 +192,12 @@ void ViewportCommands::SetFragment(const Context& context, v1::SetViewportFragme
 }
 
 void ViewportCommands::SetTable(const Context&, v1::SetTextTable& command) {
-  vtkDspaceViewport& viewport = this->Get(command.viewport());
-  const std::string label = "text table '" + command.name() + "'";
-  TextTable table;
-  table.name = command.name();
-  table.title = command.title();
-  for (const v1::SetTextTable::Row& row : command.row()) {
-    table.rows.emplace_back(row.label(), row.value());
-  }
-  if (!v1::SetTextTable::Anchor_IsValid(command.anchor())) {
-    Refuse(label, "its anchor is " + std::to_string(int(command.anchor())) + "; accepted: 0 to 3");
-  }
-  table.anchor = static_cast<TextTable::Anchor>(command.anchor());
-  if (command.has_margin()) {
-    table.margin = ToSize(command.margin());
-  }
-  if (command.has_font_size()) {
-    table.fontSize = ToSize(command.font_size());
-  }
-  if (command.has_color()) {
-    const auto color = ToColor(command.color(), label);
-    std::copy(color.begin(), color.end(), table.textColor.begin());
-  }
-  if (command.has_opacity()) {
-    table.textColor[3] = command.opacity();
-  }
-  if (command.has_background()) {
-    const auto color = ToColor(command.background(), label);
-    std::copy(color.begin(), color.end(), table.backgroundColor.begin());
-  }
-  if (command.has_background_opacity()) {
-    table.backgroundColor[3] = command.background_opacity();
-  }
-  table.Check();
-  viewport.SetTextTable(table);
+  this->LiveTables_.Set(command, this->Get(command.viewport()));
 }
 
 void ViewportCommands::RemoveTable(const Context&, v1::RemoveTextTable& command) {
   this->Get(command.viewport()).RemoveTextTable(command.name());
+  this->LiveTables_.Remove(command.viewport(), command.name());
 }
 
 void ViewportCommands::Describe(const Context& context, v1::DescribeViewport& command) {

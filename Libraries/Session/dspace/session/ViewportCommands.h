@@ -10,6 +10,7 @@
 
 #include <dspace/render/Capture.h>
 #include <dspace/scene/OrbitController.h>
+#include <dspace/session/LiveTables.h>
 #include <dspace/session/Registry.h>
 
 class vtkDspaceRenderContext;
@@ -68,6 +69,7 @@ private:
   vtkSmartPointer<vtkDspaceRenderContext> RenderContext_;
   std::map<std::string, vtkSmartPointer<vtkDspaceViewport>> Viewports_;
   std::map<std::string, OrbitController> Controllers_; // of viewports that events came to
+  LiveTables LiveTables_;
   dspace::Capture LastCapture_;
 };
 
