@@ -5,6 +5,7 @@ from dspace._client import to_reply, warn
 from dspace._fields import number, refuse, text
 from dspace.errors import Corrupt, InvalidArgument
 from dspace.playback_steps import index_at, runs_of, steps_of
+from dspace.playback_telemetry import TelemetryReading
 from dspace.recording_assets import Unpacked, check_assets as check_files, is_packed
 from dspace.recording_file import RecordingFile, commands_of
 from dspace.session import commands_pb2 as pb, terrain_pb2
@@ -13,7 +14,7 @@ from dspace.sessions import Session
 BUILDING = terrain_pb2.TerrainReply.BUILDING
 
 
-class Playback:
+class Playback(TelemetryReading):
     """A recording in a session of its own, at a time that may go either way.
 
         with dspace.Playback("run.dspace") as run:

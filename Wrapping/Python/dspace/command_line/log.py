@@ -6,6 +6,7 @@ import os
 from dspace.command_line import Failed
 from dspace.command_line.log_pack import pack
 from dspace.command_line.log_salvage import salvage
+from dspace.command_line.log_telemetry import add_arguments as add_telemetry
 from dspace.recording_file import RecordingFile, write_recording
 from dspace.session import commands_pb2 as pb
 
@@ -45,6 +46,7 @@ def add_arguments(parser):
     rescue.add_argument("file", metavar="FILE")
     rescue.add_argument("--out", required=True, metavar="FILE", help="the new recording")
     rescue.set_defaults(run=salvage)
+    add_telemetry(what)
 
 
 def name_of(kind):

@@ -1,0 +1,216 @@
+"""Telemetry and events of a whole recording, read without drawing or playing it."""
+import numpy as np
+
+from dspace._fields import Named, shown, text
+from dspace._wire import get_array
+from dspace.errors import InvalidArgument, NotFound, Unsupported
+from dspace.messages import Event
+from dspace.playback_steps import blocks_of
+from dspace.recording_file import commands_of
+from dspace.session import commands_pb2 as pb
+from dspace.session import telemetry_pb2
+
+TEXT = telemetry_pb2.CreateTelemetry.TEXT
+FIELDS = pb.Command.DESCRIPTOR.fields_by_name
+KINDS = [FIELDS[name].number for name in ("create_scene", "remove_scene", "set_time", "create_telemetry",
+                                          "set_telemetry", "set_telemetry_texts", "remove_telemetry", "log_event")]
+
+
+class Series:
+    """One channel over a recording: times [s] and values as arrays of equal length.
+
+        times, values = run.telemetry("rover/power")
+
+    A value holds from its time to the next one's. There is one for each time that the simulation set the
+    channel, in the order in which it did; where it set several at one time the last one holds. Numbers are
+    floats, NaN where there is no value: also where the channel was removed, and where commands are lost.
+    Choices are their numbers (labels: {number: label}), texts str, None where there is none."""
+
+    def __init__(self, channel, times, values):
+        self.name, self.unit, self.description = channel.name, channel.unit, channel.description
+        self.kind = ("number", "text", "choice")[channel.kind]
+        self.labels = {label.value: label.label for label in channel.label}
+        self.times, self.values = times, values
+
+    def __iter__(self):
+        return iter((self.times, self.values))
+
+    def at(self, time):
+        """The value that holds at a time [s]: the last one that was set at or before it, or NaN (of a text
+        None). Where time went back in the recording, the last that was set at such a time."""
+        before = np.flatnonzero(self.times <= time)
+        if not len(before):
+            return None if self.kind == "text" else float("nan")
+        value = self.values[before[-1]]
+        return value if self.kind == "text" else float(value)
+
+    def __repr__(self):
+        unit = f" {self.unit}" if self.unit else ""
+        return f"<dspace.Series {self.name!r}{unit}, {len(self.times)} values>"
+
+
+class _Scene:
+    """What a scene's channels were set to, command by command."""
+
+    def __init__(self, file, name):
+        self.file, self.name = file, name
+        self.time = 0.0
+        self.channels = {}  # by name: the CreateTelemetry that made it last
+        self.open = {}      # by id: CreateTelemetry, of those that are there
+        self.found = {}     # by name: [(times, values)]
+        self.steps = []     # (ids, values, times) of numbers, not sorted by channel yet
+        self.events, self.last = [], 0
+
+    def define(self, channel, seq):
+        before = self.channels.get(channel.name)
+        if before is not None and (before.kind, before.unit, list(before.label)) != (
+                channel.kind, channel.unit, list(channel.label)):
+            # Values of two units in one array would look like one.
+            raise Unsupported(f"{self.file.label}: telemetry {shown(channel.name)} is defined a second time, by "
+                              f"command {seq}, with another kind, unit ({before.unit!r}, then {channel.unit!r}) or "
+                              "labels; accepted: the same, or a part by `dspace log cut`", channel.name)
+        self.channels[channel.name] = channel
+        self.open[channel.id] = channel
+        self.found.setdefault(channel.name, [])
+
+    def set_numbers(self, message, not_before=None):
+        ids, values = get_array(message, "id", np.uint64), np.array(message.value)
+        times = np.array(message.time_s) if message.time_s else np.full(len(ids), self.time)
+        self.steps.append((ids, values, times if not_before is None else np.maximum(times, not_before)))
+
+    def set_texts(self, message, not_before=None):
+        for number, (id, value) in enumerate(zip(message.id, message.text)):
+            time = message.time_s[number] if message.time_s else self.time
+            self.put(id, [time if not_before is None else max(time, not_before)], [value])
+
+    def put(self, id, times, values):
+        self.found[self.open[id].name].append((times, values))
+
+    def end(self, ids, time):
+        """There are no values of these from now on."""
+        self.sort()
+        for id in ids:
+            self.put(id, [time], [None if self.open[id].kind == TEXT else np.nan])
+
+    def sort(self):
+        """Values by channel, each in the order in which they came."""
+        if self.steps:
+            ids, values, times = (np.concatenate(each) for each in zip(*self.steps))
+            self.steps = []
+            order = np.argsort(ids, kind="stable")
+            ids, values, times = ids[order], values[order], times[order]
+            starts = np.flatnonzero(np.r_[True, ids[1:] != ids[:-1]]) if len(ids) else []
+            for a, b in zip(starts, [*starts[1:], len(ids)]):
+                self.put(int(ids[a]), times[a:b], values[a:b])
+
+    def forget(self):
+        """The scene was removed: its channels end."""
+        self.end(list(self.open), self.time)
+        self.open = {}
+        self.last = 0
+
+    def series(self):
+        self.sort()
+        made = {}
+        for name in sorted(self.found):
+            channel, parts = self.channels[name], self.found[name]
+            times = np.concatenate([np.asarray(each, dtype=float) for each, _ in parts]) if parts else np.zeros(0)
+            kind = object if channel.kind == TEXT else float
+            values = np.concatenate([np.array(each, dtype=kind) for _, each in parts]) if parts else np.zeros(0, kind)
+            made[name] = Series(channel, times, values)
+        return Named("telemetry channel", made)
+
+    def apply(self, command, seq, not_before=None):
+        kind = command.WhichOneof("command")
+        if kind == "set_time":
+            self.time = command.set_time.time_s
+        elif kind == "create_telemetry":
+            self.define(command.create_telemetry, seq)
+        elif kind == "set_telemetry":
+            self.set_numbers(command.set_telemetry, not_before)
+        elif kind == "set_telemetry_texts":
+            self.set_texts(command.set_telemetry_texts, not_before)
+        elif kind == "remove_telemetry":
+            self.end(command.remove_telemetry.id, self.time)
+            for id in command.remove_telemetry.id:
+                self.open.pop(id)
+        elif kind == "log_event" and command.log_event.number > self.last:  # a snapshot has older ones again
+            self.last = command.log_event.number
+            self.events.append(Event(command.log_event))
+        elif kind == "remove_scene":
+            self.forget()
+            self.time = 0.0
+
+
+class History:
+    """All that a recording says of telemetry and events, by scene."""
+
+    def __init__(self, file):
+        self.file, self.scenes = file, {}
+        for number, (first, last) in enumerate(blocks_of(file)):
+            snapshot = file.ask("SELECT min(seq) FROM snapshot WHERE seq BETWEEN ? AND ?", first - 1, max(last, first - 1))
+            if snapshot[0][0] is None:
+                continue  # no state to begin with: it cannot be shown either
+            self._begin(file.snapshot(snapshot[0][0]), number > 0)
+            for row in file.rows_of(KINDS, snapshot[0][0] + 1, last):
+                command = pb.Command.FromString(row.payload)
+                self._scene(command).apply(command, row.seq)
+
+    def _scene(self, command):
+        name = command.scene or "scene"
+        if name not in self.scenes:
+            self.scenes[name] = _Scene(self.file, name)
+        return self.scenes[name]
+
+    def _begin(self, snapshot, after_loss):
+        """The state of a snapshot: the first one, or the one after lost commands, of whose values it is not
+        known since when they hold."""
+        for scene in self.scenes.values():
+            scene.end(list(scene.open), scene.time)
+            scene.open = {}
+        for payload in commands_of(snapshot):
+            command = pb.Command.FromString(payload)
+            if command.WhichOneof("command") in ("create_scene", "remove_scene"):
+                self._scene(command)
+            else:
+                self._scene(command).apply(command, snapshot.seq, snapshot.time if after_loss else None)
+
+    def scene(self, name):
+        if name in self.scenes:
+            return self.scenes[name]
+        if name is not None:
+            raise NotFound(f"{self.file.label}: there is no scene {shown(name)}; there are: "
+                           + (", ".join(map(repr, self.scenes)) or "none"), name)
+        telling = [each for each in self.scenes.values() if each.channels or each.events]
+        if len(telling) > 1:
+            raise InvalidArgument(f"{self.file.label}: several scenes have telemetry or events; accepted: scene= one "
+                                  "of " + ", ".join(repr(each.name) for each in telling), self.file.label)
+        return telling[0] if telling else _Scene(self.file, "scene")
+
+
+class TelemetryReading:
+    """The part of Playback that reads telemetry and events."""
+
+    _history = None  # (last command then, History)
+
+    def _read_history(self, scene):
+        scene = self._scene if scene is None else text(scene, "the scene", self.file.label)
+        last = self.file.last
+        if self._history is None or self._history[0] != last:  # it may be written on
+            self._history = (last, History(self.file))
+        return self._history[1].scene(scene)
+
+    def telemetry(self, name=None, scene=None):
+        """The dspace.playback_telemetry.Series of a channel over the whole recording, which unpacks into times and
+        values; without a name a dict of all. All of the file is read once.
+
+            times, values = run.telemetry("rover/power")
+
+        scene: by name; default: the playback's, or the only one that has telemetry or events. A name that was
+        removed and defined again with another unit or kind is refused (dspace.Unsupported)."""
+        series = self._read_history(scene).series()
+        return series if name is None else series[text(name, "the name", self.file.label)]
+
+    def events(self, scene=None):
+        """All Events of a scene in their order, also those that the scene itself has forgotten."""
+        return list(self._read_history(scene).events)
