@@ -156,6 +156,7 @@ int vtkDspaceWatcher::Update(double wait) {
     this->Impl->Apply(message);
     ++applied;
   }
+  this->Impl->own.Wake(this->Impl->Interpreter(), !this->Impl->writerConnected);
   this->Impl->ShowBanner();
   return applied;
 }

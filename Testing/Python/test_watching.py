@@ -144,15 +144,27 @@ def test_views_outlast_the_server(tmp_path):
         lost = [view.image() for view in views]
         assert [np.array_equal(a, b) for a, b in zip(lost, before)] == [False] * 3  # a banner
         assert watcher.add_view("late", size=SIZE, **EYE).image().shape == (120, 160, 3)
-        with Served(tmp_path) as _, dspace.connect(server.address, name="next", timeout=20.0) as session:
-            scene = build(session)
-            scene.set_poses(["cart"], [[2.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0]])
-            while watcher.simulation != "next" or "ball" not in [frame.name for frame in
-                                                                 watcher.scenes["scene"].frames.values()]:
-                watcher.update(5.0)
-            follow(watcher, session)
-            # Its frame has gone for a while: it has stayed where it was, which is the same place.
-            assert [np.array_equal(view.image(), b) for view, b in zip(views, before)] == [True] * 3
+        with Served(tmp_path) as _:
+            while not watcher.connected or watcher.scenes:
+                watcher.update(0.2)  # the new one has no scene, and for a while no frames
+            assert not watcher.viewports
+            with dspace.connect(server.address, name="next", timeout=20.0) as session:
+                session.scene().add_frame("first")  # the others have other ids than they had
+                follow(watcher, session)
+                assert not watcher.viewports
+                scene = build(session)
+                scene.set_poses(["cart"], [[2.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0]])
+                follow(watcher, session)
+                assert [np.array_equal(view.image(), b) for view, b in zip(views, before)] == [True] * 3
+                scene.set_poses(["cart"], [[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0]])
+                follow(watcher, session)
+                assert riding.camera.frame == watcher.scenes["scene"].frame("cart")
+                assert not np.array_equal(riding.image(), before[1])  # it rides on
+                # A simulation that begins again in the same server.
+                scene.remove()
+                build(session).set_poses(["cart"], [[2.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0]])
+                follow(watcher, session)
+                assert [np.array_equal(view.image(), b) for view, b in zip(views, before)] == [True] * 3
 
 
 def test_what_the_simulation_removes_goes(tmp_path):
@@ -181,7 +193,11 @@ def test_what_the_simulation_removes_goes(tmp_path):
         while "another" not in watcher.scenes or not watcher.scenes["another"].frames:
             assert watcher.update(20.0)
         assert watcher.trouble == "" and not watcher.viewports
-        watcher.add_view("mine", size=SIZE, eye=(1, 1, 1), target=(0, 0, 0))  # the only scene
+        watcher.add_view("riding", size=SIZE, eye=(1, 1, 1), target=(0, 0, 0))  # the only scene
+        build(session)
+        follow(watcher, session)
+        assert sorted(watcher.viewports) == ["viewer:looking", "viewer:riding"]
+        assert watcher.viewports["viewer:riding"].scene.name == "another"
 
 
 def test_what_people_do_reaches_the_simulation(tmp_path):

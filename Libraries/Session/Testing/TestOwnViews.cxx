@@ -57,6 +57,20 @@ protected:
     EXPECT_FALSE(interpreter.Execute(command).has_error());
   }
 
+  // The same scene in another interpreter, with other ids.
+  void Build(Interpreter& interpreter, FrameId first) {
+    v1::Command command;
+    command.mutable_create_scene();
+    interpreter.Execute(command);
+    for (const auto& [id, parent, name] :
+         {std::tuple{first, FrameId(1), "parent"}, {first + 1, first, "child"}}) {
+      command.mutable_create_frame()->set_id(id);
+      command.mutable_create_frame()->set_parent(parent);
+      command.mutable_create_frame()->set_name(name);
+      ASSERT_FALSE(interpreter.Execute(command).has_error());
+    }
+  }
+
   // By hand: the parent's 100, the child's 10, and X of the child is Y of the root.
   void ExpectInRoot(Interpreter& interpreter) {
     const Camera& camera = interpreter.FindScene("scene")->Vantage(Mine).GetCamera("camera");
@@ -96,33 +110,33 @@ TEST_F(OwnViewsTest, OutlastASnapshotAndLoseNothingOfTheCamera) {
   ASSERT_FALSE(this->Own.Execute(this->Interpreter_, project).has_error());
   this->Own.Leave(this->Interpreter_);
   Interpreter next;
-  v1::Command scene;
-  scene.mutable_create_scene();
-  next.Execute(scene);
-  for (const auto& [id, parent] :
-       {std::pair{this->Parent, FrameId(1)}, {this->Child, this->Parent}}) {
-    v1::Command frame;
-    frame.mutable_create_frame()->set_id(id);
-    frame.mutable_create_frame()->set_parent(parent);
-    frame.mutable_create_frame()->set_name(std::to_string(id));
-    ASSERT_FALSE(next.Execute(frame).has_error());
-  }
-  this->Put(next);
+  this->Build(next, 100);
   this->Own.Enter(next);
+  this->Own.Wake(next, false);
   const Camera& camera = next.FindScene("scene")->Vantage(Mine).GetCamera("camera");
-  EXPECT_EQ(camera.mount.frame, this->Child); // it follows on
+  EXPECT_EQ(camera.mount.frame, 101u); // it follows on the frame of that path
   EXPECT_EQ(camera.mount.X_FC.position.x(), 5);
   EXPECT_EQ(camera.projection.verticalFov_deg, 20);
 }
 
 TEST_F(OwnViewsTest, WithoutItsFrameACameraStaysWhereItWas) {
   this->Own.Leave(this->Interpreter_);
-  Interpreter next;
-  v1::Command scene;
-  scene.mutable_create_scene();
-  next.Execute(scene);
-  this->Own.Enter(next);
-  this->ExpectInRoot(next);
+  for (const bool alone : {true, false}) {
+    Interpreter next;
+    OwnViews own = this->Own;
+    v1::Command command;
+    command.mutable_create_scene();
+    next.Execute(command);
+    own.Enter(next);
+    own.Wake(next, alone);
+    if (!alone) { // whoever drives may be about to build the scene,
+      EXPECT_EQ(next.FindScene("scene")->VantageNames().size(), 1u);
+      command.mutable_set_time()->set_time_s(0.1);
+      next.Execute(command);
+      own.Wake(next, false); // and has gone on without
+    }
+    this->ExpectInRoot(next);
+  }
 }
 
 TEST_F(OwnViewsTest, AFrameThatTheSimulationRemovesGoes) {
@@ -135,16 +149,42 @@ TEST_F(OwnViewsTest, AFrameThatTheSimulationRemovesGoes) {
   EXPECT_FALSE(this->Own.MakeRoom(this->Interpreter_, remove)); // nothing is in the way any more
 }
 
-TEST_F(OwnViewsTest, ASceneThatIsRemovedTakesItsViewsAlong) {
+TEST_F(OwnViewsTest, ViewsSleepWhileThereIsNoScene) {
   v1::Command remove;
   remove.mutable_remove_scene();
   this->Own.MakeRoom(this->Interpreter_, remove);
   EXPECT_FALSE(this->Interpreter_.Execute(remove).has_error());
   EXPECT_FALSE(this->Own.Owns(SetCamera(Mine, 1, 0)));
   this->Own.Leave(this->Interpreter_);
-  Interpreter next;
+  Interpreter next; // two snapshots without it
   this->Own.Enter(next);
-  EXPECT_TRUE(next.GetState().scenes.empty());
+  this->Own.Wake(next, true);
+  this->Own.Leave(next);
+  Interpreter last;
+  this->Own.Enter(last);
+  this->Own.Wake(last, false);
+  EXPECT_TRUE(last.GetState().scenes.empty());
+  this->Build(last, 200);
+  this->Own.Wake(last, false);
+  EXPECT_EQ(last.FindScene("scene")->Vantage(Mine).GetCamera("camera").mount.frame, 201u);
+  EXPECT_TRUE(this->Own.Owns(SetCamera(Mine, 1, 0)));
+}
+
+TEST_F(OwnViewsTest, ANewOneTakesTheNameOfOneThatSleeps) {
+  v1::Command remove;
+  remove.mutable_remove_scene();
+  this->Own.MakeRoom(this->Interpreter_, remove);
+  this->Interpreter_.Execute(remove);
+  v1::Command scene;
+  scene.mutable_create_scene();
+  this->Interpreter_.Execute(scene);
+  v1::Command create = CreateVantage(Mine);
+  ASSERT_FALSE(this->Own.Execute(this->Interpreter_, create).has_error());
+  v1::Command set = SetCamera(Mine, 1, 7);
+  ASSERT_FALSE(this->Own.Execute(this->Interpreter_, set).has_error());
+  this->Own.Wake(this->Interpreter_, true);
+  const Camera& camera = this->Interpreter_.FindScene("scene")->Vantage(Mine).GetCamera("camera");
+  EXPECT_EQ(camera.mount.X_FC.position.x(), 7);
 }
 
 } // namespace

@@ -54,8 +54,9 @@ class Watcher(Session):
 
     It draws for itself. Nothing changes between two calls of update(). Views of one's own may be made:
     add_view(), or viewports, vantages and cameras whose names begin with "viewer:". They are nobody
-    else's, and outlast snapshots: a camera whose frame is removed stays where it was, a viewport goes
-    with its scene. Everything else that would change the scene raises dspace.Unsupported.
+    else's, and outlast snapshots: a camera whose frame is removed stays where it was; views of a scene
+    that is removed, or lost with its server, are there again when the scene is. Everything else that
+    would change the scene raises dspace.Unsupported.
 
     What a person does goes to whoever drives: tell(), answer(), edited(), select(), dragged(),
     Viewport.pick(tell=True), and clicks in viewports of one's own (Viewport.event).

@@ -1,5 +1,7 @@
 #include <dspace/session/OwnViews.h>
 
+#include <algorithm>
+
 #include <dspace/session/Ledger.h>
 
 namespace dspace::session {
@@ -13,7 +15,7 @@ std::string SceneOf(const v1::Command& command) {
   return command.scene().empty() ? DefaultScene : command.scene();
 }
 
-// The viewport that the command is about, if it is about one and changes it.
+// The viewport that the command is about, if it is about one of those that there are.
 std::optional<std::string> ViewportOf(const v1::Command& command) {
   using C = v1::Command;
   switch (command.command_case()) {
@@ -99,9 +101,32 @@ v1::Reply OwnViews::Execute(Interpreter& interpreter, v1::Command& command) {
   }
   v1::Reply reply = interpreter.Execute(command);
   if (!reply.has_error()) {
+    if (command.has_create_viewport()) {
+      for (const auto& [scene, views] : this->Sleeping_) { // of whatever scene
+        this->Forget(scene, command.create_viewport().name());
+      }
+    } else if (command.has_create_vantage()) {
+      this->Forget(SceneOf(command), command.create_vantage().name());
+    }
     this->Keep(command, reply);
   }
   return reply;
+}
+
+// Another one has taken the name of one that sleeps.
+void OwnViews::Forget(const std::string& scene, const std::string& name) {
+  const auto found = this->Sleeping_.find(scene);
+  if (found == this->Sleeping_.end()) {
+    return;
+  }
+  std::vector<v1::Command>& commands = found->second.commands;
+  commands.erase(std::remove_if(commands.begin(), commands.end(),
+                                [&](const v1::Command& each) {
+                                  return ViewportOf(each) == name || VantageOf(each) == name ||
+                                         each.create_viewport().name() == name ||
+                                         each.create_vantage().name() == name;
+                                }),
+                 commands.end());
 }
 
 void OwnViews::Keep(const v1::Command& command, const v1::Reply& reply) {
@@ -207,6 +232,8 @@ bool OwnViews::MakeRoom(Interpreter& interpreter, const v1::Command& refused) {
     return false;
   }
   if (refused.has_remove_scene()) {
+    this->Leave(interpreter);
+    this->Sleep(interpreter, scene);
     const std::vector<std::string> names = this->ViewportsIn(interpreter, scene);
     for (const std::string& name : names) {
       v1::Command remove;

@@ -16,8 +16,10 @@ namespace dspace::session {
 
 // Viewports, vantages and cameras whose names begin with Prefix. They are made in the interpreter
 // that follows a server's, and made again when a snapshot takes its place. What the simulation does
-// goes before: a camera whose frame is removed stays where it was, in the root; a viewport whose
-// scene is removed goes with it. The lag of a chase camera begins anew with a snapshot.
+// goes before: a camera whose frame is removed stays where it was, in the root; views of a scene
+// that is removed, or not in a snapshot, sleep until there is a scene of that name again with the
+// frames (by path) and cameras that they look from; where it has gone on without these, they are
+// made where they were. The lag of a chase camera begins anew.
 class OwnViews {
 public:
   static constexpr const char* Prefix = "viewer:";
@@ -33,8 +35,11 @@ public:
   // The interpreter that was followed is about to be replaced by one made from a snapshot: notes
   // where cameras stand.
   void Leave(Interpreter& interpreter);
-  // Makes everything again in the new one.
+  // The new one is as the snapshot says.
   void Enter(Interpreter& interpreter);
+  // Makes those again that sleep, and whose time has come. `alone`: nobody drives, so that nothing
+  // is to be waited for.
+  void Wake(Interpreter& interpreter, bool alone);
 
   // A command of the simulation was refused. Gets views of one's own out of its way; true: another
   // try is worth while.
@@ -44,7 +49,12 @@ private:
   using Name = std::pair<std::string, std::string>; // scene and vantage
   struct Place {
     v1::Projection projection;
-    v1::Mount mount;
+    v1::Mount mount;  // in the root
+    std::string path; // of the frame that it was on; empty: the root
+  };
+  struct Sleeping {
+    std::vector<v1::Command> commands;
+    std::optional<double> time_s; // of the scene when it was seen first
   };
 
   // The camera as it is; absent where there is none.
@@ -58,7 +68,10 @@ private:
   void Keep(const v1::Command& command, const v1::Reply& reply);
   v1::Reply ExecuteEvent(Interpreter& interpreter, v1::Command& command);
   bool GiveCamera(Interpreter& interpreter, const std::string& viewport, const v1::SetCamera& to);
+  bool IsReady(const Scene& scene, const Sleeping& views) const;
   void MakeAgain(Interpreter& interpreter, v1::Command& command);
+  void Forget(const std::string& scene, const std::string& name);
+  void Sleep(Interpreter& interpreter, const std::string& scene);
   std::vector<v1::Command> Commands(Interpreter& interpreter) const;
   std::vector<std::string> ViewportsIn(Interpreter& interpreter, const std::string& scene) const;
   bool FreeCameras(Interpreter& interpreter, const std::string& scene, std::uint64_t frame);
@@ -70,8 +83,9 @@ private:
   std::set<Name> Vantages_;
   std::map<std::string, LedgerNames> Names_; // of vantages alone, by scene
   LedgerViewports Ledger_;
-  int Last_ = 0; // number of the last viewport that was named here
-  // Noted by Leave.
+  std::map<std::string, Sleeping> Sleeping_; // by scene
+  int Last_ = 0;                             // number of the last viewport that was named here
+  // Noted when they were last there.
   std::map<std::pair<Name, std::string>, Place> Cameras_;
   std::map<std::string, Place> Views_; // by viewport
 };

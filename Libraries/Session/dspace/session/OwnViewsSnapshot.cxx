@@ -1,6 +1,9 @@
 // Views of one's own when a snapshot takes the place of what they look at.
 #include <dspace/session/OwnViews.h>
 
+#include <algorithm>
+#include <set>
+
 #include <dspace/session/Convert.h>
 
 namespace dspace::session {
@@ -43,15 +46,16 @@ v1::Mount OwnViews::RootMount(const Scene& scene, const std::string& vantage,
 }
 
 void OwnViews::Leave(Interpreter& interpreter) {
-  this->Cameras_.clear();
-  this->Views_.clear();
   const auto place = [&](const std::string& scene, const std::string& vantage,
                          const std::string& camera) -> std::optional<Place> {
     const auto set = CameraOf(interpreter, scene, vantage, camera);
     if (!set) {
       return std::nullopt;
     }
-    return Place{set->projection(), RootMount(*interpreter.FindScene(scene), vantage, set->name())};
+    const std::shared_ptr<Scene> at = interpreter.FindScene(scene);
+    const FrameId frame = ToFrame(set->mount().frame());
+    return Place{set->projection(), RootMount(*at, vantage, set->name()),
+                 frame == RootFrame ? std::string() : at->Frames().Path(frame)};
   };
   for (const auto& [scene, vantage] : this->Vantages_) {
     for (const std::string& camera : interpreter.FindScene(scene)->Vantage(vantage).CameraNames()) {
@@ -82,40 +86,111 @@ std::vector<v1::Command> OwnViews::Commands(Interpreter& interpreter) const {
   return commands;
 }
 
+// The scene goes, or has gone: keeps what makes its views.
+void OwnViews::Sleep(Interpreter& interpreter, const std::string& scene) {
+  Sleeping& views = this->Sleeping_[scene];
+  for (v1::Command& command : this->Commands(interpreter)) {
+    // Time is the simulation's, and so are fragments: one that is hidden and gone is hidden no
+    // more.
+    if (SceneOf(command) == scene && !command.has_set_time() && !command.has_create_fragment() &&
+        !command.has_remove_fragment()) {
+      views.commands.push_back(std::move(command));
+    }
+  }
+  views.time_s.reset();
+}
+
 void OwnViews::Enter(Interpreter& interpreter) {
-  std::vector<v1::Command> commands = this->Commands(interpreter);
+  std::set<std::string> scenes;
+  for (const v1::Command& command : this->Commands(interpreter)) {
+    scenes.insert(SceneOf(command));
+  }
+  for (const std::string& scene : scenes) {
+    this->Sleep(interpreter, scene);
+  }
   this->Viewports_.clear();
   this->Pressed_.clear();
   this->Vantages_.clear();
   this->Names_.clear();
   this->Ledger_ = {};
-  for (v1::Command& command : commands) {
-    // Time is the simulation's, and so are scenes: one that is gone took its views along.
-    if (!command.has_set_time() && interpreter.FindScene(SceneOf(command))) {
+}
+
+void OwnViews::Wake(Interpreter& interpreter, bool alone) {
+  for (auto it = this->Sleeping_.begin(); it != this->Sleeping_.end();) {
+    Sleeping& views = it->second;
+    const std::shared_ptr<Scene> scene = interpreter.FindScene(it->first);
+    if (!scene) {
+      views.time_s.reset();
+      ++it;
+      continue;
+    }
+    if (!views.time_s) {
+      views.time_s = scene->Time();
+    }
+    if (!alone && scene->Time() == *views.time_s && !this->IsReady(*scene, views)) {
+      ++it; // it may be about to be built
+      continue;
+    }
+    std::vector<v1::Command> commands = std::move(views.commands);
+    it = this->Sleeping_.erase(it);
+    for (v1::Command& command : commands) {
       this->MakeAgain(interpreter, command);
     }
   }
 }
 
-void OwnViews::MakeAgain(Interpreter& interpreter, v1::Command& command) {
-  if (command.has_create_fragment() || command.has_remove_fragment()) {
-    interpreter.Execute(command); // one that is hidden in a viewport, and not there any more
-    return;
+bool OwnViews::IsReady(const Scene& scene, const Sleeping& views) const {
+  const std::vector<std::string> vantages = scene.VantageNames();
+  const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const v1::Command& command : views.commands) {
+    if (command.has_set_camera()) {
+      const v1::SetCamera& set = command.set_camera();
+      const auto at = this->Cameras_.find({{SceneOf(command), set.vantage()}, set.name()});
+      if (at != this->Cameras_.end() && !at->second.path.empty() &&
+          scene.Frames().Find(at->second.path) == NoFrame) {
+        return false;
+      }
+    } else if (command.has_create_viewport()) {
+      const v1::CreateViewport& create = command.create_viewport();
+      const std::string vantage = create.vantage().empty() ? DefaultVantage : create.vantage();
+      if (vantage.rfind(Prefix, 0) == 0) {
+        continue;
+      }
+      if (!has(vantages, vantage)) {
+        return false;
+      }
+      const std::vector<std::string> cameras = scene.Vantage(vantage).CameraNames();
+      if (create.camera().empty() ? cameras.empty() : !has(cameras, create.camera())) {
+        return false;
+      }
+    }
   }
+  return true;
+}
+
+void OwnViews::MakeAgain(Interpreter& interpreter, v1::Command& command) {
   if (!this->Owns(command)) { // of a viewport or vantage that could not be made
     return;
+  }
+  if (command.has_set_camera() && command.set_camera().has_mount()) {
+    v1::SetCamera& set = *command.mutable_set_camera();
+    const auto at = this->Cameras_.find({{SceneOf(command), set.vantage()}, set.name()});
+    if (at != this->Cameras_.end() && !at->second.path.empty()) {
+      const FrameTree& frames = interpreter.FindScene(SceneOf(command))->Frames();
+      const FrameId frame = frames.Find(at->second.path); // ids may be others than they were
+      if (frame == NoFrame) {
+        *set.mutable_mount() = at->second.mount;
+      } else {
+        set.mutable_mount()->set_frame(frame);
+      }
+    }
   }
   if (!this->Execute(interpreter, command).has_error()) {
     return;
   }
-  if (command.has_set_camera()) { // its frame is gone
-    v1::SetCamera& set = *command.mutable_set_camera();
-    const auto at = this->Cameras_.find({{SceneOf(command), set.vantage()}, set.name()});
-    if (at != this->Cameras_.end()) {
-      *set.mutable_mount() = at->second.mount;
-      this->Execute(interpreter, command);
-    }
-  } else if (command.has_create_viewport()) { // what it looked through is gone
+  if (command.has_create_viewport()) { // what it looked through is gone
     v1::CreateViewport& create = *command.mutable_create_viewport();
     const auto at = this->Views_.find(create.name());
     if (at == this->Views_.end()) {
