@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.movies_make import FRAME
+from dspace.movies_folder import FRAME
 
 SIZE = (96, 64)
 

@@ -4,7 +4,7 @@ import pytest
 
 import dspace
 from dspace.movies_draw import Source, Stage, fill, is_whole, png
-from dspace.movies_make import FRAME
+from dspace.movies_folder import FRAME
 from dspace.poses import quaternion_of_axis
 from movies_support import SIZE, flight, pixels, run  # noqa: F401  (run: a fixture)
 
@@ -133,7 +133,7 @@ def test_overlays_come_and_go_with_their_values(session, scene):
     assert told == [0, 0.5, 1, 1.5]
     np.testing.assert_array_equal(pictures[0], pictures[3])
     assert (pictures[1] != pictures[0]).any() and (pictures[2] != pictures[1]).any()
-    viewport = session.viewports["movie main"]
+    viewport = session.viewports[stage.names["main"]]
     viewport.set_table("by hand", [("x", "12.5 m"), ("t", "0.5"), ("v", "28 V")], font_size=8)
     np.testing.assert_array_equal(viewport.image(), pictures[1])
     assert fill("{a:>5}|{b}", {"a": "x", "b": 1.5}.get) == "    x|1.5"

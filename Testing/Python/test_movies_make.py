@@ -11,7 +11,7 @@ import pytest
 
 import dspace
 from dspace.movies_encode import Encoder
-from dspace.movies_make import FRAME, identity
+from dspace.movies_folder import FRAME, identity
 from movies_support import RUN, SIZE, files, flight, pixels, run  # noqa: F401  (run: a fixture)
 
 

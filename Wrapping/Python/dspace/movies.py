@@ -1,107 +1,16 @@
 """Movies: cameras through key frames, several views in one picture, texts over it."""
 import math
 import os
-from dataclasses import dataclass, field
 
 from dspace import movies_file
-from dspace._fields import Named, flag, integers, number, numbers, refuse, text
+from dspace._fields import Named, integers, number, refuse
 from dspace.cameras import Camera
-from dspace.errors import AlreadyExists, Error, InvalidArgument, NotFound, WrongType
+from dspace.errors import AlreadyExists, Error, InvalidArgument, NotFound
 from dspace.movies_keys import CameraPath, Key, RunTime, in_order
+from dspace.movies_views import Overlay, View
 from dspace.poses import Pose, quaternion_of_matrix
-from dspace.viewports import ANCHORS
 
 SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": 2, "start": None, "speed": 1.0, "duration": None}
-
-
-@dataclass
-class View:
-    """A part of the movie's picture.
-
-    rectangle: left, top, width, height as parts of the picture, 0 to 1. scene and vantage: by name.
-    camera: one of the scene's cameras that the view looks through; "": its keys. near, far: metres along
-    Z (0.05, infinity). hide: fragments that it leaves out. ornaments: whether ornamental objects are
-    drawn. background: sRGB, 0 to 1, or a name; background_top: for a gradient. corner_axes: whether the
-    root's axes are drawn in the corner."""
-    name: str = "main"
-    rectangle: tuple = (0.0, 0.0, 1.0, 1.0)
-    scene: str = "scene"
-    vantage: str = "main"
-    camera: str = ""
-    near: float = None
-    far: float = None
-    hide: tuple = ()
-    ornaments: bool = True
-    background: object = None
-    background_top: object = None
-    corner_axes: bool = False
-    keys: list = field(default_factory=list)
-
-    def __post_init__(self):
-        about = f"view {self.name!r}"
-        if not text(self.name, "the name", about):
-            refuse("a view", "the name", self.name, "one that is not empty")
-        self.rectangle = tuple(map(float, numbers(self.rectangle, 4, "the rectangle", about)))
-        x, y, width, height = self.rectangle
-        if not (0 <= x < 1 and 0 <= y < 1 and 0 < width <= 1 + 1e-9 - x and 0 < height <= 1 + 1e-9 - y):
-            refuse(about, "the rectangle", self.rectangle, "left, top, width, height within 0 to 1")
-        for name in ("scene", "vantage", "camera"):
-            text(getattr(self, name), name, about)
-        for name in ("ornaments", "corner_axes"):
-            flag(getattr(self, name), name, about)
-        if isinstance(self.hide, str) or not all(isinstance(each, str) for each in self.hide):
-            refuse(about, "hide", self.hide, "a list of fragments' names", WrongType)
-        self.hide = tuple(self.hide)
-        for name in ("background", "background_top"):
-            value = getattr(self, name)
-            if value is not None and not isinstance(value, str):
-                setattr(self, name, tuple(map(float, numbers(value, 3, name, about))))
-
-    def pixels(self, size):
-        """(left, top, right, bottom) in a picture of that size."""
-        x, y, width, height = self.rectangle
-        left, top, right, bottom = (round(x * size[0]), round(y * size[1]), round((x + width) * size[0]),
-                                    round((y + height) * size[1]))
-        if right <= left or bottom <= top:
-            refuse(f"view {self.name!r}", "the rectangle", self.rectangle, f"a pixel or more of {size}")
-        return left, top, right, bottom
-
-
-@dataclass
-class Overlay:
-    """A title, or a table of texts and values, over a view.
-
-    rows: (label, value) pairs; a value may hold {movie} and {run} (times [s]), {FRAME.x} of y, z (a frame's
-    place in the root [m]), and names of the source's telemetry, each with a format: {run:.2f}. since, until:
-    movie times [s]. font_size: pixels; 0: a 40th of the picture's height."""
-    title: str = ""
-    rows: tuple = ()
-    view: str = ""
-    anchor: str = "top left"
-    font_size: int = 0
-    since: float = 0.0
-    until: float = None
-
-    def __post_init__(self):
-        about = f"overlay {self.title!r}"
-        text(self.title, "the title", about)
-        rows = []
-        for row in self.rows:
-            if not isinstance(row, (tuple, list)) or len(row) != 2 or not all(isinstance(c, str) for c in row):
-                refuse(about, "a row", row, "a label and a value, each a str", WrongType)
-            rows.append(tuple(row))
-        self.rows = tuple(rows)
-        if not self.title and not rows:
-            refuse(about, "what it says", "", "a title, or rows")
-        if self.anchor not in ANCHORS:
-            refuse(about, "anchor", self.anchor, ", ".join(map(repr, ANCHORS)))
-        integers((self.font_size,), 1, "font_size", about, "an integer, 0 or 4 to 200")
-        self.since = number(self.since, "since", about)
-        if self.until is not None:
-            self.until = number(self.until, "until", about)
-
-    def shows(self, time):
-        return self.since <= time and (self.until is None or time < self.until)
 
 
 class Movie:
@@ -208,6 +117,8 @@ class Movie:
         """Raises what is wrong with it as a whole; a new view with keys or a camera is the least."""
         if not self.views:
             raise InvalidArgument("movie: it has no view; accepted: one or more")
+        for each in (*self.views.values(), *self.overlays):
+            each.__post_init__()  # what was changed since it was made
         for view in self.views.values():
             if bool(view.camera) == bool(view.keys):
                 raise InvalidArgument(f"view {view.name!r}: it has " + ("a camera and keys" if view.camera else

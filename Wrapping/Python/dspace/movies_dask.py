@@ -1,40 +1,47 @@
 """Pictures of a movie drawn by the workers of a Dask scheduler (Debian: python3-distributed)."""
+import functools
 import hashlib
 import os
 import socket
 import subprocess
 import tempfile
+import time as clock
 
 import dspace
-from dspace.errors import Internal, InvalidArgument, Io, NotFound
+from dspace.errors import Error, Internal, InvalidArgument, Io, NotFound
 from dspace.movies_draw import is_whole
-from dspace.movies_make import FRAME, file_of, finish, put, worker
+from dspace.movies_folder import FRAME, SCRIPT, files_of, put, states_of
+from dspace.movies_make import finish, worker
 
 _AT_ONCE = 24  # pictures that a worker draws of one request
-_END = 1 << 20  # bytes of either end of a run's file that are compared
+_PATIENCE = 30.0  # seconds without a scheduler or a worker
 
 
 def share(scheduler, words, run, missing, folder, tell):
-    """Has the pictures `missing` drawn by the workers of the scheduler at that address."""
+    """Has the pictures `missing` drawn by the workers of the scheduler at that address. dspace.Io where there is no
+    scheduler or no worker for 30 s."""
     try:
-        from distributed import Client, as_completed
+        from distributed import Client
     except ImportError:
         raise NotFound("Dask is not installed; accepted: Debian's package python3-distributed",
                        "python3-distributed") from None
     try:
-        client = Client(scheduler, timeout=30, set_as_default=False)
+        client = Client(scheduler, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise Io(f"scheduler {scheduler!r}: {error}; accepted: the address of a Dask scheduler, tcp://HOST:PORT",
                  scheduler) from None
     with client:
-        workers = max(1, len(client.scheduler_info()["workers"]))
-        size = max(1, min(_AT_ONCE, -(-len(missing) // workers)))
+        try:
+            client.wait_for_workers(1, timeout=_PATIENCE)
+        except (OSError, TimeoutError):
+            raise _deserted(scheduler) from None
+        size = max(1, min(_AT_ONCE, -(-len(missing) // _workers(client))))
         parts = [missing[k:k + size] for k in range(0, len(missing), size)]
         expected = fingerprint(run)
-        futures = [client.submit(pictures, words, run, part, expected, pure=False) for part in parts]
-        left = len(missing)
+        waiting = [client.submit(pictures, words, run, part, expected, pure=False) for part in parts]
         try:
-            for _, drawn in as_completed(futures, loop=client.loop, with_results=True):
+            left = len(missing)
+            for drawn in _finished(client, scheduler, waiting):
                 for number, data in drawn:
                     path = folder.path(FRAME % number)
                     put(path, data)
@@ -43,19 +50,61 @@ def share(scheduler, words, run, missing, folder, tell):
                 left -= len(drawn)
                 tell(left)
         finally:
-            client.cancel(futures)
+            client.cancel(waiting)
+
+
+def _workers(client):
+    return len(client.scheduler_info()["workers"]) if client.status == "running" else 0
+
+
+def _deserted(scheduler):
+    return Io(f"scheduler {scheduler!r}: it has had no worker for {_PATIENCE:g} s, or is gone; accepted: one with a "
+              "worker (dask worker ADDRESS)", scheduler)
+
+
+def _finished(client, scheduler, waiting):
+    """Results in the order in which they come; each is taken out of `waiting`, so that no worker keeps it."""
+    seen = clock.monotonic()  # when there was a worker, last
+    while waiting:
+        done = [future for future in waiting if future.done()]
+        for future in done:
+            try:
+                drawn = future.result(timeout=4 * _PATIENCE)
+            except TimeoutError:  # its worker has died with it: another one draws it again
+                continue
+            except Error:
+                raise
+            except Exception as error:  # of Dask's own
+                raise Io(f"scheduler {scheduler!r}: {type(error).__name__}: {error}", scheduler) from None
+            waiting.remove(future)
+            future.release()
+            del future
+            yield drawn
+            del drawn
+        if not done:
+            clock.sleep(0.1)
+        if _workers(client):
+            seen = clock.monotonic()
+        elif clock.monotonic() - seen > _PATIENCE:
+            raise _deserted(scheduler)
 
 
 def fingerprint(run):
-    """What tells a run's file from another one of its path: Dspace's version, its size, its ends."""
-    path, _ = file_of(run)
-    with open(path, "rb") as file:
-        size = file.seek(0, os.SEEK_END)
-        ends = hashlib.sha256()
-        for at in (0, max(0, size - _END)):
-            file.seek(at)
-            ends.update(file.read(_END))
-    return dspace.__version__, size, ends.hexdigest()
+    """What tells a run from another one of its path: Dspace's version, and a hash of the run's files. (Files that a
+    recording names are compared by whoever plays it.)"""
+    return dspace.__version__, _content(tuple(map(tuple, states_of(files_of(run)))))
+
+
+@functools.lru_cache(maxsize=16)
+def _content(states):
+    """A hash of files, which are read again when their states have changed."""
+    hashed = hashlib.sha256()
+    for path, size, _ in states:
+        hashed.update(f"{os.path.basename(path)} {size} ".encode(errors="replace"))
+        with open(path, "rb") as file:
+            for block in iter(lambda: file.read(1 << 20), b""):
+                hashed.update(block)
+    return hashed.hexdigest()
 
 
 def pictures(words, run, numbers, expected):
@@ -63,9 +112,10 @@ def pictures(words, run, numbers, expected):
     serves one thread."""
     if fingerprint(run) != expected:
         raise InvalidArgument(f"run {run!r}: on the worker {socket.gethostname()!r} it is another file, or Dspace "
-                              f"another version than {expected[0]}; accepted: the same on each machine", run)
+                              f"another version than {expected[0]}; accepted: the same on each machine, and no "
+                              "recording that is still written", run)
     with tempfile.TemporaryDirectory(prefix="dspace-movie-") as folder:
-        script = os.path.join(folder, "movie.toml")
+        script = os.path.join(folder, SCRIPT)
         with open(script, "w", encoding="utf-8") as file:
             file.write(words)
         process = worker(script, run, folder, numbers)

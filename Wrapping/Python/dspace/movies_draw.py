@@ -1,14 +1,17 @@
 """Single pictures of a movie: the run is taken to its time, cameras to their places, views put together."""
+import bisect
 import importlib.util
 import os
 import re
+import secrets
 import struct
+import warnings
 import zlib
 
 import numpy as np
 
 from dspace._fields import shown
-from dspace.errors import InvalidArgument, NotFound, WrongType
+from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath
 from dspace.poses import Pose
 
@@ -20,10 +23,12 @@ class Source:
 
     session: a dspace.Session. advance(time): takes the run to a time [s]; called with the times of the
     pictures, in their order. telemetry(): a dict of names to numbers or texts for overlays, now. close():
-    called at the end. beginning: the run's first time [s]."""
+    called at the end. beginning: the run's first time [s]. extent: the first and last times that there are
+    [s]; beyond them the run stands."""
 
-    def __init__(self, session, advance=None, telemetry=None, close=None, beginning=0.0):
+    def __init__(self, session, advance=None, telemetry=None, close=None, beginning=0.0, extent=None):
         self.session, self.beginning = session, beginning
+        self.extent = extent or (-np.inf, np.inf)
         self.advance = advance or (lambda time: None)
         self.telemetry = telemetry or dict
         self.close = close or (lambda: None)
@@ -61,19 +66,24 @@ def open_run(run):
 
 def _of_playback(playback):
     telemetry = getattr(playback, "telemetry", None)
+    times = sorted(playback.times)
+    # What was there before the simulation first set a time has the time 0 that nobody set.
+    steps = [time for _, time in playback.file.steps()] if hasattr(playback, "file") else []
+    steps = steps or times
+    return Source(playback.session, lambda time: playback.seek(step_at(times, time)),
+                  telemetry if callable(telemetry) else None, beginning=steps[0] if steps else 0.0,
+                  extent=(min(steps), max(steps)) if steps else None)
 
-    def seek(time):
-        # The last step that is not after it: a simulation that adds up its steps is a rounding off.
-        playback.seek(time + max(1e-9, 8 * np.spacing(abs(time))))
 
-    return Source(playback.session, seek, telemetry if callable(telemetry) else None,
-                  beginning=_first_time(playback))
-
-
-def _first_time(playback):
-    """The first time that the simulation set: what was there before it has the time 0 that nobody set."""
-    steps = playback.file.steps() if hasattr(playback, "file") else []
-    return steps[0][1] if steps else min(playback.times, default=0.0)
+def step_at(times, time):
+    """The time to seek [s]: `time`, or the next of the rising times if that comes but a rounding later. A simulation
+    that adds up its steps is the later the longer it runs; up to a thousandth of the step, and 0.1 ms, count."""
+    following = bisect.bisect_right(times, time)
+    if 0 < following < len(times):
+        late = times[following] - time
+        if late <= min(1e-3 * (times[following] - times[following - 1]), 1e-4):
+            return times[following]
+    return time
 
 
 def _made_by(path, name):
@@ -101,10 +111,31 @@ class Stage:
         self.paths = {name: CameraPath(view.keys, f"view {name!r}")
                       for name, view in movie.views.items() if view.keys}
         self.shown = {name: [] for name in movie.views}
+        # Of viewports and cameras. Another movie's may be there, even recorded, and come while this one is drawn.
+        mark = secrets.token_hex(4)
+        self.names = {name: f"movie {name} {mark}" for name in movie.views}
+        self.hidden, self.unseen = set(), True  # fragments that there were; no picture was drawn yet
+
+    def close(self):
+        """Takes its viewports and cameras out of the session."""
+        for view in self.movie.views.values():
+            try:
+                session, name = self.source.session, self.names[view.name]
+                if name in session.viewports:
+                    session.viewports[name].remove()
+                cameras = session.scenes[view.scene].vantages[view.vantage].cameras
+                if name in cameras:
+                    cameras[name].remove()
+            except Error:  # the session is closed, or has no such scene any more
+                pass
+            unknown = [fragment for fragment in view.hide if fragment not in self.hidden]
+            if unknown and not self.unseen:
+                warnings.warn(f"view {view.name!r}: hide names {unknown[0]!r}, and no picture that was drawn now has "
+                              "such a fragment", stacklevel=2)
 
     def _viewport(self, view):
         """Its viewport, made where there is none (any more: a playback that seeks may begin anew)."""
-        session, name = self.source.session, f"movie {view.name}"
+        session, name = self.source.session, self.names[view.name]
         viewport = session.viewports.get(name)
         if viewport is not None:
             return viewport
@@ -119,8 +150,6 @@ class Stage:
                                       samples=self.movie.samples)
         viewport.ornaments = view.ornaments
         viewport.corner_axes = view.corner_axes
-        for fragment in view.hide:
-            viewport.hide(fragment)
         if view.background is not None:
             viewport.set_background(view.background, top=view.background_top)
         self.shown[view.name] = []
@@ -129,7 +158,8 @@ class Stage:
     def picture(self, number):
         """Picture `number`, from 0: (h, w, 3) uint8, sRGB."""
         time = number / self.movie.rate
-        run = self.runs.at(time)
+        first, last = self.source.extent
+        run = min(max(self.runs.at(time), first), last)
         self.source.advance(run)
         width, height = self.movie.size
         out = np.zeros((height, width, 3), np.uint8)
@@ -140,8 +170,16 @@ class Stage:
                 self._aim(view, scene, viewport, time)
             self._write(viewport, scene, view, number_ == 0, time, run)
             left, top, right, bottom = view.pixels(self.movie.size)
-            out[top:bottom, left:right] = viewport.image()
+            out[top:bottom, left:right] = viewport.image(hide=self._hide(view, scene))
+        self.unseen = False
         return out
+
+    def _hide(self, view, scene):
+        """Those of the fragments that a view leaves out that there are now: some come later in a run."""
+        there = scene.fragments if view.hide else ()
+        hide = [fragment for fragment in view.hide if fragment in there]
+        self.hidden.update(hide)
+        return hide
 
     def _aim(self, view, scene, viewport, time):
         def find(path):
@@ -151,7 +189,7 @@ class Stage:
             return find(path).pose_in(find(base))
 
         path, position, quaternion, fov_deg = self.paths[view.name].at(time, relative)
-        scene.add_camera(f"movie {view.name}", frame=find(path), pose=Pose(position, quaternion),
+        scene.add_camera(self.names[view.name], frame=find(path), pose=Pose(position, quaternion),
                          fov_deg=fov_deg, near=view.near, far=view.far, vantage=view.vantage)
 
     def _write(self, viewport, scene, view, first, time, run):
@@ -164,7 +202,7 @@ class Stage:
             values = lambda key: self._value(key, scene, time, run)
             rows = [(label, fill(value, values)) for label, value in overlay.rows]
             viewport.set_table(name, rows, title=overlay.title, anchor=overlay.anchor,
-                               font_size=overlay.font_size or max(8, round(self.movie.size[1] / 40)))
+                               font_size=overlay.pixels(self.movie.size))
             now.append(name)
         for name in set(self.shown[view.name]) - set(now):
             viewport.remove_table(name)

@@ -2,6 +2,7 @@
 import os
 import shutil
 import subprocess
+import tempfile
 
 import numpy as np
 
@@ -30,17 +31,65 @@ def codec_of(path, size):
     return CODECS[ending]
 
 
-def _ffmpeg():
-    program = shutil.which("ffmpeg")
-    if program is None:
-        raise NotFound("ffmpeg is not installed; accepted: Debian's package ffmpeg", "ffmpeg")
-    return program
+def programs():
+    """The paths of ffmpeg, which writes, and ffprobe, which looks at what was written."""
+    found = [shutil.which(name) for name in ("ffmpeg", "ffprobe")]
+    if None in found:
+        name = ("ffmpeg", "ffprobe")[found.index(None)]
+        raise NotFound(f"{name} is not installed; accepted: Debian's package ffmpeg", name)
+    return found
+
+
+class _Part:
+    """The file that ffmpeg writes, until it is whole."""
+
+    def __init__(self, path):
+        self.label = os.fspath(path)
+        # Absolute: of "12:30.mp4" and "-x.mp4" ffmpeg thinks otherwise.
+        self.path = os.path.abspath(path)
+        self.part = self.path + ".part"
+        self.said = tempfile.TemporaryFile()  # a pipe that nobody reads would stop it
+
+    def start(self, words, codec, **settings):
+        ffmpeg, _ = programs()
+        # Without -xerror ffmpeg calls a file done whose end it could not write.
+        return subprocess.Popen([ffmpeg, "-y", "-xerror", "-nostats", "-loglevel", "error", *words, "-an", *_COLORS,
+                                 *codec, self.part], stderr=self.said, **settings)
+
+    def failed(self, words):
+        self.said.seek(0)
+        said = " ".join(self.said.read().decode(errors="replace").split())
+        return Io(f"movie {self.label!r}: {words}" + (f": {said}" if said else ""), self.label)
+
+    def finish(self, process, count):
+        """The file under its own name, if ffmpeg had nothing to complain of and all `count` pictures are in it."""
+        if process.wait() != 0 or self.said.seek(0, os.SEEK_END):
+            raise self.failed("ffmpeg failed")
+        _, ffprobe = programs()
+        seen = subprocess.run([ffprobe, "-v", "error", "-count_packets", "-select_streams", "v:0", "-show_entries",
+                               "stream=nb_read_packets", "-of", "csv=p=0", self.part], stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, errors="replace")
+        held = seen.stdout.strip().rstrip(",")
+        if seen.returncode != 0 or seen.stderr.strip() or held != str(count):
+            raise self.failed(f"of {count} pictures it holds {held or 'none'} {' '.join(seen.stderr.split())}".strip())
+        try:
+            with open(self.part, "rb") as file:
+                os.fsync(file.fileno())
+            os.replace(self.part, self.path)
+        except OSError as error:
+            raise Io(f"movie {self.label!r}: {error.strerror}; accepted: a folder with room, that may be written",
+                     self.label) from None
+
+    def close(self):
+        self.said.close()
+        if os.path.exists(self.part):
+            os.unlink(self.part)
 
 
 class Encoder:
     """A movie file that pictures are added to, in a `with` statement: arrays (h, w, 3) of sRGB bytes, one
-    after the other, `rate` a second. The file is there when all is written, never half of it. quick: for
-    pictures that are drawn meanwhile; the file is larger."""
+    after the other, `rate` a second. The file is there when all is written, never half of it; without a
+    picture there is none, and an error. quick: for pictures that are drawn meanwhile; the file is larger."""
 
     def __init__(self, path, size, rate, quick=False):
         codec = codec_of(path, size)
@@ -50,53 +99,67 @@ class Encoder:
         if quick:
             codec = ["veryfast" if word == "medium" else word for word in codec]
             codec = codec + ["-deadline", "realtime", "-cpu-used", "6"] if "libvpx-vp9" in codec else codec
-        self._path, self._size = os.fspath(path), tuple(size)
-        self._part = self._path + ".part"
-        self._process = subprocess.Popen(
-            [_ffmpeg(), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
-             f"{size[0]}x{size[1]}", "-r", repr(float(rate)), "-i", "-", "-an", *_COLORS, *codec, self._part],
-            stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+        self._size, self._count = tuple(size), 0
+        self._part = _Part(path)
+        try:
+            self._process = self._part.start(["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}",
+                                              "-r", repr(float(rate)), "-i", "-"], codec, stdin=subprocess.PIPE)
+        except BaseException:
+            self._part.close()
+            raise
 
     def __enter__(self):
         return self
 
     def add(self, picture):
         if picture.shape[:2] != self._size[::-1] or picture.dtype != np.uint8:
-            raise InvalidArgument(f"movie {self._path!r}: a picture is {picture.shape} of {picture.dtype}; "
-                                  f"accepted: {self._size[::-1] + (3,)} of uint8", self._path)
+            raise InvalidArgument(f"movie {self._part.label!r}: a picture is {picture.shape} of {picture.dtype}; "
+                                  f"accepted: {self._size[::-1] + (3,)} of uint8", self._part.label)
         try:
             self._process.stdin.write(np.ascontiguousarray(picture[..., :3]).tobytes())
         except BrokenPipeError:
-            self._finish()
-            raise Io(f"movie {self._path!r}: ffmpeg ended early", self._path) from None
+            self._process.wait()
+            raise self._part.failed("ffmpeg ended early") from None
+        self._count += 1
 
     def __exit__(self, kind, error, trace):
         try:
-            self._finish()
-            if kind is None:
-                os.replace(self._part, self._path)
+            try:
+                self._process.stdin.close()
+            except BrokenPipeError:  # what it says is told below
+                pass
+            if kind is not None:
+                self._process.kill()
+                self._process.wait()
+            elif not self._count:
+                self._process.wait()
+                raise InvalidArgument(f"movie {self._part.label!r}: it has no picture; accepted: one or more",
+                                      self._part.label)
+            else:
+                self._part.finish(self._process, self._count)
         finally:
-            if os.path.exists(self._part):
-                os.unlink(self._part)
-
-    def _finish(self):
-        _, message = self._process.communicate()
-        if self._process.returncode != 0:
-            words = " ".join(message.decode(errors="replace").split())
-            raise Io(f"movie {self._path!r}: ffmpeg failed: {words}", self._path)
+            self._part.close()
 
 
-def encode(pattern, path, size, rate):
-    """A movie file of numbered PNGs, such as "work/frame_%06d.png"."""
-    part = os.fspath(path) + ".part"
+def encode(pattern, path, size, rate, count, tell=lambda done: None):
+    """A movie file of `count` numbered PNGs from 0, such as "work/frame_%06d.png"; tell(done): called as it
+    goes on."""
     # A folder's % signs are no numbers.
     folder, name = os.path.split(os.path.abspath(pattern))
-    done = subprocess.run([_ffmpeg(), "-y", "-loglevel", "error", "-framerate", repr(float(rate)), "-i", name,
-                           "-an", *_COLORS, *codec_of(path, size), os.path.abspath(part)], cwd=folder,
-                          stdin=subprocess.DEVNULL, capture_output=True)
-    if done.returncode != 0:
-        if os.path.exists(part):
-            os.unlink(part)
-        raise Io(f"movie {str(path)!r}: ffmpeg failed: {' '.join(done.stderr.decode(errors='replace').split())}",
-                 str(path))
-    os.replace(part, path)
+    part = _Part(path)
+    process = None
+    try:
+        process = part.start(["-progress", "pipe:1", "-stats_period", "0.2", "-framerate", repr(float(rate)),
+                              "-start_number", "0", "-i", name], codec_of(path, size), cwd=folder,
+                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
+        for line in process.stdout:
+            name, _, value = line.strip().partition("=")
+            if name == "frame" and value.strip().isdigit():
+                tell(min(int(value), count))
+        part.finish(process, count)
+    finally:
+        if process is not None:
+            process.kill()
+            process.wait()
+            process.stdout.close()
+        part.close()

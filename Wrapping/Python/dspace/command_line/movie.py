@@ -18,6 +18,7 @@ def add_arguments(parser):
     parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers share it: tcp://HOST:PORT")
     parser.add_argument("--work", metavar="DIR", help="folder for pictures (default: X.work)")
     parser.add_argument("--keep", action="store_true", help="keeps the work folder when the movie is made")
+    parser.add_argument("--anew", action="store_true", help="draws pictures again that an ended make left")
     parser.set_defaults(run=run)
 
 
@@ -34,7 +35,8 @@ def run(options):
     bar = Bar(sys.stderr)
     try:
         drawn = movie.make(options.source, options.out, jobs=options.jobs, scheduler=options.scheduler,
-                           work=options.work, keep=options.keep, progress=bar.show)
+                           work=options.work, keep=options.keep, progress=bar.show, encoding=bar.encoding,
+                           anew=options.anew)
     except KeyboardInterrupt:
         bar.end()
         print("dspace: ended; the same command goes on where this one was", file=sys.stderr)
@@ -49,16 +51,22 @@ class Bar:
     """How far a movie is and how long it takes yet: a bar on a terminal, else a line every tenth."""
 
     def __init__(self, stream):
-        self.stream, self.terminal, self.tenth = stream, stream.isatty(), -1
+        self.stream, self.terminal, self.tenth = stream, stream.isatty(), None
 
     def show(self, done, total, seconds, drawn):
-        words = f"{done} of {total}, {left_words(done, total, seconds, drawn)}"
+        self._put(f"{done} of {total}, {left_words(done, total, seconds, drawn)}", done, total, "drawing")
+
+    def encoding(self, done, total, seconds):
+        left = "all written" if done >= total else left_words(done, total, seconds, done)
+        self._put(f"encoding: {done} of {total}, {left}", done, total, "encoding")
+
+    def _put(self, words, done, total, what):
         if self.terminal:
             width = max(10, min(40, os.get_terminal_size(self.stream.fileno()).columns - len(words) - 6))
             full = width * done // total
             print(f"\r  [{'=' * full}{' ' * (width - full)}] {words}\x1b[K", end="", file=self.stream, flush=True)
-        elif 10 * done // total != self.tenth:
-            self.tenth = 10 * done // total
+        elif (what, 10 * done // total) != self.tenth:
+            self.tenth = what, 10 * done // total
             print(f"dspace: {words}", file=self.stream, flush=True)
 
     def end(self):
