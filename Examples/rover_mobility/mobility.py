@@ -7,6 +7,8 @@ tangent plane touches it. It turns as far as its middle moves along the ground, 
 """
 import numpy as np
 
+EYE = np.eye(3)
+
 
 class Hills:
     """Rolling ground in closed form: z = sum of a sin(k . xy + p)."""
@@ -16,13 +18,13 @@ class Hills:
 
     def heights(self, x, y):
         a, kx, ky, p = self.WAVES.T
-        return (a * np.sin(x[..., None] * kx + y[..., None] * ky + p)).sum(-1)
+        return np.sin(x[..., None] * kx + y[..., None] * ky + p) @ a
 
     def gradients(self, x, y):
         """dz/dx and dz/dy."""
         a, kx, ky, p = self.WAVES.T
-        c = a * np.cos(x[..., None] * kx + y[..., None] * ky + p)
-        return (c * kx).sum(-1), (c * ky).sum(-1)
+        c = np.cos(x[..., None] * kx + y[..., None] * ky + p)
+        return c @ (a * kx), c @ (a * ky)
 
 
 class Plane:
@@ -56,6 +58,7 @@ class Mobility:
         self.wheels = model.wheels
         self.steering = np.array([self.parents[k] if model.bodies[self.parents[k]].joint == "steering" else -1
                                   for k in self.wheels])
+        self.steered = np.flatnonzero(self.steering >= 0)
         self._positions = np.array([body.position for body in model.bodies])
         self._axes = np.array([body.axis for body in model.bodies])
         self._levels = self._sort()
@@ -70,7 +73,7 @@ class Mobility:
         ground_here = ground.heights(np.array([x]), np.array([y]))[0]
         self._free = np.array([ground_here - at_rest[:, 2].mean() + model.wheel_radius, 0, 0, 0, 0, 0])
         self._jacobian, self._age, self.up = None, 0, None
-        self._last = self._free
+        self._before = self._free, self._free  # one and two steps ago
         self.turned, self.rolled = np.zeros(6), np.zeros(6)
         self._settle()
 
@@ -96,17 +99,17 @@ class Mobility:
 
         free (n, 6): height, roll, pitch, rocker and bogies; angles: of steering."""
         n = len(free)
-        a = np.broadcast_to(angles, (n, len(angles))).copy()
+        a = np.tile(angles, (n, 1))
         a[:, self._columns["rocker"]] = free[:, 3:4] * self._signs
         a[:, self._columns["bogie"]] = free[:, 4:6]
         a[:, self._columns["wheel"]] = 0.0  # turning moves no rim
         R = np.empty((n, len(self.parents), 3, 3))
         p = np.empty((n, len(self.parents), 3))
         R[:, 0] = attitude(pose[2], free[:, 1], free[:, 2])
-        p[:, 0] = np.column_stack((np.broadcast_to(pose[:2], (n, 2)), free[:, 0]))
+        p[:, 0, :2], p[:, 0, 2] = pose[:2], free[:, 0]
         for which, parents, offsets, K, K2 in self._levels:
             s, c = np.sin(a[:, which]), np.cos(a[:, which])
-            own = np.eye(3) + s[..., None, None] * K + (1 - c)[..., None, None] * K2
+            own = EYE + s[..., None, None] * K + (1 - c)[..., None, None] * K2
             above = R[:, parents]
             R[:, which] = above @ own
             p[:, which] = p[:, parents] + (above @ offsets[..., None])[..., 0]
@@ -119,8 +122,8 @@ class Mobility:
         up = np.empty_like(centres)
         up[...] = (0.0, 0.0, 1.0) if self.up is None else self.up
         for step in range(steps + 1):
-            up -= (up * axles).sum(-1, keepdims=True) * axles
-            up /= np.sqrt((up * up).sum(-1, keepdims=True))
+            up -= np.einsum("nwi,nwi->nw", up, axles)[..., None] * axles
+            up /= np.sqrt(np.einsum("nwi,nwi->nw", up, up))[..., None]
             contacts = centres - self.model.wheel_radius * up
             if step < steps:
                 up[..., 0], up[..., 1] = (-g for g in self.ground.gradients(contacts[..., 0], contacts[..., 1]))
@@ -129,7 +132,8 @@ class Mobility:
 
     def _settle(self):
         """Puts all wheels on the ground."""
-        self._free, self._last = 2 * self._free - self._last, self._free  # as it went on before
+        one, two = self._before
+        self._free, self._before = 3 * (self._free - one) + two, (self._free, one)  # as it went on before
         for _ in range(50):
             R, p = self._forward(self._free[None], self.angles, self._pose)
             gaps, contacts, up = self._contact(R, p)
@@ -159,10 +163,8 @@ class Mobility:
         """Goes on for dt seconds at a speed [m/s] and a curvature [1/m, to the left], seen from above."""
         before = self.rotations, self.centres, self.up
         # The corner wheels point along their circles about the common centre.
-        x, y = self.places.T
-        for k, body in enumerate(self.steering):
-            if body >= 0:
-                self.angles[body] = np.arctan2(curvature * x[k], 1 - curvature * y[k])
+        x, y = self.places[self.steered].T
+        self.angles[self.steering[self.steered]] = np.arctan2(curvature * x, 1 - curvature * y)
         turn = speed * curvature * dt
         middle = self._pose[2] + 0.5 * turn  # of a circle's chord
         length = speed * dt * np.sinc(0.5 * turn / np.pi)
@@ -174,9 +176,10 @@ class Mobility:
     def _roll(self, rotations, centres, up):
         """Turns the wheels by how far their middles went along the ground."""
         axles = self.rotations[self.wheels, :, 1] + rotations[self.wheels, :, 1]
-        forward = np.cross(axles, self.up + up)  # midway, so that a step's error is of third order
-        forward /= np.linalg.norm(forward, axis=1)[:, None]
-        way = ((self.centres - centres) * forward).sum(1)
+        (ax, ay, az), (ux, uy, uz) = axles.T, (self.up + up).T  # midway, so that a step's error is of third order
+        forward = np.array((ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux))
+        forward /= np.sqrt((forward * forward).sum(0))
+        way = ((self.centres - centres).T * forward).sum(0)
         self.rolled += way
         self.turned += way / self.model.wheel_radius
         # What carries the wheel turns about the axle, too: the joint makes the rest.
@@ -187,7 +190,8 @@ class Mobility:
     def rows(self):
         """Local poses (bodies, 7): px py pz qw qx qy qz, the chassis' in the world."""
         half = 0.5 * self.angles
-        out = np.column_stack((self._positions, np.cos(half), np.sin(half)[:, None] * self._axes))
+        out = np.empty((len(half), 7))
+        out[:, :3], out[:, 3], out[:, 4:] = self._positions, np.cos(half), np.sin(half)[:, None] * self._axes
         out[0, :3] = self.origins[0]
         out[0, 3:] = attitude_quaternion(self._pose[2], self._free[1], self._free[2])
         return out
@@ -198,9 +202,9 @@ def attitude(heading, roll, pitch):
     ch, sh = np.cos(heading), np.sin(heading)
     cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
     R = np.empty((len(roll), 3, 3))
-    R[:, 0] = np.column_stack((ch * cp, ch * sp * sr - sh * cr, ch * sp * cr + sh * sr))
-    R[:, 1] = np.column_stack((sh * cp, sh * sp * sr + ch * cr, sh * sp * cr - ch * sr))
-    R[:, 2] = np.column_stack((-sp, cp * sr, cp * cr))
+    R[:, 0, 0], R[:, 0, 1], R[:, 0, 2] = ch * cp, ch * sp * sr - sh * cr, ch * sp * cr + sh * sr
+    R[:, 1, 0], R[:, 1, 1], R[:, 1, 2] = sh * cp, sh * sp * sr + ch * cr, sh * sp * cr - ch * sr
+    R[:, 2, 0], R[:, 2, 1], R[:, 2, 2] = -sp, cp * sr, cp * cr
     return R
 
 

@@ -85,6 +85,14 @@ class Simulation:
         return {"speed": speed, "rolled": float(self.mobility.rolled.mean()), "steps": self.steps}
 
 
+def clear(session):
+    """Takes away what an earlier run has left in a server."""
+    for viewport in session.viewports.values():
+        viewport.remove()
+    for scene in session.scenes.values():
+        scene.remove()
+
+
 def run():
     """What `dspace movie` draws."""
     simulation = Simulation(dspace.Session())
@@ -98,7 +106,8 @@ def main():
     parser.add_argument("--real-time", action="store_true", help="no faster than the clock")
     parser.add_argument("--wheelbase", type=float, default=RoverModel.wheelbase, help="metres (1.1)")
     parser.add_argument("--folder", type=pathlib.Path,
-                        help="where the ground's raster is written, so that a server finds it (a temporary one)")
+                        help="where the ground's raster is written; with --connect the server must allow it, and it "
+                             "stays (there the working folder, else a temporary one)")
     parser.add_argument("--record", type=pathlib.Path, metavar="FILE", help="records the run; the ground beside it")
     parser.add_argument("--out", type=pathlib.Path, help="a picture at the end")
     options = parser.parse_args()
@@ -106,7 +115,11 @@ def main():
     folder = options.folder
     if options.record and folder is None:
         folder = options.record.resolve().parent  # a recording names the ground's file
+    elif options.connect and folder is None:
+        folder = pathlib.Path.cwd()  # what `dspace serve` allows that was begun here, for viewers that come later, too
     with session, session.record(options.record) if options.record else contextlib.nullcontext():
+        if options.connect:
+            clear(session)
         simulation = Simulation(session, RoverModel(wheelbase=options.wheelbase), folder=folder)
         if options.connect:
             session.wait = False  # a server takes steps as they come; what it refuses is told later
@@ -120,7 +133,7 @@ def main():
             session.wait = True
             session.flush()
         taken = time.perf_counter() - began
-        print(f"{simulation.steps} steps of 1 ms in {taken:.2f} s; rolled "
+        print(f"{simulation.steps} steps of 1 ms in {taken:.2f} s, {simulation.steps / taken:.0f} a second; rolled "
               f"{simulation.mobility.rolled.mean():.3f} m; wheels turned "
               + ", ".join(f"{turn:.2f}" for turn in np.degrees(simulation.mobility.turned)) + " deg")
         if options.out:
