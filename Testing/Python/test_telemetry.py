@@ -329,3 +329,41 @@ def test_requests_of_later_versions_say_so(session):
         with pytest.raises(dspace.Unimplemented, match=f"command {command.WhichOneof('command')}") as refused:
             session.execute(command)
         assert isinstance(refused.value, (dspace.Unsupported, dspace.Error, NotImplementedError))
+
+
+def test_movies_write_telemetry(run, tmp_path):
+    """An overlay of a recording's values is the picture of a table that says them."""
+    from dspace.movies_draw import Stage, open_run
+    path, _ = run
+    with dspace.Session() as session:
+        scene = session.scene()
+        camera = scene.add_camera("main", eye=(3, 3, 3), target=(0, 0, 0))
+        viewport = scene.add_viewport((200, 80), camera, name="view")
+        viewport.set_table("t", [("power", "64.00 W"), ("mode", "drive"), ("note", "–|–"), ("at", "8")], font_size=12)
+        wanted = viewport.image()
+    movie = dspace.Movie(size=(200, 80), rate=1, start=0.0, duration=9)
+    movie.add_view("main", camera="main")
+    movie.add_overlay(rows=[("power", "{rover/power:.2f} {rover/power.unit}"), ("mode", "{rover/mode}"),
+                            ("note", "–|–"), ("at", "{run:.0f}")], font_size=12)
+    source = open_run(path)
+    try:
+        stage = Stage(movie, source)
+        for viewport in source.session.viewports.values():
+            viewport.remove_table("t")
+        picture = stage.picture(8)
+        assert np.array_equal(picture, wanted)
+        assert not np.array_equal(stage.picture(7), wanted)
+        movie.add_overlay(rows=[("x", "{rover/watts:.2f}")])
+        with pytest.raises(dspace.InvalidArgument, match="'rover/watts'.*'rover/power'"):
+            Stage(movie, source).picture(3)
+    finally:
+        source.close()
+
+
+def test_overlays_of_what_has_no_value(scene):
+    from dspace.movies_draw import fill
+    from dspace.telemetry import overlay_value
+    scene.telemetry.add("a", unit="m")
+    scene.telemetry.add("b", value=2.0)
+    assert fill("{a:.2f} {a.unit} {b:.1f}", lambda key: overlay_value(scene, key)) == "– m 2.0"
+    assert overlay_value(scene, "c") is None

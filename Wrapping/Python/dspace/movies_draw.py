@@ -14,6 +14,7 @@ from dspace._fields import shown
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath
 from dspace.poses import Pose
+from dspace.telemetry import overlay_value
 
 _FIELD = re.compile(r"\{([^{}:]*)(?::([^{}]*))?\}")
 
@@ -65,7 +66,8 @@ def open_run(run):
 
 
 def _of_playback(playback):
-    telemetry = getattr(playback, "telemetry", None)
+    # A recording's telemetry is in its scenes.
+    telemetry = None if hasattr(playback, "file") else getattr(playback, "telemetry", None)
     times = sorted(playback.times)
     # What was there before the simulation first set a time has the time 0 that nobody set.
     steps = [time for _, time in playback.file.steps()] if hasattr(playback, "file") else []
@@ -214,11 +216,14 @@ class Stage:
         telemetry = self.source.telemetry()
         if key in telemetry:
             return telemetry[key]
+        value = overlay_value(scene, key)
+        if value is not None:
+            return value
         path, _, axis = key.rpartition(".")
         if path and axis in ("x", "y", "z"):
             return float(scene.frame(path).world_pose.position["xyz".index(axis)])
         raise InvalidArgument(f"overlay: there is no value {key!r}; accepted: movie, run, FRAME.x of y and z, "
-                              + (", ".join(map(repr, telemetry)) or "and the source's telemetry"), key)
+                              + (", ".join(map(repr, [*telemetry, *scene.telemetry][:50])) or "telemetry"), key)
 
 
 def fill(text, values):

@@ -305,3 +305,24 @@ class Telemetry(Mapping):
             return f"<dspace.Telemetry of scene {self._scene.name!r}, {len(self)} channels>"
         except Exception:  # a repr never raises
             return f"<dspace.Telemetry of scene {self._scene.name!r}, gone>"
+
+
+class NoValue:
+    """What overlays write for a channel that has no value, whatever the format."""
+
+    def __format__(self, _):
+        return "–"
+
+
+def overlay_value(scene, key):
+    """What an overlay shows of a scene's channel "rover/power", or of its unit, "rover/power.unit": a float, a
+    str or a NoValue. None: there is no such channel."""
+    for name, of in ((key, None), (key[:-5], "unit")) if key.endswith(".unit") else ((key, None),):
+        try:
+            info = scene.telemetry[name].info
+        except NotFound:
+            continue
+        if of == "unit":
+            return info.channel.unit
+        return value_of(info) if info.state else NoValue()
+    return None
