@@ -54,8 +54,10 @@ class Simulation:
         self._folder = tempfile.TemporaryDirectory(prefix="dspace-rover-") if folder is None else None
         path = pathlib.Path(folder or self._folder.name) / "ground.asc"
         edge = -reach - 0.5 * SPACING
-        path.write_text(f"ncols {POSTS}\nnrows {POSTS}\nxllcorner {edge}\nyllcorner {edge}\ncellsize {SPACING}\n"
-                        + "\n".join(" ".join(f"{v:.6f}" for v in row) for row in z) + "\n")
+        text = (f"ncols {POSTS}\nnrows {POSTS}\nxllcorner {edge}\nyllcorner {edge}\ncellsize {SPACING}\n"
+                + "\n".join(" ".join(f"{v:.6f}" for v in row) for row in z) + "\n")
+        if not path.is_file() or path.read_text() != text:  # one that a server or a recording knows stays what it is
+            path.write_text(text)
         return self.scene.add_terrain(path, name="ground", mode="clipmap", vertical_datum="relative",
                                       crs='LOCAL_CS["ground",UNIT["metre",1]]', vertical_scale=1.0,
                                       color=(0.62, 0.48, 0.38))
@@ -111,7 +113,7 @@ def main():
     parser.add_argument("--record", type=pathlib.Path, metavar="FILE", help="records the run; the ground beside it")
     parser.add_argument("--out", type=pathlib.Path, help="a picture at the end")
     options = parser.parse_args()
-    session = dspace.connect(options.connect) if options.connect else dspace.Session()
+    session = dspace.connect(options.connect, name="rover mobility") if options.connect else dspace.Session()
     folder = options.folder
     if options.record and folder is None:
         folder = options.record.resolve().parent  # a recording names the ground's file
