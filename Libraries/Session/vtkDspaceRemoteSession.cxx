@@ -1,6 +1,7 @@
 #include "vtkDspaceRemoteSession.h"
 
 #include <deque>
+#include <utility>
 
 #include <dspace/session/ErrorReply.h>
 #include <dspace/session/RemoteClient.h>
@@ -13,6 +14,7 @@ struct vtkDspaceRemoteSession::Internals {
   dspace::session::RemoteClientOptions options;
   std::unique_ptr<dspace::session::RemoteClient> client;
   std::deque<std::string> events;
+  std::string failed; // what TakeReply says where there is no client to ask
 
   template<class Work> std::string With(Work work) {
     if (!this->client) {
@@ -50,16 +52,52 @@ void vtkDspaceRemoteSession::SetOnlyChanges(bool onlyChanges) {
   this->Impl->options.onlyChanges = onlyChanges;
 }
 
+std::string vtkDspaceRemoteSession::SetPace(double rate) {
+  return dspace::session::Catch([&] {
+           if (this->Impl->client) {
+             this->Impl->client->SetPace(rate);
+           }
+           this->Impl->options.pace = rate;
+           return dspace::v1::Reply();
+         })
+      .error()
+      .message();
+}
+
 std::string vtkDspaceRemoteSession::Connect(const std::string& address, const std::string& name) {
+  std::string reply = this->ConnectLater(address, name);
+  int state = 0;
+  while (this->Impl->client && (state = this->WaitToConnect(1e6)) == 0) {
+  }
+  return state < 0 ? this->TakeReply() : reply;
+}
+
+std::string vtkDspaceRemoteSession::ConnectLater(const std::string& address,
+                                                 const std::string& name) {
+  using dspace::session::RemoteClient;
   this->Impl->options.address = address;
   this->Impl->options.name = name;
   return dspace::session::Catch([&] {
            this->Impl->client.reset();
            this->Impl->client =
-               std::make_unique<dspace::session::RemoteClient>(this->Impl->options);
+               std::make_unique<RemoteClient>(this->Impl->options, RemoteClient::Later());
            return dspace::v1::Reply();
          })
       .SerializeAsString();
+}
+
+int vtkDspaceRemoteSession::WaitToConnect(double seconds) {
+  bool connected = false;
+  const std::string reply = this->Impl->With([&](dspace::session::RemoteClient& client) {
+    connected = client.WaitToOpen(seconds);
+    return dspace::v1::Reply();
+  });
+  if (!reply.empty()) {
+    this->Impl->client.reset();
+    this->Impl->failed = reply;
+    return -1;
+  }
+  return connected ? 1 : 0;
 }
 
 std::string vtkDspaceRemoteSession::Execute(const std::string& bytes) {
@@ -82,6 +120,42 @@ std::string vtkDspaceRemoteSession::Flush() {
   return this->Impl->With([](dspace::session::RemoteClient& client) { return client.Flush(); });
 }
 
+void vtkDspaceRemoteSession::Begin(const std::string& bytes, bool reply) {
+  this->Impl->failed = this->Impl->With([&](dspace::session::RemoteClient& client) {
+    dspace::v1::Command command;
+    if (!command.ParseFromString(bytes)) {
+      return dspace::session::NotACommand();
+    }
+    client.Begin(std::move(command), reply);
+    return dspace::v1::Reply();
+  });
+}
+
+void vtkDspaceRemoteSession::BeginFlush() {
+  this->Impl->failed = this->Impl->With([&](dspace::session::RemoteClient& client) {
+    client.BeginFlush();
+    return dspace::v1::Reply();
+  });
+}
+
+bool vtkDspaceRemoteSession::Wait(double seconds) {
+  return !this->Impl->failed.empty() || !this->Impl->client || this->Impl->client->Wait(seconds);
+}
+
+std::string vtkDspaceRemoteSession::TakeReply() {
+  if (!this->Impl->failed.empty()) {
+    return std::exchange(this->Impl->failed, std::string());
+  }
+  return this->Impl->With([](dspace::session::RemoteClient& client) { return client.Take(); });
+}
+
+void vtkDspaceRemoteSession::Abandon() {
+  this->Impl->failed.clear();
+  if (this->Impl->client) {
+    this->Impl->client->Abandon();
+  }
+}
+
 std::string vtkDspaceRemoteSession::TakeEvent(double wait) {
   auto& events = this->Impl->events;
   if (events.empty() && this->Impl->client) {
@@ -102,6 +176,10 @@ std::string vtkDspaceRemoteSession::TakeEvent(double wait) {
 long long vtkDspaceRemoteSession::GetPosesLeftOut() {
   return this->Impl->client ? static_cast<long long>(this->Impl->client->GetCounts().posesLeftOut)
                             : 0;
+}
+
+int vtkDspaceRemoteSession::GetServerCommandSet() {
+  return this->Impl->client ? int(this->Impl->client->GetServer().commandSet) : 0;
 }
 
 void vtkDspaceRemoteSession::Close() {

@@ -30,19 +30,36 @@ public:
   void SetTakeOver(bool takeOver);
   /// Poses that the server has already are not sent again. Default on.
   void SetOnlyChanges(bool onlyChanges);
+  /// Simulation seconds a wall second, 0 (the default) for none; also while connected. Returns what
+  /// went wrong, or an empty string.
+  std::string SetPace(double rate);
 
   /// To "host:port" or "unix:PATH", under a name for people.
   std::string Connect(const std::string& address, const std::string& name);
+  /// The same in two parts, for whoever must do other things meanwhile: ConnectLater, then
+  /// WaitToConnect, up to so many seconds each time, until it returns 1 (connected) or -1 (no:
+  /// TakeReply says why).
+  std::string ConnectLater(const std::string& address, const std::string& name);
+  int WaitToConnect(double seconds);
   /// Carries out a serialized Command and returns the serialized Reply.
   std::string Execute(const std::string& command);
   /// The same without waiting: the reply is empty, or an earlier command's error.
   std::string Send(const std::string& command);
   /// Waits until everything sent is done.
   std::string Flush();
+  /// These three in parts: Begin (without a reply: Send) or BeginFlush; Wait, up to so many seconds
+  /// each time, until it is true; TakeReply. Abandon waits no longer, see RemoteClient.h.
+  void Begin(const std::string& command, bool reply);
+  void BeginFlush();
+  bool Wait(double seconds);
+  std::string TakeReply();
+  void Abandon();
   /// The next ViewerEvent, serialized; waits up to so many seconds. Empty: there is none.
   std::string TakeEvent(double wait);
   /// Pose updates that were left out because nothing had changed.
   long long GetPosesLeftOut();
+  /// How far the server's command set goes (COMMAND_SET_VERSION in service.proto); 0: not known.
+  int GetServerCommandSet();
   void Close();
 
 protected:

@@ -15,6 +15,8 @@ SILENT = {"set_time", "set_poses", "append_trail", "set_joints", "set_tilt", "se
           "set_object_visible", "set_material", "set_object_offset", "set_light", "track_wheels", "set_telemetry",
           "set_telemetry_texts"}
 
+SLICE = 0.1  # [s] of a wait without hearing signals
+
 
 class RemoteClient(LocalClient):
     """Hands commands to a server."""
@@ -25,7 +27,7 @@ class RemoteClient(LocalClient):
         self.link = link
         self.address = address
         self.wait = True
-        self.pace = None  # (rate, simulation time, wall time) once time was set
+        self.pace = None
 
     def local(self):
         raise Unsupported(f"the session is in the server at {self.address}: its VTK objects are there; "
@@ -39,23 +41,18 @@ class RemoteClient(LocalClient):
 
     def _carry(self, command):
         link = self._open()
-        kind = command.WhichOneof("command")
-        if kind == "set_time":
-            self._keep_pace(command.set_time.time_s)
-        if not self.wait and kind in SILENT:
-            return to_reply(link.Send(command.SerializeToString()))
-        return to_reply(link.Execute(command.SerializeToString()))
+        link.Begin(command.SerializeToString(), self.wait or command.WhichOneof("command") not in SILENT)
+        return self._take(link)
 
-    def _keep_pace(self, time_s):
-        if self.pace is None:
-            return
-        rate, began, wall = self.pace
-        if began is None or time_s < began:
-            self.pace = (rate, time_s, time.monotonic())
-            return
-        ahead = (time_s - began) / rate - (time.monotonic() - wall)
-        if ahead > 0:
-            time.sleep(ahead)
+    @staticmethod
+    def _take(link):
+        try:
+            while not link.Wait(SLICE):  # between two waits Python hears a Ctrl-C
+                pass
+        except BaseException:
+            link.Abandon()
+            raise
+        return to_reply(link.TakeReply())
 
     def tell(self, event):
         self._open()
@@ -65,12 +62,17 @@ class RemoteClient(LocalClient):
         link = self._open()
         event = self.events.take()
         if event is None:
-            data = to_bytes(link.TakeEvent(wait))
+            end = time.monotonic() + wait
+            data = to_bytes(link.TakeEvent(min(wait, SLICE)))
+            while not data and time.monotonic() < end:
+                data = to_bytes(link.TakeEvent(min(SLICE, max(0.0, end - time.monotonic()))))
             event = service_pb2.ViewerEvent.FromString(data) if data else None
         return event
 
     def flush(self):
-        self._finish(pb.Command(), to_reply(self._open().Flush()))
+        link = self._open()
+        link.BeginFlush()
+        self._finish(pb.Command(), self._take(link))
 
     def close(self):
         if self.link is not None:
@@ -109,9 +111,10 @@ class RemoteSession(Session):
 
     @property
     def pace(self):
-        """Simulation seconds a wall second: setting a scene's time then waits until it is due. None
-        (the default): as fast as it goes."""
-        return None if self._client.pace is None else self._client.pace[0]
+        """Simulation seconds a wall second: setting a scene's time then waits until it is due, counted
+        from the first time that is set after this, and anew from one that goes back. It never goes on
+        early; a simulation that was late catches up. None (the default): as fast as it goes."""
+        return self._client.pace
 
     @pace.setter
     def pace(self, rate):
@@ -119,7 +122,8 @@ class RemoteSession(Session):
             rate = number(rate, "the pace", "session")
             if not 0 < rate < float("inf"):
                 refuse("session", "the pace", rate, "None, or a finite number above 0")
-        self._client.pace = None if rate is None else (rate, None, 0.0)
+        self._client._open().SetPace(0.0 if rate is None else rate)
+        self._client.pace = rate
 
     @property
     def poses_left_out(self):
@@ -166,7 +170,12 @@ def connect(address, certificate=None, key=None, authority=None, insecure=False,
     text(name, "the name", label)
     link.SetTakeOver(flag(take_over, "take_over", label))
     link.SetOnlyChanges(flag(only_changes, "only_changes", label))
-    reply = to_reply(link.Connect(address, name))
+    reply = to_reply(link.ConnectLater(address, name))
+    state = -1 if reply.HasField("error") else 0
+    while state == 0:
+        state = link.WaitToConnect(SLICE)
+        if state < 0:
+            reply = to_reply(link.TakeReply())
     if reply.HasField("error"):
         raise make_error(reply.error)
     return RemoteSession(RemoteClient(link, address))

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <random>
 
+#include <grpcpp/impl/codegen/sync_stream.h>
+
 #include <dspace/Error.h>
 
 namespace dspace::session {
@@ -42,8 +44,8 @@ void Raise(const v1::Error& error) {
               text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text);
 }
 
-std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address,
-                                           const LinkSecurity& security) {
+std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const LinkSecurity& security,
+                                           double silence_s) {
   const LinkAddress parsed = LinkAddress::Parse(address);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);                  // pictures
@@ -52,8 +54,12 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address,
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
-  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 20000);
-  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10000);
+  // A connection that is dead without a word is found out by asking, also while nothing is sent.
+  const int silence_ms = int(std::clamp(1e3 * silence_s, 1.0, 1e9));
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, silence_ms);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(silence_ms, 10000));
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 0);
+  arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   // Steps are large: fewer and larger reads and frames.
   arguments.SetInt(GRPC_ARG_TCP_READ_CHUNK_SIZE, LinkReadBytes);
@@ -103,14 +109,37 @@ std::string RandomKey() {
   return key;
 }
 
+grpc::ByteBuffer ToBytes(const v1::DriveRequest& request) {
+  const std::size_t size = request.ByteSizeLong();
+  grpc_slice bytes = grpc_slice_malloc(size);
+  request.SerializeWithCachedSizesToArray(GRPC_SLICE_START_PTR(bytes));
+  const grpc::Slice slice(bytes, grpc::Slice::STEAL_REF);
+  return grpc::ByteBuffer(&slice, 1);
+}
+
 RemoteClient::Link::Link(const RemoteClientOptions& from) : options(from), key(RandomKey()) {
   if (!(this->options.timeout_s > 0 && this->options.timeout_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
                 "the timeout is " + std::to_string(this->options.timeout_s) +
                     " s; accepted: above 0, up to 1e6");
   }
-  this->channel = MakeChannel(this->options.address, this->options.security);
-  this->stub = v1::Dspace::NewStub(this->channel);
+  if (!(this->options.silence_s > 0 && this->options.silence_s <= 1e6)) {
+    throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
+                "the silence is " + std::to_string(this->options.silence_s) +
+                    " s; accepted: above 0, up to 1e6");
+  }
+  this->pacer.SetRate(this->options.pace);
+  this->channel =
+      MakeChannel(this->options.address, this->options.security, this->options.silence_s);
+}
+
+// The generated stub's Drive, but for messages that are in bytes already.
+std::unique_ptr<RemoteClient::Link::Stream> RemoteClient::Link::Call(grpc::ClientContext& context) {
+  static const grpc::internal::RpcMethod method("/dspace.v1.Dspace/Drive",
+                                                grpc::internal::RpcMethod::BIDI_STREAMING);
+  return std::unique_ptr<Stream>(
+      grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, v1::DriveReply>::Create(
+          this->channel.get(), method, &context));
 }
 
 void RemoteClient::Link::Break(v1::Error::Kind kind, const std::string& message) {
@@ -181,10 +210,11 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
     open.mutable_open()->set_key(this->key);
     open.mutable_open()->set_take_over(this->options.takeOver && !this->opened);
     open.mutable_open()->set_acknowledged(this->acknowledged);
+    open.mutable_open()->set_command_set(v1::COMMAND_SET_VERSION);
   }
-  stream = this->stub->Drive(&drive);
+  stream = this->Call(drive);
   v1::DriveReply message;
-  const bool answered = stream->Write(open) && stream->Read(&message);
+  const bool answered = stream->Write(ToBytes(open)) && stream->Read(&message);
   bool good = answered && message.has_opened();
   bool over = !answered; // there is a status, or soon
   if (good) {
@@ -196,13 +226,13 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
   if (good) {
     writer = std::thread([&] { this->Write(*stream); });
     over = true;
-    while (stream->Read(&message)) {
-      const std::lock_guard lock(this->mutex);
-      this->Hear(message);
-      if (this->broken) {
-        over = false;
-        break;
+    while (over && stream->Read(&message)) {
+      {
+        const std::lock_guard lock(this->mutex);
+        this->Hear(message);
+        over = !this->broken;
       }
+      this->changed.notify_all(); // without the mutex, which whoever wakes up wants
     }
   }
   {
@@ -236,7 +266,7 @@ bool RemoteClient::Link::Resume(const v1::Opened& message) {
   }
   this->counts.reconnections += this->opened ? 1 : 0;
   this->opened = this->connected = true;
-  this->maximumMessage = message.maximum_message();
+  this->server = {message.server(), message.command_set(), message.maximum_message()};
   this->next = 0; // what has come there already is not sent again
   while (this->next < this->pending.size() && this->pending[this->next].number <= message.last()) {
     ++this->next;
@@ -260,7 +290,7 @@ void RemoteClient::Link::Write(Stream& stream) {
       options.set_buffer_hint(); // what follows takes it along
     }
     lock.unlock();
-    const bool written = stream.Write(*request, options);
+    const bool written = stream.Write(request, options);
     lock.lock();
     if (!written) {
       return; // reading ends too

@@ -10,6 +10,7 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <dspace/session/Pacer.h>
 #include <dspace/session/PoseFilter.h>
 #include <dspace/session/RemoteClient.h>
 #include <dspace/session/service.grpc.pb.h>
@@ -18,6 +19,11 @@ namespace dspace::session {
 
 using LinkClock = std::chrono::steady_clock;
 
+inline LinkClock::time_point After(double seconds) {
+  return LinkClock::now() +
+         std::chrono::duration_cast<LinkClock::duration>(std::chrono::duration<double>(seconds));
+}
+
 // The user's thread puts commands into `pending`; one thread keeps the connection and hears
 // answers, another writes. What is pending stays until it is done, so that it can be sent again.
 struct RemoteClient::Link {
@@ -25,13 +31,12 @@ struct RemoteClient::Link {
   struct Pending {
     std::uint64_t number;
     std::size_t bytes;
-    std::shared_ptr<const v1::DriveRequest> request;
+    grpc::ByteBuffer request; // a DriveRequest, in bytes: it may be sent more than once
   };
-  using Stream = grpc::ClientReaderWriter<v1::DriveRequest, v1::DriveReply>;
+  using Stream = grpc::ClientReaderWriter<grpc::ByteBuffer, v1::DriveReply>;
 
   RemoteClientOptions options;
   std::shared_ptr<grpc::Channel> channel;
-  std::unique_ptr<v1::Dspace::Stub> stub;
   std::string key; // of this client, at random
   std::thread thread;
 
@@ -45,24 +50,40 @@ struct RemoteClient::Link {
   std::uint64_t done = 0;         // by the server
   std::uint64_t acknowledged = 0; // the last number whose reply has come
   std::uint64_t awaited = 0;      // by the user's thread; 0: none
-  v1::Reply reply;                // to it
+  std::uint64_t abandoned = 0;    // by it: the reply is dropped
+  v1::Reply reply;                // to `awaited`, or whatever Take is to return
   v1::Reply failure;              // the first error of what nobody waited for
   v1::Reply unasked;              // warnings and frame events of the same
   std::deque<v1::ViewerEvent> events;
   PoseFilter filter;
+  v1::DriveRequest scratch; // what is put into bytes
   Counts counts;
   grpc::ClientContext* context = nullptr; // of the stream that there is
-  std::size_t maximumMessage = 0;         // bytes of a command that the server takes
-  bool opened = false;                    // once
-  bool connected = false;                 // now
-  bool broken = false;                    // for good, because of
+  ServerInfo server;
+  bool opened = false;    // once
+  bool connected = false; // now
+  bool broken = false;    // for good, because of
   v1::Error error;
   bool ending = false;
 
+  // What the user's thread is about, and its own.
+  enum class Doing { Nothing, Pace, Room, Reply, Flush, Done };
+  Doing doing = Doing::Nothing;
+  v1::Command command; // of Pace and Room
+  std::size_t bytes = 0;
+  bool noReply = false;
+  LinkClock::time_point due;      // of Pace
+  LinkClock::time_point deadline; // of all others
+  Pacer pacer;
+
   // For the user's thread, with the mutex held.
   v1::Reply Fault(v1::Error::Kind kind, const std::string& message);
-  v1::Reply Put(std::unique_lock<std::mutex>& lock, v1::Command&& command, bool noReply,
-                std::uint64_t* number);
+  void Finish(v1::Reply&& with);
+  void Admit();
+  void Put();
+  bool WaitForRoom(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
+  bool WaitForReply(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
+  bool WaitForFlush(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
   void MoveUnasked(v1::Reply& reply);
   void Break(v1::Error::Kind kind, const std::string& message);
 
@@ -71,6 +92,7 @@ struct RemoteClient::Link {
   // The thread: connects, again and again.
   void Keep();
   bool Drive(grpc::Status& status); // one stream; whether it was opened
+  std::unique_ptr<Stream> Call(grpc::ClientContext& context);
   void Write(Stream& stream);
   void Hear(v1::DriveReply& message);
   void TakeReply(std::uint64_t number, v1::Reply& reply);
@@ -80,11 +102,13 @@ struct RemoteClient::Link {
 // Throws the Error that the message holds.
 [[noreturn]] void Raise(const v1::Error& error);
 // Channels of both kinds of clients.
-std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address,
-                                           const LinkSecurity& security);
+std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const LinkSecurity& security,
+                                           double silence_s = 20);
 // What a status means to a user. Sets `final` where trying again is of no use.
 v1::Error ToError(const std::string& address, const grpc::Status& status, bool& final);
 std::string RandomKey();
+// The message as it goes over the wire, written once.
+grpc::ByteBuffer ToBytes(const v1::DriveRequest& request);
 
 } // namespace dspace::session
 

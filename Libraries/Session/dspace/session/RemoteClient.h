@@ -21,6 +21,10 @@ struct RemoteClientOptions {
   double timeout_s = 30;   // of every wait: for the connection, a reply, room to send; > 0, to 1e6
   bool takeOver = false;   // drives even if somebody else does
   bool onlyChanges = true; // poses that the server has already are not sent again
+  // Simulation seconds a wall second: a command that sets a scene's time is sent once it is due,
+  // counted from the first one (and anew from one that goes back). 0: as fast as it goes.
+  double pace = 0;
+  double silence_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
   // What may be on its way without an answer; a sender that is ahead of either waits.
   std::size_t windowCommands = 1024;
   std::size_t windowBytes = 16 << 20;
@@ -35,6 +39,11 @@ public:
   // (somebody drives), Unsupported (another protocol), Io (nobody there, not let in),
   // DeadlineExceeded.
   explicit RemoteClient(const RemoteClientOptions& options);
+  // The same for whoever must do other things meanwhile: it throws what is wrong with the options,
+  // and WaitToOpen the rest. WaitToOpen waits so many seconds; true once it is connected.
+  struct Later {};
+  RemoteClient(const RemoteClientOptions& options, Later);
+  bool WaitToOpen(double seconds);
   ~RemoteClient(); // waits for nothing: Flush before
   RemoteClient(const RemoteClient&) = delete;
   RemoteClient& operator=(const RemoteClient&) = delete;
@@ -51,6 +60,20 @@ public:
   // of what nobody waited for.
   v1::Reply Flush();
 
+  // These three in parts, for whoever must do other things while they wait: Begin (or BeginFlush),
+  // then Wait, up to so many seconds each time, until it is true, then Take, which is what Execute,
+  // Send and Flush return. Abandon waits no longer: what was sent may yet be carried out, and its
+  // reply is dropped; Begin does that with what has not been taken.
+  void Begin(v1::Command command, bool reply = true);
+  void BeginFlush();
+  bool Wait(double seconds);
+  v1::Reply Take();
+  void Abandon();
+
+  // Simulation seconds a wall second, as in the options. Throws Error(InvalidArgument) for what is
+  // not finite or below 0.
+  void SetPace(double rate);
+
   // What viewers said since the last call, in order: each is handed to `hear`. They are there after
   // any reply; `wait_s` waits for the first. Returns how many. At most 10,000 wait; older ones go.
   std::size_t TakeEvents(const std::function<void(const v1::ViewerEvent&)>& hear,
@@ -63,6 +86,13 @@ public:
     std::uint64_t reconnections = 0;
   };
   Counts GetCounts() const;
+
+  struct ServerInfo {
+    std::string name;               // for people
+    unsigned commandSet = 0;        // its COMMAND_SET_VERSION (service.proto)
+    std::size_t maximumMessage = 0; // bytes of a command
+  };
+  ServerInfo GetServer() const; // of the last time that it was connected
 
 private:
   struct Link;

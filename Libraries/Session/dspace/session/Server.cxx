@@ -34,6 +34,9 @@ void Check(const ServerOptions& options) {
   if (!(options.maximumRate > 0)) {
     refuse("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
   }
+  if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
+    refuse("the silence", std::to_string(options.silence_s) + " s", "above 0, up to 1e6");
+  }
 }
 
 // gRPC would take a living server's socket away from it.
@@ -81,9 +84,10 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   quota.SetMaxThreads(int(options.maximumConnections) + 8);
   builder.SetResourceQuota(quota);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0); // two servers of one port are an error
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 20000);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10000);
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5000);
+  const int silence_ms = int(std::max(1.0, 1e3 * options.silence_s));
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, silence_ms);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(silence_ms, 10000));
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 200);
   builder.AddChannelArgument(GRPC_ARG_TCP_READ_CHUNK_SIZE, LinkReadBytes);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, LinkFrameBytes);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, LinkAheadBytes);
@@ -173,6 +177,7 @@ bool Server::Run(const SessionWork& work, double seconds) {
     v1::Reply reply = work.execute(task.command);
     lock.lock();
     ++hub.counts.commands;
+    hub.Keep(std::move(task.command), task.bytes);
     if (task.generation == hub.writer.generation) {
       hub.writer.done = task.number;
       hub.Answer(task.number, task.noReply, std::move(reply));

@@ -26,6 +26,7 @@ struct ServerOptions {
   // Bytes that wait for one client that does not read. Beyond, a viewer begins anew with a
   // snapshot, and a writer is cut off (it may come back with its key).
   std::size_t unreadBytes = 256 << 20;
+  double silence_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
 };
 
 // Serves one session to one writer and many viewers. What the session does, it does in the thread

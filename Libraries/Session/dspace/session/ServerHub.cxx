@@ -6,6 +6,8 @@ namespace dspace::session {
 namespace {
 
 constexpr std::size_t KeptReplies = 1024;
+constexpr std::size_t SpentCommands = 16;
+constexpr std::size_t SpentBytes = 1 << 20;                   // of each at most
 constexpr std::uint64_t TellEvery = 32;                       // commands without replies, at least
 constexpr std::size_t LargestReply = std::size_t(2000) << 20; // protobuf's own limit is 2 GiB
 
@@ -30,6 +32,12 @@ void Server::Hub::Acknowledge(std::uint64_t number) {
   while (!to.kept.empty() && to.kept.begin()->first <= number) {
     to.keptBytes -= to.kept.begin()->second.second;
     to.kept.erase(to.kept.begin());
+  }
+}
+
+void Server::Hub::Keep(v1::Command&& command, std::size_t bytes) {
+  if (this->spent.size() < SpentCommands && bytes <= SpentBytes) {
+    this->spent.push_back(std::move(command));
   }
 }
 
@@ -120,7 +128,7 @@ void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mu
   for (v1::Command& command : work.snapshot()) {
     message->mutable_snapshot()->add_command()->Swap(&command);
   }
-  message->mutable_snapshot();
+  message->mutable_snapshot()->set_command_set(v1::COMMAND_SET_VERSION);
   const std::size_t size = message->ByteSizeLong() + 64;
   lock.lock();
   ++this->counts.snapshots;

@@ -84,6 +84,7 @@ struct Server::Hub {
   std::condition_variable space; // for whoever queues
   std::deque<Task> tasks;
   std::size_t taskBytes = 0;
+  std::vector<v1::Command> spent; // carried out: their memory serves the next ones
   Writer writer;
   std::set<ViewerStream*> viewers;
   std::uint64_t sequence = 0; // of published commands
@@ -98,6 +99,7 @@ struct Server::Hub {
 
   // All of these with the mutex held.
   void Acknowledge(std::uint64_t number);
+  void Keep(v1::Command&& command, std::size_t bytes);
   void Answer(std::uint64_t number, bool noReply, v1::Reply reply);
   void TellDone();
   void PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size);

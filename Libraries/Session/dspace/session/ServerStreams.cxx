@@ -54,6 +54,7 @@ Status Server::Service::Hello(grpc::ServerContext*, const v1::HelloRequest* requ
   reply->set_writer(this->Hub_.writer.stream ? this->Hub_.writer.name : "");
   reply->set_viewers(std::uint32_t(this->Hub_.viewers.size()));
   reply->set_maximum_message(this->Hub_.options.maximumMessage);
+  reply->set_command_set(v1::COMMAND_SET_VERSION);
   return Status::OK;
 }
 
@@ -169,6 +170,7 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
   reply->mutable_opened()->set_resumed(resumed);
   reply->mutable_opened()->set_last(writer.queued);
   reply->mutable_opened()->set_maximum_message(hub.options.maximumMessage);
+  reply->mutable_opened()->set_command_set(v1::COMMAND_SET_VERSION);
   me->out.Put(std::move(reply), 64);
   for (const auto& [number, kept] : writer.kept) {
     me->out.Put(kept.first, kept.second);
@@ -224,8 +226,13 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
     hub.writer.queued = send.number();
     Task task{generation, send.number(), send.no_reply(), bytes, {}};
     task.command.Swap(send.mutable_command());
+    if (!hub.spent.empty()) {
+      send.mutable_command()->Swap(&hub.spent.back());
+      hub.spent.pop_back();
+    }
     hub.tasks.push_back(std::move(task));
     hub.taskBytes += bytes;
+    lock.unlock(); // whoever wakes up wants it
     hub.work.notify_one();
   }
   return Status::OK;

@@ -112,7 +112,12 @@ Watcher::Watcher(const WatcherOptions& options) : Link_(new Link) {
                     " s; accepted: above 0, up to 1e6");
   }
   link.options = options;
-  link.channel = MakeChannel(options.address, options.security);
+  if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
+    throw Error(Error::Kind::InvalidArgument, "server '" + options.address + "'",
+                "the silence is " + std::to_string(options.silence_s) +
+                    " s; accepted: above 0, up to 1e6");
+  }
+  link.channel = MakeChannel(options.address, options.security, options.silence_s);
   link.stub = v1::Dspace::NewStub(link.channel);
   link.thread = std::thread([&link] { link.Keep(); });
   std::unique_lock lock(link.mutex);

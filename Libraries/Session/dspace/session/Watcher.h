@@ -14,8 +14,9 @@ namespace dspace::session {
 struct WatcherOptions {
   std::string address; // see LinkAddress::Parse
   LinkSecurity security;
-  std::string name = "viewer";         // told to the server, for people; up to 256 bytes
-  double timeout_s = 30;               // for the first connection; > 0, to 1e6
+  std::string name = "viewer"; // told to the server, for people; up to 256 bytes
+  double timeout_s = 30;       // for the first connection; > 0, to 1e6
+  double silence_s = 20;       // a connection that says nothing for so long is asked; > 0, to 1e6
   std::size_t waitingBytes = 64 << 20; // of messages not taken yet; beyond, the server keeps them
 };
 
