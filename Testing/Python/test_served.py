@@ -92,6 +92,15 @@ def test_a_viewer_draws_the_same_picture(tmp_path):
             assert heard[0].answer.answer == "go"
 
 
+def test_who_was_taken_over_from_is_told(tmp_path):
+    with Served(tmp_path) as server, dspace.connect(server.address, name="first") as first:
+        first.scene()
+        with dspace.connect(server.address, name="second", take_over=True) as second:
+            second.scene()  # one that there is
+            with pytest.raises(dspace.AlreadyExists, match="'second' has taken over"):
+                first.scene()
+
+
 def test_a_simulations_death_leaves_the_last_picture(tmp_path):
     drive = ("import dspace, sys, time\n"
              "session = dspace.connect(sys.argv[1], name='doomed')\n"

@@ -99,6 +99,13 @@ def test_it_stays_for_the_next_simulation(tmp_path):
                     assert watch.process.poll() is None
             while watch.line() != "dspace watch: simulation 'second' has gone; waiting":
                 assert watch.process.poll() is None
+            server.kill()  # while nobody drives
+            while watch.line() != "dspace watch: the server has gone; waiting":
+                assert watch.process.poll() is None
+            with Served(tmp_path), dspace.connect(server.address, name="third", timeout=20.0) as session:
+                build(session).time = 8.0
+                while not watch.line().endswith(": 8.000 s"):
+                    assert watch.process.poll() is None
 
 
 @pytest.mark.parametrize("arguments, text", [

@@ -48,8 +48,9 @@ class Session(ViewerEvents):
         command.create_scene.no_lights = not flag(lights, "lights", f"scene {name!r}")
         try:
             self._client.execute(command)
-        except AlreadyExists:
-            pass
+        except AlreadyExists as error:
+            if not error.object.startswith("scene"):
+                raise  # that somebody else has taken a server over
         return Scene(self._client, name)
 
     @property

@@ -111,15 +111,15 @@ def run(options):
     with watch(options.address, options.cert, options.key, options.ca, options.insecure) as watcher:
         os.makedirs(options.out, exist_ok=True)
         pictures = Pictures(watcher, options)
-        driver, due, told = watcher.simulation, time.monotonic(), ""
+        driver, served, due, told = watcher.simulation, True, time.monotonic(), ""
         while not stop and pictures.count != options.count:
             watcher.update(min(0.2, max(0.0, due - time.monotonic())))
             if watcher.trouble != told:
                 told = watcher.trouble
                 if told:
                     print(f"dspace: note: the pictures lack what could not be done here: {told}", file=sys.stderr)
-            gone = what_has_gone(watcher, driver)
-            driver = watcher.simulation or driver
+            gone = what_has_gone(watcher, driver, served)
+            driver, served = watcher.simulation or driver, watcher.connected
             if gone or time.monotonic() >= due:
                 pictures.save()
                 due = max(due + options.every, time.monotonic())
@@ -133,11 +133,11 @@ def run(options):
         return end(pictures, "ended")
 
 
-def what_has_gone(watcher, driver):
+def what_has_gone(watcher, driver, served):
     """In words; None while all that was there is there."""
-    if driver is None or watcher.simulation is not None:
-        return None
-    return f"simulation {driver!r} has gone" if watcher.connected else "the server has gone"
+    if not watcher.connected:
+        return "the server has gone" if served else None
+    return None if driver is None or watcher.simulation is not None else f"simulation {driver!r} has gone"
 
 
 def end(pictures, why):
