@@ -3,6 +3,8 @@
 #define DSPACE_TERRAIN_STREAMEDTERRAIN_H
 
 #include <array>
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -110,9 +112,13 @@ public:
   // scene's frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
   void AddTracks(const std::vector<TrackAddition>& additions) const;
   void ClearTracks() const;
+  // Throws what WheelTracks::Restore throws, and Error(Unsupported) on a body.
+  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn = false) const;
   // See TrackFile.h. What is loaded is added; a wheel of its name goes on with it.
   void SaveTracks(const std::string& path) const;
-  void LoadTracks(const std::string& path) const;
+  // Throws Error(Resource) for a file of more contacts than `most`.
+  void LoadTracks(const std::string& path,
+                  std::size_t most = std::numeric_limits<std::size_t>::max()) const;
   const WheelTracks& Tracks() const; // throws Error(Unsupported) on a body
   // The same ground as it was before all wheels; lives as long as this.
   const StreamedTerrain& Undisturbed() const;

@@ -50,6 +50,12 @@ void StreamedTerrain::AddTracks(const std::vector<TrackAddition>& additions) con
       this->TrackPosts_->RectanglesOf(this->Tracks_->Add(additions)), MostRectangles));
 }
 
+void StreamedTerrain::RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn) const {
+  this->Tracks();
+  this->Pyramid_->Invalidate(JoinRectangles(
+      this->TrackPosts_->RectanglesOf(this->Tracks_->Restore(strokes, goesOn)), MostRectangles));
+}
+
 void StreamedTerrain::ClearTracks() const {
   this->Tracks();
   this->Pyramid_->Invalidate(this->TrackPosts_->RectanglesOf(this->Tracks_->Clear()));
@@ -61,11 +67,22 @@ void StreamedTerrain::SaveTracks(const std::string& path) const {
   });
 }
 
-void StreamedTerrain::LoadTracks(const std::string& path) const {
+void StreamedTerrain::LoadTracks(const std::string& path, std::size_t most) const {
   this->Tracks();
-  this->AddTracks(ReadTracks(path, this->Info().crs, [this](const Eigen::Vector2d& p) {
-    return Eigen::Vector2d(this->Frame_->MapToScene({p.x(), p.y(), 0.0}).head<2>());
-  }));
+  const std::vector<TrackAddition> tracks =
+      ReadTracks(path, this->Info().crs, [this](const Eigen::Vector2d& p) {
+        return Eigen::Vector2d(this->Frame_->MapToScene({p.x(), p.y(), 0.0}).head<2>());
+      });
+  std::size_t contacts = 0;
+  for (const TrackAddition& track : tracks) {
+    contacts += track.contacts.size();
+  }
+  if (contacts > most) {
+    throw Error(Error::Kind::Resource, "file '" + path + "'",
+                "its tracks have " + std::to_string(contacts) + " contacts; accepted: up to " +
+                    std::to_string(most) + " of a file");
+  }
+  this->AddTracks(tracks);
 }
 
 std::array<double, 2> StreamedTerrain::DrawnHeights() const {

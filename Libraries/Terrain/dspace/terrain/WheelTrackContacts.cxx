@@ -11,13 +11,12 @@ namespace {
 
 constexpr double LongestLine = 1.0; // [m]
 constexpr double Turn = 0.0087;     // [rad] of headings
-constexpr std::size_t MostSkipped = 64;
-constexpr double Farthest = 1e9; // [m]
+constexpr double Farthest = 1e9;    // [m]
 
 } // namespace
 
-void WheelTracks::Check(const TrackAddition& addition) const {
-  const std::string track = "track '" + addition.name + "' on " + this->Name_;
+void WheelTracks::Check(const TrackStroke& stroke) const {
+  const std::string track = "track '" + stroke.name + "' on " + this->Name_;
   const auto require = [&track](bool holds, const std::string& what, double value,
                                 const std::string& accepted) {
     if (!holds) {
@@ -25,7 +24,7 @@ void WheelTracks::Check(const TrackAddition& addition) const {
                   what + " is " + std::to_string(value) + "; accepted: " + accepted);
     }
   };
-  const TrackProfile& p = addition.profile;
+  const TrackProfile& p = stroke.profile;
   const auto within = [](double v, double most) { return v >= 0.0 && v <= most; };
   require(p.width > 0.0 && p.width <= 10.0, "its width", p.width, "more than 0, at most 10 m");
   require(within(p.wall, 2.0), "the width of its walls", p.wall, "0 to 2 m");
@@ -34,7 +33,7 @@ void WheelTracks::Check(const TrackAddition& addition) const {
   require(within(p.treadDepth, p.MostTread), "its tread's depth", p.treadDepth, "0 to 0.25 m");
   require(p.treadPitch == 0.0 || (p.treadPitch >= 1e-3 && p.treadPitch <= 100.0),
           "its tread's pitch", p.treadPitch, "0 (none) or 0.001 to 100 m");
-  for (const TrackContact& c : addition.contacts) {
+  const auto check = [&](const TrackContact& c) {
     for (const double value : c.place) {
       require(std::abs(value) <= Farthest, "a coordinate of a contact", value,
               "finite numbers up to 1e9 m");
@@ -43,7 +42,9 @@ void WheelTracks::Check(const TrackAddition& addition) const {
     require(!std::isinf(c.heading), "the heading of a contact", c.heading, "a finite number");
     require(std::isnan(c.rolled) || std::abs(c.rolled) <= Farthest, "the distance rolled", c.rolled,
             "finite numbers up to 1e9 m");
-  }
+  };
+  std::for_each(stroke.contacts.begin(), stroke.contacts.end(), check);
+  std::for_each(stroke.skipped.begin(), stroke.skipped.end(), check);
 }
 
 WheelTracks::Draft WheelTracks::Begin(const TrackAddition& addition) const {

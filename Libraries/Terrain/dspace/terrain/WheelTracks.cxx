@@ -67,11 +67,17 @@ TrackSegment WheelTracks::SegmentOf(const Stroke& stroke, std::size_t index) con
   return {stroke.profile, Whole(stroke.contacts[index]), Whole(stroke.contacts[next])};
 }
 
-// At most: of its new contacts and of every cell that they reach.
-std::size_t WheelTracks::CostOf(const Draft& draft) const {
-  std::size_t bytes = draft.stroke == this->Strokes_.size() ? StrokeBytes : 0;
+// At most, and no more where all its lines are new: of its new contacts and of every cell that they
+// reach. `taken`: new cells of drafts before it.
+std::size_t WheelTracks::CostOf(const Draft& draft, std::unordered_set<Cell>& taken) const {
+  const bool isNew = draft.stroke >= this->Strokes_.size();
+  const std::size_t there =
+      isNew ? 0 : this->Strokes_[draft.stroke].contacts.size() - draft.kept; // of its contacts
+  std::size_t bytes = isNew ? StrokeBytes : 0;
+  bytes += (draft.contacts.size() - there) * ContactBytes;
   std::vector<Cell> cells;
-  for (std::size_t i = 0; i < draft.contacts.size(); ++i) {
+  const std::size_t lines = std::max<std::size_t>(draft.contacts.size(), 2) - 1;
+  for (std::size_t i = 0; i < lines; ++i) {
     const std::size_t next = std::min(i + 1, draft.contacts.size() - 1);
     const TrackSegment segment(draft.profile, Whole(draft.contacts[i]),
                                Whole(draft.contacts[next]));
@@ -80,27 +86,72 @@ std::size_t WheelTracks::CostOf(const Draft& draft) const {
       return this->Options_.byteBudget + 1; // a line around the world
     }
     range.ForEach([&](Cell cell) { cells.push_back(cell); });
-    bytes += ContactBytes;
   }
   bytes += cells.size() * EntryBytes;
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   for (const Cell cell : cells) {
-    bytes += this->Cells_.count(cell) ? 0 : CellBytes;
+    bytes += !this->Cells_.count(cell) && taken.insert(cell).second ? CellBytes : 0;
   }
   return bytes;
+}
+
+void WheelTracks::RequireRoom(std::size_t cost) const {
+  if (this->Bytes_ + cost > this->Options_.byteBudget) {
+    throw Error(Error::Kind::Resource, this->Name_,
+                "its wheel tracks hold " + std::to_string(this->Bytes_) +
+                    " bytes and would need up to " + std::to_string(cost) +
+                    " more, of a budget of " + std::to_string(this->Options_.byteBudget) +
+                    "; clear them, or give a larger budget when the terrain is opened");
+  }
 }
 
 void WheelTracks::TakeSquares(Cell cell) {
   std::int64_t x = std::int32_t(cell >> 32);
   std::int64_t y = std::int32_t(cell & 0xffffffffu);
-  for (std::unordered_set<Cell>& squares : this->Squares_) {
+  for (auto& squares : this->Squares_) {
     x = x >> 3; // rounded down
     y = y >> 3;
-    if (!squares.insert(CellAt(x, y)).second) {
+    if (++squares[CellAt(x, y)] > 1) {
       return; // nor are larger ones new
     }
   }
+}
+
+void WheelTracks::GiveSquares(Cell cell) {
+  std::int64_t x = std::int32_t(cell >> 32);
+  std::int64_t y = std::int32_t(cell & 0xffffffffu);
+  for (auto& squares : this->Squares_) {
+    x = x >> 3;
+    y = y >> 3;
+    const auto found = squares.find(CellAt(x, y));
+    if (--found->second > 0) {
+      return; // larger ones hold it still
+    }
+    squares.erase(found);
+  }
+}
+
+// A line that is no more: what is kept depends on the lines that there are, not on how they came.
+void WheelTracks::Forget(std::uint64_t entry, const Eigen::AlignedBox2d& box) {
+  CellRange(box).ForEach([&](Cell cell) {
+    const auto found = this->Cells_.find(cell);
+    if (found == this->Cells_.end()) {
+      return;
+    }
+    std::vector<std::uint64_t>& entries = found->second;
+    const auto at = std::find(entries.rbegin(), entries.rend(), entry);
+    if (at == entries.rend()) {
+      return;
+    }
+    entries.erase(std::next(at).base());
+    this->Bytes_ -= EntryBytes;
+    if (entries.empty()) {
+      this->Cells_.erase(found);
+      this->GiveSquares(cell);
+      this->Bytes_ -= CellBytes;
+    }
+  });
 }
 
 bool WheelTracks::Reaches(const Eigen::AlignedBox2d& box) const {
@@ -120,7 +171,7 @@ bool WheelTracks::Reaches(const Eigen::AlignedBox2d& box) const {
   if (range.Count() <= Few) {
     return any(this->Cells_);
   }
-  for (const std::unordered_set<Cell>& squares : this->Squares_) {
+  for (const auto& squares : this->Squares_) {
     for (std::int64_t* end : {&range.x0, &range.y0, &range.x1, &range.y1}) {
       *end = *end >> 3;
     }
@@ -153,8 +204,11 @@ void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
       same(stroke.contacts.back(), draft.contacts[1])) {
     ++first;
   }
-  if (first == draft.kept && first < before) { // its line, as it was
-    changed.push_back({this->SegmentOf(stroke, first).Box(), 2.0 * stroke.profile.Reach()});
+  const std::size_t had = before == 0 ? 0 : std::max<std::size_t>(before, 2) - 1; // lines
+  if (first == draft.kept && first < had) { // its line, as it was
+    const Eigen::AlignedBox2d box = this->SegmentOf(stroke, first).Box();
+    changed.push_back({box, 2.0 * stroke.profile.Reach()});
+    this->Forget((std::uint64_t(draft.stroke) << 32) | first, box);
   }
   stroke.contacts.resize(draft.kept);
   stroke.contacts.insert(stroke.contacts.end(), draft.contacts.begin(), draft.contacts.end());
@@ -176,10 +230,8 @@ void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
         this->Bytes_ += CellBytes;
         this->TakeSquares(cell);
       }
-      if (std::find(entries.rbegin(), entries.rend(), entry) == entries.rend()) {
-        entries.push_back(entry);
-        this->Bytes_ += EntryBytes;
-      }
+      entries.push_back(entry);
+      this->Bytes_ += EntryBytes;
     });
     changed.push_back({box, 2.0 * stroke.profile.Reach()});
   }
@@ -197,6 +249,7 @@ std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& addit
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   std::vector<TrackReach> changed;
   std::size_t cost = 0;
+  std::unordered_set<Cell> taken;
   std::vector<Draft> drafts;
   std::size_t strokes = this->Strokes_.size();
   for (const TrackAddition& addition : additions) {
@@ -207,14 +260,8 @@ std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& addit
     for (const TrackContact& contact : addition.contacts) {
       this->Append(draft, contact, addition.exact);
     }
-    cost += this->CostOf(draft);
-    if (this->Bytes_ + cost > this->Options_.byteBudget) {
-      throw Error(Error::Kind::Resource, this->Name_,
-                  "its wheel tracks hold " + std::to_string(this->Bytes_) +
-                      " bytes and would need up to " + std::to_string(cost) +
-                      " more, of a budget of " + std::to_string(this->Options_.byteBudget) +
-                      "; clear them, or give a larger budget when the terrain is opened");
-    }
+    cost += this->CostOf(draft, taken);
+    this->RequireRoom(cost);
     if (draft.stroke == this->Strokes_.size()) {
       draft.stroke = strokes++;
     }
@@ -246,44 +293,12 @@ std::vector<TrackReach> WheelTracks::Clear() {
   this->Strokes_.clear();
   this->Latest_.clear();
   this->Cells_.clear();
-  for (std::unordered_set<Cell>& squares : this->Squares_) {
+  for (auto& squares : this->Squares_) {
     squares.clear();
   }
   this->Changes_ = {0.0, 0.0};
   this->Bytes_ = 0;
   return changed;
-}
-
-bool WheelTracks::Empty() const {
-  const std::lock_guard<std::mutex> lock(this->Mutex_);
-  return this->Strokes_.empty();
-}
-
-TrackStatistics WheelTracks::Statistics() const {
-  const std::lock_guard<std::mutex> lock(this->Mutex_);
-  TrackStatistics statistics;
-  statistics.bytes = this->Bytes_;
-  statistics.strokes = this->Strokes_.size();
-  for (const Stroke& stroke : this->Strokes_) {
-    statistics.contacts += stroke.contacts.size();
-    for (std::size_t i = 1; i < stroke.contacts.size(); ++i) {
-      statistics.length += std::hypot(stroke.contacts[i].x - stroke.contacts[i - 1].x,
-                                      stroke.contacts[i].y - stroke.contacts[i - 1].y);
-    }
-  }
-  return statistics;
-}
-
-std::vector<TrackStroke> WheelTracks::Strokes() const {
-  const std::lock_guard<std::mutex> lock(this->Mutex_);
-  std::vector<TrackStroke> strokes;
-  for (const Stroke& stroke : this->Strokes_) {
-    strokes.push_back({stroke.name, stroke.profile, {}});
-    for (const Contact& contact : stroke.contacts) {
-      strokes.back().contacts.push_back(Whole(contact));
-    }
-  }
-  return strokes;
 }
 
 std::vector<TrackSegment> WheelTracks::Near(const Eigen::AlignedBox2d& box, double width) const {

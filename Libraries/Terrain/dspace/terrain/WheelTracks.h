@@ -23,6 +23,9 @@ struct TrackStroke {
   std::string name; // the wheel's
   TrackProfile profile;
   std::vector<TrackContact> contacts;
+  // Of a stroke that is kept: contacts on its last line that were left out. As long as they lie on
+  // it, it may grow.
+  std::vector<TrackContact> skipped;
 };
 
 struct TrackAddition : TrackStroke {
@@ -65,10 +68,17 @@ public:
   // where the old one ends.
   std::vector<TrackReach> Add(const std::vector<TrackAddition>& additions);
   std::vector<TrackReach> Clear();
+  // Strokes as Strokes() gives them, of these or of other tracks: to the bit, and what is added
+  // later is kept as it would be there, if the tolerance is the same. They come after those that
+  // there are; `goesOn`: the first goes on with the last of these, of the same name and profile.
+  // They need what they need there and no more. Throws as Add.
+  std::vector<TrackReach> Restore(const std::vector<TrackStroke>& strokes, bool goesOn = false);
 
   bool Empty() const;
   TrackStatistics Statistics() const;
-  std::vector<TrackStroke> Strokes() const;
+  std::size_t StrokeCount() const;
+  // As they are kept, in the order in which they were begun; without the first ones.
+  std::vector<TrackStroke> Strokes(std::size_t first = 0) const;
   // Whether anything may reach into a box; true more often than that, by some metres or, for large
   // boxes, by their size.
   bool Reaches(const Eigen::AlignedBox2d& box) const;
@@ -78,6 +88,7 @@ public:
   std::vector<TrackSegment> Near(const Eigen::AlignedBox2d& box, double width = 0.0) const;
 
 private:
+  static constexpr std::size_t MostSkipped = 64;
   struct Contact { // half of TrackContact's size
     double x;
     double y;
@@ -105,11 +116,14 @@ private:
   Draft Begin(const TrackAddition& addition) const;
   void Append(Draft& draft, const TrackContact& given, bool exact) const;
   bool OnLine(const Contact& from, const Contact& to, const Contact& between) const;
-  void Check(const TrackAddition& addition) const;
+  void Check(const TrackStroke& stroke) const;
   TrackSegment SegmentOf(const Stroke& stroke, std::size_t index) const;
-  std::size_t CostOf(const Draft& draft) const;
+  std::size_t CostOf(const Draft& draft, std::unordered_set<Cell>& taken) const;
+  void RequireRoom(std::size_t cost) const;
   void Commit(Draft& draft, std::vector<TrackReach>& changed);
+  void Forget(std::uint64_t entry, const Eigen::AlignedBox2d& box);
   void TakeSquares(Cell cell);
+  void GiveSquares(Cell cell);
 
   std::string Name_;
   WheelTracksOptions Options_;
@@ -117,8 +131,9 @@ private:
   std::vector<Stroke> Strokes_;
   std::map<std::string, std::size_t> Latest_;                  // of a name
   std::unordered_map<Cell, std::vector<std::uint64_t>> Cells_; // stroke << 32 | first contact
-  // Squares that hold any such cells, each 8 times as wide as those before it; in a cell's price.
-  std::array<std::unordered_set<Cell>, 10> Squares_;
+  // Squares that hold any such cells, each 8 times as wide as those before it, with how many cells
+  // or lesser squares they hold; in a cell's price.
+  std::array<std::unordered_map<Cell, std::uint32_t>, 10> Squares_;
   std::array<double, 2> Changes_ = {0.0, 0.0};
   std::size_t Bytes_ = 0;
 };
