@@ -18,13 +18,12 @@ struct vtkDspaceServer::Internals {
   std::vector<std::string> roots;
   long long maximumFrames = 1000000;
   vtkNew<vtkDspaceSession> session;
-  dspace::session::Ledger ledger;
   std::unique_ptr<dspace::session::Confinement> confinement;
   std::unique_ptr<dspace::session::Server> server; // goes first: it calls what is above
 
   dspace::session::Server::SessionWork Work() {
     return {[this](dspace::v1::Command& command) { return this->Execute(command); },
-            [this] { return this->ledger.Commands(); }};
+            [this] { return this->session->GetLedger().Commands(); }};
   }
 
   dspace::v1::Reply Execute(dspace::v1::Command& command) {
@@ -55,7 +54,6 @@ struct vtkDspaceServer::Internals {
   }
 
   void Hear(const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
-    this->ledger.Add(command, reply);
     dspace::v1::Command recorded;
     if (this->server && dspace::session::ToRecorded(command, reply, recorded)) {
       this->server->Publish(recorded);

@@ -24,7 +24,7 @@ namespace dspace::testing {
 // An interpreter that a server feeds and that feeds viewers.
 struct ServedInterpreter {
   session::Interpreter interpreter;
-  session::Ledger ledger;
+  session::Ledger ledger{&interpreter.GetState()};
   session::Server* server = nullptr;
 
   ServedInterpreter() {

@@ -30,7 +30,8 @@ void Gather(const google::protobuf::Message& message, std::set<std::string>& pat
 
 std::set<std::string> PathsIn(const v1::Command& command) {
   std::set<std::string> paths;
-  if (!command.has_set_poses()) { // which names no file and is most of all
+  // One names no file and is most of all; the other says what was in it.
+  if (!command.has_set_poses() && !command.load_tracks().has_read()) {
     Gather(command, paths);
   }
   return paths;

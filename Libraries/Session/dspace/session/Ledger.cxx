@@ -126,12 +126,12 @@ struct LedgerScene {
     }
   }
 
-  void Put(const std::string& name, std::vector<v1::Command>& out) const {
+  void Put(const std::string& name, const State* state, std::vector<v1::Command>& out) const {
     this->names.PutFirst(name, out);
     const std::vector<std::string> fragments = this->names.Fragments();
     this->objects.PutOrphans(name, fragments, out);
     this->frames.Put(name, fragments, out);
-    this->objects.Put(name, this->frames, fragments, out);
+    this->objects.Put(name, this->frames, fragments, state, out);
     this->names.PutLast(name, out);
     this->telemetry.Put(name, out);
     this->messages.Put(
@@ -142,12 +142,15 @@ struct LedgerScene {
 } // namespace
 
 struct Ledger::Impl {
+  const State* state = nullptr;
   std::map<std::string, LedgerScene> scenes;
   LedgerViewports viewports;
   std::vector<v1::Command> others; // of kinds that are not known here
 };
 
-Ledger::Ledger() : Impl_(std::make_unique<Impl>()) {}
+Ledger::Ledger(const State* state) : Impl_(std::make_unique<Impl>()) {
+  this->Impl_->state = state;
+}
 Ledger::~Ledger() = default;
 Ledger::Ledger(Ledger&&) noexcept = default;
 Ledger& Ledger::operator=(Ledger&&) noexcept = default;
@@ -184,7 +187,7 @@ void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
 std::vector<v1::Command> Ledger::Commands() const {
   std::vector<v1::Command> out;
   for (const auto& [name, scene] : this->Impl_->scenes) {
-    scene.Put(name, out);
+    scene.Put(name, this->Impl_->state, out);
   }
   this->Impl_->viewports.Put(
       [this](const std::string& scene) {

@@ -9,6 +9,8 @@
 
 namespace dspace::session {
 
+struct State;
+
 // Hears every accepted command (Interpreter::AddListener) from an empty interpreter on, and keeps
 // of it what the present state is made of: what is superseded or removed is forgotten. Snapshots of
 // recordings and of servers are its Commands().
@@ -17,11 +19,13 @@ namespace dspace::session {
 // Three things are not part of it: the order of the objects within a fragment; that ids of what was
 // removed are taken; a drag that is under way in a viewport.
 //
-// Commands that it does not know are kept all, in their order, at the end. Wheel tracks are kept
-// contact by contact until they are cleared or their terrain goes. Not synchronised.
+// Commands that it does not know are kept all, in their order, at the end. Of wheel tracks it keeps
+// nothing: Commands() asks the terrain for them. Not synchronised.
 class Ledger {
 public:
-  Ledger();
+  // `state` is the interpreter's, which must outlive this; without one Commands() throws
+  // Error(Internal) where wheels have rolled.
+  explicit Ledger(const State* state = nullptr);
   ~Ledger();
   Ledger(Ledger&&) noexcept;
   Ledger& operator=(Ledger&&) noexcept;

@@ -7,6 +7,9 @@
 namespace dspace::session {
 namespace {
 
+// Of a trail, in a command: each makes its whole line anew.
+constexpr std::size_t MostPoints = 1 << 20;
+
 LedgerId OrRoot(LedgerId frame) {
   return frame == NoFrame ? RootFrame : frame;
 }
@@ -245,9 +248,12 @@ void LedgerObjects::PutThing(const std::string& scene, std::uint32_t id, const T
     out.back().mutable_attach_object()->set_frame(thing.frame);
   }
   if (thing.trail && thing.trail->Size() > 0) {
-    v1::AppendTrail* append = add().mutable_append_trail();
-    append->set_object(id);
+    v1::AppendTrail* append = nullptr;
     for (std::size_t i = 0; i < thing.trail->Size(); ++i) {
+      if (i % MostPoints == 0) {
+        append = add().mutable_append_trail();
+        append->set_object(id);
+      }
       const Eigen::Vector3d& p = thing.trail->Position(i);
       append->mutable_point()->Add(p.data(), p.data() + 3);
     }
@@ -320,9 +326,10 @@ void LedgerObjects::PutOrphans(const std::string& scene, const std::vector<std::
 }
 
 void LedgerObjects::Put(const std::string& scene, const LedgerFrames& frames,
-                        const std::vector<std::string>& fragments, Emit out) const {
+                        const std::vector<std::string>& fragments, const State* state,
+                        Emit out) const {
   this->PutLost(scene, frames, out);
-  this->PutTerrains(scene, out);
+  this->PutTerrains(scene, state, out);
   for (const auto& [id, thing] : this->Things_) {
     this->PutThing(scene, id, thing, out);
     if (thing.madeOn != NoFrame &&

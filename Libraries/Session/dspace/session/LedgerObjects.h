@@ -14,6 +14,8 @@
 
 namespace dspace::session {
 
+struct State;
+
 class LedgerObjects {
 public:
   using Emit = std::vector<v1::Command>&;
@@ -31,8 +33,9 @@ public:
   // Before there are frames.
   void PutOrphans(const std::string& scene, const std::vector<std::string>& fragments,
                   Emit out) const;
+  // `state`: as the ledger's.
   void Put(const std::string& scene, const LedgerFrames& frames,
-           const std::vector<std::string>& fragments, Emit out) const;
+           const std::vector<std::string>& fragments, const State* state, Emit out) const;
 
 private:
   struct Thing {
@@ -56,7 +59,7 @@ private:
     v1::Command open;
     std::optional<v1::FocusTerrain> focus;
     std::optional<v1::StyleTerrain> style;
-    std::vector<v1::Command> tracks;         // TrackWheels and LoadTracks
+    bool tracked = false;                    // wheels have rolled there
     std::vector<v1::AddTerrainLayer> layers; // bottom first; of no kind: those that it opens with
     std::vector<std::string> opened;         // names of these: "drape", "filled"
   };
@@ -67,7 +70,7 @@ private:
   };
   bool ChangeLook(Thing& thing, const v1::Command& command);
   bool ChangeTerrain(const v1::Command& command, const v1::Reply& reply);
-  void PutTerrains(const std::string& scene, Emit out) const;
+  void PutTerrains(const std::string& scene, const State* state, Emit out) const;
   void PutThing(const std::string& scene, std::uint32_t id, const Thing& thing, Emit out) const;
   void PutLost(const std::string& scene, const LedgerFrames& frames, Emit out) const;
   Thing* Find(std::uint32_t id);

@@ -2,9 +2,33 @@
 #include <algorithm>
 
 #include <dspace/Error.h>
+#include <dspace/session/ClipmapTerrainObject.h>
 #include <dspace/session/LedgerObjects.h>
+#include <dspace/session/State.h>
+#include <dspace/session/TrackMessages.h>
 
 namespace dspace::session {
+namespace {
+
+const WheelTracks& TracksOf(const State* state, const std::string& scene,
+                            const std::string& terrain) {
+  if (state) {
+    const auto of = state->scenes.find(scene);
+    if (of != state->scenes.end()) {
+      const auto found = of->second.terrains.find(terrain);
+      if (found != of->second.terrains.end()) {
+        if (const auto* clipmap = dynamic_cast<ClipmapTerrainObject*>(found->second.get())) {
+          return clipmap->Surface().Tracks();
+        }
+      }
+    }
+  }
+  throw Error(Error::Kind::Internal, "ledger",
+              "terrain '" + terrain + "' of scene '" + scene +
+                  "' has wheel tracks, and there is no state that holds them");
+}
+
+} // namespace
 
 bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& reply) {
   using C = v1::Command;
@@ -37,13 +61,16 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
     ground(command.style_terrain().terrain()).style = command.style_terrain();
     return true;
   case C::kTrackWheels:
-    ground(command.track_wheels().terrain()).tracks.push_back(command);
+    ground(command.track_wheels().terrain()).tracked = true;
     return true;
   case C::kLoadTracks:
-    ground(command.load_tracks().terrain()).tracks.push_back(command);
+    ground(command.load_tracks().terrain()).tracked = true;
+    return true;
+  case C::kRestoreTracks:
+    ground(command.restore_tracks().terrain()).tracked = true;
     return true;
   case C::kClearTracks:
-    ground(command.clear_tracks().terrain()).tracks.clear();
+    ground(command.clear_tracks().terrain()).tracked = false;
     return true;
   case C::kAddTerrainLayer:
     insert(ground(command.add_terrain_layer().terrain()), command.add_terrain_layer());
@@ -66,7 +93,7 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
   }
 }
 
-void LedgerObjects::PutTerrains(const std::string& scene, Emit out) const {
+void LedgerObjects::PutTerrains(const std::string& scene, const State* state, Emit out) const {
   const auto add = [&]() -> v1::Command& {
     out.emplace_back().set_scene(scene);
     return out.back();
@@ -108,7 +135,9 @@ void LedgerObjects::PutTerrains(const std::string& scene, Emit out) const {
     if (ground.style) {
       *add().mutable_style_terrain() = *ground.style;
     }
-    out.insert(out.end(), ground.tracks.begin(), ground.tracks.end());
+    if (ground.tracked) {
+      PutTracks(TracksOf(state, scene, name), scene, name, out);
+    }
   }
 }
 

@@ -6,12 +6,15 @@
 #include <dspace/session/Convert.h>
 #include <dspace/session/ObjectTools.h>
 #include <dspace/session/TerrainTools.h>
+#include <dspace/session/TrackMessages.h>
 
 namespace dspace::session {
 namespace {
 
 constexpr double Degree = M_PI / 180.0;
 constexpr int ContactSize = 5; // x y heading_deg sinkage rolled
+// Of a file, in one command: 32 bytes each.
+constexpr std::size_t MostLoaded = std::size_t(16) << 20;
 
 const StreamedTerrain& FindTracked(const Context& context, const std::string& name) {
   const auto* terrain = dynamic_cast<const ClipmapTerrainObject*>(&FindTerrain(context, name));
@@ -63,8 +66,18 @@ void SaveTracks(const Context& context, v1::SaveTracks& command) {
 
 void LoadTracks(const Context& context, v1::LoadTracks& command) {
   const StreamedTerrain& terrain = FindTracked(context, command.terrain());
+  if (command.has_read()) {
+    terrain.RestoreTracks(ToStrokes(command.read()));
+    return;
+  }
   command.set_path(AbsolutePath(command.path()));
-  terrain.LoadTracks(command.path());
+  const std::size_t before = terrain.Tracks().StrokeCount();
+  terrain.LoadTracks(command.path(), MostLoaded);
+  Put(terrain.Tracks().Strokes(before), command.mutable_read());
+}
+
+void RestoreTracks(const Context& context, v1::RestoreTracks& command) {
+  FindTracked(context, command.terrain()).RestoreTracks(ToStrokes(command), command.goes_on());
 }
 
 } // namespace
@@ -75,6 +88,7 @@ void AddTerrainTrackCommands(Registry& registry) {
   registry.Add(C::kClearTracks, &C::mutable_clear_tracks, Effect::Change, ClearTracks);
   registry.Add(C::kSaveTracks, &C::mutable_save_tracks, Effect::Request, SaveTracks);
   registry.Add(C::kLoadTracks, &C::mutable_load_tracks, Effect::Change, LoadTracks);
+  registry.Add(C::kRestoreTracks, &C::mutable_restore_tracks, Effect::Change, RestoreTracks);
 }
 
 } // namespace dspace::session
