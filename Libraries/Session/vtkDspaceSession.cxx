@@ -46,7 +46,7 @@ struct vtkDspaceSession::Internals {
   dspace::session::ViewportCommands viewports;
   dspace::v1::Command command;
   std::map<std::string, vtkSmartPointer<vtkDataArray>> planes;
-  dspace::session::Ledger ledger;
+  dspace::session::Ledger ledger{&interpreter.GetState()};
   double time_s = 0.0; // that was set last, in whatever scene
   std::unique_ptr<dspace::session::RecordingWriter> recording;
   dspace::session::RecordingCounts counts; // of the last one
