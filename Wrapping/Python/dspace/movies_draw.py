@@ -1,5 +1,4 @@
 """Single pictures of a movie: the run is taken to its time, cameras to their places, views put together."""
-import bisect
 import importlib.util
 import os
 import re
@@ -13,6 +12,7 @@ import numpy as np
 from dspace._fields import shown
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath
+from dspace.playback_steps import index_at, runs_of
 from dspace.poses import Pose
 from dspace.telemetry import overlay_value
 
@@ -68,22 +68,25 @@ def open_run(run):
 def _of_playback(playback):
     # A recording's telemetry is in its scenes.
     telemetry = None if hasattr(playback, "file") else getattr(playback, "telemetry", None)
-    times = sorted(playback.times)
+    times = playback.times
+    runs = runs_of(times)  # a simulation that was reset has several
     # What was there before the simulation first set a time has the time 0 that nobody set.
     steps = [time for _, time in playback.file.steps()] if hasattr(playback, "file") else []
     steps = steps or times
-    return Source(playback.session, lambda time: playback.seek(step_at(times, time)),
+    return Source(playback.session, lambda time: playback.seek(step_at(times, time, runs)),
                   telemetry if callable(telemetry) else None, beginning=steps[0] if steps else 0.0,
                   extent=(min(steps), max(steps)) if steps else None)
 
 
-def step_at(times, time):
-    """The time to seek [s]: `time`, or the next of the rising times if that comes but a rounding later. A simulation
-    that adds up its steps is the later the longer it runs; up to a thousandth of the step, and 0.1 ms, count."""
-    following = bisect.bisect_right(times, time)
-    if 0 < following < len(times):
+def step_at(times, time, runs=None):
+    """The time to seek [s]: `time`, or that of the next step if it comes but a rounding later. A simulation that adds
+    up its steps is the later the longer it runs; up to a thousandth of the step, and 0.1 ms, count. runs: ranges of
+    steps whose times do not go back (default: all)."""
+    index = index_at(times, runs or [(0, len(times))], time) if times else None
+    following = len(times) if index is None else index + 1
+    if following < len(times):
         late = times[following] - time
-        if late <= min(1e-3 * (times[following] - times[following - 1]), 1e-4):
+        if 0 < late <= min(1e-3 * (times[following] - times[following - 1]), 1e-4):
             return times[following]
     return time
 
