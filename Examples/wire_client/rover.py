@@ -20,6 +20,19 @@ ROVER, WHEELS = 10, (11, 12, 13, 14)  # ids of frames: ours to choose, so that n
 CORNERS = ((HALF_BASE, HALF_TRACK), (HALF_BASE, -HALF_TRACK), (-HALF_BASE, HALF_TRACK), (-HALF_BASE, -HALF_TRACK))
 
 
+def clear(link):
+    """Takes away what an earlier run has left: scenes stay in a server."""
+    ask = new()
+    ask.list_viewports.SetInParent()
+    for name in link.ask(ask).viewports.name:
+        remove = new()
+        remove.remove_viewport.viewport = name
+        link.send(remove)
+    ask.list_scenes.SetInParent()  # another of the command's oneof takes the first one's place
+    for name in link.ask(ask).scenes.name:
+        link.send(_with(new(name), lambda c: c.remove_scene.SetInParent()))
+
+
 def build(link):
     """The scene: each line of it is one command, made whole or not at all."""
     link.send(_with(new(), lambda c: c.create_scene.SetInParent()))
@@ -125,6 +138,7 @@ def main():
     options = parser.parse_args()
     channel = open_channel(options.address, options.cert, options.key, options.ca)
     link = Driver(channel, "wire rover")
+    clear(link)
     build(link)
     drive(link, options.break_at)
     show(link, options.out)

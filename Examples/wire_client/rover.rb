@@ -77,6 +77,14 @@ def frame(id, parent, name, place)
                                   pose: Pose.new(position: vector(*place))) }
 end
 
+# Takes away what an earlier run has left: scenes stay in a server.
+def clear(link)
+  viewports = link.ask(list_viewports: ListViewports.new).viewports.name
+  viewports.each { |name| link.send(remove_viewport: RemoveViewport.new(viewport: name)) }
+  scenes = link.ask(list_scenes: ListScenes.new).scenes.name
+  scenes.each { |name| link.send(scene: name, remove_scene: RemoveScene.new) }
+end
+
 def build(link)
   link.send(create_scene: CreateScene.new)
   link.send(**frame(ROVER, 0, "rover", [0.0, 0.0, WHEEL]))
@@ -111,6 +119,7 @@ def poses(time_s)
 end
 
 link = Driver.new(ARGV[0], "ruby rover")
+clear(link)
 build(link)
 (1..STEPS).each do |step|
   link.send(set_time: SetTime.new(time_s: step * DT))
