@@ -1,6 +1,8 @@
 """Movies that the workers of a Dask scheduler share: nobody waits for ever, and nothing piles up."""
 import contextlib
 import os
+import subprocess
+import sys
 import threading
 import time
 
@@ -70,6 +72,33 @@ def test_when_the_last_worker_goes_it_ends(run, tmp_path, monkeypatch):
             flight().make(run, tmp_path / "pictures", scheduler=cluster.scheduler_address)
         GATE.set()
         thread.join()
+
+
+def test_when_the_scheduler_goes_it_ends(run, tmp_path, monkeypatch):
+    """A process that is killed: nobody says that it is gone."""
+    monkeypatch.setattr(movies_dask, "_PATIENCE", 2.0)
+    monkeypatch.setattr(movies_dask, "pictures", waits)
+    script = ("import asyncio, distributed\n"
+              "async def main():\n"
+              "    async with distributed.Scheduler(host='127.0.0.1', port=0, dashboard=False) as scheduler:\n"
+              "        async with distributed.Worker(scheduler.address, nthreads=1, dashboard=False):\n"
+              "            print(scheduler.address, flush=True)\n"
+              "            await asyncio.sleep(120)\n"
+              "asyncio.run(main())\n")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([os.path.dirname(__file__), *filter(None, sys.path)])}
+    process = subprocess.Popen([sys.executable, "-W", "ignore", "-c", script], stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL, text=True, cwd=tmp_path, env=environment)
+    try:
+        address = process.stdout.readline().strip()
+        timer = threading.Timer(1.0, process.kill)
+        timer.start()
+        with pytest.raises(dspace.Io, match="it has had no worker for 2 s, or is gone"):
+            flight().make(run, tmp_path / "pictures", scheduler=address)
+        timer.join()
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
 
 
 def test_a_worker_that_comes_late_draws(run, tmp_path, monkeypatch):

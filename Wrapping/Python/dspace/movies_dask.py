@@ -1,4 +1,5 @@
 """Pictures of a movie drawn by the workers of a Dask scheduler (Debian: python3-distributed)."""
+import contextlib
 import functools
 import hashlib
 import os
@@ -31,11 +32,12 @@ def share(scheduler, words, run, missing, folder, tell):
         raise Io(f"scheduler {scheduler!r}: {error}; accepted: the address of a Dask scheduler, tcp://HOST:PORT",
                  scheduler) from None
     with client:
-        try:
-            client.wait_for_workers(1, timeout=_PATIENCE)
-        except (OSError, TimeoutError):
-            raise _deserted(scheduler) from None
-        size = max(1, min(_AT_ONCE, -(-len(missing) // _workers(client))))
+        end = clock.monotonic() + _PATIENCE
+        while not _workers(client):
+            if clock.monotonic() > end:
+                raise _deserted(scheduler)
+            clock.sleep(0.1)
+        size = max(1, min(_AT_ONCE, -(-len(missing) // max(1, _workers(client)))))
         parts = [missing[k:k + size] for k in range(0, len(missing), size)]
         expected = fingerprint(run)
         waiting = [client.submit(pictures, words, run, part, expected, pure=False) for part in parts]
@@ -50,11 +52,15 @@ def share(scheduler, words, run, missing, folder, tell):
                 left -= len(drawn)
                 tell(left)
         finally:
-            client.cancel(waiting)
+            with contextlib.suppress(OSError, RuntimeError):  # the scheduler is gone
+                client.cancel(waiting)
 
 
 def _workers(client):
-    return len(client.scheduler_info()["workers"]) if client.status == "running" else 0
+    try:
+        return len(client.scheduler_info()["workers"]) if client.status == "running" else 0
+    except (OSError, RuntimeError):  # the scheduler is gone
+        return 0
 
 
 def _deserted(scheduler):
@@ -64,6 +70,7 @@ def _deserted(scheduler):
 
 def _finished(client, scheduler, waiting):
     """Results in the order in which they come; each is taken out of `waiting`, so that no worker keeps it."""
+    from distributed import CancelledError
     seen = clock.monotonic()  # when there was a worker, last
     while waiting:
         done = [future for future in waiting if future.done()]
@@ -74,6 +81,8 @@ def _finished(client, scheduler, waiting):
                 continue
             except Error:
                 raise
+            except CancelledError:  # with the scheduler
+                raise _deserted(scheduler) from None
             except Exception as error:  # of Dask's own
                 raise Io(f"scheduler {scheduler!r}: {type(error).__name__}: {error}", scheduler) from None
             waiting.remove(future)
