@@ -276,6 +276,28 @@ def test_what_is_no_event_is_refused(tmp_path):
             watcher.answer("deploy?", "go")
 
 
+def test_an_edited_value_is_in_the_unit_of_its_channel():
+    with dspace.Session() as session:
+        scene, heard = session.scene(), []
+        session.on_event(lambda event: heard.append((event.edited.value, event.edited.unit)), kind="edited")
+        scene.telemetry.add("drive/speed", unit="m/s")
+        scene.telemetry.add("mode", kind="choice", labels={0: "idle", 2: "drive"})
+        scene.telemetry.add("note", kind="text")
+        session.edited("drive/speed", 0.5)
+        session.edited("drive/speed", 0.25, "m/s")
+        session.edited("mode", 2)
+        session.edited("free", 1.5, "kg")
+        session.edited("free", 2.5)
+        for name, value, unit, message in (("drive/speed", 0.5, "km/h", "unit is 'km/h'; accepted: 'm/s'"),
+                                           ("drive/speed", 0.5, "", "accepted: 'm/s'"),
+                                           ("mode", 1, None, "accepted: 0 \\(idle\\), 2 \\(drive\\)"),
+                                           ("note", 1, None, "accepted: a channel of numbers")):
+            with pytest.raises(dspace.InvalidArgument, match=message):
+                session.edited(name, value, unit)
+        session.process_events()
+        assert heard == [(0.5, "m/s"), (0.25, "m/s"), (2.0, ""), (1.5, "kg"), (2.5, "")]
+
+
 def test_a_session_of_ones_own_hears_itself():
     with dspace.Session() as session:
         view = build(session).add_viewport(SIZE, "main")

@@ -88,12 +88,22 @@ class ViewerEvents:
         event.answer.answer = text(answer, "the answer", "event")
         self.tell(event)
 
-    def edited(self, name, value, unit=""):
-        """Says a value that a person has entered; finite."""
+    def edited(self, name, value, unit=None):
+        """Says a value that a person has entered; finite. Where a scene has a telemetry channel of that
+        name, it is one of its numbers or choices, and in its unit, which is the default."""
         label = f"value {text(name, 'the name', 'event')!r}"
         value = number(value, "the value", label)
         if not math.isfinite(value):
             refuse(label, "it", value, "a finite number")
+        channel = next((scene.telemetry[name] for scene in self.scenes.values() if name in scene.telemetry), None)
+        if channel is not None:
+            if channel.kind == "text" or (channel.kind == "choice" and value not in channel.labels):
+                refuse(label, "it", value, "a channel of numbers or choices" if channel.kind == "text"
+                       else ", ".join(f"{number} ({label})" for number, label in channel.labels.items()))
+            if unit is not None and unit != channel.unit:
+                refuse(label, "the unit", unit, repr(channel.unit))
+            unit = channel.unit
+        unit = "" if unit is None else unit
         event = service_pb2.ViewerEvent()
         put(event.edited, label, name=name, value=value, unit=text(unit, "the unit", label))
         self.tell(event)
