@@ -1,6 +1,7 @@
 """Telemetry, events and questions: in a session, over the wire, in tables, recordings and their snapshots."""
 import csv
 import math
+import sqlite3
 import subprocess
 import sys
 
@@ -38,6 +39,8 @@ def test_channels_hold_values_with_units_and_limits(scene):
     assert (power.state, mode.state, power.time) == ("no value", "no value", 5.0)
     scene.telemetry.set([power, "rover/mode"], np.array([3.0, 0.0]))
     assert (power.value, mode.value) == (3.0, "idle")
+    scene.telemetry.set(np.array([mode.id, power.id]), np.array([1.0, 4.0]))
+    assert (power.value, mode.value) == (4.0, "drive")
     power.remove()
     assert "rover/power" not in scene.telemetry
     assert scene.telemetry.add("rover/power").id > note.id
@@ -54,6 +57,8 @@ def test_what_is_refused_changes_nothing(scene):
             (dspace.WrongType, "'a'", lambda: scene.telemetry.set({"a": "2"})),
             (dspace.InvalidArgument, "'on'", lambda: scene.telemetry.set({"a": 2.0, "mode": "off"})),
             (dspace.InvalidArgument, "shape", lambda: scene.telemetry.set(["a"], [2.0, 3.0])),
+            (dspace.InvalidArgument, "an id", lambda: scene.telemetry.set(np.array([-1]), [2.0])),
+            (dspace.NotFound, "99", lambda: scene.telemetry.set(np.array([1, 99]), [2.0, 3.0])),
             (dspace.WrongType, "a dict", lambda: scene.telemetry.set(3.0)),
             (dspace.AlreadyExists, "'a'", lambda: scene.telemetry.add("a")),
             (dspace.InvalidArgument, "kind", lambda: scene.telemetry.add("b", kind="number?")),
@@ -367,3 +372,43 @@ def test_overlays_of_what_has_no_value(scene):
     scene.telemetry.add("b", value=2.0)
     assert fill("{a:.2f} {a.unit} {b:.1f}", lambda key: overlay_value(scene, key)) == "– m 2.0"
     assert overlay_value(scene, "c") is None
+
+
+def test_no_value_is_taken_across_lost_commands(tmp_path):
+    """A salvaged recording: two of ten seconds are lost, and a snapshot goes on."""
+    from dspace.recording_file import write_recording
+    with dspace.Session() as session:
+        scene = session.scene()
+        power, still = scene.telemetry.add("power", unit="W"), scene.telemetry.add("still", value=5.0)
+
+        def drive(seconds):
+            for i in seconds:
+                scene.time = float(i)
+                power.value = 10.0 * i
+                if i in (3, 5, 7):
+                    scene.log_event("note", str(i))
+
+        with session.record(tmp_path / "before.dspace"):
+            drive(range(4))
+        drive((4, 5))
+        with session.record(tmp_path / "after.dspace"):
+            drive(range(6, 10))
+    with dspace.RecordingFile(tmp_path / "before.dspace") as one, dspace.RecordingFile(tmp_path / "after.dspace") as two:
+        rows, first = list(one.rows()), one.snapshot(0)
+        lost = (len(rows) + 1, len(rows) + 4)
+        rows += [row._replace(seq=row.seq + lost[1]) for row in two.rows()]
+        snapshots = [first, two.snapshot(0)._replace(seq=lost[1])]
+    path = tmp_path / "salvaged.dspace"
+    write_recording(str(path), rows, snapshots)
+    database = sqlite3.connect(path)
+    with database:
+        database.execute("INSERT INTO meta VALUES('lost', ?)", (f"{lost[0]}-{lost[1]}",))
+    database.close()
+    with pytest.warns(dspace.DspaceWarning, match="lost"), dspace.Playback(path) as run:
+        times, values = run.telemetry("power")
+        assert times.tolist() == [0, 1, 2, 3, 3, 5, 6, 7, 8, 9]
+        assert np.array_equal(values, [0, 10, 20, 30, np.nan, 50, 60, 70, 80, 90], equal_nan=True)
+        still = run.telemetry("still")  # of the snapshot it is known from its time on, not from its own
+        assert still.times.tolist() == [0, 3, 5] and still.values[[0, 2]].tolist() == [5, 5]
+        assert math.isnan(still.at(4.0)) and still.at(5.0) == 5.0
+        assert [event.text for event in run.events()] == ["3", "5", "7"]  # the snapshot keeps events

@@ -201,15 +201,26 @@ class Telemetry(Mapping):
 
     def set(self, values, array=None):
         """Sets many values at once, all or none: a dict of channels or their names to values, or a list of
-        channels or names, and an array of as many numbers.
+        channels or names (quickest: an integer array of ids, as Channel.id), and an array of as many numbers.
 
         NaN, of a choice or a text None, is no value; of a text that is an empty one. Numbers go in one message,
         as poses do, and texts in another. A value that is what it was changes nothing."""
         if array is not None:
-            keys = items(values, "the channels", "telemetry", "a list of channels or names")
             numbers = array_of(array, "the values", "an array of numbers", "telemetry")
+            quick = isinstance(values, np.ndarray) and np.issubdtype(values.dtype, np.integer)
+            keys = values.ravel() if quick else items(values, "the channels", "telemetry",
+                                                      "a list of channels or names, or an integer array of ids")
             if numbers.shape != (len(keys),):
                 refuse("telemetry", "the shape of the values", numbers.shape, f"({len(keys)},), one a channel")
+            if quick:
+                if len(keys) and keys.min() < 0:
+                    refuse("telemetry", "an id", int(keys.min()), "ids of channels, from 1 on")
+                command = self._scene._command()
+                command.set_telemetry.SetInParent()
+                _wire.put_array(command.set_telemetry, "id", keys.astype(np.uint64))
+                _wire.put_array(command.set_telemetry, "value", numbers)
+                self._execute(command)
+                return
             pairs = [(*self._known(key), value) for key, value in zip(keys, numbers.tolist())]
         elif hasattr(values, "items"):
             pairs = [(*self._known(key), value) for key, value in values.items()]
