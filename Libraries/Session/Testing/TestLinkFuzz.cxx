@@ -214,7 +214,9 @@ TEST_F(LinkTest, AWriterThatDoesNotReadIsCutOffAndMemoryIsBounded) {
   while (queue.AsyncNext(&tag, &good, Clock::now() + std::chrono::seconds(20)) ==
          grpc::CompletionQueue::GOT_EVENT) {
   }
-  session::RemoteClient client(this->ClientOptions()); // others go on
+  auto others = this->ClientOptions(); // go on; its place is kept for a while, though
+  others.takeOver = true;
+  session::RemoteClient client(others);
   Accept(client.Execute(MakeFrame(9999)));
 }
 

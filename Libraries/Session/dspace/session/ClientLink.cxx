@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <random>
 
+#include <unistd.h>
+
 #include <grpcpp/impl/codegen/sync_stream.h>
 
 #include <dspace/Error.h>
+#include <dspace/session/ProcessName.h>
 
 namespace dspace::session {
 namespace {
 
 using std::chrono::milliseconds;
+
+constexpr std::chrono::seconds ToLeave{3};
 
 Error::Kind ToKind(v1::Error::Kind kind) {
   switch (kind) {
@@ -117,7 +122,8 @@ grpc::ByteBuffer ToBytes(const v1::DriveRequest& request) {
   return grpc::ByteBuffer(&slice, 1);
 }
 
-RemoteClient::Link::Link(const RemoteClientOptions& from) : options(from), key(RandomKey()) {
+RemoteClient::Link::Link(const RemoteClientOptions& from)
+    : options(from), process(getpid()), key(RandomKey()) {
   if (!(this->options.timeout_s > 0 && this->options.timeout_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
                 "the timeout is " + std::to_string(this->options.timeout_s) +
@@ -142,6 +148,17 @@ std::unique_ptr<RemoteClient::Link::Stream> RemoteClient::Link::Call(grpc::Clien
           this->channel.get(), method, &context));
 }
 
+bool RemoteClient::Link::Forked() const {
+  return getpid() != this->process;
+}
+
+v1::Reply RemoteClient::Link::Foreign() {
+  return this->Fault(v1::Error::UNSUPPORTED,
+                     "process " + std::to_string(this->process) +
+                         " connected to it, and this one is its child; accepted: a connection of "
+                         "its own");
+}
+
 void RemoteClient::Link::Break(v1::Error::Kind kind, const std::string& message) {
   this->error = this->Fault(kind, message).error();
   this->broken = true;
@@ -151,12 +168,16 @@ void RemoteClient::Link::Break(v1::Error::Kind kind, const std::string& message)
 
 void RemoteClient::Link::End() {
   {
-    const std::lock_guard lock(this->mutex);
+    std::unique_lock lock(this->mutex);
     this->ending = true;
+    this->toSend.notify_all();
+    // The writing thread says goodbye, so that the server keeps no place for this client.
+    if (this->leaving || (this->connected && !this->broken)) {
+      this->changed.wait_for(lock, ToLeave, [this] { return !this->context; });
+    }
     if (this->context) {
       this->context->TryCancel();
     }
-    this->toSend.notify_all();
   }
   if (this->thread.joinable()) {
     this->thread.join();
@@ -179,7 +200,11 @@ void RemoteClient::Link::Keep() {
     }
     bool final = false;
     const v1::Error error = ToError(this->options.address, status, final);
-    // A client that was let in once is not sent away because its former self is still there.
+    // A client that was let in once is not sent away because its former self is still there. (What
+    // a stream that was opened has too much of is its messages' size.)
+    const bool crowded =
+        this->opened && !opened && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+    final = final && !crowded;
     if (final || LinkClock::now() - lost > std::chrono::duration<double>(this->options.timeout_s)) {
       this->error = error;
       this->broken = true;
@@ -211,15 +236,29 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
     open.mutable_open()->set_take_over(this->options.takeOver && !this->opened);
     open.mutable_open()->set_acknowledged(this->acknowledged);
     open.mutable_open()->set_command_set(v1::COMMAND_SET_VERSION);
+    open.mutable_open()->set_process(ProcessName());
   }
   stream = this->Call(drive);
   v1::DriveReply message;
   const bool answered = stream->Write(ToBytes(open)) && stream->Read(&message);
   bool good = answered && message.has_opened();
   bool over = !answered; // there is a status, or soon
+  v1::Reply refused;
   if (good) {
     const std::lock_guard lock(this->mutex);
-    good = this->Resume(message.opened());
+    refused = this->Resume(message.opened());
+    good = !refused.has_error();
+    this->leaving = !good;
+    this->changed.notify_all();
+  }
+  if (refused.has_error()) { // the place that it was given is not wanted: first that, then the news
+    stream->WritesDone();
+    over = true;
+    while (stream->Read(&message)) {
+    }
+    const std::lock_guard lock(this->mutex);
+    this->error = refused.error();
+    this->broken = true;
     this->changed.notify_all();
   }
   std::thread writer;
@@ -249,20 +288,20 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
   status = stream->Finish();
   const std::lock_guard lock(this->mutex);
   this->context = nullptr;
+  this->leaving = false;
+  this->changed.notify_all(); // End waits for it
   return good;
 }
 
-bool RemoteClient::Link::Resume(const v1::Opened& message) {
+v1::Reply RemoteClient::Link::Resume(const v1::Opened& message) {
   if (message.protocol() != LinkProtocol) {
-    this->Break(v1::Error::UNSUPPORTED, "it speaks protocol '" + message.protocol() +
-                                            "'; accepted: '" + LinkProtocol + "'");
-    return false;
+    return this->Fault(v1::Error::UNSUPPORTED, "it speaks protocol '" + message.protocol() +
+                                                   "'; accepted: '" + LinkProtocol + "'");
   }
   if (this->opened && !message.resumed()) {
-    this->Break(v1::Error::IO,
-                "it was started anew, or somebody else has driven it since: what was "
-                "made there is gone or not known; accepted: to connect again");
-    return false;
+    return this->Fault(v1::Error::IO,
+                       "it was started anew, or somebody else has driven it since: what was "
+                       "made there is gone or not known; accepted: to connect again");
   }
   this->counts.reconnections += this->opened ? 1 : 0;
   this->opened = this->connected = true;
@@ -271,7 +310,7 @@ bool RemoteClient::Link::Resume(const v1::Opened& message) {
   while (this->next < this->pending.size() && this->pending[this->next].number <= message.last()) {
     ++this->next;
   }
-  return true;
+  return {};
 }
 
 void RemoteClient::Link::Write(Stream& stream) {
@@ -280,7 +319,12 @@ void RemoteClient::Link::Write(Stream& stream) {
     this->toSend.wait(lock, [&] {
       return this->ending || this->broken || !this->connected || this->next < this->pending.size();
     });
-    if (this->ending || this->broken || !this->connected) {
+    if (this->ending && this->connected && !this->broken) {
+      lock.unlock();
+      stream.WritesDone();
+      return;
+    }
+    if (this->broken || !this->connected) {
       return;
     }
     const auto request = this->pending[this->next].request;

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <thread>
 
+#include <sys/types.h>
+
 #include <grpcpp/grpcpp.h>
 
 #include <dspace/session/Pacer.h>
@@ -37,6 +39,8 @@ struct RemoteClient::Link {
 
   RemoteClientOptions options;
   std::shared_ptr<grpc::Channel> channel;
+  const pid_t
+      process;     // that connects: a child has none of the threads, and the mutexes as they were
   std::string key; // of this client, at random
   std::thread thread;
 
@@ -55,6 +59,7 @@ struct RemoteClient::Link {
   v1::Reply failure;              // the first error of what nobody waited for
   v1::Reply unasked;              // warnings and frame events of the same
   std::deque<v1::ViewerEvent> events;
+  std::size_t eventBytes = 0; // of them
   PoseFilter filter;
   v1::DriveRequest scratch; // what is put into bytes
   Counts counts;
@@ -62,6 +67,7 @@ struct RemoteClient::Link {
   ServerInfo server;
   bool opened = false;    // once
   bool connected = false; // now
+  bool leaving = false;   // a place that it cannot use
   bool broken = false;    // for good, because of
   v1::Error error;
   bool ending = false;
@@ -87,6 +93,10 @@ struct RemoteClient::Link {
   void MoveUnasked(v1::Reply& reply);
   void Break(v1::Error::Kind kind, const std::string& message);
 
+  // Whether this is a child of the process that connects; then nothing else is to be touched.
+  bool Forked() const;
+  v1::Reply Foreign(); // what it is told
+
   void End(); // of everything, without the mutex
 
   // The thread: connects, again and again.
@@ -96,7 +106,7 @@ struct RemoteClient::Link {
   void Write(Stream& stream);
   void Hear(v1::DriveReply& message);
   void TakeReply(std::uint64_t number, v1::Reply& reply);
-  bool Resume(const v1::Opened& opened);
+  v1::Reply Resume(const v1::Opened& opened); // an error: it cannot go on
 };
 
 // Throws the Error that the message holds.

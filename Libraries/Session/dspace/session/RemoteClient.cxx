@@ -25,11 +25,18 @@ RemoteClient::RemoteClient(const RemoteClientOptions& options, Later) : Link_(ne
 }
 
 RemoteClient::~RemoteClient() {
+  if (this->Link_->Forked()) {
+    (void)this->Link_.release(); // its threads and connections are the parent's
+    return;
+  }
   this->Link_->End();
 }
 
 bool RemoteClient::WaitToOpen(double seconds) {
   Link& link = *this->Link_;
+  if (link.Forked()) {
+    Raise(link.Foreign().error());
+  }
   std::unique_lock lock(link.mutex);
   if (link.changed.wait_until(lock, std::min(link.deadline, After(seconds)),
                               [&] { return link.opened || link.broken; })) {
@@ -71,6 +78,10 @@ v1::Reply RemoteClient::Flush() {
 
 void RemoteClient::Begin(v1::Command command, bool reply) {
   Link& link = *this->Link_;
+  if (link.Forked()) {
+    link.Finish(link.Foreign());
+    return;
+  }
   MakePathsAbsolute(command);
   this->Abandon();
   link.noReply = !reply;
@@ -86,6 +97,10 @@ void RemoteClient::Begin(v1::Command command, bool reply) {
 }
 
 void RemoteClient::BeginFlush() {
+  if (this->Link_->Forked()) {
+    this->Link_->Finish(this->Link_->Foreign());
+    return;
+  }
   this->Abandon();
   this->Link_->doing = Link::Doing::Flush;
   this->Link_->deadline = After(this->Link_->options.timeout_s);
@@ -93,6 +108,9 @@ void RemoteClient::BeginFlush() {
 
 bool RemoteClient::Wait(double seconds) {
   Link& link = *this->Link_;
+  if (link.Forked()) {
+    return true;
+  }
   const auto until = After(std::clamp(seconds, 0.0, LongWait));
   std::unique_lock lock(link.mutex);
   if (link.doing == Link::Doing::Pace) {
@@ -119,6 +137,9 @@ bool RemoteClient::Wait(double seconds) {
 
 v1::Reply RemoteClient::Take() {
   Link& link = *this->Link_;
+  if (link.Forked()) {
+    return link.Foreign();
+  }
   if (link.doing != Link::Doing::Done) {
     return link.Fault(v1::Error::INTERNAL, "nothing is there to take; accepted: Begin and Wait");
   }
@@ -131,7 +152,7 @@ v1::Reply RemoteClient::Take() {
 
 void RemoteClient::Abandon() {
   Link& link = *this->Link_;
-  if (link.doing == Link::Doing::Nothing) {
+  if (link.doing == Link::Doing::Nothing || link.Forked()) {
     return;
   }
   const std::lock_guard lock(link.mutex);
@@ -150,10 +171,14 @@ void RemoteClient::SetPace(double rate) {
 std::size_t RemoteClient::TakeEvents(const std::function<void(const v1::ViewerEvent&)>& hear,
                                      double wait_s) {
   Link& link = *this->Link_;
+  if (link.Forked()) {
+    return 0;
+  }
   std::unique_lock lock(link.mutex);
   link.changed.wait_until(lock, After(std::clamp(wait_s, 0.0, 1e6)),
                           [&] { return link.broken || !link.events.empty(); });
   const auto events = std::exchange(link.events, {});
+  link.eventBytes = 0;
   lock.unlock(); // whoever hears may give commands
   for (const v1::ViewerEvent& event : events) {
     hear(event);
@@ -162,6 +187,9 @@ std::size_t RemoteClient::TakeEvents(const std::function<void(const v1::ViewerEv
 }
 
 RemoteClient::Counts RemoteClient::GetCounts() const {
+  if (this->Link_->Forked()) {
+    return {};
+  }
   const std::lock_guard lock(this->Link_->mutex);
   Counts counts = this->Link_->counts;
   counts.posesLeftOut = this->Link_->filter.LeftOut();
@@ -169,6 +197,9 @@ RemoteClient::Counts RemoteClient::GetCounts() const {
 }
 
 RemoteClient::ServerInfo RemoteClient::GetServer() const {
+  if (this->Link_->Forked()) {
+    return {};
+  }
   const std::lock_guard lock(this->Link_->mutex);
   return this->Link_->server;
 }

@@ -32,7 +32,8 @@ struct RemoteClientOptions {
 
 // For one thread at a time. A connection that is lost is made again while somebody waits, up to the
 // timeout; each command is carried out once, whatever happened to the connection. When the server
-// itself was started anew the scene is gone, and everything answers with an error that says so.
+// itself was started anew the scene is gone, and everything answers with an error that says so. So
+// it does in a child of the process that connected (fork), which may only destroy it.
 class RemoteClient {
 public:
   // Connects. Throws Error: InvalidArgument (address, certificates, timeout), AlreadyExists
@@ -44,7 +45,9 @@ public:
   struct Later {};
   RemoteClient(const RemoteClientOptions& options, Later);
   bool WaitToOpen(double seconds);
-  ~RemoteClient(); // waits for nothing: Flush before
+  // Says goodbye to the server, so that another one may drive at once, for up to 3 s. What was sent
+  // without waiting may be lost: Flush before.
+  ~RemoteClient();
   RemoteClient(const RemoteClient&) = delete;
   RemoteClient& operator=(const RemoteClient&) = delete;
 
@@ -75,7 +78,8 @@ public:
   void SetPace(double rate);
 
   // What viewers said since the last call, in order: each is handed to `hear`. They are there after
-  // any reply; `wait_s` waits for the first. Returns how many. At most 10,000 wait; older ones go.
+  // any reply; `wait_s` waits for the first. Returns how many. At most 10,000 of 16 MiB in all
+  // wait; older ones go.
   std::size_t TakeEvents(const std::function<void(const v1::ViewerEvent&)>& hear,
                          double wait_s = 0);
 

@@ -8,6 +8,7 @@ namespace dspace::session {
 namespace {
 
 constexpr std::size_t MostEvents = 10000;
+constexpr std::size_t MostEventBytes = 16 << 20;
 
 } // namespace
 
@@ -163,9 +164,13 @@ void RemoteClient::Link::MoveUnasked(v1::Reply& reply) {
 
 void RemoteClient::Link::Hear(v1::DriveReply& message) {
   if (message.has_event()) {
-    if (this->events.size() >= MostEvents) {
+    const std::size_t size = message.event().SpaceUsedLong();
+    while (!this->events.empty() &&
+           (this->events.size() >= MostEvents || this->eventBytes + size > MostEventBytes)) {
+      this->eventBytes -= this->events.front().SpaceUsedLong();
       this->events.pop_front();
     }
+    this->eventBytes += size;
     this->events.push_back(std::move(*message.mutable_event()));
   } else if (message.has_closed()) {
     this->broken = true;

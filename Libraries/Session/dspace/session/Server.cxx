@@ -34,6 +34,9 @@ void Check(const ServerOptions& options) {
   if (!(options.maximumRate > 0)) {
     refuse("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
   }
+  if (!(options.seat_s >= 0 && options.seat_s <= 1e6)) {
+    refuse("the time that a place is kept", std::to_string(options.seat_s) + " s", "0 to 1e6");
+  }
   if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
     refuse("the silence", std::to_string(options.silence_s) + " s", "above 0, up to 1e6");
   }
@@ -81,7 +84,7 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   builder.SetMaxSendMessageSize(-1); // pictures
   // No thread is left for a connection beyond the limit to hold one up.
   grpc::ResourceQuota quota("dspace");
-  quota.SetMaxThreads(int(options.maximumConnections) + 8);
+  quota.SetMaxThreads(int(options.maximumConnections + DrivesAtOnce) + 8);
   builder.SetResourceQuota(quota);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0); // two servers of one port are an error
   const int silence_ms = int(std::max(1.0, 1e3 * options.silence_s));
@@ -135,7 +138,7 @@ void Server::Stop() {
 Server::Counts Server::GetCounts() const {
   const std::lock_guard lock(this->Hub_->mutex);
   Counts counts = this->Hub_->counts;
-  counts.connections = this->Hub_->connections;
+  counts.connections = this->Hub_->driving + this->Hub_->watching;
   counts.viewers = unsigned(this->Hub_->viewers.size());
   counts.waitingBytes = this->Hub_->taskBytes + this->Hub_->writer.keptBytes;
   if (this->Hub_->writer.stream) {
@@ -166,13 +169,17 @@ bool Server::Run(const SessionWork& work, double seconds) {
       if (now >= until) {
         break;
       }
-      hub.work.wait_until(lock, std::min(until, now + std::chrono::milliseconds(200)));
+      hub.work.wait_until(lock,
+                          hub.SnapshotDue(std::min(until, now + std::chrono::milliseconds(200))));
       continue;
     }
     Task task = std::move(hub.tasks.front());
     hub.tasks.pop_front();
     hub.taskBytes -= task.bytes;
     hub.space.notify_all();
+    if (task.generation != hub.writer.generation) {
+      continue; // somebody else drives by now
+    }
     lock.unlock();
     v1::Reply reply = work.execute(task.command);
     lock.lock();
@@ -193,6 +200,7 @@ void Server::Publish(const v1::Command& command) {
   Hub& hub = *this->Hub_;
   const std::lock_guard lock(hub.mutex);
   ++hub.sequence;
+  hub.snapshot.reset();
   std::shared_ptr<v1::WatchReply> message;
   std::size_t size = 0;
   for (ViewerStream* viewer : hub.viewers) {
@@ -205,9 +213,8 @@ void Server::Publish(const v1::Command& command) {
       *message->mutable_command() = command;
       size = message->ByteSizeLong() + 64;
     }
-    if (viewer->out.bytes + size > hub.options.unreadBytes) {
-      viewer->out.Clear(); // it will begin anew, once it reads again
-      viewer->behind = true;
+    if (viewer->out.bytes - viewer->partBytes + size > hub.options.unreadBytes) {
+      viewer->FallBehind(); // it will begin anew, once it reads again
     } else {
       viewer->out.Put(message, size);
     }

@@ -19,13 +19,17 @@ struct ServerOptions {
   LinkSecurity security;
   std::string name = "dspace";           // told to clients
   std::size_t maximumMessage = 64 << 20; // bytes of one message to the server, 1 KiB to 1 GiB
-  unsigned maximumConnections = 32;    // writers, viewers and connections not yet either, 1 to 1000
+  // Viewers and the writer, whose place is kept free: 1 to 1000.
+  unsigned maximumConnections = 32;
   double maximumRate = 100000;         // commands a second, > 0; a faster writer is slowed down
   std::size_t queuedCommands = 1024;   // that wait to be carried out, and
   std::size_t queuedBytes = 256 << 20; // their bytes; a writer that is ahead of both waits
   // Bytes that wait for one client that does not read. Beyond, a viewer begins anew with a
   // snapshot, and a writer is cut off (it may come back with its key).
   std::size_t unreadBytes = 256 << 20;
+  // A writer whose connection broke, and whose process is not known to have died, keeps its place
+  // for so long: others must take over explicitly. 0 to 1e6.
+  double seat_s = 30;
   double silence_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
 };
 

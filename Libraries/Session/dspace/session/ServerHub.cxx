@@ -1,6 +1,11 @@
 #include <dspace/session/ServerHub.h>
 
+#include <algorithm>
+#include <cmath>
+#include <exception>
 #include <utility>
+
+#include <dspace/session/ProcessName.h>
 
 namespace dspace::session {
 namespace {
@@ -8,6 +13,7 @@ namespace {
 constexpr std::size_t KeptReplies = 1024;
 constexpr std::size_t SpentCommands = 16;
 constexpr std::size_t SpentBytes = 1 << 20;                   // of each at most
+constexpr std::chrono::milliseconds SnapshotPause{100};       // between two of them, at least
 constexpr std::uint64_t TellEvery = 32;                       // commands without replies, at least
 constexpr std::size_t LargestReply = std::size_t(2000) << 20; // protobuf's own limit is 2 GiB
 
@@ -92,8 +98,9 @@ void Server::Hub::PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::
     out.messages.back().first = std::move(reply); // the newer number says it all
     return;
   }
-  if (!out.messages.empty() && out.bytes + size > this->options.unreadBytes) {
+  if (!out.messages.empty() && out.bytes - stream->eventBytes + size > this->options.unreadBytes) {
     out.Clear();
+    stream->eventBytes = 0;
     out.ended = true;
     out.ready.notify_one();
     stream->context->TryCancel(); // it does not read: its replies are kept, and it may come back
@@ -114,29 +121,73 @@ void Server::Hub::TellWriterName() {
   }
 }
 
-void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock) {
-  bool asked = false;
+std::string Server::Hub::WhoDrives() const {
+  const Writer& who = this->writer;
+  if (who.stream && !who.left) {
+    return "'" + who.name + "' drives; accepted: to watch, or to take over explicitly";
+  }
+  const double gone = std::chrono::duration<double>(LinkClock::now() - who.lost).count();
+  if (who.key.empty() || who.left || gone >= this->options.seat_s || HasDied(who.process)) {
+    return {};
+  }
+  return "'" + who.name + "' drives and has lost its connection, " +
+         std::to_string(long(std::ceil(this->options.seat_s - gone))) +
+         " s more are kept for it to come back; accepted: to watch, to wait, or to take over "
+         "explicitly";
+}
+
+LinkClock::time_point Server::Hub::SnapshotDue(LinkClock::time_point otherwise) const {
   for (const ViewerStream* viewer : this->viewers) {
-    asked = asked || viewer->wantsSnapshot;
-  }
-  if (!asked) {
-    return;
-  }
-  // Nobody else publishes meanwhile: that is this thread's.
-  lock.unlock();
-  auto message = std::make_shared<v1::WatchReply>();
-  for (v1::Command& command : work.snapshot()) {
-    message->mutable_snapshot()->add_command()->Swap(&command);
-  }
-  message->mutable_snapshot()->set_command_set(v1::COMMAND_SET_VERSION);
-  const std::size_t size = message->ByteSizeLong() + 64;
-  lock.lock();
-  ++this->counts.snapshots;
-  message->set_sequence(this->sequence);
-  for (ViewerStream* viewer : this->viewers) {
     if (viewer->wantsSnapshot) {
-      viewer->wantsSnapshot = viewer->behind = false;
-      viewer->out.Put(message, size);
+      return std::min(otherwise, this->nextSnapshot);
+    }
+  }
+  return otherwise;
+}
+
+void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock) {
+  const auto began = LinkClock::now();
+  if (this->SnapshotDue(LinkClock::time_point::max()) > began) {
+    return; // nobody waits for one, or the last one was just made
+  }
+  grpc::Status failed;
+  if (!this->snapshot) {
+    // Nobody else publishes meanwhile: that is this thread's.
+    lock.unlock();
+    SnapshotLimits limits;
+    limits.part = std::min(limits.part, this->options.maximumMessage);
+    std::shared_ptr<SnapshotMessages> made;
+    try {
+      made = std::make_shared<SnapshotMessages>(work.snapshot(), this->sequence, limits);
+    } catch (const std::exception& error) {
+      failed = {grpc::StatusCode::INTERNAL, std::string("there is no snapshot: ") + error.what()};
+    }
+    lock.lock();
+    this->snapshot = made;
+    ++this->counts.snapshots;
+    // Viewers that come and go without end do not stop whoever drives.
+    const auto now = LinkClock::now();
+    this->nextSnapshot = now + std::max<LinkClock::duration>(SnapshotPause, 10 * (now - began));
+  }
+  for (ViewerStream* viewer : this->viewers) {
+    if (!viewer->wantsSnapshot) {
+      continue;
+    }
+    viewer->wantsSnapshot = false;
+    viewer->failed = failed;
+    if (failed.ok()) {
+      try {
+        for (const SnapshotMessages::Message& each : this->snapshot->For(viewer->takesParts)) {
+          viewer->PutPart(each.reply, each.bytes);
+        }
+        viewer->behind = false;
+      } catch (const std::exception& error) { // too large for one message
+        viewer->failed = {grpc::StatusCode::RESOURCE_EXHAUSTED, error.what()};
+      }
+    }
+    if (!viewer->failed.ok()) {
+      viewer->out.ended = true;
+      viewer->out.ready.notify_one();
     }
   }
   this->TellWriterName();

@@ -12,6 +12,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <dspace/session/Server.h>
+#include <dspace/session/SnapshotMessages.h>
 #include <dspace/session/service.grpc.pb.h>
 
 namespace dspace::session {
@@ -42,22 +43,52 @@ template<class Message> struct Outbox {
   }
 };
 
+// Calls of Drive: whoever drives, those that come to be refused, and a broken connection that has
+// not been noticed yet.
+constexpr unsigned DrivesAtOnce = 8;
+
 struct DriveStream {
   explicit DriveStream(grpc::ServerContext* of) : context(of) {}
   grpc::ServerContext* context;
   Outbox<v1::DriveReply> out;
+  std::size_t eventBytes = 0; // of viewers' events in `out`, which cut nobody off
 };
 
 struct ViewerStream {
   Outbox<v1::WatchReply> out;
   bool behind = true;        // gets nothing before the next snapshot,
   bool wantsSnapshot = true; // which it is ready for
+  grpc::Status failed;       // why there is none
+  bool takesParts = false;   // of a snapshot
+  // Of a snapshot that is on its way: the first messages in `out`. They stay, however far the
+  // viewer falls behind: else one that is large would never come to its end.
+  std::size_t parts = 0;
+  std::size_t partBytes = 0;
+
+  void PutPart(std::shared_ptr<const v1::WatchReply> message, std::size_t size) {
+    ++this->parts;
+    this->partBytes += size;
+    this->out.Put(std::move(message), size);
+  }
+  std::shared_ptr<const v1::WatchReply> Take() {
+    if (this->parts > 0) {
+      --this->parts;
+      this->partBytes -= this->out.messages.front().second;
+    }
+    return this->out.Take();
+  }
+  void FallBehind() {
+    this->out.messages.resize(this->parts);
+    this->out.bytes = this->partBytes;
+    this->behind = true;
+  }
 };
 
 // Who drives, or drove last: outlives its connection.
 struct Writer {
   std::string key;
   std::string name;
+  std::string process;          // see ProcessName.h
   std::uint64_t generation = 0; // of keys; what older ones sent is not carried out
   std::uint64_t queued = 0;     // the last number that has come
   std::uint64_t done = 0;       // the last one carried out
@@ -65,6 +96,9 @@ struct Writer {
   std::map<std::uint64_t, std::pair<std::shared_ptr<const v1::DriveReply>, std::size_t>> kept;
   std::size_t keptBytes = 0;           // of `kept`: replies that the client has not said it has
   std::shared_ptr<DriveStream> stream; // null while disconnected
+  bool left = false;                   // by itself, rather than that its connection broke,
+  LinkClock::time_point lost;          // then
+  LinkClock::time_point due;           // of its next command, by the rate
 };
 
 struct Task {
@@ -88,7 +122,11 @@ struct Server::Hub {
   Writer writer;
   std::set<ViewerStream*> viewers;
   std::uint64_t sequence = 0; // of published commands
-  unsigned connections = 0;
+  // The last one that was made, while nothing has changed since, and when another may be.
+  std::shared_ptr<SnapshotMessages> snapshot;
+  LinkClock::time_point nextSnapshot;
+  unsigned driving = 0; // calls
+  unsigned watching = 0;
   Counts counts;
   bool stopping = false;
   // Streams that must show life by then, else they are cut off.
@@ -104,7 +142,11 @@ struct Server::Hub {
   void TellDone();
   void PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size);
   void TellWriterName();
+  // Who drives or may come back, and what is accepted instead of driving; empty: nobody.
+  std::string WhoDrives() const;
   void PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock);
+  // The earlier of `otherwise` and when a snapshot that somebody waits for may be made.
+  LinkClock::time_point SnapshotDue(LinkClock::time_point otherwise) const;
   void CutOffLate();
 };
 

@@ -15,11 +15,24 @@ using std::chrono::seconds;
 
 constexpr seconds ToOpen{10};
 constexpr seconds ToSayGoodbye{2};
-constexpr std::size_t LargestEvent = 1 << 20; // of viewers, bytes
+constexpr std::size_t LargestEvent = 1 << 20;  // of viewers, bytes
+constexpr std::size_t WaitingEvents = 8 << 20; // for one simulation, bytes
 
-Status TooMany(unsigned maximum) {
+Status TooMany(unsigned maximum, const char* what) {
   return {StatusCode::RESOURCE_EXHAUSTED,
-          "there are " + std::to_string(maximum) + " connections already; accepted: no more"};
+          "there are " + std::to_string(maximum) + " " + what + " already; accepted: no more"};
+}
+
+// Whether the client ended its side, rather than that the connection broke: what says the latter
+// may come a moment after the end.
+bool HasLeft(const grpc::ServerContext& context) {
+  for (int i = 0; i < 10; ++i) {
+    if (context.IsCancelled()) {
+      return false;
+    }
+    std::this_thread::sleep_for(milliseconds(2));
+  }
+  return true;
 }
 
 std::shared_ptr<v1::DriveReply> MakeClosed(v1::Error::Kind kind, const std::string& message) {
@@ -60,9 +73,9 @@ Status Server::Service::Hello(grpc::ServerContext*, const v1::HelloRequest* requ
 
 Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
   Hub& hub = this->Hub_;
-  const Connection connection(hub.connections, hub.mutex, hub.options.maximumConnections);
+  const Connection connection(hub.driving, hub.mutex, DrivesAtOnce);
   if (!connection.Good()) {
-    return TooMany(hub.options.maximumConnections);
+    return TooMany(DrivesAtOnce, "connections of simulations");
   }
   const auto me = std::make_shared<DriveStream>(context);
   const auto expect = [&](seconds limit) { hub.deadlines[context] = LinkClock::now() + limit; };
@@ -93,7 +106,9 @@ Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
       if (me->out.messages.empty()) {
         break;
       }
+      const std::size_t size = me->out.messages.front().second;
       const auto message = me->out.Take();
+      me->eventBytes -= message->has_event() ? size : 0;
       lock.unlock();
       const bool written = stream->Write(*message);
       lock.lock();
@@ -106,12 +121,21 @@ Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
     hub.space.notify_all();
   });
   const Status result = this->Read(*stream, *me, generation);
+  const bool left = !result.ok() || HasLeft(*context); // whom it sends away is not waited for
   {
-    const std::lock_guard lock(hub.mutex);
+    std::unique_lock lock(hub.mutex);
+    if (left && hub.writer.stream == me) {
+      hub.writer.left = true;
+      // What it still sent is carried out, unless it waits no longer or somebody else comes.
+      while (!hub.tasks.empty() && !hub.stopping && !me->out.ended && !context->IsCancelled()) {
+        hub.space.wait_for(lock, milliseconds(50));
+      }
+    }
     me->out.ended = true;
     me->out.ready.notify_all();
     if (hub.writer.stream == me) {
       hub.writer.stream.reset();
+      hub.writer.lost = LinkClock::now();
       hub.TellWriterName();
     }
   }
@@ -136,18 +160,17 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
   }
   Writer& writer = hub.writer;
   const bool resumed = writer.key == open.key();
-  if (!resumed && writer.stream && !open.take_over()) {
-    return {StatusCode::ALREADY_EXISTS,
-            "'" + writer.name + "' drives; accepted: to watch, or to take over explicitly"};
+  const std::string taken = resumed || open.take_over() ? std::string() : hub.WhoDrives();
+  if (!taken.empty()) {
+    return {StatusCode::ALREADY_EXISTS, taken};
   }
   if (writer.stream) { // of a lost connection, or of whom it is taken over from
     DriveStream& old = *writer.stream;
     old.out.Clear();
+    old.eventBytes = 0;
     if (resumed) {
       old.context->TryCancel();
     } else {
-      hub.tasks.clear(); // whoever takes over is not to see them done
-      hub.taskBytes = 0;
       old.out.Put(MakeClosed(v1::Error::ALREADY_EXISTS, "'" + open.client() + "' has taken over"),
                   256);
     }
@@ -156,11 +179,17 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
     hub.deadlines[old.context] = LinkClock::now() + ToSayGoodbye;
   }
   if (!resumed) {
-    const std::uint64_t next = writer.generation + 1;
-    writer = {};
-    writer.generation = next;
-    writer.key = open.key();
+    hub.tasks.clear(); // whoever drives now is not to see them done
+    hub.taskBytes = 0;
+    hub.space.notify_all();
+    Writer next;
+    next.generation = writer.generation + 1;
+    next.due = writer.due;
+    next.key = open.key();
+    writer = std::move(next);
   }
+  writer.left = false;
+  writer.process = open.process().substr(0, 256);
   writer.name = open.client();
   writer.stream = me;
   hub.Acknowledge(open.acknowledged());
@@ -187,14 +216,15 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
   Hub& hub = this->Hub_;
   const auto period = std::chrono::duration_cast<LinkClock::duration>(
       std::chrono::duration<double>(1 / hub.options.maximumRate));
-  auto due = LinkClock::now() - seconds(1); // a second's worth may come at once
   v1::DriveRequest request;
   while (stream.Read(&request)) {
     if (!request.has_send()) {
       return {StatusCode::INVALID_ARGUMENT, "a message after the first is not `send`"};
     }
     v1::SendCommand& send = *request.mutable_send();
-    const std::size_t bytes = send.command().ByteSizeLong() + sizeof(Task);
+    // What it holds, which may be far more than what came: an empty message is two bytes on the
+    // wire.
+    const std::size_t bytes = send.command().SpaceUsedLong() + sizeof(Task);
     std::unique_lock lock(hub.mutex);
     if (me.out.ended || generation != hub.writer.generation) {
       return Status::OK;
@@ -208,7 +238,8 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
                                                 " came after " + std::to_string(hub.writer.queued) +
                                                 "; accepted: the next number"};
     }
-    // Beyond the rate it waits, and what it sends waits with it.
+    // Beyond the rate it waits, and what it sends waits with it. A second's worth may come at once.
+    auto& due = hub.writer.due;
     due = std::max(due, LinkClock::now() - seconds(1)) + period;
     const auto free = [&] {
       return hub.stopping || me.out.ended ||
@@ -241,15 +272,17 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
 Status Server::Service::Watch(grpc::ServerContext* context, const v1::WatchRequest* request,
                               grpc::ServerWriter<v1::WatchReply>* stream) {
   Hub& hub = this->Hub_;
-  const Connection connection(hub.connections, hub.mutex, hub.options.maximumConnections);
+  const unsigned most = hub.options.maximumConnections - 1; // one is for whoever drives
+  const Connection connection(hub.watching, hub.mutex, most);
   if (!connection.Good()) {
-    return TooMany(hub.options.maximumConnections);
+    return TooMany(most, "viewers");
   }
   const Status good = CheckClient(request->protocol(), request->viewer());
   if (!good.ok()) {
     return good;
   }
   ViewerStream me;
+  me.takesParts = request->parts();
   std::unique_lock lock(hub.mutex);
   hub.viewers.insert(&me);
   hub.work.notify_one();
@@ -262,7 +295,7 @@ Status Server::Service::Watch(grpc::ServerContext* context, const v1::WatchReque
       me.out.ready.wait_for(lock, milliseconds(200));
       continue;
     }
-    const auto message = me.out.Take();
+    const auto message = me.Take();
     lock.unlock();
     const bool written = stream->Write(*message);
     lock.lock();
@@ -271,7 +304,7 @@ Status Server::Service::Watch(grpc::ServerContext* context, const v1::WatchReque
     }
   }
   hub.viewers.erase(&me);
-  return hub.stopping ? Status(StatusCode::UNAVAILABLE, "the server is ending") : Status::OK;
+  return hub.stopping ? Status(StatusCode::UNAVAILABLE, "the server is ending") : me.failed;
 }
 
 Status Server::Service::Tell(grpc::ServerContext*, const v1::TellRequest* request,
@@ -296,8 +329,8 @@ Status Server::Service::Tell(grpc::ServerContext*, const v1::TellRequest* reques
   const std::lock_guard lock(this->Hub_.mutex);
   const auto& writer = this->Hub_.writer.stream;
   // A simulation that does not read is not to be cut off for its viewers' sake.
-  if (writer && writer->out.messages.size() < 1000 &&
-      writer->out.bytes + size <= this->Hub_.options.unreadBytes / 2) {
+  if (writer && writer->out.messages.size() < 1000 && writer->eventBytes + size <= WaitingEvents) {
+    writer->eventBytes += size;
     writer->out.Put(std::move(message), size);
     reply->set_delivered(true);
   }

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include <unistd.h>
+
 #include <dspace/Error.h>
 #include <dspace/session/ClientLink.h>
+#include <dspace/session/SnapshotMessages.h>
 
 namespace dspace::session {
 namespace {
@@ -21,6 +24,7 @@ struct Watcher::Link {
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::Dspace::Stub> stub;
   std::thread thread;
+  const pid_t process = getpid(); // that watches: a child has no such thread
 
   mutable std::mutex mutex; // of all below
   std::condition_variable changed;
@@ -31,7 +35,18 @@ struct Watcher::Link {
   bool once = false;  // connected
   bool final = false; // never will be
   bool ending = false;
-  v1::Error error; // why it is not connected
+  v1::Error error;     // why it is not connected
+  std::string refusal; // the same, if it is what the server says
+
+  bool Forked() const { return getpid() != this->process; }
+  v1::Error Foreign() const {
+    v1::Error told;
+    told.set_kind(v1::Error::UNSUPPORTED);
+    told.set_object("server '" + this->options.address + "'");
+    told.set_message(told.object() + ": process " + std::to_string(this->process) +
+                     " watches it, and this one is its child; accepted: a connection of its own");
+    return told;
+  }
 
   // One stream, until it is lost.
   void Watch() {
@@ -49,12 +64,25 @@ struct Watcher::Link {
       v1::WatchRequest request;
       request.set_protocol(LinkProtocol);
       request.set_viewer(this->options.name);
+      request.set_parts(true);
       const auto stream = this->stub->Watch(&watch, request);
       v1::WatchReply message;
+      SnapshotJoin snapshots;
+      std::string broken;
       while (stream->Read(&message)) {
+        try {
+          if (!snapshots.Take(message)) {
+            continue;
+          }
+        } catch (const Error& wrong) {
+          broken = wrong.what();
+          watch.TryCancel();
+          break;
+        }
         const std::size_t size = message.ByteSizeLong() + 64;
         std::unique_lock lock(this->mutex);
         this->connected = this->once = true;
+        this->refusal.clear();
         this->changed.notify_all();
         this->changed.wait(lock, [&] {
           return this->ending || this->messages.empty() ||
@@ -69,6 +97,9 @@ struct Watcher::Link {
         this->changed.notify_all();
       }
       status = stream->Finish();
+      if (!broken.empty()) {
+        status = grpc::Status(grpc::StatusCode::DATA_LOSS, broken);
+      }
     }
     const std::lock_guard lock(this->mutex);
     this->context = nullptr;
@@ -76,6 +107,7 @@ struct Watcher::Link {
     bool useless = false;
     this->error = ToError(this->options.address, status, useless);
     this->final = useless && !this->once;
+    this->refusal = useless ? this->error.message() : std::string();
     this->changed.notify_all();
   }
 
@@ -85,7 +117,8 @@ struct Watcher::Link {
       lock.unlock();
       this->Watch();
       lock.lock();
-      this->changed.wait_for(lock, milliseconds(100), [this] { return this->ending; });
+      const milliseconds pause(this->refusal.empty() ? 100 : 1000);
+      this->changed.wait_for(lock, pause, [this] { return this->ending; });
     }
   }
 
@@ -136,11 +169,18 @@ Watcher::Watcher(const WatcherOptions& options) : Link_(new Link) {
 }
 
 Watcher::~Watcher() {
+  if (this->Link_->Forked()) {
+    (void)this->Link_.release(); // its thread and connection are the parent's
+    return;
+  }
   this->Link_->End();
 }
 
 bool Watcher::Take(v1::WatchReply& message, double wait_s) {
   Link& link = *this->Link_;
+  if (link.Forked()) {
+    return false;
+  }
   std::unique_lock lock(link.mutex);
   link.changed.wait_for(lock, Seconds(std::clamp(wait_s, 0.0, 1e6)),
                         [&] { return !link.messages.empty(); });
@@ -155,6 +195,12 @@ bool Watcher::Take(v1::WatchReply& message, double wait_s) {
 }
 
 bool Watcher::Connected(std::string* why) const {
+  if (this->Link_->Forked()) {
+    if (why) {
+      *why = this->Link_->Foreign().message();
+    }
+    return false;
+  }
   const std::lock_guard lock(this->Link_->mutex);
   if (why) {
     *why = this->Link_->connected ? "" : this->Link_->error.message();
@@ -162,8 +208,19 @@ bool Watcher::Connected(std::string* why) const {
   return this->Link_->connected;
 }
 
+std::string Watcher::Refusal() const {
+  if (this->Link_->Forked()) {
+    return {};
+  }
+  const std::lock_guard lock(this->Link_->mutex);
+  return this->Link_->refusal;
+}
+
 bool Watcher::Tell(const v1::ViewerEvent& event) {
   Link& link = *this->Link_;
+  if (link.Forked()) {
+    Raise(link.Foreign());
+  }
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() +
                        std::chrono::duration_cast<std::chrono::milliseconds>(
