@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <dspace/FilesRead.h>
 #include <dspace/session/Confinement.h>
 #include <dspace/session/ErrorReply.h>
 #include <dspace/session/Ledger.h>
@@ -33,6 +34,8 @@ struct vtkDspaceServer::Internals {
       if (command.has_capture()) {
         command.mutable_capture()->set_inline_data(true); // the planes are wanted elsewhere
       }
+      const dspace::FilesGuard guard(
+          [this](const std::string& path) { this->confinement->RequireWithin(path); });
       return this->session->GetInterpreter().Execute(command);
     });
   }

@@ -1,6 +1,7 @@
 #include <dspace/FilesRead.h>
 
 #include <filesystem>
+#include <utility>
 
 #include <sys/stat.h>
 
@@ -8,6 +9,7 @@ namespace dspace {
 namespace {
 
 thread_local FilesReadScope* Innermost = nullptr;
+thread_local FilesGuard* Guard = nullptr;
 
 } // namespace
 
@@ -27,10 +29,31 @@ FilesReadScope::FilesReadScope() : Outer_(Innermost) {
 
 FilesReadScope::~FilesReadScope() {
   Innermost = this->Outer_;
-  NoteFilesRead(this->Files_);
+  if (Innermost) {
+    Innermost->Files_.insert(this->Files_.begin(), this->Files_.end());
+  }
+}
+
+FilesGuard::FilesGuard(Look look) : Look_(std::move(look)), Outer_(Guard) {
+  Guard = this;
+}
+
+FilesGuard::~FilesGuard() {
+  Guard = this->Outer_;
+}
+
+bool FilesGuard::Lives() {
+  return Guard != nullptr;
+}
+
+void FilesGuard::Show(const std::string& path) {
+  for (const FilesGuard* guard = Guard; guard; guard = guard->Outer_) {
+    guard->Look_(path);
+  }
 }
 
 void NoteFileRead(const std::string& path) {
+  FilesGuard::Show(path);
   if (!Innermost || path.empty()) {
     return;
   }
@@ -40,6 +63,11 @@ void NoteFileRead(const std::string& path) {
 }
 
 void NoteFilesRead(const FilesRead& files) {
+  if (Guard) {
+    for (const auto& [path, stamp] : files) {
+      FilesGuard::Show(path);
+    }
+  }
   if (Innermost) {
     Innermost->Files_.insert(files.begin(), files.end());
   }

@@ -3,6 +3,7 @@
 #define DSPACE_FILES_READ_H
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -37,6 +38,26 @@ private:
   friend void NoteFilesRead(const FilesRead& files);
   FilesRead Files_;
   FilesReadScope* Outer_;
+};
+
+// While it lives, this thread's NoteFileRead shows each file to `look`, which throws for one that
+// is not to be read. Whoever opens a file does so after NoteFileRead; of a raster or a file of
+// shapes also what belongs to it is shown, before anything of it is used.
+class FilesGuard {
+public:
+  using Look = std::function<void(const std::string& path)>;
+  explicit FilesGuard(Look look);
+  ~FilesGuard();
+  FilesGuard(const FilesGuard&) = delete;
+  FilesGuard& operator=(const FilesGuard&) = delete;
+
+  static bool Lives();
+  // Shows a file that is not noted. Throws what `look` throws.
+  static void Show(const std::string& path);
+
+private:
+  Look Look_;
+  FilesGuard* Outer_;
 };
 
 // Told by whoever opens a file; nothing happens where no scope lives. The first stamp of a file

@@ -271,6 +271,20 @@ void Confinement::Apply(v1::Command& command) const {
       });
 }
 
+void Confinement::RequireWithin(const std::string& path) const {
+  std::error_code error;
+  const bool plain = path.rfind("/vsi", 0) != 0 && path.find("://") == std::string::npos;
+  const fs::path real = fs::weakly_canonical(fs::absolute(path, error), error);
+  for (const std::string& root : this->Roots_) {
+    if (!error && plain && Within(real, root)) {
+      return;
+    }
+  }
+  throw Error(Error::Kind::InvalidArgument, "file '" + path.substr(0, 1000) + "'",
+              "a file that the command names leads to it, and it lies outside of what the server "
+              "allows");
+}
+
 // What is not there may mean something else than a file to the library that is to read it, and what
 // is no plain file may never end.
 void Confinement::RequireThere(const std::string& real, const std::string& text,

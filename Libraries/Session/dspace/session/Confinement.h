@@ -42,6 +42,10 @@ public:
   // against.
   void Apply(v1::Command& command) const;
 
+  // Throws Error(InvalidArgument) for a file that a command's files lead to (FilesGuard), and that
+  // lies outside of the roots.
+  void RequireWithin(const std::string& path) const;
+
   const std::vector<std::string>& Roots() const { return this->Roots_; }
 
 private:

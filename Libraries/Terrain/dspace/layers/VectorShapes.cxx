@@ -282,6 +282,7 @@ VectorFile ReadVectorFile(const std::string& path, const RasterPlace& terrain,
   const std::string object = "shapes '" + path + "'";
   VectorFile result;
   GdalErrors errors;
+  ShowSources(path);
   const DatasetPointer file = Open(path, object, errors);
   NoteDataset(*file);
   Reader reader(object, options, result);

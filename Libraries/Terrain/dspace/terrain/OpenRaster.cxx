@@ -100,6 +100,7 @@ DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
   RegisterGdal();
   const NetworkScope scope(limits, path);
   GdalErrors errors;
+  ShowSources(path);
   DatasetPointer dataset(GDALDataset::Open(
       GdalPath(path).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (!dataset && IsRemote(path)) {

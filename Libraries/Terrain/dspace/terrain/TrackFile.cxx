@@ -235,6 +235,7 @@ ReadTracks(const std::string& path, const Crs& crs,
     throw Error(Error::Kind::NotFound, object, "there is no such file");
   }
   GdalErrors errors;
+  ShowSources(path);
   const char* const drivers[] = {"GeoJSON", nullptr};
   const Dataset dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers));
