@@ -170,6 +170,15 @@ std::string vtkDspaceSession::Record(const std::string& path, double commitEvery
   return {};
 }
 
+void vtkDspaceSession::TakeRecording(vtkDspaceSession* other) {
+  this->Impl->recording = std::move(other->Impl->recording);
+  this->Impl->counts = other->Impl->counts;
+  if (this->Impl->recording) {
+    this->Impl->recording->Jump(this->Impl->ledger, this->Impl->time_s,
+                                &this->Impl->interpreter.GetState().files);
+  }
+}
+
 std::string vtkDspaceSession::StopRecording() {
   std::string failure = this->FlushRecording();
   if (this->Impl->recording) {

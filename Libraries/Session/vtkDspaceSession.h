@@ -61,6 +61,9 @@ public:
   /// line each.
   std::string Record(const std::string& path, double commitEvery, bool pack = false);
   std::string StopRecording();
+  /// What another session is recording goes on with this one, whose state is another: the recording
+  /// says that commands are lost between them.
+  void TakeRecording(vtkDspaceSession* other);
   /// Waits until all that was accepted is written.
   std::string FlushRecording();
   /// Of the present recording, or of the one before: "accepted", "written", "bytes", "snapshots".

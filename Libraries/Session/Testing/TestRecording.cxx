@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <random>
 #include <thread>
 
@@ -68,6 +69,22 @@ std::vector<RecordingRow> ReadRows(const std::string& path) {
   return rows;
 }
 
+// The first value that a question has for an answer.
+std::string Ask(const std::string& path, const char* question) {
+  sqlite3* database = nullptr;
+  EXPECT_EQ(sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READWRITE, nullptr), SQLITE_OK);
+  std::string answer;
+  sqlite3_exec(
+      database, question,
+      [](void* to, int, char** values, char**) {
+        *static_cast<std::string*>(to) = values[0] ? values[0] : "";
+        return 0;
+      },
+      &answer, nullptr);
+  sqlite3_close(database);
+  return answer;
+}
+
 void ExpectPrefix(const std::vector<RecordingRow>& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     ASSERT_EQ(rows[i].seq, i + 1);
@@ -110,6 +127,53 @@ TEST_F(Recording, HoldsWhatWasAcceptedAndIsReadMeanwhile) {
     EXPECT_EQ(writer.Counts().snapshots, 11u);
   }
   EXPECT_EQ(ReadRows(this->Path_).size(), 1000u);
+}
+
+// The log is moved into the file while more is written, and does not grow without end.
+TEST_F(Recording, ItsLogStaysSmall) {
+  RecordingOptions options;
+  options.checkpointPages = 8;
+  options.commitEvery_s = 0.001;
+  std::uintmax_t greatest = 0;
+  {
+    RecordingWriter writer(this->Path_, Ledger(), 0.0, options);
+    for (std::uint64_t i = 1; i <= 4000; ++i) {
+      writer.Add(Numbered(i), {}, Ledger());
+      if (i % 50 == 0) {
+        writer.Flush();
+        greatest = std::max(greatest, std::filesystem::file_size(this->Path_ + "-wal"));
+      }
+    }
+    EXPECT_GT(std::filesystem::file_size(this->Path_), 2000 * Numbered(1).ByteSizeLong());
+  }
+  EXPECT_GT(greatest, 8u * 65536u);
+  EXPECT_LT(greatest, (4u * 8u + 16u) * 65560u); // four times as many, and a transaction
+  EXPECT_GT(4000 * Numbered(1).ByteSizeLong(), (4u * 8u + 16u) * 65560u);
+  EXPECT_FALSE(std::filesystem::exists(this->Path_ + "-wal"));
+  const std::vector<RecordingRow> rows = ReadRows(this->Path_);
+  EXPECT_EQ(rows.size(), 4000u);
+  ExpectPrefix(rows);
+}
+
+// After a jump the state is another one, and the file says that a command is not there.
+TEST_F(Recording, AJumpLeavesAGap) {
+  const Ledger later;
+  {
+    RecordingWriter writer(this->Path_, Ledger(), 0.0);
+    writer.Add(Numbered(1), {}, Ledger());
+    writer.Add(Numbered(2), {}, Ledger());
+    writer.Jump(later, 9.0, nullptr);
+    writer.Add(Numbered(4), {}, later);
+    writer.Jump(later, 8.0, nullptr);
+  }
+  const std::vector<RecordingRow> rows = ReadRows(this->Path_);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[2].seq, 4u);
+  EXPECT_EQ(rows[2].time_s, 9.0);
+  EXPECT_EQ(rows[2].payload, Numbered(4).SerializeAsString());
+  EXPECT_EQ(Ask(this->Path_, "SELECT value FROM meta WHERE key = 'lost'"), "3-3 5-5");
+  EXPECT_EQ(Ask(this->Path_, "SELECT group_concat(seq || ':' || time, ' ') FROM snapshot"),
+            "0:0.0 3:9.0 5:8.0");
 }
 
 TEST_F(Recording, TimeIsTheSimulations) {

@@ -32,18 +32,6 @@ template<class Number> void Add(Sha256& sum, Number value) {
   sum.Add(&value, sizeof value); // little-endian, as are the machines that Dspace runs on
 }
 
-std::string Checksum(Sha256& sum, const RecordingRow& row) {
-  std::array<char, 29> head;
-  head[0] = row.snapshot ? 'S' : 'C';
-  std::memcpy(head.data() + 1, &row.seq, 8);
-  std::memcpy(head.data() + 9, &row.time_s, 8);
-  std::memcpy(head.data() + 17, &row.wall_s, 8);
-  std::memcpy(head.data() + 25, &row.kind, 4);
-  sum.Add(head.data(), head.size());
-  sum.Add(row.payload.data(), row.payload.size());
-  return sum.Finish().substr(0, ChecksumBytes);
-}
-
 } // namespace
 
 Sha256::Sha256() : Context_(EVP_MD_CTX_new()) {
@@ -69,9 +57,21 @@ std::string Sha256::Finish() {
   return digest;
 }
 
+std::string RecordingChecksum(Sha256& sum, const RecordingRow& row) {
+  std::array<char, 29> head;
+  head[0] = row.snapshot ? 'S' : 'C';
+  std::memcpy(head.data() + 1, &row.seq, 8);
+  std::memcpy(head.data() + 9, &row.time_s, 8);
+  std::memcpy(head.data() + 17, &row.wall_s, 8);
+  std::memcpy(head.data() + 25, &row.kind, 4);
+  sum.Add(head.data(), head.size());
+  sum.Add(row.payload.data(), row.payload.size());
+  return sum.Finish().substr(0, ChecksumBytes);
+}
+
 std::string RecordingChecksum(const RecordingRow& row) {
   Sha256 sum;
-  return Checksum(sum, row);
+  return RecordingChecksum(sum, row);
 }
 
 std::string RecordingChecksum(const RecordingAsset& asset) {
@@ -99,7 +99,9 @@ std::string RecordingChecksum(const RecordingContent& content) {
   return sum.Finish().substr(0, ChecksumBytes);
 }
 
-RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages) : Path_(path) {
+RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages,
+                             int checkpointPages)
+    : Path_(path) {
   if (std::ifstream(path).good()) {
     throw Error(Error::Kind::AlreadyExists, "recording '" + path + "'",
                 "there is a file of this name; accepted: a new one");
@@ -115,7 +117,8 @@ RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages)
     this->Run("PRAGMA page_size=65536");          // a step of a thousand poses in few pages
     this->Run("PRAGMA journal_mode=WAL");
     this->Run("PRAGMA synchronous=NORMAL");
-    this->Run("PRAGMA wal_autocheckpoint=2048"); // 128 MiB: the disk is waited for seldom
+    this->Run("PRAGMA cache_size=-16384");    // KiB: a transaction is written once, at its end
+    this->Run("PRAGMA wal_autocheckpoint=0"); // RecordingCheckpoints does it
     if (maximumPages > 0) {
       this->Run(("PRAGMA max_page_count=" + std::to_string(maximumPages)).c_str());
     }
@@ -128,6 +131,15 @@ RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages)
     this->Snapshot_ = this->Prepare("INSERT INTO snapshot VALUES(?,?,?,?,?,?)");
     this->Asset_ = this->Prepare("INSERT INTO asset VALUES(?,?,?,?,?,?,?)");
     this->Content_ = this->Prepare("INSERT INTO content VALUES(?,?,?,?,?,?)");
+    this->Lost_ = this->Prepare("INSERT OR REPLACE INTO meta VALUES('lost', ?)");
+    sqlite3_wal_hook(
+        this->Database_,
+        [](void* self, sqlite3*, const char*, int pages) {
+          static_cast<RecordingFile*>(self)->PagesInLog_ = pages;
+          return SQLITE_OK;
+        },
+        this);
+    this->Checkpoints_ = std::make_unique<RecordingCheckpoints>(path, checkpointPages);
   } catch (...) {
     this->Close();
     throw;
@@ -139,7 +151,9 @@ RecordingFile::~RecordingFile() {
 }
 
 void RecordingFile::Close() noexcept {
-  for (sqlite3_stmt* statement : {this->Command_, this->Snapshot_, this->Asset_, this->Content_}) {
+  this->Checkpoints_.reset();
+  for (sqlite3_stmt* statement :
+       {this->Command_, this->Snapshot_, this->Asset_, this->Content_, this->Lost_}) {
     sqlite3_finalize(statement);
   }
   sqlite3_close(this->Database_);
@@ -178,15 +192,17 @@ void RecordingFile::Begin() {
 
 void RecordingFile::Commit() {
   this->Run("COMMIT");
+  if (this->Checkpoints_) {
+    this->Checkpoints_->After(this->Database_, this->PagesInLog_);
+  }
 }
 
 void RecordingFile::Rollback() noexcept {
   sqlite3_exec(this->Database_, "ROLLBACK", nullptr, nullptr, nullptr);
 }
 
-void RecordingFile::Put(const RecordingRow& row) {
+void RecordingFile::Put(const RecordingRow& row, const std::string& checksum) {
   sqlite3_stmt* statement = row.snapshot ? this->Snapshot_ : this->Command_;
-  const std::string checksum = Checksum(this->Sum_, row);
   sqlite3_bind_int64(statement, 1, sqlite3_int64(row.seq));
   sqlite3_bind_double(statement, 2, row.time_s);
   sqlite3_bind_double(statement, 3, row.wall_s);
@@ -194,6 +210,11 @@ void RecordingFile::Put(const RecordingRow& row) {
   sqlite3_bind_blob64(statement, 5, row.payload.data(), row.payload.size(), SQLITE_STATIC);
   sqlite3_bind_blob64(statement, 6, checksum.data(), checksum.size(), SQLITE_STATIC);
   this->Step(statement);
+}
+
+void RecordingFile::PutLost(const std::string& ranges) {
+  sqlite3_bind_text(this->Lost_, 1, ranges.data(), int(ranges.size()), SQLITE_STATIC);
+  this->Step(this->Lost_);
 }
 
 void RecordingFile::Put(const RecordingAsset& asset) {

@@ -3,12 +3,28 @@
 #define DSPACE_SESSION_RECORDING_FILE_H
 
 #include <cstdint>
+#include <memory>
 #include <string>
+
+#include <dspace/session/RecordingCheckpoints.h>
 
 struct sqlite3;
 struct sqlite3_stmt;
 
 namespace dspace::session {
+
+class Sha256 {
+public:
+  Sha256();
+  ~Sha256();
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+  void Add(const void* data, std::size_t size);
+  std::string Finish(); // 32 bytes; ready for the next one
+
+private:
+  void* Context_;
+};
 
 // A row before its checksum.
 struct RecordingRow {
@@ -23,6 +39,8 @@ struct RecordingRow {
 // The first 16 bytes of the SHA-256 of the letter C (a command) or S (a snapshot), seq (8 bytes),
 // time_s, wall_s (doubles) and kind (4 bytes), all little-endian, and the payload.
 std::string RecordingChecksum(const RecordingRow& row);
+// As above; `sum` is kept, since making one takes longer than a small row.
+std::string RecordingChecksum(Sha256& sum, const RecordingRow& row);
 
 // A file that commands need, before its checksum.
 struct RecordingAsset {
@@ -44,19 +62,6 @@ struct RecordingContent {
   std::string data;
 };
 
-class Sha256 {
-public:
-  Sha256();
-  ~Sha256();
-  Sha256(const Sha256&) = delete;
-  Sha256& operator=(const Sha256&) = delete;
-  void Add(const void* data, std::size_t size);
-  std::string Finish(); // 32 bytes; ready for the next one
-
-private:
-  void* Context_;
-};
-
 // As above, each number after its letter: A, id, size, packed (1 byte), the lengths of state, path
 // and hash, these. P, id, asset, place, size, data. Numbers have 8 bytes.
 std::string RecordingChecksum(const RecordingAsset& asset);
@@ -65,13 +70,16 @@ std::string RecordingChecksum(const RecordingContent& content);
 // Throws Error(Io) with SQLite's words.
 class RecordingFile {
 public:
-  RecordingFile(const std::string& path, std::int64_t maximumPages);
+  RecordingFile(const std::string& path, std::int64_t maximumPages, int checkpointPages);
   ~RecordingFile();
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
 
   void Begin();
-  void Put(const RecordingRow& row);
+  // `checksum`: RecordingChecksum(row).
+  void Put(const RecordingRow& row, const std::string& checksum);
+  // Commands that nobody has: "3-5 9-9".
+  void PutLost(const std::string& ranges);
   void Put(const RecordingAsset& asset);
   void Put(const RecordingContent& content);
   void Commit();
@@ -90,7 +98,9 @@ private:
   sqlite3_stmt* Snapshot_ = nullptr;
   sqlite3_stmt* Asset_ = nullptr;
   sqlite3_stmt* Content_ = nullptr;
-  Sha256 Sum_;
+  sqlite3_stmt* Lost_ = nullptr;
+  int PagesInLog_ = 0;
+  std::unique_ptr<RecordingCheckpoints> Checkpoints_;
 };
 
 } // namespace dspace::session

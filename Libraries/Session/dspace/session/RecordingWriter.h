@@ -23,6 +23,7 @@ struct RecordingOptions {
   std::size_t snapshotBytes = 8u << 20; // of commands from one snapshot to the next, at least,
   std::uint64_t snapshotCommands = 20000; // or so many commands
   std::int64_t maximumPages = 0;          // of 64 KiB, for the file; 0: as the disk has
+  int checkpointPages = 2048;             // of the log, which are then moved into the file: 128 MiB
   bool pack = false; // the files that the commands need become part of the recording
 };
 
@@ -55,6 +56,9 @@ public:
   std::string Add(const v1::Command& accepted, const v1::Reply& reply, const Ledger& ledger);
   // Waits until all that was handed over is written; what failed, or an empty string.
   std::string Flush();
+  // What comes next is not what came after the last command: the state is now that of `ledger`, at
+  // `time_s`, and `files` has what was read for it. The recording says that a command is lost here.
+  void Jump(const Ledger& ledger, double time_s, const CommandFiles* files);
   RecordingCounts Counts() const;
   const std::string& Path() const;
 

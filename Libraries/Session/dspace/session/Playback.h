@@ -1,0 +1,79 @@
+// A recording carried out again, with no simulation.
+#ifndef DSPACE_SESSION_PLAYBACK_H
+#define DSPACE_SESSION_PLAYBACK_H
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <dspace/session/Interpreter.h>
+#include <dspace/session/RecordingReader.h>
+
+namespace dspace::session {
+
+// The state after command `end`: a time that the simulation set, and all that came until the next.
+struct PlaybackStep {
+  double time_s = 0.0;
+  std::uint64_t end = 0;
+};
+
+// A span of which nothing can be shown, since commands first..last are lost or of no use.
+struct PlaybackGap {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  std::optional<double> begin_s; // of the first step that may lack a command; none: from the start
+  std::optional<double> end_s;   // of the next step that is whole; none: to the end
+  std::size_t before = 0;        // whole steps before it
+};
+
+struct PlaybackSteps {
+  std::vector<PlaybackStep> steps;
+  std::vector<PlaybackGap> gaps;
+};
+
+// Which steps are whole. After lost commands the next snapshot goes on.
+PlaybackSteps StepsOf(RecordingReader& reader);
+
+// The step that is shown at a time: the last one not after it, of the latest run of steps that
+// reaches the time, where time went back in the recording, else of the latest that begins before
+// it. None before all of them.
+std::optional<std::size_t> StepAt(const std::vector<PlaybackStep>& steps, double time_s);
+
+// Gives a recording's commands to an interpreter, whose scenes and viewports are the recording's
+// from then on: what else is in it is removed with the next seek that begins from a snapshot.
+// Throws Error: those of RecordingReader; Corrupt where a command is refused, where no step is
+// whole, and in a gap.
+class Playback {
+public:
+  // Both must outlive it. It is at the first step then. Files that commands need are those of this
+  // machine: whoever plays has checked them (Documentation/Recording.md), or unpacked them.
+  Playback(RecordingReader& reader, Interpreter& interpreter);
+
+  const std::vector<PlaybackStep>& Steps() const { return this->Steps_.steps; }
+  const std::vector<PlaybackGap>& Gaps() const { return this->Steps_.gaps; }
+  std::size_t Index() const { return this->Index_; }
+  double Time() const { return this->Steps_.steps[this->Index_].time_s; }
+
+  // To a time [s], as StepAt says; InvalidArgument before the first step. Returns the step's time.
+  double Seek(double time_s);
+  // So many steps on, or back; stops at the ends. Returns how many were made.
+  std::int64_t Step(std::int64_t n);
+  // Takes in what has been recorded since; returns how many steps came. The last may have grown.
+  std::size_t Update();
+
+private:
+  void Go(std::size_t index);
+  void Begin(const RecordedSnapshot& snapshot);
+  void CarryOut(v1::Command command, const char* table, std::uint64_t seq);
+
+  RecordingReader& Reader_;
+  Interpreter& Interpreter_;
+  PlaybackSteps Steps_;
+  std::size_t Index_ = 0;
+  std::optional<std::uint64_t> At_; // the command after which the state is; none: unknown
+};
+
+} // namespace dspace::session
+
+#endif
