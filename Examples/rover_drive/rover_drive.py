@@ -71,8 +71,6 @@ def arguments():
     parser.add_argument("--record", type=pathlib.Path, metavar="FILE",
                         help="records the session into a new file, for `dspace play`")
     options = parser.parse_args()
-    if options.record and options.served:
-        parser.error("--record with --served; accepted: one of them")
     return options
 
 
@@ -86,7 +84,7 @@ def open_session(options):
         return
     files = [options.terrain, options.model] + ([options.image] if options.image else [])
     roots = {DATA} | {file.resolve().parent for file in files} | {options.out.resolve()}
-    with ServerProcess(sorted(roots)) as server, \
+    with ServerProcess(sorted(roots), record=options.record) as server, \
             dspace.connect(server.address, name="rover_drive") as session:
         print(f"dspace demo: served by process {server.pid} at {server.address}", flush=True)
         yield session

@@ -41,6 +41,7 @@ struct vtkDspaceWatcher::Internals {
     this->own.Leave(this->Interpreter());
     // The context goes on, with what is on the GPU already.
     const vtkSmartPointer<vtkDspaceRenderContext> context = this->session->GetRenderContext();
+    const vtkSmartPointer<vtkDspaceSession> before = this->session;
     this->session = vtkSmartPointer<vtkDspaceSession>::New();
     this->session->SetRenderContext(context);
     this->trouble.clear();
@@ -49,6 +50,7 @@ struct vtkDspaceWatcher::Internals {
       this->Apply(command);
     }
     this->own.Enter(this->Interpreter());
+    this->session->TakeRecording(before);
   }
 
   void Apply(dspace::v1::Command& command) {

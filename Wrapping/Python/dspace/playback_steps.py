@@ -62,7 +62,7 @@ def steps_of(file, scene=None):
     blocks = blocks_of(file)
     steps, gaps = [], []
     begin, first = None, 1 if file.lost else blocks[0][0]  # of the gap that is open
-    is_open = bool(file.lost) and first > 1 and first - 1 not in snapshots
+    is_open = False
     for number, (a, b) in enumerate(blocks):
         place = bisect.bisect_left(snapshots, a - 1)
         if place == len(snapshots) or snapshots[place] > max(b, a - 1):

@@ -3,7 +3,7 @@ import os
 
 from dspace._client import warn
 from dspace._fields import flag, number
-from dspace.errors import AlreadyExists, InvalidArgument, Io, NotFound
+from dspace.errors import AlreadyExists, InvalidArgument, Io, NotFound, Unsupported
 from dspace.recording_file import path_of
 
 COUNTS = ("accepted", "written", "bytes", "snapshots")
@@ -15,7 +15,12 @@ class Recording:
     def __init__(self, client, path, commit_every, pack=False):
         self.path = path = path_of(path)
         self._client = client
-        self._vtk = client.local()
+        try:
+            client.local()
+        except Unsupported:
+            raise Unsupported(f"recording {path!r}: the session is in a server, which records it (dspace serve "
+                              "--record FILE); accepted here: dspace.watch() of the same address, and its "
+                              "record()", "recording") from None
         self._last = None
         if os.path.lexists(path):
             raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
@@ -25,7 +30,7 @@ class Recording:
         if not 0.001 <= every <= 60:
             raise InvalidArgument(f"recording {path!r}: commit_every is {every!r} s; accepted: 0.001 to 60",
                                   "recording")
-        self._raise(self._vtk.Record(path, every, flag(pack, "pack", "recording")))
+        self._raise(client.local().Record(path, every, flag(pack, "pack", "recording")))
         client.recording = self
 
     def _raise(self, problem):
@@ -41,7 +46,7 @@ class Recording:
     @property
     def active(self):
         """Whether commands are still recorded: not after stop() or a failure."""
-        return self._last is None and self._client.vtk is self._vtk and not self.failure
+        return self._last is None and self._client.vtk is not None and not self.failure
 
     @property
     def counts(self):

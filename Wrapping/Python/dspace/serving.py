@@ -13,10 +13,12 @@ class ServerProcess:
 
         with ServerProcess(["data"]) as server, dspace.connect(server.address) as session: ...
 
-    roots: folders whose files commands may name. Leaving the block ends it.
+    roots: folders whose files commands may name. record: a new file that the session is recorded into; pack: with
+    the files that its commands need. Leaving the block ends it.
     """
 
-    def __init__(self, roots):
+    def __init__(self, roots, record=None, pack=False):
+        self._record = [] if record is None else ["--record", os.path.abspath(record)] + ["--pack"] * bool(pack)
         self._roots = [os.fspath(root) for root in roots]
         self._folder = self._process = self.address = None
 
@@ -29,6 +31,7 @@ class ServerProcess:
         command = [sys.executable, "-m", "dspace", "serve", "--listen", f"unix:{self._folder.name}/socket"]
         for root in self._roots:
             command += ["--allow-root", root]
+        command += self._record
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         line = self._process.stdout.readline()
         if not line.startswith("dspace serve: listening on "):

@@ -92,6 +92,11 @@ class Watcher(Session):
         """What could not be applied since the last snapshot; empty: nothing."""
         return self._client.watcher().GetTrouble()
 
+    def record(self, path, commit_every=0.1, pack=False):
+        """As Session.record(): what each update() applies, views of one's own with it. Where the watcher begins
+        anew with a snapshot (the link broke, or it was too slow) the recording has a gap (Playback.gaps)."""
+        return super().record(path, commit_every, pack)
+
     def add_view(self, name, scene=None, size=(1280, 720), samples=None, **camera):
         """A viewport "viewer:NAME" of one's own. With what Scene.add_camera takes (eye and target, pose,
         chase, frame, fov_deg, ...) it has a camera of its own; without, it looks through the scene's

@@ -1,16 +1,13 @@
 """`dspace log`: what recordings hold, where two part, what survives damage."""
 import datetime
-import itertools
 import os
 
-from dspace.command_line import Failed
+from dspace.command_line.log_diff import compare, name_of
 from dspace.command_line.log_pack import pack
 from dspace.command_line.log_salvage import salvage
 from dspace.command_line.log_telemetry import add_arguments as add_telemetry
 from dspace.recording_file import RecordingFile, write_recording
 from dspace.session import commands_pb2 as pb
-
-COMMANDS = pb.Command.DESCRIPTOR.fields_by_number
 
 
 def add_arguments(parser):
@@ -27,7 +24,8 @@ def add_arguments(parser):
     diff.add_argument("file", metavar="FILE")
     diff.add_argument("other", metavar="OTHER")
     diff.add_argument("--tolerance", type=float, default=0.0, metavar="E",
-                      help="in any number of a pose [m, or of a quaternion]; absent: 0")
+                      help="in any number that is not whole, in its own unit (poses: m, and of a quaternion); "
+                           "absent: 0")
     diff.set_defaults(run=compare)
     cut = what.add_parser("cut", help="a part of it as a recording of its own")
     cut.add_argument("file", metavar="FILE")
@@ -47,11 +45,6 @@ def add_arguments(parser):
     rescue.add_argument("--out", required=True, metavar="FILE", help="the new recording")
     rescue.set_defaults(run=salvage)
     add_telemetry(what)
-
-
-def name_of(kind):
-    field = COMMANDS.get(kind)
-    return field.name if field else f"number {kind}"
 
 
 def show(options):
@@ -80,56 +73,26 @@ def write_out(options):
     with RecordingFile(options.file) as file:
         first = max(file.first, options.first or 1)
         last = file.last if options.last is None else min(file.last, options.last)
-        for row in file.rows(first, last) if last >= first else ():
+        for row in there(file, first, last):
             command = pb.Command.FromString(row.payload)
             text = str(command).replace("\n", " ") if row.kind != 24 else poses_text(command.set_poses)
             print(f"{row.seq} {row.time!r} {name_of(row.kind)}: {text.strip()}")
     return 0
 
 
+def there(file, first, last):
+    """The rows of a range, those that are lost told and left out."""
+    for lost, end in file.lost:
+        if first <= end and lost <= last:
+            yield from file.rows(first, lost - 1) if lost > first else ()
+            print(f"lost: commands {lost} to {end}")
+            first = end + 1
+    yield from file.rows(first, last) if last >= first else ()
+
+
 def poses_text(command):
     return "; ".join(f"{frame}: " + " ".join(f"{value:.9g}" for value in command.pose[8 * i:8 * i + 8])
                      for i, frame in enumerate(command.frame))
-
-
-def compare(options):
-    """Both streams side by side: the same commands in the same order, poses to the tolerance."""
-    if not options.tolerance >= 0:
-        raise Failed(f"--tolerance {options.tolerance!r}; accepted: 0 and more")
-    greatest = 0.0
-    with RecordingFile(options.file) as one, RecordingFile(options.other) as two:
-        if {one.first, two.first} != {1}:
-            raise Failed("a part of a recording cannot be compared; accepted: whole ones")
-        if one.snapshot(0).payload != two.snapshot(0).payload:
-            print("they begin with different states")
-            return 1
-        for a, b in itertools.zip_longest(one.rows(), two.rows()):
-            if a is None or b is None:
-                longer, row = (options.file, a) if b is None else (options.other, b)
-                print(f"the same up to command {row.seq - 1}; {longer} goes on with {name_of(row.kind)} "
-                      f"at {row.time!r} s")
-                return 1
-            if a.payload == b.payload and a.time == b.time:
-                continue
-            gap = difference(a, b)
-            if isinstance(gap, float) and gap <= options.tolerance and a.time == b.time:
-                greatest = max(greatest, gap)
-                continue
-            print(f"they part at command {a.seq}, {a.time!r} s and {b.time!r} s: {name_of(a.kind)} and "
-                  f"{name_of(b.kind)}" + (f", poses differ by up to {gap:.6g}" if isinstance(gap, float) else ""))
-            return 1
-        print(f"the same: {one.last} commands" + (f", poses to {greatest:.6g}" if greatest else ""))
-    return 0
-
-
-def difference(a, b):
-    """The greatest one of poses of the same frames; None for anything else."""
-    if a.kind != b.kind or a.kind != pb.Command.SET_POSES_FIELD_NUMBER:
-        return None
-    one, two = pb.Command.FromString(a.payload), pb.Command.FromString(b.payload)
-    if one.scene != two.scene or one.set_poses.frame != two.set_poses.frame:
-        return None
-    return max((abs(x - y) for x, y in zip(one.set_poses.pose, two.set_poses.pose)), default=0.0)
 
 
 def cut_out(options):

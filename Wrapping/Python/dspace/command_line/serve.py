@@ -28,6 +28,7 @@ def add_arguments(parser):
     parser.add_argument("--max-rate", type=float, default=100000.0, metavar="N",
                         help="commands a second; a faster simulation is slowed down (default 100,000)")
     parser.add_argument("--record", metavar="FILE", help="records the session into a new file, for `dspace play`")
+    parser.add_argument("--pack", action="store_true", help="with --record: the files that commands need go into it")
     parser.add_argument("--make-test-certificates", metavar="DIR",
                         help="writes an authority and certificates for server and clients of this machine "
                         "into DIR, and ends; for tests, not for operations")
@@ -53,10 +54,12 @@ def run(options):
     stop = []
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.append(True))
+    if options.pack and options.record is None:
+        raise Failed("--pack without --record; accepted: both")
     if options.record is not None:
         if os.path.lexists(options.record):
             raise Failed(f"--record {options.record!r}: there is such a file; accepted: a new one")
-        trouble = server.GetSession().Record(os.path.abspath(options.record), 0.1)
+        trouble = server.GetSession().Record(os.path.abspath(options.record), 0.1, options.pack)
         if trouble:
             raise Failed(trouble)
     trouble = server.Start()
@@ -70,6 +73,8 @@ def run(options):
         pass
     server.Stop()
     trouble = server.GetSession().StopRecording()
+    for path in server.GetSession().GetRecordingMissing().splitlines():
+        print(f"dspace: note: not packed: {path}", file=sys.stderr, flush=True)
     if trouble:
         raise Failed(trouble)
     return 0

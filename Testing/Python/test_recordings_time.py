@@ -1,0 +1,111 @@
+"""Which instants of a recording there are: resets, several scenes, no time at all; and while it is written."""
+import numpy
+import pytest
+
+import dspace
+from dspace.recording_file import RecordingFile
+
+
+def place(session):
+    return session.scene().frame("f").pose.position[0]
+
+
+def test_time_that_goes_back(tmp_path):
+    """A simulation that is reset: the latest run that reaches a time is shown."""
+    with dspace.Session() as session:
+        frame = session.scene().add_frame("f")
+        with session.record(tmp_path / "a.dspace"):
+            for x, time in enumerate((0.0, 1.0, 2.0, 3.0, 0.0, 1.0)):
+                session.scene().time = time
+                frame.pose = dspace.Pose((x, 0, 0))
+    with dspace.Playback(tmp_path / "a.dspace") as run:
+        assert run.times == [0.0, 0.0, 1.0, 2.0, 3.0, 0.0, 1.0]  # the first is what was there before
+        for at, x in ((0.5, 4), (1.0, 5), (1.5, 1), (2.0, 2), (3.0, 3), (99.0, 5)):
+            run.seek(at)
+            assert place(run.session) == x, at
+        with pytest.raises(dspace.InvalidArgument, match="accepted: 0.0 on"):
+            run.seek(-0.1)
+        run.seek(0.0)
+        assert run.index == 5 and run.step(-2) == -2 and run.time == 2.0 and place(run.session) == 2
+        seen = []
+        run.seek(2.0)
+        run.play(0, lambda each: seen.append((each.time, place(each.session))))
+        assert seen == [(3.0, 3), (0.0, 4), (1.0, 5)]
+
+
+def test_no_time_at_all(tmp_path):
+    """All is one step, at the time that was there."""
+    with dspace.Session() as session:
+        session.scene().time = 7.0
+        frame = session.scene().add_frame("f")
+        with session.record(tmp_path / "a.dspace"):
+            for x in range(5):
+                frame.pose = dspace.Pose((x, 0, 0))
+        session.record(tmp_path / "empty.dspace").stop()  # no command at all
+    for name, last in (("a.dspace", 4), ("empty.dspace", 4)):
+        with dspace.Playback(tmp_path / name) as run:
+            assert run.times == [7.0] and run.duration == 0.0 and run.step(3) == 0
+            assert run.seek(8.0) == 7.0 and place(run.session) == last
+            run.play(0, lambda each: pytest.fail("there is no other step"))
+    with dspace.Session() as session:
+        session.record(tmp_path / "nothing.dspace").stop()
+    with dspace.Playback(tmp_path / "nothing.dspace") as run:
+        assert run.times == [0.0] and not run.session.scenes
+
+
+def test_several_scenes_with_times_of_their_own(tmp_path):
+    with dspace.Session() as session:
+        one, two = session.scene("one"), session.scene("two")
+        frames = one.add_frame("f"), two.add_frame("f")
+        with session.record(tmp_path / "a.dspace"):
+            for i in range(4):
+                one.time = float(i)
+                frames[0].pose = dspace.Pose((i, 0, 0))
+                two.time = 1000.0 + i
+                frames[1].pose = dspace.Pose((10 * i, 0, 0))
+    at = lambda run, name: session_place(run, name)
+    with dspace.Playback(tmp_path / "a.dspace") as run:  # any scene's
+        assert run.times[1:] == [0.0, 1000.0, 1.0, 1001.0, 2.0, 1002.0, 3.0, 1003.0]
+        assert run.step(4) == 4 and run.time == 1001.0 and (at(run, "one"), at(run, "two")) == (1, 10)
+    with dspace.Playback(tmp_path / "a.dspace", scene="one") as run:
+        assert run.times[1:] == [0.0, 1.0, 2.0, 3.0] and run.seek(2.5) == 2.0
+        assert (at(run, "one"), at(run, "two")) == (2, 20)  # all that came until its next time
+    with dspace.Playback(tmp_path / "a.dspace", scene="two") as run:
+        assert run.times[1:] == [1000.0, 1001.0, 1002.0, 1003.0]
+        run.seek(1002.0)
+        assert (at(run, "one"), at(run, "two")) == (3, 20)
+    with dspace.Playback(tmp_path / "a.dspace", scene="none") as run:
+        assert len(run.times) == 1 and at(run, "two") == 30
+
+
+def session_place(run, name):
+    return run.session.scenes[name].frame("f").pose.position[0]
+
+
+def test_while_it_is_written(tmp_path):
+    """A reader sees whole steps only, takes in what has come since, and does not hold up the writer."""
+    path = tmp_path / "a.dspace"
+    with dspace.Session() as session:
+        frame = session.scene().add_frame("f")
+        with session.record(path, commit_every=0.001) as recording:
+            recording.flush()
+            with dspace.Playback(path) as run:
+                seen = 0
+                for i in range(400):
+                    session.scene().time = 0.5 * i
+                    frame.pose = dspace.Pose((i, 0, 0))
+                    if i % 40 == 0:
+                        recording.flush()
+                        seen += run.update()
+                        assert run.times[-1] == 0.5 * i and len(run.times) == seen + 1
+                        run.seek(0.5 * i)
+                        assert place(run.session) == i
+                        run.seek(0.0)
+                        assert place(run.session) == 0
+            recording.flush()
+            with RecordingFile(path) as file:
+                file.check()
+                assert file.last == recording.counts["written"] == 800
+    with RecordingFile(path) as file:
+        walls = numpy.array([row.wall for row in file.rows()])
+        assert numpy.all(numpy.diff(walls) >= 0) and walls[-1] - walls[0] < 600

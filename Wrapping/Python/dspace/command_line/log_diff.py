@@ -1,0 +1,111 @@
+"""`dspace log diff`: where two runs part, numbers compared to a tolerance."""
+import itertools
+import math
+
+from dspace.command_line import Failed
+from dspace.recording_file import RecordingFile, commands_of
+from dspace.session import commands_pb2 as pb
+
+NAMES = pb.Command.DESCRIPTOR.fields_by_number
+
+
+def name_of(kind):
+    field = NAMES.get(kind)
+    return field.name if field else f"number {kind}"
+
+
+def compare(options):
+    """Both streams side by side: the same commands in the same order, their numbers and times to the tolerance."""
+    if not options.tolerance >= 0:
+        raise Failed(f"--tolerance {options.tolerance!r}; accepted: 0 and more")
+    greatest = 0.0
+    with RecordingFile(options.file) as one, RecordingFile(options.other) as two:
+        if one.lost or two.lost:
+            raise Failed("a recording that lacks commands cannot be compared; accepted: whole ones")
+        if {one.first, two.first} != {1}:
+            raise Failed("a part of a recording cannot be compared; accepted: whole ones")
+        starts = [commands_of(file.snapshot(0)) for file in (one, two)]
+        if len(starts[0]) != len(starts[1]):
+            print(f"they begin with different states, of {len(starts[0])} and {len(starts[1])} commands")
+            return 1
+        for a, b in zip(*starts):
+            gap, where = difference(a, b)
+            if not gap <= options.tolerance:
+                print(f"they begin with different states: {where}")
+                return 1
+            greatest = max(greatest, gap)
+        for a, b in itertools.zip_longest(one.rows(), two.rows()):
+            if a is None or b is None:
+                longer, row = (options.file, a) if b is None else (options.other, b)
+                print(f"the same up to command {row.seq - 1}; {longer} goes on with {name_of(row.kind)} "
+                      f"at {row.time!r} s")
+                return 1
+            gap, where = difference(a.payload, b.payload)
+            if abs(a.time - b.time) > gap:
+                gap, where = abs(a.time - b.time), "the time"
+            if not gap <= options.tolerance:
+                kinds = name_of(a.kind) if a.kind == b.kind else f"{name_of(a.kind)} and {name_of(b.kind)}"
+                print(f"they part at command {a.seq}, {a.time!r} s and {b.time!r} s: {kinds}, in {where}"
+                      + (f" by {gap:.6g}" if gap < math.inf else ""))
+                return 1
+            greatest = max(greatest, gap)
+        print(f"the same: {one.last} commands" + (f", numbers to {greatest:.6g}" if greatest else ""))
+    return 0
+
+
+def difference(a, b):
+    """The greatest difference of any number in two serialized commands, and in which field; infinite where they
+    differ in anything else."""
+    if a == b:
+        return 0.0, ""
+    found = of_messages(pb.Command.FromString(a), pb.Command.FromString(b), "")
+    # Different bytes may be the same values; but they may also be fields that are not known here.
+    return found if found[0] or unknown(a) == unknown(b) else (math.inf, "a field that is not known here")
+
+
+def unknown(payload):
+    """What of a command this version does not know, at any depth: what is left when the rest is dropped."""
+    message = pb.Command.FromString(payload)
+    kept = message.SerializeToString(deterministic=True)
+    message.DiscardUnknownFields()
+    return None if kept == message.SerializeToString(deterministic=True) else kept
+
+
+def of_messages(one, two, path):
+    worst = (0.0, "")
+    fields = {field.name: field for message in (one, two) for field, _ in message.ListFields()}
+    for name, field in fields.items():
+        here = f"{path}.{name}" if path else name
+        if field.label == field.LABEL_REPEATED:
+            a, b = getattr(one, name), getattr(two, name)
+            if len(a) != len(b):
+                return math.inf, f"{here} ({len(a)} and {len(b)})"
+            if field.message_type is not None and field.message_type.GetOptions().map_entry:
+                if dict(a) != dict(b):
+                    return math.inf, here
+                continue
+            pairs = ((f"{here}[{i}]", x, y) for i, (x, y) in enumerate(zip(a, b)))
+        else:
+            if field.has_presence and one.HasField(name) != two.HasField(name):
+                return math.inf, here
+            pairs = ((here, getattr(one, name), getattr(two, name)),)
+        for place, x, y in pairs:
+            found = of_values(field, x, y, place)
+            if found[0] > worst[0]:
+                worst = found
+            if worst[0] == math.inf:
+                return worst
+    return worst
+
+
+def of_values(field, x, y, place):
+    if field.message_type is not None:
+        return of_messages(x, y, place)
+    if x == y:
+        return 0.0, ""
+    if field.cpp_type not in (field.CPPTYPE_DOUBLE, field.CPPTYPE_FLOAT):
+        return math.inf, place
+    if math.isnan(x) and math.isnan(y):
+        return 0.0, ""
+    gap = abs(x - y)
+    return (math.inf if math.isnan(gap) else gap), place
