@@ -34,6 +34,9 @@ public:
   bool Take(v1::WatchReply& message, double wait_s);
   // Whether there is a connection, and a word on why not.
   bool Connected(std::string* why = nullptr) const;
+  // Why the server refuses what it did not refuse before: a state that is too large to be sent, too
+  // many viewers. Empty: it does not, or nobody answers. It is asked again each second.
+  std::string Refusal() const;
   // Sends an event to whoever drives, waiting up to timeout_s; false when nobody does. Throws
   // Error.
   bool Tell(const v1::ViewerEvent& event);
