@@ -84,6 +84,31 @@ protected:
   OwnViews Own;
 };
 
+// What a snapshot's command is refused for is no matter of views that are not there yet.
+TEST_F(OwnViewsTest, MakesNoRoomWhileASnapshotIsApplied) {
+  this->Own.Leave(this->Interpreter_);
+  Interpreter next;
+  v1::Command command;
+  command.mutable_create_scene();
+  ASSERT_FALSE(next.Execute(command).has_error());
+  for (int i = 0; i < 5; ++i) {
+    v1::Command refused;
+    if (i == 0) {
+      refused.mutable_remove_frame()->set_frame(this->Parent);
+    } else if (i == 1) {
+      refused.mutable_remove_robot()->set_robot("arm");
+    } else if (i == 2) {
+      refused.mutable_remove_vantage()->set_name(Mine);
+    } else if (i == 3) {
+      refused.mutable_remove_camera()->set_name("camera");
+    } else {
+      refused.mutable_import_object()->add_level()->set_path("/nowhere/at/all.obj");
+    }
+    ASSERT_TRUE(next.Execute(refused).has_error());
+    EXPECT_NO_THROW(EXPECT_FALSE(this->Own.MakeRoom(next, refused))) << i;
+  }
+}
+
 TEST_F(OwnViewsTest, OwnsItsOwnAlone) {
   for (v1::Command command : {CreateVantage("main 2"), SetCamera("main", 1, 0), SetCamera("", 1, 0),
                               SetCamera("viewer:another's", 1, 0)}) {
