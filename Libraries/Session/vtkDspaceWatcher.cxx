@@ -1,5 +1,7 @@
 #include "vtkDspaceWatcher.h"
 
+#include <set>
+
 #include <dspace/session/ErrorReply.h>
 #include <dspace/session/LinkBanner.h>
 #include <dspace/session/OwnViews.h>
@@ -12,6 +14,16 @@
 
 vtkStandardNewMacro(vtkDspaceWatcher);
 
+namespace {
+
+constexpr int MostChanges = 100000; // of frames, that wait to be taken
+
+std::string SceneOf(const dspace::v1::Command& command) {
+  return command.scene().empty() ? dspace::session::DefaultScene : command.scene();
+}
+
+} // namespace
+
 struct vtkDspaceWatcher::Internals {
   dspace::session::WatcherOptions options;
   std::unique_ptr<dspace::session::Watcher> watcher;
@@ -22,6 +34,8 @@ struct vtkDspaceWatcher::Internals {
   bool writerConnected = false;
   std::string trouble;
   dspace::session::LinkBanner banner;
+  std::set<std::string> followed; // scenes whose frames' changes are told
+  dspace::v1::Reply changes;      // of these, that nobody has taken
 
   dspace::session::Interpreter& Interpreter() { return this->session->GetInterpreter(); }
 
@@ -50,6 +64,9 @@ struct vtkDspaceWatcher::Internals {
       this->Apply(command);
     }
     this->own.Enter(this->Interpreter());
+    for (const std::string& scene : this->followed) {
+      this->Follow(scene);
+    }
     this->session->TakeRecording(before);
   }
 
@@ -61,6 +78,20 @@ struct vtkDspaceWatcher::Internals {
     if (reply.has_error() && this->trouble.empty()) {
       this->trouble = reply.error().message();
     }
+    this->changes.mutable_frame_event()->MergeFrom(reply.frame_event());
+    if (this->changes.frame_event_size() > MostChanges) {
+      this->changes.mutable_frame_event()->DeleteSubrange(0, MostChanges / 2);
+    }
+    if (command.has_create_scene() && this->followed.count(SceneOf(command))) {
+      this->Follow(command.scene());
+    }
+  }
+
+  void Follow(const std::string& scene) {
+    dspace::v1::Command command;
+    command.set_scene(scene);
+    command.mutable_follow_frames();
+    this->Interpreter().Execute(command); // one that there is not yet is followed once it is
   }
 
   void ShowBanner() {
@@ -79,8 +110,16 @@ struct vtkDspaceWatcher::Internals {
     if (command.has_capture()) {
       command.mutable_capture()->set_inline_data(true); // the session does not see this one
     }
+    if (command.has_follow_frames()) {
+      dspace::v1::Reply reply = this->Interpreter().Execute(command);
+      if (!reply.has_error()) {
+        command.follow_frames().stop() ? void(this->followed.erase(SceneOf(command)))
+                                       : void(this->followed.insert(SceneOf(command)));
+      }
+      return reply;
+    }
     const auto* entry = this->Interpreter().Commands().Find(command.command_case());
-    if (!entry || entry->effect == Effect::Request || command.has_follow_frames()) {
+    if (!entry || entry->effect == Effect::Request) {
       return this->Interpreter().Execute(command);
     }
     if (!this->own.Owns(command)) {
@@ -180,7 +219,8 @@ std::string vtkDspaceWatcher::GetWriterName() {
 }
 
 std::string vtkDspaceWatcher::GetTrouble() {
-  return this->Impl->trouble;
+  const std::string refusal = this->Impl->watcher ? this->Impl->watcher->Refusal() : std::string();
+  return refusal.empty() ? this->Impl->trouble : refusal;
 }
 
 std::string vtkDspaceWatcher::Execute(const std::string& bytes) {
@@ -188,6 +228,12 @@ std::string vtkDspaceWatcher::Execute(const std::string& bytes) {
   const dspace::v1::Reply reply = command.ParseFromString(bytes) ? this->Impl->Execute(command)
                                                                  : dspace::session::NotACommand();
   return reply.SerializeAsString();
+}
+
+std::string vtkDspaceWatcher::TakeFrameEvents() {
+  const std::string bytes = this->Impl->changes.SerializeAsString();
+  this->Impl->changes.Clear();
+  return bytes;
 }
 
 std::string vtkDspaceWatcher::Tell(const std::string& bytes) {

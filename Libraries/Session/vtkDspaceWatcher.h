@@ -41,12 +41,16 @@ public:
   bool GetConnected();
   bool GetWriterConnected();
   std::string GetWriterName();
-  /// What could not be applied since the last snapshot; empty: nothing.
+  /// Why the server refuses to go on, or what could not be applied since the last snapshot; empty:
+  /// nothing.
   std::string GetTrouble();
 
   /// Carries out a serialized Command: requests, and commands on views of one's own. An event that
   /// clicks on something in a viewport of one's own also tells the simulation (ViewerEvent.Picked).
   std::string Execute(const std::string& command);
+  /// A serialized Reply with what has happened to the frames of followed scenes (FollowFrames)
+  /// since the last call, in order. A snapshot brings none. At most 100,000 wait; older ones go.
+  std::string TakeFrameEvents();
   /// Sends a serialized ViewerEvent to the simulation. The reply's error is NOT_FOUND when nobody
   /// drives.
   std::string Tell(const std::string& event);

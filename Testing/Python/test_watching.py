@@ -245,6 +245,37 @@ def test_what_people_do_reaches_the_simulation(tmp_path):
         assert pose_of(last.pose) == dspace.Pose((0.5, 0, 0), (0.6, 0, 0, 0.8))
 
 
+def test_changes_of_frames_are_told_to_a_viewer(tmp_path):
+    with watched(tmp_path) as (server, session, watcher):
+        heard = []
+        token = watcher.scenes["scene"].on_frame_change(lambda event: heard.append((event.type, list(event.ids))))
+        scene = session.scene()
+        cart = scene.frame("cart").id
+        added = scene.add_frame("added")
+        scene.set_poses(["cart"], [[1.0, 0, 0, 1, 0, 0, 0]])
+        added.name = "renamed"
+        added.remove()
+        while len(heard) < 4:
+            assert watcher.update(20.0), heard
+        assert heard == [("created", [added.id]), ("poses_changed", [cart]), ("renamed", [added.id]),
+                         ("removed", [added.id])]
+        server.kill()  # and on after a snapshot, and in a scene of that name that is made later
+        while watcher.connected:
+            watcher.update(0.2)
+        with Served(tmp_path), dspace.connect(server.address, name="next", timeout=20.0) as session:
+            while not watcher.connected or watcher.scenes:
+                watcher.update(0.2)
+            heard.clear()
+            frame = session.scene().add_frame("later")
+            while not heard:
+                assert watcher.update(20.0)
+            assert heard == [("created", [frame.id])]
+            assert watcher.scenes["scene"].remove_listener(token)
+            frame.remove()
+            follow(watcher, session)
+            assert len(heard) == 1
+
+
 def test_what_is_no_event_is_refused(tmp_path):
     with watched(tmp_path) as (_, session, watcher):
         from dspace.session import service_pb2

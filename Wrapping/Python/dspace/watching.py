@@ -33,6 +33,16 @@ class WatchClient(LocalClient):
         self.local()  # whose planes a capture is read from
         return to_reply(self.watcher().Execute(command.SerializeToString()))
 
+    def update(self, wait):
+        """How many messages came; then calls who follows frames."""
+        watcher = self.watcher()
+        count = watcher.Update(wait)
+        listeners = self.frame_listeners
+        if listeners:
+            listeners.put(to_reply(watcher.TakeFrameEvents()).frame_event)
+            listeners.deliver()
+        return count
+
     def tell(self, event):
         reply = to_reply(self.watcher().Tell(event.SerializeToString()))
         if reply.HasField("error"):
@@ -67,9 +77,10 @@ class Watcher(Session):
 
     def update(self, wait=0.0):
         """Applies all that the server has accepted since; waits up to `wait` seconds for something.
-        Returns how many messages came. Where the simulation or the server is gone the state stays,
+        Returns how many messages came. Scene.on_frame_change is told of what has changed, but of a new
+        snapshot as a whole. Where the simulation or the server is gone the state stays,
         viewports say so, and the link is made again by itself."""
-        return self._client.watcher().Update(number(wait, "the wait", "watcher"))
+        return self._client.update(number(wait, "the wait", "watcher"))
 
     @property
     def sequence(self):
@@ -89,7 +100,8 @@ class Watcher(Session):
 
     @property
     def trouble(self):
-        """What could not be applied since the last snapshot; empty: nothing."""
+        """Why the server refuses to go on (a state that is too large to be sent, too many viewers), or what could
+        not be applied since the last snapshot; empty: nothing."""
         return self._client.watcher().GetTrouble()
 
     def record(self, path, commit_every=0.1, pack=False):
