@@ -107,6 +107,43 @@ protected:
   std::string Path_;
 };
 
+TEST_F(Recording, AStateThatIsTooLargeIsAnErrorOrTakenNoMore) {
+  v1::Command scene;
+  scene.mutable_create_scene();
+  Ledger ledger;
+  ledger.Add(scene, {});
+  const auto grow = [&ledger](int frame) {
+    v1::Command command;
+    command.mutable_create_frame()->set_id(std::uint64_t(frame) + 2);
+    command.mutable_create_frame()->set_name("frame " + std::to_string(frame));
+    ledger.Add(command, {});
+    return command;
+  };
+  RecordingOptions options;
+  options.snapshotBytes = 1;
+  options.largestSnapshot = 10000;
+  {
+    RecordingWriter writer(this->Path_, ledger, 0.0, options);
+    for (int i = 0; i < 2000; ++i) {
+      const v1::Command command = grow(i);
+      EXPECT_EQ(writer.Add(command, {}, ledger), "");
+    }
+    EXPECT_EQ(writer.Flush(), "");
+    EXPECT_EQ(writer.Counts().written, 2000u); // nothing is lost by it
+    EXPECT_GT(writer.Counts().snapshots, 2u);
+    EXPECT_LT(writer.Counts().snapshots, 10u);
+  }
+  this->Remove();
+  try {
+    RecordingWriter writer(this->Path_, ledger, 0.0, options);
+    FAIL() << "it was taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.GetKind(), Error::Kind::Resource);
+    EXPECT_NE(std::string(error.what()).find("up to 10000"), std::string::npos) << error.what();
+  }
+  EXPECT_NE(access(this->Path_.c_str(), F_OK), 0); // nothing is left behind
+}
+
 TEST_F(Recording, HoldsWhatWasAcceptedAndIsReadMeanwhile) {
   RecordingOptions options;
   options.snapshotCommands = 100;

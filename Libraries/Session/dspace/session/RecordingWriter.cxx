@@ -22,6 +22,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t TransactionBytes = 8u << 20; // so many waiting are written at once
 
+// SQLite gives -0 back as 0, which has another checksum.
+double WithoutMinus0(double value) {
+  return value == 0.0 ? 0.0 : value;
+}
+
 double WallTime() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -90,6 +95,19 @@ private:
   std::thread Thread_;
 };
 
+void CheckSize(const std::vector<v1::Command>& commands, const RecordingOptions& options,
+               const std::string& path) {
+  std::size_t bytes = 0;
+  for (const v1::Command& command : commands) {
+    bytes += command.ByteSizeLong() + 8;
+  }
+  if (bytes > options.largestSnapshot) {
+    throw Error(Error::Kind::Resource, "recording '" + path + "'",
+                "the state that it would begin with has " + std::to_string(bytes) +
+                    " bytes; accepted: up to " + std::to_string(options.largestSnapshot));
+  }
+}
+
 } // namespace
 
 struct RecordingWriter::Impl {
@@ -154,7 +172,8 @@ struct RecordingWriter::Impl {
     this->news.notify_one();
   }
 
-  void TakeSnapshot(const Ledger& ledger) {
+  // False: it is too large.
+  bool TakeSnapshot(const Ledger& ledger) {
     RecordingRow row;
     row.snapshot = true;
     row.seq = this->seq;
@@ -170,7 +189,11 @@ struct RecordingWriter::Impl {
     this->lastSnapshot = row.payload.size();
     this->bytesSince = 0;
     this->commandsSince = 0;
+    if (this->lastSnapshot > this->options.largestSnapshot) {
+      return false; // the one before it leads here too
+    }
     this->Hand(std::move(row));
+    return true;
   }
 
   // Whole transactions only are ever seen: what is in one that fails is rolled back.
@@ -250,14 +273,16 @@ struct RecordingWriter::Impl {
 RecordingWriter::RecordingWriter(const std::string& path, const Ledger& initial, double time_s,
                                  const RecordingOptions& options, const CommandFiles* files) {
   Check(options, path);
+  const std::vector<v1::Command> commands = initial.Commands();
+  CheckSize(commands, options, path);
   this->Impl_ = std::make_unique<Impl>(path, options);
-  this->Impl_->time_s = time_s;
+  this->Impl_->time_s = WithoutMinus0(time_s);
   this->Impl_->files = files;
-  for (const v1::Command& command : initial.Commands()) {
+  for (const v1::Command& command : commands) {
     this->Impl_->HandFiles(command);
   }
-  this->Impl_->thread = std::thread([impl = this->Impl_.get()] { impl->Run(); });
   this->Impl_->TakeSnapshot(initial);
+  this->Impl_->thread = std::thread([impl = this->Impl_.get()] { impl->Run(); });
 }
 
 RecordingWriter::~RecordingWriter() {
@@ -289,7 +314,7 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
     recorded = &made;
   }
   if (recorded->has_set_time()) {
-    impl.time_s = recorded->set_time().time_s();
+    impl.time_s = WithoutMinus0(recorded->set_time().time_s());
   }
   if (!recorded->has_set_poses()) { // which names no file and is most of all
     impl.HandFiles(*recorded);
@@ -327,7 +352,7 @@ void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFil
   Impl& impl = *this->Impl_;
   const std::string number = std::to_string(++impl.seq);
   impl.lost += (impl.lost.empty() ? "" : " ") + number + "-" + number;
-  impl.time_s = time_s;
+  impl.time_s = WithoutMinus0(time_s);
   impl.files = files;
   for (const v1::Command& command : ledger.Commands()) {
     impl.HandFiles(command);
@@ -336,7 +361,12 @@ void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFil
     const std::lock_guard<std::mutex> lock(impl.mutex);
     impl.newLost = impl.lost;
   }
-  impl.TakeSnapshot(ledger); // in one transaction with what is lost, or in a later one
+  if (!impl.TakeSnapshot(ledger)) { // in one transaction with what is lost, or in a later one
+    const std::lock_guard<std::mutex> lock(impl.mutex);
+    impl.counts.failure =
+        "recording '" + impl.path + "': the state has " + std::to_string(impl.lastSnapshot) +
+        " bytes; accepted after a gap: up to " + std::to_string(impl.options.largestSnapshot);
+  }
 }
 
 RecordingCounts RecordingWriter::Counts() const {

@@ -22,9 +22,12 @@ struct RecordingOptions {
   std::size_t queueBytes = 64u << 20;   // then the simulation waits for the disk; 1 MiB and more
   std::size_t snapshotBytes = 8u << 20; // of commands from one snapshot to the next, at least,
   std::uint64_t snapshotCommands = 20000; // or so many commands
-  std::int64_t maximumPages = 0;          // of 64 KiB, for the file; 0: as the disk has
-  int checkpointPages = 2048;             // of the log, which are then moved into the file: 128 MiB
-  bool pack = false; // the files that the commands need become part of the recording
+  // Bytes; SQLite holds 1e9 in a row. A recording that would begin with a larger state is refused;
+  // of one that has grown beyond it no more snapshots are taken: seeking takes longer.
+  std::size_t largestSnapshot = 900000000;
+  std::int64_t maximumPages = 0; // of 64 KiB, for the file; 0: as the disk has
+  int checkpointPages = 2048;    // of the log, which are then moved into the file: 128 MiB
+  bool pack = false;             // the files that the commands need become part of the recording
 };
 
 // What a recording holds; `written` and `bytes` are safe on disk up to a crash of the process.
@@ -44,7 +47,8 @@ public:
   // Makes the file; one that is there already is refused with Error(AlreadyExists). `initial` is
   // the present state, at simulation time `time_s`. `files` says what commands have read; null:
   // only the files that they name are noted. It must outlive this, and is the caller's thread's.
-  // Throws Error(Io) where it cannot be written and Error(InvalidArgument) for the options.
+  // Throws Error(Io) where it cannot be written, Error(InvalidArgument) for the options, and
+  // Error(Resource) where the state is larger than the largest snapshot.
   RecordingWriter(const std::string& path, const Ledger& initial, double time_s,
                   const RecordingOptions& options = {}, const CommandFiles* files = nullptr);
   ~RecordingWriter();
