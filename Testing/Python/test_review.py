@@ -105,7 +105,7 @@ JUNK = [None, 5, -1, 1.5, float("nan"), float("inf"), 10**400, "", "zzz", "\ud80
         (1, 2, 3), {}, {"a": 1}, object(), np.zeros((2, 3)), np.zeros(()), np.array(["a"]), True,
         [[1, 2], [3]], lambda: 1, 1e300, "x" * 100000]
 # What takes no value, ends the session or the thing, or is the user's own code.
-LEFT_OUT = ("close", "remove", "execute", "run", "vtk")
+LEFT_OUT = ("close", "remove", "execute", "run", "vtk", "process_events")
 
 
 def uses(thing, given):
@@ -145,9 +145,10 @@ def test_anything_for_anything_is_accepted_or_a_dspace_error(session, scene, fie
                  length=1.0, tube=0.1, width=1.0, eye=(1, 0, 0), target=(0, 0, 0), frame=frame,
                  parent=scene.root, axis="x", angle_deg=3, other=scene.root, callback=len, token=0,
                  rows={"a": 1}, fragment="physical", color=(1, 0, 0), positions={"j": 1}, link="a",
-                 type="move", tilt_deg=3)
+                 type="move", tilt_deg=3, kind="note", values={}, goal="g", question="q", answer="a", objects=[])
     calls = 0
     for thing in (session, scene, frame, camera, scene.add_viewport(SIZE, camera), scene.add_box((1, 1, 1)),
+                  scene.telemetry, scene.telemetry.add("value"), scene.telemetry.add("words", kind="text"),
                   scene.fragments["physical"], scene.lights["sun"], scene.add_trail(), robot,
                   scene.add_text("a", 1), scene.add_tilt_marker(1), robot.joints["j"],
                   scene.add_terrain(field), scene.vantages["main"]):

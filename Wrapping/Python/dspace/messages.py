@@ -13,6 +13,7 @@ from dspace.viewer_events import ViewerEvents
 
 SEVERITIES = {"info": 0, "caution": 1, "warning": 2, "alarm": 3}
 WORDS = tuple(SEVERITIES)
+_text = text  # also the name of arguments
 
 # Kinds that programs know; any other word is as good. messages.proto says the same.
 WELL_KNOWN = ("staging", "separation", "deployment", "parachute", "ignition", "cutoff", "contact", "touchdown",
@@ -230,10 +231,7 @@ class Messages:
         message.since_s, message.until_s = number(since, "since", label), number(until, "until", label)
         kinds = [] if kind is None else [kind] if isinstance(kind, str) else items(kind, "the kinds", label,
                                                                                   "a word, or several")
-        for each in kinds:
-            if not isinstance(each, str):
-                refuse(label, "a kind", each, "a word", WrongType)
-        message.kind.extend(kinds)
+        message.kind.extend(text(each, "a kind", label, "a word") for each in kinds)
         message.severity = word(severity, SEVERITIES, "the severity", label)
         return [Event(event, self) for event in self._execute(command).events.event]
 
@@ -247,9 +245,7 @@ class Messages:
         message = command.ask_operator
         put(message, label, name=name, text=text)
         for choice in items(choices, "the choices", label, "a list of answers"):
-            if not isinstance(choice, str):
-                refuse(label, "a choice", choice, "a str", WrongType)
-            message.choice.append(choice)
+            message.choice.append(_text(choice, "a choice", label))
         message.severity = word(severity, SEVERITIES, "the severity", label)
         message.time_s = self.time
         self._execute(command)

@@ -2,9 +2,10 @@
 import math
 import warnings
 
-from dspace._fields import number, put, refuse, text, word
+from dspace._fields import items, number, put, refuse, text, word
 from dspace.errors import DspaceWarning, WrongType
 from dspace.frames import Frame, put_pose
+from dspace.objects import GraphicsObject
 from dspace.poses import Pose, to_pose
 from dspace.session import service_pb2
 
@@ -111,7 +112,10 @@ class ViewerEvents:
     def select(self, objects):
         """Says which objects of one scene are selected; none: nothing is."""
         event = service_pb2.ViewerEvent()
-        objects = list(objects)
+        objects = items(objects, "the objects", "event", "a list of objects")
+        for each in objects:
+            if not isinstance(each, GraphicsObject):
+                refuse("event", "an object", each, "a GraphicsObject", WrongType)
         scenes = {each.scene.name for each in objects}
         if len(scenes) > 1:
             refuse("event", "the selection's scenes", sorted(scenes), "objects of one scene")
