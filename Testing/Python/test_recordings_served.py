@@ -1,4 +1,5 @@
 """Recordings of served sessions: by the server, packed, and by who watches."""
+import pathlib
 import subprocess
 import sys
 import time
@@ -126,3 +127,19 @@ def test_where_the_watcher_begins_anew_there_is_a_gap(tmp_path, folder):
         assert run.step(1) == 1 and run.session.scene().frame("rover").pose.position[0] == 0.3 * 3
         assert run.seek(9.0) == 9.0
         assert numpy.array_equal(run.session.viewports["view"].image(), live)
+
+
+def test_the_served_demo_is_recorded(tmp_path):
+    """The pictures that it saved are those of the recording, at its time of two thirds."""
+    demo = pathlib.Path(__file__).parents[2] / "Examples" / "rover_drive" / "rover_drive.py"
+    path, out = tmp_path / "run.dspace", tmp_path / "out"
+    subprocess.run([sys.executable, demo, "--served", "--record", path, "--out", out, "--seconds", "0.3", "--size",
+                    "160x120"], check=True, stdout=subprocess.PIPE)
+    with dspace.Playback(path) as run:
+        saved = [at for at in run.times if at <= 0.3 * 2 / 3 + 1e-9][-1]
+        run.seek(saved)
+        for name in ("chase", "overhead", "free"):
+            view = run.session.viewports[name]
+            view.samples = 3  # as the demo saves them
+            view.save(tmp_path / f"{name}.png")
+            assert (tmp_path / f"{name}.png").read_bytes() == (out / f"{name}.png").read_bytes()
