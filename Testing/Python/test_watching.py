@@ -379,3 +379,19 @@ def test_the_banner_covers_no_table_and_fits(tmp_path):
                     assert np.array_equal(watcher.viewports[each].image(), was)
             later.remove()
             mine.remove()
+
+
+def test_a_viewer_says_why_it_is_refused(tmp_path):
+    """By a server that was started anew and lets no viewer in; once there is one that does, it follows."""
+    with Served(tmp_path) as server:
+        with dspace.watch(server.address, name="eyes", timeout=20.0) as watcher:
+            assert watcher.trouble == ""
+            server.kill()
+            with Served(tmp_path, "--max-connections", "1"):
+                while not watcher.trouble:
+                    watcher.update(0.1)
+                assert "viewers already" in watcher.trouble and not watcher.connected
+            with Served(tmp_path):
+                while not watcher.connected:
+                    watcher.update(0.1)
+                assert watcher.trouble == ""
