@@ -1,9 +1,11 @@
 // The simulation link: steps of 1,000 frames against a raw gRPC stream of the same bytes, and the
-// round trip of lockstep. Both over a Unix socket, servers in this process.
+// round trip of lockstep. Both over a Unix socket to servers in one other process.
 #include <atomic>
 #include <filesystem>
 #include <thread>
 
+#include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <grpcpp/generic/async_generic_service.h>
@@ -125,75 +127,105 @@ v1::Command MakeStep(int step) {
   return command;
 }
 
+constexpr int Pairs = 15;
+
+// The process of the servers, until it is told to end.
+int Serve(const std::string& folder, int told) {
+  session::Interpreter interpreter;
+  session::ServerOptions options;
+  options.listen = "unix:" + folder + "/link";
+  options.maximumRate = 1e9;
+  session::Server server(options);
+  RawServer rawServer("unix:" + folder + "/raw");
+  std::thread runner([&] {
+    while (server.Run({[&](v1::Command& command) { return interpreter.Execute(command); },
+                       [] { return std::vector<v1::Command>(); }},
+                      10)) {
+    }
+  });
+  char word = 'r';
+  bool good = write(told, &word, 1) == 1;
+  good = good && read(told, &word, 1) >= 0; // the other end is closed
+  server.Stop();
+  runner.join();
+  return good ? 0 : 1;
+}
+
+void Drive(const std::string& folder) {
+  session::RemoteClientOptions to;
+  to.address = "unix:" + folder + "/link";
+  session::RemoteClient client(to);
+  v1::Command command;
+  command.mutable_create_scene();
+  client.Execute(command);
+  for (int i = 0; i < Frames; ++i) {
+    v1::Command frame;
+    frame.mutable_create_frame()->set_id(std::uint64_t(i) + 2);
+    frame.mutable_create_frame()->set_name("f" + std::to_string(i));
+    client.Execute(frame);
+  }
+  RawClient raw("unix:" + folder + "/raw");
+  int step = 0;
+  bool good = true;
+  const std::size_t bytes = MakeStep(1).ByteSizeLong();
+  // Both make their message anew each step, from the simulation's numbers.
+  const auto turns = bench::Alternate(
+      Pairs,
+      [&] {
+        for (int i = 0; i < Steps; ++i) {
+          good = !client.Send(MakeStep(++step)).has_error() && good;
+        }
+        good = !client.Flush().has_error() && good;
+      },
+      [&] {
+        for (int i = 0; i < Steps; ++i) {
+          raw.Write(MakeStep(++step).SerializeAsString());
+        }
+        raw.Read();
+      });
+  char behind[160];
+  std::snprintf(behind, sizeof(behind),
+                "rate %.2f of the raw stream's (goal 0.7), steps of %d frames, %zu bytes%s",
+                1 / bench::Median(turns.ratio), Frames, bytes, good ? "" : ", WITH ERRORS");
+  bench::Print("steps over the link against a raw gRPC stream", turns, Steps, behind);
+  std::vector<double> trips;
+  for (int i = 0; i < 5000; ++i) {
+    v1::Command time;
+    time.mutable_set_time()->set_time_s(i);
+    const auto began = Clock::now();
+    client.Execute(std::move(time));
+    trips.push_back(1e3 * std::chrono::duration<double>(Clock::now() - began).count());
+  }
+  std::sort(trips.begin(), trips.end());
+  std::printf("lockstep round trip: median %.3f ms (goal < 1), 99 %% under %.3f ms\n",
+              bench::Median(trips), trips[4950]);
+}
+
 } // namespace
 
 int main() {
   char name[] = "/tmp/dspace-bench-XXXXXX";
   const std::string folder = mkdtemp(name);
-  {
-    session::Interpreter interpreter;
-    session::ServerOptions options;
-    options.listen = "unix:" + folder + "/link";
-    options.maximumRate = 1e9;
-    session::Server server(options);
-    std::thread runner([&] {
-      while (server.Run({[&](v1::Command& command) { return interpreter.Execute(command); },
-                         [] { return std::vector<v1::Command>(); }},
-                        10)) {
-      }
-    });
-    RawServer rawServer("unix:" + folder + "/raw");
-    {
-      session::RemoteClientOptions to;
-      to.address = server.Address();
-      session::RemoteClient client(to);
-      v1::Command command;
-      command.mutable_create_scene();
-      client.Execute(command);
-      for (int i = 0; i < Frames; ++i) {
-        v1::Command frame;
-        frame.mutable_create_frame()->set_id(std::uint64_t(i) + 2);
-        frame.mutable_create_frame()->set_name("f" + std::to_string(i));
-        client.Execute(frame);
-      }
-      RawClient raw("unix:" + folder + "/raw");
-      int step = 0;
-      bool good = true;
-      const std::size_t bytes = MakeStep(1).ByteSizeLong();
-      // Both make their message anew each step, from the simulation's numbers.
-      const auto turns = bench::Alternate(
-          15,
-          [&] {
-            for (int i = 0; i < Steps; ++i) {
-              good = !client.Send(MakeStep(++step)).has_error() && good;
-            }
-            good = !client.Flush().has_error() && good;
-          },
-          [&] {
-            for (int i = 0; i < Steps; ++i) {
-              raw.Write(MakeStep(++step).SerializeAsString());
-            }
-            raw.Read();
-          });
-      char behind[160];
-      std::snprintf(behind, sizeof(behind),
-                    "rate %.2f of the raw stream's (goal 0.7), steps of %d frames, %zu bytes%s",
-                    1 / bench::Median(turns.ratio), Frames, bytes, good ? "" : ", WITH ERRORS");
-      bench::Print("steps over the link against a raw gRPC stream", turns, Steps, behind);
-      std::vector<double> trips;
-      for (int i = 0; i < 5000; ++i) {
-        v1::Command time;
-        time.mutable_set_time()->set_time_s(i);
-        const auto began = Clock::now();
-        client.Execute(std::move(time));
-        trips.push_back(1e3 * std::chrono::duration<double>(Clock::now() - began).count());
-      }
-      std::sort(trips.begin(), trips.end());
-      std::printf("lockstep round trip: median %.3f ms (goal < 1), 99 %% under %.3f ms\n",
-                  bench::Median(trips), trips[4950]);
-    }
-    server.Stop();
-    runner.join();
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) {
+    return 1;
   }
+  const pid_t child = fork(); // before gRPC has any thread
+  if (child == 0) {
+    close(ends[0]);
+    const int result = Serve(folder, ends[1]);
+    std::fflush(nullptr);
+    _exit(result);
+  }
+  close(ends[1]);
+  char word = 0;
+  const bool ready = read(ends[0], &word, 1) == 1;
+  if (ready) {
+    Drive(folder);
+  }
+  close(ends[0]);
+  int status = 1;
+  waitpid(child, &status, 0);
   std::filesystem::remove_all(folder);
+  return ready && status == 0 ? 0 : 1;
 }
