@@ -249,6 +249,59 @@ TEST_F(TelemetryTest, ChoicesHaveLabels) {
   EXPECT_EQ(this->Ask("mode").text(), "");
 }
 
+TEST_F(TelemetryTest, DefinitionsAreBoundedTogether) {
+  v1::Command define = Define("");
+  v1::CreateTelemetry* create = define.mutable_create_telemetry();
+  create->set_kind(v1::CreateTelemetry::CHOICE);
+  for (int i = 0; i < 1000; ++i) {
+    create->add_label()->set_value(i);
+    create->mutable_label(i)->set_label(std::to_string(i) + std::string(250, 'x'));
+  }
+  const std::size_t fit = (std::size_t(64) << 20) / define.ByteSizeLong();
+  std::uint64_t id = 0;
+  for (std::size_t i = 0; i < fit; ++i) {
+    v1::Command command = define;
+    command.mutable_create_telemetry()->set_name("choice" + std::to_string(i));
+    const v1::Reply reply = this->Interpreter_.Execute(command);
+    if (reply.has_error()) { // names and ids are bytes, too
+      EXPECT_GE(i, fit - 1);
+      break;
+    }
+    id = command.create_telemetry().id();
+  }
+  create->set_name("one more");
+  v1::Reply reply = this->Interpreter_.Execute(define);
+  EXPECT_EQ(reply.error().kind(), Kind::RESOURCE);
+  EXPECT_NE(reply.error().message().find("64 MiB"), std::string::npos);
+  v1::Command remove;
+  remove.mutable_remove_telemetry()->add_id(id);
+  this->Accept(remove);
+  this->Accept(define);
+}
+
+TEST_F(TelemetryTest, ManyTextsAreWrittenOutInPieces) {
+  v1::Command texts;
+  for (int i = 0; i < 600; ++i) {
+    texts.mutable_set_telemetry_texts()->add_id(this->AddText("t" + std::to_string(i)));
+    texts.mutable_set_telemetry_texts()->add_text(std::string(4096, char('a' + i % 26)));
+  }
+  this->Accept(texts);
+  std::vector<v1::Command> commands;
+  this->Interpreter_.GetState().FindScene("scene").telemetry.Put("scene", commands);
+  session::Interpreter second;
+  v1::Command scene;
+  scene.mutable_create_scene();
+  second.Execute(scene);
+  int pieces = 0;
+  for (v1::Command& command : commands) {
+    EXPECT_LT(command.ByteSizeLong(), std::size_t(1200000));
+    pieces += command.has_set_telemetry_texts();
+    ASSERT_FALSE(second.Execute(command).has_error());
+  }
+  EXPECT_EQ(pieces, 3);
+  EXPECT_EQ(PictureOf(second), this->Picture());
+}
+
 TEST_F(TelemetryTest, TextsOverPicturesSayWhatThereIs) {
   const std::uint64_t power = this->Add("power", "W");
   const std::uint64_t note = this->AddText("note");

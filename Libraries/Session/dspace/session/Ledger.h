@@ -19,6 +19,9 @@ struct State;
 // Three things are not part of it: the order of the objects within a fragment; that ids of what was
 // removed are taken; a drag that is under way in a viewport.
 //
+// Fields that are not known here are kept where a message is kept whole (objects, lights, tables,
+// terrains, channels of telemetry, events, questions), not in frames, poses, values and times.
+//
 // Commands that it does not know are kept all, in their order, at the end. Of wheel tracks it keeps
 // nothing: Commands() asks the terrain for them. Not synchronised.
 class Ledger {

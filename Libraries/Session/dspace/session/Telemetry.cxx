@@ -13,6 +13,8 @@ namespace dspace::session {
 namespace {
 
 constexpr std::size_t MaximumChannels = 100000;
+constexpr std::size_t MaximumBytes = 64u << 20; // of all definitions
+constexpr std::size_t PutBytes = 1u << 20;      // of a command that Put makes, about
 constexpr std::size_t MaximumName = 255;
 constexpr std::size_t MaximumUnit = 64;
 constexpr std::size_t MaximumDescription = 1024;
@@ -123,15 +125,19 @@ std::uint64_t Telemetry::Create(const v1::CreateTelemetry& command, std::uint64_
     Refuse(label, "its id is " + std::to_string(id) + "; accepted: above " +
                       std::to_string(this->LastId_) + " and below 2^63, or 0");
   }
-  if (this->Channels_.size() >= MaximumChannels) {
-    throw Error(Error::Kind::Resource, label,
-                "the scene has " + std::to_string(MaximumChannels) + " channels, the most");
-  }
   Channel channel;
   channel.about = command;
   channel.about.set_id(id);
+  channel.defined = channel.about.ByteSizeLong();
+  const std::size_t bytes = this->Bytes_ + channel.defined;
+  if (this->Channels_.size() >= MaximumChannels || bytes > MaximumBytes) {
+    throw Error(Error::Kind::Resource, label,
+                "the scene has " + std::to_string(this->Channels_.size()) + " channels of " +
+                    std::to_string(this->Bytes_) + " bytes; accepted: up to 100,000 and 64 MiB");
+  }
   this->Channels_.emplace(id, std::move(channel));
   this->Names_.emplace(command.name(), id);
+  this->Bytes_ = bytes;
   this->LastId_ = id;
   ++this->Revision_;
   return id;
@@ -268,6 +274,7 @@ void Telemetry::Remove(const v1::RemoveTelemetry& command) {
     }
   }
   for (const std::uint64_t id : ids) {
+    this->Bytes_ -= this->Channels_.at(id).defined;
     this->Names_.erase(this->Channels_.at(id).about.name());
     this->Channels_.erase(id);
     ++this->Revision_;
@@ -283,8 +290,14 @@ void Telemetry::Put(const std::string& scene, std::vector<v1::Command>& out) con
             [](const auto* a, const auto* b) { return a->about.id() < b->about.id(); });
   v1::Command numbers;
   v1::Command texts;
-  numbers.set_scene(scene);
-  texts.set_scene(scene);
+  std::size_t bytes = 0; // of texts
+  const auto flush = [&](v1::Command& command) {
+    if (command.command_case() != v1::Command::COMMAND_NOT_SET) {
+      command.set_scene(scene);
+      out.push_back(std::move(command));
+    }
+    command = {};
+  };
   for (const Channel* channel : channels) {
     out.emplace_back().set_scene(scene);
     *out.back().mutable_create_telemetry() = channel->about;
@@ -296,18 +309,23 @@ void Telemetry::Put(const std::string& scene, std::vector<v1::Command>& out) con
       set.add_id(channel->about.id());
       set.add_text(channel->text);
       set.add_time_s(*channel->time_s);
+      bytes += channel->text.size() + 16;
+      if (bytes > PutBytes) {
+        flush(texts);
+        bytes = 0;
+      }
     } else {
       v1::SetTelemetry& set = *numbers.mutable_set_telemetry();
       set.add_id(channel->about.id());
       set.add_value(channel->value);
       set.add_time_s(*channel->time_s);
+      if (std::size_t(set.id_size()) * 24 > PutBytes) {
+        flush(numbers);
+      }
     }
   }
-  for (const v1::Command* command : {&numbers, &texts}) {
-    if (command->command_case() != v1::Command::COMMAND_NOT_SET) {
-      out.push_back(*command);
-    }
-  }
+  flush(numbers);
+  flush(texts);
 }
 
 } // namespace dspace::session

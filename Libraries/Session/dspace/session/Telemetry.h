@@ -24,6 +24,7 @@ public:
     std::string text;
     std::optional<double> time_s; // of the last change; none: never set
     std::uint64_t step = 0;       // in which it was set last
+    std::size_t defined = 0;      // bytes of its definition
   };
 
   // `id` 0 in the command: `free`, which must be above all ids of this scene. Returns the id.
@@ -51,6 +52,7 @@ private:
   std::unordered_map<std::uint64_t, Channel> Channels_;
   std::map<std::string, std::uint64_t> Names_;
   std::uint64_t LastId_ = 0;
+  std::size_t Bytes_ = 0; // of all definitions
   std::uint64_t Revision_ = 0;
   std::uint64_t Step_ = 0;
 };
