@@ -127,6 +127,30 @@ TEST_F(PlaybackOf, AnyStepIsWhatItsCommandsMake) {
   EXPECT_EQ(playback.Time(), 19.5);
 }
 
+TEST_F(PlaybackOf, AnIndexOfTimesThatIsDamagedShowsNoWrongInstant) {
+  this->Drive(10, 1000);
+  // The row keeps its time and checksum; the index, which has none, has another time.
+  this->Change("UPDATE command SET time = time + 100 WHERE seq = 8");
+  this->Change("CREATE TABLE kept AS SELECT * FROM sqlite_master WHERE name = 'step';"
+               "PRAGMA writable_schema = 1; DELETE FROM sqlite_master WHERE name = 'step'");
+  this->Change("UPDATE command SET time = time - 100 WHERE seq = 8");
+  this->Change("PRAGMA writable_schema = 1; INSERT INTO sqlite_master SELECT * FROM kept");
+  RecordingReader reader(this->Path_);
+  Interpreter shown;
+  session::Playback playback(reader, shown);
+  for (const double time_s : {1.5, 1.7, 101.5}) { // the step is at 1.5 s
+    try {
+      playback.Seek(time_s);
+      ADD_FAILURE() << time_s << " gave " << playback.Time();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.GetKind(), Error::Kind::Corrupt);
+      EXPECT_NE(std::string(error.what()).find("index of times is damaged"), std::string::npos);
+    }
+  }
+  EXPECT_EQ(playback.Seek(4.0), 4.0);
+  EXPECT_EQ(playback.Seek(0.5), 0.5);
+}
+
 TEST_F(PlaybackOf, RefusesDamage) {
   this->Drive(10, 1000);
   this->Change("UPDATE command SET time = time + 1 WHERE seq = 7");

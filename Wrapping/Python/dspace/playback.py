@@ -1,4 +1,5 @@
 """Recordings played back, with no simulation."""
+import math
 import time
 
 from dspace._client import to_reply, warn
@@ -12,6 +13,11 @@ from dspace.session import commands_pb2 as pb, terrain_pb2
 from dspace.sessions import Session
 
 BUILDING = terrain_pb2.TerrainReply.BUILDING
+SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER
+
+
+def scene_of(payload):
+    return pb.Command.FromString(payload).scene or "scene"
 
 
 class Playback(TelemetryReading):
@@ -96,7 +102,7 @@ class Playback(TelemetryReading):
         simulation that was reset), in the latest run of steps that reaches `at`, else in the latest that begins
         before it. An error before the first step (dspace.InvalidArgument) and in a gap (dspace.Corrupt)."""
         at = number(at, "the time", self.file.label)
-        if at < min(self.times):
+        if not at >= min(self.times):
             raise InvalidArgument(f"{self.file.label}: the time is {at!r} s; accepted: {min(self.times)!r} on",
                                   self.file.label)
         index = index_at(self.times, self._runs, at)
@@ -115,9 +121,14 @@ class Playback(TelemetryReading):
         return self.index - before
 
     def play(self, speed=1.0, on_step=None, until=None):
-        """Steps on, or with a negative speed back, in `speed` times real time (0: as fast as it goes), to the
-        end, to the time `until` [s], or until on_step(playback), called after each step, returns False."""
+        """Steps on, or with a negative speed back, in `speed` times real time, to the end, to the time `until` [s],
+        or until on_step(playback), called after each step, returns False. Of steps that are due by then only the
+        last one is gone to, so that it keeps its pace; with a speed of 0, or back with -inf, every step is, as fast
+        as it goes."""
         speed = number(speed, "the speed", self.file.label)
+        if math.isnan(speed):
+            refuse(self.file.label, "the speed", speed, "a number")
+        paced = speed != 0 and math.isfinite(speed)
         direction = -1 if speed < 0 else 1
         began, from_time = time.monotonic(), self.time
         while True:
@@ -126,16 +137,29 @@ class Playback(TelemetryReading):
                 return
             if until is not None and (self.times[following] - until) * direction > 0:
                 return
-            if speed:
+            if paced:
+                if (self.times[following] - self.time) * direction < 0:  # a simulation that was reset: from there on
+                    began, from_time = time.monotonic(), self.times[following]
                 wait = (self.times[following] - from_time) / speed - (time.monotonic() - began)
                 time.sleep(max(wait, 0.0))
+                following = self._due(following, direction, from_time + speed * (time.monotonic() - began), until)
             self._go(following)
             if on_step is not None and on_step(self) is False:
                 return
 
+    def _due(self, index, direction, now, until):
+        """The last step from `index` on, or back, that is not after `now`, nor after `until`, before time turns."""
+        last = now if until is None else min(now * direction, until * direction) * direction
+        while 0 <= index + direction < len(self.times):
+            following = self.times[index + direction]
+            if (following - self.times[index]) * direction < 0 or (following - last) * direction > 0:
+                break
+            index += direction
+        return index
+
     def _go(self, index):
         target = self._ends[index]
-        snapshot = None
+        snapshot = reached = None
         if self._at is None or target < self._at:
             snapshot = self.file.snapshot(target)
         elif target > self._at:
@@ -148,10 +172,25 @@ class Playback(TelemetryReading):
             for command in commands_of(snapshot):
                 self._carry_out(command, f"snapshot {snapshot.seq}")
             self._at = snapshot.seq
+            reached = snapshot.time if self._scene is None else None
         for row in self.file.rows(self._at + 1, target) if target > self._at else ():
             self._carry_out(row.payload, f"command {row.seq}")
             self._at = row.seq
+            if self._scene is None or row.kind == SET_TIME and scene_of(row.payload) == self._scene:
+                reached = row.time
+        self._check_step(index, reached)
         self.index = index
+
+    def _check_step(self, index, reached):
+        """Steps are found by an index that has no checksums; the rows that it leads to have."""
+        good = reached in (None, self.times[index])
+        following = self._ends[index] + 1
+        if good and index + 1 < len(self.times):
+            row = next(self.file.rows(following, following))
+            good = row.kind == SET_TIME and (row.time == self.times[index + 1]
+                                             or any(gap.before == index + 1 for gap in self.gaps))
+        if not good:
+            raise self.file.corrupt(f"its index of times is damaged near command {following}")
 
     def _clear(self):
         for name in list(self.session.viewports):

@@ -183,6 +183,14 @@ class RecordingFile:
         except (ValueError, AttributeError):
             raise self.corrupt("what it says of lost commands is damaged") from None
 
+    @property
+    def begin(self):
+        """The number of the snapshot that it begins with: 0, unless it was cut."""
+        found = self.ask("SELECT value FROM meta WHERE key = 'begin'")
+        if found and not (isinstance(found[0][0], int) and found[0][0] >= 0):
+            raise self.corrupt("what it says of its beginning is damaged")
+        return found[0][0] if found else 0
+
     def check(self):
         """Reads all of it; raises at the first damage."""
         first = self.first
@@ -227,12 +235,15 @@ def put_rows(database, table, rows):
                          ((*row, checksum(row, table)) for row in rows))
 
 
-def write_recording(path, commands, snapshots, assets_from=None):
-    """A new recording of rows that were read, with the files of the recording `assets_from`."""
+def write_recording(path, commands, snapshots, assets_from=None, begin=0):
+    """A new recording of rows that were read, with the files of the recording `assets_from`; begin: the snapshot that
+    it begins with."""
     with contextlib.closing(create_recording(path)) as database:
         if assets_from is not None:
             database.execute("ATTACH ? AS other", (assets_from,))
         with database:
+            if begin:
+                database.execute("INSERT INTO meta VALUES('begin', ?)", (begin,))
             put_rows(database, "command", commands)
             put_rows(database, "snapshot", snapshots)
             for table in ("asset", "content") if assets_from is not None else ():

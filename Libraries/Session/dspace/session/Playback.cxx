@@ -65,12 +65,15 @@ std::size_t Playback::Update() {
 
 void Playback::Go(std::size_t index) {
   const std::uint64_t target = this->Steps_.steps[index].end;
+  std::optional<double> reached_s;
   if (!this->At_ || target != *this->At_) {
     const std::vector<std::uint64_t> snapshots = this->Reader_.Snapshots();
     const auto after = std::upper_bound(snapshots.begin(), snapshots.end(), target);
     const bool nearer = after != snapshots.begin() && this->At_ && *std::prev(after) > *this->At_;
     if (!this->At_ || target < *this->At_ || nearer) {
-      this->Begin(this->Reader_.SnapshotAt(target));
+      const RecordedSnapshot snapshot = this->Reader_.SnapshotAt(target);
+      this->Begin(snapshot);
+      reached_s = snapshot.time_s;
     }
     std::uint64_t at = *this->At_;
     this->At_.reset(); // unknown, if one of these fails
@@ -78,12 +81,34 @@ void Playback::Go(std::size_t index) {
       this->Reader_.Read(at + 1, target, [&](RecordedCommand&& row) {
         this->CarryOut(std::move(row.command), "command ", row.seq);
         at = row.seq;
+        reached_s = row.time_s;
         return true;
       });
     }
     this->At_ = at;
   }
+  this->CheckStep(index, reached_s);
   this->Index_ = index;
+}
+
+// Steps are found by an index that has no checksums; the rows that it leads to have.
+void Playback::CheckStep(std::size_t index, std::optional<double> reached_s) {
+  const std::vector<PlaybackStep>& steps = this->Steps_.steps;
+  bool good = !reached_s || *reached_s == steps[index].time_s;
+  const std::uint64_t following = steps[index].end + 1;
+  if (good && index + 1 < steps.size()) {
+    this->Reader_.Read(following, following, [&](RecordedCommand&& row) {
+      good = row.command.has_set_time() &&
+             (row.time_s == steps[index + 1].time_s ||
+              std::any_of(this->Steps_.gaps.begin(), this->Steps_.gaps.end(),
+                          [&](const PlaybackGap& gap) { return gap.before == index + 1; }));
+      return true;
+    });
+  }
+  if (!good) {
+    throw Error(Error::Kind::Corrupt, Object(this->Reader_),
+                "its index of times is damaged near command " + std::to_string(following));
+  }
 }
 
 void Playback::Begin(const RecordedSnapshot& snapshot) {

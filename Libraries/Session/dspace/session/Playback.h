@@ -65,6 +65,7 @@ public:
 private:
   void Go(std::size_t index);
   void Begin(const RecordedSnapshot& snapshot);
+  void CheckStep(std::size_t index, std::optional<double> reached_s);
   void CarryOut(v1::Command command, const char* table, std::uint64_t seq);
 
   RecordingReader& Reader_;

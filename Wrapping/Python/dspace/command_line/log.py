@@ -1,7 +1,9 @@
 """`dspace log`: what recordings hold, where two part, what survives damage."""
 import datetime
+import math
 import os
 
+from dspace.command_line import Failed
 from dspace.command_line.log_diff import compare, name_of
 from dspace.command_line.log_pack import pack
 from dspace.command_line.log_salvage import salvage
@@ -97,6 +99,11 @@ def poses_text(command):
 
 def cut_out(options):
     """From the last snapshot before the time to begin with."""
+    for name, at in (("--from", options.begin), ("--to", options.end)):
+        if at is not None and math.isnan(at):
+            raise Failed(f"{name} {at!r}; accepted: a time in s")
+    if None not in (options.begin, options.end) and options.end < options.begin:
+        raise Failed(f"--to {options.end!r}; accepted: {options.begin!r} and later, --from")
     with RecordingFile(options.file) as file:
         steps = file.steps()
         first, last = file.first, file.last
@@ -107,6 +114,6 @@ def cut_out(options):
         snapshot = file.snapshot(first - 1)
         rows = list(file.rows(snapshot.seq + 1, last)) if last > snapshot.seq else []
         later = [row for row in file.rows(snapshot.seq + 1, last, "snapshot")]
-        write_recording(os.path.abspath(options.out), rows, [snapshot, *later], file.path)
+        write_recording(os.path.abspath(options.out), rows, [snapshot, *later], file.path, snapshot.seq)
         print(f"{options.out}: commands {snapshot.seq + 1} to {last}")
     return 0

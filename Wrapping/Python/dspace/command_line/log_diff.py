@@ -49,8 +49,24 @@ def compare(options):
                       + (f" by {gap:.6g}" if gap < math.inf else ""))
                 return 1
             greatest = max(greatest, gap)
+        other = other_file(one, two)
+        if other:
+            print(f"the same commands, of other files: {other}")
+            return 1
         print(f"the same: {one.last} commands" + (f", numbers to {greatest:.6g}" if greatest else ""))
     return 0
+
+
+def other_file(one, two):
+    """The first of the files that their commands need which is not the same in both; "" where all are."""
+    there = [{asset.path: asset for asset in file.assets} for file in (one, two)]
+    say = lambda asset: "is not noted" if asset is None else (
+        f"has {asset.size} bytes of SHA-256 {asset.sha256.hex()}" if asset.state == "read" else f"is {asset.state}")
+    for path in sorted({*there[0], *there[1]}):
+        a, b = (each.get(path) for each in there)
+        if a is None or b is None or (a.state, a.size, a.sha256) != (b.state, b.size, b.sha256):
+            return f"{path!r} {say(a)}, and {say(b)}"
+    return ""
 
 
 def difference(a, b):

@@ -13,8 +13,9 @@ import os
 import struct
 
 from dspace.command_line import Failed
+from dspace.errors import Error
 from dspace.recording_assets import Asset, Content
-from dspace.recording_file import Row, checksum, create_recording
+from dspace.recording_file import RecordingFile, Row, checksum, create_recording
 
 SIZES = (65536, 4096)  # of pages: ours, and a common one, where ours finds nothing
 LEAF = 13
@@ -35,21 +36,37 @@ def salvage(options):
         else:
             empty = False
             last = max(counts["command"][1] or 0, counts["snapshot"][1] or 0)
-            lost = gaps((seq for seq, in database.execute("SELECT seq FROM command ORDER BY seq")), last)
+            begin = begin_of(options.file, database)
+            lost = gaps((seq for seq, in database.execute("SELECT seq FROM command ORDER BY seq")), last, begin)
+            stateless = not database.execute("SELECT 1 FROM snapshot WHERE seq = ?", (begin,)).fetchone()
             broken = unpackable(database)
             with database:
+                if begin:
+                    database.execute("INSERT INTO meta VALUES('begin', ?)", (begin,))
                 database.execute("INSERT INTO meta VALUES('lost', ?)", (" ".join(f"{a}-{b}" for a, b in lost),))
     if empty:
         os.remove(options.out)
         raise Failed(f"recording {options.file!r}: nothing in it survives")
     print(f"{options.out}: {counts['command'][0]} commands, {counts['snapshot'][0]} snapshots, "
           f"{counts['asset'][0]} files")
+    if stateless:
+        print(f"lost: the state before command {begin + 1}")
     for first, end in lost:
         print(f"lost: commands {first} to {end}")
     for path in broken:
         print(f"lost: the packed content of {path!r}")
     print(f"what came after {counts['command'][1] or 0} is not known")
-    return 1 if lost or broken else 0
+    return 1 if lost or broken or stateless else 0
+
+
+def begin_of(path, database):
+    """The snapshot that a recording which was cut begins with, where that is among what was found; else 0."""
+    try:
+        with RecordingFile(path) as file:
+            begin = file.begin
+    except Error:  # damaged: what it lacks is lost
+        return 0
+    return begin if database.execute("SELECT 1 FROM snapshot WHERE seq = ?", (begin,)).fetchone() else 0
 
 
 def put(database, table, row):
@@ -76,9 +93,9 @@ def unpackable(database):
     return found
 
 
-def gaps(seqs, last):
-    """Ranges of 1..last that are not there."""
-    found, expected = [], 1
+def gaps(seqs, last, begin=0):
+    """Ranges of begin + 1..last that are not there."""
+    found, expected = [], begin + 1
     for seq in seqs:
         if seq > expected:
             found.append((expected, seq - 1))

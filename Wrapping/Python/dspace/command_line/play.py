@@ -48,8 +48,7 @@ def run(options):
                 state["count"] += 1
                 state["drawn"] = run.time
 
-        # 0 would be as fast as it goes, but has no sign.
-        playback.play(-1e300 if options.reverse else 0, on_step)
+        playback.play(-math.inf if options.reverse else 0, on_step)
     return 0
 
 
