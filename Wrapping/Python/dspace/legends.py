@@ -2,6 +2,7 @@
 from dspace._fields import flag, items, keywords, number, put, put_color, put_given, refuse, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.session import commands_pb2 as pb
+from dspace.telemetry import Channel
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 UNITS = {"height": "m", "slope": "deg", "aspect": "deg"}
@@ -20,6 +21,18 @@ def put_grid_labels(message, look, label):
     for field in ("color", "background"):
         if look.get(field) is not None:
             put_color(getattr(message, field), look[field], field, label)
+
+
+def put_value(row, value, viewport, table):
+    """A value of a text table's row: anything, or a channel of telemetry with or without digits."""
+    channel, digits = value if isinstance(value, tuple) and len(value) == 2 else (value, None)
+    if not isinstance(channel, Channel):
+        row.value = str(value)
+        return
+    if channel.scene != viewport.scene:
+        refuse(table, "the scene of " + repr(channel.name), channel.scene.name, "the viewport's")
+    row.telemetry = channel.name
+    put_given(row, table, digits=digits)
 
 
 class LegendMaking:

@@ -7,10 +7,9 @@ from dspace._fields import flag, integers, items, put, put_color, put_given, ref
 from dspace._strict import Strict
 from dspace.errors import Internal, WrongType
 from dspace.fragments import Fragment
-from dspace.legends import LegendMaking
+from dspace.legends import LegendMaking, put_value
 from dspace.objects import file_path
 from dspace.session import commands_pb2 as pb
-from dspace.telemetry import Channel
 from dspace.session import service_pb2
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
@@ -37,18 +36,6 @@ class Pick:
     in_given: object = None  # in the frame that was asked for
     terrain: object = None  # Terrain, where one was hit
     map: object = None  # its map x, y and height
-
-
-def put_value(row, value, viewport, table):
-    """A value of a text table's row: anything, or a channel of telemetry with or without digits."""
-    channel, digits = value if isinstance(value, tuple) and len(value) == 2 else (value, None)
-    if not isinstance(channel, Channel):
-        row.value = str(value)
-        return
-    if channel.scene != viewport.scene:
-        refuse(table, "the scene of " + repr(channel.name), channel.scene.name, "the viewport's")
-    row.telemetry = channel.name
-    put_given(row, table, digits=digits)
 
 
 class Viewport(LegendMaking, Strict):
