@@ -40,15 +40,13 @@ def run(options):
         print(save(playback, options, 0))
         if options.at is not None:
             return 0
-        state = {"count": 1, "drawn": playback.time}
-
-        def on_step(run):
-            if options.every is None or abs(run.time - state["drawn"]) >= options.every * (1 - 1e-9):
-                print(save(run, options, state["count"]))
-                state["count"] += 1
-                state["drawn"] = run.time
-
-        playback.play(-math.inf if options.reverse else 0, on_step)
+        count, drawn = 1, playback.time
+        begin = playback.index
+        for index in range(begin - 1, -1, -1) if options.reverse else range(begin + 1, len(playback.times)):
+            if options.every is None or abs(playback.times[index] - drawn) >= options.every * (1 - 1e-9):
+                playback.step(index - playback.index)  # steps between are not gone to: back, each takes long
+                print(save(playback, options, count))
+                count, drawn = count + 1, playback.time
     return 0
 
 
