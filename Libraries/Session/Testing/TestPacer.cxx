@@ -13,26 +13,44 @@ using session::Pacer;
 
 TEST(Pacer, WaitsForWhatIsLeftOfTheTimeSinceTheFirst) {
   Pacer pacer;
-  EXPECT_EQ(pacer.Ahead(5, 100), 0); // none
-  pacer.SetRate(2);                  // simulation seconds a second
-  EXPECT_EQ(pacer.Ahead(5, 100), 0);
-  EXPECT_EQ(pacer.Ahead(6, 100), 0.5);
-  EXPECT_EQ(pacer.Ahead(6, 100.25), 0.25);
-  EXPECT_EQ(pacer.Ahead(6, 100.5), 0);
-  EXPECT_EQ(pacer.Ahead(7, 109), 0);    // late by 8 s:
-  EXPECT_EQ(pacer.Ahead(23, 109), 0);   // it catches up,
-  EXPECT_EQ(pacer.Ahead(24, 109), 0.5); // and no more
-  EXPECT_EQ(pacer.Ahead(4, 109.5), 0);  // back: counted anew
-  EXPECT_EQ(pacer.Ahead(6, 109.5), 1);
+  EXPECT_EQ(pacer.Ahead("scene", 5, 100), 0); // none
+  pacer.SetRate(2);                           // simulation seconds a second
+  EXPECT_EQ(pacer.Ahead("scene", 5, 100), 0);
+  EXPECT_EQ(pacer.Ahead("scene", 6, 100), 0.5);
+  EXPECT_EQ(pacer.Ahead("scene", 6, 100.25), 0.25);
+  EXPECT_EQ(pacer.Ahead("scene", 6, 100.5), 0);
+  EXPECT_EQ(pacer.Ahead("scene", 7, 109), 0);    // late by 8 s:
+  EXPECT_EQ(pacer.Ahead("scene", 23, 109), 0);   // it catches up,
+  EXPECT_EQ(pacer.Ahead("scene", 24, 109), 0.5); // and no more
+  EXPECT_EQ(pacer.Ahead("scene", 4, 109.5), 0);  // back: counted anew
+  EXPECT_EQ(pacer.Ahead("scene", 6, 109.5), 1);
   pacer.SetRate(1);
-  EXPECT_EQ(pacer.Ahead(8, 200), 0); // anew
-  EXPECT_EQ(pacer.Ahead(9, 200), 1);
-  EXPECT_EQ(pacer.Ahead(std::nan(""), 200), 0);
+  EXPECT_EQ(pacer.Ahead("scene", 8, 200), 0); // anew
+  EXPECT_EQ(pacer.Ahead("scene", 9, 200), 1);
+  EXPECT_EQ(pacer.Ahead("scene", std::nan(""), 200), 0);
   pacer.SetRate(0);
-  EXPECT_EQ(pacer.Ahead(1e9, 200), 0);
+  EXPECT_EQ(pacer.Ahead("scene", 1e9, 200), 0);
   for (const double bad : {-1.0, std::nan(""), HUGE_VAL}) {
     EXPECT_THROW(pacer.SetRate(bad), Error) << bad;
   }
+}
+
+TEST(Pacer, EachSceneHasItsClockAndAnotherEpochIsNotWaitedFor) {
+  Pacer pacer;
+  pacer.SetRate(1);
+  EXPECT_EQ(pacer.Ahead("a", 0, 100), 0);
+  EXPECT_EQ(pacer.Ahead("b", 1.5, 100), 0); // its first
+  EXPECT_EQ(pacer.Ahead("a", 2, 101), 1);
+  EXPECT_EQ(pacer.Ahead("b", 4, 101), 1.5);
+  EXPECT_EQ(pacer.Ahead("a", 3601, 101), 3600); // an hour is waited for, more is not
+  EXPECT_EQ(pacer.Ahead("a", 3602, 101), 0);
+  EXPECT_EQ(pacer.Ahead("a", 3603, 101), 1); // and that is where it begins anew
+  EXPECT_EQ(pacer.Ahead("a", 7e8, 101), 0);
+  EXPECT_EQ(pacer.Ahead("a", 1e300, 101), 0);
+  pacer.SetRate(1e-300);
+  EXPECT_EQ(pacer.Ahead("a", 0, 101), 0);
+  EXPECT_EQ(pacer.Ahead("a", 1e300, 101), 0); // beyond any double
+  EXPECT_EQ(pacer.Ahead("b", 4, 101), 0);
 }
 
 v1::Command MakeTime(double time_s) {

@@ -26,6 +26,7 @@ class RemoteClient(LocalClient):
         self.vtk = None
         self.link = link
         self.address = address
+        self.process = os.getpid()
         self.wait = True
         self.pace = None
 
@@ -36,6 +37,9 @@ class RemoteClient(LocalClient):
     def _open(self):
         if self.link is None:
             raise Closed("the session is closed; accepted: a new dspace.connect()", "session")
+        if os.getpid() != self.process:
+            raise Unsupported(f"process {self.process} connected it, and this one is its child; accepted: "
+                              "a dspace.connect() of its own", "session")
         self._require_thread()
         return self.link
 

@@ -1,11 +1,16 @@
 """A server process of one's own."""
 import os
+import select
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 
-from dspace.errors import Io
+from dspace._fields import number, refuse
+from dspace.errors import DeadlineExceeded, Io
+
+LISTENING = "dspace serve: listening on "
 
 
 class ServerProcess:
@@ -14,10 +19,14 @@ class ServerProcess:
         with ServerProcess(["data"]) as server, dspace.connect(server.address) as session: ...
 
     roots: folders whose files commands may name. record: a new file that the session is recorded into; pack: with
-    the files that its commands need. Leaving the block ends it.
+    the files that its commands need. timeout: seconds, above 0, that it may take to start. Leaving the block ends
+    it, and so does the end of this process, however it comes.
     """
 
-    def __init__(self, roots, record=None, pack=False):
+    def __init__(self, roots, record=None, pack=False, timeout=60.0):
+        self._timeout = number(timeout, "the timeout", "server")
+        if not self._timeout > 0:
+            refuse("server", "the timeout", timeout, "seconds above 0")
         self._record = [] if record is None else ["--record", os.path.abspath(record)] + ["--pack"] * bool(pack)
         self._roots = [os.fspath(root) for root in roots]
         self._folder = self._process = self.address = None
@@ -28,17 +37,35 @@ class ServerProcess:
 
     def __enter__(self):
         self._folder = tempfile.TemporaryDirectory(prefix="dspace-serve-")
-        command = [sys.executable, "-m", "dspace", "serve", "--listen", f"unix:{self._folder.name}/socket"]
+        command = [sys.executable, "-m", "dspace", "serve", "--end-with-input",
+                   "--listen", f"unix:{self._folder.name}/socket"]
         for root in self._roots:
             command += ["--allow-root", root]
         command += self._record
-        self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        line = self._process.stdout.readline()
-        if not line.startswith("dspace serve: listening on "):
+        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        try:
+            line = self._first_line()
+        except BaseException:
+            self._process.kill()  # it may hear nothing
+            self.__exit__()
+            raise
+        if not line.startswith(LISTENING):
             self.__exit__()
             raise Io("the server process did not start; see what it said on the error stream", "server")
-        self.address = line.split()[-1]
+        self.address = line[len(LISTENING):].rstrip("\n")
         return self
+
+    def _first_line(self):
+        pipe = self._process.stdout.fileno()
+        data, end = b"", time.monotonic() + self._timeout
+        while not data.endswith(b"\n"):
+            if not select.select([pipe], [], [], max(0.0, end - time.monotonic()))[0]:
+                raise DeadlineExceeded(f"the server process did not start within {self._timeout:g} s", "server")
+            piece = os.read(pipe, 4096)
+            if not piece:
+                break
+            data += piece
+        return os.fsdecode(data)
 
     def __exit__(self, *exception):
         if self._process.poll() is None:
@@ -48,5 +75,6 @@ class ServerProcess:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
+        self._process.stdin.close()
         self._process.stdout.close()
         self._folder.cleanup()

@@ -1,9 +1,11 @@
 """Watching a simulation that another process drives, through a server."""
+import time
+
 from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_reply
 from dspace._fields import number, refuse, text
 from dspace.errors import Closed, WrongType
-from dspace.remote import prepare
+from dspace.remote import SLICE, prepare
 from dspace.scenes import Scene
 from dspace.sessions import Session
 
@@ -36,7 +38,10 @@ class WatchClient(LocalClient):
     def update(self, wait):
         """How many messages came; then calls who follows frames."""
         watcher = self.watcher()
-        count = watcher.Update(wait)
+        end = time.monotonic() + wait
+        count = watcher.Update(min(wait, SLICE))
+        while count == 0 and time.monotonic() < end:  # between two waits Python hears a Ctrl-C
+            count = watcher.Update(min(SLICE, max(0.0, end - time.monotonic())))
         listeners = self.frame_listeners
         if listeners:
             listeners.put(to_reply(watcher.TakeFrameEvents()).frame_event)

@@ -15,19 +15,21 @@ void Pacer::SetRate(double rate) {
                     "; accepted: a finite number above 0, or 0 for none");
   }
   this->Rate_ = rate;
-  this->Began_ = false;
+  this->Clocks_.clear();
 }
 
-double Pacer::Ahead(double time_s, double now_s) {
+double Pacer::Ahead(const std::string& scene, double time_s, double now_s) {
   if (this->Rate_ == 0 || !std::isfinite(time_s)) {
     return 0; // such a time is refused by whoever is asked to set it
   }
-  if (!this->Began_ || time_s < this->Time_) {
-    this->Began_ = true;
-    this->Time_ = time_s;
-    this->Wall_ = now_s;
+  const auto [at, first] = this->Clocks_.insert({scene, {time_s, now_s}});
+  Clock& clock = at->second;
+  const double ahead = (time_s - clock.time) / this->Rate_ - (now_s - clock.wall);
+  if (first || time_s < clock.time || !(ahead <= LongestPause)) {
+    clock = {time_s, now_s};
+    return 0;
   }
-  return std::max(0.0, (time_s - this->Time_) / this->Rate_ - (now_s - this->Wall_));
+  return std::max(0.0, ahead);
 }
 
 } // namespace dspace::session

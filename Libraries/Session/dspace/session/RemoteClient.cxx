@@ -6,6 +6,7 @@
 #include <dspace/Error.h>
 #include <dspace/session/ClientLink.h>
 #include <dspace/session/Confinement.h>
+#include <dspace/session/State.h>
 
 namespace dspace::session {
 namespace {
@@ -90,6 +91,7 @@ void RemoteClient::Begin(v1::Command command, bool reply) {
   const double ahead =
       link.command.has_set_time()
           ? link.pacer.Ahead(
+                link.command.scene().empty() ? DefaultScene : link.command.scene(),
                 link.command.set_time().time_s(),
                 std::chrono::duration<double>(LinkClock::now().time_since_epoch()).count())
           : 0;

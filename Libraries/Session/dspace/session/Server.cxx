@@ -77,8 +77,12 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   RefuseTakenSocket(address);
   hub.service = std::make_unique<Service>(hub);
   grpc::ServerBuilder builder;
-  int port = 0;
-  builder.AddListeningPort(address.target, credentials, &port);
+  // Half of what there is stays for files and for answers.
+  hub.listener = std::make_unique<ServerListener>(
+      address,
+      std::min(std::size_t(4 * options.maximumConnections + 32), RaiseDescriptorLimit() / 2));
+  auto acceptor = builder.experimental().AddExternalConnectionAcceptor(
+      grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, credentials);
   builder.RegisterService(hub.service.get());
   builder.SetMaxReceiveMessageSize(int(options.maximumMessage) + Slack);
   builder.SetMaxSendMessageSize(-1); // pictures
@@ -86,7 +90,9 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   grpc::ResourceQuota quota("dspace");
   quota.SetMaxThreads(int(options.maximumConnections + DrivesAtOnce) + 8);
   builder.SetResourceQuota(quota);
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0); // two servers of one port are an error
+  // Who connects and says nothing takes nobody's place for long.
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 5000);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 60000);
   const int silence_ms = int(std::max(1.0, 1e3 * options.silence_s));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, silence_ms);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(silence_ms, 10000));
@@ -94,21 +100,21 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   builder.AddChannelArgument(GRPC_ARG_TCP_READ_CHUNK_SIZE, LinkReadBytes);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, LinkFrameBytes);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, LinkAheadBytes);
-  const mode_t mask = umask(0077); // a Unix socket is its owner's
   hub.server = builder.BuildAndStart();
-  umask(mask);
-  if (!hub.server || (address.path.empty() && port == 0)) {
-    throw Error(Error::Kind::Io, "address '" + address.target + "'",
-                "the system does not let a server listen there");
+  if (!hub.server) {
+    throw Error(Error::Kind::Io, "address '" + address.target + "'", "gRPC does not serve there");
   }
+  hub.listener->Start(std::move(acceptor));
   hub.address = address.target;
   if (address.path.empty()) {
-    hub.address.replace(hub.address.rfind(':') + 1, std::string::npos, std::to_string(port));
+    hub.address.replace(hub.address.rfind(':') + 1, std::string::npos,
+                        std::to_string(hub.listener->Port()));
   }
 }
 
 Server::~Server() {
   this->Stop();
+  this->Hub_->listener.reset();
   if (this->Hub_->server) {
     this->Hub_->server->Shutdown(std::chrono::system_clock::now() + std::chrono::milliseconds(200));
     this->Hub_->server->Wait();

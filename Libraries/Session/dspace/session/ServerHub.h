@@ -12,6 +12,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <dspace/session/Server.h>
+#include <dspace/session/ServerListener.h>
 #include <dspace/session/SnapshotMessages.h>
 #include <dspace/session/service.grpc.pb.h>
 
@@ -134,6 +135,7 @@ struct Server::Hub {
 
   std::unique_ptr<Service> service;
   std::unique_ptr<grpc::Server> server;
+  std::unique_ptr<ServerListener> listener;
 
   // All of these with the mutex held.
   void Acknowledge(std::uint64_t number);

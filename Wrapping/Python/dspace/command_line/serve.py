@@ -1,5 +1,6 @@
 """`dspace serve`: a session for simulations and viewers in other processes."""
 import os
+import select
 import signal
 import sys
 
@@ -29,10 +30,16 @@ def add_arguments(parser):
                         help="commands a second; a faster simulation is slowed down (default 100,000)")
     parser.add_argument("--record", metavar="FILE", help="records the session into a new file, for `dspace play`")
     parser.add_argument("--pack", action="store_true", help="with --record: the files that commands need go into it")
+    parser.add_argument("--end-with-input", action="store_true",
+                        help="ends once the standard input does: with the program that started it")
     parser.add_argument("--make-test-certificates", metavar="DIR",
                         help="writes an authority and certificates for server and clients of this machine "
                         "into DIR, and ends; for tests, not for operations")
     parser.set_defaults(run=run)
+
+
+def input_ended():
+    return bool(select.select([0], [], [], 0)[0]) and not os.read(0, 4096)
 
 
 def run(options):
@@ -70,7 +77,8 @@ def run(options):
               file=sys.stderr, flush=True)
     print(f"dspace serve: listening on {server.GetAddress()}", flush=True)
     while not stop and server.Run(0.2):
-        pass
+        if options.end_with_input and input_ended():
+            break
     server.Stop()
     trouble = server.GetSession().StopRecording()
     for path in server.GetSession().GetRecordingMissing().splitlines():
