@@ -48,7 +48,12 @@ double Record(const std::string& path, const dspace::v1::Command& step, int step
     writer.Add(step, {}, ledger);
   }
   writer.Flush();
-  return Now() - begin;
+  const double taken = Now() - begin;
+  if (writer.Counts().written != std::uint64_t(steps)) {
+    std::fprintf(stderr, "not all was recorded: %s\n", writer.Counts().failure.c_str());
+    std::exit(1);
+  }
+  return taken;
 }
 
 double Write(const std::string& path, const dspace::v1::Command& step, int steps, bool sync) {
