@@ -32,7 +32,7 @@ scene.time = 0.0
 interrupted(session.flush)
 session.wait = True
 scene.add_frame("second")
-session.pace = 0.001
+session.pace = 0.01
 scene.time = 1.0
 interrupted(lambda: setattr(scene, "time", 10.0))
 session.pace = None
