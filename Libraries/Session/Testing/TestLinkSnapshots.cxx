@@ -104,6 +104,21 @@ TEST_F(SnapshotTest, OneThatIsLargeArrivesHoweverMuchComesAfterIt) {
   this->StartServer();
   RemoteClient client(this->ClientOptions());
   this->BuildFrames(client);
+  constexpr int Trails = 2000; // of 3.6 kB
+  for (int i = 0; i < Trails; ++i) {
+    v1::Command create;
+    create.mutable_create_trail()->set_capacity(200);
+    create.mutable_create_trail()->mutable_object()->set_id(std::uint32_t(100 + i));
+    create.mutable_create_trail()->mutable_object()->set_name("trail " + std::to_string(i));
+    Accept(client.Send(create));
+    v1::Command append;
+    append.mutable_append_trail()->set_object(std::uint32_t(100 + i));
+    for (int j = 0; j < 450; ++j) {
+      append.mutable_append_trail()->add_point(i + 0.01 * j);
+    }
+    Accept(client.Send(append));
+  }
+  Accept(client.Flush());
   auto options = this->WatchOptions();
   options.waitingBytes = 1;
   std::atomic<bool> enough{false};
@@ -116,11 +131,11 @@ TEST_F(SnapshotTest, OneThatIsLargeArrivesHoweverMuchComesAfterIt) {
   Watcher watcher(options);
   v1::WatchReply message;
   int snapshots = 0;
-  for (int i = 0; i < 200 && snapshots < 3 && watcher.Take(message, 20); ++i) {
+  for (int i = 0; i < 200 && snapshots < 3 && watcher.Take(message, 10); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2)); // it is slow
     if (message.has_snapshot()) {
       ++snapshots;
-      EXPECT_GE(message.snapshot().command_size(), Frames + 1);
+      EXPECT_GE(message.snapshot().command_size(), 1 + Frames + 2 * Trails);
     }
   }
   enough = true;

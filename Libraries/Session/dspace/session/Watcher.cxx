@@ -70,6 +70,12 @@ struct Watcher::Link {
       SnapshotJoin snapshots;
       std::string broken;
       while (stream->Read(&message)) {
+        {
+          const std::lock_guard lock(this->mutex);
+          this->connected = this->once = true;
+          this->refusal.clear();
+          this->changed.notify_all();
+        }
         try {
           if (!snapshots.Take(message)) {
             continue;
@@ -81,9 +87,6 @@ struct Watcher::Link {
         }
         const std::size_t size = message.ByteSizeLong() + 64;
         std::unique_lock lock(this->mutex);
-        this->connected = this->once = true;
-        this->refusal.clear();
-        this->changed.notify_all();
         this->changed.wait(lock, [&] {
           return this->ending || this->messages.empty() ||
                  this->bytes + size <= this->options.waitingBytes;
