@@ -6,6 +6,7 @@ import os
 import shutil
 import sqlite3
 import struct
+import warnings
 import zlib
 
 import numpy
@@ -332,3 +333,30 @@ def test_large_files_are_packed_in_parts(tmp_path):
             for name, data in content.items():
                 with open(unpacked.place(str(tmp_path / name)), "rb") as whole:
                     assert whole.read() == data
+
+
+def test_real_models_replay_elsewhere(tmp_path):
+    """A robot of many meshes, some of whose buffers were never published, OBJ with materials, VRML with pictures."""
+    data = os.path.join(os.environ.get("DSPACE_DATA") or "/nonexistent", "models")
+    if not os.path.isdir(data):
+        pytest.skip("real data absent: set DSPACE_DATA to the folder that has models")
+    names = ("m2020_rover/m2020.urdf", "viper_obj/viper_wheel.obj", "pathfinder_vrml/lander2.wrl")
+    here = tmp_path / "models"
+    for name in names:
+        shutil.copytree(os.path.join(data, os.path.dirname(name)), here / os.path.dirname(name))
+    path = tmp_path / "run.dspace"
+    with warnings.catch_warnings(), dspace.Session() as session, session.record(path, pack=True):
+        warnings.simplefilter("ignore")  # of what is absent
+        scene = session.scene()
+        for i, name in enumerate(names):
+            scene.load(str(here / name), frame=scene.add_frame(f"f{i}", position=(6 * i - 6, 0, 0)))
+        scene.add_viewport((160, 120), scene.add_camera("c", eye=(0, -15, 8), target=(0, 0, 0)), name="view")
+        scene.time = 1.0
+        live = session.viewports["view"].image()
+    here.rename(tmp_path / "gone")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        assert numpy.array_equal(played(path), live)
+    with RecordingFile(path) as file:
+        states = [asset.state for asset in file.assets]
+    assert states.count("read") > 50 and "absent" in states and set(states) == {"read", "absent"}
