@@ -1,6 +1,7 @@
 #include "vtkDspaceWatcher.h"
 
 #include <set>
+#include <utility>
 
 #include <dspace/session/ErrorReply.h>
 #include <dspace/session/LinkBanner.h>
@@ -60,11 +61,13 @@ struct vtkDspaceWatcher::Internals {
     this->session->SetRenderContext(context);
     this->trouble.clear();
     this->banner.Follow(this->Interpreter());
+    const std::set<std::string> scenes = std::exchange(this->followed, {}); // it is no change
     for (dspace::v1::Command& command : *snapshot.mutable_command()) {
       this->Apply(command);
     }
     this->own.Enter(this->Interpreter());
-    for (const std::string& scene : this->followed) {
+    this->followed = scenes;
+    for (const std::string& scene : scenes) {
       this->Follow(scene);
     }
     this->session->TakeRecording(before);
