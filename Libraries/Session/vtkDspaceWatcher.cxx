@@ -2,8 +2,10 @@
 
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <dspace/session/ErrorReply.h>
+#include <dspace/session/LatestSteps.h>
 #include <dspace/session/LinkBanner.h>
 #include <dspace/session/OwnViews.h>
 #include <dspace/session/Watcher.h>
@@ -50,6 +52,31 @@ struct vtkDspaceWatcher::Internals {
       this->writerConnected = message.writer().connected();
     }
     this->sequence = message.sequence();
+  }
+
+  // In their order, without the steps that make no difference any more.
+  void Apply(std::vector<dspace::v1::WatchReply>& messages) {
+    std::size_t at = 0;
+    while (at < messages.size()) {
+      if (!dspace::session::IsStep(messages[at]) || !this->OnlyLatest()) {
+        this->Apply(messages[at++]);
+        continue;
+      }
+      for (const bool superseded : dspace::session::SupersededSteps(messages, at)) {
+        if (superseded) {
+          this->sequence = messages[at].sequence();
+        } else {
+          this->Apply(messages[at]);
+        }
+        ++at;
+      }
+    }
+  }
+
+  // Nobody keeps, hears of, or is moved by each step.
+  bool OnlyLatest() {
+    return this->followed.empty() && this->session->GetRecordingPath().empty() &&
+           !dspace::session::HasLaggingCamera(this->Interpreter().GetState());
   }
 
   void Begin(dspace::v1::WatchReply::Snapshot& snapshot) {
@@ -192,17 +219,17 @@ std::string vtkDspaceWatcher::Connect(const std::string& address, const std::str
 }
 
 int vtkDspaceWatcher::Update(double wait) {
-  int applied = 0;
-  dspace::v1::WatchReply message;
+  std::size_t applied = 0;
+  std::vector<dspace::v1::WatchReply> messages;
   // Not for ever: what comes faster than it is applied is for the next call.
   while (this->Impl->watcher && applied < 10000 &&
-         this->Impl->watcher->Take(message, applied == 0 ? wait : 0.0)) {
-    this->Impl->Apply(message);
-    ++applied;
+         this->Impl->watcher->TakeAll(messages, applied == 0 ? wait : 0.0)) {
+    this->Impl->Apply(messages);
+    applied += messages.size();
   }
   this->Impl->own.Wake(this->Impl->Interpreter(), !this->Impl->writerConnected);
   this->Impl->ShowBanner();
-  return applied;
+  return static_cast<int>(applied);
 }
 
 long long vtkDspaceWatcher::GetSequence() {

@@ -395,3 +395,29 @@ def test_a_viewer_says_why_it_is_refused(tmp_path):
                 while not watcher.connected:
                     watcher.update(0.1)
                 assert watcher.trouble == ""
+
+
+@pytest.mark.parametrize("smoothing", [0.0, 0.7])
+def test_a_viewer_that_is_behind_shows_what_who_kept_up_shows(tmp_path, smoothing):
+    """Steps that later ones make needless are left out, but where a camera's lag depends on them."""
+    with watched(tmp_path) as (_, session, watcher):
+        scene = session.scene()
+        cart = scene.frame("cart")
+        scene.add_camera("behind", frame=cart, chase={"offset": (-6.0, 0.0, 3.0), "smoothing_s": smoothing})
+        scene.add_viewport(SIZE, "behind", name="chase")
+        follow(watcher, session)
+        before = watcher.viewports["chase"].image()
+        session.wait = False
+        for step in range(300):
+            scene.time = 0.01 * step
+            scene.set_poses([cart], [[0.02 * step, np.sin(0.05 * step), 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]])
+        session.flush()
+        session.wait = True
+        came = watcher.sequence
+        while watcher.sequence < came + 600:
+            assert watcher.update(20.0), watcher.trouble
+        image = watcher.viewports["chase"].image()
+        assert (image != before).any()
+        assert (image == session.viewports["chase"].image()).all()
+        own = watcher.scenes["scene"].frame("cart").pose.position
+        assert own == pytest.approx((0.02 * 299, np.sin(0.05 * 299), 0.0), abs=0)

@@ -197,6 +197,25 @@ bool Watcher::Take(v1::WatchReply& message, double wait_s) {
   return true;
 }
 
+bool Watcher::TakeAll(std::vector<v1::WatchReply>& messages, double wait_s) {
+  messages.clear();
+  Link& link = *this->Link_;
+  if (link.Forked()) {
+    return false;
+  }
+  std::unique_lock lock(link.mutex);
+  link.changed.wait_for(lock, Seconds(std::clamp(wait_s, 0.0, 1e6)),
+                        [&] { return !link.messages.empty(); });
+  messages.reserve(link.messages.size());
+  for (auto& [message, size] : link.messages) {
+    messages.push_back(std::move(message));
+  }
+  link.messages.clear();
+  link.bytes = 0;
+  link.changed.notify_all();
+  return !messages.empty();
+}
+
 bool Watcher::Connected(std::string* why) const {
   if (this->Link_->Forked()) {
     if (why) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <dspace/session/LinkAddress.h>
 #include <dspace/session/service.pb.h>
@@ -32,6 +33,8 @@ public:
 
   // The next message; waits up to wait_s for it. False when there is none yet.
   bool Take(v1::WatchReply& message, double wait_s);
+  // The same of all that have come: up to waitingBytes of them and one.
+  bool TakeAll(std::vector<v1::WatchReply>& messages, double wait_s);
   // Whether there is a connection, and a word on why not.
   bool Connected(std::string* why = nullptr) const;
   // Why the server refuses what it did not refuse before: a state that is too large to be sent, too

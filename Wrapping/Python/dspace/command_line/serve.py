@@ -1,4 +1,5 @@
 """`dspace serve`: a session for simulations and viewers in other processes."""
+import faulthandler
 import os
 import select
 import signal
@@ -6,6 +7,8 @@ import sys
 
 from dspace.command_line import Failed
 from dspace.command_line.certificates import make_test_certificates
+
+TO_END = 20.0  # seconds, once the session has ended
 
 
 def add_arguments(parser):
@@ -83,6 +86,8 @@ def run(options):
     trouble = server.GetSession().StopRecording()
     for path in server.GetSession().GetRecordingMissing().splitlines():
         print(f"dspace: note: not packed: {path}", file=sys.stderr, flush=True)
+    # Everything is written; whatever should hang now in closing connections, say where and go.
+    faulthandler.dump_traceback_later(TO_END, exit=True)
     if trouble:
         raise Failed(trouble)
     return 0
