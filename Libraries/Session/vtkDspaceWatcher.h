@@ -33,7 +33,8 @@ public:
   std::string Connect(const std::string& address, const std::string& name);
 
   /// Applies all that has come; waits up to so many seconds for something. Returns how many
-  /// messages.
+  /// messages. Times and poses that later ones make needless are left out, unless a camera lags, the
+  /// session is recorded or changes of frames are followed.
   int Update(double wait);
   /// The number of the last command that is in the state: it grows by one a command.
   long long GetSequence();
