@@ -191,3 +191,97 @@ def test_no_value_is_taken_across_lost_commands(tmp_path):
         assert still.times.tolist() == [0, 3, 5] and still.values[[0, 2]].tolist() == [5, 5]
         assert math.isnan(still.at(4.0)) and still.at(5.0) == 5.0
         assert [event.text for event in run.events()] == ["3", "5", "7"]  # the snapshot keeps events
+
+
+def salvaged(path, rows, snapshots, lost):
+    from dspace.recording_file import write_recording
+    write_recording(str(path), rows, snapshots)
+    database = sqlite3.connect(path)
+    with database:
+        database.execute("INSERT INTO meta VALUES('lost', ?)", (lost,))
+    database.close()
+
+
+def test_values_end_at_a_gap_that_no_snapshot_follows(tmp_path):
+    with dspace.Session() as session:
+        scene = session.scene()
+        power, note = scene.telemetry.add("power"), scene.telemetry.add("note", kind="text", value="a")
+        with session.record(tmp_path / "a.dspace"):
+            for i in range(6):
+                scene.time = float(i)
+                power.value = 10.0 * i
+    with dspace.RecordingFile(tmp_path / "a.dspace") as file:
+        rows, first = list(file.rows()), file.snapshot(0)
+    assert len(rows) == 12
+    # After 2 s one is lost, then two that the rest follows, or nothing.
+    for name, kept, lost in (("b", rows[:6] + rows[8:], "7-8"), ("c", rows[:6], "7-12")):
+        salvaged(tmp_path / name, kept, [first], lost)
+        with pytest.warns(dspace.DspaceWarning, match="lost"), dspace.Playback(tmp_path / name) as run:
+            assert [run.telemetry("power").at(t) for t in (0, 1)] == [0, 10]
+            assert math.isnan(run.telemetry("power").at(4.5)) and run.telemetry("note").at(4.5) is None
+
+
+def two_parts(tmp_path, before, between, after):
+    """A recording of what `before` and `after` do, whose four commands between are lost, and a snapshot goes on."""
+    with dspace.Session() as session:
+        with session.record(tmp_path / "one.dspace"):
+            before(session)
+        between(session)
+        with session.record(tmp_path / "two.dspace"):
+            after(session)
+    with dspace.RecordingFile(tmp_path / "one.dspace") as one, dspace.RecordingFile(tmp_path / "two.dspace") as two:
+        rows, first = list(one.rows()), one.snapshot(0)
+        end = len(rows) + 4
+        lost = f"{len(rows) + 1}-{end}"
+        rows += [row._replace(seq=row.seq + end) for row in two.rows()]
+        salvaged(tmp_path / "run.dspace", rows, [first, two.snapshot(0)._replace(seq=end)], lost)
+    return tmp_path / "run.dspace"
+
+
+def test_after_a_gap_values_hold_from_their_own_scenes_time_on(tmp_path):
+    def before(session):
+        for name, time in (("a", 10.0), ("b", 100.0)):
+            scene = session.scene(name)
+            scene.time = time
+            scene.telemetry.add("x", value=time)
+            scene.telemetry.add("t", kind="text", value=name)
+
+    def between(session):
+        session.scenes["a"].time = 2.0  # it was reset
+        session.scenes["b"].time = 101.0
+
+    def after(session):
+        session.scenes["a"].time = 3.0
+        session.scenes["a"].telemetry["x"].value = 33.0
+
+    path = two_parts(tmp_path, before, between, after)
+    with pytest.warns(dspace.DspaceWarning, match="lost"), dspace.Playback(path) as run:
+        x, t = run.telemetry("x", scene="a"), run.telemetry("t", scene="a")
+        assert x.times.tolist() == [10, 10, 2, 3] and t.times.tolist() == [10, 10, 2]
+        assert np.array_equal(x.values, [10, np.nan, 10, 33], equal_nan=True) and t.values.tolist() == ["a", None, "a"]
+        assert run.telemetry("x", scene="b").times.tolist() == [100, 100, 101]
+
+
+@pytest.mark.parametrize("texts", (["n"], ["n", "o", "p", "q"], []))
+def test_after_a_gap_events_of_a_scene_that_was_made_anew_are_told(tmp_path, texts):
+    def before(session):
+        scene = session.scene("a")
+        frame = session.scene("b").add_frame("f")
+        for i in range(3):
+            scene.log_event("note", f"old {i}")
+        session.scenes["b"].log_event("note", "stays", frame=frame)
+
+    def between(session):
+        session.scenes["a"].remove()
+        session.scenes["b"].frame("f").remove()  # which the snapshot then leaves out of the event
+        scene = session.scene("a")
+        for each in texts:
+            scene.log_event("note", each)
+
+    def after(session):
+        session.scenes["a"].log_event("note", "last")
+
+    path = two_parts(tmp_path, before, between, after)
+    with pytest.warns(dspace.DspaceWarning, match="lost"), dspace.Playback(path) as run:
+        assert [event.text for event in run.events("a")] == ["old 0", "old 1", "old 2", *texts, "last"]
+        assert [event.text for event in run.events("b")] == ["stays"]

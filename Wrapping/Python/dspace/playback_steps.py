@@ -57,9 +57,11 @@ def set_times(file, scene):
 
 def steps_of(file, scene=None):
     """The Steps of a RecordingFile, and its Gaps. After lost commands the next snapshot goes on."""
-    times = set_times(file, scene)
-    snapshots = [seq for seq, in file.ask("SELECT seq FROM snapshot ORDER BY seq")]
+    # In this order: of one that is being written each sees more than the one before, and what is beyond the last
+    # block is left out.
     blocks = blocks_of(file)
+    snapshots = [seq for seq, in file.ask("SELECT seq FROM snapshot ORDER BY seq")]
+    times = set_times(file, scene)
     steps, gaps = [], []
     begin, first = None, 1 if file.lost else blocks[0][0]  # of the gap that is open
     is_open = False

@@ -49,6 +49,13 @@ class Series:
         return f"<dspace.Series {self.name!r}{unit}, {len(self.times)} values>"
 
 
+def _what(event):
+    """All of it but the id of its frame, which a snapshot leaves out where the frame is gone."""
+    event = type(event).FromString(event.SerializeToString())
+    event.ClearField("frame")
+    return event
+
+
 class _Scene:
     """What a scene's channels were set to, command by command."""
 
@@ -60,6 +67,7 @@ class _Scene:
         self.found = {}     # by name: [(times, values)]
         self.steps = []     # (ids, values, times) of numbers, not sorted by channel yet
         self.events, self.last = [], 0
+        self.numbers = {}   # by number: the LogEvent, of the scene that is there, not of one removed before it
 
     def define(self, channel, seq):
         before = self.channels.get(channel.name)
@@ -73,15 +81,14 @@ class _Scene:
         self.open[channel.id] = channel
         self.found.setdefault(channel.name, [])
 
-    def set_numbers(self, message, not_before=None):
+    def set_numbers(self, message, from_now):
         ids, values = get_array(message, "id", np.uint64), np.array(message.value)
-        times = np.array(message.time_s) if message.time_s else np.full(len(ids), self.time)
-        self.steps.append((ids, values, times if not_before is None else np.maximum(times, not_before)))
+        given = message.time_s and not from_now
+        self.steps.append((ids, values, np.array(message.time_s) if given else np.full(len(ids), self.time)))
 
-    def set_texts(self, message, not_before=None):
+    def set_texts(self, message, from_now):
         for number, (id, value) in enumerate(zip(message.id, message.text)):
-            time = message.time_s[number] if message.time_s else self.time
-            self.put(id, [time if not_before is None else max(time, not_before)], [value])
+            self.put(id, [message.time_s[number] if message.time_s and not from_now else self.time], [value])
 
     def put(self, id, times, values):
         self.found[self.open[id].name].append((times, values))
@@ -103,11 +110,21 @@ class _Scene:
             for a, b in zip(starts, [*starts[1:], len(ids)]):
                 self.put(int(ids[a]), times[a:b], values[a:b])
 
-    def forget(self):
-        """The scene was removed: its channels end."""
+    def lose(self):
+        """What comes next is lost: nothing is known of its channels from now on."""
         self.end(list(self.open), self.time)
         self.open = {}
-        self.last = 0
+
+    def forget(self):
+        """The scene was removed: its channels end, and its events count from 1 again."""
+        self.lose()
+        self.time, self.last, self.numbers = 0.0, 0, {}
+
+    def goes_on(self, events):
+        """Whether the events of a later state are this scene's: it may have been removed and made anew."""
+        if max((event.number for event in events), default=0) < self.last:
+            return False
+        return all(_what(self.numbers.get(event.number, event)) == _what(event) for event in events)
 
     def series(self):
         self.sort()
@@ -120,26 +137,27 @@ class _Scene:
             made[name] = Series(channel, times, values)
         return Named("telemetry channel", made)
 
-    def apply(self, command, seq, not_before=None):
+    def apply(self, command, seq, from_now=False):
+        """from_now: its values hold from the scene's time on, whenever they were set."""
         kind = command.WhichOneof("command")
         if kind == "set_time":
             self.time = command.set_time.time_s
         elif kind == "create_telemetry":
             self.define(command.create_telemetry, seq)
         elif kind == "set_telemetry":
-            self.set_numbers(command.set_telemetry, not_before)
+            self.set_numbers(command.set_telemetry, from_now)
         elif kind == "set_telemetry_texts":
-            self.set_texts(command.set_telemetry_texts, not_before)
+            self.set_texts(command.set_telemetry_texts, from_now)
         elif kind == "remove_telemetry":
             self.end(command.remove_telemetry.id, self.time)
             for id in command.remove_telemetry.id:
                 self.open.pop(id)
         elif kind == "log_event" and command.log_event.number > self.last:  # a snapshot has older ones again
             self.last = command.log_event.number
+            self.numbers[self.last] = command.log_event
             self.events.append(Event(command.log_event))
         elif kind == "remove_scene":
             self.forget()
-            self.time = 0.0
 
 
 class History:
@@ -149,8 +167,10 @@ class History:
         self.file, self.scenes = file, {}
         for number, (first, last) in enumerate(blocks_of(file)):
             snapshot = file.ask("SELECT min(seq) FROM snapshot WHERE seq BETWEEN ? AND ?", first - 1, max(last, first - 1))
-            if snapshot[0][0] is None:
-                continue  # no state to begin with: it cannot be shown either
+            if snapshot[0][0] is None:  # no state to begin with: it cannot be shown either
+                for scene in self.scenes.values():
+                    scene.lose()
+                continue
             self._begin(file.snapshot(snapshot[0][0]), number > 0)
             for row in file.rows_of(KINDS, snapshot[0][0] + 1, last):
                 command = pb.Command.FromString(row.payload)
@@ -165,15 +185,19 @@ class History:
     def _begin(self, snapshot, after_loss):
         """The state of a snapshot: the first one, or the one after lost commands, of whose values it is not
         known since when they hold."""
+        commands = [pb.Command.FromString(payload) for payload in commands_of(snapshot)]
+        events, there = {}, {self._scene(command) for command in commands}
+        for command in commands:
+            if command.WhichOneof("command") == "log_event":
+                events.setdefault(self._scene(command), []).append(command.log_event)
         for scene in self.scenes.values():
-            scene.end(list(scene.open), scene.time)
-            scene.open = {}
-        for payload in commands_of(snapshot):
-            command = pb.Command.FromString(payload)
-            if command.WhichOneof("command") in ("create_scene", "remove_scene"):
-                self._scene(command)
-            else:
-                self._scene(command).apply(command, snapshot.seq, snapshot.time if after_loss else None)
+            scene.lose()
+            if scene not in there or not scene.goes_on(events.get(scene, ())):
+                scene.forget()
+            scene.time = 0.0  # of a scene whose time was not set
+        for command in commands:
+            if command.WhichOneof("command") not in ("create_scene", "remove_scene"):
+                self._scene(command).apply(command, snapshot.seq, after_loss)
 
     def scene(self, name):
         if name in self.scenes:

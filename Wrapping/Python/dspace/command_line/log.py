@@ -105,8 +105,8 @@ def cut_out(options):
     if None not in (options.begin, options.end) and options.end < options.begin:
         raise Failed(f"--to {options.end!r}; accepted: {options.begin!r} and later, --from")
     with RecordingFile(options.file) as file:
-        steps = file.steps()
         first, last = file.first, file.last
+        steps = [step for step in file.steps() if step[0] <= last]  # it may be being written
         if options.begin is not None:
             first = max([seq for seq, at in steps if at <= options.begin], default=first)
         if options.end is not None:
