@@ -11,6 +11,7 @@ import tempfile
 import threading
 import time
 
+import numpy as np
 import pytest
 
 import dspace
@@ -192,3 +193,41 @@ def test_other_threads_run_while_a_viewer_waits(tmp_path):
         finally:
             done.set()
             other.join()
+
+
+VIEWER = """
+import sys, time
+import dspace
+with dspace.watch(sys.argv[1]) as watcher:
+    print("watching", flush=True)
+    time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize("frozen", [True, False])
+def test_a_server_ends_whoever_does_not_read(tmp_path, frozen):
+    """Something is being written to a viewer: one whose process stands still, or that only takes nothing."""
+    with Served(tmp_path, "--allow-root", str(tmp_path)) as server:
+        viewer = subprocess.Popen([sys.executable, "-W", "ignore", "-c", VIEWER, server.address],
+                                  stdout=subprocess.PIPE, text=True)
+        try:
+            with dspace.connect(server.address, timeout=60.0) as session:
+                scene = session.scene()
+                frames = [scene.add_frame(f"f{i}") for i in range(1000)]
+                assert viewer.stdout.readline() == "watching\n"
+                if frozen:
+                    viewer.send_signal(signal.SIGSTOP)
+                session.wait = False
+                poses = np.zeros((1000, 8))
+                poses[:, 3] = poses[:, 7] = 1
+                for step in range(2000):  # 144 MB
+                    poses[:, 0] = step
+                    scene.set_poses(frames, poses)
+                session.flush()
+                server.process.send_signal(signal.SIGTERM)
+                assert server.process.wait(timeout=60) == 0, server.log()
+        finally:
+            viewer.kill()
+            viewer.wait()
+            viewer.stdout.close()
+    assert not os.path.exists(tmp_path / "socket")

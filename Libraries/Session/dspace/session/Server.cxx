@@ -1,6 +1,10 @@
 #include <dspace/session/Server.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -55,9 +59,11 @@ void RefuseTakenSocket(const LinkAddress& address) {
     return;
   }
   bool taken = !S_ISSOCK(info.st_mode);
-  const int probe = taken ? -1 : socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int probe = taken ? -1 : socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (probe >= 0) {
-    taken = connect(probe, reinterpret_cast<const sockaddr*>(&place), sizeof(place)) == 0;
+    // One whose queue is full lives, too.
+    taken = connect(probe, reinterpret_cast<const sockaddr*>(&place), sizeof(place)) == 0 ||
+            (errno != ECONNREFUSED && errno != ENOENT);
     close(probe);
   }
   if (taken) {
@@ -114,11 +120,32 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
 
 Server::~Server() {
   this->Stop();
-  this->Hub_->listener.reset();
-  if (this->Hub_->server) {
-    this->Hub_->server->Shutdown(std::chrono::system_clock::now() + std::chrono::milliseconds(200));
-    this->Hub_->server->Wait();
+  Hub& hub = *this->Hub_;
+  if (!hub.server) {
+    return;
   }
+  hub.listener->Stop();
+  // Who does not read is not waited for: its connection is cut off.
+  std::mutex mutex;
+  std::condition_variable ended;
+  bool over = false;
+  std::thread cutter([&] {
+    std::unique_lock lock(mutex);
+    auto pause = std::chrono::milliseconds(700);
+    while (!ended.wait_for(lock, pause, [&] { return over; })) {
+      hub.listener->CutOff();
+      pause = std::chrono::milliseconds(100);
+    }
+  });
+  hub.server->Shutdown(std::chrono::system_clock::now() + std::chrono::milliseconds(200));
+  hub.server->Wait();
+  {
+    const std::lock_guard lock(mutex);
+    over = true;
+  }
+  ended.notify_one();
+  cutter.join();
+  hub.listener.reset();
 }
 
 const std::string& Server::Address() const {

@@ -115,8 +115,14 @@ void Server::Hub::TellWriterName() {
   message->mutable_writer()->set_name(this->writer.name);
   message->mutable_writer()->set_connected(this->writer.stream != nullptr);
   for (ViewerStream* viewer : this->viewers) {
-    if (!viewer->behind) {
-      viewer->out.Put(message, message->ByteSizeLong() + 64);
+    const std::size_t size = message->ByteSizeLong() + 64;
+    if (viewer->behind) {
+      continue;
+    }
+    if (viewer->out.bytes - viewer->partBytes + size > this->options.unreadBytes) {
+      viewer->FallBehind();
+    } else {
+      viewer->out.Put(message, size);
     }
   }
 }

@@ -21,7 +21,8 @@ namespace dspace::session {
 namespace {
 
 constexpr int Backlog = 128;
-constexpr int ToWait_ms = 50; // where there is no descriptor
+constexpr int ToWait_ms = 50;             // where there is no descriptor
+constexpr unsigned MostUnread_ms = 60000; // what was sent and the other side does not confirm
 
 [[noreturn]] void Refuse(const std::string& target, const std::string& why) {
   throw Error(Error::Kind::Io, "address '" + target + "'",
@@ -92,18 +93,36 @@ ServerListener::ServerListener(const LinkAddress& address, std::size_t maximum)
   }
 }
 
-ServerListener::~ServerListener() {
-  close(this->Wake_[1]);
+void ServerListener::Stop() {
+  if (this->Wake_[1] >= 0) {
+    close(std::exchange(this->Wake_[1], -1));
+  }
   if (this->Thread_.joinable()) {
     this->Thread_.join();
   }
-  close(this->Wake_[0]);
   for (const int each : this->Listeners_) {
     close(each);
   }
-  if (!this->Path_.empty()) {
+  this->Listeners_.clear();
+  struct stat info = {};
+  if (!this->Path_.empty() && lstat(this->Path_.c_str(), &info) == 0 &&
+      info.st_ino == this->PathInode_) { // not another server's by now
     unlink(this->Path_.c_str());
   }
+  this->Path_.clear();
+}
+
+void ServerListener::CutOff() {
+  for (const auto& [connection, inode] : this->Open_) {
+    if (InodeOf(connection) == inode) {
+      shutdown(connection, SHUT_RDWR);
+    }
+  }
+}
+
+ServerListener::~ServerListener() {
+  this->Stop();
+  close(this->Wake_[0]);
 }
 
 void ServerListener::ListenAtPath(const std::string& path) {
@@ -127,6 +146,7 @@ void ServerListener::ListenAtPath(const std::string& path) {
     Refuse("unix:" + path, std::strerror(bound ? errno : error));
   }
   this->Path_ = path;
+  this->PathInode_ = lstat(path.c_str(), &info) == 0 ? info.st_ino : 0;
 }
 
 void ServerListener::ListenAtHost(const std::string& target) {
@@ -223,6 +243,7 @@ void ServerListener::Take(int listener, int connection) {
   this->Open_.emplace_back(connection, InodeOf(connection));
   const int on = 1;
   setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on)); // of no use to a Unix socket
+  setsockopt(connection, IPPROTO_TCP, TCP_USER_TIMEOUT, &MostUnread_ms, sizeof(MostUnread_ms));
   grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters parameters;
   parameters.listener_fd = listener;
   parameters.fd = connection;

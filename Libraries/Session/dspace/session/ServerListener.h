@@ -23,12 +23,16 @@ class ServerListener {
 public:
   // Listens from now on: at all addresses of a host's name. Throws Error(Io).
   ServerListener(const LinkAddress& address, std::size_t maximum);
-  ~ServerListener(); // a socket's file is removed
+  ~ServerListener(); // after Stop()
   ServerListener(const ServerListener&) = delete;
   ServerListener& operator=(const ServerListener&) = delete;
 
   int Port() const { return this->Port_; } // 0 for a Unix socket
   void Start(std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> to);
+  void Stop(); // accepts no more, its place is free; those that are open stay so
+  // Ends all that are open, also where something waits to be written: gRPC's own shutdown waits for
+  // that, however long the other side does not read. After Stop().
+  void CutOff();
 
 private:
   void ListenAtPath(const std::string& path);
@@ -39,6 +43,7 @@ private:
   std::size_t Maximum_;
   std::vector<int> Listeners_;
   std::string Path_;
+  ino_t PathInode_ = 0;
   int Port_ = 0;
   int Wake_[2] = {-1, -1};                  // a pipe: closed to end the thread
   std::vector<std::pair<int, ino_t>> Open_; // connections that were open when last looked at
