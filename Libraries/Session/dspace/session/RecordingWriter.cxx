@@ -1,7 +1,6 @@
 #include <dspace/session/RecordingWriter.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -14,6 +13,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/session/RecordingAssets.h>
+#include <dspace/session/RecordingChecksums.h>
 #include <dspace/session/RecordingFile.h>
 
 namespace dspace::session {
@@ -46,54 +46,6 @@ void Check(const RecordingOptions& options, const std::string& path) {
     refuse("a snapshot after nothing; accepted: 1 byte and 1 command on");
   }
 }
-
-// Checksums of a transaction's rows, worked out by a thread that is ahead of their writing: they
-// take a third of the time.
-class Checksums {
-public:
-  explicit Checksums(const std::deque<RecordingRow>& rows) : Rows_(rows), Sums_(rows.size()) {
-    std::size_t bytes = 0;
-    for (const RecordingRow& row : rows) {
-      bytes += row.payload.size();
-    }
-    if (bytes >= WorthAThread) {
-      this->Thread_ = std::thread([this] {
-        for (std::size_t i = 0; i < this->Rows_.size() && !this->Stop_; ++i) {
-          this->Sums_[i] = RecordingChecksum(this->Sum_, this->Rows_[i]);
-          this->Done_.store(i + 1, std::memory_order_release);
-        }
-      });
-    }
-  }
-  ~Checksums() {
-    this->Stop_ = true;
-    if (this->Thread_.joinable()) {
-      this->Thread_.join();
-    }
-  }
-  Checksums(const Checksums&) = delete;
-  Checksums& operator=(const Checksums&) = delete;
-
-  // Of row i, asked for in their order.
-  const std::string& Of(std::size_t i) {
-    if (!this->Thread_.joinable()) {
-      this->Sums_[i] = RecordingChecksum(this->Sum_, this->Rows_[i]);
-    }
-    while (this->Thread_.joinable() && this->Done_.load(std::memory_order_acquire) <= i) {
-      std::this_thread::yield(); // a few microseconds, at the beginning at most
-    }
-    return this->Sums_[i];
-  }
-
-private:
-  static constexpr std::size_t WorthAThread = 1u << 20;
-  const std::deque<RecordingRow>& Rows_;
-  Sha256 Sum_;
-  std::vector<std::string> Sums_;
-  std::atomic<std::size_t> Done_{0};
-  std::atomic<bool> Stop_{false};
-  std::thread Thread_;
-};
 
 void CheckSize(const std::vector<v1::Command>& commands, const RecordingOptions& options,
                const std::string& path) {
@@ -200,7 +152,7 @@ struct RecordingWriter::Impl {
   void Write(const std::deque<RecordingRow>& rows,
              const std::deque<std::pair<std::string, FileStamp>>& files,
              const std::string& ranges) {
-    Checksums sums(rows);
+    RecordingChecksums sums(rows);
     this->file.Begin();
     try {
       for (const auto& [path, stamp] : files) {

@@ -46,7 +46,8 @@ public:
                               handler(context, *(command.*get)());
                             }};
   }
-  // A command that is typed and not carried out yet: answered with Error.UNIMPLEMENTED, which names it.
+  // A command that is typed and not carried out yet: answered with Error.UNIMPLEMENTED, which names
+  // it.
   void AddLater(v1::Command::CommandCase kind);
   const Entry* Find(v1::Command::CommandCase kind) const {
     const auto found = this->Entries_.find(kind);
