@@ -173,6 +173,10 @@ std::string vtkDspaceRemoteSession::TakeEvent(double wait) {
   return event;
 }
 
+std::string vtkDspaceRemoteSession::GetBroken() {
+  return this->Impl->With([](dspace::session::RemoteClient& client) { return client.Broken(); });
+}
+
 long long vtkDspaceRemoteSession::GetPosesLeftOut() {
   return this->Impl->client ? static_cast<long long>(this->Impl->client->GetCounts().posesLeftOut)
                             : 0;

@@ -54,8 +54,11 @@ public:
   bool Wait(double seconds);
   std::string TakeReply();
   void Abandon();
-  /// The next ViewerEvent, serialized; waits up to so many seconds. Empty: there is none.
+  /// The next ViewerEvent, serialized; waits up to so many seconds, but no longer than until the
+  /// link is broken for good. Empty: there is none.
   std::string TakeEvent(double wait);
+  /// A serialized Reply with the error of a link that is broken for good; empty while it is not.
+  std::string GetBroken();
   /// Pose updates that were left out because nothing had changed.
   long long GetPosesLeftOut();
   /// How far the server's command set goes (COMMAND_SET_VERSION in service.proto); 0: not known.

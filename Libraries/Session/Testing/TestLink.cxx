@@ -2,6 +2,7 @@
 #include "LinkTestSupport.h"
 
 #include <fstream>
+#include <future>
 
 namespace dspace::testing {
 namespace {
@@ -70,6 +71,35 @@ TEST_F(LinkTest, PipelinedCommandsComeInOrderAndTheirErrorsToo) {
   EXPECT_EQ(client.Execute(list).frames().frame_size(), 2001);
 }
 
+// Whoever was interrupted twice, or waited too long, is not told of it by what comes later.
+TEST_F(LinkTest, ErrorsOfWhatWasAbandonedHitNothingElse) {
+  this->StartServer();
+  std::promise<void> go;
+  this->Served->interpreter.AddListener([&](const v1::Command& command, const v1::Reply&) {
+    if (command.has_set_time()) {
+      go.get_future().wait();
+    }
+  });
+  RemoteClient client(this->ClientOptions());
+  Accept(client.Execute(MakeScene()));
+  v1::Command hold;
+  hold.mutable_set_time()->set_time_s(1);
+  Accept(client.Send(hold));
+  for (const std::uint64_t id : {5000, 5001, 5002}) {
+    v1::Command wrong = MakeFrame(id);
+    wrong.mutable_create_frame()->set_parent(99999);
+    client.Begin(wrong);
+    EXPECT_FALSE(client.Wait(0.01));
+    client.Abandon();
+  }
+  v1::Command unheard = MakeFrame(6000);
+  unheard.mutable_create_frame()->set_parent(88888);
+  Accept(client.Send(unheard));
+  go.set_value();
+  EXPECT_NE(client.Flush().error().message().find("88888"), std::string::npos);
+  Accept(client.Execute(MakeFrame(7)));
+}
+
 TEST_F(LinkTest, ASecondWriterIsRefusedByNameOrTakesOver) {
   this->StartServer();
   RemoteClient first(this->ClientOptions("first"));
@@ -86,6 +116,9 @@ TEST_F(LinkTest, ASecondWriterIsRefusedByNameOrTakesOver) {
   options.takeOver = true;
   RemoteClient second(options);
   Accept(second.Execute(MakeFrame(3)));
+  EXPECT_EQ(first.TakeEvents([](const v1::ViewerEvent&) {}, 1e6), 0u); // not so long
+  EXPECT_NE(first.Broken().error().message().find("'second' has taken over"), std::string::npos);
+  EXPECT_FALSE(second.Broken().has_error());
   const v1::Reply reply = first.Execute(MakeFrame(4));
   EXPECT_NE(reply.error().message().find("'second' has taken over"), std::string::npos)
       << reply.ShortDebugString();

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include <sys/types.h>
@@ -49,15 +50,15 @@ struct RemoteClient::Link {
   std::condition_variable toSend;
   std::deque<Pending> pending;
   std::size_t pendingBytes = 0;
-  std::size_t next = 0;           // of `pending`, to be sent
-  std::uint64_t last = 0;         // number given
-  std::uint64_t done = 0;         // by the server
-  std::uint64_t acknowledged = 0; // the last number whose reply has come
-  std::uint64_t awaited = 0;      // by the user's thread; 0: none
-  std::uint64_t abandoned = 0;    // by it: the reply is dropped
-  v1::Reply reply;                // to `awaited`, or whatever Take is to return
-  v1::Reply failure;              // the first error of what nobody waited for
-  v1::Reply unasked;              // warnings and frame events of the same
+  std::size_t next = 0;              // of `pending`, to be sent
+  std::uint64_t last = 0;            // number given
+  std::uint64_t done = 0;            // by the server
+  std::uint64_t acknowledged = 0;    // the last number whose reply has come
+  std::uint64_t awaited = 0;         // by the user's thread; 0: none
+  std::set<std::uint64_t> abandoned; // by it: their replies, which may yet come, are dropped
+  v1::Reply reply;                   // to `awaited`, or whatever Take is to return
+  v1::Reply failure;                 // the first error of what nobody waited for
+  v1::Reply unasked;                 // warnings and frame events of the same
   std::deque<v1::ViewerEvent> events;
   std::size_t eventBytes = 0; // of them
   PoseFilter filter;

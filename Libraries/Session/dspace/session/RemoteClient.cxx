@@ -159,7 +159,9 @@ void RemoteClient::Abandon() {
   }
   const std::lock_guard lock(link.mutex);
   if (link.doing == Link::Doing::Reply) {
-    link.abandoned = std::exchange(link.awaited, 0);
+    if (link.awaited != 0) { // its reply has not come
+      link.abandoned.insert(std::exchange(link.awaited, 0));
+    }
     link.filter.Forget(); // whether it was carried out will not be known
   }
   link.reply.Clear();
@@ -186,6 +188,18 @@ std::size_t RemoteClient::TakeEvents(const std::function<void(const v1::ViewerEv
     hear(event);
   }
   return events.size();
+}
+
+v1::Reply RemoteClient::Broken() const {
+  if (this->Link_->Forked()) {
+    return this->Link_->Foreign();
+  }
+  const std::lock_guard lock(this->Link_->mutex);
+  v1::Reply reply;
+  if (this->Link_->broken) {
+    *reply.mutable_error() = this->Link_->error;
+  }
+  return reply;
 }
 
 RemoteClient::Counts RemoteClient::GetCounts() const {

@@ -78,10 +78,12 @@ public:
   void SetPace(double rate);
 
   // What viewers said since the last call, in order: each is handed to `hear`. They are there after
-  // any reply; `wait_s` waits for the first. Returns how many. At most 10,000 of 16 MiB in all
-  // wait; older ones go.
+  // any reply; `wait_s` waits for the first, but no longer than until the link is broken for good.
+  // Returns how many. At most 10,000 of 16 MiB in all wait; older ones go.
   std::size_t TakeEvents(const std::function<void(const v1::ViewerEvent&)>& hear,
                          double wait_s = 0);
+  // The error of a link that is broken for good; empty while it is not.
+  v1::Reply Broken() const;
 
   struct Counts {
     std::uint64_t sent = 0;         // commands

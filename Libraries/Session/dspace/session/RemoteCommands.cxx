@@ -111,7 +111,7 @@ bool RemoteClient::Link::WaitForReply(std::unique_lock<std::mutex>& lock,
   if (!come && LinkClock::now() < this->deadline) {
     return false;
   }
-  this->abandoned = std::exchange(this->awaited, 0);
+  this->abandoned.insert(std::exchange(this->awaited, 0));
   this->filter.Forget();
   v1::Reply lost;
   if (come) {
@@ -200,7 +200,10 @@ void RemoteClient::Link::TakeReply(std::uint64_t number, v1::Reply& reply) {
     this->awaited = 0;
     return;
   }
-  if (reply.has_error() && number != this->abandoned && !this->failure.has_error()) {
+  const bool dropped = this->abandoned.count(number) != 0;
+  // Replies come in order: none of an earlier number comes any more.
+  this->abandoned.erase(this->abandoned.begin(), this->abandoned.upper_bound(number));
+  if (reply.has_error() && !dropped && !this->failure.has_error()) {
     *this->failure.mutable_error() = reply.error();
   }
   this->unasked.mutable_warning()->MergeFrom(reply.warning());
