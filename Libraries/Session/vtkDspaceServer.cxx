@@ -19,6 +19,7 @@ struct vtkDspaceServer::Internals {
   std::vector<std::string> roots;
   long long maximumFrames = 1000000;
   vtkNew<vtkDspaceSession> session;
+  dspace::session::Interpreter::Token listener = 0; // there
   std::unique_ptr<dspace::session::Confinement> confinement;
   std::unique_ptr<dspace::session::Server> server; // goes first: it calls what is above
 
@@ -65,12 +66,14 @@ struct vtkDspaceServer::Internals {
 };
 
 vtkDspaceServer::vtkDspaceServer() : Impl(new Internals) {
-  this->Impl->session->GetInterpreter().AddListener(
+  this->Impl->listener = this->Impl->session->GetInterpreter().AddListener(
       [impl = this->Impl.get()](const dspace::v1::Command& command,
                                 const dspace::v1::Reply& reply) { impl->Hear(command, reply); });
 }
 
-vtkDspaceServer::~vtkDspaceServer() = default;
+vtkDspaceServer::~vtkDspaceServer() { // others may keep the session
+  this->Impl->session->GetInterpreter().RemoveListener(this->Impl->listener);
+}
 
 void vtkDspaceServer::SetListen(const std::string& address) {
   this->Impl->options.listen = address;

@@ -19,7 +19,8 @@ vtkStandardNewMacro(vtkDspaceWatcher);
 
 namespace {
 
-constexpr int MostChanges = 100000; // of frames, that wait to be taken
+constexpr int MostChanges = 100000;     // of frames, that wait to be taken
+constexpr double LongestTellPick = 1.0; // [s]: a click is not to stop the viewer for longer
 
 std::string SceneOf(const dspace::v1::Command& command) {
   return command.scene().empty() ? dspace::session::DefaultScene : command.scene();
@@ -36,6 +37,7 @@ struct vtkDspaceWatcher::Internals {
   std::string writer;
   bool writerConnected = false;
   std::string trouble;
+  std::string failed; // the reply that says why there is no connection
   dspace::session::LinkBanner banner;
   std::set<std::string> followed; // scenes whose frames' changes are told
   dspace::v1::Reply changes;      // of these, that nobody has taken
@@ -101,6 +103,9 @@ struct vtkDspaceWatcher::Internals {
   }
 
   void Apply(dspace::v1::Command& command) {
+    if (command.has_remove_scene()) {
+      this->own.MakeRoom(this->Interpreter(), command);
+    }
     dspace::v1::Reply reply = this->Interpreter().Execute(command);
     if (reply.has_error() && this->own.MakeRoom(this->Interpreter(), command)) {
       reply = this->Interpreter().Execute(command);
@@ -181,7 +186,7 @@ struct vtkDspaceWatcher::Internals {
     event.mutable_picked()->set_viewport(viewport);
     *event.mutable_picked()->mutable_pick() = pick;
     dspace::session::Catch([&] {
-      this->watcher->Tell(event);
+      this->watcher->Tell(event, LongestTellPick);
       return dspace::v1::Reply();
     });
   }
@@ -208,14 +213,45 @@ void vtkDspaceWatcher::SetTimeout(double seconds) {
 }
 
 std::string vtkDspaceWatcher::Connect(const std::string& address, const std::string& name) {
+  const std::string reply = this->ConnectLater(address, name);
+  int state = 0;
+  while (this->Impl->watcher && (state = this->WaitToConnect(1e6)) == 0) {
+  }
+  return state < 0 ? this->TakeReply() : reply;
+}
+
+std::string vtkDspaceWatcher::ConnectLater(const std::string& address, const std::string& name) {
+  using dspace::session::Watcher;
   this->Impl->options.address = address;
   this->Impl->options.name = name;
   return dspace::session::Catch([this] {
            this->Impl->watcher.reset();
-           this->Impl->watcher = std::make_unique<dspace::session::Watcher>(this->Impl->options);
+           this->Impl->watcher = std::make_unique<Watcher>(this->Impl->options, Watcher::Later());
            return dspace::v1::Reply();
          })
       .SerializeAsString();
+}
+
+int vtkDspaceWatcher::WaitToConnect(double seconds) {
+  bool connected = false;
+  const dspace::v1::Reply reply = dspace::session::Catch([&] {
+    if (!this->Impl->watcher) {
+      throw dspace::Error(dspace::Error::Kind::Io, "watcher",
+                          "nothing is being connected; accepted: ConnectLater before");
+    }
+    connected = this->Impl->watcher->WaitToOpen(seconds);
+    return dspace::v1::Reply();
+  });
+  if (reply.has_error()) {
+    this->Impl->watcher.reset();
+    this->Impl->failed = reply.SerializeAsString();
+    return -1;
+  }
+  return connected ? 1 : 0;
+}
+
+std::string vtkDspaceWatcher::TakeReply() {
+  return std::exchange(this->Impl->failed, std::string());
 }
 
 int vtkDspaceWatcher::Update(double wait) {

@@ -31,10 +31,16 @@ public:
   void SetInsecure(bool insecure);
   void SetTimeout(double seconds);
   std::string Connect(const std::string& address, const std::string& name);
+  /// The same in two parts, for whoever must do other things meanwhile: ConnectLater, then
+  /// WaitToConnect, up to so many seconds each time, until it returns 1 (connected) or -1 (no:
+  /// TakeReply says why).
+  std::string ConnectLater(const std::string& address, const std::string& name);
+  int WaitToConnect(double seconds);
+  std::string TakeReply();
 
   /// Applies all that has come; waits up to so many seconds for something. Returns how many
-  /// messages. Times and poses that later ones make needless are left out, unless a camera lags, the
-  /// session is recorded or changes of frames are followed.
+  /// messages. Times and poses that later ones make needless are left out, unless a camera lags,
+  /// the session is recorded or changes of frames are followed.
   int Update(double wait);
   /// The number of the last command that is in the state: it grows by one a command.
   long long GetSequence();
@@ -47,7 +53,8 @@ public:
   std::string GetTrouble();
 
   /// Carries out a serialized Command: requests, and commands on views of one's own. An event that
-  /// clicks on something in a viewport of one's own also tells the simulation (ViewerEvent.Picked).
+  /// clicks on something in a viewport of one's own also tells the simulation (ViewerEvent.Picked),
+  /// which it waits for up to 1 s.
   std::string Execute(const std::string& command);
   /// A serialized Reply with what has happened to the frames of followed scenes (FollowFrames)
   /// since the last call, in order. A snapshot brings none. At most 100,000 wait; older ones go.

@@ -1,5 +1,10 @@
-// A viewer's own vantages and cameras beside what a simulation does (viewports: Python.watching).
+// A viewer's own vantages and cameras beside what a simulation does (viewports: Python.watching),
+// and whom its banner hears.
 #include <dspace/session/OwnViews.h>
+
+#include <memory>
+
+#include <dspace/session/LinkBanner.h>
 
 #include "CommandTestSupport.h"
 
@@ -195,6 +200,17 @@ TEST_F(OwnViewsTest, ViewsSleepWhileThereIsNoScene) {
   EXPECT_TRUE(this->Own.Owns(SetCamera(Mine, 1, 0)));
 }
 
+TEST_F(OwnViewsTest, ASceneThatIsGoneOrAnotherIsLeft) {
+  v1::Command remove;
+  remove.mutable_remove_scene();
+  this->Accept(remove); // MakeRoom has not been told
+  EXPECT_NO_THROW(this->Own.Leave(this->Interpreter_));
+  v1::Command scene;
+  scene.mutable_create_scene();
+  this->Accept(scene);
+  EXPECT_NO_THROW(this->Own.Leave(this->Interpreter_));
+}
+
 TEST_F(OwnViewsTest, ANewOneTakesTheNameOfOneThatSleeps) {
   v1::Command remove;
   remove.mutable_remove_scene();
@@ -210,6 +226,22 @@ TEST_F(OwnViewsTest, ANewOneTakesTheNameOfOneThatSleeps) {
   this->Own.Wake(this->Interpreter_, true);
   const Camera& camera = this->Interpreter_.FindScene("scene")->Vantage(Mine).GetCamera("camera");
   EXPECT_EQ(camera.mount.X_FC.position.x(), 7);
+}
+
+// An interpreter may outlast who follows it.
+TEST(LinkBanner, LeavesNoListenerBehind) {
+  Interpreter first, second;
+  const auto nothing = [](const v1::Command&, const v1::Reply&) {};
+  auto banner = std::make_unique<session::LinkBanner>();
+  for (Interpreter* each : {&first, &second}) {
+    ASSERT_EQ(each->AddListener(nothing), 1u);
+    banner->Follow(*each);
+    ASSERT_EQ(each->AddListener(nothing), 3u); // the banner's is 2
+  }
+  EXPECT_FALSE(first.RemoveListener(2));
+  banner.reset();
+  EXPECT_FALSE(second.RemoveListener(2));
+  EXPECT_TRUE(second.RemoveListener(3));
 }
 
 } // namespace

@@ -42,9 +42,22 @@ LinkBanner::Text LinkBanner::SimulationGone(const std::string& name) {
   return {"SIMULATION '" + Cut(name) + "' HAS GONE: last state", "SIMULATION GONE"};
 }
 
+LinkBanner::~LinkBanner() {
+  this->Leave();
+}
+
+void LinkBanner::Leave() {
+  if (this->Followed_) {
+    this->Followed_->RemoveListener(this->Token_);
+    this->Followed_ = nullptr;
+  }
+}
+
 void LinkBanner::Follow(Interpreter& interpreter) {
+  this->Leave();
   this->Views_.clear();
-  interpreter.AddListener(
+  this->Followed_ = &interpreter;
+  this->Token_ = interpreter.AddListener(
       [this](const v1::Command& command, const v1::Reply&) { this->Hear(command); });
 }
 

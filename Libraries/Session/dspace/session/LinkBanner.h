@@ -13,6 +13,11 @@ namespace dspace::session {
 // the bottom; short where they are at both, and smaller or short where the viewport is narrow.
 class LinkBanner {
 public:
+  LinkBanner() = default;
+  ~LinkBanner();
+  LinkBanner(const LinkBanner&) = delete;
+  LinkBanner& operator=(const LinkBanner&) = delete;
+
   struct Text {
     std::string full; // empty: there is nothing to say
     std::string brief;
@@ -20,7 +25,9 @@ public:
   static Text ServerLost();
   static Text SimulationGone(const std::string& name);
 
-  // From now on it is this interpreter's viewports, of which it hears from its beginning on.
+  // From now on it is this interpreter's viewports, of which it hears from its beginning on. It
+  // must be there until the next one is followed, or the banner is gone, which then hears no more
+  // of it.
   void Follow(Interpreter& interpreter);
   // In every viewport; where it says so already nothing is done.
   void Show(Interpreter& interpreter, const Text& text);
@@ -31,9 +38,12 @@ private:
     std::string shown;                  // the table, serialized; empty: none
   };
   void Hear(const v1::Command& command);
+  void Leave();
   static v1::SetTextTable Make(const View& view, int width, const Text& text);
 
   std::map<std::string, View> Views_;
+  Interpreter* Followed_ = nullptr;
+  Interpreter::Token Token_ = 0; // of the listener there
 };
 
 } // namespace dspace::session

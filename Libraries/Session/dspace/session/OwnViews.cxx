@@ -271,7 +271,8 @@ bool OwnViews::FreeCameras(Interpreter& interpreter, const std::string& name, st
   bool any = false;
   const std::shared_ptr<Scene> scene = interpreter.FindScene(name);
   for (const auto& [in, vantage] : this->Vantages_) {
-    const std::vector<std::string> there = scene->VantageNames(); // none while a snapshot is applied
+    const std::vector<std::string> there =
+        scene->VantageNames(); // none while a snapshot is applied
     if (in != name || std::find(there.begin(), there.end(), vantage) == there.end()) {
       continue;
     }

@@ -42,7 +42,8 @@ public:
   void Wake(Interpreter& interpreter, bool alone);
 
   // A command of the simulation was refused. Gets views of one's own out of its way; true: another
-  // try is worth while.
+  // try is worth while. One that removes a scene is to be given before it is carried out, for it is
+  // refused for viewports alone, and vantages would go without a word.
   bool MakeRoom(Interpreter& interpreter, const v1::Command& refused);
 
 private:

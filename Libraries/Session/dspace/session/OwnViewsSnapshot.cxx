@@ -58,15 +58,25 @@ void OwnViews::Leave(Interpreter& interpreter) {
                  frame == RootFrame ? std::string() : at->Frames().Path(frame)};
   };
   for (const auto& [scene, vantage] : this->Vantages_) {
-    for (const std::string& camera : interpreter.FindScene(scene)->Vantage(vantage).CameraNames()) {
-      if (const auto at = place(scene, vantage, camera)) {
-        this->Cameras_[{{scene, vantage}, camera}] = *at;
+    // A scene may be gone, and another one of its name have come.
+    const std::shared_ptr<Scene> at = interpreter.FindScene(scene);
+    const std::vector<std::string> there = at ? at->VantageNames() : std::vector<std::string>();
+    if (std::find(there.begin(), there.end(), vantage) == there.end()) {
+      continue;
+    }
+    for (const std::string& camera : at->Vantage(vantage).CameraNames()) {
+      if (const auto stands = place(scene, vantage, camera)) {
+        this->Cameras_[{{scene, vantage}, camera}] = *stands;
       }
     }
   }
   for (const std::string& name : this->Viewports_) {
-    const ViewportPlace& view = interpreter.GetState().viewports[name];
-    if (const auto at = place(view.scene, view.vantage, view.camera)) {
+    const auto view = interpreter.GetState().viewports.find(name);
+    if (view == interpreter.GetState().viewports.end()) {
+      continue;
+    }
+    const ViewportPlace& looks = view->second;
+    if (const auto at = place(looks.scene, looks.vantage, looks.camera)) {
       this->Views_[name] = *at;
     }
   }

@@ -24,6 +24,7 @@ struct Watcher::Link {
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::Dspace::Stub> stub;
   std::thread thread;
+  LinkClock::time_point deadline; // of the first connection
   const pid_t process = getpid(); // that watches: a child has no such thread
 
   mutable std::mutex mutex; // of all below
@@ -140,7 +141,12 @@ struct Watcher::Link {
   }
 };
 
-Watcher::Watcher(const WatcherOptions& options) : Link_(new Link) {
+Watcher::Watcher(const WatcherOptions& options) : Watcher(options, Later()) {
+  while (!this->WaitToOpen(options.timeout_s)) {
+  }
+}
+
+Watcher::Watcher(const WatcherOptions& options, Later) : Link_(new Link) {
   Link& link = *this->Link_;
   if (!(options.timeout_s > 0 && options.timeout_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + options.address + "'",
@@ -155,20 +161,33 @@ Watcher::Watcher(const WatcherOptions& options) : Link_(new Link) {
   }
   link.channel = MakeChannel(options.address, options.security, options.silence_s);
   link.stub = v1::Dspace::NewStub(link.channel);
+  link.deadline = After(options.timeout_s);
   link.thread = std::thread([&link] { link.Keep(); });
-  std::unique_lock lock(link.mutex);
-  link.changed.wait_for(lock, Seconds(options.timeout_s), [&] { return link.once || link.final; });
-  if (!link.once) {
-    v1::Error error = link.error;
-    if (!link.final) {
-      error.set_kind(v1::Error::DEADLINE_EXCEEDED);
-      error.set_object("server '" + options.address + "'");
-      error.set_message("nobody answers within " + std::to_string(options.timeout_s) + " s");
-    }
-    lock.unlock();
-    link.End();
-    Raise(error);
+}
+
+bool Watcher::WaitToOpen(double seconds) {
+  Link& link = *this->Link_;
+  if (link.Forked()) {
+    Raise(link.Foreign());
   }
+  std::unique_lock lock(link.mutex);
+  link.changed.wait_until(lock, std::min(link.deadline, After(std::clamp(seconds, 0.0, 1e6))),
+                          [&] { return link.once || link.final; });
+  if (link.once) {
+    return true;
+  }
+  if (!link.final && LinkClock::now() < link.deadline) {
+    return false;
+  }
+  v1::Error error = link.error;
+  if (!link.final) {
+    error.set_kind(v1::Error::DEADLINE_EXCEEDED);
+    error.set_object("server '" + link.options.address + "'");
+    error.set_message("nobody answers within " + std::to_string(link.options.timeout_s) + " s");
+  }
+  lock.unlock();
+  link.End();
+  Raise(error);
 }
 
 Watcher::~Watcher() {
@@ -239,14 +258,19 @@ std::string Watcher::Refusal() const {
 }
 
 bool Watcher::Tell(const v1::ViewerEvent& event) {
+  return this->Tell(event, this->Link_->options.timeout_s);
+}
+
+bool Watcher::Tell(const v1::ViewerEvent& event, double timeout_s) {
   Link& link = *this->Link_;
   if (link.Forked()) {
     Raise(link.Foreign());
   }
   grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() +
-                       std::chrono::duration_cast<std::chrono::milliseconds>(
-                           std::chrono::duration<double>(link.options.timeout_s)));
+  context.set_deadline(
+      std::chrono::system_clock::now() +
+      std::chrono::duration_cast<std::chrono::milliseconds>(
+          std::chrono::duration<double>(std::clamp(timeout_s, 0.0, link.options.timeout_s))));
   v1::TellRequest request;
   request.set_protocol(LinkProtocol);
   *request.mutable_event() = event;

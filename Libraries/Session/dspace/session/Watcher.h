@@ -27,6 +27,11 @@ class Watcher {
 public:
   // Throws Error as RemoteClient does.
   explicit Watcher(const WatcherOptions& options);
+  // The same for whoever must do other things meanwhile: it throws what is wrong with the options,
+  // and WaitToOpen the rest. WaitToOpen waits so many seconds; true once it is connected.
+  struct Later {};
+  Watcher(const WatcherOptions& options, Later);
+  bool WaitToOpen(double seconds);
   ~Watcher();
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
@@ -40,9 +45,10 @@ public:
   // Why the server refuses what it did not refuse before: a state that is too large to be sent, too
   // many viewers. Empty: it does not, or nobody answers. It is asked again each second.
   std::string Refusal() const;
-  // Sends an event to whoever drives, waiting up to timeout_s; false when nobody does. Throws
-  // Error.
+  // Sends an event to whoever drives, waiting up to timeout_s (of the options, or a shorter one);
+  // false when nobody does. Throws Error.
   bool Tell(const v1::ViewerEvent& event);
+  bool Tell(const v1::ViewerEvent& event, double timeout_s);
 
 private:
   struct Link;
