@@ -39,6 +39,7 @@ session.pace = None
 scene.time = 2.0
 print("second" in scene.frames, scene.time, flush=True)
 interrupted(lambda: dspace.connect(sys.argv[2], timeout=600.0))
+interrupted(lambda: dspace.watch(sys.argv[2], timeout=600.0))
 """
 
 
@@ -72,8 +73,9 @@ def test_ctrl_c_ends_every_wait(tmp_path):
             interrupt()  # of a pace
             go_on()
             assert simulation.stdout.readline() == "True 2.0\n"  # the session is as good as ever
-            interrupt()  # of a connection
-            go_on()
+            for _ in range(2):
+                interrupt()  # of a connection, and of a viewer's
+                go_on()
             assert simulation.wait(timeout=60) == 0
         finally:
             server.process.send_signal(signal.SIGCONT)
@@ -81,6 +83,16 @@ def test_ctrl_c_ends_every_wait(tmp_path):
             simulation.wait()
             simulation.stdin.close()
             simulation.stdout.close()
+
+
+def test_a_wait_for_events_ends_with_the_link(tmp_path):
+    with Served(tmp_path) as server, dspace.connect(server.address, name="first") as first:
+        with dspace.connect(server.address, name="second", take_over=True):
+            began = time.monotonic()
+            with pytest.raises(dspace.Error, match="'second' has taken over"):
+                first.process_events(wait=600.0)
+            assert time.monotonic() - began < 60.0
+            assert first.process_events() == []
 
 
 @pytest.mark.parametrize("wait", (True, False))

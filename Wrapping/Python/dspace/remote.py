@@ -69,6 +69,9 @@ class RemoteClient(LocalClient):
             end = time.monotonic() + wait
             data = to_bytes(link.TakeEvent(min(wait, SLICE)))
             while not data and time.monotonic() < end:
+                broken = to_reply(link.GetBroken())  # then nothing comes any more
+                if broken.HasField("error"):
+                    raise make_error(broken.error)
                 data = to_bytes(link.TakeEvent(min(SLICE, max(0.0, end - time.monotonic()))))
             event = service_pb2.ViewerEvent.FromString(data) if data else None
         return event
@@ -159,6 +162,18 @@ def prepare(link, address, certificate, key, authority, insecure, timeout, label
     link.SetTimeout(number(timeout, "the timeout", label))
 
 
+def make_connection(link, address, name):
+    """Of both kinds of links; raises why there is none."""
+    reply = to_reply(link.ConnectLater(address, name))
+    state = -1 if reply.HasField("error") else 0
+    while state == 0:  # between two waits Python hears a Ctrl-C
+        state = link.WaitToConnect(SLICE)
+        if state < 0:
+            reply = to_reply(link.TakeReply())
+    if reply.HasField("error"):
+        raise make_error(reply.error)
+
+
 def connect(address, certificate=None, key=None, authority=None, insecure=False, timeout=30.0,
             name="simulation", take_over=False, only_changes=True):
     """Drives the session of a `dspace serve` process at "host:port" or "unix:PATH".
@@ -174,12 +189,5 @@ def connect(address, certificate=None, key=None, authority=None, insecure=False,
     text(name, "the name", label)
     link.SetTakeOver(flag(take_over, "take_over", label))
     link.SetOnlyChanges(flag(only_changes, "only_changes", label))
-    reply = to_reply(link.ConnectLater(address, name))
-    state = -1 if reply.HasField("error") else 0
-    while state == 0:
-        state = link.WaitToConnect(SLICE)
-        if state < 0:
-            reply = to_reply(link.TakeReply())
-    if reply.HasField("error"):
-        raise make_error(reply.error)
+    make_connection(link, address, name)
     return RemoteSession(RemoteClient(link, address))

@@ -61,7 +61,8 @@ class ViewerEvents:
 
     def process_events(self, wait=0.0):
         """Hands what viewers have said to the callbacks of on_event; waits up to `wait` seconds for the
-        first. Returns the events. A callback that raises leaves the rest for the next call."""
+        first. Returns the events. A callback that raises leaves the rest for the next call. A wait on a
+        server raises the error of a link that is broken for good."""
         wait = number(wait, "the wait", "session")
         events = []
         while True:

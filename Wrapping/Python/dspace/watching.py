@@ -5,7 +5,7 @@ from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_reply
 from dspace._fields import number, refuse, text
 from dspace.errors import Closed, WrongType
-from dspace.remote import SLICE, prepare
+from dspace.remote import SLICE, make_connection, prepare
 from dspace.scenes import Scene
 from dspace.sessions import Session
 
@@ -148,9 +148,7 @@ def watch(address, certificate=None, key=None, authority=None, insecure=False, t
     label = f"server {address!r}"
     watcher = _vtk.vtkDspaceWatcher()
     prepare(watcher, address, certificate, key, authority, insecure, timeout, label)
-    reply = to_reply(watcher.Connect(address, text(name, "the name", label)))
-    if reply.HasField("error"):
-        raise make_error(reply.error)
+    make_connection(watcher, address, text(name, "the name", label))
     client = WatchClient(watcher)
-    watcher.Update(number(timeout, "the timeout", label))
+    client.update(float(timeout))
     return Watcher(client)
