@@ -1,5 +1,6 @@
 """Recordings: times of minus zero, damage to what is beside the rows, the pace of playback, and what the log says."""
 import contextlib
+import hashlib
 import math
 import shutil
 import sqlite3
@@ -11,7 +12,9 @@ import pytest
 
 import dspace
 from dspace import playback
-from dspace.recording_file import RecordingFile
+from dspace.command_line import log_salvage, main
+from dspace.recording_assets import Asset, Content
+from dspace.recording_file import RecordingFile, Row, write_recording
 
 
 def record(path, steps=100, step=0.01, **options):
@@ -262,3 +265,43 @@ def test_no_number_is_no_time(tmp_path):
             with pytest.raises(dspace.InvalidArgument, match="nan.*accepted"):
                 call()
         assert run.time == 0.02
+
+
+def salvage_of_files(tmp_path, name, assets, contents=()):
+    """(exit code, file) of the salvage of a recording of one command with these rows of files."""
+    path, out = str(tmp_path / f"{name}.dspace"), str(tmp_path / f"{name}-out.dspace")
+    write_recording(path, [Row(1, 0.0, 1e9, 13, b"j\x00")], [Row(0, 0.0, 1e9, 0, b"")])
+    with contextlib.closing(sqlite3.connect(path)) as database:
+        for each in assets:
+            database.execute("INSERT INTO asset VALUES(?,?,?,?,?,?,?)", (*each, each.checksum))
+        for each in contents:
+            database.execute("INSERT INTO content VALUES(?,?,?,?,?,?)", (*each, each.checksum))
+        database.commit()
+    return main(["log", "salvage", path, "--out", out]), out
+
+
+def test_files_of_which_nothing_is_known_are_told(tmp_path, capsys):
+    assets = [Asset(i, f"/f{i}", "absent", 0, b"", False) for i in range(1, 6)]
+    assert salvage_of_files(tmp_path, "whole", assets)[0] == 0
+    said = capsys.readouterr().out
+    assert "lost" not in said and "after the first 5" in said
+    assert salvage_of_files(tmp_path, "gaps", [assets[1], assets[4]])[0] == 1
+    assert "lost: what is known of 3 files" in capsys.readouterr().out
+    contents = [Content(i, asset, 0, 1, b"x") for i, asset in enumerate((2, 7, 9), 1)]
+    assert salvage_of_files(tmp_path, "contents", assets[:2], contents)[0] == 1
+    assert "lost: what is known of 7 files" in capsys.readouterr().out
+    assert salvage_of_files(tmp_path, "none", [], contents[1:])[0] == 1
+    assert "lost: what is known of 9 files" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("newer_first", (True, False))
+def test_of_two_versions_of_a_file_the_packed_one_is_brought_back(tmp_path, monkeypatch, newer_first):
+    data = b"0123"
+    old = Asset(1, "/f", "read", 4, hashlib.sha256(data).digest(), False)
+    new = old._replace(packed=True)
+    found = [("asset", new), ("asset", old)] if newer_first else [("asset", old), ("asset", new)]
+    found += [("content", Content(1, 1, 0, 4, data)), ("command", Row(1, 0.0, 1e9, 13, b"j\x00"))]
+    monkeypatch.setattr(log_salvage, "found_rows", lambda path: found)
+    _, out = salvage_of_files(tmp_path, "two", [])
+    with RecordingFile(out) as file:
+        assert file.assets == [new]

@@ -144,3 +144,29 @@ def test_what_comes_while_the_steps_are_read_is_of_no_step_before_it(tmp_path, m
                 assert main(["log", "cut", str(path), "--to", str(end + 1), "--out", str(tmp_path / "cut.dspace")]) == 0
     with RecordingFile(tmp_path / "cut.dspace") as cut:
         assert max(row.time for row in cut.rows()) <= end + 1
+
+
+@pytest.mark.parametrize("pack", (True, False))
+def test_files_that_come_while_it_is_written_are_unpacked_or_checked(tmp_path, pack):
+    solid = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
+    for name in "abc":
+        (tmp_path / f"{name}.stl").write_text(solid)
+    path = tmp_path / "run.dspace"
+    with dspace.Session() as session, session.record(path, commit_every=0.001, pack=pack) as recording:
+        recording.flush()
+        with dspace.Playback(path) as run:  # no file is noted yet
+            for count, name in enumerate("abc", 1):
+                session.scene().time += 1.0
+                session.scene().load(str(tmp_path / f"{name}.stl"))
+                recording.flush()
+                if pack:
+                    (tmp_path / f"{name}.stl").unlink()
+                elif name == "b":  # not what was recorded
+                    (tmp_path / "b.stl").write_text(solid.replace("1 0 0", "2 0 0"))
+                    with pytest.raises(dspace.Corrupt, match="b.stl"):
+                        run.update()
+                    assert len(run.times) == 2
+                    return
+                assert run.update() == 1
+                run.seek(float(count))
+                assert len(run.session.scene().objects) == count

@@ -225,3 +225,13 @@ def test_requests_of_later_versions_say_so(session):
         with pytest.raises(dspace.Unimplemented, match=f"command {command.WhichOneof('command')}") as refused:
             session.execute(command)
         assert isinstance(refused.value, (dspace.Unsupported, dspace.Error, NotImplementedError))
+
+
+@pytest.mark.parametrize("bad", ("x" * 4097, "é" * 2049, "a\tb", "a\u0085b", "a\u200bb"), ids=range(5))
+def test_a_text_that_is_refused_sets_no_number(scene, bad):
+    power, note = scene.telemetry.add("power", value=2.0), scene.telemetry.add("note", kind="text", value="a")
+    with pytest.raises(dspace.InvalidArgument, match="note"):
+        scene.telemetry.set({power: 1.0, note: bad})
+    assert (power.value, note.value) == (2.0, "a")
+    scene.telemetry.set({power: 1.0, note: "é" * 2048})
+    assert (power.value, note.value) == (1.0, "é" * 2048)

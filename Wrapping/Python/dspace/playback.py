@@ -7,7 +7,7 @@ from dspace._fields import number, refuse, text
 from dspace.errors import Corrupt, InvalidArgument
 from dspace.playback_steps import index_at, runs_of, steps_of
 from dspace.playback_telemetry import TelemetryReading
-from dspace.recording_assets import Unpacked, check_assets as check_files, is_packed
+from dspace.recording_assets import Unpacked, assets_of, check_assets as check_files, is_packed
 from dspace.recording_file import RecordingFile, commands_of
 from dspace.session import commands_pb2 as pb, terrain_pb2
 from dspace.sessions import Session
@@ -42,10 +42,7 @@ class Playback(TelemetryReading):
         self.file = RecordingFile(path)
         self.session = self._unpacked = None
         try:
-            if is_packed(self.file.assets):
-                self._unpacked = Unpacked(self.file)
-            elif check_assets:
-                check_files(self.file)
+            self._checks, self._seen = check_assets, 0  # the last row of a file that was seen
             self._scene = None if scene is None else text(scene, "the scene", self.file.label)
             self._read_steps()
             if self.gaps:
@@ -60,16 +57,32 @@ class Playback(TelemetryReading):
             raise
 
     def _read_steps(self):
-        steps, self.gaps = steps_of(self.file, self._scene)
+        steps, gaps = steps_of(self.file, self._scene)
         if not steps:
             raise self.file.corrupt("no step of it is whole")
+        self._take_files()  # after the steps: a command's files are noted before it
+        self.gaps = gaps
         self._ends = [step.end for step in steps]
         self.times = [step.time for step in steps]  # [s], of each step
         self._runs = runs_of(self.times)
 
+    def _take_files(self):
+        """Unpacks or checks the files that were noted since."""
+        assets = assets_of(self.file, self._seen)
+        if not assets:
+            return
+        if self._unpacked is not None:
+            self._unpacked.add(self.file, assets)
+        elif is_packed(self.file.assets):
+            self._unpacked = Unpacked(self.file)
+        elif self._checks:
+            check_files(self.file, assets)
+        self._seen = max(asset.id for asset in assets)
+
     def update(self):
         """Takes in what has been recorded since, of a recording that is being written; returns how many steps came.
-        The last one may have grown: seek to it again to see all of it."""
+        The last one may have grown: seek to it again to see all of it. Files that were noted since are unpacked or
+        checked, with the errors of the constructor."""
         before = len(self.times)
         self._read_steps()
         return len(self.times) - before

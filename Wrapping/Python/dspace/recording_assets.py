@@ -49,10 +49,10 @@ class Content(NamedTuple):
         return hashlib.sha256(head + self.data).digest()[:16]
 
 
-def assets_of(file):
-    """A RecordingFile's, each path's last, by path."""
+def assets_of(file, after=0):
+    """A RecordingFile's, of the rows after that of id `after`, each path's last, by path."""
     found = {}
-    for values in file.ask(f"SELECT {COLUMNS} FROM asset ORDER BY id"):
+    for values in file.ask(f"SELECT {COLUMNS} FROM asset WHERE id > {int(after)} ORDER BY id"):
         asset = Asset(*values[:5], bool(values[5]))
         try:
             good = asset.checksum == values[6]
@@ -80,9 +80,9 @@ def hash_of(path, take=lambda place, block: None):
     return size, digest.digest()
 
 
-def check_assets(file):
-    """That all files on this machine are what they were; raises with the first one that is not."""
-    for asset in assets_of(file):
+def check_assets(file, assets=None):
+    """That files on this machine, absent: all, are what they were; raises with the first one that is not."""
+    for asset in assets_of(file) if assets is None else assets:
         named = f"{file.label}: file {asset.path!r}"
         if asset.state == "changed":
             raise Corrupt(f"{named} had changed between its reading and its recording; accepted: only "
@@ -138,28 +138,35 @@ class Unpacked:
     each other as they did. Nothing is ever written elsewhere; close() removes all of it."""
 
     def __init__(self, file):
-        assets = assets_of(file)
+        self._places = {}  # of the recording's paths
+        self.folder = os.path.realpath(tempfile.mkdtemp(prefix="dspace-play-"))
+        self._remove = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        try:
+            self.add(file, assets_of(file))
+        except BaseException:
+            self.close()
+            raise
+
+    def add(self, file, assets):
+        """Unpacks these, too: of a path that is there already in its place."""
         for asset in assets:
             if asset.state == "changed":
                 raise Corrupt(f"{file.label}: file {asset.path!r} had changed between its reading and its recording",
                               asset.path)
         packed = [asset for asset in assets if asset.packed]
-        self.folder = os.path.realpath(tempfile.mkdtemp(prefix="dspace-play-"))
-        self._remove = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
-        try:
-            needed, free = sum(asset.size for asset in packed), shutil.disk_usage(self.folder).free
-            if needed > free:
-                raise Resource(f"{file.label}: its files need {needed} bytes in {self.folder!r}, where "
-                               f"{free} are free; accepted: TMPDIR with more", file.label)
-            self._places = {asset.path: self.place(asset.path) for asset in packed}
-            numbers = part_numbers(file)
-            for asset in packed:
-                self._unpack(file, asset, numbers.get(asset.id, ()))
-            for asset in packed:
-                self._mend(asset)
-        except BaseException:
-            self.close()
-            raise
+        needed, free = sum(asset.size for asset in packed), shutil.disk_usage(self.folder).free
+        if needed > free:
+            raise Resource(f"{file.label}: its files need {needed} bytes in {self.folder!r}, where "
+                           f"{free} are free; accepted: TMPDIR with more", file.label)
+        for asset in packed:
+            if asset.path in self._places and os.path.lexists(self._places[asset.path]):
+                os.remove(self._places[asset.path])
+        self._places.update((asset.path, self.place(asset.path)) for asset in packed)
+        numbers = part_numbers(file)
+        for asset in packed:
+            self._unpack(file, asset, numbers.get(asset.id, ()))
+        for target in self._places.values():  # one that came before may name one that has come now
+            self._mend(target)
 
     def close(self):
         self._remove()
@@ -188,9 +195,8 @@ class Unpacked:
         if digest.digest() != asset.sha256:
             raise file.corrupt(f"the content of {asset.path!r} is not what it was")
 
-    def _mend(self, asset):
+    def _mend(self, target):
         """Absolute names of other packed files in a mosaic or a robot's description, which are XML."""
-        target = self._places[asset.path]
         with open(target, "rb") as file:
             start = file.read(4096)
             if not any(mark in start for mark in (b"<VRTDataset", b"<OGRVRTDataSource", b"<robot")):

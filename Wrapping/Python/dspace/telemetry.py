@@ -1,5 +1,6 @@
 """Telemetry: named values of a scene, for tables, plots and overlays."""
 import math
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -14,6 +15,10 @@ from dspace.session import telemetry_pb2
 KINDS = {"number": telemetry_pb2.CreateTelemetry.NUMBER, "text": telemetry_pb2.CreateTelemetry.TEXT,
          "choice": telemetry_pb2.CreateTelemetry.CHOICE}
 STATES = ("no value", "good", "warning", "alarm")
+MAXIMUM_TEXT = 4096  # bytes
+# As IsControlCharacter of TextCharacters.cxx.
+CONTROLS = re.compile("[\0-\x1f\x7f-\x9f\u034f\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufe00-\ufe0f\ufeff"
+                      "\ufff0-\ufffc]")
 LIMITS = ("alarm_low", "warning_low", "warning_high", "alarm_high")
 
 
@@ -30,6 +35,17 @@ def _put_limits(message, limits, label):
 def ids_of(scene):
     """{name: (id, kind)} of the channels that this client knows of the scene."""
     return scene._client.telemetry.setdefault(scene.name, {})
+
+
+def _line(value, label):
+    """A text as the session takes it: refused here, before the numbers that are set with it are sent."""
+    value = text(value, "the text", label)
+    size = len(value.encode())
+    if size > MAXIMUM_TEXT:
+        raise InvalidArgument(f"{label}: its text has {size} bytes; accepted: up to {MAXIMUM_TEXT}", label)
+    if CONTROLS.search(value):
+        refuse(label, "its text", value, "one without control characters (no tab, no line break)")
+    return value
 
 
 class Channel(Strict):
@@ -204,7 +220,8 @@ class Telemetry(Mapping):
         channels or names (quickest: an integer array of ids, as Channel.id), and an array of as many numbers.
 
         NaN, of a choice or a text None, is no value; of a text that is an empty one. Numbers go in one message,
-        as poses do, and texts in another. A value that is what it was changes nothing."""
+        as poses do, and texts in another after it; where another client removes a channel of texts between the two,
+        the numbers stay set. A value that is what it was changes nothing."""
         if array is not None:
             numbers = array_of(array, "the values", "an array of numbers", "telemetry")
             quick = isinstance(values, np.ndarray) and np.issubdtype(values.dtype, np.integer)
@@ -233,7 +250,7 @@ class Telemetry(Mapping):
             label = _label(name)
             if kind == telemetry_pb2.CreateTelemetry.TEXT:
                 texts.set_telemetry_texts.id.append(id)
-                texts.set_telemetry_texts.text.append("" if value is None else text(value, "the text", label))
+                texts.set_telemetry_texts.text.append(_line("" if value is None else value, label))
                 continue
             if kind == telemetry_pb2.CreateTelemetry.CHOICE:
                 value = self._choice(name, id, value)

@@ -39,7 +39,7 @@ def salvage(options):
             begin = begin_of(options.file, database)
             lost = gaps((seq for seq, in database.execute("SELECT seq FROM command ORDER BY seq")), last, begin)
             stateless = not database.execute("SELECT 1 FROM snapshot WHERE seq = ?", (begin,)).fetchone()
-            broken = unpackable(database)
+            unknown, broken = unknown_files(database), unpackable(database)
             with database:
                 if begin:
                     database.execute("INSERT INTO meta VALUES('begin', ?)", (begin,))
@@ -55,8 +55,11 @@ def salvage(options):
         print(f"lost: commands {first} to {end}")
     for path in broken:
         print(f"lost: the packed content of {path!r}")
-    print(f"what came after {counts['command'][1] or 0} is not known")
-    return 1 if lost or broken or stateless else 0
+    if unknown:
+        print(f"lost: what is known of {unknown} files")
+    print(f"what came after {counts['command'][1] or 0} is not known, nor which files after the first "
+          f"{counts['asset'][1] or 0} it needs")
+    return 1 if lost or broken or unknown or stateless else 0
 
 
 def begin_of(path, database):
@@ -71,11 +74,21 @@ def begin_of(path, database):
 
 def put(database, table, row):
     if table == "asset":
-        database.execute("INSERT OR IGNORE INTO asset VALUES(?,CAST(? AS TEXT),?,?,?,?,?)",
+        # Packing changes a row that is there, and its page from before may be found, too: what is packed is newer.
+        database.execute("INSERT INTO asset VALUES(?,CAST(? AS TEXT),?,?,?,?,?) ON CONFLICT(id) DO UPDATE SET "
+                         "path = excluded.path, state = excluded.state, size = excluded.size, sha256 = excluded.sha256, "
+                         "packed = excluded.packed, checksum = excluded.checksum WHERE excluded.packed",
                          (row.id, os.fsencode(row.path), *row[2:], row.checksum))
     else:
         proof = row.checksum if table == "content" else checksum(row, table)
         database.execute(f"INSERT OR IGNORE INTO {table} VALUES(?,?,?,?,?,?)", (*row, proof))
+
+
+def unknown_files(database):
+    """How many files there must have been, by their ids, which have no gaps, here and in content, of which no row is
+    there. Of those after the last nothing tells."""
+    count, last = database.execute("SELECT count(*), coalesce(max(id), 0) FROM asset").fetchone()
+    return max(last, database.execute("SELECT coalesce(max(asset), 0) FROM content").fetchone()[0]) - count
 
 
 def unpackable(database):
