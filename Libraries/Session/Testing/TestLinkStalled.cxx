@@ -79,6 +79,7 @@ TEST_F(LinkTest, StalledViewersCostBoundedMemoryHoweverLong) {
   EXPECT_LT(after, before + (64 << 20)) << "at a quarter " << before << ", at the end " << after;
 #endif
   RecordProperty("steps", steps);
+  RecordProperty("resident_growth_kB", int((double(after) - double(before)) / 1024));
 }
 
 } // namespace
