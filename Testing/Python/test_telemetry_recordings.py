@@ -285,3 +285,18 @@ def test_after_a_gap_events_of_a_scene_that_was_made_anew_are_told(tmp_path, tex
     with pytest.warns(dspace.DspaceWarning, match="lost"), dspace.Playback(path) as run:
         assert [event.text for event in run.events("a")] == ["old 0", "old 1", "old 2", *texts, "last"]
         assert [event.text for event in run.events("b")] == ["stays"]
+
+
+@pytest.mark.parametrize("kind", ("set_telemetry", "log_event"))
+def test_a_damaged_kind_hides_nothing(run, kind):
+    path, _ = run
+    database = sqlite3.connect(path)
+    with database:
+        changed = database.execute("UPDATE command SET kind = 24 WHERE seq = (SELECT max(seq) FROM command WHERE kind = ?)",
+                                   (pb.Command.DESCRIPTOR.fields_by_name[kind].number,)).rowcount
+    database.close()
+    assert changed == 1
+    with dspace.Playback(path) as playback:
+        for read in (playback.telemetry, playback.events):
+            with pytest.raises(dspace.Corrupt, match="is damaged"):
+                read()
