@@ -1,6 +1,8 @@
 // Events of a simulation, and questions to the operator.
 #include <limits>
 
+#include <dspace/session/MessageLog.h>
+
 #include "CommandTestSupport.h"
 
 namespace dspace::testing {
@@ -154,6 +156,36 @@ TEST_F(MessageTest, EventsThatAreRefused) {
   event.mutable_log_event()->mutable_datum(0)->set_name("d1");
   this->Refuse(event, Kind::INVALID_ARGUMENT, "there twice");
   EXPECT_EQ(this->Log("mode").number(), 2u); // nothing of them counted
+}
+
+TEST_F(MessageTest, WhatIsKeptCanBeTakenUp) { // by a ledger, a recording, a viewer
+  this->SetTime(12.5);
+  v1::Command base = Event("mode");
+  for (int i = 0; i < 4; ++i) {
+    base.mutable_log_event()->add_datum()->set_name("d" + std::to_string(i));
+    base.mutable_log_event()->mutable_datum(i)->set_text(std::string(4000, 'x'));
+  }
+  int accepted = 0;
+  int refused = 0;
+  // Around 16 KiB, with and without the number and the time that the scene gives it.
+  for (std::size_t bytes = 16384 - 30; bytes <= 16384 + 10; ++bytes) {
+    v1::Command event = base;
+    std::string& text = *event.mutable_log_event()->mutable_text();
+    text = std::string(200, 'x');
+    text.append(bytes - event.log_event().ByteSizeLong(), 'x');
+    ASSERT_EQ(event.log_event().ByteSizeLong(), bytes);
+    if (this->Interpreter_.Execute(event).has_error()) {
+      EXPECT_FALSE(event.log_event().has_time_s()); // nor is it changed
+      ++refused;
+      continue;
+    }
+    ++accepted;
+    EXPECT_LE(event.log_event().ByteSizeLong(), 16384u);
+    session::MessageLog other;
+    EXPECT_NO_THROW(other.Log(*event.mutable_log_event(), 0.0)) << bytes;
+  }
+  EXPECT_GT(accepted, 10);
+  EXPECT_GT(refused, 10);
 }
 
 TEST_F(MessageTest, QuestionsAreOpenUntilTheyAreClosed) {

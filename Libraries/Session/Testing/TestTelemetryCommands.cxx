@@ -277,6 +277,55 @@ TEST_F(TelemetryTest, DefinitionsAreBoundedTogether) {
   remove.mutable_remove_telemetry()->add_id(id);
   this->Accept(remove);
   this->Accept(define);
+
+  // Limits that are set later count, too: a snapshot makes the channel with them.
+  remove.mutable_remove_telemetry()->set_id(0, define.create_telemetry().id());
+  this->Accept(remove);
+  std::vector<std::uint64_t> numbers;
+  for (int i = 0; i < 40; ++i) {
+    v1::Command number = Define("number" + std::to_string(i));
+    this->Accept(number);
+    numbers.push_back(number.create_telemetry().id());
+  }
+  for (int i = 0;; ++i) { // until less than a kilobyte of them is left
+    ASSERT_LT(i, 1000);
+    v1::Command filler = Define("filler" + std::to_string(i));
+    filler.mutable_create_telemetry()->set_description(std::string(900, 'x'));
+    if (this->Interpreter_.Execute(filler).has_error()) {
+      break;
+    }
+  }
+  const auto limit = [&](std::uint64_t number, bool some) {
+    v1::Command command;
+    v1::SetTelemetryLimits* set = command.mutable_set_telemetry_limits();
+    set->set_id(number);
+    if (some) { // 36 bytes
+      set->mutable_limits()->set_alarm_low(1);
+      set->mutable_limits()->set_warning_low(2);
+      set->mutable_limits()->set_warning_high(3);
+      set->mutable_limits()->set_alarm_high(4);
+    }
+    return this->Interpreter_.Execute(command).error();
+  };
+  const auto most = [&] {
+    std::size_t accepted = 0;
+    while (accepted < numbers.size()) {
+      const v1::Error error = limit(numbers[accepted], true);
+      if (!error.message().empty()) {
+        EXPECT_EQ(error.kind(), Kind::RESOURCE);
+        EXPECT_NE(error.message().find("64 MiB"), std::string::npos);
+        break;
+      }
+      ++accepted;
+    }
+    return accepted;
+  };
+  const std::size_t first = most();
+  EXPECT_LT(first, numbers.size());
+  for (const std::uint64_t number : numbers) {
+    EXPECT_TRUE(limit(number, false).message().empty());
+  }
+  EXPECT_EQ(most(), first); // those that were taken away count no more
 }
 
 TEST_F(TelemetryTest, ManyTextsAreWrittenOutInPieces) {

@@ -62,20 +62,26 @@ void MessageLog::Log(v1::LogEvent& event, double now) {
   if (event.has_time_s()) {
     RequireFinite(label, "its time", event.time_s());
   }
-  if (event.ByteSizeLong() > MaximumEvent) {
-    Refuse(label, "it has " + std::to_string(event.ByteSizeLong()) + " bytes; accepted: up to " +
-                      std::to_string(MaximumEvent));
-  }
   if (event.number() != 0 && event.number() <= this->LastNumber_) {
     Refuse(label, "its number is " + std::to_string(event.number()) + "; accepted: above " +
                       std::to_string(this->LastNumber_) + ", or 0");
   }
-  if (event.number() == 0) {
-    event.set_number(this->LastNumber_ + 1);
+  v1::LogEvent whole = event;
+  if (whole.number() == 0) {
+    whole.set_number(this->LastNumber_ + 1);
   }
-  if (!event.has_time_s()) {
-    event.set_time_s(now);
+  if (!whole.has_time_s()) {
+    whole.set_time_s(now);
   }
+  // As it is kept, which is what recordings, snapshots and viewers take it up from.
+  const std::size_t bytes = whole.ByteSizeLong();
+  if (bytes > MaximumEvent) {
+    Refuse(label, "it has " + std::to_string(bytes) +
+                      " bytes with its number and time; accepted: "
+                      "up to " +
+                      std::to_string(MaximumEvent));
+  }
+  event = std::move(whole);
   this->LastNumber_ = event.number();
   this->Events_.push_back(event);
   if (this->Events_.size() > MaximumEvents) {

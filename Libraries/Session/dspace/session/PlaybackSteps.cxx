@@ -8,9 +8,10 @@ namespace {
 using Range = std::pair<std::uint64_t, std::uint64_t>;
 
 // Ranges of commands that are there, with none missing within one.
-std::vector<Range> Blocks(RecordingReader& reader, const std::vector<std::uint64_t>& snapshots) {
+std::vector<Range> Blocks(RecordingReader& reader) {
   const std::uint64_t last = reader.Last();
   if (last == 0) { // a state and nothing after it
+    const std::vector<std::uint64_t> snapshots = reader.Snapshots();
     const std::uint64_t seq = snapshots.empty() ? 0 : snapshots.back();
     return {{seq + 1, seq}};
   }
@@ -34,9 +35,11 @@ std::vector<Range> Blocks(RecordingReader& reader, const std::vector<std::uint64
 
 PlaybackSteps StepsOf(RecordingReader& reader) {
   PlaybackSteps result;
-  const auto times = reader.Steps();
+  // In this order: of one that is being written each sees more than the one before, and what is
+  // beyond the last block is left out.
+  const std::vector<Range> blocks = Blocks(reader);
   const std::vector<std::uint64_t> snapshots = reader.Snapshots();
-  const std::vector<Range> blocks = Blocks(reader, snapshots);
+  const auto times = reader.Steps();
   PlaybackGap gap; // that is open
   gap.first = reader.Lost().empty() ? blocks.front().first : 1;
   bool open = false;

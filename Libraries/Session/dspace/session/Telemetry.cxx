@@ -176,11 +176,22 @@ void Telemetry::SetLimits(const v1::SetTelemetryLimits& command) {
     Refuse(label, "it is no number; accepted: limits of numbers only");
   }
   CheckLimits(label, command.limits());
+  v1::CreateTelemetry about = channel.about;
   if (command.has_limits()) {
-    *channel.about.mutable_limits() = command.limits();
+    *about.mutable_limits() = command.limits();
   } else {
-    channel.about.clear_limits();
+    about.clear_limits();
   }
+  const std::size_t defined = about.ByteSizeLong();
+  const std::size_t bytes = this->Bytes_ - channel.defined + defined;
+  if (defined > channel.defined && bytes > MaximumBytes) {
+    throw Error(Error::Kind::Resource, label,
+                "with these limits the definitions of the scene's channels have " +
+                    std::to_string(bytes) + " bytes; accepted: up to 64 MiB");
+  }
+  channel.about = std::move(about);
+  channel.defined = defined;
+  this->Bytes_ = bytes;
   ++this->Revision_;
 }
 
