@@ -7,6 +7,7 @@ import sys
 import pytest
 
 import dspace
+from dspace.command_line.watch import Presence
 from served_support import Served
 
 RUN = [sys.executable, "-W", "ignore", "-m", "dspace", "watch"]
@@ -106,6 +107,53 @@ def test_it_stays_for_the_next_simulation(tmp_path):
                 build(session).time = 8.0
                 while not watch.line().endswith(": 8.000 s"):
                     assert watch.process.poll() is None
+
+
+class Changing:
+    """A watcher whose link is as each of the given answers says, one a look: the driver's name, "" for none, or None
+    without a server."""
+
+    def __init__(self, *answers):
+        self.answers = list(answers)
+
+    def _next(self):
+        return self.answers.pop(0) if len(self.answers) > 1 else self.answers[0]
+
+    @property
+    def simulation(self):
+        return self._next() or None
+
+    @property
+    def connected(self):
+        return self._next() is not None
+
+
+def test_whatever_goes_between_two_looks_is_told():
+    # At first, then who drives and whether there is a server, in turns.
+    presence = Presence(Changing("drive", "drive", "drive", "drive", None))
+    assert presence.gone() is None
+    assert presence.gone() == "the server has gone"  # between the two
+    assert [presence.gone() for _ in range(3)] == [None] * 3  # told once
+    for first in ("drive", ""):
+        presence = Presence(Changing(first, first, first, None))
+        assert [presence.gone() for _ in range(3)] == [None, "the server has gone", None]
+    presence = Presence(Changing("drive", "", "", "", "", "next", "next", ""))
+    assert [presence.gone() for _ in range(5)] == [
+        "simulation 'drive' has gone", None, None, "simulation 'next' has gone", None]
+
+
+@pytest.mark.parametrize("number", (signal.SIGINT, signal.SIGTERM))
+def test_it_can_be_ended_while_it_connects(tmp_path, number):
+    with Watched(f"unix:{tmp_path}/nobody", "--out", tmp_path / "out") as watch:
+        pid, others, caught = watch.process.pid, [], 0
+        while not others or not caught & 1 << signal.SIGTERM - 1:  # it connects, and hears
+            assert watch.process.poll() is None
+            others = [int(each) for each in os.listdir(f"/proc/{pid}/task") if int(each) != pid]
+            with open(f"/proc/{pid}/status") as status:
+                caught = int(next(line for line in status if line.startswith("SigCgt")).split()[1], 16)
+        watch.process.send_signal(number)
+        assert watch.line() == f"dspace watch: ended while it was connecting; 0 pictures in {tmp_path / 'out'}"
+        assert watch.process.wait(timeout=60) == 0
 
 
 @pytest.mark.parametrize("arguments, text", [

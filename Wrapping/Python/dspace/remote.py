@@ -18,6 +18,12 @@ SILENT = {"set_time", "set_poses", "append_trail", "set_joints", "set_tilt", "se
 SLICE = 0.1  # [s] of a wait without hearing signals
 
 
+def hear_signals():
+    """Between two slices of a wait. CPython 3.11 does not notice a signal that another thread than the main one has
+    caught, such as gRPC's, until its lock has been let go, which this does."""
+    time.sleep(0)
+
+
 class RemoteClient(LocalClient):
     """Hands commands to a server."""
 
@@ -51,8 +57,8 @@ class RemoteClient(LocalClient):
     @staticmethod
     def _take(link):
         try:
-            while not link.Wait(SLICE):  # between two waits Python hears a Ctrl-C
-                pass
+            while not link.Wait(SLICE):
+                hear_signals()
         except BaseException:
             link.Abandon()
             raise
@@ -72,6 +78,7 @@ class RemoteClient(LocalClient):
                 broken = to_reply(link.GetBroken())  # then nothing comes any more
                 if broken.HasField("error"):
                     raise make_error(broken.error)
+                hear_signals()
                 data = to_bytes(link.TakeEvent(min(SLICE, max(0.0, end - time.monotonic()))))
             event = service_pb2.ViewerEvent.FromString(data) if data else None
         return event
@@ -166,8 +173,9 @@ def make_connection(link, address, name):
     """Of both kinds of links; raises why there is none."""
     reply = to_reply(link.ConnectLater(address, name))
     state = -1 if reply.HasField("error") else 0
-    while state == 0:  # between two waits Python hears a Ctrl-C
+    while state == 0:
         state = link.WaitToConnect(SLICE)
+        hear_signals()
         if state < 0:
             reply = to_reply(link.TakeReply())
     if reply.HasField("error"):

@@ -5,7 +5,7 @@ from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_reply
 from dspace._fields import number, refuse, text
 from dspace.errors import Closed, WrongType
-from dspace.remote import SLICE, make_connection, prepare
+from dspace.remote import SLICE, hear_signals, make_connection, prepare
 from dspace.scenes import Scene
 from dspace.sessions import Session
 
@@ -39,8 +39,10 @@ class WatchClient(LocalClient):
         """How many messages came; then calls who follows frames."""
         watcher = self.watcher()
         end = time.monotonic() + wait
+        hear_signals()
         count = watcher.Update(min(wait, SLICE))
-        while count == 0 and time.monotonic() < end:  # between two waits Python hears a Ctrl-C
+        while count == 0 and time.monotonic() < end:
+            hear_signals()
             count = watcher.Update(min(SLICE, max(0.0, end - time.monotonic())))
         listeners = self.frame_listeners
         if listeners:

@@ -105,41 +105,65 @@ def run(options):
     check(options)
     from dspace.watching import watch  # needs the compiled part
 
-    stop = []
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda *_: stop.append(True))
-    with watch(options.address, options.cert, options.key, options.ca, options.insecure) as watcher:
+    stop, connected = [], []
+
+    def hear(*_):
+        stop.append(True)
+        if not connected:
+            raise KeyboardInterrupt
+
+    try:
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, hear)
+        watcher = watch(options.address, options.cert, options.key, options.ca, options.insecure)
+        connected.append(True)
+    except KeyboardInterrupt:
+        return end(0, options, "ended while it was connecting")
+    with watcher:
         os.makedirs(options.out, exist_ok=True)
         pictures = Pictures(watcher, options)
-        driver, served, due, told = watcher.simulation, True, time.monotonic(), ""
+        presence, due, told = Presence(watcher), time.monotonic(), ""
         while not stop and pictures.count != options.count:
             watcher.update(min(0.2, max(0.0, due - time.monotonic())))
             if watcher.trouble != told:
                 told = watcher.trouble
                 if told:
                     print(f"dspace: note: the pictures lack what could not be done here: {told}", file=sys.stderr)
-            gone = what_has_gone(watcher, driver, served)
-            driver, served = watcher.simulation or driver, watcher.connected
+            gone = presence.gone()
+            if gone:
+                watcher.update()  # its picture says so
             if gone or time.monotonic() >= due:
                 pictures.save()
                 due = max(due + options.every, time.monotonic())
             if gone:
                 if not options.stay:
-                    return end(pictures, gone)
+                    return end(pictures.count, options, gone)
                 print(f"dspace watch: {gone}; waiting", flush=True)
-                driver = None
         if pictures.count != options.count:
             pictures.save()
-        return end(pictures, "ended")
+        return end(pictures.count, options, "ended")
 
 
-def what_has_gone(watcher, driver, served):
-    """In words; None while all that was there is there."""
-    if not watcher.connected:
-        return "the server has gone" if served else None
-    return None if driver is None or watcher.simulation is not None else f"simulation {driver!r} has gone"
+class Presence:
+    """Who was there when one looked last: the server, and a simulation."""
+
+    def __init__(self, watcher):
+        self._watcher, self._driver, self._served = watcher, watcher.simulation, True
+
+    def gone(self):
+        """What has gone since, in words; None when all that was there is there."""
+        # Each is read once, for the link may break at any time; a link that breaks between the two is the server's.
+        driver, served = self._watcher.simulation, self._watcher.connected
+        was_driver, was_served = self._driver, self._served
+        self._driver, self._served = driver or was_driver, served
+        if served and (was_driver is None or driver is not None):
+            return None
+        if not served and not was_served:
+            return None
+        self._driver = None
+        return f"simulation {was_driver!r} has gone" if served else "the server has gone"
 
 
-def end(pictures, why):
-    print(f"dspace watch: {why}; {pictures.count} pictures in {pictures.options.out}", flush=True)
+def end(count, options, why):
+    print(f"dspace watch: {why}; {count} pictures in {options.out}", flush=True)
     return 0
