@@ -4,6 +4,7 @@ import os
 import select
 import signal
 import sys
+import time
 
 from dspace.command_line import Failed
 from dspace.command_line.certificates import make_test_certificates
@@ -80,6 +81,7 @@ def run(options):
               file=sys.stderr, flush=True)
     print(f"dspace serve: listening on {server.GetAddress()}", flush=True)
     while not stop and server.Run(0.2):
+        time.sleep(0)  # else Python does not see a signal that another thread has caught
         if options.end_with_input and input_ended():
             break
     server.Stop()
