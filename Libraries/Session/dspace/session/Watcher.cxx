@@ -53,8 +53,8 @@ struct Watcher::Link {
   void Watch() {
     const auto soon = std::chrono::system_clock::now() + milliseconds(200);
     grpc::Status status(grpc::StatusCode::UNAVAILABLE, "nobody answers, or nobody who may");
+    grpc::ClientContext watch; // outlives `context`, through which End cancels
     if (this->channel->WaitForConnected(soon)) {
-      grpc::ClientContext watch;
       {
         const std::lock_guard lock(this->mutex);
         this->context = &watch;
