@@ -7,7 +7,7 @@ from dspace._fields import number, refuse, text
 from dspace.errors import Corrupt, InvalidArgument
 from dspace.playback_steps import index_at, runs_of, steps_of
 from dspace.playback_telemetry import TelemetryReading
-from dspace.recording_assets import Unpacked, assets_of, check_assets as check_files, is_packed
+from dspace.recorded_files import RecordedFiles
 from dspace.recording_file import RecordingFile, commands_of
 from dspace.session import commands_pb2 as pb, terrain_pb2
 from dspace.sessions import Session
@@ -40,9 +40,9 @@ class Playback(TelemetryReading):
 
     def __init__(self, path, check_assets=True, scene=None):
         self.file = RecordingFile(path)
-        self.session = self._unpacked = None
+        self.session = self._files = None
         try:
-            self._checks, self._seen = check_assets, 0  # the last row of a file that was seen
+            self._checks = check_assets
             self._scene = None if scene is None else text(scene, "the scene", self.file.label)
             self._read_steps()
             if self.gaps:
@@ -68,16 +68,10 @@ class Playback(TelemetryReading):
 
     def _take_files(self):
         """Unpacks or checks the files that were noted since."""
-        assets = assets_of(self.file, self._seen)
-        if not assets:
-            return
-        if self._unpacked is not None:
-            self._unpacked.add(self.file, assets)
-        elif is_packed(self.file.assets):
-            self._unpacked = Unpacked(self.file)
-        elif self._checks:
-            check_files(self.file, assets)
-        self._seen = max(asset.id for asset in assets)
+        if self._files is None:
+            self._files = RecordedFiles(self.file, self._checks)
+        else:
+            self._files.update()
 
     def update(self):
         """Takes in what has been recorded since, of a recording that is being written; returns how many steps came.
@@ -96,8 +90,8 @@ class Playback(TelemetryReading):
     def close(self):
         if self.session is not None:
             self.session.close()
-        if self._unpacked is not None:
-            self._unpacked.close()
+        if self._files is not None:
+            self._files.close()
         self.file.close()
 
     @property
@@ -216,12 +210,11 @@ class Playback(TelemetryReading):
             self.session.execute(command)
 
     def _carry_out(self, payload, what):
-        if self._unpacked is not None:
-            payload = self._unpacked.map(payload)
+        payload = self._files.map(payload)
         reply = to_reply(self.session.vtk.Replay(payload))
         if reply.HasField("error"):
             raise Corrupt(f"{self.file.label}: {what} is refused: {reply.error.message}", self.file.label)
-        if self._unpacked is not None and b"/overviews" in payload:
+        if self._files.folder and b"/overviews" in payload:
             self._wait_for_overviews(pb.Command.FromString(payload))
 
     def _wait_for_overviews(self, opened):

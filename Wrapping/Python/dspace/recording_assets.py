@@ -1,16 +1,11 @@
-"""The files that a recording's commands need: noted, packed into it, and unpacked. Recording.md has the tables."""
+"""The files that a recording's commands need: noted, and packed into it. Recording.md has the tables."""
 import hashlib
 import os
-import re
-import shutil
 import struct
-import tempfile
-import weakref
 import zlib
 from typing import NamedTuple
 
-from dspace.errors import Corrupt, Io, NotFound, Resource
-from dspace.session import commands_pb2 as pb
+from dspace.errors import Corrupt
 
 COLUMNS = "id, path, state, size, sha256, packed, checksum"
 PART = 4 << 20      # bytes of a file in one row
@@ -64,11 +59,6 @@ def assets_of(file, after=0):
     return [found[path] for path in sorted(found)]
 
 
-def is_packed(assets):
-    """Whether the files that there were are in the recording, all of them."""
-    return any(asset.packed for asset in assets) and all(asset.packed for asset in assets if asset.state == "read")
-
-
 def hash_of(path, take=lambda place, block: None):
     """(bytes, SHA-256) of a file, read block by block."""
     digest, size = hashlib.sha256(), 0
@@ -78,24 +68,6 @@ def hash_of(path, take=lambda place, block: None):
             take(size, block)
             size += len(block)
     return size, digest.digest()
-
-
-def check_assets(file, assets=None):
-    """That files on this machine, absent: all, are what they were; raises with the first one that is not."""
-    for asset in assets_of(file) if assets is None else assets:
-        named = f"{file.label}: file {asset.path!r}"
-        if asset.state == "changed":
-            raise Corrupt(f"{named} had changed between its reading and its recording; accepted: only "
-                          "check_assets=False, where its present content will do", asset.path)
-        if asset.state == "absent" and os.path.lexists(asset.path):
-            raise Corrupt(f"{named} was not there when it was recorded, and now is", asset.path)
-        if asset.state != "read":  # it could not be read then: a folder, or on a server
-            continue
-        if not os.path.isfile(asset.path):
-            raise NotFound(f"{named}, which it needs, is not there", asset.path)
-        if os.path.getsize(asset.path) != asset.size or hash_of(asset.path)[1] != asset.sha256:
-            raise Corrupt(f"{named} has changed since it was recorded; accepted: its {asset.size} bytes of "
-                          f"SHA-256 {asset.sha256.hex()}", asset.path)
 
 
 def part_numbers(file):
@@ -131,117 +103,6 @@ def parts_of(file, asset, numbers):
         place += part.size
     if place != asset.size:
         raise file.corrupt(f"the content of {asset.path!r} ends at byte {place} of {asset.size}")
-
-
-class Unpacked:
-    """The packed files of a recording in a folder of their own, at their own paths below it, so that they name
-    each other as they did. Nothing is ever written elsewhere; close() removes all of it."""
-
-    def __init__(self, file):
-        self._places = {}  # of the recording's paths
-        self.folder = os.path.realpath(tempfile.mkdtemp(prefix="dspace-play-"))
-        self._remove = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
-        try:
-            self.add(file, assets_of(file))
-        except BaseException:
-            self.close()
-            raise
-
-    def add(self, file, assets):
-        """Unpacks these, too: of a path that is there already in its place."""
-        for asset in assets:
-            if asset.state == "changed":
-                raise Corrupt(f"{file.label}: file {asset.path!r} had changed between its reading and its recording",
-                              asset.path)
-        packed = [asset for asset in assets if asset.packed]
-        needed, free = sum(asset.size for asset in packed), shutil.disk_usage(self.folder).free
-        if needed > free:
-            raise Resource(f"{file.label}: its files need {needed} bytes in {self.folder!r}, where "
-                           f"{free} are free; accepted: TMPDIR with more", file.label)
-        for asset in packed:
-            if asset.path in self._places and os.path.lexists(self._places[asset.path]):
-                os.remove(self._places[asset.path])
-        self._places.update((asset.path, self.place(asset.path)) for asset in packed)
-        numbers = part_numbers(file)
-        for asset in packed:
-            self._unpack(file, asset, numbers.get(asset.id, ()))
-        for target in self._places.values():  # one that came before may name one that has come now
-            self._mend(target)
-
-    def close(self):
-        self._remove()
-
-    def place(self, path):
-        """Where a path of the recording's is: below the folder, whatever it holds."""
-        # normpath of an absolute path has no ".." left.
-        return self.folder + os.path.normpath("/" + path.replace("\0", "")).replace("//", "/")
-
-    def _unpack(self, file, asset, numbers):
-        if not asset.path.startswith("/") or "\0" in asset.path:
-            raise file.corrupt(f"{asset.path!r} is no path of a file")
-        digest = hashlib.sha256()
-        target = self._places[asset.path]
-        try:
-            os.makedirs(os.path.dirname(target), mode=0o700, exist_ok=True)
-            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
-            with os.fdopen(os.open(target, flags, 0o600), "wb") as out:
-                for data in parts_of(file, asset, numbers):
-                    digest.update(data)
-                    out.write(data)
-        except OSError as error:
-            if isinstance(error, (FileExistsError, NotADirectoryError, IsADirectoryError)):
-                raise file.corrupt(f"{asset.path!r} is there twice, or is a file and a folder") from None
-            raise Io(f"{file.label}: {asset.path!r} cannot be unpacked: {error}", file.label) from None
-        if digest.digest() != asset.sha256:
-            raise file.corrupt(f"the content of {asset.path!r} is not what it was")
-
-    def _mend(self, target):
-        """Absolute names of other packed files in a mosaic or a robot's description, which are XML."""
-        with open(target, "rb") as file:
-            start = file.read(4096)
-            if not any(mark in start for mark in (b"<VRTDataset", b"<OGRVRTDataSource", b"<robot")):
-                return
-            text = start + file.read()
-        # A whole name only: what stands around it ends a value of XML.
-        names = {os.fsencode(path): os.fsencode(place) for path, place in self._places.items()}
-        either = b"|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
-        text = re.sub(rb"(?<=[\">'])(file://)?(" + either + rb")(?=[\"<'])",
-                      lambda found: (found[1] or b"") + names[found[2]], text)
-        with open(target, "wb") as file:
-            file.write(text)
-
-    def map(self, payload):
-        """A serialized command with its paths made those of the folder."""
-        if b"/" not in payload:
-            return payload
-        command = pb.Command.FromString(payload)
-        if command.WhichOneof("command") == "set_poses":
-            return payload
-        self._map_fields(command)
-        if command.HasField("open_terrain"):
-            terrain = command.open_terrain
-            # Overviews of another machine are not to be had: they are built here, before the terrain opens.
-            built = terrain.build_overviews if terrain.HasField("build_overviews") else True
-            if not terrain.HasField("overview_cache") or terrain.overview_cache:
-                terrain.overview_cache = os.path.join(self.folder, "overviews") if built else ""
-        return command.SerializeToString()
-
-    def _map_fields(self, message):
-        for field, value in message.ListFields():
-            if field.message_type is not None:
-                for each in value if field.label == field.LABEL_REPEATED else (value,):
-                    if hasattr(each, "ListFields"):
-                        self._map_fields(each)
-            elif field.name in ("path", "texture") and isinstance(value, str) and value:
-                setattr(message, field.name, self._map_path(value))
-
-    def _map_path(self, path):
-        if path.startswith("/") and not path.startswith("/vsi"):
-            return self.place(path)
-        for known in sorted(self._places, key=len, reverse=True):  # a part of a file: "/vsizip/...", NETCDF:"..."
-            if known in path:
-                return path.replace(known, self._places[known])
-        return path
 
 
 def pack(database, label):

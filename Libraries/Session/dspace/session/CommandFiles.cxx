@@ -5,6 +5,12 @@
 namespace dspace::session {
 namespace {
 
+bool IsPath(const google::protobuf::FieldDescriptor& field) {
+  return !field.is_repeated() &&
+         field.cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_STRING &&
+         (field.name() == "path" || field.name() == "texture");
+}
+
 void Gather(const google::protobuf::Message& message, std::set<std::string>& paths) {
   const google::protobuf::Reflection* reflection = message.GetReflection();
   std::vector<const google::protobuf::FieldDescriptor*> fields;
@@ -17,10 +23,32 @@ void Gather(const google::protobuf::Message& message, std::set<std::string>& pat
                                     : reflection->GetMessage(message, field),
                paths);
       }
-    } else if (!field->is_repeated() && (field->name() == "path" || field->name() == "texture")) {
+    } else if (IsPath(*field)) {
       const std::string path = reflection->GetString(message, field);
       if (path.size() > 1 && path[0] == '/') {
         paths.insert(path);
+      }
+    }
+  }
+}
+
+void MapBelow(google::protobuf::Message& message,
+              const std::function<std::string(const std::string&)>& map) {
+  const google::protobuf::Reflection* reflection = message.GetReflection();
+  std::vector<const google::protobuf::FieldDescriptor*> fields;
+  reflection->ListFields(message, &fields);
+  for (const google::protobuf::FieldDescriptor* field : fields) {
+    if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
+      const int n = field->is_repeated() ? reflection->FieldSize(message, field) : 1;
+      for (int i = 0; i < n; ++i) {
+        MapBelow(field->is_repeated() ? *reflection->MutableRepeatedMessage(&message, field, i)
+                                      : *reflection->MutableMessage(&message, field),
+                 map);
+      }
+    } else if (IsPath(*field)) {
+      const std::string path = reflection->GetString(message, field);
+      if (!path.empty()) {
+        reflection->SetString(&message, field, map(path));
       }
     }
   }
@@ -35,6 +63,10 @@ std::set<std::string> PathsIn(const v1::Command& command) {
     Gather(command, paths);
   }
   return paths;
+}
+
+void MapPaths(v1::Command& command, const std::function<std::string(const std::string&)>& map) {
+  MapBelow(command, map);
 }
 
 void CommandFiles::Note(const v1::Command& accepted, const FilesRead& files) {

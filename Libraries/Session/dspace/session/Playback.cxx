@@ -1,7 +1,9 @@
 #include <dspace/session/Playback.h>
 
 #include <algorithm>
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 #include <dspace/Error.h>
 
@@ -20,8 +22,9 @@ std::string Object(const RecordingReader& reader) {
 
 } // namespace
 
-Playback::Playback(RecordingReader& reader, Interpreter& interpreter)
-    : Reader_(reader), Interpreter_(interpreter), Steps_(StepsOf(reader)) {
+Playback::Playback(RecordingReader& reader, Interpreter& interpreter, bool checkFiles)
+    : Reader_(reader), Interpreter_(interpreter), Steps_(StepsOf(reader)),
+      Files_(reader, checkFiles) {
   if (this->Steps_.steps.empty()) {
     throw Error(Error::Kind::Corrupt, Object(reader), "no step of it is whole");
   }
@@ -60,6 +63,7 @@ std::int64_t Playback::Step(std::int64_t n) {
 std::size_t Playback::Update() {
   const std::size_t before = this->Steps_.steps.size();
   this->Steps_ = StepsOf(this->Reader_);
+  this->Files_.Update();
   return this->Steps_.steps.size() - before;
 }
 
@@ -144,11 +148,26 @@ void Playback::CarryOut(v1::Command command, const char* table, std::uint64_t se
     refused = "command " + CommandName(command) +
               ": it changes nothing, and no recording holds such a one";
   } else {
+    this->Files_.Map(command);
     refused = this->Interpreter_.Execute(command).error().message();
   }
   if (!refused.empty()) {
     throw Error(Error::Kind::Corrupt, Object(this->Reader_),
                 table + std::to_string(seq) + " is refused: " + refused);
+  }
+  if (command.has_open_terrain() && !this->Files_.Folder().empty()) {
+    this->WaitForOverviews(command);
+  }
+}
+
+// What was drawn of a large raster was its overviews, which are built anew beside the unpacked
+// file.
+void Playback::WaitForOverviews(const v1::Command& opened) {
+  v1::Command ask;
+  ask.set_scene(opened.scene());
+  ask.mutable_describe_terrain()->set_terrain(opened.open_terrain().name());
+  while (this->Interpreter_.Execute(ask).terrain().overview_build() == v1::TerrainReply::BUILDING) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 

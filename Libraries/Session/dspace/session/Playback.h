@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <dspace/session/Interpreter.h>
+#include <dspace/session/RecordedFiles.h>
 #include <dspace/session/RecordingReader.h>
 
 namespace dspace::session {
@@ -42,13 +43,14 @@ std::optional<std::size_t> StepAt(const std::vector<PlaybackStep>& steps, double
 
 // Gives a recording's commands to an interpreter, whose scenes and viewports are the recording's
 // from then on: what else is in it is removed with the next seek that begins from a snapshot.
-// Throws Error: those of RecordingReader; Corrupt where a command is refused, where no step is
-// whole, and in a gap.
+// Throws Error: those of RecordingReader and of RecordedFiles; Corrupt where a command is refused,
+// where no step is whole, and in a gap.
 class Playback {
 public:
-  // Both must outlive it. It is at the first step then. Files that commands need are those of this
-  // machine: whoever plays has checked them (Documentation/Recording.md), or unpacked them.
-  Playback(RecordingReader& reader, Interpreter& interpreter);
+  // Both must outlive it. It is at the first step then. Packed files are unpacked, and gone with
+  // it: what it has shown of them stays in the interpreter, but no terrain reads on. Of others each
+  // must be what it was, unless checkFiles is false.
+  Playback(RecordingReader& reader, Interpreter& interpreter, bool checkFiles = true);
 
   const std::vector<PlaybackStep>& Steps() const { return this->Steps_.steps; }
   const std::vector<PlaybackGap>& Gaps() const { return this->Steps_.gaps; }
@@ -59,6 +61,8 @@ public:
   double Seek(double time_s);
   // So many steps on, or back; stops at the ends. Returns how many were made.
   std::int64_t Step(std::int64_t n);
+  // Where packed files are, and their paths there.
+  const RecordedFiles& Files() const { return this->Files_; }
   // Takes in what has been recorded since; returns how many steps came. The last may have grown.
   std::size_t Update();
 
@@ -67,10 +71,12 @@ private:
   void Begin(const RecordedSnapshot& snapshot);
   void CheckStep(std::size_t index, std::optional<double> reached_s);
   void CarryOut(v1::Command command, const char* table, std::uint64_t seq);
+  void WaitForOverviews(const v1::Command& opened);
 
   RecordingReader& Reader_;
   Interpreter& Interpreter_;
-  PlaybackSteps Steps_;
+  PlaybackSteps Steps_; // before the files: a command's are noted before it
+  RecordedFiles Files_;
   std::size_t Index_ = 0;
   std::optional<std::uint64_t> At_; // the command after which the state is; none: unknown
 };

@@ -10,7 +10,7 @@
 namespace dspace::session {
 namespace {
 
-constexpr std::size_t PartBytes = 4u << 20;
+constexpr auto PartBytes = std::size_t(RecordingPartBytes);
 constexpr std::size_t TransactionBytes = 64u << 20;
 
 // Empty where zlib saves less than a tenth.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include <dspace/session/RecordingAsset.h>
 #include <dspace/session/RecordingCheckpoints.h>
 
 struct sqlite3;
@@ -41,17 +42,6 @@ struct RecordingRow {
 std::string RecordingChecksum(const RecordingRow& row);
 // As above; `sum` is kept, since making one takes longer than a small row.
 std::string RecordingChecksum(Sha256& sum, const RecordingRow& row);
-
-// A file that commands need, before its checksum.
-struct RecordingAsset {
-  std::int64_t id = 0;
-  std::string path;  // absolute, as it was opened
-  std::string state; // "read"; "absent", "unreadable" (a folder, a server's file), "changed" (it
-                     // is not what the commands were carried out with): these without the rest
-  std::int64_t size = 0; // bytes
-  std::string sha256;    // 32 bytes
-  bool packed = false;   // its content is in the recording
-};
 
 // A part of a packed file's content.
 struct RecordingContent {

@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <sstream>
 
+#include <fcntl.h>
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <google/protobuf/util/delimited_message_util.h>
 #include <sqlite3.h>
+#include <unistd.h>
+#include <zlib.h>
 
 #include <dspace/Error.h>
 #include <dspace/session/RecordingFile.h>
@@ -19,13 +22,33 @@ namespace {
 
 constexpr int BusyMilliseconds = 10000; // a writer that checkpoints
 
-// SQLite takes the name as a URI, since only then it opens nothing for writing.
+// SQLite takes the name as a URI, since only then it opens nothing for writing. It would make files
+// beside one that was not closed well; where it cannot, and nothing is in its log, it is told that
+// nobody writes.
 std::string UriOf(const std::string& path) {
   std::string uri = "file:";
   for (const char c : path) {
     uri += c == '%' ? "%25" : c == '?' ? "%3f" : c == '#' ? "%23" : std::string(1, c);
   }
-  return uri + "?mode=ro";
+  std::error_code none;
+  const auto log = std::filesystem::file_size(path + "-wal", none);
+  const bool finished = none || log == 0;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return uri + (finished && faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0
+                    ? "?immutable=1"
+                    : "?mode=ro");
+}
+
+// A part as it was, of `size` bytes; of other size where it is not that.
+std::string Decompress(const std::string& data, std::int64_t size) {
+  std::string out(std::size_t(size), '\0');
+  uLongf got = out.size(); // no more, whatever it would grow to
+  if (uncompress(reinterpret_cast<Bytef*>(out.data()), &got,
+                 reinterpret_cast<const Bytef*>(data.data()), data.size()) != Z_OK) {
+    got = 0;
+  }
+  out.resize(got);
+  return out;
 }
 
 } // namespace
@@ -108,6 +131,8 @@ RecordingReader::RecordingReader(const std::string& path) : Impl_(std::make_uniq
   }
   try {
     sqlite3_busy_timeout(impl.database, BusyMilliseconds);
+    // Tables only: a view could be made to go on without end.
+    sqlite3_db_config(impl.database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
     const std::uint64_t format = impl.Number("SELECT value FROM meta WHERE key = 'format'", 0);
     if (format != RecordingFormat) {
       throw Error(Error::Kind::Unsupported, object,
@@ -226,6 +251,77 @@ std::vector<std::pair<std::uint64_t, std::uint64_t>> RecordingReader::Lost() {
     ranges.emplace_back(first, last);
   }
   return ranges;
+}
+
+std::vector<RecordingAsset> RecordingReader::Assets(std::int64_t after) {
+  const Impl::Statement rows =
+      this->Impl_->Ask("SELECT id, path, state, size, sha256, packed, checksum FROM asset "
+                       "WHERE id > ? ORDER BY id");
+  sqlite3_bind_int64(rows.get(), 1, after);
+  std::map<std::string, RecordingAsset> found;
+  while (this->Impl_->Step(rows)) {
+    RecordingAsset asset;
+    asset.id = sqlite3_column_int64(rows.get(), 0);
+    asset.path = Impl::Blob(rows, 1);
+    asset.state = Impl::Blob(rows, 2);
+    asset.size = sqlite3_column_int64(rows.get(), 3);
+    asset.sha256 = Impl::Blob(rows, 4);
+    asset.packed = sqlite3_column_int64(rows.get(), 5) != 0;
+    if (Impl::Blob(rows, 6) != RecordingChecksum(asset)) {
+      this->Impl_->Fail("asset " + std::to_string(asset.id) + " is damaged");
+    }
+    found[asset.path] = std::move(asset);
+  }
+  std::vector<RecordingAsset> assets;
+  for (auto& entry : found) {
+    assets.push_back(std::move(entry.second));
+  }
+  return assets;
+}
+
+RecordingReader::PartNumbers RecordingReader::Parts() {
+  const Impl::Statement rows = this->Impl_->Ask("SELECT asset, id FROM content ORDER BY place");
+  PartNumbers numbers;
+  while (this->Impl_->Step(rows)) {
+    numbers[sqlite3_column_int64(rows.get(), 0)].push_back(sqlite3_column_int64(rows.get(), 1));
+  }
+  return numbers;
+}
+
+void RecordingReader::ReadContent(const RecordingAsset& asset,
+                                  const std::vector<std::int64_t>& parts,
+                                  const std::function<void(const std::string&)>& take) {
+  const std::string named = "the content of '" + asset.path + "'";
+  std::int64_t place = 0;
+  for (const std::int64_t number : parts) {
+    const Impl::Statement row =
+        this->Impl_->Ask("SELECT id, asset, place, size, data, checksum FROM content WHERE id = ?");
+    sqlite3_bind_int64(row.get(), 1, number);
+    RecordingContent part;
+    bool good = this->Impl_->Step(row);
+    if (good) {
+      part.id = sqlite3_column_int64(row.get(), 0);
+      part.asset = sqlite3_column_int64(row.get(), 1);
+      part.place = sqlite3_column_int64(row.get(), 2);
+      part.size = sqlite3_column_int64(row.get(), 3);
+      part.data = Impl::Blob(row, 4);
+      good = Impl::Blob(row, 5) == RecordingChecksum(part) && part.asset == asset.id &&
+             part.place == place && part.size > 0 && part.size <= RecordingPartBytes;
+    }
+    if (good && std::int64_t(part.data.size()) != part.size) {
+      part.data = Decompress(part.data, part.size);
+      good = std::int64_t(part.data.size()) == part.size;
+    }
+    if (!good) {
+      this->Impl_->Fail(named + " is damaged at byte " + std::to_string(place));
+    }
+    take(part.data);
+    place += part.size;
+  }
+  if (place != asset.size) {
+    this->Impl_->Fail(named + " ends at byte " + std::to_string(place) + " of " +
+                      std::to_string(asset.size));
+  }
 }
 
 } // namespace dspace::session

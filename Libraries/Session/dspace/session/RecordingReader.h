@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <dspace/session/RecordingAsset.h>
 #include <dspace/session/commands.pb.h>
 
 namespace dspace::session {
@@ -58,6 +60,19 @@ public:
 
   // Ranges of commands that are not there, each with its first and last.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> Lost();
+
+  // The files that its commands need, of the rows after that of id `after`: each path's last row,
+  // by path.
+  std::vector<RecordingAsset> Assets(std::int64_t after = 0);
+
+  // The rows of packed content in their order, by the file's id.
+  using PartNumbers = std::map<std::int64_t, std::vector<std::int64_t>>;
+  PartNumbers Parts();
+  // A packed file's content part by part, RecordingPartBytes at most each. `parts`: its numbers.
+  // Corrupt, naming the file and the byte, at the first part that is damaged or not there; whether
+  // all of it has the file's SHA-256 is the caller's to see.
+  void ReadContent(const RecordingAsset& asset, const std::vector<std::int64_t>& parts,
+                   const std::function<void(const std::string&)>& take);
 
 private:
   struct Impl;

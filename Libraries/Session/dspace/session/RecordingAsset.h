@@ -1,0 +1,26 @@
+// A file that a recording notes.
+#ifndef DSPACE_SESSION_RECORDING_ASSET_H
+#define DSPACE_SESSION_RECORDING_ASSET_H
+
+#include <cstdint>
+#include <string>
+
+namespace dspace::session {
+
+// A file that commands need, before its checksum.
+struct RecordingAsset {
+  std::int64_t id = 0;
+  std::string path;  // absolute, as it was opened
+  std::string state; // "read"; "absent", "unreadable" (a folder, a server's file), "changed" (it
+                     // is not what the commands were carried out with): these without the rest
+  std::int64_t size = 0; // bytes
+  std::string sha256;    // 32 bytes
+  bool packed = false;   // its content is in the recording
+};
+
+// Of a packed file's content a row has so many bytes at most.
+constexpr std::int64_t RecordingPartBytes = 4 << 20;
+
+} // namespace dspace::session
+
+#endif

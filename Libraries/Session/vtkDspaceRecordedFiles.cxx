@@ -1,0 +1,70 @@
+#include "vtkDspaceRecordedFiles.h"
+
+#include <optional>
+
+#include <dspace/session/ErrorReply.h>
+#include <dspace/session/RecordedFiles.h>
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkDspaceRecordedFiles);
+
+struct vtkDspaceRecordedFiles::Internals {
+  std::optional<dspace::session::RecordingReader> reader;
+  std::optional<dspace::session::RecordedFiles> files; // goes before the reader
+};
+
+vtkDspaceRecordedFiles::vtkDspaceRecordedFiles() : Impl(std::make_unique<Internals>()) {}
+
+vtkDspaceRecordedFiles::~vtkDspaceRecordedFiles() = default;
+
+std::string vtkDspaceRecordedFiles::Open(const std::string& recording, bool check) {
+  this->Close();
+  const dspace::v1::Reply reply = dspace::session::Catch([&] {
+    this->Impl->reader.emplace(recording);
+    this->Impl->files.emplace(*this->Impl->reader, check);
+    return dspace::v1::Reply();
+  });
+  if (reply.has_error()) {
+    this->Close();
+  }
+  return reply.SerializeAsString();
+}
+
+std::string vtkDspaceRecordedFiles::Update() {
+  return dspace::session::Catch([&] {
+           if (this->Impl->files) {
+             this->Impl->files->Update();
+           }
+           return dspace::v1::Reply();
+         })
+      .SerializeAsString();
+}
+
+std::string vtkDspaceRecordedFiles::GetFolder() {
+  return this->Impl->files ? this->Impl->files->Folder() : std::string();
+}
+
+std::string vtkDspaceRecordedFiles::Place(const std::string& path) {
+  return this->Impl->files ? this->Impl->files->Place(path) : path;
+}
+
+std::string vtkDspaceRecordedFiles::Map(const std::string& bytes) {
+  dspace::v1::Command command;
+  if (!this->Impl->files || this->Impl->files->Folder().empty() ||
+      bytes.find('/') == std::string::npos || !command.ParseFromString(bytes)) {
+    return bytes;
+  }
+  this->Impl->files->Map(command);
+  return command.SerializeAsString();
+}
+
+void vtkDspaceRecordedFiles::Close() {
+  this->Impl->files.reset();
+  this->Impl->reader.reset();
+}
+
+void vtkDspaceRecordedFiles::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Folder: " << this->GetFolder() << "\n";
+}
