@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <ogrsf_frmts.h>
 
 #include <dspace/scene/Checks.h>
 #include <dspace/terrain/DatasetFiles.h>
 #include <dspace/terrain/MapTurn.h>
+#include <dspace/terrain/NetworkScope.h>
+#include <dspace/terrain/OfflineScope.h>
 #include <dspace/terrain/OpenRaster.h>
 
 #include "VectorCrs.h"
@@ -283,6 +286,10 @@ VectorFile ReadVectorFile(const std::string& path, const RasterPlace& terrain,
   VectorFile result;
   GdalErrors errors;
   ShowSources(path);
+  std::optional<OfflineScope> offline;
+  if (!IsRemote(path)) {
+    offline.emplace();
+  }
   const DatasetPointer file = Open(path, object, errors);
   NoteDataset(*file);
   Reader reader(object, options, result);

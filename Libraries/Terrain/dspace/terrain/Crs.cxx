@@ -9,6 +9,7 @@
 #include <dspace/Error.h>
 
 #include "GdalErrors.h"
+#include "OfflineScope.h"
 #include "OgrLock.h"
 
 namespace dspace {
@@ -41,9 +42,7 @@ Crs::Crs() = default;
 Crs Crs::FromText(const std::string& text) {
   GdalErrors errors;
   OGRSpatialReference srs;
-  // GDAL would also read a file of that name, or ask a server for it.
-  const char* const limits[] = {"ALLOW_FILE_ACCESS=NO", "ALLOW_NETWORK_ACCESS=NO", nullptr};
-  if (text.empty() || srs.SetFromUserInput(text.c_str(), limits) != OGRERR_NONE)
+  if (!ReadCrsText(text, srs))
     throw Error(Error::Kind::InvalidArgument, "CRS '" + text + "'",
                 errors.Message("not understood") +
                     "; accepted are WKT, a PROJ string, or AUTHORITY:CODE such as EPSG:4326 or "

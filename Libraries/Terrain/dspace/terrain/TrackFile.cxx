@@ -13,6 +13,7 @@
 #include <ogrsf_frmts.h>
 
 #include "GdalErrors.h"
+#include "OfflineScope.h"
 
 namespace dspace {
 namespace {
@@ -141,7 +142,7 @@ void RequireSameCrs(const OGRFeature& feature, const std::string& object, const 
     return;
   }
   OGRSpatialReference other;
-  if (other.SetFromUserInput(text.c_str()) != OGRERR_NONE || !other.IsSame(crs.Ogr())) {
+  if (!ReadCrsText(text, other) || !other.IsSame(crs.Ogr())) {
     const char* name = other.GetName();
     throw Error(Error::Kind::InvalidArgument, object,
                 std::string("its map coordinates are of '") + (name ? name : text.c_str()) +
@@ -236,6 +237,7 @@ ReadTracks(const std::string& path, const Crs& crs,
   }
   GdalErrors errors;
   ShowSources(path);
+  const OfflineScope offline;
   const char* const drivers[] = {"GeoJSON", nullptr};
   const Dataset dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers));
