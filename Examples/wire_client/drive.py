@@ -87,11 +87,14 @@ class Driver:
             first = service_pb2.DriveRequest()
             first.open.protocol, first.open.client, first.open.key = PROTOCOL, self.name, self.key
             first.open.acknowledged = self.acknowledged
+            first.open.again = bool(self.number)
             self.requests.put(first)
             try:
                 opened = next(self.replies).opened
                 break
             except grpc.RpcError as error:  # refused for good, or not there (yet)
+                if error.code() == grpc.StatusCode.ABORTED:
+                    raise ConnectionError("the server was started anew: the scene is gone") from None
                 if error.code() in FINAL or time.monotonic() > end:
                     raise
                 time.sleep(0.1)

@@ -131,7 +131,7 @@ TEST_F(SnapshotTest, OneThatIsLargeArrivesHoweverMuchComesAfterIt) {
   Watcher watcher(options);
   v1::WatchReply message;
   int snapshots = 0;
-  for (int i = 0; i < 200 && snapshots < 3 && watcher.Take(message, 10); ++i) {
+  for (int i = 0; i < 200 && snapshots < 3 && watcher.Take(message, 60); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2)); // it is slow
     if (message.has_snapshot()) {
       ++snapshots;
@@ -225,6 +225,7 @@ TEST_F(SnapshotTest, AViewerSaysWhyItIsRefused) {
   }
   EXPECT_TRUE(again);
   EXPECT_EQ(watcher.Refusal(), "");
+  this->StopServer(); // whose thread has references to what is above
 }
 
 } // namespace

@@ -28,7 +28,8 @@ struct ServerOptions {
   // snapshot, and a writer is cut off (it may come back with its key).
   std::size_t unreadBytes = 256 << 20;
   // A writer whose connection broke, and whose process is not known to have died, keeps its place
-  // for so long: others must take over explicitly. 0 to 1e6.
+  // for so long: others must take over explicitly. One that has ended its side has so long, and a
+  // second, to take its last replies. 0 to 1e6.
   double seat_s = 30;
   double silence_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
 };

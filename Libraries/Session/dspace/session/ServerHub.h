@@ -48,6 +48,12 @@ template<class Message> struct Outbox {
 // not been noticed yet.
 constexpr unsigned DrivesAtOnce = 8;
 
+// Bytes of commands that are read ahead while they are carried out: a few steps, whose memory
+// serves the next ones while it is in the processor's caches. Where that stalls for longer than
+// ToCatchUp, ServerOptions' limits count alone.
+constexpr std::size_t ReadAheadBytes = 1 << 20;
+constexpr std::chrono::milliseconds ToCatchUp{5};
+
 struct DriveStream {
   explicit DriveStream(grpc::ServerContext* of) : context(of) {}
   grpc::ServerContext* context;
@@ -166,6 +172,8 @@ private:
   using Stream = grpc::ServerReaderWriter<v1::DriveReply, v1::DriveRequest>;
   grpc::Status Open(const v1::OpenDrive& open, const std::shared_ptr<DriveStream>& me);
   grpc::Status Read(Stream& stream, DriveStream& me, std::uint64_t generation);
+  void SendTo(Stream& stream, DriveStream& me);
+  struct Driving;
   Hub& Hub_;
 };
 

@@ -1,4 +1,5 @@
 // The calls of the service, each in a thread of gRPC's.
+#include <algorithm>
 #include <thread>
 
 #include <dspace/scene/Checks.h>
@@ -14,7 +15,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr seconds ToOpen{10};
-constexpr seconds ToSayGoodbye{2};
+constexpr seconds ToSayGoodbye{10};
 constexpr std::size_t LargestEvent = 1 << 20;  // of viewers, bytes
 constexpr std::size_t WaitingEvents = 8 << 20; // for one simulation, bytes
 
@@ -30,7 +31,7 @@ bool HasLeft(const grpc::ServerContext& context) {
     if (context.IsCancelled()) {
       return false;
     }
-    std::this_thread::sleep_for(milliseconds(2));
+    std::this_thread::sleep_for(milliseconds(i < 5 ? 2 : 10));
   }
   return true;
 }
@@ -71,6 +72,36 @@ Status Server::Service::Hello(grpc::ServerContext*, const v1::HelloRequest* requ
   return Status::OK;
 }
 
+// A call of Drive. However it ends, nothing holds its context then and its sender has ended.
+struct Server::Service::Driving {
+  Hub& hub;
+  grpc::ServerContext* context;
+  std::shared_ptr<DriveStream> me;
+  std::thread sender;
+
+  ~Driving() {
+    std::unique_lock lock(this->hub.mutex);
+    this->me->out.ended = true;
+    this->me->out.ready.notify_all();
+    // Whoever does not read what is still sent to it is not waited for longer than one who is lost.
+    const auto seat = std::chrono::duration_cast<LinkClock::duration>(
+        std::chrono::duration<double>(this->hub.options.seat_s));
+    auto& deadline = this->hub.deadlines[this->context];
+    deadline = std::min(deadline, LinkClock::now() + seconds(1) + seat);
+    if (this->hub.writer.stream == this->me) {
+      this->hub.writer.stream.reset();
+      this->hub.writer.lost = LinkClock::now();
+      this->hub.TellWriterName();
+    }
+    lock.unlock();
+    if (this->sender.joinable()) {
+      this->sender.join();
+    }
+    lock.lock();
+    this->hub.deadlines.erase(this->context);
+  }
+};
+
 Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
   Hub& hub = this->Hub_;
   const Connection connection(hub.driving, hub.mutex, DrivesAtOnce);
@@ -78,20 +109,21 @@ Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
     return TooMany(DrivesAtOnce, "connections of simulations");
   }
   const auto me = std::make_shared<DriveStream>(context);
-  const auto expect = [&](seconds limit) { hub.deadlines[context] = LinkClock::now() + limit; };
+  Driving driving{hub, context, me, {}};
   {
     const std::lock_guard lock(hub.mutex);
-    expect(ToOpen);
+    hub.deadlines[context] = LinkClock::now() + ToOpen;
   }
   v1::DriveRequest first;
   const bool read = stream->Read(&first);
+  if (!read || !first.has_open()) {
+    return {StatusCode::INVALID_ARGUMENT, "the first message is not `open`"};
+  }
+  driving.sender = std::thread([&] { this->SendTo(*stream, *me); });
   std::uint64_t generation = 0;
   {
     const std::lock_guard lock(hub.mutex);
-    hub.deadlines.erase(context);
-    if (!read || !first.has_open()) {
-      return {StatusCode::INVALID_ARGUMENT, "the first message is not `open`"};
-    }
+    hub.deadlines[context] = LinkClock::time_point::max();
     const Status good = this->Open(first.open(), me);
     if (!good.ok()) {
       return good;
@@ -99,50 +131,40 @@ Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
     generation = hub.writer.generation;
     hub.TellWriterName();
   }
-  std::thread sender([&] {
-    std::unique_lock lock(hub.mutex);
-    while (true) {
-      me->out.ready.wait(lock, [&] { return me->out.ended || !me->out.messages.empty(); });
-      if (me->out.messages.empty()) {
-        break;
-      }
-      const std::size_t size = me->out.messages.front().second;
-      const auto message = me->out.Take();
-      me->eventBytes -= message->has_event() ? size : 0;
-      lock.unlock();
-      const bool written = stream->Write(*message);
-      lock.lock();
-      if (!written) {
-        context->TryCancel(); // so that reading ends
-        break;
-      }
-    }
-    me->out.ended = true;
-    hub.space.notify_all();
-  });
   const Status result = this->Read(*stream, *me, generation);
   const bool left = !result.ok() || HasLeft(*context); // whom it sends away is not waited for
-  {
-    std::unique_lock lock(hub.mutex);
-    if (left && hub.writer.stream == me) {
-      hub.writer.left = true;
-      // What it still sent is carried out, unless it waits no longer or somebody else comes.
-      while (!hub.tasks.empty() && !hub.stopping && !me->out.ended && !context->IsCancelled()) {
-        hub.space.wait_for(lock, milliseconds(50));
-      }
-    }
-    me->out.ended = true;
-    me->out.ready.notify_all();
-    if (hub.writer.stream == me) {
-      hub.writer.stream.reset();
-      hub.writer.lost = LinkClock::now();
-      hub.TellWriterName();
+  std::unique_lock lock(hub.mutex);
+  if (left && hub.writer.stream == me) {
+    hub.writer.left = true;
+    // What it still sent is carried out, unless it waits no longer or somebody else comes.
+    while (!hub.tasks.empty() && !hub.stopping && !me->out.ended && !context->IsCancelled()) {
+      hub.space.wait_for(lock, milliseconds(50));
     }
   }
-  sender.join();
-  const std::lock_guard lock(hub.mutex);
-  hub.deadlines.erase(context);
   return result;
+}
+
+void Server::Service::SendTo(Stream& stream, DriveStream& me) {
+  Hub& hub = this->Hub_;
+  std::unique_lock lock(hub.mutex);
+  while (true) {
+    me.out.ready.wait(lock, [&] { return me.out.ended || !me.out.messages.empty(); });
+    if (me.out.messages.empty()) {
+      break;
+    }
+    const std::size_t size = me.out.messages.front().second;
+    const auto message = me.out.Take();
+    me.eventBytes -= message->has_event() ? size : 0;
+    lock.unlock();
+    const bool written = stream.Write(*message);
+    lock.lock();
+    if (!written) {
+      me.context->TryCancel(); // so that reading ends
+      break;
+    }
+  }
+  me.out.ended = true;
+  hub.space.notify_all();
 }
 
 Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<DriveStream>& me) {
@@ -163,6 +185,12 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
   const std::string taken = resumed || open.take_over() ? std::string() : hub.WhoDrives();
   if (!taken.empty()) {
     return {StatusCode::ALREADY_EXISTS, taken};
+  }
+  if (open.again() && !resumed) {
+    return {
+        StatusCode::ABORTED,
+        "it was started anew, or somebody else has driven it since: what was made there is gone "
+        "or not known; accepted: to connect again"};
   }
   if (writer.stream) { // of a lost connection, or of whom it is taken over from
     DriveStream& old = *writer.stream;
@@ -216,6 +244,7 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
   Hub& hub = this->Hub_;
   const auto period = std::chrono::duration_cast<LinkClock::duration>(
       std::chrono::duration<double>(1 / hub.options.maximumRate));
+  bool absorbing = false; // the session stalls
   v1::DriveRequest request;
   while (stream.Read(&request)) {
     if (!request.has_send()) {
@@ -247,6 +276,11 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
               (hub.tasks.empty() || (hub.tasks.size() < hub.options.queuedCommands &&
                                      hub.taskBytes + bytes <= hub.options.queuedBytes)));
     };
+    const auto near = [&] {
+      return hub.stopping || me.out.ended || hub.tasks.empty() ||
+             hub.taskBytes + bytes <= ReadAheadBytes;
+    };
+    absorbing = !near() && (absorbing || !hub.space.wait_for(lock, ToCatchUp, near));
     while (!free()) {
       const auto now = LinkClock::now();
       hub.space.wait_until(lock, now < due ? due : now + milliseconds(200));
