@@ -3,9 +3,12 @@ import contextlib
 import hashlib
 import json
 import os
+import pathlib
 import shutil
 import sqlite3
 import struct
+import subprocess
+import sys
 import warnings
 import zlib
 
@@ -21,6 +24,7 @@ from dspace.session import commands_pb2 as pb
 from terrain_support import gdal
 
 ogr = pytest.importorskip("osgeo.ogr")
+osr = pytest.importorskip("osgeo.osr")
 
 TETRA = "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nvt 0 0\nvt 1 0\nvt 0 1\n"
 FACES = "f 1/1 2/2 3/3\nf 1/1 2/2 4/3\nf 1/1 3/2 4/3\nf 2/1 3/2 4/3\n"
@@ -359,3 +363,58 @@ def test_real_models_replay_elsewhere(tmp_path):
     with RecordingFile(path) as file:
         states = [asset.state for asset in file.assets]
     assert states.count("read") > 50 and "absent" in states and set(states) == {"read", "absent"}
+
+
+def test_grids_of_datum_shifts_come_along(tmp_path):
+    """PROJ's grid from the German DHDN to WGS 84 moves shapes by a hundred metres; without it there would be another one."""
+    proj = pathlib.Path("/usr/share/proj")
+    if not (proj / "BETA2007.gsb").exists() or not (proj / "proj.db").exists():
+        pytest.skip("PROJ's grid BETA2007.gsb is not installed (Debian: proj-data)")
+    here = tmp_path / "here"
+    here.mkdir()
+    german, degrees = (osr.SpatialReference() for _ in range(2))
+    german.ImportFromEPSG(31467)
+    degrees.ImportFromEPSG(4326)
+    for each in (german, degrees):
+        each.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    data = gdal.GetDriverByName("GTiff").Create(str(here / "ground.tif"), 40, 40, 1, gdal.GDT_Float32)
+    data.SetGeoTransform((3571400, 1, 0, 5540720, 0, -1))  # about 10° E, 50° N
+    data.SetProjection(german.ExportToWkt())
+    del data
+    # Through the middle of the ground, as PROJ has it with the grid.
+    latitude = osr.CoordinateTransformation(german, degrees).TransformPoint(3571420, 5540700)[1]
+    path = json.dumps({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": {
+        "type": "LineString", "coordinates": [[9.99, latitude], [10.01, latitude]]}}]})
+    (here / "line.geojson").write_text(path)
+    with dspace.Session() as session, session.record(tmp_path / "run.dspace", pack=True):
+        scene = session.scene()
+        terrain = scene.add_terrain(str(here / "ground.tif"), mode="clipmap")
+        terrain.add_shapes(str(here / "line.geojson"), pixels=4, line=(1, 0, 0))
+        camera = scene.add_camera("camera", eye=(0, -1, 60), target=(0, 0, 0))
+        scene.add_viewport((160, 120), camera, name="view")
+        scene.time = 1.0
+        live = session.viewports["view"].image()
+    with RecordingFile(tmp_path / "run.dspace") as file:
+        grids = [asset for asset in file.assets if asset.path.endswith("BETA2007.gsb")]
+        assert [(each.path, each.state, each.packed) for each in grids] == [(str(proj / "BETA2007.gsb"), "read", True)]
+    # Where PROJ has its database and no grids.
+    (tmp_path / "proj").mkdir()
+    (tmp_path / "proj/proj.db").symlink_to(proj / "proj.db")
+    here.rename(tmp_path / "away")
+    script = ("import sys, numpy, dspace\n"
+              "with dspace.Playback(sys.argv[1]) as run:\n"
+              "    run.step(1000)\n"
+              "    numpy.save(sys.argv[2], run.session.viewports['view'].image())\n")
+    environment = {**os.environ, "PROJ_DATA": str(tmp_path / "proj"), "PROJ_LIB": str(tmp_path / "proj")}
+    subprocess.run([sys.executable, "-W", "ignore", "-c", script, str(tmp_path / "run.dspace"), str(tmp_path / "a.npy")],
+                   check=True, env=environment)
+    assert numpy.array_equal(numpy.load(tmp_path / "a.npy"), live)
+    red = (live[..., 0] > 150) & (live[..., 1] < 90)
+    assert 200 < red.sum() < 5000
+    # And without the grid it would be another picture: the line is elsewhere.
+    with sqlite3.connect(tmp_path / "run.dspace") as database:
+        database.execute("DELETE FROM content WHERE asset = ?", (grids[0].id,))
+        database.execute("DELETE FROM asset WHERE id = ?", (grids[0].id,))
+    subprocess.run([sys.executable, "-W", "ignore", "-c", script, str(tmp_path / "run.dspace"), str(tmp_path / "b.npy")],
+                   check=True, env=environment)
+    assert not numpy.array_equal(numpy.load(tmp_path / "b.npy"), live)

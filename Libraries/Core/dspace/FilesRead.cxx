@@ -5,6 +5,8 @@
 
 #include <sys/stat.h>
 
+#include <dspace/SystemFiles.h>
+
 namespace dspace {
 namespace {
 
@@ -60,6 +62,12 @@ void NoteFileRead(const std::string& path) {
   std::error_code error;
   const std::string whole = std::filesystem::absolute(path, error).string();
   Innermost->Files_.emplace(error ? path : whole, FileStamp::Of(path));
+}
+
+void NoteSystemFile(const std::string& path) {
+  FilesGuard* const guard = std::exchange(Guard, nullptr);
+  NoteFileRead(path);
+  Guard = guard;
 }
 
 void NoteFilesRead(const FilesRead& files) {

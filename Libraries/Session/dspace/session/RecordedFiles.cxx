@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <dspace/session/CommandFiles.h>
 #include <dspace/session/RecordedNames.h>
 #include <dspace/session/RecordingFile.h>
+#include <dspace/terrain/ProjFolders.h>
 
 namespace dspace::session {
 namespace {
@@ -41,6 +43,14 @@ bool IsPacked(const std::vector<RecordingAsset>& assets) {
   throw Error(Error::Kind::Corrupt, Object(reader),
               "file '" + asset.path + "' had changed between its reading and its recording" +
                   accepted);
+}
+
+void RequireAbsent(const RecordingReader& reader, const RecordingAsset& asset) {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(asset.path, error))) {
+    throw Error(Error::Kind::Corrupt, Object(reader),
+                "file '" + asset.path + "' was not there when it was recorded, and now is");
+  }
 }
 
 // The SHA-256 of a file of so many bytes; empty where it has another number of them.
@@ -155,9 +165,8 @@ void RecordedFiles::Check(const std::vector<RecordingAsset>& assets) const {
                  "; accepted: only without a look at files (check_assets=False), where its present "
                  "content will do");
     }
-    if (asset.state == "absent" && fs::exists(fs::symlink_status(asset.path, error))) {
-      throw Error(Error::Kind::Corrupt, object,
-                  named + " was not there when it was recorded, and now is");
+    if (asset.state == "absent") {
+      RequireAbsent(this->Reader_, asset);
     }
     if (asset.state != "read") { // it could not be read then: a folder, or on a server
       continue;
@@ -180,6 +189,9 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
   for (const RecordingAsset& asset : assets) {
     if (asset.state == "changed") {
       HadChanged(this->Reader_, asset, "; accepted: one that is packed as it was read");
+    }
+    if (asset.state == "absent" && IsProjGrid(asset.path)) {
+      RequireAbsent(this->Reader_, asset); // PROJ would find it where it is
     }
     if (asset.packed) {
       packed.push_back(&asset);
@@ -206,6 +218,16 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
   for (const RecordingAsset* asset : packed) {
     const auto parts = numbers.find(asset->id);
     this->UnpackOne(*asset, parts == numbers.end() ? std::vector<std::int64_t>() : parts->second);
+  }
+  std::set<std::string> folders;
+  for (const auto& entry : this->Places_) {
+    if (IsProjGrid(entry.first)) {
+      folders.insert(fs::path(entry.second).parent_path().string());
+    }
+  }
+  if (!folders.empty()) {
+    this->Grids_ =
+        std::make_unique<ProjFolders>(std::vector<std::string>(folders.begin(), folders.end()));
   }
   const RecordedNames names(this->Places_);
   for (const auto& entry : this->Places_) { // one that came before may name one that has come now

@@ -10,12 +10,17 @@
 
 #include <dspace/session/RecordingReader.h>
 
+namespace dspace {
+class ProjFolders;
+}
+
 namespace dspace::session {
 
 // Of a recording with packed files these are unpacked into a folder of their own (below TMPDIR,
 // readable by this user only), at their own paths below it, so that they name each other as they
-// did; nothing is ever written elsewhere, and the folder goes with this object. Of any other the
-// files on this machine must be what they were. Used from one thread at a time.
+// did, and PROJ finds its grids there first, in all of the process; nothing is ever written
+// elsewhere, and the folder goes with this object. Of any other the files on this machine must be
+// what they were. Used from one thread at a time.
 //
 // Throws Error, which names the file: Corrupt (it has changed since; it had changed before it was
 // recorded; it is there now and was not; its packed content is damaged), NotFound (it is gone), Io
@@ -58,6 +63,7 @@ private:
   std::unique_ptr<OwnFolder> Owned_;
   std::string Folder_;
   std::map<std::string, std::string> Places_; // of the recording's packed paths
+  std::unique_ptr<ProjFolders> Grids_;        // PROJ's, which it looks for by name
 };
 
 } // namespace dspace::session

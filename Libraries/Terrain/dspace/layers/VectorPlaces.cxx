@@ -9,6 +9,7 @@
 #include <dspace/terrain/GdalErrors.h>
 #include <dspace/terrain/MapTurn.h>
 #include <dspace/terrain/OgrLock.h>
+#include <dspace/terrain/ProjGrids.h>
 
 namespace dspace {
 namespace {
@@ -90,6 +91,7 @@ MapConversion::MapConversion(const Crs& from, const Crs& to, const std::string& 
                 "it is in '" + from.GetName() + "', the terrain in '" + to.GetName() +
                     "': " + errors.Message("PROJ has no conversion; both must be of one body"));
   }
+  NoteGrids(*from.Ogr(), *to.Ogr());
 }
 
 MapConversion::~MapConversion() = default;

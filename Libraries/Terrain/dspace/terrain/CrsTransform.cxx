@@ -11,6 +11,7 @@
 
 #include "GdalErrors.h"
 #include "OgrLock.h"
+#include "ProjGrids.h"
 
 namespace dspace {
 
@@ -49,6 +50,7 @@ CrsTransform::CrsTransform(const Crs& from, const Crs& to)
   if (!this->Impl_->forward || !this->Impl_->inverse)
     throw Error(Error::Kind::Unsupported, this->Impl_->name,
                 errors.Message("PROJ has no conversion; both must be of one body"));
+  NoteGrids(*from.Ogr(), *to.Ogr());
 }
 
 CrsTransform::~CrsTransform() = default;
