@@ -156,6 +156,16 @@ void RecordingFile::Close() noexcept {
        {this->Command_, this->Snapshot_, this->Asset_, this->Content_, this->Lost_}) {
     sqlite3_finalize(statement);
   }
+  if (this->Database_) {
+    // All goes into the file itself, also while somebody has it open (else the last one who closes it
+    // would have to be able to write it), as far as nobody is in the middle of reading.
+    sqlite3_busy_timeout(this->Database_, 2000);
+    sqlite3_wal_checkpoint_v2(this->Database_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr,
+                              nullptr);
+    // If nobody has it open it needs no log any more, and can be read where nothing can be written.
+    sqlite3_busy_timeout(this->Database_, 0);
+    sqlite3_exec(this->Database_, "PRAGMA journal_mode=DELETE", nullptr, nullptr, nullptr);
+  }
   sqlite3_close(this->Database_);
 }
 
