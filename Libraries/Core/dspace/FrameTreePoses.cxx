@@ -2,12 +2,30 @@
 #include <dspace/FrameTree.h>
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
+#include <limits>
 
 #include <dspace/Error.h>
 #include <dspace/FrameRules.h>
 
 namespace dspace {
+namespace {
+
+// What NormalisedPose leaves as it is.
+bool IsNormalised(const Eigen::Quaterniond& q) {
+  return std::abs(q.squaredNorm() - 1.0) <= 8.0 * std::numeric_limits<double>::epsilon();
+}
+
+// Whether a row is valid for certain, without a root: where the square of a quaternion's norm is
+// within the tolerance, the norm is within half of it. Else IsValidPose says it.
+bool IsPlainlyValid(const double* row) {
+  const double squared = row[3] * row[3] + row[4] * row[4] + row[5] * row[5] + row[6] * row[6];
+  return (std::abs(row[0]) <= MaximumCoordinate) & (std::abs(row[1]) <= MaximumCoordinate) &
+         (std::abs(row[2]) <= MaximumCoordinate) & (row[7] >= MinimumScale) &
+         (row[7] <= MaximumScale) & (std::abs(squared - 1.0) <= UnitQuaternionTolerance);
+}
+
+} // namespace
 
 void FrameTree::SetLocalPose(FrameId id, const Pose& X_PF) {
   const SlotIndex slot = this->FindSlot(id);
@@ -25,44 +43,53 @@ void FrameTree::SetLocalPoses(const FrameId* ids, const double* poses, std::size
     throw Error(Error::Kind::InvalidArgument, "poses of " + std::to_string(n) + " frames",
                 "the array of ids or of poses is missing");
   }
-  this->BatchSlots_.resize(n);
+  this->BatchSlots_.resize(std::max(n, this->BatchSlots_.size()), 0);
   this->BatchRows_.resize(this->Size(), 0);
   const std::uint64_t start = this->BatchStart_;
   this->BatchStart_ += n; // also when this call is refused
   for (std::size_t i = 0; i < n; ++i) {
-    this->BatchSlots_[i] = this->FindSlot(ids[i]);
+    // A simulation sends the same frames again and again: most often it is the last call's slot.
+    SlotIndex& slot = this->BatchSlots_[i];
+    if (slot >= this->Ids_.size() || this->Ids_[slot] != ids[i]) {
+      slot = this->FindSlot(ids[i]);
+    }
     this->RefuseRoot(ids[i], "posed");
-    std::uint64_t& row = this->BatchRows_[this->BatchSlots_[i]];
+    std::uint64_t& row = this->BatchRows_[slot];
     if (row >= start) {
       throw Error(Error::Kind::InvalidArgument, this->Label(ids[i]),
                   "it comes twice, in rows " + std::to_string(row - start) + " and " +
                       std::to_string(i) + "; accepted: each frame once");
     }
     row = start + i;
-    const Pose X_PF = PoseFromRow(poses + PoseSize * i);
-    if (!IsValidPose(X_PF)) {
-      RefusePose(this->Label(ids[i]) + " (row " + std::to_string(i) + ")", X_PF);
+    const double* pose = poses + PoseSize * i;
+    if (!IsPlainlyValid(pose)) {
+      const Pose X_PF = PoseFromRow(pose);
+      if (!IsValidPose(X_PF)) {
+        RefusePose(this->Label(ids[i]) + " (row " + std::to_string(i) + ")", X_PF);
+      }
     }
   }
-  std::size_t changed = 0;
+  std::vector<SlotIndex> changed;
+  const bool tell = this->Notifier_.HasListeners();
+  bool any = false;
   for (std::size_t i = 0; i < n; ++i) {
+    const double* row = poses + PoseSize * i;
     const SlotIndex slot = this->BatchSlots_[i];
-    if (this->StorePose(slot, NormalisedPose(PoseFromRow(poses + PoseSize * i)))) {
-      this->BatchSlots_[changed++] = slot;
+    const Pose X_PF = {{row[0], row[1], row[2]}, {row[3], row[4], row[5], row[6]}, row[7]};
+    if (this->StorePose(slot, IsNormalised(X_PF.rotation) ? X_PF : NormalisedPose(X_PF))) {
+      any = true;
+      if (tell) {
+        changed.push_back(slot);
+      }
     }
   }
-  if (changed == 0) {
+  if (!any) {
     return;
   }
-  std::vector<FrameId> news;
-  if (this->Notifier_.HasListeners()) {
-    const auto begin = this->BatchSlots_.begin();
-    auto end = begin + static_cast<std::ptrdiff_t>(changed);
-    std::sort(begin, end);
-    end = std::unique(begin, end);
-    std::transform(begin, end, std::back_inserter(news),
-                   [this](SlotIndex slot) { return this->Ids_[slot]; });
-  }
+  std::vector<FrameId> news(changed.size());
+  std::sort(changed.begin(), changed.end());
+  std::transform(changed.begin(), changed.end(), news.begin(),
+                 [this](SlotIndex slot) { return this->Ids_[slot]; });
   this->Emit(FrameEvent::Type::PosesChanged, std::move(news));
 }
 
