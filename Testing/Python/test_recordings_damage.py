@@ -147,6 +147,7 @@ def logged(tmp_path_factory):
     path = folder / "a.dspace"
     rows = {}
     with contextlib.closing(create_recording(str(path))) as database:
+        database.execute("PRAGMA journal_mode=WAL")
         database.execute("PRAGMA wal_autocheckpoint=0")
         for begin in range(1, 121, 10):
             if begin == 81:
