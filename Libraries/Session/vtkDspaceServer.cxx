@@ -22,9 +22,14 @@ struct vtkDspaceServer::Internals {
   dspace::session::Interpreter::Token listener = 0; // there
   std::unique_ptr<dspace::session::Confinement> confinement;
   std::unique_ptr<dspace::session::Server> server; // goes first: it calls what is above
+  std::uint64_t published = 0;                     // commands: the server counts them alike
 
   dspace::session::Server::SessionWork Work() {
-    return {[this](dspace::v1::Command& command) { return this->Execute(command); },
+    return {[this](dspace::v1::Command& command) {
+              dspace::v1::Reply reply = this->Execute(command);
+              reply.set_sequence(this->published);
+              return reply;
+            },
             [this] { return this->session->GetLedger().Commands(); }};
   }
 
@@ -60,6 +65,7 @@ struct vtkDspaceServer::Internals {
   void Hear(const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
     dspace::v1::Command recorded;
     if (this->server && dspace::session::ToRecorded(command, reply, recorded)) {
+      ++this->published;
       this->server->Publish(recorded);
     }
   }

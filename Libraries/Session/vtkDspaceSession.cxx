@@ -51,16 +51,34 @@ struct vtkDspaceSession::Internals {
   std::unique_ptr<dspace::session::RecordingWriter> recording;
   dspace::session::RecordingCounts counts; // of the last one
 
+  // The command is recorded whatever becomes of the ledger, which only snapshots are made of. What
+  // this throws becomes a warning in the reply; a server's viewers hear of the command from another
+  // listener.
   void Note(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply) {
-    this->ledger.Add(accepted, reply);
+    std::string trouble;
+    try {
+      this->ledger.Add(accepted, reply);
+    } catch (const std::exception& error) {
+      trouble = error.what();
+    }
     if (accepted.has_set_time()) {
       this->time_s = accepted.set_time().time_s();
     }
-    if (this->recording) {
-      const std::string failure = this->recording->Add(accepted, reply, this->ledger);
-      if (!failure.empty()) {
-        throw std::runtime_error(failure + "; recording has stopped, what was written stays");
-      }
+    this->Keep(accepted, reply, trouble);
+    if (!trouble.empty()) {
+      throw std::runtime_error(trouble);
+    }
+  }
+
+  void Keep(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply,
+            std::string& trouble) {
+    if (!this->recording) {
+      return;
+    }
+    const std::string failure = this->recording->Add(accepted, reply, this->ledger);
+    if (!failure.empty()) {
+      trouble += (trouble.empty() ? "" : "; ") + failure +
+                 "; recording has stopped, what was written stays";
     }
   }
 
@@ -192,15 +210,15 @@ std::string vtkDspaceSession::FlushRecording() {
   return this->Impl->recording ? this->Impl->recording->Flush() : std::string();
 }
 
-unsigned long long vtkDspaceSession::GetRecordingCount(const std::string& name) {
+const dspace::session::RecordingCounts& vtkDspaceSession::GetRecordingCounts() {
   if (this->Impl->recording) {
     this->Impl->counts = this->Impl->recording->Counts();
   }
-  const dspace::session::RecordingCounts& counts = this->Impl->counts;
-  return name == "accepted"  ? counts.accepted
-         : name == "written" ? counts.written
-         : name == "bytes"   ? counts.bytes
-                             : counts.snapshots;
+  return this->Impl->counts;
+}
+
+unsigned long long vtkDspaceSession::GetRecordingCount(const std::string& name) {
+  return dspace::session::CountOf(this->GetRecordingCounts(), name);
 }
 
 std::string vtkDspaceSession::GetRecordingPath() {
@@ -208,18 +226,12 @@ std::string vtkDspaceSession::GetRecordingPath() {
 }
 
 std::string vtkDspaceSession::GetRecordingFailure() {
-  if (this->Impl->recording) {
-    this->Impl->counts = this->Impl->recording->Counts();
-  }
-  return this->Impl->counts.failure;
+  return this->GetRecordingCounts().failure;
 }
 
 std::string vtkDspaceSession::GetRecordingMissing() {
-  if (this->Impl->recording) {
-    this->Impl->counts = this->Impl->recording->Counts();
-  }
   std::string lines;
-  for (const std::string& path : this->Impl->counts.missing) {
+  for (const std::string& path : this->GetRecordingCounts().missing) {
     lines += (lines.empty() ? "" : "\n") + path;
   }
   return lines;
@@ -240,6 +252,13 @@ std::string vtkDspaceSession::Replay(const std::string& bytes) {
     return reply.SerializeAsString();
   }
   return this->Execute(bytes);
+}
+
+std::string vtkDspaceSession::Miss(const dspace::v1::Command& accepted, const std::string& why) {
+  this->Impl->ledger.Miss(accepted, why);
+  std::string trouble;
+  this->Impl->Keep(accepted, dspace::v1::Reply(), trouble);
+  return trouble;
 }
 
 const dspace::session::Ledger& vtkDspaceSession::GetLedger() {

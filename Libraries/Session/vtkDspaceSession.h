@@ -17,6 +17,7 @@
 #ifndef __VTK_WRAP__
 #include <dspace/session/Interpreter.h>
 #include <dspace/session/Ledger.h>
+#include <dspace/session/RecordingWriter.h>
 #endif
 
 class vtkDataArray;
@@ -56,8 +57,8 @@ public:
   /// Records from the present state on into a new file, whose name ends as it likes. Every accepted
   /// command is written by a thread of its own, at most `commitEvery` seconds later (0.001 to 60);
   /// where that fails, one reply warns, the session goes on, and what was written stays. Both
-  /// return what went wrong, or an empty string. One recording at a time. `pack`: the files that the
-  /// commands need become part of it; GetRecordingMissing() has those that could not be read, a
+  /// return what went wrong, or an empty string. One recording at a time. `pack`: the files that
+  /// the commands need become part of it; GetRecordingMissing() has those that could not be read, a
   /// line each.
   std::string Record(const std::string& path, double commitEvery, bool pack = false);
   std::string StopRecording();
@@ -81,6 +82,12 @@ public:
   dspace::session::Interpreter& GetInterpreter();
   /// What makes the present state.
   const dspace::session::Ledger& GetLedger();
+  /// All that is said of the present recording, or of the one before.
+  const dspace::session::RecordingCounts& GetRecordingCounts();
+  /// For who follows another session: a command that was accepted there, and that could not be
+  /// carried out here for the reason given. It is recorded like others; without its effect there is
+  /// no snapshot until its scene is removed. Returns why recording has ended, or an empty string.
+  std::string Miss(const dspace::v1::Command& accepted, const std::string& why);
 #endif
 
 protected:

@@ -37,7 +37,7 @@ struct vtkDspaceWatcher::Internals {
   std::string writer;
   bool writerConnected = false;
   std::string trouble;
-  std::string failed; // the reply that says why there is no connection
+  std::string failed; // the reply that says why there is no connection, or no word of an event
   dspace::session::LinkBanner banner;
   std::set<std::string> followed; // scenes whose frames' changes are told
   dspace::v1::Reply changes;      // of these, that nobody has taken
@@ -110,8 +110,9 @@ struct vtkDspaceWatcher::Internals {
     if (reply.has_error() && this->own.MakeRoom(this->Interpreter(), command)) {
       reply = this->Interpreter().Execute(command);
     }
-    if (reply.has_error() && this->trouble.empty()) {
-      this->trouble = reply.error().message();
+    if (reply.has_error()) {
+      this->session->Miss(command, reply.error().message());
+      this->trouble = this->trouble.empty() ? reply.error().message() : this->trouble;
     }
     this->changes.mutable_frame_event()->MergeFrom(reply.frame_event());
     if (this->changes.frame_event_size() > MostChanges) {
@@ -302,20 +303,43 @@ std::string vtkDspaceWatcher::TakeFrameEvents() {
   return bytes;
 }
 
-std::string vtkDspaceWatcher::Tell(const std::string& bytes) {
+std::string vtkDspaceWatcher::TellLater(const std::string& bytes) {
   return dspace::session::Catch([&] {
            dspace::v1::ViewerEvent event;
            if (!this->Impl->watcher || !event.ParseFromString(bytes)) {
              throw dspace::Error(dspace::Error::Kind::Corrupt, "event",
                                  "the bytes are not a ViewerEvent, or there is no connection");
            }
-           if (!this->Impl->watcher->Tell(event)) {
-             throw dspace::Error(dspace::Error::Kind::NotFound, "simulation",
-                                 "nobody drives the server now; the event is dropped");
-           }
+           this->Impl->watcher->BeginTell(event, this->Impl->options.timeout_s);
            return dspace::v1::Reply();
          })
       .SerializeAsString();
+}
+
+int vtkDspaceWatcher::WaitToTell(double seconds) {
+  bool told = false;
+  const dspace::v1::Reply reply = dspace::session::Catch([&] {
+    if (!this->Impl->watcher) {
+      throw dspace::Error(dspace::Error::Kind::Io, "event", "there is no connection");
+    }
+    told = this->Impl->watcher->WaitToTell(seconds);
+    if (told && !this->Impl->watcher->TakeTold()) {
+      throw dspace::Error(dspace::Error::Kind::NotFound, "simulation",
+                          "nobody drives the server now; the event is dropped");
+    }
+    return dspace::v1::Reply();
+  });
+  if (reply.has_error()) {
+    this->Impl->failed = reply.SerializeAsString();
+    return -1;
+  }
+  return told ? 1 : 0;
+}
+
+void vtkDspaceWatcher::DropTell() {
+  if (this->Impl->watcher) {
+    this->Impl->watcher->DropTell();
+  }
 }
 
 vtkDspaceSession* vtkDspaceWatcher::GetSession() {

@@ -59,9 +59,12 @@ public:
   /// A serialized Reply with what has happened to the frames of followed scenes (FollowFrames)
   /// since the last call, in order. A snapshot brings none. At most 100,000 wait; older ones go.
   std::string TakeFrameEvents();
-  /// Sends a serialized ViewerEvent to the simulation. The reply's error is NOT_FOUND when nobody
-  /// drives.
-  std::string Tell(const std::string& event);
+  /// Sends a serialized ViewerEvent to the simulation: TellLater, then WaitToTell, up to so many
+  /// seconds each time, until it returns 1 (told) or -1 (no: TakeReply says why; its error is
+  /// NOT_FOUND when nobody drives). DropTell waits no longer. The timeout is the connection's.
+  std::string TellLater(const std::string& event);
+  int WaitToTell(double seconds);
+  void DropTell();
   /// What draws; another one after each snapshot.
   vtkDspaceSession* GetSession();
   void Close();

@@ -10,12 +10,14 @@ import dspace
 from served_support import Served
 
 WAITS = """
+import os
+import signal
 import sys
 import dspace
 
 def interrupted(work):
-    print("waiting", flush=True)
     try:
+        print("waiting", flush=True)
         work()
     except KeyboardInterrupt:
         print("interrupted", flush=True)
@@ -40,13 +42,21 @@ scene.time = 2.0
 print("second" in scene.frames, scene.time, flush=True)
 interrupted(lambda: dspace.connect(sys.argv[2], timeout=600.0))
 interrupted(lambda: dspace.watch(sys.argv[2], timeout=600.0))
+watcher = dspace.watch(sys.argv[1], timeout=600.0)
+os.kill(int(sys.argv[3]), signal.SIGSTOP)
+interrupted(lambda: watcher.answer("land", "yes"))
+watcher.answer("land", "no")
+told = []
+while not told or told[-1] != "no":  # the first one may have come or not
+    told += [event.answer.answer for event in session.process_events(wait=600.0)]
+print("told", flush=True)
 """
 
 
 def test_ctrl_c_ends_every_wait(tmp_path):
     with Served(tmp_path) as server:
         simulation = subprocess.Popen([sys.executable, "-W", "ignore", "-c", WAITS, server.address,
-                                       f"unix:{tmp_path}/nobody"], stdin=subprocess.PIPE,
+                                       f"unix:{tmp_path}/nobody", str(server.process.pid)], stdin=subprocess.PIPE,
                                       stdout=subprocess.PIPE, text=True)
 
         def interrupt():
@@ -76,6 +86,10 @@ def test_ctrl_c_ends_every_wait(tmp_path):
             for _ in range(2):
                 interrupt()  # of a connection, and of a viewer's
                 go_on()
+            interrupt()  # of what a viewer says
+            server.process.send_signal(signal.SIGCONT)
+            go_on()
+            assert simulation.stdout.readline() == "told\n"
             assert simulation.wait(timeout=60) == 0
         finally:
             server.process.send_signal(signal.SIGCONT)

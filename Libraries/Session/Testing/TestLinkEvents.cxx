@@ -98,6 +98,31 @@ TEST_F(LinkEvents, ACallbackMayGiveCommands) {
   EXPECT_EQ(client.Execute(AskPoses({9})).poses().pose(0), 2);
 }
 
+TEST_F(LinkEvents, AreSaidInPartsAndDropped) {
+  RemoteClient client(this->ClientOptions());
+  v1::ViewerEvent event;
+  event.mutable_answer()->set_question("deploy?");
+  EXPECT_TRUE(this->Viewer->WaitToTell(20)); // nothing is under way,
+  EXPECT_THROW(this->Viewer->TakeTold(), Error);
+  for (const bool dropped : {true, false}) {
+    event.mutable_answer()->set_answer(dropped ? "no" : "go");
+    this->Viewer->BeginTell(event, 20);
+    if (dropped) {
+      this->Viewer->DropTell();
+      EXPECT_THROW(this->Viewer->TakeTold(), Error); // nor is it any more
+    }
+  }
+  while (!this->Viewer->WaitToTell(0.01)) {
+  }
+  EXPECT_TRUE(this->Viewer->TakeTold());
+  EXPECT_THROW(this->Viewer->TakeTold(), Error); // taken once
+  // What was dropped may have been heard.
+  const std::vector<v1::ViewerEvent> heard = this->Take(client, 1);
+  ASSERT_FALSE(heard.empty());
+  EXPECT_TRUE(heard.back().answer().answer() == "go" ||
+              this->Take(client, 1).back().answer().answer() == "go");
+}
+
 TEST_F(LinkEvents, WhatIsNoWishIsRefusedByTheServer) {
   RemoteClient client(this->ClientOptions());
   v1::ViewerEvent event;

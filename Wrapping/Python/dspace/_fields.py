@@ -1,4 +1,6 @@
 """Values into messages, refused with the object, the value and what would be accepted."""
+import os
+
 import numpy as np
 from google.protobuf.descriptor import FieldDescriptor as _Field
 
@@ -80,6 +82,22 @@ def number(value, what, about=None):
         refuse(about, what, value, "a number", WrongType)
 
 
+def real(value, what, about=None, accepted="a number"):
+    """A float, finite or not, and no NaN."""
+    value = number(value, what, about)
+    if value != value:
+        refuse(about, what, value, accepted)
+    return value
+
+
+def path(value, what, about=None, accepted="a path"):
+    """A path, of a str or a path object, as a str."""
+    value = text(os.fspath(value) if isinstance(value, os.PathLike) else value, what, about, accepted)
+    if not value or "\0" in value:
+        refuse(about, what, value, f"{accepted} that is not empty and holds no zero bytes")
+    return value
+
+
 def numbers(value, count, what, about=None, accepted=None):
     """`count` numbers as an array of floats, finite or not."""
     try:
@@ -109,6 +127,13 @@ def integers(value, count, what, about=None, accepted=None):
                                        and not isinstance(v, bool) for v in values):
         refuse(about, what, value, accepted or f"{count} integers", WrongType)
     return [int(v) for v in values]
+
+
+def integer(value, what, about=None, accepted="an integer"):
+    """One integer."""
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
+        refuse(about, what, value, accepted, WrongType)
+    return int(value)
 
 
 def items(value, what, about, accepted):

@@ -3,39 +3,48 @@ import os
 
 from dspace._client import warn
 from dspace._fields import flag, number
-from dspace.errors import AlreadyExists, InvalidArgument, Io, NotFound, Unsupported
+from dspace.errors import AlreadyExists, InvalidArgument, Io, NotFound
 from dspace.recording_file import path_of
 
 COUNTS = ("accepted", "written", "bytes", "snapshots")
+
+
+def new_file(path):
+    """The absolute path of a recording that may be made there."""
+    path = path_of(path)
+    if os.path.lexists(path):
+        raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
+    if not os.path.isdir(os.path.dirname(path)):
+        raise NotFound(f"recording {path!r}: there is no such folder", "recording")
+    return path
+
+
+def checked_time(commit_every, path):
+    every = number(commit_every, "the time from commit to commit", "recording")
+    if not 0.001 <= every <= 60:
+        raise InvalidArgument(f"recording {path!r}: commit_every is {every!r} s; accepted: 0.001 to 60", "recording")
+    return every
 
 
 class Recording:
     """What Session.record() returns. `counts` says how far it is."""
 
     def __init__(self, client, path, commit_every, pack=False):
-        self.path = path = path_of(path)
         self._client = client
-        try:
-            client.local()
-        except Unsupported:
-            raise Unsupported(f"recording {path!r}: the session is in a server, which records it (dspace serve "
-                              "--record FILE); accepted here: dspace.watch() of the same address, and its "
-                              "record()", "recording") from None
+        client.local()
         self._last = None
-        if os.path.lexists(path):
-            raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
-        if not os.path.isdir(os.path.dirname(path)):
-            raise NotFound(f"recording {path!r}: there is no such folder", "recording")
-        every = number(commit_every, "the time from commit to commit", "recording")
-        if not 0.001 <= every <= 60:
-            raise InvalidArgument(f"recording {path!r}: commit_every is {every!r} s; accepted: 0.001 to 60",
-                                  "recording")
+        if client.recording is not None and client.recording.active:
+            raise AlreadyExists(f"recording {path_of(path)!r}: the session records into {client.recording.path!r}; "
+                                "accepted: one recording at a time", "recording")
+        self.path = path = new_file(path)
+        every = checked_time(commit_every, path)
         self._raise(client.local().Record(path, every, flag(pack, "pack", "recording")))
         client.recording = self
 
     def _raise(self, problem):
         if problem:
-            raise Io(problem, f"recording {self.path!r}")
+            name = f"recording {self.path!r}"
+            raise Io(problem if problem.startswith("recording ") else f"{name}: {problem}", name)
 
     def __enter__(self):
         return self

@@ -1,11 +1,14 @@
 """Sessions in a server process: the same script as with dspace.Session(), one line changed."""
 import os
+import threading
 import time
 
 from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_bytes, to_reply, warn
 from dspace._fields import flag, number, refuse, text
-from dspace.errors import Closed, Unsupported, WrongType
+from dspace._links import SLICE, hear_signals, make_connection, prepare
+from dspace.errors import Closed, DeadlineExceeded, Unsupported
+from dspace.served_recordings import ServedRecording
 from dspace.session import commands_pb2 as pb
 from dspace.session import service_pb2
 from dspace.sessions import Session
@@ -15,26 +18,22 @@ SILENT = {"set_time", "set_poses", "append_trail", "set_joints", "set_tilt", "se
           "set_object_visible", "set_material", "set_object_offset", "set_light", "track_wheels", "set_telemetry",
           "set_telemetry_texts"}
 
-SLICE = 0.1  # [s] of a wait without hearing signals
-
-
-def hear_signals():
-    """Between two slices of a wait. CPython 3.11 does not notice a signal that another thread than the main one has
-    caught, such as gRPC's, until its lock has been let go, which this does."""
-    time.sleep(0)
-
-
 class RemoteClient(LocalClient):
     """Hands commands to a server."""
 
-    def __init__(self, link, address):
+    def __init__(self, link, address, name, timeout, prepared):
         super().__init__()
         self.vtk = None
         self.link = link
         self.address = address
+        self.name = name
+        self.timeout = timeout
+        self.prepared = prepared  # sets on another link what this one has
         self.process = os.getpid()
         self.wait = True
         self.pace = None
+        self.sequence = 0  # of the last command that is known to be done
+        self.later = False  # whether others may have been done since
 
     def local(self):
         raise Unsupported(f"the session is in the server at {self.address}: its VTK objects are there; "
@@ -49,20 +48,52 @@ class RemoteClient(LocalClient):
         self._require_thread()
         return self.link
 
+    def require_thread(self):
+        self._require_thread()
+
     def _carry(self, command):
         link = self._open()
-        link.Begin(command.SerializeToString(), self.wait or command.WhichOneof("command") not in SILENT)
-        return self._take(link)
+        asks = self.wait or command.WhichOneof("command") not in SILENT
+        self.later = self.later or not asks
+        link.Begin(command.SerializeToString(), asks)
+        reply = self._take(link, asks)
+        for news in self.recording.take_news() if self.recording is not None else ():
+            warn(news) if reply.HasField("error") else reply.warning.append(news)
+        return reply
 
-    @staticmethod
-    def _take(link):
+    def _take(self, link, asks=False, end=None):
+        """The reply to what was begun (`asks`: a command that has one), at the time `end` at the latest."""
         try:
             while not link.Wait(SLICE):
                 hear_signals()
+                if end is not None and time.monotonic() > end:
+                    raise DeadlineExceeded(f"server {self.address!r}: no answer in time", "server")
         except BaseException:
+            self.later = True  # it may yet be done
             link.Abandon()
             raise
-        return to_reply(link.TakeReply())
+        reply = to_reply(link.TakeReply())
+        self.sequence = max(self.sequence, reply.sequence)
+        if asks and not reply.HasField("error"):  # else it may be that of an earlier command
+            self.later = False
+        return reply
+
+    def settle(self, end):
+        """Waits, until that time if one is given, until it is known what has been done; raises what was refused."""
+        if self.later:
+            link = self._open()
+            link.BeginFlush()
+            sent = self._take(link, end=end)
+            command = pb.Command()
+            command.list_scenes.SetInParent()
+            link.Begin(command.SerializeToString(), True)
+            last = self._take(link, True, end)
+            self._finish(pb.Command(), sent)
+            self._finish(command, last)
+
+    def broken(self):
+        """Whether the link is, for good."""
+        return to_reply(self._open().GetBroken()).HasField("error")
 
     def tell(self, event):
         self._open()
@@ -91,8 +122,12 @@ class RemoteClient(LocalClient):
     def close(self):
         if self.link is not None:
             self._require_thread()
-            self.link.Close()
-        self.link = None
+            try:
+                if self.recording is not None:
+                    self.recording.finish()
+            finally:
+                self.link.Close()
+                self.link = None
         self.frame_listeners.clear()
         self.events.clear()
 
@@ -122,6 +157,21 @@ class RemoteSession(Session):
     def flush(self):
         """Waits until everything that was sent is done; raises what of it was refused first."""
         self._client.flush()
+
+    def record(self, path, commit_every=0.1, pack=False):
+        """As Session.record(), into a file of this process's machine: the state that the server has, and then every
+        command that it accepts, whoever gives it. They come back over a connection of their own, one of a viewer,
+        and are written by a thread of its own.
+
+        recording.stop(), the end of its `with` block and session.close() wait until all that this session has been
+        told to be done is in the file. What goes wrong (a full disk, a server that is gone) is told once, as a
+        warning by the session's next command, and what was written stays; where the recording was cut off, and came
+        back, it has a gap (Playback.gaps). Every command is carried out here as well, without drawing: files that
+        commands name are read by the paths that the server has. One that cannot be is recorded all the same, with a
+        warning; where the present state already needs one that is not here, dspace.Io is raised. `dspace serve
+        --record` records in the server, and outlives this process.
+        """
+        return ServedRecording(self._client, path, commit_every, pack)
 
     @property
     def pace(self):
@@ -154,34 +204,6 @@ class RemoteSession(Session):
         return f"<dspace.RemoteSession, {state}>"
 
 
-def prepare(link, address, certificate, key, authority, insecure, timeout, label):
-    """What connect() and watch() share: checks, and sets what both kinds of links take."""
-    text(address, "the address", label)
-    files = []
-    for value, what in ((certificate, "certificate"), (key, "key"), (authority, "authority")):
-        if value is not None and not isinstance(value, (str, os.PathLike)):
-            refuse(label, what, value, "the path of a PEM file", WrongType)
-        files.append("" if value is None else os.path.abspath(os.fspath(value)))
-    link.SetCertificates(*files)
-    link.SetInsecure(flag(insecure, "insecure", label))
-    if insecure:
-        warn(f"{label}: nothing is encrypted, and nobody knows who is there")
-    link.SetTimeout(number(timeout, "the timeout", label))
-
-
-def make_connection(link, address, name):
-    """Of both kinds of links; raises why there is none."""
-    reply = to_reply(link.ConnectLater(address, name))
-    state = -1 if reply.HasField("error") else 0
-    while state == 0:
-        state = link.WaitToConnect(SLICE)
-        hear_signals()
-        if state < 0:
-            reply = to_reply(link.TakeReply())
-    if reply.HasField("error"):
-        raise make_error(reply.error)
-
-
 def connect(address, certificate=None, key=None, authority=None, insecure=False, timeout=30.0,
             name="simulation", take_over=False, only_changes=True):
     """Drives the session of a `dspace serve` process at "host:port" or "unix:PATH".
@@ -193,9 +215,9 @@ def connect(address, certificate=None, key=None, authority=None, insecure=False,
     """
     label = f"server {address!r}"
     link = _vtk.vtkDspaceRemoteSession()
-    prepare(link, address, certificate, key, authority, insecure, timeout, label)
+    prepared = prepare(link, address, certificate, key, authority, insecure, timeout, label)
     text(name, "the name", label)
     link.SetTakeOver(flag(take_over, "take_over", label))
     link.SetOnlyChanges(flag(only_changes, "only_changes", label))
     make_connection(link, address, name)
-    return RemoteSession(RemoteClient(link, address))
+    return RemoteSession(RemoteClient(link, address, name, float(timeout), prepared))

@@ -3,9 +3,9 @@ import time
 
 from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_reply
-from dspace._fields import number, refuse, text
+from dspace._fields import real, refuse, text
+from dspace._links import SLICE, hear_signals, make_connection, prepare
 from dspace.errors import Closed, WrongType
-from dspace.remote import SLICE, hear_signals, make_connection, prepare
 from dspace.scenes import Scene
 from dspace.sessions import Session
 
@@ -51,7 +51,18 @@ class WatchClient(LocalClient):
         return count
 
     def tell(self, event):
-        reply = to_reply(self.watcher().Tell(event.SerializeToString()))
+        watcher = self.watcher()
+        reply = to_reply(watcher.TellLater(event.SerializeToString()))
+        state = -1 if reply.HasField("error") else 0
+        try:
+            while state == 0:
+                state = watcher.WaitToTell(SLICE)
+                hear_signals()
+                if state < 0:
+                    reply = to_reply(watcher.TakeReply())
+        except BaseException:
+            watcher.DropTell()
+            raise
         if reply.HasField("error"):
             raise make_error(reply.error)
 
@@ -87,7 +98,7 @@ class Watcher(Session):
         Returns how many messages came. Scene.on_frame_change is told of what has changed, but of a new
         snapshot as a whole. Where the simulation or the server is gone the state stays,
         viewports say so, and the link is made again by itself."""
-        return self._client.update(number(wait, "the wait", "watcher"))
+        return self._client.update(real(wait, "the wait", "watcher", "seconds"))
 
     @property
     def sequence(self):
@@ -121,6 +132,8 @@ class Watcher(Session):
         chase, frame, fov_deg, ...) it has a camera of its own; without, it looks through the scene's
         active one until Viewport.event moves it. scene: default the server's only one."""
         label = f"view {text(name, 'the name', 'watcher')!r}"
+        if not name:
+            refuse("watcher", "the view's name", name, "any that is not empty")
         if scene is None:
             scenes = self.scenes
             if len(scenes) != 1:

@@ -3,6 +3,8 @@
 #include <map>
 #include <string>
 
+#include <dspace/Error.h>
+#include <dspace/session/Interpreter.h>
 #include <dspace/session/LedgerFrames.h>
 #include <dspace/session/LedgerObjects.h>
 #include <dspace/session/LedgerViews.h>
@@ -146,6 +148,19 @@ struct Ledger::Impl {
   std::map<std::string, LedgerScene> scenes;
   LedgerViewports viewports;
   std::vector<v1::Command> others; // of kinds that are not known here
+  // What is not known any more, and why: by scene, "" for all that is no scene's.
+  std::map<std::string, std::string> faults;
+  bool unnamed = false; // there was no memory to say which
+
+  void Take(const v1::Command& accepted, const v1::Reply& reply, const std::string& name);
+  void Fail(const v1::Command& command, const std::string& name, const std::string& why);
+  static bool IsOfViewport(const v1::Command& command) {
+    const int kind = command.command_case();
+    return kind >= v1::Command::kCreateViewport && kind <= v1::Command::kRemoveColorBar;
+  }
+  static std::string SceneOf(const v1::Command& command) {
+    return command.scene().empty() ? DefaultScene : command.scene();
+  }
 };
 
 Ledger::Ledger(const State* state) : Impl_(std::make_unique<Impl>()) {
@@ -155,6 +170,40 @@ Ledger::~Ledger() = default;
 Ledger::Ledger(Ledger&&) noexcept = default;
 Ledger& Ledger::operator=(Ledger&&) noexcept = default;
 
+void Ledger::Impl::Take(const v1::Command& accepted, const v1::Reply& reply,
+                        const std::string& name) {
+  if (accepted.has_create_scene()) {
+    this->scenes.erase(name);
+    this->scenes.emplace(name, accepted.create_scene());
+    this->faults.erase(name);
+    return;
+  }
+  if (accepted.has_remove_scene()) {
+    this->scenes.erase(name);
+    this->faults.erase(name);
+    return;
+  }
+  if (this->viewports.Add(accepted)) {
+    return;
+  }
+  const auto found = this->scenes.find(name);
+  if (found == this->scenes.end() ||
+      !(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
+        found->second.AddMessages(accepted) || found->second.names.Add(accepted, reply))) {
+    this->others.push_back(accepted);
+  }
+}
+
+void Ledger::Impl::Fail(const v1::Command& command, const std::string& name,
+                        const std::string& why) {
+  this->unnamed = true;
+  std::string text = "command " + CommandName(command) + " is not in it (" + why +
+                     "); there is no snapshot " +
+                     (name.empty() ? "any more" : "until scene '" + name + "' is removed");
+  this->faults.emplace(name, std::move(text));
+  this->unnamed = false;
+}
+
 void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
   v1::Command recorded;
   if (accepted.has_viewport_event()) {
@@ -163,28 +212,31 @@ void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
     }
     return;
   }
-  const std::string name = accepted.scene().empty() ? DefaultScene : accepted.scene();
-  if (accepted.has_create_scene()) {
-    this->Impl_->scenes.erase(name);
-    this->Impl_->scenes.emplace(name, accepted.create_scene());
+  Impl& impl = *this->Impl_;
+  const std::string scene = Impl::SceneOf(accepted);
+  const std::string name = Impl::IsOfViewport(accepted) ? std::string() : scene;
+  const bool anew = accepted.has_create_scene() || accepted.has_remove_scene();
+  if (!impl.faults.empty() && !anew && impl.faults.count(name)) {
     return;
   }
-  if (accepted.has_remove_scene()) {
-    this->Impl_->scenes.erase(name);
-    return;
-  }
-  if (this->Impl_->viewports.Add(accepted)) {
-    return;
-  }
-  const auto found = this->Impl_->scenes.find(name);
-  if (found == this->Impl_->scenes.end() ||
-      !(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
-        found->second.AddMessages(accepted) || found->second.names.Add(accepted, reply))) {
-    this->Impl_->others.push_back(accepted);
+  try {
+    impl.Take(accepted, reply, scene);
+  } catch (const std::exception& error) {
+    impl.Fail(accepted, name, error.what());
+    throw Error(Error::Kind::Internal, "state", impl.faults.at(name));
   }
 }
 
+void Ledger::Miss(const v1::Command& accepted, const std::string& why) {
+  this->Impl_->Fail(accepted,
+                    Impl::IsOfViewport(accepted) ? std::string() : Impl::SceneOf(accepted), why);
+}
+
 std::vector<v1::Command> Ledger::Commands() const {
+  if (this->Impl_->unnamed || !this->Impl_->faults.empty()) {
+    throw Error(Error::Kind::Internal, "state",
+                this->Impl_->unnamed ? "out of memory" : this->Impl_->faults.begin()->second);
+  }
   std::vector<v1::Command> out;
   for (const auto& [name, scene] : this->Impl_->scenes) {
     scene.Put(name, this->Impl_->state, out);

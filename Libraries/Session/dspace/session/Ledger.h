@@ -3,6 +3,7 @@
 #define DSPACE_SESSION_LEDGER_H
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <dspace/session/commands.pb.h>
@@ -33,7 +34,12 @@ public:
   Ledger(Ledger&&) noexcept;
   Ledger& operator=(Ledger&&) noexcept;
 
+  // What it throws leaves the scene of the command (or, of a viewport's command, everything) not to
+  // be known any more. Nothing more of it is taken in, without a word, until it is removed.
   void Add(const v1::Command& accepted, const v1::Reply& reply);
+  // The same of a command that the state should have and has not, for the reason given.
+  void Miss(const v1::Command& accepted, const std::string& why);
+  // Throws Error(Internal) while anything is not known, naming it.
   std::vector<v1::Command> Commands() const;
 
 private:

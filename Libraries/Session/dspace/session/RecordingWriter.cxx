@@ -124,28 +124,73 @@ struct RecordingWriter::Impl {
     this->news.notify_one();
   }
 
-  // False: it is too large.
-  bool TakeSnapshot(const Ledger& ledger) {
+  // Empty, or why there is none; then the one before it leads here too.
+  std::string TakeSnapshot(const Ledger& ledger) {
+    this->bytesSince = 0;
+    this->commandsSince = 0;
     RecordingRow row;
     row.snapshot = true;
     row.seq = this->seq;
     row.time_s = this->time_s;
     row.wall_s = WallTime();
-    std::ostringstream out;
-    const std::vector<v1::Command> commands = ledger.Commands();
-    for (const v1::Command& command : commands) {
-      google::protobuf::util::SerializeDelimitedToOstream(command, &out);
+    try {
+      std::ostringstream out;
+      const std::vector<v1::Command> commands = ledger.Commands();
+      for (const v1::Command& command : commands) {
+        google::protobuf::util::SerializeDelimitedToOstream(command, &out);
+      }
+      row.kind = std::int32_t(commands.size());
+      row.payload = out.str();
+    } catch (const std::exception& error) {
+      return error.what();
     }
-    row.kind = std::int32_t(commands.size());
-    row.payload = out.str();
     this->lastSnapshot = row.payload.size();
-    this->bytesSince = 0;
-    this->commandsSince = 0;
     if (this->lastSnapshot > this->options.largestSnapshot) {
-      return false; // the one before it leads here too
+      return "the state has " + std::to_string(this->lastSnapshot) + " bytes; accepted: up to " +
+             std::to_string(this->options.largestSnapshot);
     }
     this->Hand(std::move(row));
-    return true;
+    return {};
+  }
+
+  void Put(const v1::Command& accepted, const v1::Reply& reply, const Ledger& ledger) {
+    v1::Command made;
+    const v1::Command* recorded = &accepted;
+    if (accepted.has_viewport_event()) {
+      if (!ToRecorded(accepted, reply, made)) {
+        return;
+      }
+      recorded = &made;
+    }
+    if (recorded->has_set_time()) {
+      this->time_s = WithoutMinus0(recorded->set_time().time_s());
+    }
+    if (!recorded->has_set_poses()) { // which names no file and is most of all
+      this->HandFiles(*recorded);
+    }
+    RecordingRow row;
+    row.seq = ++this->seq;
+    row.time_s = this->time_s;
+    row.wall_s = WallTime();
+    row.kind = std::int32_t(recorded->command_case());
+    row.payload = recorded->SerializeAsString();
+    this->bytesSince += row.payload.size();
+    ++this->commandsSince;
+    this->Hand(std::move(row));
+    // Not oftener than four times their own size: a large state costs a part of the file at most.
+    if (this->bytesSince >= std::max(this->options.snapshotBytes, 4 * this->lastSnapshot) ||
+        (this->commandsSince >= this->options.snapshotCommands &&
+         this->bytesSince >= this->lastSnapshot)) {
+      this->TakeSnapshot(ledger);
+    }
+  }
+
+  std::string Fail(const std::string& why) {
+    const std::lock_guard<std::mutex> lock(this->mutex);
+    if (this->counts.failure.empty()) {
+      this->counts.failure = "recording '" + this->path + "': " + why;
+    }
+    return this->counts.failure;
   }
 
   // Whole transactions only are ever seen: what is in one that fails is rolled back.
@@ -233,7 +278,10 @@ RecordingWriter::RecordingWriter(const std::string& path, const Ledger& initial,
   for (const v1::Command& command : commands) {
     this->Impl_->HandFiles(command);
   }
-  this->Impl_->TakeSnapshot(initial);
+  const std::string failure = this->Impl_->TakeSnapshot(initial);
+  if (!failure.empty()) {
+    throw Error(Error::Kind::Resource, "recording '" + path + "'", failure);
+  }
   this->Impl_->thread = std::thread([impl = this->Impl_.get()] { impl->Run(); });
 }
 
@@ -257,34 +305,11 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
       return failure;
     }
   }
-  v1::Command made;
-  const v1::Command* recorded = &accepted;
-  if (accepted.has_viewport_event()) {
-    if (!ToRecorded(accepted, reply, made)) {
-      return {};
-    }
-    recorded = &made;
-  }
-  if (recorded->has_set_time()) {
-    impl.time_s = WithoutMinus0(recorded->set_time().time_s());
-  }
-  if (!recorded->has_set_poses()) { // which names no file and is most of all
-    impl.HandFiles(*recorded);
-  }
-  RecordingRow row;
-  row.seq = ++impl.seq;
-  row.time_s = impl.time_s;
-  row.wall_s = WallTime();
-  row.kind = std::int32_t(recorded->command_case());
-  row.payload = recorded->SerializeAsString();
-  impl.bytesSince += row.payload.size();
-  ++impl.commandsSince;
-  impl.Hand(std::move(row));
-  // Not oftener than four times their own size: a large state costs a part of the file at most.
-  if (impl.bytesSince >= std::max(impl.options.snapshotBytes, 4 * impl.lastSnapshot) ||
-      (impl.commandsSince >= impl.options.snapshotCommands &&
-       impl.bytesSince >= impl.lastSnapshot)) {
-    impl.TakeSnapshot(ledger);
+  try {
+    impl.Put(accepted, reply, ledger);
+  } catch (const std::exception& error) { // out of memory, say: what follows is not to be used
+    impl.told = true;
+    return impl.Fail(std::string("a command could not be kept: ") + error.what());
   }
   return {};
 }
@@ -306,18 +331,21 @@ void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFil
   impl.lost += (impl.lost.empty() ? "" : " ") + number + "-" + number;
   impl.time_s = WithoutMinus0(time_s);
   impl.files = files;
-  for (const v1::Command& command : ledger.Commands()) {
-    impl.HandFiles(command);
+  std::string failure;
+  try {
+    for (const v1::Command& command : ledger.Commands()) {
+      impl.HandFiles(command);
+    }
+    {
+      const std::lock_guard<std::mutex> lock(impl.mutex);
+      impl.newLost = impl.lost;
+    }
+    failure = impl.TakeSnapshot(ledger); // in one transaction with what is lost, or in a later one
+  } catch (const std::exception& error) {
+    failure = error.what();
   }
-  {
-    const std::lock_guard<std::mutex> lock(impl.mutex);
-    impl.newLost = impl.lost;
-  }
-  if (!impl.TakeSnapshot(ledger)) { // in one transaction with what is lost, or in a later one
-    const std::lock_guard<std::mutex> lock(impl.mutex);
-    impl.counts.failure =
-        "recording '" + impl.path + "': the state has " + std::to_string(impl.lastSnapshot) +
-        " bytes; accepted after a gap: up to " + std::to_string(impl.options.largestSnapshot);
+  if (!failure.empty()) {
+    impl.Fail("after a gap: " + failure);
   }
 }
 

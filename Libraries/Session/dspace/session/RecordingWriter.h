@@ -40,6 +40,15 @@ struct RecordingCounts {
   std::vector<std::string> missing; // files that were to be packed and could not be read
 };
 
+// By name: "accepted", "written", "bytes", "snapshots"; 0 for any other.
+inline std::uint64_t CountOf(const RecordingCounts& counts, const std::string& name) {
+  return name == "accepted"    ? counts.accepted
+         : name == "written"   ? counts.written
+         : name == "bytes"     ? counts.bytes
+         : name == "snapshots" ? counts.snapshots
+                               : 0;
+}
+
 // A thread of its own writes, in transactions. It ends with what is queued when it is destroyed.
 // Add, Snapshot and the destructor belong to one thread.
 class RecordingWriter {
@@ -56,7 +65,8 @@ public:
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
   // An accepted command, after `ledger` has it. After a failure nothing is kept; the first call
-  // then returns what failed, all others an empty string. Never throws for the disk.
+  // then returns what failed, all others an empty string. Never throws. While the ledger has no
+  // snapshot to give (Ledger::Commands throws), none is taken: seeking takes longer.
   std::string Add(const v1::Command& accepted, const v1::Reply& reply, const Ledger& ledger);
   // Waits until all that was handed over is written; what failed, or an empty string.
   std::string Flush();

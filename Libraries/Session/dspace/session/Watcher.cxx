@@ -1,12 +1,15 @@
 #include <dspace/session/Watcher.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include <unistd.h>
 
 #include <dspace/Error.h>
 #include <dspace/session/ClientLink.h>
+#include <dspace/session/LinkDiagnosis.h>
 #include <dspace/session/SnapshotMessages.h>
+#include <dspace/session/Telling.h>
 
 namespace dspace::session {
 namespace {
@@ -24,8 +27,9 @@ struct Watcher::Link {
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::Dspace::Stub> stub;
   std::thread thread;
-  LinkClock::time_point deadline; // of the first connection
-  const pid_t process = getpid(); // that watches: a child has no such thread
+  LinkClock::time_point deadline;   // of the first connection
+  const pid_t process = getpid();   // that watches: a child has no such thread
+  std::unique_ptr<Telling> telling; // the user's thread's
 
   mutable std::mutex mutex; // of all below
   std::condition_variable changed;
@@ -126,6 +130,23 @@ struct Watcher::Link {
     }
   }
 
+  // Waits for messages and has `take` take some, with the mutex held; false when there are none
+  // yet.
+  template<class Work> bool TakeWith(double wait_s, Work take) {
+    if (this->Forked()) {
+      return false;
+    }
+    std::unique_lock lock(this->mutex);
+    this->changed.wait_for(lock, Seconds(std::clamp(wait_s, 0.0, 1e6)),
+                           [this] { return !this->messages.empty(); });
+    if (this->messages.empty()) {
+      return false;
+    }
+    take(*this);
+    this->changed.notify_all();
+    return true;
+  }
+
   void End() {
     {
       const std::lock_guard lock(this->mutex);
@@ -179,11 +200,23 @@ bool Watcher::WaitToOpen(double seconds) {
   if (!link.final && LinkClock::now() < link.deadline) {
     return false;
   }
+  const bool late = !link.final;
+  std::string why;
+  if (late) {
+    lock.unlock(); // to look takes a moment
+    why = WhyNoAnswer(link.options.address, link.options.security.HasCertificates());
+    lock.lock();
+    if (link.once) {
+      return true;
+    }
+  }
   v1::Error error = link.error;
-  if (!link.final) {
+  if (late) {
     error.set_kind(v1::Error::DEADLINE_EXCEEDED);
     error.set_object("server '" + link.options.address + "'");
-    error.set_message("nobody answers within " + std::to_string(link.options.timeout_s) + " s");
+    std::ostringstream text;
+    text << error.object() << ": nobody answers within " << link.options.timeout_s << " s: " << why;
+    error.set_message(text.str());
   }
   lock.unlock();
   link.End();
@@ -199,40 +232,23 @@ Watcher::~Watcher() {
 }
 
 bool Watcher::Take(v1::WatchReply& message, double wait_s) {
-  Link& link = *this->Link_;
-  if (link.Forked()) {
-    return false;
-  }
-  std::unique_lock lock(link.mutex);
-  link.changed.wait_for(lock, Seconds(std::clamp(wait_s, 0.0, 1e6)),
-                        [&] { return !link.messages.empty(); });
-  if (link.messages.empty()) {
-    return false;
-  }
-  message = std::move(link.messages.front().first);
-  link.bytes -= link.messages.front().second;
-  link.messages.pop_front();
-  link.changed.notify_all();
-  return true;
+  return this->Link_->TakeWith(wait_s, [&](Link& link) {
+    message = std::move(link.messages.front().first);
+    link.bytes -= link.messages.front().second;
+    link.messages.pop_front();
+  });
 }
 
 bool Watcher::TakeAll(std::vector<v1::WatchReply>& messages, double wait_s) {
   messages.clear();
-  Link& link = *this->Link_;
-  if (link.Forked()) {
-    return false;
-  }
-  std::unique_lock lock(link.mutex);
-  link.changed.wait_for(lock, Seconds(std::clamp(wait_s, 0.0, 1e6)),
-                        [&] { return !link.messages.empty(); });
-  messages.reserve(link.messages.size());
-  for (auto& [message, size] : link.messages) {
-    messages.push_back(std::move(message));
-  }
-  link.messages.clear();
-  link.bytes = 0;
-  link.changed.notify_all();
-  return !messages.empty();
+  return this->Link_->TakeWith(wait_s, [&](Link& link) {
+    messages.reserve(link.messages.size());
+    for (auto& [message, size] : link.messages) {
+      messages.push_back(std::move(message));
+    }
+    link.messages.clear();
+    link.bytes = 0;
+  });
 }
 
 bool Watcher::Connected(std::string* why) const {
@@ -262,30 +278,59 @@ bool Watcher::Tell(const v1::ViewerEvent& event) {
 }
 
 bool Watcher::Tell(const v1::ViewerEvent& event, double timeout_s) {
+  this->BeginTell(event, timeout_s);
+  while (!this->WaitToTell(1e6)) {
+  }
+  return this->TakeTold();
+}
+
+void Watcher::BeginTell(const v1::ViewerEvent& event, double timeout_s) {
   Link& link = *this->Link_;
   if (link.Forked()) {
     Raise(link.Foreign());
   }
-  grpc::ClientContext context;
-  context.set_deadline(
-      std::chrono::system_clock::now() +
-      std::chrono::duration_cast<std::chrono::milliseconds>(
-          std::chrono::duration<double>(std::clamp(timeout_s, 0.0, link.options.timeout_s))));
+  this->DropTell();
   v1::TellRequest request;
   request.set_protocol(LinkProtocol);
   *request.mutable_event() = event;
   request.mutable_event()->set_from(link.options.name);
-  v1::TellReply reply;
-  const grpc::Status status = link.stub->Tell(&context, request, &reply);
-  if (!status.ok()) {
+  link.telling = std::make_unique<Telling>(*link.stub, request,
+                                           std::clamp(timeout_s, 0.0, link.options.timeout_s));
+}
+
+bool Watcher::WaitToTell(double seconds) {
+  Link& link = *this->Link_;
+  if (link.Forked() || !link.telling) {
+    return true;
+  }
+  return link.telling->Wait(seconds);
+}
+
+bool Watcher::TakeTold() {
+  Link& link = *this->Link_;
+  if (link.Forked()) {
+    Raise(link.Foreign());
+  }
+  if (!link.telling || !link.telling->Done()) {
+    throw Error(Error::Kind::Internal, "event",
+                "nothing is there to take; accepted: BeginTell and WaitToTell before");
+  }
+  const std::unique_ptr<Telling> told = std::move(link.telling);
+  if (!told->Status().ok()) {
     bool final = false;
-    v1::Error error = ToError(link.options.address, status, final);
-    if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {
+    v1::Error error = ToError(link.options.address, told->Status(), final);
+    if (told->Status().error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {
       error.set_kind(v1::Error::DEADLINE_EXCEEDED);
     }
     Raise(error);
   }
-  return reply.delivered();
+  return told->Delivered();
+}
+
+void Watcher::DropTell() {
+  if (!this->Link_->Forked()) { // else it is the parent's
+    this->Link_->telling.reset();
+  }
 }
 
 } // namespace dspace::session

@@ -49,6 +49,14 @@ public:
   // false when nobody does. Throws Error.
   bool Tell(const v1::ViewerEvent& event);
   bool Tell(const v1::ViewerEvent& event, double timeout_s);
+  // The same in parts, for whoever must do other things meanwhile: BeginTell, then WaitToTell, up
+  // to so many seconds each time, until it is true, then TakeTold, which returns and throws what
+  // Tell does. DropTell waits no longer: the event may yet be heard. BeginTell drops one that has
+  // not been taken.
+  void BeginTell(const v1::ViewerEvent& event, double timeout_s);
+  bool WaitToTell(double seconds);
+  bool TakeTold();
+  void DropTell();
 
 private:
   struct Link;
