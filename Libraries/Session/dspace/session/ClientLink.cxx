@@ -94,6 +94,8 @@ v1::Error ToError(const std::string& address, const grpc::Status& status, bool& 
     return say(v1::Error::INVALID_ARGUMENT, status.error_message(), true);
   case Code::RESOURCE_EXHAUSTED:
     return say(v1::Error::RESOURCE, status.error_message(), true);
+  case Code::ABORTED:
+    return say(v1::Error::IO, status.error_message(), true);
   case Code::OK:
   case Code::CANCELLED:
   case Code::UNAVAILABLE:
@@ -237,6 +239,7 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
     open.mutable_open()->set_acknowledged(this->acknowledged);
     open.mutable_open()->set_command_set(v1::COMMAND_SET_VERSION);
     open.mutable_open()->set_process(ProcessName());
+    open.mutable_open()->set_again(this->opened);
   }
   stream = this->Call(drive);
   v1::DriveReply message;
@@ -298,7 +301,7 @@ v1::Reply RemoteClient::Link::Resume(const v1::Opened& message) {
     return this->Fault(v1::Error::UNSUPPORTED, "it speaks protocol '" + message.protocol() +
                                                    "'; accepted: '" + LinkProtocol + "'");
   }
-  if (this->opened && !message.resumed()) {
+  if (this->opened && !message.resumed()) { // of a server that does not know `again`
     return this->Fault(v1::Error::IO,
                        "it was started anew, or somebody else has driven it since: what was "
                        "made there is gone or not known; accepted: to connect again");
@@ -306,10 +309,7 @@ v1::Reply RemoteClient::Link::Resume(const v1::Opened& message) {
   this->counts.reconnections += this->opened ? 1 : 0;
   this->opened = this->connected = true;
   this->server = {message.server(), message.command_set(), message.maximum_message()};
-  this->next = 0; // what has come there already is not sent again
-  while (this->next < this->pending.size() && this->pending[this->next].number <= message.last()) {
-    ++this->next;
-  }
+  this->Rewind(message.last());
   return {};
 }
 
@@ -327,8 +327,7 @@ void RemoteClient::Link::Write(Stream& stream) {
     if (this->broken || !this->connected) {
       return;
     }
-    const auto request = this->pending[this->next].request;
-    ++this->next;
+    const auto request = this->TakeNext();
     grpc::WriteOptions options;
     if (this->next < this->pending.size()) {
       options.set_buffer_hint(); // what follows takes it along

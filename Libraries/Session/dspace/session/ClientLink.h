@@ -51,6 +51,9 @@ struct RemoteClient::Link {
   std::deque<Pending> pending;
   std::size_t pendingBytes = 0;
   std::size_t next = 0;              // of `pending`, to be sent
+  std::size_t unsentBytes = 0;       // of `pending` from there on
+  bool crowded = false;              // the user's thread waits for less of them
+  bool absorbing = false;            // the other side stalls: `pending` may fill its window
   std::uint64_t last = 0;            // number given
   std::uint64_t done = 0;            // by the server
   std::uint64_t acknowledged = 0;    // the last number whose reply has come
@@ -81,6 +84,7 @@ struct RemoteClient::Link {
   bool noReply = false;
   LinkClock::time_point due;      // of Pace
   LinkClock::time_point deadline; // of all others
+  LinkClock::time_point catchUp;  // of Room: the writing thread has so long to come near
   Pacer pacer;
 
   // For the user's thread, with the mutex held.
@@ -105,6 +109,10 @@ struct RemoteClient::Link {
   bool Drive(grpc::Status& status); // one stream; whether it was opened
   std::unique_ptr<Stream> Call(grpc::ClientContext& context);
   void Write(Stream& stream);
+  // With the mutex held: the command at `next`, which is sent now; nothing else is to be sent up to
+  // the number `last`.
+  grpc::ByteBuffer TakeNext();
+  void Rewind(std::uint64_t last);
   void Hear(v1::DriveReply& message);
   void TakeReply(std::uint64_t number, v1::Reply& reply);
   v1::Reply Resume(const v1::Opened& opened); // an error: it cannot go on

@@ -209,7 +209,9 @@ bool Server::Run(const SessionWork& work, double seconds) {
     Task task = std::move(hub.tasks.front());
     hub.tasks.pop_front();
     hub.taskBytes -= task.bytes;
-    hub.space.notify_all();
+    if (hub.taskBytes <= ReadAheadBytes / 2) { // not for each: whoever waits then queues several
+      hub.space.notify_all();
+    }
     if (task.generation != hub.writer.generation) {
       continue; // somebody else drives by now
     }
