@@ -231,7 +231,7 @@ def test_bad_recordings_are_refused(tmp_path):
     with pytest.raises(dspace.NotFound):
         dspace.Playback(tmp_path / "none.dspace")
     (tmp_path / "text.dspace").write_text("not a database" * 100)
-    with pytest.raises(dspace.Corrupt):
+    with pytest.raises(dspace.Unsupported, match="no recording"):
         dspace.Playback(tmp_path / "text.dspace")
 
 

@@ -4,7 +4,7 @@ import time as _time
 
 import numpy as np
 
-from dspace._fields import items, number, put, put_vector, refuse, shown, text, word
+from dspace._fields import items, number, put, put_vector, real, refuse, shown, text, word
 from dspace._strict import Strict
 from dspace.errors import DeadlineExceeded, NotFound, WrongType
 from dspace.frames import Frame
@@ -154,7 +154,7 @@ class Question(Strict):
     def wait(self, timeout):
         """The answer; waits up to `timeout` seconds of wall time for it, and hands other events of viewers to
         their callbacks meanwhile. dspace.DeadlineExceeded when none has come: it stays open."""
-        timeout = number(timeout, "the timeout", f"question {self.name!r}")
+        timeout = real(timeout, "the timeout", f"question {self.name!r}", "seconds")
         end = _time.monotonic() + timeout
         while self._open and self._answer is None:
             left = end - _time.monotonic()
@@ -228,7 +228,7 @@ class Messages:
         command = self._command()
         message = command.list_events
         put(message, label, after=after, most=most)
-        message.since_s, message.until_s = number(since, "since", label), number(until, "until", label)
+        message.since_s, message.until_s = real(since, "since", label), real(until, "until", label)
         kinds = [] if kind is None else [kind] if isinstance(kind, str) else items(kind, "the kinds", label,
                                                                                   "a word, or several")
         message.kind.extend(text(each, "a kind", label, "a word") for each in kinds)

@@ -3,16 +3,18 @@ import math
 import time
 
 from dspace._client import to_reply, warn
-from dspace._fields import number, refuse, text
-from dspace.errors import Corrupt, InvalidArgument
-from dspace.playback_steps import index_at, runs_of, steps_of
+from dspace._fields import flag, integer, number, real, refuse, text
+from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
+from dspace.playback_steps import index_at, runs_of, set_times, steps_of
 from dspace.playback_telemetry import TelemetryReading
 from dspace.recorded_files import RecordedFiles
+from dspace.recorded_views import spans_of
 from dspace.recording_file import RecordingFile, commands_of
 from dspace.session import commands_pb2 as pb, terrain_pb2
 from dspace.sessions import Session
 
 BUILDING = terrain_pb2.TerrainReply.BUILDING
+AT_ONCE = 3600.0  # [s] of sleep; the operating system takes no number of any size
 SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER
 
 
@@ -27,9 +29,9 @@ class Playback(TelemetryReading):
             run.seek(12.5)
             run.session.viewports["main"].save("at_12_5.png")
 
-    Its steps are the times that the simulation set, in whatever scene or in the one named, each with all that
-    came until the next one. The session shows what the recorded one did, to the byte. What is added to it is gone
-    with the next seek back.
+    Its steps are the times that the simulation set, in whatever scene or in the one named (dspace.NotFound where there
+    never is one of that name), each with all that came until the next one. The session shows what the recorded one
+    did, to the byte. What is added to it is gone with the next seek back.
 
     Files that were packed into it are unpacked into a folder of their own, removed by close(). check_assets: files
     that were not must be what they were, else dspace.Corrupt or dspace.NotFound names the one that is not.
@@ -42,9 +44,10 @@ class Playback(TelemetryReading):
         self.file = RecordingFile(path)
         self.session = self._files = None
         try:
-            self._checks = check_assets
+            self._checks = flag(check_assets, "check_assets", self.file.label)
             self._scene = None if scene is None else text(scene, "the scene", self.file.label)
             self._read_steps()
+            self._require_scene()
             if self.gaps:
                 warn(f"{self.file.label}: commands are lost, and nothing is shown from "
                      + ", nor from ".join(str(gap) for gap in self.gaps))
@@ -65,6 +68,14 @@ class Playback(TelemetryReading):
         self._ends = [step.end for step in steps]
         self.times = [step.time for step in steps]  # [s], of each step
         self._runs = runs_of(self.times)
+
+    def _require_scene(self):
+        if self._scene is None or set_times(self.file, self._scene):
+            return
+        there = [key[1] for key in spans_of(self) if key[0] == "scene"]
+        if self._scene not in there:
+            raise NotFound(f"{self.file.label}: there is no scene {self._scene!r}; there are: "
+                           + (", ".join(map(repr, there)) or "none"), self.file.label)
 
     def _take_files(self):
         """Unpacks or checks the files that were noted since."""
@@ -121,8 +132,7 @@ class Playback(TelemetryReading):
 
     def step(self, n=1):
         """n steps on, or back; stops at the ends. Returns how many were made."""
-        if isinstance(n, bool) or not isinstance(n, int):
-            refuse(self.file.label, "the number of steps", n, "a whole number")
+        n = integer(n, "the number of steps", self.file.label, "a whole number")
         before = self.index
         self._go(min(max(before + n, 0), len(self.times) - 1))
         return self.index - before
@@ -132,9 +142,10 @@ class Playback(TelemetryReading):
         or until on_step(playback), called after each step, returns False. Of steps that are due by then only the
         last one is gone to, so that it keeps its pace; with a speed of 0, or back with -inf, every step is, as fast
         as it goes."""
-        speed = number(speed, "the speed", self.file.label)
-        if math.isnan(speed):
-            refuse(self.file.label, "the speed", speed, "a number")
+        speed = real(speed, "the speed", self.file.label)
+        until = None if until is None else real(until, "until", self.file.label, "a time [s]")
+        if on_step is not None and not callable(on_step):
+            refuse(self.file.label, "on_step", on_step, "a function of the Playback", WrongType)
         paced = speed != 0 and math.isfinite(speed)
         direction = -1 if speed < 0 else 1
         began, from_time = time.monotonic(), self.time
@@ -147,8 +158,9 @@ class Playback(TelemetryReading):
             if paced:
                 if (self.times[following] - self.time) * direction < 0:  # a simulation that was reset: from there on
                     began, from_time = time.monotonic(), self.times[following]
-                wait = (self.times[following] - from_time) / speed - (time.monotonic() - began)
-                time.sleep(max(wait, 0.0))
+                due = began + (self.times[following] - from_time) / speed
+                while (wait := due - time.monotonic()) > 0:
+                    time.sleep(min(wait, AT_ONCE))
                 following = self._due(following, direction, from_time + speed * (time.monotonic() - began), until)
             self._go(following)
             if on_step is not None and on_step(self) is False:

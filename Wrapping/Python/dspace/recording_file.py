@@ -7,7 +7,7 @@ import struct
 from typing import NamedTuple
 
 from dspace._fields import refuse, text
-from dspace.errors import AlreadyExists, Corrupt, NotFound, Unsupported
+from dspace.errors import AlreadyExists, Closed, Corrupt, Io, NotFound, Unsupported, WrongThread
 from dspace.recording_assets import assets_of, part_numbers, parts_of
 
 FORMAT = 1
@@ -23,6 +23,9 @@ CREATE TABLE asset(id INTEGER PRIMARY KEY, path TEXT NOT NULL, state TEXT NOT NU
 CREATE TABLE content(id INTEGER PRIMARY KEY, asset INTEGER NOT NULL, place INTEGER NOT NULL,
   size INTEGER NOT NULL, data BLOB NOT NULL, checksum BLOB NOT NULL);
 """
+MAGIC, NOT_A_DATABASE = b"SQLite format 3\0", 26
+# Of SQLite's result codes (sqlite.org/rescode.html) those of what is no damage: locks, rights, memory, disks.
+OF_THE_SYSTEM = {3, 5, 6, 7, 8, 9, 10, 13, 14, 15, 22, 23}
 COLUMNS = "seq, time, wall, kind, payload, checksum"
 
 
@@ -33,6 +36,20 @@ def path_of(path):
     if not path or "\0" in path:
         refuse("recording", "the path", path, "one that is not empty and holds no zero bytes")
     return os.path.abspath(path)
+
+
+def told(label, error):
+    """What an error of SQLite is told as: dspace.Closed, dspace.WrongThread or dspace.Io, and what else it may be is
+    damage, dspace.Corrupt."""
+    said = str(error)
+    if isinstance(error, sqlite3.ProgrammingError) and "thread" in said:
+        return WrongThread(f"{label}: it is read in another thread; accepted: the one that opened it", label)
+    if isinstance(error, sqlite3.ProgrammingError) and "closed" in said:
+        return Closed(f"{label}: it is closed; accepted: to open it again", label)
+    if (getattr(error, "sqlite_errorcode", None) or 0) & 255 in OF_THE_SYSTEM:
+        return Io(f"{label}: {said}; accepted: a file that can be opened and read, in a folder with room, that nobody "
+                  "has locked", label)
+    return Corrupt(f"{label}: {said}; `dspace log salvage` brings back what survives", label)
 
 
 class Row(NamedTuple):
@@ -67,29 +84,75 @@ def commands_of(snapshot):
     return found
 
 
+def _uri(path):
+    """For SQLite, which opens it for reading only. It would make files beside one that was not closed well; where it
+    cannot, and nothing is in its log, it is told that nobody writes."""
+    quoted = path.replace("%", "%25").replace("?", "%3f").replace("#", "%23")
+    try:
+        finished = os.path.getsize(path + "-wal") == 0
+    except FileNotFoundError:
+        finished = True
+    writable = os.access(os.path.dirname(os.path.abspath(path)), os.W_OK, effective_ids=True)
+    return f"file:{quoted}?" + ("mode=ro" if writable or not finished else "immutable=1")
+
+
+class NewerFormat(Unsupported):
+    """A recording of a format that only a newer Dspace knows."""
+
+
 class RecordingFile:
     """A recording, to be read, also while it is written. Every row is checked against its checksum when it
-    is read: a damaged one is dspace.Corrupt, which names the file and the command."""
+    is read: a damaged one is dspace.Corrupt, which names the file and the command. What is no recording, or one that a
+    newer Dspace wrote, is dspace.Unsupported; what the operating system refuses, or somebody has locked, dspace.Io."""
 
     def __init__(self, path):
         self.path = path_of(path)
         self.label = f"recording {self.path!r}"
         if not os.path.isfile(self.path):
             raise NotFound(f"{self.label}: there is no such file", self.label)
-        quoted = self.path.replace("%", "%25").replace("?", "%3f").replace("#", "%23")
-        self._database = sqlite3.connect(f"file:{quoted}?mode=ro", uri=True, timeout=10)
-        self._database.text_factory = os.fsdecode  # paths may be any bytes
+        self._database = None
         try:
-            found = self.ask("SELECT value FROM meta WHERE key = 'format'")
-            if not found or found[0][0] != FORMAT:
-                said = found[0][0] if found else None
-                raise Unsupported(f"{self.label}: its format is {said!r}; accepted: {FORMAT}", self.label)
-        except BaseException:
-            self._database.close()
+            self._database = sqlite3.connect(_uri(self.path), uri=True, timeout=10)
+            self._database.text_factory = os.fsdecode  # paths may be any bytes
+            self._check_format()
+        except BaseException as error:
+            self.close()
+            if isinstance(error, sqlite3.Error):
+                raise told(self.label, error) from None
             raise
 
+    def _check_format(self):
+        if not os.path.getsize(self.path):
+            raise self._other("it is empty")
+        try:
+            tables = {name for name, in self._database.execute("SELECT name FROM sqlite_master")}
+        except sqlite3.Error as error:
+            begin = self._begin() if getattr(error, "sqlite_errorcode", None) == NOT_A_DATABASE else MAGIC
+            if begin != MAGIC:
+                raise self._other(f"it begins with {begin!r}") from None
+            raise
+        if not tables & {"meta", "command"}:
+            raise self._other("it is an SQLite file without the tables of one")
+        found = self.ask("SELECT value FROM meta WHERE key = 'format'")
+        if not found or found[0][0] != FORMAT:
+            said = found[0][0] if found else None
+            if isinstance(said, int) and said > FORMAT:
+                raise NewerFormat(f"{self.label}: its format is {said}, a newer Dspace wrote it; accepted: {FORMAT}",
+                                  self.label)
+            raise Unsupported(f"{self.label}: its format is {said!r}; accepted: {FORMAT}", self.label)
+
+    def _begin(self):
+        # Of what SQLite takes for one of its files this would let go all of this process's locks on it.
+        with open(self.path, "rb") as file:
+            return file.read(len(MAGIC))
+
+    def _other(self, why):
+        return Unsupported(f"{self.label}: it is no recording, {why}; accepted: a .dspace file (of a damaged one "
+                           "`dspace log salvage` brings back what survives)", self.label)
+
     def close(self):
-        self._database.close()
+        if self._database is not None:
+            self._database.close()
 
     def __enter__(self):
         return self
@@ -101,14 +164,14 @@ class RecordingFile:
         """All of it into an empty database, also while it is written."""
         try:
             self._database.backup(database)
-        except sqlite3.DatabaseError as error:
-            raise self.corrupt(str(error)) from None
+        except sqlite3.Error as error:
+            raise told(self.label, error) from None
 
     def ask(self, sql, *values):
         try:
             return self._database.execute(sql, values).fetchall()
-        except (sqlite3.DatabaseError, OverflowError) as error:
-            raise self.corrupt(str(error)) from None
+        except (sqlite3.Error, OverflowError) as error:
+            raise told(self.label, error) from None
 
     def corrupt(self, what):
         return Corrupt(f"{self.label}: {what}; `dspace log salvage` brings back what survives", self.label)
@@ -136,8 +199,8 @@ class RecordingFile:
                     raise self.corrupt(f"commands {expected} to {row.seq - 1} are missing")
                 expected = row.seq + 1
                 yield row
-        except (sqlite3.DatabaseError, OverflowError) as error:
-            raise self.corrupt(str(error)) from None
+        except (sqlite3.Error, OverflowError) as error:
+            raise told(self.label, error) from None
         if table == "command" and last is not None and expected <= last:
             raise self.corrupt(f"commands {expected} to {last} are missing")
 
@@ -145,6 +208,12 @@ class RecordingFile:
         """The commands first..last of some kinds (field numbers) in their order; none of any kind is missing.
         All are read and checked: a kind that is damaged must not hide one."""
         return (row for row in self.rows(first, last) if row.kind in kinds)
+
+    def only(self, kinds, first, last):
+        """The same, and no others are read: where one whose kind is damaged may be passed over."""
+        sql = (f"SELECT {COLUMNS} FROM command WHERE seq BETWEEN ? AND ? AND kind IN ({', '.join('?' * len(kinds))}) "
+               "ORDER BY seq")
+        return (self._check(values, "command") for values in self.ask(sql, first, last, *kinds))
 
     @property
     def last(self):
@@ -211,15 +280,42 @@ def create_recording(path):
     """A new recording with empty tables: its open database."""
     if os.path.lexists(path):
         raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
-    database = sqlite3.connect(path)
+    folder = os.path.dirname(os.path.abspath(path))
+    if not os.path.isdir(folder):
+        raise NotFound(f"recording {path!r}: there is no folder {folder!r}; accepted: a folder that is there", "recording")
+    database = None
     try:
-        database.executescript("PRAGMA page_size=65536; PRAGMA journal_mode=WAL; PRAGMA cache_size=-65536;" + SCHEMA)
+        database = sqlite3.connect(path)
+        database.executescript("PRAGMA page_size=65536; PRAGMA cache_size=-65536;" + SCHEMA)
         with database:
             database.execute("INSERT INTO meta VALUES('format', ?)", (FORMAT,))
-    except BaseException:
-        database.close()
-        raise
+    except BaseException as error:
+        if database is not None:
+            database.close()
+        _leave(path, error)
     return database
+
+
+@contextlib.contextmanager
+def new_recording(path):
+    """create_recording() in a `with` statement, which closes it. One that does not become whole does not stay."""
+    database = create_recording(path)
+    try:
+        with contextlib.closing(database):
+            yield database
+    except BaseException as error:
+        _leave(path, error)
+
+
+def _leave(path, error):
+    """Removes what was begun; raises why it was not ended."""
+    for each in (path, f"{path}-wal", f"{path}-shm", f"{path}-journal"):
+        with contextlib.suppress(OSError):
+            os.unlink(each)
+    if not isinstance(error, sqlite3.Error):
+        raise error
+    raise Io(f"recording {str(path)!r}: {error}; accepted: a new file in a folder that may be written and has room",
+             "recording") from None
 
 
 def put_rows(database, table, rows):
@@ -231,7 +327,7 @@ def put_rows(database, table, rows):
 def write_recording(path, commands, snapshots, assets_from=None, begin=0):
     """A new recording of rows that were read, with the files of the recording `assets_from`; begin: the snapshot that
     it begins with."""
-    with contextlib.closing(create_recording(path)) as database:
+    with new_recording(path) as database:
         if assets_from is not None:
             database.execute("ATTACH ? AS other", (assets_from,))
         with database:

@@ -1,7 +1,7 @@
 """Sessions own scenes and viewports."""
 from dspace._client import LocalClient
 from dspace._fields import Named, flag, refuse, text
-from dspace.errors import AlreadyExists
+from dspace.errors import AlreadyExists, WrongType
 from dspace.recordings import Recording
 from dspace.scenes import Scene
 from dspace.session import commands_pb2 as pb
@@ -34,6 +34,8 @@ class Session(ViewerEvents):
 
     def execute(self, command):
         """Carries out a message of dspace.session.commands_pb2.Command; returns the Reply."""
+        if not isinstance(command, pb.Command):
+            refuse("session", "the command", command, "a dspace.session.commands_pb2.Command", WrongType)
         return self._client.execute(command)
 
     def scene(self, name="scene", lights=True):

@@ -2,7 +2,7 @@
 import math
 import warnings
 
-from dspace._fields import items, number, put, refuse, text, word
+from dspace._fields import items, number, put, real, refuse, text, word
 from dspace.errors import DspaceWarning, WrongType
 from dspace.frames import Frame, put_pose
 from dspace.objects import GraphicsObject
@@ -63,7 +63,7 @@ class ViewerEvents:
         """Hands what viewers have said to the callbacks of on_event; waits up to `wait` seconds for the
         first. Returns the events. A callback that raises leaves the rest for the next call. A wait on a
         server raises the error of a link that is broken for good."""
-        wait = number(wait, "the wait", "session")
+        wait = real(wait, "the wait", "session", "seconds")
         events = []
         while True:
             event = self._client.take_event(0.0 if events else wait)

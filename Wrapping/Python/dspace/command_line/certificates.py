@@ -3,6 +3,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import tempfile
 
 from dspace.command_line import Failed
 
@@ -16,7 +17,12 @@ def make_test_certificates(folder):
     if not openssl:
         raise Failed("--make-test-certificates needs the openssl command (Debian: openssl)")
     folder = pathlib.Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise Failed(f"--make-test-certificates {str(folder)!r}: {error.strerror}; accepted: a folder that may be made "
+                     "and written") from None
     names = ("ca.pem", "server.pem", "server.key", "client.pem", "client.key")
     there = [name for name in names if (folder / name).exists()]
     if there:

@@ -107,6 +107,11 @@ def cut_out(options):
     with RecordingFile(options.file) as file:
         first, last = file.first, file.last
         steps = [step for step in file.steps() if step[0] <= last]  # it may be being written
+        times = [at for at, in file.ask("SELECT time FROM snapshot ORDER BY seq LIMIT 1")] + [at for _, at in steps]
+        for name, at, outside in (("--from", options.begin, lambda at: at > max(times)),
+                                  ("--to", options.end, lambda at: at < min(times))):
+            if at is not None and times and outside(at):
+                raise Failed(f"{name} {at!r}; accepted: within {file.label}, {min(times)!r} to {max(times)!r} s")
         if options.begin is not None:
             first = max([seq for seq, at in steps if at <= options.begin], default=first)
         if options.end is not None:

@@ -5,7 +5,7 @@ import sqlite3
 
 from dspace.command_line import Failed
 from dspace.recording_assets import pack as pack_into
-from dspace.recording_file import RecordingFile
+from dspace.recording_file import RecordingFile, new_recording
 
 
 def pack(options):
@@ -13,9 +13,7 @@ def pack(options):
         _ = file.assets  # checked, before anything is written
         path = os.path.abspath(options.out or options.file)
         if options.out is not None:
-            if os.path.lexists(path):
-                raise Failed(f"--out {options.out!r}: there is such a file; accepted: a new one")
-            with contextlib.closing(sqlite3.connect(path)) as copy:
+            with new_recording(path) as copy:
                 file.copy_to(copy)
     try:
         with contextlib.closing(sqlite3.connect(path, timeout=1)) as database:
@@ -26,7 +24,11 @@ def pack(options):
                 database.execute("BEGIN IMMEDIATE")
             missing = pack_into(database, f"recording {path!r}")
             count, size = database.execute("SELECT count(*), coalesce(sum(size), 0) FROM asset WHERE packed").fetchone()
-    except sqlite3.OperationalError as error:
+    except BaseException as error:
+        if options.out is not None:
+            os.unlink(path)  # what is not packed is not what was asked for
+        if not isinstance(error, sqlite3.OperationalError):
+            raise
         raise Failed(f"recording {path!r}: {error}; accepted: one that nobody is writing or reading, or --out") from None
     print(f"{options.out or options.file}: {count} files, {size} bytes, are packed")
     for each in missing:

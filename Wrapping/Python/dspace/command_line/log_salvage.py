@@ -15,7 +15,7 @@ import struct
 from dspace.command_line import Failed
 from dspace.errors import Error
 from dspace.recording_assets import Asset, Content
-from dspace.recording_file import RecordingFile, Row, checksum, create_recording
+from dspace.recording_file import NewerFormat, RecordingFile, Row, checksum, new_recording
 
 SIZES = (65536, 4096)  # of pages: ours, and a common one, where ours finds nothing
 LEAF = 13
@@ -25,28 +25,24 @@ TURNS = 8  # of a log: pages of how many are looked at
 def salvage(options):
     if not os.path.isfile(options.file):
         raise Failed(f"recording {options.file!r}: there is no such file")
-    with contextlib.closing(create_recording(os.path.abspath(options.out))) as database:
+    require_format(options.file)
+    with new_recording(os.path.abspath(options.out)) as database:
         with database:
             for table, row in found_rows(options.file):
                 put(database, table, row)
         counts = {table: database.execute(f"SELECT count(*), max({key}) FROM {table}").fetchone()
                   for table, key in (("command", "seq"), ("snapshot", "seq"), ("asset", "id"))}
         if not any(count for count, _ in counts.values()):
-            empty = True
-        else:
-            empty = False
-            last = max(counts["command"][1] or 0, counts["snapshot"][1] or 0)
-            begin = begin_of(options.file, database)
-            lost = gaps((seq for seq, in database.execute("SELECT seq FROM command ORDER BY seq")), last, begin)
-            stateless = not database.execute("SELECT 1 FROM snapshot WHERE seq = ?", (begin,)).fetchone()
-            unknown, broken = unknown_files(database), unpackable(database)
-            with database:
-                if begin:
-                    database.execute("INSERT INTO meta VALUES('begin', ?)", (begin,))
-                database.execute("INSERT INTO meta VALUES('lost', ?)", (" ".join(f"{a}-{b}" for a, b in lost),))
-    if empty:
-        os.remove(options.out)
-        raise Failed(f"recording {options.file!r}: nothing in it survives")
+            raise Failed(f"recording {options.file!r}: nothing in it survives")
+        last = max(counts["command"][1] or 0, counts["snapshot"][1] or 0)
+        begin = begin_of(options.file, database)
+        lost = gaps((seq for seq, in database.execute("SELECT seq FROM command ORDER BY seq")), last, begin)
+        stateless = not database.execute("SELECT 1 FROM snapshot WHERE seq = ?", (begin,)).fetchone()
+        unknown, broken = unknown_files(database), unpackable(database)
+        with database:
+            if begin:
+                database.execute("INSERT INTO meta VALUES('begin', ?)", (begin,))
+            database.execute("INSERT INTO meta VALUES('lost', ?)", (" ".join(f"{a}-{b}" for a, b in lost),))
     print(f"{options.out}: {counts['command'][0]} commands, {counts['snapshot'][0]} snapshots, "
           f"{counts['asset'][0]} files")
     if stateless:
@@ -60,6 +56,17 @@ def salvage(options):
     print(f"what came after {counts['command'][1] or 0} is not known, nor which files after the first "
           f"{counts['asset'][1] or 0} it needs")
     return 1 if lost or broken or unknown or stateless else 0
+
+
+def require_format(path):
+    """Refuses a recording that says of itself that a newer Dspace wrote it: its rows may mean something else."""
+    try:
+        with RecordingFile(path):
+            pass
+    except NewerFormat:
+        raise
+    except Error:  # damaged, as expected
+        pass
 
 
 def begin_of(path, database):

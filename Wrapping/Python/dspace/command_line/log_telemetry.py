@@ -3,6 +3,7 @@ import csv
 import math
 import sys
 
+from dspace.command_line import Failed
 from dspace.errors import InvalidArgument
 from dspace.playback_telemetry import History
 from dspace.recording_file import RecordingFile
@@ -44,7 +45,12 @@ def write(path, head, rows):
         out.writerow(head)
         out.writerows(rows)
         return
-    with open(path, "x", newline="", encoding="utf-8") as file:
+    try:
+        file = open(path, "x", newline="", encoding="utf-8")
+    except OSError as error:
+        raise Failed(f"--csv {path!r}: {error.strerror}; accepted: a new file in a folder that may be written, or "
+                     "'-'") from None
+    with file:
         out = csv.writer(file, lineterminator="\n")
         out.writerow(head)
         out.writerows(rows)

@@ -1,13 +1,16 @@
 """`dspace play`: pictures of a recording, with no simulation."""
 import math
 import os
+import re
+import sys
 
 from dspace.command_line import Failed
 
+PICTURE = re.compile(r"\d{6,}\.png")
 ABOUT = (
     "Draws what a recorded session showed, the same to the byte: at one time with --at, at every step of the "
-    "simulation, or with --every at most one picture each so many seconds of its time. Without --out it says how "
-    "long the recording is and what can be seen.")
+    "simulation at which the viewport is there, or with --every at most one picture each so many seconds of its time. "
+    "Without --out it says how long the recording is and what can be seen, and when.")
 
 
 def add_arguments(parser):
@@ -15,7 +18,8 @@ def add_arguments(parser):
     parser.add_argument("file", metavar="FILE", help="a recording (.dspace)")
     parser.add_argument("--at", type=float, metavar="T", help="simulation time [s]: one picture")
     parser.add_argument("--viewport", metavar="NAME", help="absent: the recording's only one")
-    parser.add_argument("--out", metavar="DIR", help="folder for the pictures, PNG; made if it is not there")
+    parser.add_argument("--out", metavar="DIR", help="folder for the pictures, 000000.png and so "
+                                                                  "on; refused where it has such pictures")
     parser.add_argument("--every", type=float, metavar="DT", help="seconds of simulation time between pictures")
     parser.add_argument("--reverse", action="store_true", help="from the last step to the first")
     parser.set_defaults(run=run)
@@ -29,35 +33,77 @@ def run(options):
     with Playback(options.file) as playback:
         if options.at is not None:
             playback.seek(options.at)
-        elif options.reverse:
-            playback.step(len(playback.times))
         if options.out is None:
-            names = ", ".join(repr(name) for name in playback.session.viewports) or "none"
-            print(f"{len(playback.times)} steps, {playback.times[0]:g} to {playback.times[-1]:g} s; "
-                  f"at {playback.time:g} s viewports: {names}")
+            print(f"{len(playback.times)} steps, {playback.times[0]:g} to {playback.times[-1]:g} s; {seen(playback, options)}")
             return 0
-        os.makedirs(options.out, exist_ok=True)
-        print(save(playback, options, 0))
-        if options.at is not None:
-            return 0
-        count, drawn = 1, playback.time
-        begin = playback.index
-        for index in range(begin - 1, -1, -1) if options.reverse else range(begin + 1, len(playback.times)):
-            if options.every is None or abs(playback.times[index] - drawn) >= options.every * (1 - 1e-9):
-                playback.step(index - playback.index)  # steps between are not gone to: back, each takes long
-                print(save(playback, options, count))
-                count, drawn = count + 1, playback.time
+        name, steps = chosen(playback, options)
+        paths = [os.path.join(options.out, f"{number:06d}.png") for number in range(len(steps))]
+        make_folder(options.out)
+        for index, path in zip(steps, paths):
+            playback.step(index - playback.index)  # steps between are not gone to: back, each takes long
+            playback.session.viewports[name].save(path)
+            print(path)
     return 0
 
 
-def save(playback, options, count):
-    viewports = playback.session.viewports
+def seen(playback, options):
+    """Which viewports there are: at one time, or over all steps, and when where it is not at all of them."""
+    if options.at is not None:
+        names = ", ".join(repr(name) for name in playback.session.viewports) or "none"
+        return f"at {playback.time:g} s viewports: {names}"
+    return f"viewports: {listed(playback, viewports_of(playback))}"
+
+
+def viewports_of(playback):
+    """{name: [(begin, end)]}, ranges of steps."""
+    from dspace.recorded_views import spans_of
+    return {key[1]: ranges for key, ranges in spans_of(playback).items() if key[0] == "viewport" and ranges}
+
+
+def listed(playback, viewports):
+    from dspace.recorded_views import when
+    everywhere = [(0, len(playback.times))]
+    return ", ".join(repr(name) + ("" if ranges == everywhere else f" ({when(playback, ranges)})")
+                     for name, ranges in viewports.items()) or "none"
+
+
+def chosen(playback, options):
+    """The viewport, and the steps to draw it at, in their order. Those without it are passed over, and counted."""
+    from dspace.recorded_views import when
+    viewports = viewports_of(playback)
+    if not viewports:
+        raise Failed(f"{playback.file.label}: it has no viewport at any step; accepted: one that has")
     name = options.viewport
-    if name is None:
-        if len(viewports) != 1:
-            names = ", ".join(repr(each) for each in viewports) or "none"
-            raise Failed(f"at {playback.time:g} s the viewports are {names}; accepted: --viewport with one of them")
+    if name is None and options.at is not None and len(playback.session.viewports) == 1:
+        name = next(iter(playback.session.viewports))
+    elif name is None and options.at is None and len(viewports) == 1:
         name = next(iter(viewports))
-    path = os.path.join(options.out, f"{count:06d}.png")
-    viewports[name].save(path)
-    return path
+    at = "" if options.at is None else f"at {playback.time:g} s "
+    if name not in viewports or at and name not in playback.session.viewports:
+        said = "which viewport is not said" if name is None else f"there is no viewport {name!r}"
+        raise Failed(f"{playback.file.label}: {at}{said}; there are: {listed(playback, viewports)}; accepted: --viewport with one of "
+                     "them" + (", and a time when it is there" if at else ""))
+    if at:
+        return name, [playback.index]
+    there = [index for begin, end in viewports[name] for index in range(begin, end)]
+    missing = len(playback.times) - len(there)
+    if missing:
+        print(f"dspace: note: {missing} of {len(playback.times)} steps are passed over, without viewport {name!r}, which "
+              f"is there {when(playback, viewports[name])}", file=sys.stderr)
+    drawn = []
+    for index in reversed(there) if options.reverse else there:
+        if not drawn or options.every is None or (abs(playback.times[index] - playback.times[drawn[-1]])
+                                                  >= options.every * (1 - 1e-9)):
+            drawn.append(index)
+    return name, drawn
+
+
+def make_folder(folder):
+    """The folder, without pictures: those of another run would mix with these."""
+    try:
+        os.makedirs(folder, exist_ok=True)
+        there = sorted(name for name in os.listdir(folder) if PICTURE.fullmatch(name))
+    except OSError as error:
+        raise Failed(f"--out {folder!r}: {error.strerror}; accepted: a folder that may be made and written") from None
+    if there:
+        raise Failed(f"--out {folder!r}: it holds {there[0]!r}; accepted: a new folder, or one without such pictures")
