@@ -1,11 +1,13 @@
 #include <dspace/session/RemoteClient.h>
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/session/ClientLink.h>
 #include <dspace/session/Confinement.h>
+#include <dspace/session/LinkDiagnosis.h>
 #include <dspace/session/State.h>
 
 namespace dspace::session {
@@ -47,8 +49,18 @@ bool RemoteClient::WaitToOpen(double seconds) {
   } else if (LinkClock::now() < link.deadline) {
     return false;
   } else {
-    link.Break(v1::Error::DEADLINE_EXCEEDED,
-               "no answer within " + std::to_string(link.options.timeout_s) + " s");
+    lock.unlock(); // to look takes a moment
+    const std::string why =
+        WhyNoAnswer(link.options.address, link.options.security.HasCertificates());
+    lock.lock();
+    if (link.opened && !link.broken) {
+      return true;
+    }
+    if (!link.broken) {
+      std::ostringstream text;
+      text << "no answer within " << link.options.timeout_s << " s: " << why;
+      link.Break(v1::Error::DEADLINE_EXCEEDED, text.str());
+    }
   }
   const v1::Error error = link.error;
   lock.unlock();
