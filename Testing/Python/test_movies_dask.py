@@ -62,16 +62,18 @@ def test_when_the_last_worker_goes_it_ends(run, tmp_path, monkeypatch):
     monkeypatch.setattr(movies_dask, "pictures", waits)
     with cluster_of(1, tmp_path) as cluster:
         def leave():
-            while not ASKED:
+            while not ASKED and not GATE.is_set():
                 time.sleep(0.01)
             cluster.scale(0)
 
         thread = threading.Thread(target=leave)
         thread.start()
-        with pytest.raises(dspace.Io, match="no worker"):
-            flight().make(run, tmp_path / "pictures", scheduler=cluster.scheduler_address)
-        GATE.set()
-        thread.join()
+        try:
+            with pytest.raises(dspace.Io, match="no worker"):
+                flight().make(run, tmp_path / "pictures", scheduler=cluster.scheduler_address)
+        finally:
+            GATE.set()
+            thread.join()
 
 
 def test_when_the_scheduler_goes_it_ends(run, tmp_path, monkeypatch):
@@ -90,11 +92,15 @@ def test_when_the_scheduler_goes_it_ends(run, tmp_path, monkeypatch):
                                stderr=subprocess.DEVNULL, text=True, cwd=tmp_path, env=environment)
     try:
         address = process.stdout.readline().strip()
-        timer = threading.Timer(1.0, process.kill)
-        timer.start()
+        finished = movies_dask._finished
+
+        def killed(*arguments):
+            process.kill()
+            yield from finished(*arguments)
+
+        monkeypatch.setattr(movies_dask, "_finished", killed)
         with pytest.raises(dspace.Io, match="it has had no worker for 2 s, or is gone"):
             flight().make(run, tmp_path / "pictures", scheduler=address)
-        timer.join()
     finally:
         process.kill()
         process.wait()

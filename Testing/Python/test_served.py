@@ -127,7 +127,7 @@ def test_a_simulations_death_leaves_the_last_picture(tmp_path):
                 assert not np.array_equal(after, before)  # says so in its lower corner
                 bare = watcher.viewports["view"].image(physical_only=True)
                 # The next one goes on where it was.
-                with dspace.connect(server.address, name="next", timeout=3.0) as session:
+                with dspace.connect(server.address, name="next", timeout=10.0) as session:
                     assert list(session.scene().objects)
                     while watcher.simulation != "next":
                         assert watcher.update(20.0)
@@ -228,7 +228,7 @@ def test_what_is_no_grpc_is_survived(tmp_path):
 
 @pytest.mark.parametrize("number", (signal.SIGTERM, signal.SIGINT))
 def test_it_ends_cleanly(tmp_path, number):
-    with Served(tmp_path) as server, dspace.connect(server.address, timeout=3.0) as session:
+    with Served(tmp_path) as server, dspace.connect(server.address, timeout=10.0) as session:
         session.scene()
         server.process.send_signal(number)
         assert server.process.wait(timeout=60) == 0

@@ -3,6 +3,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -46,9 +47,10 @@ def test_pictures_of_a_run_until_it_ends(tmp_path):
             scene = build(session)  # it waits for a viewport
             while not os.path.exists(out / "000000.png"):
                 assert watch.process.poll() is None
+                time.sleep(0.01)
             for step in range(1, 4):
-                scene.time = step
                 scene.set_poses(["ball"], [[0.0, 0.3 * step, 0.0, 1.0, 0.0, 0.0, 0.0]])
+                scene.time = step  # the last that changes
                 while not watch.line().endswith(f": {step:.3f} s"):
                     assert watch.process.poll() is None
             session.viewports["view"].save(reference)

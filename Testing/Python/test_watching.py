@@ -360,7 +360,7 @@ def test_the_banner_covers_no_table_and_fits(tmp_path):
             mine = watcher.add_view("mine", size=SIZE)
             before = {each.name: each.image() for each in watcher.viewports.values()}
             while watcher.simulation is not None:
-                assert watcher.update(5.0)
+                assert watcher.update(20.0)
             later = watcher.add_view("later", size=SIZE)
             assert np.array_equal(later.image(), mine.image())  # whenever it was made
             for each, was in before.items():

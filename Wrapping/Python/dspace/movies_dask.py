@@ -15,6 +15,7 @@ from dspace.movies_folder import FRAME, SCRIPT, files_of, put, states_of
 from dspace.movies_make import finish, worker
 
 _AT_ONCE = 24  # pictures that a worker draws of one request
+_TO_CONNECT = 30.0  # seconds
 _PATIENCE = 30.0  # seconds without a scheduler or a worker
 
 
@@ -26,8 +27,9 @@ def share(scheduler, words, run, missing, folder, tell):
     except ImportError:
         raise NotFound("Dask is not installed; accepted: Debian's package python3-distributed",
                        "python3-distributed") from None
+    _require_listener(scheduler)
     try:
-        client = Client(scheduler, timeout=_PATIENCE, set_as_default=False)
+        client = Client(scheduler, timeout=_TO_CONNECT, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise Io(f"scheduler {scheduler!r}: {error}; accepted: the address of a Dask scheduler, tcp://HOST:PORT",
                  scheduler) from None
@@ -54,6 +56,21 @@ def share(scheduler, words, run, missing, folder, tell):
         finally:
             with contextlib.suppress(OSError, RuntimeError):  # the scheduler is gone
                 client.cancel(waiting)
+
+
+def _require_listener(scheduler):
+    """Of a client that has met nobody Dask says more than one line at its end."""
+    host, _, port = scheduler.partition("://")[2].rpartition(":")
+    end = clock.monotonic() + _TO_CONNECT
+    while True:
+        try:
+            socket.create_connection((host.strip("[]"), int(port)), timeout=_TO_CONNECT).close()
+            return
+        except OSError as error:
+            if clock.monotonic() > end or isinstance(error, socket.gaierror):
+                raise Io(f"scheduler {scheduler!r}: {error}; accepted: the address of a Dask scheduler, "
+                         "tcp://HOST:PORT", scheduler) from None
+            clock.sleep(0.1)
 
 
 def _workers(client):

@@ -109,7 +109,7 @@ def run(options):
 
     def hear(*_):
         stop.append(True)
-        if not connected:
+        if not connected and len(stop) == 1:  # one more while this is told ends nothing else
             raise KeyboardInterrupt
 
     try:
