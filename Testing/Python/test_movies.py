@@ -137,11 +137,11 @@ def test_overlays_come_and_go_with_their_values(session, scene):
     viewport.set_table("by hand", [("x", "12.5 m"), ("t", "0.5"), ("v", "28 V")], font_size=8)
     np.testing.assert_array_equal(viewport.image(), pictures[1])
     assert fill("{a:>5}|{b}", {"a": "x", "b": 1.5}.get) == "    x|1.5"
-    for value, says in (("{nobody}", "no value 'nobody'; accepted: movie, run"), ("{run:zz}", "cannot be written"),
+    for value, says in (("{nobody}", "no value 'nobody'; accepted: movie, run"), ("{run:zz}", "a value's format is"),
                         ("{ghost.x}", "ghost")):
         movie.overlays.clear()
-        movie.add_overlay("t", [("a", value)])
         with pytest.raises(dspace.Error, match=says):
+            movie.add_overlay("t", [("a", value)])
             stage.picture(0)
 
 

@@ -1,16 +1,19 @@
 """Movies: cameras through key frames, several views in one picture, texts over it."""
+import contextlib
 import math
 import os
 
 from dspace import movies_file
-from dspace._fields import Named, integers, number, refuse
+from dspace._fields import Named, integer, integers, number, path as path_of, refuse
 from dspace.cameras import Camera
-from dspace.errors import AlreadyExists, Error, InvalidArgument, NotFound
+from dspace.errors import AlreadyExists, Error, InvalidArgument, Io, NotFound, WrongType
 from dspace.movies_keys import CameraPath, Key, RunTime, in_order
 from dspace.movies_views import Overlay, View
 from dspace.poses import Pose, quaternion_of_matrix
+from dspace.viewports import Viewport
 
 SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": 2, "start": None, "speed": 1.0, "duration": None}
+LARGEST = 16384  # pixels
 
 
 class Movie:
@@ -30,13 +33,14 @@ class Movie:
     def __init__(self, size=SETTINGS["size"], rate=SETTINGS["rate"], samples=SETTINGS["samples"],
                  start=SETTINGS["start"], speed=SETTINGS["speed"], duration=SETTINGS["duration"]):
         about = "movie"
-        self.size = tuple(integers(size, 2, "the size", about, "(width, height)"))
-        if not all(1 <= each <= 16384 for each in self.size):
-            refuse(about, "the size", self.size, "(width, height), each 1 to 16384")
+        accepted = f"(width, height), whole numbers from 1 to {LARGEST}"
+        self.size = tuple(integers(size, 2, "the size", about, accepted))
+        if not all(1 <= each <= LARGEST for each in self.size):
+            refuse(about, "the size", self.size, accepted)
         self.rate = number(rate, "the rate", about)
         if not 0.01 <= self.rate <= 1000:
             refuse(about, "the rate", rate, "0.01 to 1000 pictures a second")
-        self.samples = integers((samples,), 1, "samples", about, "an integer from 1 to 8")[0]
+        self.samples = integer(samples, "samples", about, "an integer from 1 to 8")
         if not 1 <= self.samples <= 8:
             refuse(about, "samples", samples, "an integer from 1 to 8")
         self.start = None if start is None else number(start, "start", about)
@@ -47,6 +51,7 @@ class Movie:
         if self._duration is not None and not 0 < self._duration <= 1e6:
             refuse(about, "the duration", duration, "above 0, up to 1e6 seconds")
         self.views, self.overlays = Named("view", {}), []
+        self.label = ""  # of its file
 
     # --- What it shows -------------------------------------------------------------------------
 
@@ -63,16 +68,18 @@ class Movie:
 
         view: a view's name (default: the first, made now if there is none). values: see Key; frame= another
         frame (a Frame or its path) than the one that the camera stands on."""
+        if not isinstance(viewport, (Viewport, Camera, type(None))):
+            refuse("movie", "what the key sees", viewport, "a dspace.Viewport, a dspace.Camera, or None", WrongType)
         if view is None:
-            view = next(iter(self.views), None) or self._view_of(viewport).name
-        if view not in self.views:
+            view = next(iter(self.views), None)
+        elif view not in self.views:
             raise NotFound(f"view {view!r}: there is no such view; there are: {', '.join(map(repr, self.views))}",
                            view)
         if viewport is not None:
             values = {**_seen(viewport, values.pop("frame", None)), **values}
         key = movies_file.take(Key, {"time": time, **values}, f"the key at {time!r} s")
-        target = self.views[view]
-        target.keys = in_order([*target.keys, key], f"view {view!r}")
+        target = self._view_of(viewport) if view is None else self.views[view]
+        target.keys = in_order([*target.keys, key], f"view {target.name!r}")
         return key
 
     def _view_of(self, viewport):
@@ -148,18 +155,28 @@ class Movie:
     def save(self, path):
         """Writes its file (TOML), at once or not at all."""
         self.check()
-        part = f"{os.fspath(path)}.part"
-        with open(part, "w", encoding="utf-8") as file:
-            file.write(self.text)
-        os.replace(part, path)
+        path = path_of(path, "the path", "movie")
+        part = f"{path}.part"
+        try:
+            with open(part, "w", encoding="utf-8") as file:
+                file.write(self.text)
+            os.replace(part, path)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                os.unlink(part)
+            raise Io(f"movie {path!r}: {error.strerror}; accepted: a file in a folder that may be written",
+                     path) from None
 
     @classmethod
     def load(cls, path, **settings):
         """The movie of a file; settings (size, rate, samples, ...) replace the file's."""
-        about = f"movie {os.fspath(path)!r}"
+        path = path_of(path, "the path", "movie", "the path of a TOML file")
+        about = f"movie {path!r}"
         values = movies_file.load(path)
         try:
-            return cls._of(values, about, settings)
+            movie = cls._of(values, about, settings)
+            movie.label = about
+            return movie
         except Error as error:  # says in which file
             if str(error).startswith(about):
                 raise

@@ -1,7 +1,7 @@
 """Single pictures of a movie: the run is taken to its time, cameras to their places, views put together."""
+import contextlib
 import importlib.util
 import os
-import re
 import secrets
 import struct
 import warnings
@@ -12,11 +12,11 @@ import numpy as np
 from dspace._fields import shown
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath
+from dspace.movies_views import FIELD
 from dspace.playback_steps import index_at, runs_of
 from dspace.poses import Pose
+from dspace.recorded_views import spans_of, when
 from dspace.telemetry import overlay_value
-
-_FIELD = re.compile(r"\{([^{}:]*)(?::([^{}]*))?\}")
 
 
 class Source:
@@ -25,10 +25,10 @@ class Source:
     session: a dspace.Session. advance(time): takes the run to a time [s]; called with the times of the
     pictures, in their order. telemetry(): a dict of names to numbers or texts for overlays, now. close():
     called at the end. beginning: the run's first time [s]. extent: the first and last times that there are
-    [s]; beyond them the run stands."""
+    [s]; beyond them the run stands. playback: of what is played back."""
 
-    def __init__(self, session, advance=None, telemetry=None, close=None, beginning=0.0, extent=None):
-        self.session, self.beginning = session, beginning
+    def __init__(self, session, advance=None, telemetry=None, close=None, beginning=0.0, extent=None, playback=None):
+        self.session, self.beginning, self.playback = session, beginning, playback
         self.extent = extent or (-np.inf, np.inf)
         self.advance = advance or (lambda time: None)
         self.telemetry = telemetry or dict
@@ -55,12 +55,20 @@ def open_run(run):
         source = _of_playback(playback)
         source.close = getattr(playback, "close", source.close)
         return source
+    require_run(run)
     if hasattr(run, "session") and hasattr(run, "seek"):
         return _of_playback(run)
-    if hasattr(run, "session") and hasattr(run, "advance"):
+    if hasattr(run, "session"):
         return Source(run.session, run.advance, getattr(run, "telemetry", None))
-    if hasattr(run, "execute") and hasattr(run, "scene"):
-        return Source(run)
+    return Source(run)
+
+
+def require_run(run):
+    """Refuses what open_run() can make nothing of."""
+    if isinstance(run, (str, os.PathLike, Source)) or all(hasattr(run, name) for name in ("execute", "scene")):
+        return
+    if hasattr(run, "session") and (hasattr(run, "seek") or hasattr(run, "advance")):
+        return
     raise WrongType(f"the run is {shown(run)}; accepted: a recording's path, FILE.py:NAME, a Source, a Playback "
                     "or a Session")
 
@@ -75,7 +83,8 @@ def _of_playback(playback):
     steps = steps or times
     return Source(playback.session, lambda time: playback.seek(step_at(times, time, runs)),
                   telemetry if callable(telemetry) else None, beginning=steps[0] if steps else 0.0,
-                  extent=(min(steps), max(steps)) if steps else None)
+                  extent=(min(steps), max(steps)) if steps else None,
+                  playback=playback if hasattr(playback, "file") else None)
 
 
 def step_at(times, time, runs=None):
@@ -104,6 +113,17 @@ def _made_by(path, name):
     if not source.closes:
         source.close = source.session.close
     return source
+
+
+@contextlib.contextmanager
+def naming(part):
+    """In a `with` statement: errors say which part of the movie they are about."""
+    try:
+        yield
+    except Error as error:
+        if str(error).startswith(part):
+            raise
+        raise type(error)(f"{part}: {error}", part) from None
 
 
 class Stage:
@@ -138,19 +158,46 @@ class Stage:
                 warnings.warn(f"view {view.name!r}: hide names {unknown[0]!r}, and no picture that was drawn now has "
                               "such a fragment", stacklevel=2)
 
-    def _viewport(self, view):
+    def _advance(self, run):
+        """A recording may remove what a view shows, which is refused while it shows it."""
+        try:
+            self.source.advance(run)
+        except Error:
+            ours = [name for name in self.names.values() if name in self.source.session.viewports]
+            if self.source.playback is None or not ours:
+                raise
+            for name in ours:
+                self.source.session.viewports[name].remove()
+            self.source.advance(run)
+
+    def _find(self, view, run, things, kind, name, *within):
+        """A scene, vantage or camera that a view names."""
+        if name in things:
+            return things[name]
+        about = f"view {view.name!r}, {kind}"
+        what = f"{about}: at {run:g} s of the run there is no {kind} {name!r}"
+        if self.source.playback is not None and kind != "vantage":
+            ranges = spans_of(self.source.playback).get((kind, *within, name))
+            if ranges:
+                raise NotFound(f"{what}, which is there {when(self.source.playback, ranges)}; accepted: times of the "
+                               "run (start, or run of a key) when it is there", about)
+            what += ", nor at any other time"
+        raise NotFound(f"{what}; there are: {', '.join(map(repr, list(things)[:50])) or 'none'}", about)
+
+    def _viewport(self, view, run):
         """Its viewport, made where there is none (any more: a playback that seeks may begin anew)."""
         session, name = self.source.session, self.names[view.name]
         viewport = session.viewports.get(name)
         if viewport is not None:
             return viewport
-        scene = session.scenes[view.scene]
+        scene = self._find(view, run, session.scenes, "scene", view.scene)
+        vantage = self._find(view, run, scene.vantages, "vantage", view.vantage)
         left, top, right, bottom = view.pixels(self.movie.size)
         camera = name
         if view.keys:
             scene.add_camera(name, vantage=view.vantage)
         else:
-            camera = scene.vantages[view.vantage].cameras[view.camera].name
+            camera = self._find(view, run, vantage.cameras, "camera", view.camera, view.scene, view.vantage).name
         viewport = scene.add_viewport((right - left, bottom - top), camera, name=name, vantage=view.vantage,
                                       samples=self.movie.samples)
         viewport.ornaments = view.ornaments
@@ -165,14 +212,15 @@ class Stage:
         time = number / self.movie.rate
         first, last = self.source.extent
         run = min(max(self.runs.at(time), first), last)
-        self.source.advance(run)
+        self._advance(run)
         width, height = self.movie.size
         out = np.zeros((height, width, 3), np.uint8)
         for number_, (name, view) in enumerate(self.movie.views.items()):
-            viewport = self._viewport(view)
-            scene = viewport.scene
-            if view.keys:
-                self._aim(view, scene, viewport, time)
+            with naming(f"view {name!r}"):
+                viewport = self._viewport(view, run)
+                scene = viewport.scene
+                if view.keys:
+                    self._aim(view, scene, time, run)
             self._write(viewport, scene, view, number_ == 0, time, run)
             left, top, right, bottom = view.pixels(self.movie.size)
             out[top:bottom, left:right] = viewport.image(hide=self._hide(view, scene))
@@ -186,9 +234,16 @@ class Stage:
         self.hidden.update(hide)
         return hide
 
-    def _aim(self, view, scene, viewport, time):
+    def _aim(self, view, scene, time, run):
         def find(path):
-            return scene.frame(path) if path else scene.root
+            try:
+                return scene.frame(path) if path else scene.root
+            except NotFound as error:
+                number, field = next((number, "frame" if key.frame == path else "target_frame")
+                                     for number, key in enumerate(view.keys, 1)
+                                     if path in (key.frame, key.target_frame))
+                raise NotFound(f"view {view.name!r}, key {number}, {field}: at {run:g} s of the run: {error}",
+                               path) from None
 
         def relative(path, base):
             return find(path).pose_in(find(base))
@@ -205,9 +260,10 @@ class Stage:
                 continue
             name = f"movie {number}"
             values = lambda key: self._value(key, scene, time, run)
-            rows = [(label, fill(value, values)) for label, value in overlay.rows]
-            viewport.set_table(name, rows, title=overlay.title, anchor=overlay.anchor,
-                               font_size=overlay.pixels(self.movie.size))
+            with naming(f"overlay {number + 1}" + (f" {overlay.title!r}" if overlay.title else "")):
+                rows = [(label, fill(value, values)) for label, value in overlay.rows]
+                viewport.set_table(name, rows, title=overlay.title, anchor=overlay.anchor,
+                                   font_size=overlay.pixels(self.movie.size))
             now.append(name)
         for name in set(self.shown[view.name]) - set(now):
             viewport.remove_table(name)
@@ -225,7 +281,7 @@ class Stage:
         path, _, axis = key.rpartition(".")
         if path and axis in ("x", "y", "z"):
             return float(scene.frame(path).world_pose.position["xyz".index(axis)])
-        raise InvalidArgument(f"overlay: there is no value {key!r}; accepted: movie, run, FRAME.x of y and z, "
+        raise InvalidArgument(f"there is no value {key!r}; accepted: movie, run, FRAME.x of y and z, "
                               + (", ".join(map(repr, [*telemetry, *scene.telemetry][:50])) or "telemetry"), key)
 
 
@@ -236,10 +292,10 @@ def fill(text, values):
         try:
             return format(value, match[2] or "")
         except (ValueError, TypeError):
-            raise InvalidArgument(f"overlay: {match[0]} cannot be written of {shown(value)}; accepted: a format "
+            raise InvalidArgument(f"{match[0]} cannot be written of {shown(value)}; accepted: a format "
                                   "such as {run:.2f}", match[1]) from None
 
-    return _FIELD.sub(put, text)
+    return FIELD.sub(put, text)
 
 
 # --- PNG -------------------------------------------------------------------------------------------

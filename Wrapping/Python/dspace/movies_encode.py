@@ -6,6 +6,7 @@ import tempfile
 
 import numpy as np
 
+from dspace._fields import path as path_of
 from dspace.errors import InvalidArgument, Io, NotFound
 
 CODECS = {
@@ -19,12 +20,13 @@ _COLORS = ["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-pix_fmt", "yuv4
 
 def codec_of(path, size):
     """ffmpeg's words for a file; None for a folder of PNGs. Refuses other endings and odd sizes."""
-    ending = os.path.splitext(os.fspath(path))[1].lower()
-    if not ending or os.fspath(path).endswith(os.sep) or os.path.isdir(path):
+    path = path_of(path, "the file", "movie", "a path")
+    ending = os.path.splitext(path)[1].lower()
+    if not ending or path.endswith(os.sep) or os.path.isdir(path):
         return None
     if ending not in CODECS:
-        raise InvalidArgument(f"movie {str(path)!r}: its ending is {ending!r}; accepted: "
-                              f"{', '.join(CODECS)}, or a folder", str(path))
+        raise InvalidArgument(f"movie {path!r}: its ending is {ending!r}; accepted: {', '.join(CODECS)}, or a folder: "
+                              "a name without a dot, with a slash at its end, or of one that is there", path)
     if size[0] % 2 or size[1] % 2:
         raise InvalidArgument(f"movie {str(path)!r}: its size is {size[0]} x {size[1]}; accepted: even numbers "
                               f"for {ending}, any for a folder of PNGs", str(path))

@@ -1,12 +1,28 @@
 """What a movie's picture is put together of: views, and the texts over them."""
 import math
+import re
 from dataclasses import dataclass, field
 
-from dspace._fields import color, flag, integers, number, numbers, refuse, text
+from dspace._fields import color, flag, integer, number, numbers, refuse, text
 from dspace.errors import WrongType
 from dspace.viewports import ANCHORS
 
 FONT_SIZES = 4, 200  # pixels
+FIELD = re.compile(r"\{([^{}:]*)(?::([^{}]*))?\}")  # {name:format}
+WIDEST = 99
+
+
+def writable(form, is_number):
+    """Whether a format is one, of numbers or of any kind of value; none that writes letters without end."""
+    if any(int(digits) > WIDEST for digits in re.findall(r"[0-9]+", form)):
+        return False
+    for value in (1.0, 1, "x")[:1 if is_number else 3]:
+        try:
+            format(value, form)
+            return True
+        except ValueError:
+            pass
+    return False
 
 
 @dataclass
@@ -89,7 +105,8 @@ class Overlay:
     """A title, or a table of texts and values, over a view.
 
     rows: (label, value) pairs; a value may hold {movie} and {run} (times [s]), {FRAME.x} of y, z (a frame's
-    place in the root [m]), and names of the source's telemetry, each with a format: {run:.2f}. since, until:
+    place in the root [m]), and names of the source's telemetry, each with a format
+    of up to 99 characters and places: {run:.2f}. since, until:
     movie times [s]. font_size: pixels, 4 to 200; 0: a 40th of the picture's height, from 8 to 200."""
     title: str = ""
     rows: tuple = ()
@@ -107,12 +124,16 @@ class Overlay:
             if not isinstance(row, (tuple, list)) or len(row) != 2 or not all(isinstance(c, str) for c in row):
                 refuse(about, "a row", row, "a label and a value, each a str", WrongType)
             rows.append(tuple(row))
+            for key, form in FIELD.findall(row[1]):
+                if not writable(form, key in ("movie", "run")):
+                    refuse(about, "a value's format", f"{{{key}:{form}}}", "one such as {run:.2f}, of up to "
+                           f"{WIDEST} characters and places")
         self.rows = tuple(rows)
         if not self.title and not rows:
             refuse(about, "what it says", "", "a title, or rows")
         if self.anchor not in ANCHORS:
             refuse(about, "anchor", self.anchor, ", ".join(map(repr, ANCHORS)))
-        integers((self.font_size,), 1, "font_size", about, "an integer, 0 or 4 to 200")
+        integer(self.font_size, "font_size", about, "an integer, 0 or 4 to 200")
         if self.font_size and not FONT_SIZES[0] <= self.font_size <= FONT_SIZES[1]:
             refuse(about, "font_size", self.font_size, "0 or 4 to 200 pixels")
         self.since = number(self.since, "since", about)

@@ -10,12 +10,13 @@ def add_arguments(parser):
     parser.add_argument("file", metavar="FILE.toml", help="the movie: see Documentation/Movies.md")
     parser.add_argument("--run", metavar="RUN", dest="source", required=True,
                         help="a recording, or FILE.py:NAME, a function that returns what a movie is drawn of")
-    parser.add_argument("--out", required=True, metavar="X", help="X.mp4 (H.264), X.webm (VP9), or a folder of PNGs")
+    parser.add_argument("--out", required=True, metavar="X", help="X.mp4 (H.264), X.webm (VP9), or a folder of PNGs: "
+                                                           "X without a dot, or with a slash at its end")
     parser.add_argument("--size", type=values.size, metavar="WxH", help="pixels (default: the file's)")
     parser.add_argument("--rate", type=float, help="pictures a second (default: the file's)")
     parser.add_argument("--samples", type=int, metavar="N", help="N x N samples a pixel, 1 to 8 (default: the file's)")
     parser.add_argument("--jobs", type=jobs, default=1, metavar="N", help="processes that share it (1)")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers share it: tcp://HOST:PORT")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers share it: tcp://HOST:PORT or tls://...")
     parser.add_argument("--work", metavar="DIR", help="folder for pictures (default: X.work)")
     parser.add_argument("--keep", action="store_true", help="keeps the work folder when the movie is made")
     parser.add_argument("--anew", action="store_true", help="draws pictures again that an ended make left")
