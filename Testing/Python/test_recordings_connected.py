@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import warnings
 
@@ -288,7 +289,7 @@ with dspace.connect({server.address!r}) as session, warnings.catch_warnings(reco
 
 
 # Between clients and a server's socket. Of all connections but the first one "cut" breaks what there is, and "hold" keeps
-# what comes for a second. A process of its own: waits on a server are slices in which no other thread of Python runs.
+# what comes until "free". A process of its own: waits on a server are slices in which no other thread of Python runs.
 PROXY = """
 import socket, sys, threading
 
@@ -323,11 +324,12 @@ print(f"127.0.0.1:{listener.getsockname()[1]}", flush=True)
 for line in sys.stdin:
     if line == "hold\\n":
         free.clear()
-        threading.Timer(1.0, free.set).start()
-        print("held", flush=True)
+    elif line == "free\\n":
+        free.set()
     else:
         for pair in pairs[1:]:
             end(*pair)
+    print("done", flush=True)
 """
 
 
@@ -341,6 +343,7 @@ def through(server):
 def say(proxy, word):
     proxy.stdin.write(word + "\n")
     proxy.stdin.flush()
+    assert proxy.stdout.readline() == "done\n"
 
 
 def test_its_end_waits_for_what_is_late(tmp_path):
@@ -354,10 +357,54 @@ def test_its_end_waits_for_what_is_late(tmp_path):
                 rover.pose = dspace.Pose((1, 0, 0))
                 recording.flush()
                 say(proxy, "hold")
-                assert proxy.stdout.readline() == "held\n"
                 for i in range(2, 5):
                     rover.pose = dspace.Pose((i, 0, 0))
+                later = threading.Timer(1.0, say, (proxy, "free"))
+                later.start()
+            later.join()
     assert last_place(path) == 4
+
+
+def test_what_cannot_be_done_here_is_recorded_all_the_same(tmp_path, folder):
+    """A model that the server has read, and that is gone when it is this process's turn."""
+    path, late = tmp_path / "a.dspace", folder / "late.obj"
+    with Served(tmp_path, "--allow-root", folder) as server:
+        proxy, address = through(server)
+        with proxy, dspace.connect(address) as session:
+            scene, rover = build(session, folder)
+            recording = session.record(path)
+            say(proxy, "hold")
+            late.write_text(BOX.replace("v 0 2 0", "v 0 3 0"))
+            scene.load(str(late), frame=rover)
+            late.unlink()
+            say(proxy, "free")
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always")
+                end, number = time.monotonic() + 60, 0
+                while not told:
+                    assert time.monotonic() < end
+                    drive(scene, rover, number, number + 1)
+                    number += 1
+                drive(scene, rover, number, number + 5)
+            live = session.viewports["view"].image()
+            recording.stop()
+    assert len(told) == 1 and "cannot be done here" in str(told[0].message) and "late.obj" in str(told[0].message)
+    late.write_text(BOX.replace("v 0 2 0", "v 0 3 0"))
+    with dspace.Playback(path, check_assets=False) as run:
+        run.seek(number + 4.0)
+        assert run.time == number + 4.0 and run.gaps == []
+        assert numpy.array_equal(run.session.viewports["view"].image(), live)
+
+
+def test_it_has_the_sessions_certificates(tmp_path):
+    subprocess.run([sys.executable, "-m", "dspace", "serve", "--make-test-certificates", tmp_path / "tls"], check=True)
+    tls = {name: str(tmp_path / "tls" / name) for name in ("server.pem", "server.key", "client.pem", "client.key", "ca.pem")}
+    with Served(tmp_path, "--cert", tls["server.pem"], "--key", tls["server.key"], "--ca", tls["ca.pem"],
+                listen="127.0.0.1:0") as server:
+        with dspace.connect(server.address, tls["client.pem"], tls["client.key"], tls["ca.pem"]) as session:
+            with session.record(tmp_path / "a.dspace"):
+                session.scene().add_frame("rover").pose = dspace.Pose((3, 0, 0))
+    assert last_place(tmp_path / "a.dspace") == 3
 
 
 def test_where_it_is_cut_off_there_is_a_gap(tmp_path, folder):
@@ -433,17 +480,19 @@ def test_neither_ctrl_c_nor_the_end_of_the_program_hangs(tmp_path, how):
         file.check()
 
 
-def test_a_program_that_just_ends_leaves_all_of_it(tmp_path):
+@pytest.mark.parametrize("wait", (True, False))
+def test_a_program_that_just_ends_leaves_all_of_it(tmp_path, wait):
     with Served(tmp_path) as server:
         subprocess.run([sys.executable, "-c", f"""
 import dspace
 session = dspace.connect({server.address!r})
 rover = session.scene().add_frame("rover")
 recording = session.record({str(tmp_path / "a.dspace")!r}, commit_every=60)
-for i in range(300):
+session.wait = {wait}
+for i in range(2000):
     rover.pose = dspace.Pose((i, 0, 0))
 """], check=True, timeout=300)
-    assert last_place(tmp_path / "a.dspace") == 299
+    assert last_place(tmp_path / "a.dspace") == 1999
 
 
 def test_a_session_that_is_forgotten_ends_its_recording(tmp_path):

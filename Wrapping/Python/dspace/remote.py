@@ -48,6 +48,11 @@ class RemoteClient(LocalClient):
         self._require_thread()
         return self.link
 
+    @property
+    def thread(self):
+        """The only one that may use it."""
+        return self._thread
+
     def require_thread(self):
         self._require_thread()
 

@@ -2,6 +2,7 @@
 import atexit
 import os
 import sys
+import threading
 import time
 import weakref
 
@@ -128,6 +129,9 @@ class ServedRecording(Recording):
             problem = self._catch_up(recorder, end)
         finally:
             self._close(recorder)
+        if self._client.sequence == 0 < recorder.GetSequence():
+            warn(f"recording {self.path!r}: the server does not number what it has done (Reply.sequence), so that its "
+                 "last commands may be missing")
         if self._missing:
             warn(f"recording {self.path!r}: files that could not be packed: " + ", ".join(self._missing))
         self._raise(self._failure or problem)
@@ -175,8 +179,11 @@ class ServedRecording(Recording):
     def _end_with_program(self):
         if self._last is not None or os.getpid() != self._process:
             return
+        end = time.monotonic() + SOON
         try:
-            problem = self._catch_up(self._recorder, time.monotonic() + SOON)
+            if threading.get_ident() == self._client.thread:
+                self._settle(end)
+            problem = self._catch_up(self._recorder, end)
             self._close(self._recorder)
             problem = self._failure or problem
         except KeyboardInterrupt:
