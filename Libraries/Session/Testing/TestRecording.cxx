@@ -291,6 +291,34 @@ TEST_F(Recording, KilledAtAnyMomentItIsAPrefix) {
   EXPECT_GT(held, 0u);
 }
 
+// A child of the process that records says so, and may end as it likes.
+TEST_F(Recording, AChildProcessLeavesItAlone) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
+#endif
+  auto writer = std::make_unique<RecordingWriter>(this->Path_, Ledger(), 0.0, RecordingOptions());
+  EXPECT_EQ(writer->Add(Numbered(1), {}, Ledger()), "");
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    alarm(20); // it hangs
+    const bool told =
+        writer->Add(Numbered(2), {}, Ledger()).find("this one is its child") != std::string::npos;
+    const bool once = writer->Add(Numbered(3), {}, Ledger()).empty();
+    const bool refused = !writer->Flush().empty() && !writer->Counts().failure.empty();
+    writer.reset();
+    _exit(told && once && refused ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(writer->Add(Numbered(2), {}, Ledger()), "");
+  writer.reset();
+  const std::vector<RecordingRow> rows = ReadRows(this->Path_);
+  ExpectPrefix(rows);
+  EXPECT_EQ(rows.size(), 2u);
+}
+
 // The simulation is told once and goes on; what was written stays.
 TEST_F(Recording, ADiskThatIsFullEndsItWithOneWarning) {
   RecordingOptions options;

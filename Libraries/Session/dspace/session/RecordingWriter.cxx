@@ -10,6 +10,7 @@
 #include <thread>
 
 #include <google/protobuf/util/delimited_message_util.h>
+#include <unistd.h>
 
 #include <dspace/Error.h>
 #include <dspace/session/RecordingAssets.h>
@@ -95,6 +96,14 @@ struct RecordingWriter::Impl {
   bool flush = false;
   RecordingCounts counts;
   std::thread thread;
+
+  // A child of the process that records has no such thread, and the mutex as it was.
+  const pid_t process = getpid();
+  bool Forked() const { return getpid() != this->process; }
+  std::string Foreign() const {
+    return "recording '" + this->path + "': process " + std::to_string(this->process) +
+           " writes it, and this one is its child; accepted: a recording of its own";
+  }
 
   void HandFiles(const v1::Command& command) {
     const CommandFiles none;
@@ -286,6 +295,10 @@ RecordingWriter::RecordingWriter(const std::string& path, const Ledger& initial,
 }
 
 RecordingWriter::~RecordingWriter() {
+  if (this->Impl_->Forked()) {
+    (void)this->Impl_.release(); // its thread and its file are the parent's
+    return;
+  }
   {
     const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
     this->Impl_->stop = true;
@@ -297,6 +310,9 @@ RecordingWriter::~RecordingWriter() {
 std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& reply,
                                  const Ledger& ledger) {
   Impl& impl = *this->Impl_;
+  if (impl.Forked()) {
+    return std::exchange(impl.told, true) ? std::string() : impl.Foreign();
+  }
   {
     const std::lock_guard<std::mutex> lock(impl.mutex);
     if (!impl.counts.failure.empty()) {
@@ -316,6 +332,9 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
 
 std::string RecordingWriter::Flush() {
   Impl& impl = *this->Impl_;
+  if (impl.Forked()) {
+    return impl.Foreign();
+  }
   std::unique_lock<std::mutex> lock(impl.mutex);
   impl.flush = true;
   impl.news.notify_one();
@@ -327,6 +346,9 @@ std::string RecordingWriter::Flush() {
 
 void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFiles* files) {
   Impl& impl = *this->Impl_;
+  if (impl.Forked()) {
+    return;
+  }
   const std::string number = std::to_string(++impl.seq);
   impl.lost += (impl.lost.empty() ? "" : " ") + number + "-" + number;
   impl.time_s = WithoutMinus0(time_s);
@@ -350,6 +372,11 @@ void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFil
 }
 
 RecordingCounts RecordingWriter::Counts() const {
+  if (this->Impl_->Forked()) {
+    RecordingCounts none;
+    none.failure = this->Impl_->Foreign();
+    return none;
+  }
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
   return this->Impl_->counts;
 }
