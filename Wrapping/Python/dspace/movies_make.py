@@ -7,24 +7,26 @@ is of. All ways of sharing the work give the same pictures.
 import contextlib
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import tempfile
 import time as clock
 
-from dspace._fields import integers, refuse
+from dspace._fields import integer, path as path_of, refuse, text
 from dspace.errors import Error, Io
-from dspace.movies_draw import Stage, open_run, png
+from dspace.movies_draw import Stage, open_run, png, require_run
 from dspace.movies_encode import codec_of, encode, programs
 from dspace.movies_folder import FRAME, SCRIPT, Folder, absolute, put
 
 
 def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progress=None, encoding=None, anew=False):
-    """Draws a Movie of a run into `out`: .mp4 (H.264), .webm (VP9), or a folder of PNGs.
+    """Draws a Movie of a run into `out`: .mp4 (H.264), .webm (VP9), or a folder of PNGs (a name without a dot, one
+    with a slash at its end, or a folder that is there).
 
     run: a recording's path, "FILE.py:NAME", or what dspace.movies_draw.open_run takes else (then jobs is 1).
-    jobs: processes that share the pictures; scheduler: a Dask scheduler's address ("tcp://..."), whose
+    jobs: processes that share the pictures; scheduler: a Dask scheduler's address (tcp://HOST:PORT, tls://...), whose
     workers do, where `run` has the same path on their machines. work: the folder for pictures (default: `out`
     with ".work", removed at the end unless `keep`; of a folder of PNGs `out` itself). An earlier make() of
     the same movie that was ended is gone on with, but for `anew`. progress: called with (done, all, seconds so
@@ -32,12 +34,16 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
     number of pictures drawn now."""
     total = movie.check()
     codec = codec_of(out, movie.size)
-    jobs = integers((jobs,), 1, "jobs", "movie", "an integer from 1 to 64")[0]
+    jobs = integer(jobs, "jobs", "movie", "an integer from 1 to 64")
     if not 1 <= jobs <= 64:
         refuse("movie", "jobs", jobs, "an integer from 1 to 64")
+    require_run(run)
+    if scheduler is not None:
+        require_address(scheduler)
     out = os.fspath(out)
-    work = os.fspath(work) if work is not None else (out if codec is None else out + ".work")
+    work = path_of(work, "the work folder", "movie") if work is not None else (out if codec is None else out + ".work")
     if isinstance(run, (str, os.PathLike)):
+        path_of(run, "the run", "movie", "a recording's path or FILE.py:NAME")
         run = absolute(run)  # workers may stand in another folder
     elif jobs > 1 or scheduler:
         refuse("movie", "the run", run, "a recording's path or FILE.py:NAME, where several processes share it")
@@ -57,13 +63,14 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
                 progress(total - left, total, clock.monotonic() - began, len(missing) - left)
 
         tell(len(missing))
-        if missing and scheduler:
-            from dspace.movies_dask import share
-            share(scheduler, movie.text, run, missing, folder, tell)
-        elif missing and jobs > 1:
-            _share(run, missing, min(jobs, len(missing)), folder, tell)
-        elif missing:
-            draw(movie, run, missing, folder.path, tell)
+        with _in_file(movie.label):
+            if missing and scheduler:
+                from dspace.movies_dask import share
+                share(scheduler, movie.text, run, missing, folder, tell)
+            elif missing and jobs > 1:
+                _share(run, missing, min(jobs, len(missing)), folder, tell)
+            elif missing:
+                draw(movie, run, missing, folder.path, tell)
         if codec is not None:
             began = clock.monotonic()
             encode(folder.path(FRAME), out, movie.size, movie.rate, total,
@@ -75,6 +82,25 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
     if codec is not None and not keep:
         folder.remove()
     return len(missing)
+
+
+def require_address(scheduler):
+    """Refuses what is no address of a Dask scheduler, for which Dask would wait."""
+    address = re.fullmatch(r"(tcp|tls)://(\[[0-9A-Fa-f:.]+\]|[^\s:/\[\]]+):([0-9]{1,5})",
+                           text(scheduler, "the scheduler", "movie"))
+    if not address or not 1 <= int(address[3]) <= 65535:
+        refuse("movie", "the scheduler", scheduler, "tcp://HOST:PORT or tls://HOST:PORT, of a Dask scheduler")
+
+
+@contextlib.contextmanager
+def _in_file(label):
+    """In a `with` statement: what is wrong with a view or an overlay is told with the movie's file."""
+    try:
+        yield
+    except Error as error:
+        if not label or not re.search(r"(^|: )(view|overlay) ", str(error)):
+            raise
+        raise type(error)(f"{label}: {error}", label) from None
 
 
 def _check_place(out):

@@ -7,7 +7,7 @@ import sys
 import tempfile
 import time
 
-from dspace._fields import number, refuse
+from dspace._fields import flag, items, number, path, refuse
 from dspace.errors import DeadlineExceeded, Io
 
 LISTENING = "dspace serve: listening on "
@@ -27,8 +27,10 @@ class ServerProcess:
         self._timeout = number(timeout, "the timeout", "server")
         if not self._timeout > 0:
             refuse("server", "the timeout", timeout, "seconds above 0")
-        self._record = [] if record is None else ["--record", os.path.abspath(record)] + ["--pack"] * bool(pack)
-        self._roots = [os.fspath(root) for root in roots]
+        pack = flag(pack, "pack", "server")
+        self._record = [] if record is None else [
+            "--record", os.path.abspath(path(record, "the recording", "server"))] + ["--pack"] * pack
+        self._roots = [path(root, "a root", "server") for root in items(roots, "the roots", "server", "a list of folders")]
         self._folder = self._process = self.address = None
 
     @property

@@ -1,5 +1,7 @@
 """`dspace serve`: a session for simulations and viewers in other processes."""
+import contextlib
 import faulthandler
+import math
 import os
 import select
 import signal
@@ -50,6 +52,13 @@ def run(options):
     if options.make_test_certificates:
         make_test_certificates(options.make_test_certificates)
         return 0
+    for name, value, accepted in (
+            ("--max-message", options.max_message, (1 << 10, 1 << 30, "1024 to 1073741824 bytes")),
+            ("--max-connections", options.max_connections, (1, 1000, "1 to 1000")),
+            ("--max-frames", options.max_frames, (1, math.inf, "1 or more")),
+            ("--max-rate", options.max_rate, (sys.float_info.min, math.inf, "any number above 0"))):
+        if not accepted[0] <= value <= accepted[1]:
+            raise Failed(f"{name} {value:{'g' if isinstance(value, float) else ''}}; accepted: {accepted[2]}")
     from dspace import vtk
     server = vtk.vtkDspaceServer()
     server.SetListen(options.listen)
@@ -58,9 +67,9 @@ def run(options):
     server.SetInsecure(options.insecure)
     for root in options.allow_root or [os.getcwd()]:
         server.AddAllowedRoot(root)
-    server.SetMaximumMessage(max(-1, min(options.max_message, 1 << 62)))
-    server.SetMaximumConnections(max(-1, min(options.max_connections, 1 << 30)))
-    server.SetMaximumFrames(max(0, min(options.max_frames, 1 << 62)))
+    server.SetMaximumMessage(options.max_message)
+    server.SetMaximumConnections(options.max_connections)
+    server.SetMaximumFrames(min(options.max_frames, 1 << 62))
     server.SetMaximumRate(options.max_rate)
     stop = []
     for number in (signal.SIGTERM, signal.SIGINT):
@@ -68,6 +77,8 @@ def run(options):
     if options.pack and options.record is None:
         raise Failed("--pack without --record; accepted: both")
     if options.record is not None:
+        if not options.record:
+            raise Failed("--record ''; accepted: a new file")
         if os.path.lexists(options.record):
             raise Failed(f"--record {options.record!r}: there is such a file; accepted: a new one")
         trouble = server.GetSession().Record(os.path.abspath(options.record), 0.1, options.pack)
@@ -75,6 +86,11 @@ def run(options):
             raise Failed(trouble)
     trouble = server.Start()
     if trouble:
+        if options.record is not None:  # it holds nothing, and would be in the way of the next one
+            server.GetSession().StopRecording()
+            for end in ("", "-wal", "-shm"):
+                with contextlib.suppress(OSError):
+                    os.unlink(options.record + end)
         raise Failed(trouble)
     if options.insecure and not options.cert:
         print("dspace: note: --insecure: nothing is encrypted, and whoever reaches the server may drive it",
