@@ -1,4 +1,5 @@
 // What a server and its clients let others cost them, and what a child process of a client may do.
+#include <algorithm>
 #include <stdexcept>
 
 #include <sys/wait.h>
@@ -75,6 +76,48 @@ TEST_F(LinkLimits, WhatWaitsIsCountedAsItLiesInMemory) {
   EXPECT_TRUE(Within20s([&] { return waiting() >= bytes; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_LE(waiting(), this->Options.queuedBytes);
+}
+
+// Both sides stay a few steps ahead of one another, but only while the other one goes on.
+// What the server's queue does not take waits in the client.
+TEST_F(LinkLimits, AServerThatStallsIsSentAWindowful) {
+  for (const std::size_t queue : {std::size_t(256) << 20, std::size_t(1) << 20}) {
+    this->Options.queuedBytes = queue;
+    this->StartIdleServer(); // which carries out nothing yet
+    session::RemoteClientOptions to = this->ClientOptions();
+    to.timeout_s = 30;
+    RemoteClient client(to);
+    Accept(client.Send(MakeScene()));
+    std::vector<std::uint64_t> frames;
+    for (std::uint64_t id = 2; id < 602; ++id) {
+      frames.push_back(id);
+      Accept(client.Send(MakeFrame(id)));
+    }
+    std::size_t sent = 0;
+    int step = 0;
+    while (sent < std::size_t(12) << 20) { // of 16 MiB
+      const v1::Command command = MakeStep(frames, ++step);
+      sent += command.ByteSizeLong();
+      client.Begin(command, false);
+      ASSERT_TRUE(client.Wait(10)) << "step " << step; // of milliseconds
+      Accept(client.Take());
+    }
+    const std::size_t most = std::min(sent, queue / 2);
+    EXPECT_TRUE(Within20s([&] { return this->Server->GetCounts().waitingBytes >= most; }));
+    this->Served = std::make_unique<ServedInterpreter>();
+    this->Thread = std::thread([this] {
+      while (this->Server->Run(this->Served->Work(), 10)) {
+      }
+    });
+    Accept(client.Flush());
+    const v1::Reply reply = client.Execute(AskPoses(frames));
+    ASSERT_EQ(reply.poses().pose_size(), int(8 * frames.size()));
+    for (int i = 0; i < reply.poses().pose_size(); i += 8) {
+      ASSERT_EQ(reply.poses().pose(i), step);
+    }
+    EXPECT_EQ(this->Server->GetCounts().commands, 602u + std::uint64_t(step));
+    this->StopServer();
+  }
 }
 
 TEST_F(LinkLimits, TheRateHoldsAcrossConnections) {
