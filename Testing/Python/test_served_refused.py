@@ -1,4 +1,4 @@
-"""Servers, links and sessions that are recorded: what is refused, and that a server that could not start leaves nothing behind."""
+"""Servers, links and recordings: what is refused, and that a server that could not start leaves nothing behind."""
 import socket
 
 import pytest
@@ -42,11 +42,14 @@ def test_a_server_that_cannot_start_leaves_no_recording(tmp_path, taken, capsys)
 
 
 @pytest.mark.parametrize("words, says", [
-    (["--max-frames", "0"], "--max-frames 0; accepted: 1 or more"), (["--max-frames", "-3"], "--max-frames -3; accepted: 1"),
-    (["--max-rate", "-1"], "--max-rate -1; accepted: any number above 0"), (["--max-rate", "nan"], "--max-rate nan; accepted"),
-    (["--max-message", "0"], "--max-message 0; accepted: 1024 to"), (["--max-connections", "0"], "--max-connections 0; accepted"),
+    (["--max-frames", "0"], "--max-frames 0; accepted: 1 or more"),
+    (["--max-frames", "-3"], "--max-frames -3; accepted: 1"),
+    (["--max-rate", "-1"], "--max-rate -1; accepted: any number above 0"),
+    (["--max-rate", "nan"], "--max-rate nan; accepted"),
+    (["--max-message", "0"], "--max-message 0; accepted: 1024 to"),
+    (["--max-connections", "0"], "--max-connections 0; accepted"),
     (["--max-connections", "9" * 30], "accepted: 1 to 1000"), (["--record", ""], "--record ''; accepted: a new file"),
-    (["--make-test-certificates", "/proc/x"], "--make-test-certificates '/proc/x': No such file or directory; accepted: a folder"),
+    (["--make-test-certificates", "/proc/x"], "certificates '/proc/x': No such file or directory; accepted"),
     (["--make-test-certificates", __file__], "accepted: a folder that may be made")])
 def test_values_of_the_command_line(tmp_path, capsys, words, says):
     assert main(["serve", "--listen", "nonsense", *words]) == 1
@@ -57,7 +60,8 @@ def test_values_of_the_command_line(tmp_path, capsys, words, says):
 def test_server_processes_refuse_by_name(tmp_path):
     for words, kind in ((dict(roots="/tmp"), dspace.WrongType), (dict(roots=5), dspace.WrongType),
                         (dict(roots=[5]), dspace.WrongType), (dict(roots=[], record=5), dspace.WrongType),
-                        (dict(roots=[], record=""), dspace.InvalidArgument), (dict(roots=[], pack="no"), dspace.WrongType),
+                        (dict(roots=[], record=""), dspace.InvalidArgument),
+                        (dict(roots=[], pack="no"), dspace.WrongType),
                         (dict(roots=[], timeout=0), dspace.InvalidArgument)):
         said = raised(kind, lambda: ServerProcess(**words))
         assert said.startswith("server: ") and "accepted" in said

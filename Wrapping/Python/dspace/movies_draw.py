@@ -242,8 +242,8 @@ class Stage:
                 number, field = next((number, "frame" if key.frame == path else "target_frame")
                                      for number, key in enumerate(view.keys, 1)
                                      if path in (key.frame, key.target_frame))
-                raise NotFound(f"view {view.name!r}, key {number}, {field}: at {run:g} s of the run: {error}",
-                               path) from None
+                raise NotFound(f"view {view.name!r}, key {number}, {field}: at {run:g} s of the run: {error}; "
+                               "accepted: a frame that is there then", path) from None
 
         def relative(path, base):
             return find(path).pose_in(find(base))

@@ -137,6 +137,7 @@ RecordingReader::RecordingReader(const std::string& path) : Impl_(std::make_uniq
     if (format != RecordingFormat) {
       throw Error(Error::Kind::Unsupported, object,
                   "its format is " + std::to_string(format) +
+                      (format > RecordingFormat ? ", a newer Dspace wrote it" : "") +
                       "; accepted: " + std::to_string(RecordingFormat));
     }
   } catch (...) {

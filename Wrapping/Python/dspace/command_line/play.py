@@ -34,7 +34,8 @@ def run(options):
         if options.at is not None:
             playback.seek(options.at)
         if options.out is None:
-            print(f"{len(playback.times)} steps, {playback.times[0]:g} to {playback.times[-1]:g} s; {seen(playback, options)}")
+            print(f"{len(playback.times)} steps, {playback.times[0]:g} to {playback.times[-1]:g} s; "
+                  f"{seen(playback, options)}")
             return 0
         name, steps = chosen(playback, options)
         paths = [os.path.join(options.out, f"{number:06d}.png") for number in range(len(steps))]
@@ -81,15 +82,15 @@ def chosen(playback, options):
     at = "" if options.at is None else f"at {playback.time:g} s "
     if name not in viewports or at and name not in playback.session.viewports:
         said = "which viewport is not said" if name is None else f"there is no viewport {name!r}"
-        raise Failed(f"{playback.file.label}: {at}{said}; there are: {listed(playback, viewports)}; accepted: --viewport with one of "
-                     "them" + (", and a time when it is there" if at else ""))
+        raise Failed(f"{playback.file.label}: {at}{said}; there are: {listed(playback, viewports)}; accepted: "
+                     "--viewport with one of them" + (", and a time when it is there" if at else ""))
     if at:
         return name, [playback.index]
     there = [index for begin, end in viewports[name] for index in range(begin, end)]
     missing = len(playback.times) - len(there)
     if missing:
-        print(f"dspace: note: {missing} of {len(playback.times)} steps are passed over, without viewport {name!r}, which "
-              f"is there {when(playback, viewports[name])}", file=sys.stderr)
+        print(f"dspace: note: {missing} of {len(playback.times)} steps are passed over, without viewport {name!r}, "
+              f"which is there {when(playback, viewports[name])}", file=sys.stderr)
     drawn = []
     for index in reversed(there) if options.reverse else there:
         if not drawn or options.every is None or (abs(playback.times[index] - playback.times[drawn[-1]])
