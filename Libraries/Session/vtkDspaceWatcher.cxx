@@ -19,8 +19,9 @@ vtkStandardNewMacro(vtkDspaceWatcher);
 
 namespace {
 
-constexpr int MostChanges = 100000;     // of frames, that wait to be taken
-constexpr double LongestTellPick = 1.0; // [s]: a click is not to stop the viewer for longer
+constexpr int MostChanges = 100000;      // of frames, that wait to be taken
+constexpr double WriterToldWithin = 2.0; // [s] of a snapshot
+constexpr double LongestTellPick = 1.0;  // [s]: a click is not to stop the viewer for longer
 
 std::string SceneOf(const dspace::v1::Command& command) {
   return command.scene().empty() ? dspace::session::DefaultScene : command.scene();
@@ -36,6 +37,7 @@ struct vtkDspaceWatcher::Internals {
   std::uint64_t sequence = 0;
   std::string writer;
   bool writerConnected = false;
+  bool writerUntold = false; // since the last snapshot, which is followed by it
   std::string trouble;
   std::string failed; // the reply that says why there is no connection, or no word of an event
   dspace::session::LinkBanner banner;
@@ -47,11 +49,13 @@ struct vtkDspaceWatcher::Internals {
   void Apply(dspace::v1::WatchReply& message) {
     if (message.has_snapshot()) {
       this->Begin(*message.mutable_snapshot());
+      this->writerUntold = true;
     } else if (message.has_command()) {
       this->Apply(*message.mutable_command());
     } else if (message.has_writer()) {
       this->writer = message.writer().name();
       this->writerConnected = message.writer().connected();
+      this->writerUntold = false;
     }
     this->sequence = message.sequence();
   }
@@ -259,8 +263,13 @@ int vtkDspaceWatcher::Update(double wait) {
   std::size_t applied = 0;
   std::vector<dspace::v1::WatchReply> messages;
   // Not for ever: what comes faster than it is applied is for the next call.
+  const auto longest = [&] {
+    return applied == 0                                       ? wait
+           : this->Impl->writerUntold && this->GetConnected() ? WriterToldWithin
+                                                              : 0.0;
+  };
   while (this->Impl->watcher && applied < 10000 &&
-         this->Impl->watcher->TakeAll(messages, applied == 0 ? wait : 0.0)) {
+         this->Impl->watcher->TakeAll(messages, longest())) {
     this->Impl->Apply(messages);
     applied += messages.size();
   }
