@@ -1,6 +1,8 @@
 // The simulation link: steps of 1,000 frames against a raw gRPC stream of the same bytes, and the
 // round trip of lockstep. Both over a Unix socket to servers in one other process.
 #include <atomic>
+#include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <thread>
 
@@ -151,7 +153,22 @@ int Serve(const std::string& folder, int told) {
   return good ? 0 : 1;
 }
 
-void Drive(const std::string& folder) {
+// CPU seconds of this process and of the servers': other work on the machine weighs less on them
+// than on the rate.
+double CpuSeconds(pid_t servers) {
+  double total = 0;
+  for (const pid_t each : {getpid(), servers}) {
+    clockid_t clock;
+    timespec now = {};
+    if (clock_getcpuclockid(each, &clock) != 0 || clock_gettime(clock, &now) != 0) {
+      return std::nan("");
+    }
+    total += double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+  }
+  return total;
+}
+
+void Drive(const std::string& folder, pid_t servers) {
   session::RemoteClientOptions to;
   to.address = "unix:" + folder + "/link";
   session::RemoteClient client(to);
@@ -168,26 +185,35 @@ void Drive(const std::string& folder) {
   int step = 0;
   bool good = true;
   const std::size_t bytes = MakeStep(1).ByteSizeLong();
+  std::vector<double> linkCpu; // microseconds a step, of each turn
+  std::vector<double> rawCpu;
   // Both make their message anew each step, from the simulation's numbers.
   const auto turns = bench::Alternate(
       Pairs,
       [&] {
+        const double began = CpuSeconds(servers);
         for (int i = 0; i < Steps; ++i) {
           good = !client.Send(MakeStep(++step)).has_error() && good;
         }
         good = !client.Flush().has_error() && good;
+        linkCpu.push_back(1e6 * (CpuSeconds(servers) - began) / Steps);
       },
       [&] {
+        const double began = CpuSeconds(servers);
         for (int i = 0; i < Steps; ++i) {
           raw.Write(MakeStep(++step).SerializeAsString());
         }
         raw.Read();
+        rawCpu.push_back(1e6 * (CpuSeconds(servers) - began) / Steps);
       });
   char behind[160];
   std::snprintf(behind, sizeof(behind),
                 "rate %.2f of the raw stream's (goal 0.7), steps of %d frames, %zu bytes%s",
                 1 / bench::Median(turns.ratio), Frames, bytes, good ? "" : ", WITH ERRORS");
   bench::Print("steps over the link against a raw gRPC stream", turns, Steps, behind);
+  std::printf(
+      "CPU time of both processes: %.0f us a step over the link, %.0f over the raw stream\n",
+      bench::Median(linkCpu), bench::Median(rawCpu));
   std::vector<double> trips;
   for (int i = 0; i < 5000; ++i) {
     v1::Command time;
@@ -221,7 +247,7 @@ int main() {
   char word = 0;
   const bool ready = read(ends[0], &word, 1) == 1;
   if (ready) {
-    Drive(folder);
+    Drive(folder, child);
   }
   close(ends[0]);
   int status = 1;
