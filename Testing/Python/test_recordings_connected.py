@@ -241,6 +241,7 @@ def test_commands_that_never_come_are_missed(tmp_path, folder):
             scene, rover = build(session, folder)
             recording = session.record(path)
             drive(scene, rover, 0, 3)
+            recording.flush()
             session._client.sequence += 2  # as a server has it that died just then
             server.kill()
             with pytest.raises(dspace.Io, match="a.dspace.*(2 commands.*have not come|is gone)"):
