@@ -181,9 +181,10 @@ def finish(process):
 def _share(run, missing, jobs, folder, tell):
     """Each process draws pictures that follow each other, for a run goes forward."""
     edges = [len(missing) * k // jobs for k in range(jobs + 1)]
-    processes = [worker(folder.path(SCRIPT), run, folder.folder, missing[a:b])
-                 for a, b in zip(edges, edges[1:])]
+    processes = []
     try:
+        for a, b in zip(edges, edges[1:]):
+            processes.append(worker(folder.path(SCRIPT), run, folder.folder, missing[a:b]))
         left = set(missing)
         while any(process.poll() is None for process in processes):
             if any(process.poll() for process in processes):

@@ -44,7 +44,8 @@ class ServerProcess:
         for root in self._roots:
             command += ["--allow-root", root]
         command += self._record
-        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        # In a session of its own: Ctrl-C at the terminal is this process's, which ends it in its own time.
+        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True)
         try:
             line = self._first_line()
         except BaseException:
@@ -72,8 +73,8 @@ class ServerProcess:
     def __exit__(self, *exception):
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGTERM)
-            try:
-                self._process.wait(timeout=20)
+            try:  # what is recorded is written first, however long it takes; it ends itself soon after
+                self._process.wait(timeout=None if self._record else 90)
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()

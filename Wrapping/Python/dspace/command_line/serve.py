@@ -11,7 +11,7 @@ import time
 from dspace.command_line import Failed
 from dspace.command_line.certificates import make_test_certificates
 
-TO_END = 15.0  # seconds, once the session has ended
+TO_END = 60.0  # seconds, once the session has ended
 
 
 def add_arguments(parser):
