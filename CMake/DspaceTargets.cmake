@@ -75,3 +75,15 @@ function(dspace_test name)
   set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600
     ENVIRONMENT "DISPLAY=;DSPACE_SHIPPED_DATA=${CMAKE_SOURCE_DIR}/Data;ASAN_OPTIONS=detect_leaks=0;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/Testing/cache")
 endfunction()
+
+# dspace_shared_headers(FIRST HEADERS ... TESTS ...): FIRST's headers, precompiled once, for programs that
+# are compiled alike.
+function(dspace_shared_headers first)
+  cmake_parse_arguments(arg "" "" "HEADERS;TESTS" ${ARGN})
+  if(DSPACE_TESTS)
+    target_precompile_headers(${first} PRIVATE ${arg_HEADERS})
+    foreach(test IN LISTS arg_TESTS)
+      target_precompile_headers(${test} REUSE_FROM ${first})
+    endforeach()
+  endif()
+endfunction()
