@@ -276,6 +276,29 @@ def test_nothing_is_written_outside_of_its_folder(tmp_path, monkeypatch):
         assert open(unpacked.place("/name"), "rb").read() == b"two"
 
 
+def test_no_more_is_unpacked_than_is_said(tmp_path, monkeypatch):
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    forged(tmp_path / "a.dspace", [("/a", b"x")])
+    with sqlite3.connect(tmp_path / "a.dspace") as database:
+        size = 1 << 20
+        for number in range(8):
+            part = Content(number + 2, 1, 1 + number * size, size, zlib.compress(bytes(size)))
+            database.execute("INSERT INTO content VALUES(?,?,?,?,?,?)", (*part, part.checksum))
+    with pytest.raises(dspace.Corrupt, match="'/a' is damaged at byte 1"), RecordingFile(tmp_path / "a.dspace") as file:
+        RecordedFiles(file)
+
+
+def test_nothing_stands_in_for_projs_own(tmp_path):
+    for number, names in enumerate((["/x/a.gsb", "/x/proj.db"], ["/x/proj/proj.ini"], ["/proj/a.tif", "/proj/proj.db"])):
+        forged(tmp_path / f"{number}.dspace", [(name, b"harm") for name in names])
+        with pytest.raises(dspace.Corrupt, match="stand in for PROJ's own"), \
+                RecordingFile(tmp_path / f"{number}.dspace") as file:
+            RecordedFiles(file)
+    forged(tmp_path / "other.dspace", [("/x/a.gsb", b"a grid"), ("/y/proj.db", b"whose folder PROJ never sees")])
+    with RecordingFile(tmp_path / "other.dspace") as file:
+        RecordedFiles(file).close()
+
+
 def test_no_command_of_a_recording_writes_files(tmp_path):
     save = pb.Command(scene="scene")
     save.save_image.viewport, save.save_image.path = "view", str(tmp_path / "harm.png")

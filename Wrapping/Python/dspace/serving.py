@@ -78,6 +78,10 @@ class ServerProcess:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
+            except BaseException:  # whoever is interrupted here waits no longer; the recording is sound
+                self._process.kill()
+                self._process.wait()
+                raise
         self._process.stdin.close()
         self._process.stdout.close()
         self._folder.cleanup()

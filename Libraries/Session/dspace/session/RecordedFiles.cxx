@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 
 #include <fcntl.h>
@@ -122,12 +123,17 @@ public:
     this->Path = name;
   }
   ~OwnFolder() {
-    std::error_code ignored;
-    fs::remove_all(this->Path, ignored);
+    if (getpid() == this->Process_) { // else it is the parent's, which reads it
+      std::error_code ignored;
+      fs::remove_all(this->Path, ignored);
+    }
   }
   OwnFolder(const OwnFolder&) = delete;
   OwnFolder& operator=(const OwnFolder&) = delete;
   std::string Path;
+
+private:
+  const pid_t Process_ = getpid();
 };
 
 RecordedFiles::RecordedFiles(RecordingReader& reader, bool check) : Reader_(reader), Check_(check) {
@@ -195,7 +201,8 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
     }
     if (asset.packed) {
       packed.push_back(&asset);
-      needed += std::uintmax_t(std::max<std::int64_t>(asset.size, 0));
+      const auto size = std::uintmax_t(std::max<std::int64_t>(asset.size, 0));
+      needed += std::min(size, std::numeric_limits<std::uintmax_t>::max() - needed);
     }
   }
   std::error_code error;
@@ -223,6 +230,16 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
   for (const auto& entry : this->Places_) {
     if (IsProjGrid(entry.first)) {
       folders.insert(fs::path(entry.second).parent_path().string());
+    }
+  }
+  // PROJ would take these for its own, in all of the process.
+  for (const auto& entry : this->Places_) {
+    const fs::path place(entry.second);
+    if ((place.filename() == "proj.db" || place.filename() == "proj.ini") &&
+        folders.count(place.parent_path().string()) != 0) {
+      throw Error(Error::Kind::Corrupt, Object(this->Reader_),
+                  "'" + entry.first + "', packed beside a grid, would stand in for PROJ's own; " +
+                      "accepted: grids without it");
     }
   }
   if (!folders.empty()) {

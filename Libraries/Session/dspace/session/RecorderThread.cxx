@@ -92,6 +92,7 @@ void RecorderThread::Follow() {
         }
         this->Take(message);
       }
+      this->heard = Clock::now(); // however long that took
     }
     this->LookAtLink();
     this->Look();

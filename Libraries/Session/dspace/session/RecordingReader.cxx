@@ -307,7 +307,8 @@ void RecordingReader::ReadContent(const RecordingAsset& asset,
       part.size = sqlite3_column_int64(row.get(), 3);
       part.data = Impl::Blob(row, 4);
       good = Impl::Blob(row, 5) == RecordingChecksum(part) && part.asset == asset.id &&
-             part.place == place && part.size > 0 && part.size <= RecordingPartBytes;
+             part.place == place && part.size > 0 && part.size <= RecordingPartBytes &&
+             part.size <= asset.size - place; // no more is made than is said
     }
     if (good && std::int64_t(part.data.size()) != part.size) {
       part.data = Decompress(part.data, part.size);
