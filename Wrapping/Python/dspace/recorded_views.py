@@ -13,25 +13,28 @@ class _Present:
     """What is there after the commands so far, each by its key; see spans_of()."""
 
     def __init__(self):
-        self.now = set()
+        self.now = {}  # keys only, in the order in which they came
 
     def apply(self, command):
         scene, kind = command.scene or "scene", command.WhichOneof("command")
         if kind == "create_scene":
-            self.now.add(("scene", scene))
+            self.now.setdefault(("scene", scene))
         elif kind == "remove_scene":
-            self.now -= {key for key in self.now if key[0] != "viewport" and key[1] == scene}
+            self._remove(lambda key: key[0] != "viewport" and key[1] == scene)
         elif kind == "remove_vantage":
             gone = ("camera", scene, command.remove_vantage.name)
-            self.now -= {key for key in self.now if key[:3] == gone}
+            self._remove(lambda key: key[:3] == gone)
         elif kind == "set_camera":
-            self.now.add(("camera", scene, command.set_camera.vantage or "main", command.set_camera.name))
+            self.now.setdefault(("camera", scene, command.set_camera.vantage or "main", command.set_camera.name))
         elif kind == "remove_camera":
-            self.now.discard(("camera", scene, command.remove_camera.vantage or "main", command.remove_camera.name))
+            self.now.pop(("camera", scene, command.remove_camera.vantage or "main", command.remove_camera.name), None)
         elif kind == "create_viewport":
-            self.now.add(("viewport", command.create_viewport.name or self._free_name()))
+            self.now.setdefault(("viewport", command.create_viewport.name or self._free_name()))
         elif kind == "remove_viewport":
-            self.now.discard(("viewport", command.remove_viewport.viewport))
+            self.now.pop(("viewport", command.remove_viewport.viewport), None)
+
+    def _remove(self, gone):
+        self.now = {key: None for key in self.now if not gone(key)}
 
     def _free_name(self):
         """As the interpreter chooses it."""
@@ -62,7 +65,7 @@ def spans_of(playback):
     begins = sorted({0, *(gap.before for gap in playback.gaps if gap.before < len(ends))})
     for begin, end in zip(begins, [*begins[1:], len(ends)]):
         snapshot = file.snapshot(ends[begin])
-        present.now = set()
+        present.now = {}
         for command in commands_of(snapshot):
             present.apply(pb.Command.FromString(command))
         index = begin
