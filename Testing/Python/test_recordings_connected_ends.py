@@ -14,11 +14,11 @@ import pytest
 import dspace
 from connected_support import BOX, build, drive, folder, last_place  # noqa: F401 (a fixture)
 from dspace.recording_file import RecordingFile
-from served_support import Served
+from served_support import Served, stand_still
 
 
-# Between clients and a server's socket. Of all connections but the first one "cut" breaks what there is, and "hold" keeps
-# what comes until "free". A process of its own: waits on a server are slices in which no other thread of Python runs.
+# Between clients and a server's socket. Of all connections but the first one "hold" keeps what comes until "free", and
+# "cut" breaks what there is and holds. A process of its own: waits on a server are slices in which no other thread of Python runs.
 PROXY = """
 import socket, sys, threading
 
@@ -56,6 +56,7 @@ for line in sys.stdin:
     elif line == "free\\n":
         free.set()
     else:
+        free.clear()
         for pair in pairs[1:]:
             end(*pair)
     print("done", flush=True)
@@ -148,7 +149,10 @@ def test_where_it_is_cut_off_there_is_a_gap(tmp_path, folder):
                 say(proxy, "cut")  # all but the simulation's
                 with warnings.catch_warnings(record=True) as told:
                     warnings.simplefilter("always")
-                    end, number = time.monotonic() + 60, 10
+                    drive(scene, rover, 10, 13)  # before anybody watches again
+                    assert not told
+                    say(proxy, "free")
+                    end, number = time.monotonic() + 60, 13
                     while not told:
                         assert time.monotonic() < end
                         drive(scene, rover, number, number + 1)
@@ -167,18 +171,19 @@ def test_where_it_is_cut_off_there_is_a_gap(tmp_path, folder):
 
 
 HANGS = """
-import os, signal, sys, time
+import sys, time
 import dspace
 session = dspace.connect(sys.argv[1], timeout=600.0)
 rover = session.scene().add_frame("rover")
 recording = session.record(sys.argv[2])
 session.wait = False
-os.kill(int(sys.argv[3]), signal.SIGSTOP)
+print("recording", flush=True)
+sys.stdin.readline()
 rover.pose = dspace.Pose((1, 0, 0))
-if sys.argv[4] == "exit":
+if sys.argv[3] == "exit":
     sys.exit(0)
 print("waiting", flush=True)
-if sys.argv[4] == "stop":
+if sys.argv[3] == "stop":
     recording.stop()
 else:
     with recording:
@@ -192,9 +197,13 @@ def test_neither_ctrl_c_nor_the_end_of_the_program_hangs(tmp_path, how):
     """The server does not answer, and ten minutes are the timeout."""
     with Served(tmp_path) as server:
         simulation = subprocess.Popen([sys.executable, "-W", "ignore", "-c", HANGS, server.address, tmp_path / "a.dspace",
-                                       str(server.process.pid), how], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       how], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                       text=True)
         try:
+            assert simulation.stdout.readline() == "recording\n"
+            stand_still(server.process.pid)
+            simulation.stdin.write("\n")
+            simulation.stdin.flush()
             if how != "exit":
                 assert simulation.stdout.readline() == "waiting\n"
                 time.sleep(0.3)

@@ -10,6 +10,7 @@ import pytest
 import dspace
 from dspace.recording_file import RecordingFile
 from dspace.serving import ServerProcess
+from served_support import socket_folder
 
 BOX = "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n"
 
@@ -76,7 +77,7 @@ def test_who_watches_records_what_comes(tmp_path, folder):
 @pytest.mark.filterwarnings("ignore::dspace.DspaceWarning")
 def test_where_the_watcher_begins_anew_there_is_a_gap(tmp_path, folder):
     """The server goes, another one comes at its address: what happened meanwhile nobody has."""
-    path, address = tmp_path / "a.dspace", f"unix:{tmp_path}/socket"
+    path, address = tmp_path / "a.dspace", f"unix:{socket_folder(tmp_path)}/socket"
     command = [sys.executable, "-m", "dspace", "serve", "--listen", address, "--allow-root", folder]
 
     def serve():

@@ -6,7 +6,7 @@ import pytest
 import dspace
 from dspace.command_line import main
 from dspace.serving import ServerProcess
-from served_support import Served
+from served_support import Served, socket_folder
 
 
 def raised(kind, call):
@@ -19,15 +19,16 @@ def raised(kind, call):
 @pytest.fixture
 def taken(tmp_path):
     """A socket that somebody listens on."""
+    path = socket_folder(tmp_path) / "taken"
     with socket.socket(socket.AF_UNIX) as listener:
-        listener.bind(str(tmp_path / "taken"))
+        listener.bind(str(path))
         listener.listen()
-        yield f"unix:{tmp_path}/taken"
+        yield f"unix:{path}"
 
 
 def test_a_server_that_cannot_start_leaves_no_recording(tmp_path, taken, capsys):
     path = tmp_path / "run.dspace"
-    for address in (taken, "nonsense", f"unix:{tmp_path}/no/socket"):
+    for address in (taken, "nonsense", f"unix:{socket_folder(tmp_path)}/no/socket"):
         assert main(["serve", "--listen", address, "--record", str(path)]) == 1
         assert capsys.readouterr().err.count("\n") == 1
         assert not [each for each in tmp_path.iterdir() if each.name.startswith("run")]
@@ -70,7 +71,7 @@ def test_server_processes_refuse_by_name(tmp_path):
 def test_times_to_wait(tmp_path):
     for timeout in (1e300, 0, -1, float("nan"), float("inf")):
         for call in (dspace.connect, dspace.watch):
-            said = raised(dspace.InvalidArgument, lambda: call(f"unix:{tmp_path}/nobody", timeout=timeout))
+            said = raised(dspace.InvalidArgument, lambda: call(f"unix:{socket_folder(tmp_path)}/nobody", timeout=timeout))
             assert f"the timeout is {timeout!r}; accepted: seconds above 0, up to 1e6" in said
     with Served(tmp_path) as server, dspace.connect(server.address) as session:
         session.scene()

@@ -9,7 +9,7 @@ import pytest
 
 import dspace
 from dspace.command_line.watch import Presence
-from served_support import Served
+from served_support import Served, socket_folder
 
 RUN = [sys.executable, "-W", "ignore", "-m", "dspace", "watch"]
 
@@ -146,7 +146,7 @@ def test_whatever_goes_between_two_looks_is_told():
 
 @pytest.mark.parametrize("number", (signal.SIGINT, signal.SIGTERM))
 def test_it_can_be_ended_while_it_connects(tmp_path, number):
-    with Watched(f"unix:{tmp_path}/nobody", "--out", tmp_path / "out") as watch:
+    with Watched(f"unix:{socket_folder(tmp_path)}/nobody", "--out", tmp_path / "out") as watch:
         pid, others, caught = watch.process.pid, [], 0
         while not others or not caught & 1 << signal.SIGTERM - 1:  # it connects, and hears
             assert watch.process.poll() is None
@@ -165,7 +165,7 @@ def test_it_can_be_ended_while_it_connects(tmp_path, number):
     (("--fov", "30"), "--fov belongs to a view of one's own"),
     (("--eye", "1,2,3", "--target", "0,0,0", "--viewport", "view"), "one or the other")])
 def test_what_is_wrong_is_said(tmp_path, arguments, text):
-    run = subprocess.run([*RUN, f"unix:{tmp_path}/nobody", "--out", tmp_path / "out", *arguments],
+    run = subprocess.run([*RUN, f"unix:{socket_folder(tmp_path)}/nobody", "--out", tmp_path / "out", *arguments],
                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120)
     assert run.returncode == 1 and text in run.stderr and len(run.stderr.splitlines()) == 1
     assert not (tmp_path / "out").exists()

@@ -6,7 +6,7 @@ import sys
 import time
 
 import dspace
-from served_support import Served
+from served_support import Served, stand_still
 from test_watching import EYE, SIZE, build, follow, watched
 
 
@@ -46,7 +46,7 @@ def test_a_click_does_not_wait_for_a_server_that_stands_still(tmp_path):
     with watched(tmp_path) as (server, _, watcher):
         view = watcher.add_view("mine", size=SIZE)
         view.event("press", 80, 60, button="left")
-        server.process.send_signal(signal.SIGSTOP)
+        stand_still(server.process.pid)
         try:
             began = time.monotonic()
             assert view.event("release", 80, 60, button="left").object_name == "ball"

@@ -13,8 +13,15 @@ from dspace.errors import DeadlineExceeded, Io
 LISTENING = "dspace serve: listening on "
 
 
+def _above():
+    """The folder for temporary files, or /tmp where a socket's path below that one would be too long."""
+    above = tempfile.gettempdir()
+    return above if len(os.fsencode(f"{above}/dspace-serve-12345678/socket")) < 108 else "/tmp"
+
+
 class ServerProcess:
-    """A `dspace serve` process on a Unix socket in a folder of its own, in a `with` statement.
+    """A `dspace serve` process on a Unix socket in a folder of its own (below TMPDIR, or below /tmp where that one's
+    path is too long for a socket's), in a `with` statement.
 
         with ServerProcess(["data"]) as server, dspace.connect(server.address) as session: ...
 
@@ -38,7 +45,7 @@ class ServerProcess:
         return self._process.pid
 
     def __enter__(self):
-        self._folder = tempfile.TemporaryDirectory(prefix="dspace-serve-")
+        self._folder = tempfile.TemporaryDirectory(prefix="dspace-serve-", dir=_above())
         command = [sys.executable, "-m", "dspace", "serve", "--end-with-input",
                    "--listen", f"unix:{self._folder.name}/socket"]
         for root in self._roots:
