@@ -17,7 +17,7 @@ import pytest
 import dspace
 from dspace.serving import ServerProcess
 from dspace.session import commands_pb2 as pb
-from served_support import Served
+from served_support import Served, socket_folder
 
 
 def within(seconds, done):
@@ -150,7 +150,8 @@ def test_a_server_process_ends_with_a_parent_that_is_killed(tmp_path):
               "with ServerProcess([sys.argv[1]]) as server:\n"
               "    print(server.pid, flush=True)\n"
               "    time.sleep(600)\n")
-    with subprocess.Popen([sys.executable, "-c", script, tmp_path], stdout=subprocess.PIPE, text=True) as parent:
+    with subprocess.Popen([sys.executable, "-c", script, tmp_path], stdout=subprocess.PIPE, text=True,
+                          env={**os.environ, "TMPDIR": str(socket_folder(tmp_path))}) as parent:  # where something stays
         server = int(parent.stdout.readline())
         assert not has_ended(server)
         parent.kill()
