@@ -217,6 +217,35 @@ def test_tables_show_what_is_there_when_they_are_drawn(session, scene):
         live.set_table("t", [("power", (power, 16))])
 
 
+def test_numbers_beyond_their_limits_are_in_colour(session):
+    scene = session.scene()
+    camera = scene.add_camera("main", eye=(6.0, 0.0, 2.0), target=(0.0, 0.0, 0.0))
+    power = scene.telemetry.add("power", unit="W", alarm_low=-5.0, warning_high=10.0, alarm_high=20.0)
+    other = scene.telemetry.add("other", value=1.5)
+    live = scene.add_viewport((420, 120), camera, name="live")
+    still = scene.add_viewport((420, 120), camera, name="still")
+    live.set_table("t", [("power", (power, 0)), ("other", other)], font_size=36)
+
+    def beyond(shown):
+        """Colours of the power's value where it is all ink; all else is as in a plain table."""
+        still.set_table("t", [("power", shown), ("other", 1.5)], font_size=36)
+        plain, picture = still.image()[..., :3].astype(int), live.image()[..., :3].astype(int)
+        still.set_table("t", [("power", " " * len(shown)), ("other", 1.5)], font_size=36)
+        value = np.any(plain != still.image()[..., :3], axis=2)
+        assert value.sum() > 50 and abs(picture - plain)[~value].max() <= 1  # each colour is rounded apart
+        return {tuple(pixel) for pixel in picture[value & (plain == 255).all(axis=2)]}
+
+    white, amber, red = {(255, 255, 255)}, {(255, 191, 51)}, {(255, 89, 76)}
+    assert beyond("–") == white  # no value lies beyond nothing
+    for value, color in ((7, white), (10, white), (11, amber), (20, amber), (21, red), (-5, white), (-6, red)):
+        power.value = value
+        assert beyond(f"{value} W") == color
+    power.set_limits(alarm_high=5.0)
+    assert beyond("-6 W") == white
+    power.value = 6
+    assert beyond("6 W") == red
+
+
 def test_requests_of_later_versions_say_so(session):
     for fill in (lambda c: c.viewshed.SetInParent(), lambda c: c.line_of_sight.pair.add(),
                  lambda c: c.ephemeris.SetInParent()):

@@ -1,6 +1,8 @@
 // What a viewport adds to its scene: axes in the corner, text tables, props of VTK code.
 #include "RenderingTestSupport.h"
 
+#include <set>
+
 #include "vtkActor.h"
 #include "vtkCellArray.h"
 #include "vtkFloatArray.h"
@@ -96,6 +98,88 @@ TEST_F(ViewportExtrasTest, TheCornerShowsTheRootsAxesAndNothingElseChanges) {
   viewport->SetOrnamentsVisible(true);
   viewport->SetCornerAxes(false);
   EXPECT_EQ(viewport->GetCapture({}).color, without.color);
+}
+
+// Each colour is drawn by itself: in the text's own colour what comes is what came in one.
+TEST_F(ViewportExtrasTest, ColouredValuesStandWhereTheyStoodBefore) {
+  Look({});
+  TextTable plain;
+  plain.name = "t";
+  plain.title = "Power";
+  plain.rows = {{"bus", "28.1 V"}, {"j\u00f6g", "-3.25 A"}, {"", "gy"}, {"heat", ""}, {"q", "7"}};
+  plain.fontSize = 17;
+  plain.textColor = {0.9, 0.8, 1, 0.8};
+  for (int anchor = 0; anchor < 4; ++anchor) {
+    plain.anchor = TextTable::Anchor(anchor);
+    TextTable colored = plain;
+    auto viewport = View(300, 200, 1);
+    viewport->SetTextTable(plain);
+    const Capture before = viewport->GetCapture({});
+    for (const std::set<std::size_t>& rows :
+         {std::set<std::size_t>{0}, {1, 3}, {4}, {0, 1, 2, 3, 4}}) {
+      colored.valueColors.clear();
+      for (const std::size_t row : rows) {
+        colored.valueColors[row] = {0.9, 0.8, 1};
+      }
+      viewport->SetTextTable(colored);
+      const Capture after = viewport->GetCapture({});
+      int most = 0;
+      for (std::size_t i = 0; i < before.color.size(); ++i) {
+        most = std::max(most, std::abs(before.color[i] - after.color[i]));
+      }
+      EXPECT_LE(most, 4) << "anchor " << anchor; // letters and background are mixed apart
+    }
+  }
+}
+
+TEST_F(ViewportExtrasTest, ValuesHaveColoursOfTheirOwn) {
+  Look({});
+  TextTable table;
+  table.name = "t";
+  table.rows = {{"aaa", "MMM"}, {"aaa", "MMM"}, {"aaa", "MMM"}};
+  table.fontSize = 30;
+  auto viewport = View(300, 200, 1);
+  viewport->SetTextTable(table);
+  const Capture plain = viewport->GetCapture({});
+  table.valueColors = {{0, {1, 0, 0}}, {2, {0, 0, 1}}};
+  viewport->SetTextTable(table);
+  const Capture colored = viewport->GetCapture({});
+  // Full ink by its colour, with its extent.
+  const auto inked = [](const Capture& of, const std::array<int, 3>& color) {
+    Capture ink = of;
+    ink.label.assign(std::size_t(of.width) * of.height, 0);
+    for (std::size_t i = 0; i < ink.label.size(); ++i) {
+      ink.label[i] = std::equal(color.begin(), color.end(), &of.color[4 * i]);
+    }
+    return ExtentOf(ink, 1);
+  };
+  const Extent all = inked(plain, {255, 255, 255});
+  const Extent red = inked(colored, {255, 0, 0});
+  const Extent blue = inked(colored, {0, 0, 255});
+  const Extent white = inked(colored, {255, 255, 255});
+  const double line = (all.bottom - all.top) / 3.0;
+  EXPECT_EQ(red.right, all.right);
+  EXPECT_EQ(red.top, all.top);
+  EXPECT_EQ(red.right - red.left, blue.right - blue.left);
+  EXPECT_LT(red.bottom - red.top, line);
+  EXPECT_GT(blue.top - red.top, 1.8 * line);
+  EXPECT_EQ(blue.bottom, all.bottom);
+  EXPECT_EQ(white.left, all.left); // the labels, and the second value
+  EXPECT_EQ(white.right, all.right);
+  EXPECT_GT(red.left, all.left + 3 * 0.6 * 30);
+
+  for (const auto& [wrong, part] :
+       {std::pair(std::map<std::size_t, std::array<double, 3>>{{3, {1, 0, 0}}}, "value of row 3"),
+        {{{0, {1, 2, 0}}}, "colour of a value"}}) {
+    table.valueColors = wrong;
+    try {
+      viewport->SetTextTable(table);
+      FAIL() << part;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(viewport->GetCapture({}).color, colored.color);
 }
 
 TEST_F(ViewportExtrasTest, NothingHidesTheCornersAxes) {

@@ -275,6 +275,7 @@ class Viewport(LegendMaking, Strict):
 
         A value that is a dspace.Channel, or a pair of one and the digits after its decimal point, shows what
         the channel has whenever the picture is drawn, with its unit; where it has no value, "–".
+        A number beyond a warning limit of its channel is amber, beyond an alarm limit red.
         Creates the table or replaces the one of that name. font_size and margin in pixels. Letters
         as for add_text, of DejaVu Sans Mono; no line breaks or tabs."""
         table = f"text table {name!r}"

@@ -1,6 +1,7 @@
 #include <dspace/render/TextTableActor.h>
 
 #include <algorithm>
+#include <set>
 
 #include "vtkCoordinate.h"
 #include "vtkTextActor.h"
@@ -17,7 +18,10 @@ std::string Padded(const std::string& text, std::size_t width, bool right) {
   return right ? blanks + text : text + blanks;
 }
 
-std::string TextOf(const TextTable& table) {
+using ValueColor = std::array<double, 3>;
+
+// The block with what is in one colour, null for the text's own, and blanks for the rest.
+std::string TextOf(const TextTable& table, const ValueColor* color) {
   std::size_t label = 0;
   std::size_t value = 0;
   for (const auto& row : table.rows) {
@@ -27,29 +31,32 @@ std::string TextOf(const TextTable& table) {
   const std::size_t line = std::max(label + 2 + value, CharacterCount(table.title));
   std::string text;
   if (!table.title.empty()) {
-    text = " " + Padded(table.title, line, false) + " ";
+    text = " " + Padded(color ? "" : table.title, line, false) + " ";
   }
-  for (const auto& row : table.rows) {
-    text += (text.empty() ? " " : "\n ") + Padded(row.first, line - value, false) +
-            Padded(row.second, value, true) + " ";
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& [name, shown] = table.rows[i];
+    const auto own = table.valueColors.find(i);
+    const bool here = own == table.valueColors.end() ? !color : color && own->second == *color;
+    text += (text.empty() ? " " : "\n ") + Padded(color ? "" : name, line - value, false) +
+            Padded(here ? shown : "", value, true) + " ";
   }
   return text;
 }
 
-} // namespace
-
-vtkSmartPointer<vtkTextActor> MakeTextTableActor(const TextTable& table, int width, int height) {
+vtkSmartPointer<vtkTextActor> MakeActor(const TextTable& table, const ValueColor* color, int width,
+                                        int height) {
   auto actor = vtkSmartPointer<vtkTextActor>::New();
-  actor->SetInput(TextOf(table).c_str());
+  actor->SetInput(TextOf(table, color).c_str());
   actor->SetTextScaleModeToNone();
   vtkTextProperty* look = actor->GetTextProperty();
   UseFont(look, Font::Mono);
   look->SetFontSize(table.fontSize);
-  look->SetColor(table.textColor[0], table.textColor[1], table.textColor[2]);
+  const double* shown = color ? color->data() : table.textColor.data();
+  look->SetColor(shown[0], shown[1], shown[2]);
   look->SetOpacity(table.textColor[3]);
   look->SetBackgroundColor(table.backgroundColor[0], table.backgroundColor[1],
                            table.backgroundColor[2]);
-  look->SetBackgroundOpacity(table.backgroundColor[3]);
+  look->SetBackgroundOpacity(color ? 0.0 : table.backgroundColor[3]);
   const bool left =
       table.anchor == TextTable::Anchor::TopLeft || table.anchor == TextTable::Anchor::BottomLeft;
   const bool top =
@@ -60,6 +67,21 @@ vtkSmartPointer<vtkTextActor> MakeTextTableActor(const TextTable& table, int wid
   actor->SetPosition(left ? table.margin : width - table.margin,
                      top ? height - table.margin : table.margin);
   return actor;
+}
+
+} // namespace
+
+std::vector<vtkSmartPointer<vtkTextActor>> MakeTextTableActors(const TextTable& table, int width,
+                                                               int height) {
+  std::vector<vtkSmartPointer<vtkTextActor>> actors{MakeActor(table, nullptr, width, height)};
+  std::set<ValueColor> colors;
+  for (const auto& entry : table.valueColors) {
+    colors.insert(entry.second);
+  }
+  for (const ValueColor& color : colors) {
+    actors.push_back(MakeActor(table, &color, width, height));
+  }
+  return actors;
 }
 
 } // namespace dspace

@@ -9,6 +9,19 @@
 
 namespace dspace {
 
+void TextTables::Place(Placed& placed, vtkRenderer* overlay, int width, int height) {
+  placed.actors = MakeTextTableActors(placed.table, width, height);
+  for (const auto& actor : placed.actors) {
+    overlay->AddViewProp(actor);
+  }
+}
+
+void TextTables::TakeAway(const Placed& placed, vtkRenderer* overlay) {
+  for (const auto& actor : placed.actors) {
+    overlay->RemoveViewProp(actor);
+  }
+}
+
 bool TextTables::Set(const TextTable& table, vtkRenderer* overlay, int width, int height) {
   table.Check();
   const auto found = this->Placed_.find(table.name);
@@ -22,12 +35,10 @@ bool TextTables::Set(const TextTable& table, vtkRenderer* overlay, int width, in
     RequireGlyphs(object, ("the value of " + QuotedText(row.first)).c_str(), row.second,
                   Font::Mono);
   }
-  auto actor = MakeTextTableActor(table, width, height);
-  if (found != this->Placed_.end()) {
-    overlay->RemoveViewProp(found->second.actor);
-  }
-  overlay->AddViewProp(actor);
-  this->Placed_[table.name] = {table, actor};
+  Placed& placed = this->Placed_[table.name];
+  TakeAway(placed, overlay);
+  placed.table = table;
+  Place(placed, overlay, width, height);
   return true;
 }
 
@@ -36,17 +47,15 @@ bool TextTables::Remove(const std::string& name, vtkRenderer* overlay) {
   if (found == this->Placed_.end()) {
     return false;
   }
-  overlay->RemoveViewProp(found->second.actor);
+  TakeAway(found->second, overlay);
   this->Placed_.erase(found);
   return true;
 }
 
 void TextTables::Resize(vtkRenderer* overlay, int width, int height) {
   for (auto& entry : this->Placed_) {
-    Placed& placed = entry.second;
-    overlay->RemoveViewProp(placed.actor);
-    placed.actor = MakeTextTableActor(placed.table, width, height);
-    overlay->AddViewProp(placed.actor);
+    TakeAway(entry.second, overlay);
+    Place(entry.second, overlay, width, height);
   }
 }
 

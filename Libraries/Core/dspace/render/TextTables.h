@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "vtkSmartPointer.h"
 
@@ -27,8 +28,10 @@ public:
 private:
   struct Placed {
     TextTable table;
-    vtkSmartPointer<vtkTextActor> actor;
+    std::vector<vtkSmartPointer<vtkTextActor>> actors;
   };
+  static void Place(Placed& placed, vtkRenderer* overlay, int width, int height);
+  static void TakeAway(const Placed& placed, vtkRenderer* overlay);
   std::map<std::string, Placed> Placed_;
 };
 

@@ -37,6 +37,16 @@ void TextTable::Check() const {
     RequireFraction(object, "text colour", this->textColor[i]);
     RequireFraction(object, "background colour", this->backgroundColor[i]);
   }
+  for (const auto& [row, color] : this->valueColors) {
+    if (row >= this->rows.size()) {
+      Refuse(object, "a colour is for the value of row " + std::to_string(row) +
+                         "; accepted: less than its " + std::to_string(this->rows.size()) +
+                         " rows");
+    }
+    for (const double each : color) {
+      RequireFraction(object, "colour of a value", each);
+    }
+  }
 }
 
 } // namespace dspace

@@ -3,6 +3,8 @@
 #define DSPACE_SCENE_OVERLAY_H
 
 #include <array>
+#include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,11 +25,15 @@ struct TextTable {
   int fontSize = 14;                              // pixels, 4 to 200
   std::array<double, 4> textColor = {1, 1, 1, 1}; // sRGB and opacity, 0 to 1
   std::array<double, 4> backgroundColor = {0, 0, 0, 0.5}; // sRGB and opacity, 0 to 1
+  // Values that are not in textColor, by their row from 0: sRGB, 0 to 1. Their opacity is the
+  // text's.
+  std::map<std::size_t, std::array<double, 3>> valueColors;
 
   bool operator==(const TextTable& o) const {
     return this->name == o.name && this->title == o.title && this->rows == o.rows &&
            this->anchor == o.anchor && this->margin == o.margin && this->fontSize == o.fontSize &&
-           this->textColor == o.textColor && this->backgroundColor == o.backgroundColor;
+           this->textColor == o.textColor && this->backgroundColor == o.backgroundColor &&
+           this->valueColors == o.valueColors;
   }
   bool operator!=(const TextTable& o) const { return !(*this == o); }
 

@@ -1,6 +1,7 @@
 #include <dspace/session/LiveTables.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 
 #include <dspace/render/Fonts.h>
@@ -90,10 +91,28 @@ std::string Drawable(const std::string& text) {
   return drawable + (drawable.size() < MostShown ? "" : "...");
 }
 
+// Numbers beyond their limits, against the table's own colours.
+constexpr std::array<double, 3> WarningColor = {1.0, 0.75, 0.2}; // amber
+constexpr std::array<double, 3> AlarmColor = {1.0, 0.35, 0.3};   // red
+
+void ColorValues(const v1::SetTextTable& command, const Telemetry& telemetry, TextTable& table) {
+  for (int i = 0; i < command.row_size(); ++i) {
+    const Telemetry::Channel* channel = telemetry.Find(command.row(i).telemetry());
+    const auto state = channel ? StateOf(*channel) : v1::TelemetryInfo::NO_VALUE;
+    if (state == v1::TelemetryInfo::WARNING || state == v1::TelemetryInfo::ALARM) {
+      table.valueColors[std::size_t(i)] =
+          state == v1::TelemetryInfo::ALARM ? AlarmColor : WarningColor;
+    }
+  }
+}
+
 // False where the viewport refuses it.
-bool Put(const v1::SetTextTable& command, vtkDspaceViewport& viewport, const Cell& live) {
+bool Put(const v1::SetTextTable& command, vtkDspaceViewport& viewport, const Telemetry& telemetry,
+         const Cell& live) {
   try {
-    viewport.SetTextTable(ToTable(command, live));
+    TextTable table = ToTable(command, live);
+    ColorValues(command, telemetry, table);
+    viewport.SetTextTable(table);
     return true;
   } catch (const Error&) {
     return false;
@@ -136,9 +155,9 @@ void LiveTables::Update(const std::string& name, const Telemetry& telemetry,
   for (const auto& [table, command] : found->second.tables) {
     const auto shown = [&](const auto& row) { return ShownTelemetry(telemetry, row); };
     // What cannot be drawn is never left as the value that was there before.
-    if (!Put(command, viewport, shown) &&
-        !Put(command, viewport, [&](const auto& row) { return Drawable(shown(row)); })) {
-      Put(command, viewport, [](const auto&) { return "?"; });
+    if (!Put(command, viewport, telemetry, shown) &&
+        !Put(command, viewport, telemetry, [&](const auto& row) { return Drawable(shown(row)); })) {
+      Put(command, viewport, telemetry, [](const auto&) { return "?"; });
     }
   }
   found->second.revision = telemetry.Revision();
