@@ -234,6 +234,8 @@ with dspace.connect({server.address!r}) as session, warnings.catch_warnings(reco
     while recording.active:
         frame.pose = dspace.Pose((i, 0, 0))
         i += 1
+        if i == 200:
+            recording.flush()
     session.wait = True
     frame.pose = dspace.Pose((-1, 0, 0))
     assert frame.position[0] == -1
