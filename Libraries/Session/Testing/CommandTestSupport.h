@@ -9,6 +9,8 @@
 
 #include <dspace/session/Interpreter.h>
 
+#include "TemporaryFolder.h"
+
 namespace dspace::testing {
 
 using Kind = v1::Error;
@@ -103,17 +105,20 @@ protected:
   session::Interpreter Interpreter_;
 };
 
-// A file that goes with the test.
+// A file that goes with the test. All of a process lie in one folder of its own.
 class TemporaryFile {
 public:
-  TemporaryFile(const std::string& name, const std::string& content)
-      : Path_(::testing::TempDir() + name) {
+  TemporaryFile(const std::string& name, const std::string& content) : Path_(Folder() / name) {
     std::ofstream(this->Path_, std::ios::binary) << content;
   }
   ~TemporaryFile() { std::remove(this->Path_.c_str()); }
   const std::string& Path() const { return this->Path_; }
 
 private:
+  static const TemporaryFolder& Folder() {
+    static const TemporaryFolder folder;
+    return folder;
+  }
   std::string Path_;
 };
 

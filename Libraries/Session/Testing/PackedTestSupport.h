@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include <dspace/session/Playback.h>
 #include <dspace/session/RecordingWriter.h>
@@ -46,10 +45,7 @@ inline std::string Without(std::string text, const std::string& what) {
 
 class PlaybackPacked : public CommandTest {
 protected:
-  PlaybackPacked()
-      : Root_(::testing::TempDir() + "packed_" + std::to_string(getpid())),
-        Path_(Root_ / "run.dspace"), Here_(Root_ / "here") {
-    fs::remove_all(this->Root_);
+  PlaybackPacked() : Root_(Folder_.Path()), Path_(Root_ / "run.dspace"), Here_(Root_ / "here") {
     fs::create_directories(this->Root_ / "scratch");
     const char* before = std::getenv("TMPDIR");
     this->Before_ = before ? before : "";
@@ -57,7 +53,6 @@ protected:
   }
   ~PlaybackPacked() override {
     this->Before_.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", this->Before_.c_str(), 1);
-    fs::remove_all(this->Root_);
   }
 
   // A model with its material, a picture that this names, and a height grid that a mosaic names by
@@ -164,6 +159,7 @@ protected:
     return this->Seen(shown, playback.Files().Folder());
   }
 
+  const TemporaryFolder Folder_;
   const fs::path Root_;
   const std::string Path_;
   const fs::path Here_;

@@ -39,14 +39,14 @@ TEST_F(ObjectCommands, ImportScalesAndTurnsAsToldAndSharesMeshes) {
 }
 
 TEST_F(ObjectCommands, AFileThatChangedIsReadAnew) {
-  const std::string path = ::testing::TempDir() + "changes.obj";
+  const TemporaryFile file("changes.obj", "");
+  const std::string& path = file.Path();
   session::ModelCache cache;
   std::ofstream(path) << Triangle;
   const auto first = cache.LoadModel(path, {});
   EXPECT_EQ(cache.LoadModel(path, {}), first);
   std::ofstream(path) << Triangle << "f 3 2 1\n";
   EXPECT_EQ(cache.LoadModel(path, {})->TriangleCount(), 2u);
-  std::remove(path.c_str());
 }
 
 TEST_F(ObjectCommands, EveryPrimitiveIsMade) {

@@ -1,7 +1,5 @@
 // Recordings read and carried out again: against what was given to the writer, and against an
 // interpreter that was given the same commands from the start.
-#include <unistd.h>
-
 #include <random>
 #include <sstream>
 
@@ -31,10 +29,6 @@ v1::Command Time(double time_s) {
 
 class PlaybackOf : public CommandTest {
 protected:
-  PlaybackOf() : Path_(::testing::TempDir() + "playback_" + std::to_string(getpid()) + ".dspace") {
-    this->Remove();
-  }
-  ~PlaybackOf() override { this->Remove(); }
   void Remove() {
     for (const char* end : {"", "-wal", "-shm"}) {
       std::remove((this->Path_ + end).c_str());
@@ -78,7 +72,8 @@ protected:
     return accepted;
   }
 
-  std::string Path_;
+  const TemporaryFolder Folder_;
+  const std::string Path_ = this->Folder_ / "playback.dspace";
 };
 
 TEST_F(PlaybackOf, ReadsWhatWasAccepted) {

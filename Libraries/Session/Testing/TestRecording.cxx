@@ -95,16 +95,13 @@ void ExpectPrefix(const std::vector<RecordingRow>& rows) {
 
 class Recording : public ::testing::Test {
 protected:
-  Recording() : Path_(::testing::TempDir() + "recording_" + std::to_string(getpid()) + ".dspace") {
-    this->Remove();
-  }
-  ~Recording() override { this->Remove(); }
   void Remove() {
     for (const char* end : {"", "-wal", "-shm"}) {
       std::remove((this->Path_ + end).c_str());
     }
   }
-  std::string Path_;
+  const TemporaryFolder Folder_;
+  const std::string Path_ = this->Folder_ / "recording.dspace";
 };
 
 TEST_F(Recording, AStateThatIsTooLargeIsAnErrorOrTakenNoMore) {
@@ -228,6 +225,28 @@ TEST_F(Recording, TimeIsTheSimulations) {
   EXPECT_EQ(rows[1].time_s, 6.5);
   EXPECT_EQ(rows[2].time_s, 6.5);
   EXPECT_LE(rows[0].wall_s, rows[2].wall_s);
+}
+
+// The clock of the machine may be set back.
+TEST_F(Recording, WallTimeNeverGoesBack) {
+  const std::vector<double> told = {100.0, 101.0, 50.0, 51.0, 102.0, 7.0};
+  std::size_t next = 0;
+  RecordingOptions options;
+  options.clock = [&] { return told.at(next++); };
+  {
+    RecordingWriter writer(this->Path_, Ledger(), 0.0, options); // its first snapshot
+    writer.Add(Numbered(1), {}, Ledger());
+    writer.Add(Numbered(2), {}, Ledger());
+    writer.Jump(Ledger(), 0.0, nullptr); // 3, a snapshot
+    writer.Add(Numbered(4), {}, Ledger());
+    writer.Add(Numbered(5), {}, Ledger());
+  }
+  std::vector<double> noted;
+  for (const RecordingRow& row : ReadRows(this->Path_)) {
+    noted.push_back(row.wall_s);
+  }
+  EXPECT_EQ(noted, (std::vector<double>{101.0, 101.0, 102.0, 102.0}));
+  EXPECT_EQ(Ask(this->Path_, "SELECT group_concat(wall, ' ') FROM snapshot"), "100.0 101.0");
 }
 
 TEST_F(Recording, RefusesWhatItCannotDo) {

@@ -28,7 +28,7 @@ double WithoutMinus0(double value) {
   return value == 0.0 ? 0.0 : value;
 }
 
-double WallTime() {
+double SystemTime() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
@@ -76,6 +76,7 @@ struct RecordingWriter::Impl {
   // The simulation's side.
   std::uint64_t seq = 0;
   double time_s = 0.0;
+  double wall_s = 0.0;
   std::size_t bytesSince = 0;
   std::uint64_t commandsSince = 0;
   std::size_t lastSnapshot = 0;
@@ -103,6 +104,13 @@ struct RecordingWriter::Impl {
   std::string Foreign() const {
     return "recording '" + this->path + "': process " + std::to_string(this->process) +
            " writes it, and this one is its child; accepted: a recording of its own";
+  }
+
+  // Stands still while the machine's clock is behind, which was set back.
+  double WallTime() {
+    const double now = this->options.clock ? this->options.clock() : SystemTime();
+    this->wall_s = std::max(this->wall_s, now);
+    return this->wall_s;
   }
 
   void HandFiles(const v1::Command& command) {
@@ -141,7 +149,7 @@ struct RecordingWriter::Impl {
     row.snapshot = true;
     row.seq = this->seq;
     row.time_s = this->time_s;
-    row.wall_s = WallTime();
+    row.wall_s = this->WallTime();
     try {
       std::ostringstream out;
       const std::vector<v1::Command> commands = ledger.Commands();
@@ -180,7 +188,7 @@ struct RecordingWriter::Impl {
     RecordingRow row;
     row.seq = ++this->seq;
     row.time_s = this->time_s;
-    row.wall_s = WallTime();
+    row.wall_s = this->WallTime();
     row.kind = std::int32_t(recorded->command_case());
     row.payload = recorded->SerializeAsString();
     this->bytesSince += row.payload.size();

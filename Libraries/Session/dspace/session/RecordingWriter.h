@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct RecordingOptions {
   std::int64_t maximumPages = 0; // of 64 KiB, for the file; 0: as the disk has
   int checkpointPages = 2048;    // of the log, which are then moved into the file: 128 MiB
   bool pack = false;             // the files that the commands need become part of the recording
+  // Wall time, seconds past 1970 UTC; empty: the system's. It is noted as it grows: one that goes
+  // back stands still in the recording until it has caught up.
+  std::function<double()> clock;
 };
 
 // What a recording holds; `written` and `bytes` are safe on disk up to a crash of the process.
