@@ -3,7 +3,6 @@
 #define DSPACE_TEST_RASTERFILE_H
 
 #include <array>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <random>
@@ -15,23 +14,9 @@
 #include <ogr_spatialref.h>
 #include <unistd.h>
 
+#include "TemporaryFolder.h"
+
 namespace dspace::testing {
-
-// A folder of this test run, removed at its end.
-class TemporaryFolder {
-public:
-  TemporaryFolder()
-      : Path_(std::filesystem::temp_directory_path() /
-              ("dspace-terrain-" + std::to_string(::getpid()) + "-" +
-               std::to_string(reinterpret_cast<std::uintptr_t>(this) & 0xffffff))) {
-    std::filesystem::create_directories(this->Path_);
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(this->Path_); }
-  std::string operator/(const std::string& name) const { return (this->Path_ / name).string(); }
-
-private:
-  std::filesystem::path Path_;
-};
 
 struct RasterFile {
   int width = 0;

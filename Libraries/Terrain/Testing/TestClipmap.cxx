@@ -1,12 +1,11 @@
 // Pictures of clipmaps on a plane: depth against the surface, gaps, jumps, and what is uploaded.
-#include <chrono>
 #include <cstring>
 #include <random>
-#include <thread>
 
 #include <dspace/terrain/HeightGrid.h>
 
 #include "ClipmapTestSupport.h"
+#include "Gate.h"
 
 namespace dspace::testing {
 namespace {
@@ -264,8 +263,9 @@ TEST_F(ClipmapFixture, WhatOpenGLHoldsIsWhatWasCounted) {
 }
 
 TEST_F(ClipmapFixture, ADeadlineIsAnErrorAndAnInteractivePictureIsNot) {
-  posts = std::make_shared<FormulaPosts>(4097, 4097, false, [](double c, double r) {
-    std::this_thread::sleep_for(std::chrono::microseconds(100)); // some seconds a tile
+  const auto gate = std::make_shared<Gate>();
+  posts = std::make_shared<FormulaPosts>(4097, 4097, false, [gate](double c, double r) {
+    gate->Wait();
     return Hills(c, r);
   });
   ClipmapOptions options;
@@ -283,10 +283,11 @@ TEST_F(ClipmapFixture, ADeadlineIsAnErrorAndAnInteractivePictureIsNot) {
   view->ForceRender(); // what is there: nothing
   try {
     Shoot(view);
-    FAIL() << "the picture was taken without its data";
+    ADD_FAILURE() << "the picture was taken without its data";
   } catch (const Error& error) {
     EXPECT_EQ(error.GetKind(), Error::Kind::DeadlineExceeded) << error.what();
   }
+  gate->Open();
 }
 
 } // namespace

@@ -12,6 +12,8 @@
 #include <dspace/terrain/SceneFrame.h>
 #include <dspace/terrain/VerticalDatum.h>
 
+#include "TemporaryFolder.h"
+
 namespace {
 
 using dspace::BodyAxes;
@@ -69,10 +71,10 @@ TEST(Crs, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(KindOf([] { Crs::FromText("EPSG:4978"); }), Error::Kind::Unsupported); // geocentric
   EXPECT_EQ(KindOf([] { Crs().Geographic(); }), Error::Kind::Unsupported);
   // A file is not read, whatever it holds.
-  const std::string file = ::testing::TempDir() + "dspace-test-crs.prj";
+  const dspace::testing::TemporaryFolder folder;
+  const std::string file = folder / "crs.prj";
   std::ofstream(file) << Crs::FromText("EPSG:32633").GetWkt();
   EXPECT_EQ(KindOf([&] { Crs::FromText(file); }), Error::Kind::InvalidArgument);
-  std::remove(file.c_str());
   // The Moon is not Mars.
   EXPECT_EQ(KindOf([] {
               CrsTransform(Crs::FromText("IAU_2015:30100"), Crs::FromText("IAU_2015:49900"));

@@ -1,6 +1,5 @@
 // The pyramid against its source: any block, any order, failures and limits.
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -15,6 +14,8 @@
 #include <dspace/Error.h>
 #include <dspace/terrain/ElevationPyramid.h>
 
+#include "Gate.h"
+
 namespace {
 
 using dspace::ElevationPyramid;
@@ -22,6 +23,7 @@ using dspace::ElevationPyramidOptions;
 using dspace::Error;
 using dspace::PostBlock;
 using dspace::PostLattice;
+using dspace::testing::Gate;
 
 // Each post tells where it stands.
 class NumberedPosts : public dspace::PostSource {
@@ -38,8 +40,8 @@ public:
     if (this->failing) {
       throw Error(Error::Kind::Io, this->Name_, "the line is cut");
     }
-    if (this->delay.count() > 0) {
-      std::this_thread::sleep_for(this->delay);
+    if (this->before) {
+      this->before(block);
     }
     for (int j = 0; j < block.height; ++j) {
       for (int i = 0; i < block.width; ++i) {
@@ -66,7 +68,7 @@ public:
   }
 
   std::atomic<bool> failing{false};
-  std::chrono::milliseconds delay{0};
+  std::function<void(const PostBlock&)> before; // may wait or throw
 
 private:
   std::string Name_ = "numbered posts";
@@ -119,13 +121,15 @@ TEST(ElevationPyramid, AnyBlockIsTheSources) {
 
 TEST(ElevationPyramid, TryingNeverReadsOnTheCallingThread) {
   const auto source = std::make_shared<NumberedPosts>(Lattice(10000, 10000, false, 7));
-  source->delay = std::chrono::milliseconds(5);
+  Gate gate;
+  source->before = [&gate](const PostBlock&) { gate.Wait(); };
   ElevationPyramid pyramid(source);
   const PostBlock block{0, 200, 300, 127, 127};
   std::vector<float> heights(127 * 127, -1.0f);
-  ASSERT_FALSE(pyramid.TryRead(block, heights.data()));
+  EXPECT_FALSE(pyramid.TryRead(block, heights.data())); // and it returns, though every read waits
   EXPECT_EQ(heights, std::vector<float>(127 * 127, -1.0f)); // nothing half-written
-  EXPECT_GT(pyramid.Statistics().pending, 0u);
+  EXPECT_EQ(pyramid.Statistics().pending, 4u);
+  gate.Open();
   while (!pyramid.TryRead(block, heights.data())) {
     std::this_thread::yield();
   }
@@ -202,46 +206,63 @@ TEST(ElevationPyramid, AWaitingReadMakesItsOwnAttempts) {
 TEST(ElevationPyramid, WhatSomebodyWaitsForIsNotDropped) {
   const auto source = std::make_shared<NumberedPosts>(Lattice(5000, 5000, false, 3));
   ElevationPyramidOptions options;
-  options.retryDelay = 0.2;
+  options.threads = 2;
+  options.retryDelay = 0.5;
+  Gate gate;
   ElevationPyramid pyramid(source, options);
   std::vector<float> near(100);
   pyramid.Read({0, 0, 0, 10, 10}, near.data(), 60.0);
-  source->failing = true;
+  std::atomic<bool> first{true};
+  source->before = [&](const PostBlock& block) {
+    if (block.level == 1) {
+      gate.Wait();
+    } else if (first.exchange(false)) {
+      throw Error(Error::Kind::Io, "numbered posts", "the line is cut");
+    }
+  };
   std::thread waiting([&pyramid, &source] {
     std::vector<float> far(100);
-    pyramid.Read({0, 3000, 3000, 10, 10}, far.data(), 60.0);
-    ExpectBlock(*source, {0, 3000, 3000, 10, 10}, far);
+    try {
+      pyramid.Read({0, 3000, 3000, 10, 10}, far.data(), 60.0);
+      ExpectBlock(*source, {0, 3000, 3000, 10, 10}, far);
+    } catch (const Error& error) {
+      ADD_FAILURE() << error.what();
+    }
   });
   while (pyramid.Statistics().failures < 1) {
     std::this_thread::yield();
   }
-  source->failing = false;
+  // It is tried again in half a second. Nothing comes in the meantime that would wake the call, so
+  // that it would not ask again for what is dropped.
   std::vector<float> other(100);
   for (int i = 0; i < 3000; ++i) { // resident, and not
-    pyramid.TryRead({0, 0, 0, 10, 10}, near.data());
-    pyramid.TryRead({1, (i * 128) % 2400, 1000, 10, 10}, other.data());
+    EXPECT_TRUE(pyramid.TryRead({0, 0, 0, 10, 10}, near.data()));
+    EXPECT_FALSE(pyramid.TryRead({1, 260, 900, 10, 10}, other.data()));
   }
   waiting.join();
+  gate.Open();
 }
 
 TEST(ElevationPyramid, AWaitEndsAtItsDeadline) {
   const auto source = std::make_shared<NumberedPosts>(Lattice(1000, 1000, false, 3));
-  source->delay = std::chrono::milliseconds(300);
+  Gate gate;
+  source->before = [&gate](const PostBlock&) { gate.Wait(); };
   ElevationPyramid pyramid(source);
   std::vector<float> heights(100 * 100);
   try {
     pyramid.Read({0, 0, 0, 100, 100}, heights.data(), 0.02);
-    FAIL() << "the deadline passed unnoticed";
+    ADD_FAILURE() << "the deadline passed unnoticed";
   } catch (const Error& error) {
     EXPECT_EQ(error.GetKind(), Error::Kind::DeadlineExceeded);
     EXPECT_NE(std::string(error.what()).find("within 0.02 s"), std::string::npos) << error.what();
   }
   try { // a caller whose time is used up
     pyramid.Read({0, 0, 0, 100, 100}, heights.data(), 0.0);
-    FAIL() << "the deadline passed unnoticed";
+    ADD_FAILURE() << "the deadline passed unnoticed";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("deadline was up"), std::string::npos) << error.what();
   }
+  gate.Open();
   pyramid.Read({0, 0, 0, 100, 100}, heights.data(), 60.0); // it came all the same
   ExpectBlock(*source, {0, 0, 0, 100, 100}, heights);
 }

@@ -19,6 +19,8 @@
 
 #include <dspace/layers/VectorShapes.h>
 
+#include "TemporaryFolder.h"
+
 namespace dspace::testing {
 namespace {
 
@@ -65,12 +67,6 @@ private:
 
 class OfflineFiles : public ::testing::Test {
 protected:
-  OfflineFiles() : Path_(::testing::TempDir() + "offline_" + std::to_string(getpid())) {}
-  ~OfflineFiles() override {
-    std::remove(this->Path_.c_str());
-    std::remove((this->Path_ + ".wkt").c_str());
-  }
-
   // A file with a line, with this member of the collection and this property of the line.
   void Write(const std::string& member, const std::string& crs) const {
     std::ofstream(this->Path_)
@@ -99,7 +95,8 @@ protected:
     }
   }
 
-  const std::string Path_;
+  const TemporaryFolder Folder_;
+  const std::string Path_ = this->Folder_ / "offline";
 };
 
 TEST_F(OfflineFiles, NoServerIsAskedForACrs) {

@@ -1,7 +1,5 @@
 // Grids of datum shifts: noted where PROJ may use one, and found where a recording has brought
 // them.
-#include <unistd.h>
-
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +12,8 @@
 #include <dspace/FilesRead.h>
 #include <dspace/terrain/Crs.h>
 #include <dspace/terrain/ProjFolders.h>
+
+#include "TemporaryFolder.h"
 
 namespace dspace::testing {
 namespace {
@@ -103,8 +103,8 @@ TEST(ProjGrids, ThoseOfARecordingComeFirst) {
     seconds += 1.0f;
     std::memcpy(at, &seconds, sizeof seconds);
   }
-  const fs::path folder = ::testing::TempDir() + "grids_" + std::to_string(getpid());
-  fs::create_directories(folder);
+  const TemporaryFolder own;
+  const fs::path folder = own.Path();
   std::ofstream(folder / fs::path(grid).filename(), std::ios::binary) << bytes;
   {
     const ProjFolders folders({folder.string()});
@@ -116,7 +116,6 @@ TEST(ProjGrids, ThoseOfARecordingComeFirst) {
     EXPECT_EQ(fs::path(GridOf(scope.Files())).parent_path(), folder);
   }
   EXPECT_EQ(Shifted(), before);
-  fs::remove_all(folder);
 }
 
 } // namespace
