@@ -52,11 +52,9 @@ protected:
     GDALClose(source);
     return path;
   }
-  static RasterLayerOptions Impatient() {
+  // No server here keeps anybody waiting.
+  static RasterLayerOptions WithoutRetries() {
     RasterLayerOptions options;
-    options.network.connect = 1.0;
-    options.network.stall = 1.0;
-    options.network.request = 0.4;
     options.network.retries = 0;
     options.network.retryDelay = 0.05;
     return options;
@@ -89,7 +87,7 @@ TEST_F(RemoteImage, NoTileIsWrongAndAllCome) {
     SCOPED_TRACE(int(mode));
     server.mode = Mode::Good;
     const std::string url = server.Url("image" + std::to_string(int(mode)) + ".tif");
-    const auto layer = OpenImageLayer(url, this->Place, Impatient());
+    const auto layer = OpenImageLayer(url, this->Place, WithoutRetries());
     server.mode = mode;
     ::testing::internal::CaptureStderr();
     for (int zoom : {2, 0}) { // pixels, and an overview
