@@ -18,7 +18,7 @@ def test_a_movie_and_its_file_are_one(tmp_path):
     path = tmp_path / "a.toml"
     movie.save(path)
     again = dspace.Movie.load(path)
-    assert again.text == movie.text == path.read_text()
+    assert again.text == movie.text == path.read_text(encoding="utf-8")
     assert again.views == movie.views and again.overlays == movie.overlays
     assert (again.size, again.rate, again.samples, again.duration) == (SIZE, 10, 1, 2.5)
     assert dspace.Movie.load(path, size=(20, 10), rate=5).size == (20, 10)
