@@ -1,7 +1,10 @@
 // What a viewport adds to its scene: axes in the corner, text tables, props of VTK code.
 #include "RenderingTestSupport.h"
 
+#include <atomic>
+#include <future>
 #include <set>
+#include <thread>
 
 #include "vtkActor.h"
 #include "vtkCellArray.h"
@@ -14,6 +17,7 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 
+#include <dspace/render/OverlayText.h>
 #include <dspace/scene/Overlay.h>
 
 using namespace dspace;
@@ -180,6 +184,39 @@ TEST_F(ViewportExtrasTest, ValuesHaveColoursOfTheirOwn) {
     }
   }
   EXPECT_EQ(viewport->GetCapture({}).color, colored.color);
+}
+
+// VTK has one text renderer for all threads.
+TEST_F(ViewportExtrasTest, TablesBarsAndCaptionsWaitForTheTextRenderer) {
+  Look({});
+  auto viewport = View(300, 200, 1);
+  TextTable table;
+  table.name = "t";
+  table.rows = {{"a", "1"}};
+  viewport->SetTextTable(table);
+  ColorBar bar;
+  bar.name = "b";
+  bar.colors = {{0, 0, 0}, {1, 1, 1}};
+  for (int i = 0; i < 2; ++i) {
+    std::promise<void> held;
+    std::atomic<bool> free{false};
+    std::thread other([&] {
+      const auto lock = LockTextRenderer();
+      held.set_value();
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      free = true;
+    });
+    held.get_future().wait();
+    if (i == 0) {
+      table.rows[0].second = "2";
+      viewport->SetTextTable(table);
+    } else {
+      viewport->SetColorBar(bar);
+    }
+    viewport->GetCapture({});
+    EXPECT_TRUE(free) << i;
+    other.join();
+  }
 }
 
 TEST_F(ViewportExtrasTest, NothingHidesTheCornersAxes) {

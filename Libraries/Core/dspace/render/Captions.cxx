@@ -1,11 +1,10 @@
 #include <dspace/render/Captions.h>
 
-#include "vtkCoordinate.h"
 #include "vtkRenderer.h"
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
 
-#include <dspace/render/Fonts.h>
+#include <dspace/render/OverlayText.h>
 #include <dspace/render/SceneDrawer.h>
 #include <dspace/scene/TextLimits.h>
 
@@ -23,19 +22,12 @@ std::string KeyOf(const Caption& caption) {
 }
 
 vtkSmartPointer<vtkTextActor> MakeActor(const Caption& caption) {
-  auto actor = vtkSmartPointer<vtkTextActor>::New();
-  actor->SetInput((" " + caption.text + " ").c_str());
-  actor->SetTextScaleModeToNone();
+  auto actor = MakeOverlayText(" " + caption.text + " ", caption.fontSize, caption.color);
   vtkTextProperty* look = actor->GetTextProperty();
-  UseFont(look, Font::Mono);
-  look->SetFontSize(caption.fontSize);
-  look->SetColor(caption.color[0], caption.color[1], caption.color[2]);
-  look->SetOpacity(caption.color[3]);
   look->SetBackgroundColor(caption.background[0], caption.background[1], caption.background[2]);
   look->SetBackgroundOpacity(caption.background[3]);
   look->SetJustificationToCentered();
   look->SetVerticalJustificationToCentered();
-  actor->GetPositionCoordinate()->SetCoordinateSystemToDisplay();
   return actor;
 }
 

@@ -14,6 +14,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <dspace/render/Fonts.h>
+#include <dspace/render/OverlayText.h>
 
 namespace dspace {
 namespace {
@@ -80,17 +81,10 @@ vtkSmartPointer<vtkProp> BoxesOf(const ColorBar& bar, const ColorBarLayout& layo
 
 vtkSmartPointer<vtkProp> TextOf(const ColorBar& bar, const ColorBarLayout::Text& text, int x,
                                 int y) {
-  auto actor = vtkSmartPointer<vtkTextActor>::New();
-  actor->SetInput(text.text.c_str());
-  actor->SetTextScaleModeToNone();
+  auto actor = MakeOverlayText(text.text, bar.fontSize, bar.textColor);
   vtkTextProperty* look = actor->GetTextProperty();
-  UseFont(look, Font::Mono);
-  look->SetFontSize(bar.fontSize);
-  look->SetColor(bar.textColor[0], bar.textColor[1], bar.textColor[2]);
-  look->SetOpacity(bar.textColor[3]);
   text.centered ? look->SetJustificationToCentered() : look->SetJustificationToLeft();
   look->SetVerticalJustificationToCentered();
-  actor->GetPositionCoordinate()->SetCoordinateSystemToDisplay();
   actor->SetPosition(x + text.x, y + text.y);
   return actor;
 }

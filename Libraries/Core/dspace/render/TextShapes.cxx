@@ -1,7 +1,6 @@
 #include <dspace/render/TextShapes.h>
 
 #include <map>
-#include <mutex>
 
 #include "vtkImageData.h"
 #include "vtkNew.h"
@@ -11,6 +10,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/render/Fonts.h>
+#include <dspace/render/OverlayText.h>
 #include <dspace/render/TextOutlines.h>
 #include <dspace/scene/Checks.h>
 #include <dspace/scene/TextCharacters.h>
@@ -80,8 +80,7 @@ Part MakeLabel(const std::string& text, const LabelStyle& style) {
   look->SetBackgroundColor(style.background[0], style.background[1], style.background[2]);
   look->SetBackgroundOpacity(style.backgroundOpacity);
   int box[4] = {0, -1, 0, -1};
-  static std::mutex one; // VTK has one such renderer, and sessions may have threads of their own
-  const std::lock_guard<std::mutex> lock(one);
+  const auto lock = LockTextRenderer();
   vtkTextRenderer::GetInstance()->GetBoundingBox(look, vtkStdString(text), box, 72,
                                                  vtkTextRenderer::FreeType);
   RequireTextPicture(object, box[1] - box[0] + 1.0, box[3] - box[2] + 1.0);

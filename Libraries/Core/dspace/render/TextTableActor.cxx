@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <set>
 
-#include "vtkCoordinate.h"
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
 
-#include <dspace/render/Fonts.h>
+#include <dspace/render/OverlayText.h>
 #include <dspace/scene/TextLimits.h>
 
 namespace dspace {
@@ -45,15 +44,12 @@ std::string TextOf(const TextTable& table, const ValueColor* color) {
 
 vtkSmartPointer<vtkTextActor> MakeActor(const TextTable& table, const ValueColor* color, int width,
                                         int height) {
-  auto actor = vtkSmartPointer<vtkTextActor>::New();
-  actor->SetInput(TextOf(table, color).c_str());
-  actor->SetTextScaleModeToNone();
+  std::array<double, 4> shown = table.textColor;
+  if (color) {
+    std::copy(color->begin(), color->end(), shown.begin());
+  }
+  auto actor = MakeOverlayText(TextOf(table, color), table.fontSize, shown);
   vtkTextProperty* look = actor->GetTextProperty();
-  UseFont(look, Font::Mono);
-  look->SetFontSize(table.fontSize);
-  const double* shown = color ? color->data() : table.textColor.data();
-  look->SetColor(shown[0], shown[1], shown[2]);
-  look->SetOpacity(table.textColor[3]);
   look->SetBackgroundColor(table.backgroundColor[0], table.backgroundColor[1],
                            table.backgroundColor[2]);
   look->SetBackgroundOpacity(color ? 0.0 : table.backgroundColor[3]);
@@ -63,7 +59,6 @@ vtkSmartPointer<vtkTextActor> MakeActor(const TextTable& table, const ValueColor
       table.anchor == TextTable::Anchor::TopLeft || table.anchor == TextTable::Anchor::TopRight;
   left ? look->SetJustificationToLeft() : look->SetJustificationToRight();
   top ? look->SetVerticalJustificationToTop() : look->SetVerticalJustificationToBottom();
-  actor->GetPositionCoordinate()->SetCoordinateSystemToDisplay();
   actor->SetPosition(left ? table.margin : width - table.margin,
                      top ? height - table.margin : table.margin);
   return actor;
