@@ -183,10 +183,10 @@ def first_sentence(text):
 def main():
     page = make()
     if "--check" in sys.argv[1:]:
-        if not PAGE.is_file() or PAGE.read_text() != page:
+        if not PAGE.is_file() or PAGE.read_text(encoding="utf-8") != page:
             sys.exit("Documentation/Commands.md is out of date; accepted: as Documentation/make_commands.py makes it")
         return
-    PAGE.write_text(page)
+    PAGE.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

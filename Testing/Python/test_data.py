@@ -123,7 +123,7 @@ def test_urdf_is_one_tree_with_files_and_limits():
         if j.find("mimic") is not None:
             assert j.find("mimic").get("joint") in names
             assert float(j.find("mimic").get("multiplier")) == -1.0
-    readme = (DATA / "rover" / "README.md").read_text()
+    readme = (DATA / "rover" / "README.md").read_text(encoding="utf-8")
     assert [n for n in names if f"`{n}`" not in readme] == []
 
 

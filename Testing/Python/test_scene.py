@@ -155,7 +155,7 @@ def test_a_rover_stands_on_the_ground_that_is_drawn(scene, tmp_path):
 
 
 def test_the_readmes_first_picture(tmp_path, monkeypatch):
-    readme = (DATA.parent / "README.md").read_text()
+    readme = (DATA.parent / "README.md").read_text(encoding="utf-8")
     code = readme.split("```python\n")[1].split("```")[0]
     assert len([line for line in code.splitlines() if line]) <= 10
     monkeypatch.chdir(tmp_path)

@@ -27,7 +27,7 @@ def test_the_page_is_up_to_date():
         pytest.skip("protobuf-compiler is not installed")
     run = subprocess.run([sys.executable, str(SCRIPT), "--check"], stderr=subprocess.PIPE, text=True)
     assert run.returncode == 0, run.stderr
-    page = (SOURCE / "Documentation" / "Commands.md").read_text()
+    page = (SOURCE / "Documentation" / "Commands.md").read_text(encoding="utf-8")
     from dspace.session import commands_pb2
     for field in commands_pb2.Command.DESCRIPTOR.oneofs_by_name["command"].fields:
         assert f"| [{field.name}](#{field.message_type.name.lower()}) | {field.number} | " in page
