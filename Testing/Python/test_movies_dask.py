@@ -83,7 +83,8 @@ def test_when_the_scheduler_goes_it_ends(run, tmp_path, monkeypatch):
     script = ("import asyncio, distributed\n"
               "async def main():\n"
               "    async with distributed.Scheduler(host='127.0.0.1', port=0, dashboard=False) as scheduler:\n"
-              "        async with distributed.Worker(scheduler.address, nthreads=1, dashboard=False):\n"
+              "        async with distributed.Worker(scheduler.address, nthreads=1, dashboard=False,\n"
+              "                                      local_directory='workers'):\n"
               "            print(scheduler.address, flush=True)\n"
               "            await asyncio.sleep(120)\n"
               "asyncio.run(main())\n")
