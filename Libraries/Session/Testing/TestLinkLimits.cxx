@@ -1,7 +1,10 @@
 // What a server and its clients let others cost them, and what a child process of a client may do.
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include "RawDrive.h"
@@ -217,6 +220,36 @@ TEST_F(LinkLimits, AChildProcessIsToldAndMayCloseWhatItsParentOpened) {
   EXPECT_EQ(status, 0);
   Accept(client->Execute(MakeFrame(2))); // and the parent goes on
   EXPECT_TRUE(watcher->Tell(MakeEvent(0, 1)));
+}
+
+// Whatever the process's mask; and what its other threads make meanwhile is not closed to others.
+TEST_F(LinkLimits, ASocketIsItsOwnersAndFilesOfOtherThreadsAreAsTheyWere) {
+  const mode_t mask = umask(0);
+  std::atomic<bool> over{false};
+  std::size_t made = 0;
+  std::size_t closed = 0;
+  std::thread other([&] {
+    const std::string file = this->Folder + "/file";
+    while (!over) {
+      struct stat info = {};
+      const int descriptor = open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+      made += fstat(descriptor, &info) == 0 ? 1 : 0;
+      closed += (info.st_mode & 0777) != 0666 ? 1 : 0;
+      close(descriptor);
+      unlink(file.c_str());
+    }
+  });
+  for (int i = 0; i < 50; ++i) {
+    const session::Server server(this->Options);
+    struct stat info = {};
+    EXPECT_EQ(lstat((this->Folder + "/socket").c_str(), &info), 0);
+    EXPECT_EQ(info.st_mode & 0777, 0700u);
+  }
+  over = true;
+  other.join();
+  umask(mask);
+  EXPECT_GT(made, 0u);
+  EXPECT_EQ(closed, 0u);
 }
 
 } // namespace

@@ -138,12 +138,11 @@ void ServerListener::ListenAtPath(const std::string& path) {
     Refuse("unix:" + path, std::strerror(errno));
   }
   this->Listeners_.push_back(listener);
-  const mode_t mask = umask(0077); // its owner's alone
-  const bool bound = bind(listener, reinterpret_cast<sockaddr*>(&place), sizeof(place)) == 0;
-  const int error = errno;
-  umask(mask);
-  if (!bound || listen(listener, Backlog) != 0) {
-    Refuse("unix:" + path, std::strerror(bound ? errno : error));
+  // Its owner's alone, from the beginning. (The process's mask is that of all its threads.)
+  if (fchmod(listener, 0700) != 0 ||
+      bind(listener, reinterpret_cast<sockaddr*>(&place), sizeof(place)) != 0 ||
+      listen(listener, Backlog) != 0) {
+    Refuse("unix:" + path, std::strerror(errno));
   }
   this->Path_ = path;
   this->PathInode_ = lstat(path.c_str(), &info) == 0 ? info.st_ino : 0;
