@@ -182,6 +182,23 @@ TEST(ColorTiles, AChangeOfTheStackReadsNothingAnew) {
   EXPECT_EQ(tiles.Statistics().reads, 6u);
 }
 
+TEST(ColorTiles, ALayerThatIsTakenAwayWhileItIsReadIsNotKept) {
+  Gate gate;
+  const auto layer = Plain({200, 0, 0, 255});
+  layer->before = [&](const ColorBlock&) { gate.Wait(); };
+  const auto stack = StackOf({layer});
+  ColorTiles tiles(stack, {Ground()});
+  tiles.TryGet({{0, 0, 0, 0}});
+  while (layer->reads == 0)
+    std::this_thread::yield();
+  stack->Remove("a");
+  tiles.Arrivals(); // the stack is taken as it is now
+  gate.Open();
+  EXPECT_TRUE(tiles.Get({{0, 0, 0, 0}}, 60.0)[0]->texels.empty());
+  EXPECT_EQ(tiles.Statistics().reads, 1u);
+  EXPECT_EQ(layer.use_count(), 1);
+}
+
 TEST(ColorTiles, TryGetNeverReads) {
   Gate gate;
   const auto layer = Plain({1, 2, 3, 255});

@@ -129,6 +129,11 @@ struct ColorTiles::Implementation {
     }
   }
 
+  bool IsInLatest(const std::shared_ptr<const ColorLayer>& layer) const {
+    return std::any_of(this->latest.layers.begin(), this->latest.layers.end(),
+                       [&](const StackedLayer& each) { return each.layer == layer; });
+  }
+
   // Tiles of layers that were taken away are let go.
   void TakeStack() {
     if (this->latest.revision == this->stack->Revision()) {
@@ -136,9 +141,7 @@ struct ColorTiles::Implementation {
     }
     this->latest.layers = this->stack->Layers(&this->latest.revision);
     for (auto it = this->tiles.begin(); it != this->tiles.end();) {
-      const auto has = [&](const StackedLayer& l) { return l.layer == it->second.layer; };
-      const bool gone = it->second.layer &&
-                        std::none_of(this->latest.layers.begin(), this->latest.layers.end(), has);
+      const bool gone = it->second.layer && !this->IsInLatest(it->second.layer);
       it = gone ? this->Forget(it) : std::next(it);
     }
   }
@@ -183,7 +186,9 @@ struct ColorTiles::Implementation {
         Unlocked(lock, [&] { read->texels = ReadLayerTile(*layer.layer, grid, at); });
         ++this->statistics.reads;
         own = std::move(read);
-        this->Store(layer.layer, at, own);
+        if (this->IsInLatest(layer.layer)) { // it may have been taken away meanwhile
+          this->Store(layer.layer, at, own);
+        }
       }
       if (!own->texels.empty()) {
         parts.emplace_back(std::move(own), layer.opacity);
