@@ -8,6 +8,7 @@ import pytest
 
 import dspace
 from dspace.command_line import main
+from dspace.movies_draw import fill
 from dspace.movies_folder import FRAME
 from movies_support import SIZE, run  # noqa: F401  (run: a fixture)
 
@@ -84,6 +85,16 @@ def test_a_camera_that_there_never_is(late, script, tmp_path):
     said = raised(dspace.NotFound, lambda: movie.make(late, tmp_path / "out"))
     assert "view 'main', camera: at 2 s of the run there is no camera 'nose', nor at any other time; " in said
     assert said.endswith("there are: 'eye'")
+    # A movie's own cameras are none that may be named, of this movie and of another one that was recorded.
+    with dspace.Session() as session, session.record(tmp_path / "of_movie.dspace"):
+        scene = session.scene("field")
+        scene.add_camera("movie eye", eye=(3, -3, 2), target=(0, 0, 0))
+        scene.add_camera("movie far 0123abcd", eye=(3, -3, 2), target=(0, 0, 0))
+        scene.time = 2.0
+    text = KEYS.replace("[[view]]", '[[view]]\nname = "first"\nscene = "field"')
+    movie = dspace.Movie.load(script(text + '[[view]]\nscene = "field"\ncamera = "nose"', start=2.0))
+    said = raised(dspace.NotFound, lambda: movie.make(tmp_path / "of_movie.dspace", tmp_path / "out"))
+    assert said.endswith("; there are: 'movie eye'")
 
 
 @pytest.mark.parametrize("jobs", (1, 2))
@@ -107,6 +118,19 @@ def test_formats_are_looked_at_before_anything_is_drawn(script):
     rows = '[["a", "{run:99.20f}"], ["b", "{charge:>9s}{x:+.1%}"]]'
     movie = dspace.Movie.load(script(KEYS + f"[[overlay]]\nrows = {rows}"))
     assert len(movie.overlays[0].rows) == 2
+
+
+def test_a_brace_without_its_other_is_refused(script):
+    for value in ("{run s", "run} s", "{", "}", "{{run}", "{run}}", "{run:{movie}}", "{run} {", "}} {", "{run:>{3}"):
+        text = KEYS + f'[[overlay]]\ntitle = "T"\n[[overlay]]\nrows = [["a", "{{run}} s"], ["b", "{value}"]]'
+        said = raised(dspace.InvalidArgument, lambda: dspace.Movie.load(script(text)))
+        assert "a.toml', overlay 2: " in said and f"the value of row 2 is {value!r}; accepted: each brace with" in said
+        assert said.endswith("{{ or }} for a brace that is drawn")
+        assert "row 1 is" in raised(dspace.InvalidArgument, lambda: dspace.Movie().add_overlay("T", [("b", value)]))
+    movie = dspace.Movie.load(script(KEYS + '[[overlay]]\nrows = [["a {b", "{{ {run:.1f}}} {{run}} }}{{"]]'))
+    (label, value), = movie.overlays[0].rows
+    assert label == "a {b"  # no value
+    assert fill(value, {"run": 2.0}.__getitem__) == value.format(run=2.0) == "{ 2.0} {run} }{"
 
 
 def test_values_of_settings(script, tmp_path):

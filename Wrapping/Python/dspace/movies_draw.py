@@ -2,6 +2,7 @@
 import contextlib
 import importlib.util
 import os
+import re
 import secrets
 import struct
 import warnings
@@ -13,10 +14,13 @@ from dspace._fields import shown
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath
 from dspace.movies_views import FIELD
-from dspace.playback_steps import index_at, runs_of
+from dspace.playback_steps import runs_of, step_at
 from dspace.poses import Pose
 from dspace.recorded_views import spans_of, when
 from dspace.telemetry import overlay_value
+
+
+INNER = re.compile("movie .* [0-9a-f]{8}", re.DOTALL)  # a movie's own viewports and cameras; see Stage
 
 
 class Source:
@@ -85,19 +89,6 @@ def _of_playback(playback):
                   telemetry if callable(telemetry) else None, beginning=steps[0] if steps else 0.0,
                   extent=(min(steps), max(steps)) if steps else None,
                   playback=playback if hasattr(playback, "file") else None)
-
-
-def step_at(times, time, runs=None):
-    """The time to seek [s]: `time`, or that of the next step if it comes but a rounding later. A simulation that adds
-    up its steps is the later the longer it runs; up to a thousandth of the step, and 0.1 ms, count. runs: ranges of
-    steps whose times do not go back (default: all)."""
-    index = index_at(times, runs or [(0, len(times))], time) if times else None
-    following = len(times) if index is None else index + 1
-    if following < len(times):
-        late = times[following] - time
-        if 0 < late <= min(1e-3 * (times[following] - times[following - 1]), 1e-4):
-            return times[following]
-    return time
 
 
 def _made_by(path, name):
@@ -182,7 +173,8 @@ class Stage:
                 raise NotFound(f"{what}, which is there {when(self.source.playback, ranges)}; accepted: times of the "
                                "run (start, or run of a key) when it is there", about)
             what += ", nor at any other time"
-        raise NotFound(f"{what}; there are: {', '.join(map(repr, list(things)[:50])) or 'none'}", about)
+        named = [each for each in things if kind != "camera" or not INNER.fullmatch(each)]
+        raise NotFound(f"{what}; there are: {', '.join(map(repr, named[:50])) or 'none'}", about)
 
     def _viewport(self, view, run):
         """Its viewport, made where there is none (any more: a playback that seeks may begin anew)."""
@@ -286,8 +278,10 @@ class Stage:
 
 
 def fill(text, values):
-    """A text whose {name:format} are replaced by what values(name) gives."""
+    """A text whose {name:format} are replaced by what values(name) gives, and {{ and }} by one brace."""
     def put(match):
+        if match[0] in ("{{", "}}"):
+            return match[0][0]
         value = values(match[1])
         try:
             return format(value, match[2] or "")

@@ -8,7 +8,7 @@ from dspace.errors import WrongType
 from dspace.viewports import ANCHORS
 
 FONT_SIZES = 4, 200  # pixels
-FIELD = re.compile(r"\{([^{}:]*)(?::([^{}]*))?\}")  # {name:format}
+FIELD = re.compile(r"\{\{|\}\}|\{([^{}:]*)(?::([^{}]*))?\}")  # {name:format}, and {{ and }}, which are braces
 WIDEST = 99
 
 
@@ -106,8 +106,8 @@ class Overlay:
 
     rows: (label, value) pairs; a value may hold {movie} and {run} (times [s]), {FRAME.x} of y, z (a frame's
     place in the root [m]), and names of the source's telemetry, each with a format
-    of up to 99 characters and places: {run:.2f}. since, until:
-    movie times [s]. font_size: pixels, 4 to 200; 0: a 40th of the picture's height, from 8 to 200."""
+    of up to 99 characters and places: {run:.2f}; {{ and }} are a brace each. since, until: movie times
+    [s]. font_size: pixels, 4 to 200; 0: a 40th of the picture's height, from 8 to 200."""
     title: str = ""
     rows: tuple = ()
     view: str = ""
@@ -120,10 +120,13 @@ class Overlay:
         about = f"overlay {self.title!r}"
         text(self.title, "the title", about)
         rows = []
-        for row in self.rows:
+        for number_, row in enumerate(self.rows, 1):
             if not isinstance(row, (tuple, list)) or len(row) != 2 or not all(isinstance(c, str) for c in row):
                 refuse(about, "a row", row, "a label and a value, each a str", WrongType)
             rows.append(tuple(row))
+            if re.search("[{}]", FIELD.sub("", row[1])):
+                refuse(about, f"the value of row {number_}", row[1], "each brace with its other one, as in {run:.2f}; "
+                       "{{ or }} for a brace that is drawn")
             for key, form in FIELD.findall(row[1]):
                 if not writable(form, key in ("movie", "run")):
                     refuse(about, "a value's format", f"{{{key}:{form}}}", "one such as {run:.2f}, of up to "
