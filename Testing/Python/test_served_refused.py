@@ -87,3 +87,22 @@ def test_a_session_that_is_recorded_says_so(tmp_path):
     with dspace.Session() as session, session.record(tmp_path / "a.dspace"):
         said = raised(dspace.AlreadyExists, lambda: session.record(tmp_path / "b.dspace"))
         assert "a.dspace" in said and "one recording at a time" in said and not (tmp_path / "b.dspace").exists()
+
+
+def test_addresses_have_no_character_of_code_0():
+    for follow in (dspace.connect, dspace.watch):
+        assert raised(dspace.InvalidArgument, lambda: follow("unix:/tmp/a\0b")).endswith("without a character of code 0")
+
+
+def test_what_waits_is_not_carried_out_after_a_refusal(tmp_path):
+    with Served(tmp_path) as server, dspace.connect(server.address) as session:
+        scene = session.scene()
+        frame = scene.add_frame("a")
+        for i in range(1, 30):
+            session.wait = False
+            scene.set_poses([frame], [[float("nan"), 0, 0, 1, 0, 0, 0, 1]])
+            session.wait = True
+            with pytest.raises(dspace.InvalidArgument, match="finite"):
+                scene.time = float(i)
+            assert scene.time == i - 1
+            scene.time = float(i)

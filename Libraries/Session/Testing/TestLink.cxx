@@ -2,7 +2,6 @@
 #include "LinkTestSupport.h"
 
 #include <fstream>
-#include <future>
 
 namespace dspace::testing {
 namespace {
@@ -50,54 +49,6 @@ TEST_F(LinkTest, LockstepLosesNothingAndRepeatsNothing) {
   for (int i = 0; i < Steps; ++i) {
     ASSERT_EQ(seen[std::size_t(i)], i);
   }
-}
-
-TEST_F(LinkTest, PipelinedCommandsComeInOrderAndTheirErrorsToo) {
-  this->StartServer();
-  RemoteClient client(this->ClientOptions());
-  Accept(client.Execute(MakeScene()));
-  for (std::uint64_t id = 2; id < 2002; ++id) {
-    Accept(client.Send(MakeFrame(id)));
-  }
-  Accept(client.Flush());
-  v1::Command wrong = MakeFrame(5000);
-  wrong.mutable_create_frame()->set_parent(99999);
-  Accept(client.Send(wrong));
-  const v1::Reply reply = client.Flush();
-  EXPECT_EQ(reply.error().kind(), v1::Error::NOT_FOUND) << reply.ShortDebugString();
-  Accept(client.Flush()); // told once
-  v1::Command list;
-  list.mutable_list_frames();
-  EXPECT_EQ(client.Execute(list).frames().frame_size(), 2001);
-}
-
-// Whoever was interrupted twice, or waited too long, is not told of it by what comes later.
-TEST_F(LinkTest, ErrorsOfWhatWasAbandonedHitNothingElse) {
-  this->StartServer();
-  std::promise<void> go;
-  this->Served->interpreter.AddListener([&](const v1::Command& command, const v1::Reply&) {
-    if (command.has_set_time()) {
-      go.get_future().wait();
-    }
-  });
-  RemoteClient client(this->ClientOptions());
-  Accept(client.Execute(MakeScene()));
-  v1::Command hold;
-  hold.mutable_set_time()->set_time_s(1);
-  Accept(client.Send(hold));
-  for (const std::uint64_t id : {5000, 5001, 5002}) {
-    v1::Command wrong = MakeFrame(id);
-    wrong.mutable_create_frame()->set_parent(99999);
-    client.Begin(wrong);
-    EXPECT_FALSE(client.Wait(0.01));
-    client.Abandon();
-  }
-  v1::Command unheard = MakeFrame(6000);
-  unheard.mutable_create_frame()->set_parent(88888);
-  Accept(client.Send(unheard));
-  go.set_value();
-  EXPECT_NE(client.Flush().error().message().find("88888"), std::string::npos);
-  Accept(client.Execute(MakeFrame(7)));
 }
 
 TEST_F(LinkTest, ASecondWriterIsRefusedByNameOrTakesOver) {

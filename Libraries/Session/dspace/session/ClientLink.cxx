@@ -8,6 +8,7 @@
 #include <grpcpp/impl/codegen/sync_stream.h>
 
 #include <dspace/Error.h>
+#include <dspace/scene/Checks.h>
 #include <dspace/session/ProcessName.h>
 
 namespace dspace::session {
@@ -128,12 +129,12 @@ RemoteClient::Link::Link(const RemoteClientOptions& from)
     : options(from), process(getpid()), key(RandomKey()) {
   if (!(this->options.timeout_s > 0 && this->options.timeout_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
-                "the timeout is " + std::to_string(this->options.timeout_s) +
+                "the timeout is " + NumberText(this->options.timeout_s) +
                     " s; accepted: above 0, up to 1e6");
   }
   if (!(this->options.silence_s > 0 && this->options.silence_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
-                "the silence is " + std::to_string(this->options.silence_s) +
+                "the silence is " + NumberText(this->options.silence_s) +
                     " s; accepted: above 0, up to 1e6");
   }
   this->pacer.SetRate(this->options.pace);

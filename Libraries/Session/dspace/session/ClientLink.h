@@ -55,6 +55,7 @@ struct RemoteClient::Link {
   bool crowded = false;              // the user's thread waits for less of them
   bool absorbing = false;            // the other side stalls: `pending` may fill its window
   std::uint64_t last = 0;            // number given
+  std::uint64_t unawaited = 0;       // the last number that nobody waits for
   std::uint64_t done = 0;            // by the server
   std::uint64_t acknowledged = 0;    // the last number whose reply has come
   std::uint64_t awaited = 0;         // by the user's thread; 0: none
@@ -77,9 +78,9 @@ struct RemoteClient::Link {
   bool ending = false;
 
   // What the user's thread is about, and its own.
-  enum class Doing { Nothing, Pace, Room, Reply, Flush, Done };
+  enum class Doing { Nothing, Pace, Settle, Room, Reply, Flush, Done };
   Doing doing = Doing::Nothing;
-  v1::Command command; // of Pace and Room
+  v1::Command command; // of Pace, Settle and Room
   std::size_t bytes = 0;
   bool noReply = false;
   LinkClock::time_point due;      // of Pace
@@ -90,6 +91,8 @@ struct RemoteClient::Link {
   // For the user's thread, with the mutex held.
   v1::Reply Fault(v1::Error::Kind kind, const std::string& message);
   void Finish(v1::Reply&& with);
+  void Settle();
+  bool WaitToSettle(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
   void Admit();
   void Put();
   bool WaitForRoom(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
+#include <dspace/scene/Checks.h>
 #include <dspace/session/RecordingAssets.h>
 #include <dspace/session/RecordingChecksums.h>
 #include <dspace/session/RecordingFile.h>
@@ -37,7 +38,7 @@ void Check(const RecordingOptions& options, const std::string& path) {
     throw Error(Error::Kind::InvalidArgument, "recording '" + path + "'", what);
   };
   if (!(options.commitEvery_s >= 0.001 && options.commitEvery_s <= 60.0)) {
-    refuse("the time from commit to commit is " + std::to_string(options.commitEvery_s) +
+    refuse("the time from commit to commit is " + NumberText(options.commitEvery_s) +
            " s; accepted: 0.001 to 60");
   }
   if (options.queueBytes < (1u << 20)) {

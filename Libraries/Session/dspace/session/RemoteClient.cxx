@@ -138,7 +138,10 @@ bool RemoteClient::Wait(double seconds) {
         return false;
       }
     }
-    link.Admit();
+    link.Settle();
+  }
+  if (link.doing == Link::Doing::Settle && !link.WaitToSettle(lock, until)) {
+    return false;
   }
   if (link.doing == Link::Doing::Room && !link.WaitForRoom(lock, until)) {
     return false;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <dspace/scene/Checks.h>
 #include <dspace/session/ClientLink.h>
 
 namespace dspace::session {
@@ -32,9 +33,35 @@ void RemoteClient::Link::Finish(v1::Reply&& with) {
   this->doing = Doing::Done;
 }
 
+// A command that is waited for is sent once those are done that nobody waits for: were one of them
+// refused, it is not carried out.
+void RemoteClient::Link::Settle() {
+  this->deadline = After(this->options.timeout_s);
+  if (!this->noReply && this->done < this->unawaited && !this->broken) {
+    this->doing = Doing::Settle;
+  } else {
+    this->Admit();
+  }
+}
+
+bool RemoteClient::Link::WaitToSettle(std::unique_lock<std::mutex>& lock,
+                                      LinkClock::time_point until) {
+  if (this->changed.wait_until(lock, std::min(until, this->deadline), [this] {
+        return this->broken || this->failure.has_error() || this->done >= this->unawaited;
+      })) {
+    this->Admit();
+  } else if (LinkClock::now() < this->deadline) {
+    return false;
+  } else {
+    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED,
+                             "commands before this one are not done within " +
+                                 NumberText(this->options.timeout_s) + " s; it was not sent"));
+  }
+  return true;
+}
+
 // Looks whether the command is to be sent at all.
 void RemoteClient::Link::Admit() {
-  this->deadline = After(this->options.timeout_s);
   this->catchUp = LinkClock::now() + ToCatchUp;
   if (this->failure.has_error()) {
     this->Finish(std::exchange(this->failure, {}));
@@ -82,9 +109,9 @@ bool RemoteClient::Link::WaitForRoom(std::unique_lock<std::mutex>& lock,
       return false;
     }
     this->filter.Forget();
-    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED,
-                             "no room to send within " + std::to_string(this->options.timeout_s) +
-                                 " s; the command was not sent"));
+    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED, "no room to send within " +
+                                                               NumberText(this->options.timeout_s) +
+                                                               " s; the command was not sent"));
   } else if (this->broken) {
     v1::Reply gone;
     *gone.mutable_error() = this->error;
@@ -114,6 +141,7 @@ void RemoteClient::Link::Put() {
   ++this->counts.sent;
   this->counts.bytes += this->bytes - 64;
   if (this->noReply) {
+    this->unawaited = this->last;
     this->Finish({});
   } else {
     this->awaited = this->last;
@@ -139,7 +167,7 @@ bool RemoteClient::Link::WaitForReply(std::unique_lock<std::mutex>& lock,
     *lost.mutable_error() = this->error;
   } else {
     lost = this->Fault(v1::Error::DEADLINE_EXCEEDED,
-                       "no reply within " + std::to_string(this->options.timeout_s) +
+                       "no reply within " + NumberText(this->options.timeout_s) +
                            " s; whether the command was carried out is not known");
   }
   this->Finish(std::move(lost));
@@ -157,10 +185,10 @@ bool RemoteClient::Link::WaitForFlush(std::unique_lock<std::mutex>& lock,
   } else if (!come && LinkClock::now() < this->deadline) {
     return false;
   } else if (!come) {
-    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED,
-                             std::to_string(this->last - this->done) +
-                                 " commands are not done within " +
-                                 std::to_string(this->options.timeout_s) + " s"));
+    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED, std::to_string(this->last - this->done) +
+                                                               " commands are not done within " +
+                                                               NumberText(this->options.timeout_s) +
+                                                               " s"));
     return true;
   }
   if (this->failure.has_error()) { // the first thing that went wrong

@@ -14,6 +14,7 @@
 #include <grpcpp/resource_quota.h>
 
 #include <dspace/Error.h>
+#include <dspace/scene/Checks.h>
 #include <dspace/session/ServerHub.h>
 
 namespace dspace::session {
@@ -39,10 +40,10 @@ void Check(const ServerOptions& options) {
     refuse("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
   }
   if (!(options.seat_s >= 0 && options.seat_s <= 1e6)) {
-    refuse("the time that a place is kept", std::to_string(options.seat_s) + " s", "0 to 1e6");
+    refuse("the time that a place is kept", NumberText(options.seat_s) + " s", "0 to 1e6");
   }
   if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
-    refuse("the silence", std::to_string(options.silence_s) + " s", "above 0, up to 1e6");
+    refuse("the silence", NumberText(options.silence_s) + " s", "above 0, up to 1e6");
   }
 }
 

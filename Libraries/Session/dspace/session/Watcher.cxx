@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
+#include <dspace/scene/Checks.h>
 #include <dspace/session/ClientLink.h>
 #include <dspace/session/LinkDiagnosis.h>
 #include <dspace/session/SnapshotMessages.h>
@@ -171,13 +172,13 @@ Watcher::Watcher(const WatcherOptions& options, Later) : Link_(new Link) {
   Link& link = *this->Link_;
   if (!(options.timeout_s > 0 && options.timeout_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + options.address + "'",
-                "the timeout is " + std::to_string(options.timeout_s) +
+                "the timeout is " + NumberText(options.timeout_s) +
                     " s; accepted: above 0, up to 1e6");
   }
   link.options = options;
   if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + options.address + "'",
-                "the silence is " + std::to_string(options.silence_s) +
+                "the silence is " + NumberText(options.silence_s) +
                     " s; accepted: above 0, up to 1e6");
   }
   link.channel = MakeChannel(options.address, options.security, options.silence_s);
