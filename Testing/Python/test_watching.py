@@ -299,6 +299,9 @@ def test_what_is_no_event_is_refused(tmp_path):
             session.on_event(print, kind="drag")
         with pytest.raises(dspace.InvalidArgument, match="low <= high"):
             session.on_edited("speed", print, low=1.0, high=0.0)
+        for call in (lambda: session.on_edited("", print), lambda: session.edited("", 1.0)):
+            with pytest.raises(dspace.InvalidArgument, match="one that is not empty"):
+                call()
         assert session.process_events(wait=0.0) == []
         session.close()
         while watcher.simulation is not None:

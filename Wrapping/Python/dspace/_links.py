@@ -18,7 +18,8 @@ def hear_signals():
 def prepare(link, address, certificate, key, authority, insecure, timeout, label):
     """What connect() and watch() share: checks, and sets what all kinds of links take. Returns a function that sets
     the same on another link, and returns that."""
-    text(address, "the address", label)
+    if "\0" in text(address, "the address", label):
+        refuse(label, "the address", address, "one without a character of code 0")
     files = []
     for value, what in ((certificate, "certificate"), (key, "key"), (authority, "authority")):
         if value is not None and not isinstance(value, (str, os.PathLike)):

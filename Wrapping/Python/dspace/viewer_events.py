@@ -12,6 +12,13 @@ from dspace.session import service_pb2
 KINDS = {kind: kind for kind in ("picked", "selection", "answer", "edited", "dragged")}
 
 
+def _value(name, about):
+    """What is said of a value that people enter; its name is not empty."""
+    if not text(name, "the name", about):
+        refuse(about, "the name of a value", name, "one that is not empty")
+    return f"value {name!r}"
+
+
 class ViewerEvents:
     """The part of Session and Watcher that says and hears what people do.
 
@@ -37,7 +44,7 @@ class ViewerEvents:
         low, high: bounds, which are accepted themselves; unit: what the number must be in ("m", "deg",
         ...). What is out of bounds or in another unit does not reach the callback: a
         dspace.DspaceWarning tells of it, and nothing is converted or clipped."""
-        label = f"value {text(name, 'the name', 'session')!r}"
+        label = _value(name, "session")
         low, high = number(low, "low", label), number(high, "high", label)
         text(unit, "the unit", label)
         if not low <= high:
@@ -93,7 +100,7 @@ class ViewerEvents:
     def edited(self, name, value, unit=None):
         """Says a value that a person has entered; finite. Where a scene has a telemetry channel of that
         name, it is one of its numbers or choices, and in its unit, which is the default."""
-        label = f"value {text(name, 'the name', 'event')!r}"
+        label = _value(name, "event")
         value = number(value, "the value", label)
         if not math.isfinite(value):
             refuse(label, "it", value, "a finite number")
