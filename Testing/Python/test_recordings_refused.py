@@ -1,5 +1,6 @@
 """Recordings: what is refused, by which name, and that nothing is left behind of it."""
 import contextlib
+import os
 import re
 import sqlite3
 import subprocess
@@ -16,6 +17,7 @@ from dspace import playback
 from dspace.command_line import main
 from dspace.recorded_files import RecordedFiles
 from dspace.recorded_views import spans_of, when
+from dspace.recording_assets import Asset
 from dspace.recording_file import RecordingFile
 from movies_support import pixels
 
@@ -150,6 +152,52 @@ def test_play_writes_over_nothing(tmp_path, capsys):
     assert main(["play", path, "--out", str(out), "--at", "0.2"]) == 0
     assert main(["play", path, "--out", path]) == 1
     assert "accepted: a folder that may be made and written" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words, says", [
+    (["--at", "0.2", "--every", "1", "--out", "OUT"], "--at and --every are given; accepted: one or the other"),
+    (["--at", "0.2", "--reverse", "--out", "OUT"], "--at and --reverse are given; accepted: one or the other"),
+    (["--every", "1"], "--every is of pictures; accepted: with --out"),
+    (["--reverse"], "--reverse is of pictures; accepted: with --out"),
+    (["--viewport", "view", "--at", "0.2"], "--viewport is of pictures; accepted: with --out")])
+def test_play_leaves_no_option_out(tmp_path, capsys, words, says):
+    out = tmp_path / "out"
+    assert main(["play", record(tmp_path / "a.dspace"), *(str(out) if word == "OUT" else word for word in words)]) == 1
+    said = capsys.readouterr()
+    assert said.err == f"dspace: {says}\n" and said.out == "" and not out.exists()
+
+
+def test_a_pack_lacks_no_file_that_was_read(tmp_path, capsys):
+    path, out, names = tmp_path / "a.dspace", tmp_path / "b.dspace", [tmp_path / f"{each}.obj" for each in "xyz"]
+    with dspace.Session() as session, session.record(path):
+        for each in names:
+            each.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+            session.scene().load(str(each))
+    before, content = path.read_bytes(), names[1].read_bytes()
+    for gone, more in ((names[1:2], ""), (names[1:], ", nor 1 more")):
+        for each in gone:
+            each.unlink()
+        for words in (["--out", str(out)], []):
+            assert main(["log", "pack", str(path), *words]) == 1
+            assert f"its file '{names[1]}' is not there{more}; accepted: " in capsys.readouterr().err
+            assert sorted(os.listdir(tmp_path)) == sorted(["a.dspace", *(each.name for each in names if each.exists())])
+            assert path.read_bytes() == before
+        for each in gone:
+            each.write_bytes(content)
+    # One that could not be read when it was recorded is needed by nothing.
+    with contextlib.closing(sqlite3.connect(path)) as database, database:
+        never = Asset(100, "/some/folder", "unreadable", 0, b"", False)
+        database.execute("INSERT INTO asset VALUES(?,?,?,?,?,?,?)", (*never, never.checksum))
+    assert main(["log", "pack", str(path), "--out", str(out)]) == 1
+    assert capsys.readouterr().out.splitlines()[-1] == "not packed: /some/folder"
+    for each in names:
+        each.unlink()
+    with dspace.Playback(out) as run:
+        run.step(1000)
+        assert len(run.session.scene().objects) == 3
+    with RecordingFile(out) as file:
+        assert {asset.path: asset.packed for asset in file.assets if asset.state != "absent"} == {
+            **{str(each): True for each in names}, "/some/folder": False}
 
 
 # --- What is no damage -----------------------------------------------------------------------------

@@ -35,8 +35,9 @@ def add_arguments(parser):
     cut.add_argument("--to", dest="end", type=float, metavar="T")
     cut.add_argument("--out", required=True, metavar="FILE")
     cut.set_defaults(run=cut_out)
-    packing = what.add_parser("pack", help="takes the files that it needs into it, so that it replays anywhere; exit "
-                                           "code 1 where some cannot be had")
+    packing = what.add_parser("pack", help="takes the files that it needs into it, so that it replays anywhere; "
+                                           "files that are gone or have changed are refused; those that could not be "
+                                           "read when it was recorded are told, exit code 1")
     packing.add_argument("file", metavar="FILE")
     packing.add_argument("--out", metavar="FILE", help="the packed recording; absent: FILE itself, which nobody may "
                                                        "be writing or reading")

@@ -4,13 +4,23 @@ import os
 import sqlite3
 
 from dspace.command_line import Failed
+from dspace.errors import NotFound
 from dspace.recording_assets import pack as pack_into
 from dspace.recording_file import RecordingFile, new_recording
 
 
+def require(label, gone):
+    """Refuses files that have gone; without them what is packed would replay nowhere."""
+    if gone:
+        more = f", nor {len(gone) - 1} more" if len(gone) > 1 else ""
+        raise NotFound(f"{label}: its file {gone[0]!r} is not there{more}; accepted: all of them as they were recorded",
+                       gone[0])
+
+
 def pack(options):
     with RecordingFile(options.file) as file:
-        _ = file.assets  # checked, before anything is written
+        needed = {each.path for each in file.assets if each.state == "read" and not each.packed}
+        require(file.label, [each for each in sorted(needed) if not os.path.isfile(each)])  # before anything is written
         path = os.path.abspath(options.out or options.file)
         if options.out is not None:
             with new_recording(path) as copy:
@@ -23,6 +33,7 @@ def pack(options):
             with database:
                 database.execute("BEGIN IMMEDIATE")
             missing = pack_into(database, f"recording {path!r}")
+            require(f"recording {path!r}", [each for each in missing if each in needed])
             count, size = database.execute("SELECT count(*), coalesce(sum(size), 0) FROM asset WHERE packed").fetchone()
     except BaseException as error:
         if options.out is not None:

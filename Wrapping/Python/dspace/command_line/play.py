@@ -17,19 +17,32 @@ def add_arguments(parser):
     parser.description = ABOUT
     parser.add_argument("file", metavar="FILE", help="a recording (.dspace)")
     parser.add_argument("--at", type=float, metavar="T", help="simulation time [s]: one picture")
-    parser.add_argument("--viewport", metavar="NAME", help="absent: the recording's only one")
+    parser.add_argument("--viewport", metavar="NAME", help="of the pictures; absent: the recording's only one")
     parser.add_argument("--out", metavar="DIR", help="folder for the pictures, 000000.png and so "
                                                                   "on; refused where it has such pictures")
-    parser.add_argument("--every", type=float, metavar="DT", help="seconds of simulation time between pictures")
-    parser.add_argument("--reverse", action="store_true", help="from the last step to the first")
+    parser.add_argument("--every", type=float, metavar="DT", help="seconds of simulation time between pictures; not "
+                                                                    "with --at")
+    parser.add_argument("--reverse", action="store_true", help="from the last step to the first; not with --at")
     parser.set_defaults(run=run)
+
+
+def check(options):
+    """Refuses options that others leave without effect."""
+    if options.every is not None and not (options.every > 0 and math.isfinite(options.every)):
+        raise Failed(f"--every {options.every:g}; accepted: more than 0 s")
+    given = [word for word, value in (("every", options.every is not None), ("reverse", options.reverse)) if value]
+    if options.at is not None and given:
+        raise Failed(f"--at and --{given[0]} are given; accepted: one or the other")
+    if options.viewport is not None:
+        given.append("viewport")
+    if options.out is None and given:
+        raise Failed(f"--{given[0]} is of pictures; accepted: with --out")
 
 
 def run(options):
     from dspace.playback import Playback  # needs the compiled part
 
-    if options.every is not None and not (options.every > 0 and math.isfinite(options.every)):
-        raise Failed(f"--every {options.every:g}; accepted: more than 0 s")
+    check(options)
     with Playback(options.file) as playback:
         if options.at is not None:
             playback.seek(options.at)
