@@ -1,5 +1,6 @@
 // Recordings read and carried out again: against what was given to the writer, and against an
 // interpreter that was given the same commands from the start.
+#include <cmath>
 #include <random>
 #include <sstream>
 
@@ -42,9 +43,10 @@ protected:
     sqlite3_close(database);
   }
 
-  // A frame that moves and frames that come, a time each: recorded, with the commands as they were
-  // accepted.
-  std::vector<v1::Command> Drive(int steps, std::uint64_t snapshotCommands) {
+  // A frame that moves and frames that come, a time each (absent: every 0.5 s): recorded, with the
+  // commands as they were accepted.
+  std::vector<v1::Command> Drive(int steps, std::uint64_t snapshotCommands,
+                                 const std::vector<double>& times = {}) {
     std::vector<v1::Command> accepted;
     Interpreter interpreter;
     Ledger ledger(&interpreter.GetState());
@@ -64,7 +66,7 @@ protected:
     scene.mutable_create_scene();
     run(scene);
     for (int i = 0; i < steps; ++i) {
-      run(Time(0.5 * i));
+      run(Time(times.empty() ? 0.5 * i : times[std::size_t(i)]));
       v1::Command frame;
       frame.mutable_create_frame()->set_name("f" + std::to_string(i));
       run(frame);
@@ -120,6 +122,42 @@ TEST_F(PlaybackOf, AnyStepIsWhatItsCommandsMake) {
   EXPECT_EQ(playback.Step(-100), -2); // the first step is what was before any time
   EXPECT_EQ(playback.Step(1000), 40);
   EXPECT_EQ(playback.Time(), 19.5);
+}
+
+// Times that a simulation adds up, as most do.
+std::vector<double> AddedUp(int steps, double begin_s, double step_s) {
+  std::vector<double> times = {begin_s};
+  while (int(times.size()) < steps) {
+    times.push_back(times.back() + step_s);
+  }
+  return times;
+}
+
+TEST_F(PlaybackOf, StepsThatWereAddedUpAreFound) {
+  const std::vector<double> times = AddedUp(2000, 0.0, 0.001);
+  ASSERT_GT(times[1000], 1.0);
+  this->Drive(2000, 500, times);
+  {
+    RecordingReader reader(this->Path_);
+    Interpreter shown;
+    session::Playback playback(reader, shown);
+    for (const int i : {1, 999, 1000, 1001, 1999, 1000, 3}) {
+      EXPECT_EQ(playback.Seek(i / 1000.0), times[std::size_t(i)]); // its own time
+      EXPECT_EQ(playback.Index(), std::size_t(i) + 1); // the first is what was before any time
+    }
+  }
+  this->Change("DELETE FROM command WHERE seq = 2003"); // step 1000 lacks its frame
+  this->Change("INSERT INTO meta VALUES('lost','2003-2003')");
+  RecordingReader reader(this->Path_);
+  Interpreter shown;
+  session::Playback playback(reader, shown);
+  EXPECT_EQ(playback.Seek(0.999), times[999]);
+  try {
+    playback.Seek(1.0);
+    ADD_FAILURE() << "gave " << playback.Time();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.GetKind(), Error::Kind::Corrupt);
+  }
 }
 
 TEST_F(PlaybackOf, AnIndexOfTimesThatIsDamagedShowsNoWrongInstant) {
@@ -249,18 +287,81 @@ TEST_F(WholeSteps, AfterLostCommandsTheNextStateGoesOn) {
   EXPECT_EQ(this->Of({}, {0}, ""), "0:0 ");
 }
 
-TEST(StepAt, IsOfTheLatestRunThatReachesTheTime) {
+std::vector<PlaybackStep> StepsAt(const std::vector<double>& times) {
   std::vector<PlaybackStep> steps;
-  for (const double time : {0.0, 5.0, 10.0, 0.0, 3.0}) {
+  for (const double time : times) {
     steps.push_back({time, 0});
   }
+  return steps;
+}
+
+TEST(StepAt, IsOfTheLatestRunThatReachesTheTime) {
+  const std::vector<PlaybackStep> steps = StepsAt({0.0, 5.0, 10.0, 0.0, 3.0});
   const std::vector<std::pair<double, int>> expected = {{2, 3}, {3, 4},  {5, 1},
                                                         {7, 1}, {10, 2}, {11, 4}};
   for (const auto& [time, index] : expected) {
     EXPECT_EQ(session::StepAt(steps, time), std::size_t(index)) << time;
   }
   EXPECT_FALSE(session::StepAt(steps, -0.5));
+  EXPECT_FALSE(session::StepAt(steps, std::nan("")));
   EXPECT_EQ(session::StepAt({{1.0, 0}, {1.0, 1}, {1.0, 2}}, 1.0), std::size_t(2));
+}
+
+// The same cases as for the Python reader (test_recordings_rounding.py).
+TEST(StepAt, AStepThatIsLateByARoundingIsNotAfterItsTime) {
+  for (const double step_s : {0.001, 0.01, 0.1, 1.0 / 3.0}) {
+    const std::vector<PlaybackStep> steps = StepsAt(AddedUp(2001, 0.0, step_s));
+    for (int i = 1; i <= 2000; ++i) {
+      EXPECT_EQ(session::StepAt(steps, i * step_s), std::size_t(i)) << i << " of " << step_s;
+      EXPECT_EQ(session::StepAt(steps, (i - 0.01) * step_s), std::size_t(i) - 1) << i;
+    }
+  }
+}
+
+TEST(StepAt, TimesAsLargeAsEphemerisSecondsAreMet) {
+  for (const double step_s : {1e-3, 1e-4, 1e-5}) { // a double's spacing is 1.2e-7 there
+    std::vector<double> times;
+    for (int i = 0; i < 500; ++i) {
+      times.push_back(8e8 + i * step_s);
+    }
+    const std::vector<PlaybackStep> steps = StepsAt(times);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      for (const double asked :
+           {times[i], std::nextafter(times[i], 0.0), std::nextafter(times[i], 1e9)}) {
+        EXPECT_EQ(session::StepAt(steps, asked), i) << step_s;
+      }
+      EXPECT_EQ(session::StepAt(steps, times[i] + 0.9 * step_s), i) << step_s;
+    }
+  }
+  std::vector<double> times = {8e8}; // as close as can be
+  while (times.size() < 20) {
+    times.push_back(std::nextafter(times.back(), 1e9));
+  }
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_EQ(session::StepAt(StepsAt(times), times[i]), i);
+  }
+}
+
+TEST(StepAt, RoundingsAtTheEndsOfRunsAndBetweenCloseSteps) {
+  const double late = 1.0000000000000007;
+  const auto at = [](const std::vector<double>& times, double asked) {
+    const auto found = session::StepAt(StepsAt(times), asked);
+    return found ? int(*found) : -1;
+  };
+  EXPECT_EQ(at({0.0, 0.9, late, late, 1.1}, 1.0), 3);
+  EXPECT_EQ(at({0.1 + 0.2, 0.5}, 0.3), 0); // the first of all
+  EXPECT_EQ(at({0.1 + 0.2, 0.5}, 0.29), -1);
+  EXPECT_EQ(at({late}, 1.0), -1); // alone: two spacings
+  EXPECT_EQ(at({0.1 + 0.2}, 0.3), 0);
+  EXPECT_EQ(at({0.0, 1.0, 2.0, 0.0, 0.5, 1.0 - 1e-15}, 1.0), 5); // reaches it
+  EXPECT_EQ(at({0.0, 1.0, 2.0, 0.0, 0.5, 1.0 - 1e-3}, 1.0), 1);
+  EXPECT_EQ(at({0.0, 1.0, 2.0, 1e-15, 1.0}, 0.0), 3);
+  EXPECT_EQ(at({0.0, 1.0, 1.0 + 1e-7, 2.0}, 1.0), 1); // the exact one
+  EXPECT_EQ(at({0.0, 1.0, 1.0 + 1e-7, 2.0}, 1.0 - 1e-6), 1);
+  EXPECT_EQ(at({0.0, 1.0, 1.0 + 1e-7, 2.0}, 1.0 + 5e-8), 1);
+  EXPECT_EQ(at({0.0, 1.0, 1.0 + 1e-7, 2.0}, 1.0 + 1e-7 - 5e-11), 2);
+  EXPECT_EQ(at({0.0, 1000.0}, 1000.0 - 0.9e-4), 1); // at most 0.1 ms
+  EXPECT_EQ(at({0.0, 1000.0}, 1000.0 - 1.1e-4), 0);
 }
 
 } // namespace

@@ -14,7 +14,7 @@ from dspace._fields import shown
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath
 from dspace.movies_views import FIELD
-from dspace.playback_steps import index_at, runs_of
+from dspace.playback_steps import runs_of, step_at
 from dspace.poses import Pose
 from dspace.recorded_views import spans_of, when
 from dspace.telemetry import overlay_value
@@ -89,19 +89,6 @@ def _of_playback(playback):
                   telemetry if callable(telemetry) else None, beginning=steps[0] if steps else 0.0,
                   extent=(min(steps), max(steps)) if steps else None,
                   playback=playback if hasattr(playback, "file") else None)
-
-
-def step_at(times, time, runs=None):
-    """The time to seek [s]: `time`, or that of the next step if it comes but a rounding later. A simulation that adds
-    up its steps is the later the longer it runs; up to a thousandth of the step, and 0.1 ms, count. runs: ranges of
-    steps whose times do not go back (default: all)."""
-    index = index_at(times, runs or [(0, len(times))], time) if times else None
-    following = len(times) if index is None else index + 1
-    if following < len(times):
-        late = times[following] - time
-        if 0 < late <= min(1e-3 * (times[following] - times[following - 1]), 1e-4):
-            return times[following]
-    return time
 
 
 def _made_by(path, name):

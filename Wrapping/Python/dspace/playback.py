@@ -5,7 +5,7 @@ import time
 from dspace._client import to_reply, warn
 from dspace._fields import flag, integer, number, real, refuse, text
 from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
-from dspace.playback_steps import index_at, runs_of, set_times, steps_of
+from dspace.playback_steps import index_at, is_after, is_at, rounding, runs_of, set_times, steps_of
 from dspace.playback_telemetry import TelemetryReading
 from dspace.recorded_files import RecordedFiles
 from dspace.recorded_views import spans_of
@@ -116,16 +116,19 @@ class Playback(TelemetryReading):
         return self.times[self.index]
 
     def seek(self, at):
-        """To the last step that is not after `at` [s]; returns its time. Where time went back in the recording (a
-        simulation that was reset), in the latest run of steps that reaches `at`, else in the latest that begins
-        before it. An error before the first step (dspace.InvalidArgument) and in a gap (dspace.Corrupt)."""
+        """To the last step that is not after `at` [s]; returns its own recorded time. A step that is later by no more
+        than a rounding is not after it: a thousandth of the step before it, at most 0.1 ms (Documentation/Recording.md).
+        Where time went back in the recording (a simulation that was reset), in the latest run of steps that reaches
+        `at`, else in the latest that begins before it. An error before the first step (dspace.InvalidArgument) and in a
+        gap (dspace.Corrupt)."""
         at = number(at, "the time", self.file.label)
-        if not at >= min(self.times):
+        index = index_at(self.times, self._runs, at)
+        if index is None:
             raise InvalidArgument(f"{self.file.label}: the time is {at!r} s; accepted: {min(self.times)!r} on",
                                   self.file.label)
-        index = index_at(self.times, self._runs, at)
         for gap in self.gaps:
-            if gap.before == index + 1 and gap.begin is not None and at >= gap.begin:
+            if gap.before == index + 1 and gap.begin is not None and (
+                    at >= gap.begin - rounding(gap.begin, max(gap.begin - self.times[index], 0.0))):
                 raise Corrupt(f"{self.file.label}: at {at!r} s its commands are lost: {gap}", self.file.label)
         self._go(index)
         return self.time
@@ -138,8 +141,8 @@ class Playback(TelemetryReading):
         return self.index - before
 
     def play(self, speed=1.0, on_step=None, until=None):
-        """Steps on, or with a negative speed back, in `speed` times real time, to the end, to the time `until` [s],
-        or until on_step(playback), called after each step, returns False. Of steps that are due by then only the
+        """Steps on, or with a negative speed back, in `speed` times real time, to the end, to the time `until` [s]
+        (with a step that passes it by no more than a rounding, as seek() has it), or until on_step(playback), called after each step, returns False. Of steps that are due by then only the
         last one is gone to, so that it keeps its pace; with a speed of 0, or back with -inf, every step is, as fast
         as it goes."""
         speed = real(speed, "the speed", self.file.label)
@@ -153,7 +156,7 @@ class Playback(TelemetryReading):
             following = self.index + direction
             if not 0 <= following < len(self.times):
                 return
-            if until is not None and (self.times[following] - until) * direction > 0:
+            if self._passes(following, direction, until):
                 return
             if paced:
                 if (self.times[following] - self.time) * direction < 0:  # a simulation that was reset: from there on
@@ -168,13 +171,21 @@ class Playback(TelemetryReading):
 
     def _due(self, index, direction, now, until):
         """The last step from `index` on, or back, that is not after `now`, nor after `until`, before time turns."""
-        last = now if until is None else min(now * direction, until * direction) * direction
         while 0 <= index + direction < len(self.times):
             following = self.times[index + direction]
-            if (following - self.times[index]) * direction < 0 or (following - last) * direction > 0:
+            if ((following - self.times[index]) * direction < 0 or (following - now) * direction > 0
+                    or self._passes(index + direction, direction, until)):
                 break
             index += direction
         return index
+
+    def _passes(self, index, direction, until):
+        """Whether a step lies beyond the time to play to."""
+        if until is None:
+            return False
+        if direction > 0:
+            return is_after(self.times, index, until)
+        return self.times[index] < until and not is_at(self.times, index, until)
 
     def _go(self, index):
         target = self._ends[index]

@@ -5,7 +5,7 @@ from dspace._fields import Named, shown, text
 from dspace._wire import get_array
 from dspace.errors import InvalidArgument, NotFound, Unsupported
 from dspace.messages import Event
-from dspace.playback_steps import blocks_of
+from dspace.playback_steps import blocks_of, runs_of, step_at
 from dspace.recording_file import commands_of
 from dspace.session import commands_pb2 as pb
 from dspace.session import telemetry_pb2
@@ -26,19 +26,24 @@ class Series:
     floats, NaN where there is no value: also where the channel was removed, and where commands are lost.
     Choices are their numbers (labels: {number: label}), texts str, None where there is none."""
 
-    def __init__(self, channel, times, values):
+    def __init__(self, channel, times, values, clock=()):
         self.name, self.unit, self.description = channel.name, channel.unit, channel.description
         self.kind = ("number", "text", "choice")[channel.kind]
         self.labels = {label.value: label.label for label in channel.label}
         self.times, self.values = times, values
+        self._clock = clock  # times [s] that the simulation set: the steps of a Playback of this scene
+        self._runs = None
 
     def __iter__(self):
         return iter((self.times, self.values))
 
     def at(self, time):
         """The value that holds at a time [s]: the last one that was set at or before it, or NaN (of a text
-        None). Where time went back in the recording, the last that was set at such a time."""
-        before = np.flatnonzero(self.times <= time)
+        None). At it is a step, too, that is later by no more than a rounding, as Playback.seek() has it. Where time went
+        back in the recording, the last that was set at such a time."""
+        if self._runs is None:
+            self._runs = runs_of(self._clock)
+        before = np.flatnonzero(self.times <= step_at(self._clock, time, self._runs))
         if not len(before):
             return None if self.kind == "text" else float("nan")
         value = self.values[before[-1]]
@@ -66,6 +71,7 @@ class _Scene:
         self.open = {}      # by id: CreateTelemetry, of those that are there
         self.found = {}     # by name: [(times, values)]
         self.steps = []     # (ids, values, times) of numbers, not sorted by channel yet
+        self.clock = []     # each time that was set [s]; first that before it was
         self.events, self.last = [], 0
         self.numbers = {}   # by number: the LogEvent, of the scene that is there, not of one removed before it
 
@@ -134,7 +140,7 @@ class _Scene:
             times = np.concatenate([np.asarray(each, dtype=float) for each, _ in parts]) if parts else np.zeros(0)
             kind = object if channel.kind == TEXT else float
             values = np.concatenate([np.array(each, dtype=kind) for _, each in parts]) if parts else np.zeros(0, kind)
-            made[name] = Series(channel, times, values)
+            made[name] = Series(channel, times, values, list(self.clock))
         return Named("telemetry channel", made)
 
     def apply(self, command, seq, from_now=False):
@@ -142,6 +148,9 @@ class _Scene:
         kind = command.WhichOneof("command")
         if kind == "set_time":
             self.time = command.set_time.time_s
+            self.clock.append(self.time)
+        elif kind == "create_scene":
+            self.clock.append(self.time)
         elif kind == "create_telemetry":
             self.define(command.create_telemetry, seq)
         elif kind == "set_telemetry":
@@ -198,6 +207,8 @@ class History:
         for command in commands:
             if command.WhichOneof("command") not in ("create_scene", "remove_scene"):
                 self._scene(command).apply(command, snapshot.seq, after_loss)
+        for scene in there:
+            scene.clock = scene.clock or [scene.time]
 
     def scene(self, name):
         if name in self.scenes:

@@ -32,17 +32,20 @@ Playback::Playback(RecordingReader& reader, Interpreter& interpreter, bool check
 }
 
 double Playback::Seek(double time_s) {
-  const std::optional<std::size_t> index = StepAt(this->Steps_.steps, time_s);
+  const std::vector<PlaybackStep>& steps = this->Steps_.steps;
+  const std::optional<std::size_t> index = StepAt(steps, time_s);
   if (!index) {
-    double first = this->Steps_.steps.front().time_s;
-    for (const PlaybackStep& step : this->Steps_.steps) {
+    double first = steps.front().time_s;
+    for (const PlaybackStep& step : steps) {
       first = std::min(first, step.time_s);
     }
     throw Error(Error::Kind::InvalidArgument, Object(this->Reader_),
                 "the time is " + Seconds(time_s) + "; accepted: " + Seconds(first) + " on");
   }
   for (const PlaybackGap& gap : this->Steps_.gaps) {
-    if (gap.before == *index + 1 && gap.begin_s && time_s >= *gap.begin_s) {
+    if (gap.before == *index + 1 && gap.begin_s &&
+        time_s >= *gap.begin_s -
+                      Rounding(*gap.begin_s, std::max(*gap.begin_s - steps[*index].time_s, 0.0))) {
       throw Error(Error::Kind::Corrupt, Object(this->Reader_),
                   "at " + Seconds(time_s) + " its commands are lost: " + Seconds(*gap.begin_s) +
                       " to " + (gap.end_s ? Seconds(*gap.end_s) : "the end"));

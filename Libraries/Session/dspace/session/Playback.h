@@ -36,9 +36,20 @@ struct PlaybackSteps {
 // Which steps are whole. After lost commands the next snapshot goes on.
 PlaybackSteps StepsOf(RecordingReader& reader);
 
-// The step that is shown at a time: the last one not after it, of the latest run of steps that
-// reaches the time, where time went back in the recording, else of the latest that begins before
-// it. None before all of them.
+// How far from its recorded time [s] a step may be asked for and still be meant: a simulation that
+// adds up its steps is the later, or the earlier, the longer it runs. step_s: its distance from the
+// nearest step on the side of what is asked. A thousandth of that, at most 0.1 ms; at least two
+// spacings of doubles at that time, up to half of the distance. As rounding() in Python.
+double Rounding(double time_s, double step_s);
+
+// Whether a step counts as at a time [s]: it is late or early by no more than a rounding. At the
+// ends of a run its only neighbour counts; a step that is alone may be off by two spacings.
+bool IsAt(const std::vector<PlaybackStep>& steps, std::size_t index, double time_s);
+
+// The step that is shown at a time: the last one not after it by more than a rounding, of the
+// latest run of steps that reaches the time, where time went back in the recording, else of the
+// latest that begins before it. None before all of them. A step at the very time is before all
+// others.
 std::optional<std::size_t> StepAt(const std::vector<PlaybackStep>& steps, double time_s);
 
 // Gives a recording's commands to an interpreter, whose scenes and viewports are the recording's
@@ -57,7 +68,8 @@ public:
   std::size_t Index() const { return this->Index_; }
   double Time() const { return this->Steps_.steps[this->Index_].time_s; }
 
-  // To a time [s], as StepAt says; InvalidArgument before the first step. Returns the step's time.
+  // To a time [s], as StepAt says; InvalidArgument before the first step. Returns the step's own
+  // recorded time.
   double Seek(double time_s);
   // So many steps on, or back; stops at the ends. Returns how many were made.
   std::int64_t Step(std::int64_t n);

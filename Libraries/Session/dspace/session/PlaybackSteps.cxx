@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <dspace/session/Playback.h>
 
@@ -29,6 +31,27 @@ std::vector<Range> Blocks(RecordingReader& reader) {
   }
   blocks.emplace_back(begin, std::max(last, begin - 1)); // empty: a snapshot is the last of all
   return blocks;
+}
+
+// Of doubles at a time [s], on the side away from 0.
+double Spacing(double time_s) {
+  const double size = std::abs(time_s);
+  return std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+}
+
+// How far the next step of another time in the same run is, on (1) or back (-1).
+std::optional<double> Distance(const std::vector<PlaybackStep>& steps, std::size_t index,
+                               int direction) {
+  const double time_s = steps[index].time_s;
+  auto other = std::ptrdiff_t(index);
+  do {
+    other += direction;
+    if (other < 0 || std::size_t(other) >= steps.size()) {
+      return {};
+    }
+  } while (steps[std::size_t(other)].time_s == time_s);
+  const double distance = (steps[std::size_t(other)].time_s - time_s) * direction;
+  return distance > 0.0 ? std::optional<double>(distance) : std::nullopt;
 }
 
 } // namespace
@@ -98,6 +121,18 @@ PlaybackSteps StepsOf(RecordingReader& reader) {
   return result;
 }
 
+double Rounding(double time_s, double step_s) {
+  return std::max(std::min(1e-3 * step_s, 1e-4), std::min(2.0 * Spacing(time_s), 0.5 * step_s));
+}
+
+bool IsAt(const std::vector<PlaybackStep>& steps, std::size_t index, double time_s) {
+  const double own = steps[index].time_s;
+  const int side = own > time_s ? -1 : 1;
+  std::optional<double> step = Distance(steps, index, side);
+  step = step ? step : Distance(steps, index, -side);
+  return std::abs(own - time_s) <= (step ? Rounding(own, *step) : 2.0 * Spacing(own));
+}
+
 std::optional<std::size_t> StepAt(const std::vector<PlaybackStep>& steps, double time_s) {
   std::optional<std::size_t> begun;
   for (std::size_t end = steps.size(); end > 0;) { // runs, the last one first
@@ -105,12 +140,19 @@ std::optional<std::size_t> StepAt(const std::vector<PlaybackStep>& steps, double
     while (begin > 0 && steps[begin - 1].time_s <= steps[begin].time_s) {
       --begin;
     }
-    if (steps[begin].time_s <= time_s) {
-      if (time_s <= steps[end - 1].time_s) {
-        const auto after = std::upper_bound(
-            steps.begin() + std::ptrdiff_t(begin), steps.begin() + std::ptrdiff_t(end), time_s,
-            [](double time, const PlaybackStep& step) { return time < step.time_s; });
-        return std::size_t(after - steps.begin()) - 1;
+    if (steps[begin].time_s <= time_s || IsAt(steps, begin, time_s)) {
+      if (time_s <= steps[end - 1].time_s || IsAt(steps, end - 1, time_s)) {
+        const auto after = [&](double at_s) {
+          const auto found = std::upper_bound(
+              steps.begin() + std::ptrdiff_t(begin), steps.begin() + std::ptrdiff_t(end), at_s,
+              [](double time, const PlaybackStep& step) { return time < step.time_s; });
+          return std::size_t(found - steps.begin());
+        };
+        std::size_t following = after(time_s);
+        if (following < end && IsAt(steps, following, time_s)) {
+          following = after(steps[following].time_s);
+        }
+        return following - 1;
       }
       begun = begun ? begun : end - 1;
     }

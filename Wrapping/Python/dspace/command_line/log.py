@@ -8,6 +8,7 @@ from dspace.command_line.log_diff import compare, name_of
 from dspace.command_line.log_pack import pack
 from dspace.command_line.log_salvage import salvage
 from dspace.command_line.log_telemetry import add_arguments as add_telemetry
+from dspace.playback_steps import is_after, is_at, led_in
 from dspace.recording_file import RecordingFile, write_recording
 from dspace.session import commands_pb2 as pb
 
@@ -108,15 +109,17 @@ def cut_out(options):
     with RecordingFile(options.file) as file:
         first, last = file.first, file.last
         steps = [step for step in file.steps() if step[0] <= last]  # it may be being written
-        times = [at for at, in file.ask("SELECT time FROM snapshot ORDER BY seq LIMIT 1")] + [at for _, at in steps]
-        for name, at, outside in (("--from", options.begin, lambda at: at > max(times)),
-                                  ("--to", options.end, lambda at: at < min(times))):
-            if at is not None and times and outside(at):
+        for base in file.ask("SELECT seq, time, length(payload) FROM snapshot ORDER BY seq LIMIT 1"):
+            steps = led_in(steps, *base)
+        times = [at for _, at in steps]
+        for name, at, end, side in (("--from", options.begin, max, 1), ("--to", options.end, min, -1)):
+            if at is not None and times and (at - end(times)) * side > 0 and not is_at(times, times.index(end(times)), at):
                 raise Failed(f"{name} {at!r}; accepted: within {file.label}, {min(times)!r} to {max(times)!r} s")
+        after = lambda at: [seq for index, (seq, _) in enumerate(steps) if is_after(times, index, at)]
         if options.begin is not None:
-            first = max([seq for seq, at in steps if at <= options.begin], default=first)
+            first = max({seq for seq, _ in steps}.difference(after(options.begin)), default=first)
         if options.end is not None:
-            last = min([seq - 1 for seq, at in steps if at > options.end and seq > first], default=last)
+            last = min([seq - 1 for seq in after(options.end) if seq > first], default=last)
         snapshot = file.snapshot(first - 1)
         rows = list(file.rows(snapshot.seq + 1, last)) if last > snapshot.seq else []
         later = [row for row in file.rows(snapshot.seq + 1, last, "snapshot")]
