@@ -73,6 +73,20 @@ def test_each_time_finds_its_step(path):
             assert shown(run.session) == n
 
 
+def test_values_that_are_set_rarely_go_by_the_steps(tmp_path):
+    """A rounding is one of the simulation's steps, not of the time between two values."""
+    with dspace.Session() as session, session.record(tmp_path / "a.dspace"):
+        channel = session.scene().telemetry.add("n", value=1.0)
+        for n, time in enumerate(added_up(1100)):
+            session.scene().time = time
+            if n == 1000:
+                channel.value = 2.0
+    with dspace.Playback(tmp_path / "a.dspace") as run:
+        for at, value in ((1.0, 2.0), (1.0 - 5e-5, 1.0), (0.999, 1.0), (1.001, 2.0)):
+            run.seek(at)
+            assert run.telemetry("n").at(at) == run.session.scenes["scene"].telemetry["n"].value == value, at
+
+
 def test_play_ends_with_the_step_that_is_meant(path):
     with dspace.Playback(path) as run:
         times = run.times[1:]
