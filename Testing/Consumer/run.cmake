@@ -33,6 +33,11 @@ if(PYTHON)
   set(ENV{PYTHONDONTWRITEBYTECODE} 1)
   step("${PYTHON}" "${SOURCE}/consumer.py" "${PREFIX}" "${MODEL}")
   message(STATUS "${output}")
+  step("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}/../../Examples/cpp_client" -B "${consumer}/client"
+    "-DDspace_ROOT=${PREFIX}" -DCMAKE_BUILD_TYPE=Debug)
+  step("${CMAKE_COMMAND}" --build "${consumer}/client")
+  step("${PYTHON}" -W ignore "${SOURCE}/client.py" "${consumer}/client/drive")
+  message(STATUS "${output}")
   unset(ENV{PYTHONPATH}) # the command finds the package beside itself
   get_filename_component(data "${MODEL}" DIRECTORY)
   step("${PREFIX}/bin/dspace" terrain info "${data}/../field/field.tif")
