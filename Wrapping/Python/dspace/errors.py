@@ -1,6 +1,7 @@
 """What is raised when a command is refused; nothing of it was done.
 
-`except dspace.Error` catches all of them. Each is also the built-in exception that Python would raise
+`except dspace.Error` catches all of them, but not what Python itself refuses: a keyword or argument that a function's
+fixed parameters do not take (TypeError), an attribute that cannot be set (AttributeError). Each is also the built-in exception that Python would raise
 for such a thing: a value that is refused is a ValueError, one of a wrong type a TypeError as well, a
 name that there is not a KeyError, what the operating system refuses an OSError. dspace.rover, which
 works without the compiled part, raises these themselves.
@@ -28,7 +29,7 @@ class InvalidArgument(Error, ValueError):
 
 
 class WrongType(InvalidArgument, TypeError):
-    """A value of a type that is not accepted, or a keyword that there is not."""
+    """A value of a type that is not accepted, or an unknown keyword where a function takes `**options`."""
 
 
 class NotFound(Error, KeyError):
