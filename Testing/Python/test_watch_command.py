@@ -18,7 +18,8 @@ class Watched:
     """The command, as a process whose lines are read."""
 
     def __init__(self, *arguments):
-        self.process = subprocess.Popen([*RUN, *map(str, arguments)], stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen([*RUN, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                        text=True)
 
     def line(self):
         return self.process.stdout.readline().strip()
@@ -109,6 +110,56 @@ def test_it_stays_for_the_next_simulation(tmp_path):
                 build(session).time = 8.0
                 while not watch.line().endswith(": 8.000 s"):
                     assert watch.process.poll() is None
+
+
+def noted(watch, text):
+    """Reads on until this is said on the error stream."""
+    said = []
+    for line in watch.process.stderr:
+        said.append(line.strip())
+        if said[-1] == f"dspace: note: {text}":
+            return
+    raise AssertionError(said)
+
+
+def test_it_says_what_it_waits_for_and_ends_without_it(tmp_path):
+    own = ("--eye", "1,2,3", "--target", "0,0,0")
+    with Served(tmp_path) as server:
+        with Watched(server.address, "--out", tmp_path / "first", "--viewport", "vieport") as watch:
+            noted(watch, "no simulation has begun; waiting for viewport 'vieport'; there are: none")
+            with dspace.connect(server.address, name="drive") as session:
+                build(session)
+                noted(watch, "waiting for viewport 'vieport'; there are: 'view'")
+                session.scene().add_viewport((8, 8), "main", name="wide")
+                noted(watch, "waiting for viewport 'vieport'; there are: 'view', 'wide'")
+                session.scene().time = 1.0  # not told again
+                session.viewports["wide"].remove()
+                noted(watch, "waiting for viewport 'vieport'; there are: 'view'")
+                with Watched(server.address, "--out", tmp_path / "a", *own, "--scene", "field") as other:
+                    noted(other, "waiting for scene 'field'; there are: 'scene'")
+                with Watched(server.address, "--out", tmp_path / "b", *own, "--frame", "bal") as other:
+                    noted(other, "waiting for frame 'bal'; there are: 'ball'")
+            assert watch.process.wait(timeout=60) == 1
+            assert watch.process.stderr.read() == ("dspace: simulation 'drive' has gone; there was no viewport "
+                                                   "'vieport'; there are: 'view'\n")
+        # It had gone before.
+        run = lambda *words: subprocess.run([*RUN, server.address, *words], stdout=subprocess.PIPE,
+                                            stderr=subprocess.PIPE, text=True, timeout=120)
+        for words, lacks in ((("--viewport", "vieport"), "viewport 'vieport'; there are: 'view'"),
+                             ((*own, "--scene", "field"), "scene 'field'; there are: 'scene'")):
+            ended = run("--out", tmp_path / "none", *words)
+            assert ended.returncode == 1
+            assert ended.stderr == f"dspace: the simulation had gone before; there was no {lacks}\n"
+        ended = run("--out", tmp_path / "last")
+        assert ended.returncode == 0 and os.listdir(tmp_path / "last") == ["000000.png"]
+        assert "the simulation had gone before; 1 pictures" in ended.stdout
+        with Watched(server.address, "--out", tmp_path / "stays", "--viewport", "vieport", "--stay") as watch:
+            noted(watch, "the simulation has gone; waiting for viewport 'vieport'; there are: 'view'")
+        # A folder that cannot be one, and one that has pictures.
+        for folder, says in ((__file__, "accepted: a folder that may be made and written"),
+                             (tmp_path / "last", "it holds '000000.png'; accepted: a new folder")):
+            ended = run("--out", folder)
+            assert ended.returncode == 1 and f"--out {str(folder)!r}: " in ended.stderr and says in ended.stderr
 
 
 class Changing:

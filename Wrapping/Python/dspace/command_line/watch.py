@@ -7,11 +7,17 @@ import time
 
 from dspace.command_line import Failed
 from dspace.command_line import terrain as values
+from dspace.command_line.play import make_folder
+
+PATIENCE = 2.0  # s without what is to be drawn, until it is said what is waited for
+LISTED = 20     # names
 
 ABOUT = (
     "Follows a simulation through its server (dspace serve), draws it here, and saves a picture whenever --every "
-    "seconds of wall time have passed and something has changed. It ends when the simulation does, or with Ctrl-C; "
-    "the last picture is then saved, too. --viewport is one that the simulation has made; with --eye and --target it "
+    "seconds of wall time have passed and something has changed. It ends when the simulation does, also where that has "
+    "gone before, or with Ctrl-C; the last picture is then saved, too. It waits for a first simulation, and for a "
+    "viewport, scene or frame that is not there yet, and says so; where the simulation ends without it the exit code "
+    "is 1. --viewport is one that the simulation has made; with --eye and --target it "
     "looks from elsewhere, which changes nothing for the simulation and for others.")
 
 
@@ -19,7 +25,8 @@ def add_arguments(parser):
     parser.description = ABOUT
     parser.add_argument("address", metavar="ADDRESS", help="of the server: unix:PATH or host:port")
     parser.add_argument("--out", required=True, metavar="DIR",
-                        help="folder for the pictures, PNG; made if it is not there")
+                        help="folder for the pictures, 000000.png and so on; made if it is not there, refused where it "
+                             "has such pictures")
     parser.add_argument("--every", type=float, default=1.0, metavar="S",
                         help="seconds of wall time between pictures (1)")
     parser.add_argument("--viewport", metavar="NAME", help="absent: the server's only one")
@@ -78,14 +85,30 @@ class Pictures:
         return next(iter(viewports.values()), None)
 
     def _make(self):
-        options, scenes = self.options, self.watcher.scenes
-        if options.scene is None and len(scenes) > 1:
-            raise Failed(f"the scenes are {', '.join(map(repr, scenes))}; accepted: --scene with one of them")
-        scene = scenes.get(options.scene) if options.scene else next(iter(scenes.values()), None)
+        options, scene = self.options, self._scene()
         if scene is None or options.frame is not None and options.frame not in scene.frames:
             return None  # it will come
         return self.watcher.add_view("watch", scene, options.size or (1280, 720), frame=options.frame, eye=options.eye,
                                      target=options.target, fov_deg=options.fov)
+
+    def _scene(self):
+        """The scene that a view of one's own is of, or None while it is not there."""
+        options, scenes = self.options, self.watcher.scenes
+        if options.scene is None and len(scenes) > 1:
+            raise Failed(f"the scenes are {', '.join(map(repr, scenes))}; accepted: --scene with one of them")
+        return next(iter(scenes.values()), None) if options.scene is None else scenes.get(options.scene)
+
+    def lack(self):
+        """What there is no picture without, and the names that there are, while view() is None."""
+        options, kind, name, there = self.options, "viewport", self.options.viewport, self.watcher.viewports
+        if options.eye is not None:
+            scene = self._scene()
+            kind, name, there = "scene", options.scene, self.watcher.scenes
+            if scene is not None:
+                kind, name, there = "frame", options.frame, scene.frames
+        names = list(map(repr, there))
+        names = names[:LISTED] + ["..."] * (len(names) > LISTED)
+        return f"a {kind}" if name is None else f"{kind} {name!r}", ", ".join(names) or "none"
 
     def save(self):
         """Whether there was something new to save."""
@@ -120,23 +143,28 @@ def run(options):
     except KeyboardInterrupt:
         return end(0, options, "ended while it was connecting")
     with watcher:
-        os.makedirs(options.out, exist_ok=True)
-        pictures = Pictures(watcher, options)
+        make_folder(options.out)
+        pictures, waiting = Pictures(watcher, options), Waiting()
         presence, due, told = Presence(watcher), time.monotonic(), ""
+        before = presence.gone_before() and not options.stay
         while not stop and pictures.count != options.count:
             watcher.update(min(0.2, max(0.0, due - time.monotonic())))
             if watcher.trouble != told:
                 told = watcher.trouble
                 if told:
                     print(f"dspace: note: the pictures lack what could not be done here: {told}", file=sys.stderr)
-            gone = presence.gone()
+            gone = presence.gone() or ("the simulation had gone before" if before else None)
             if gone:
                 watcher.update()  # its picture says so
             if gone or time.monotonic() >= due:
                 pictures.save()
                 due = max(due + options.every, time.monotonic())
+            waiting.tell(pictures, presence)
             if gone:
                 if not options.stay:
+                    if pictures.count == 0:
+                        raise Failed("{}; there was no {}; there are: {}".format(
+                            gone, *(word.removeprefix("a ") for word in pictures.lack())))
                     return end(pictures.count, options, gone)
                 print(f"dspace watch: {gone}; waiting", flush=True)
         if pictures.count != options.count:
@@ -144,11 +172,46 @@ def run(options):
         return end(pictures.count, options, "ended")
 
 
+class Waiting:
+    """Says what is waited for, once it has not been there for a while, and again when what there is has changed."""
+
+    def __init__(self):
+        self._since = self._told = None
+        self._due = 0.0
+
+    def tell(self, pictures, presence):
+        now = time.monotonic()
+        if now < self._due:
+            return
+        self._due = now + 0.25 * PATIENCE
+        if pictures.view() is not None:
+            self._since = self._told = None
+            return
+        self._since = now if self._since is None else self._since
+        if now - self._since < PATIENCE:
+            return
+        what, there = pictures.lack()
+        words = f"{presence.words()}waiting for {what}; there are: {there}"
+        if words != self._told:
+            print(f"dspace: note: {words}", file=sys.stderr, flush=True)
+            self._told, self._due = words, now + PATIENCE  # one that comes to be bit by bit is not told each time
+
+
 class Presence:
     """Who was there when one looked last: the server, and a simulation."""
 
     def __init__(self, watcher):
         self._watcher, self._driver, self._served = watcher, watcher.simulation, True
+
+    def gone_before(self):
+        """Whether a simulation was there before one looked first, and is no more: its commands are in the state."""
+        return self._driver is None and self._watcher.sequence > 0
+
+    def words(self):
+        """Begins what is said of waiting."""
+        if self._driver is not None:
+            return ""
+        return "the simulation has gone; " if self._watcher.sequence > 0 else "no simulation has begun; "
 
     def gone(self):
         """What has gone since, in words; None when all that was there is there."""
