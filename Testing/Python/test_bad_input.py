@@ -284,3 +284,18 @@ def test_another_thread_is_refused(session, scene, view):
     thread.join()
     assert len(errors) == 4 and all("'other'; accepted: the thread that made it" in e for e in errors)
     assert list(scene.frames) == [] and view.image().shape == (48, 64, 3)
+
+
+def test_what_python_itself_refuses_is_pythons_own():
+    """As README.md has it: fixed parameters are Python's, options by name are ours."""
+    for call in (lambda: dspace.connect(bogus=1), lambda: dspace.connect()):
+        with pytest.raises(TypeError) as found:
+            call()
+        assert not isinstance(found.value, dspace.Error)
+    with dspace.Session() as session:
+        scene = session.scene()
+        with pytest.raises(AttributeError) as found:
+            scene.add_frame("f").children = ()
+        assert not isinstance(found.value, dspace.Error)
+        with pytest.raises(dspace.WrongType, match="unknown keyword 'bogus'"):
+            scene.add_box((1, 1, 1), bogus=1)

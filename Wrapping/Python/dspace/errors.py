@@ -29,7 +29,7 @@ class InvalidArgument(Error, ValueError):
 
 
 class WrongType(InvalidArgument, TypeError):
-    """A value of a type that is not accepted, or an unknown keyword where a function takes `**options`."""
+    """A value of a type that is not accepted, or an unknown keyword where a function takes `**settings`."""
 
 
 class NotFound(Error, KeyError):
