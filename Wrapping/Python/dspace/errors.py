@@ -1,10 +1,10 @@
 """What is raised when a command is refused; nothing of it was done.
 
 `except dspace.Error` catches all of them, but not what Python itself refuses: a keyword or argument that a function's
-fixed parameters do not take (TypeError), an attribute that cannot be set (AttributeError). Each is also
-the built-in exception that Python would raise for such a thing: a value that is refused is a ValueError, one of a wrong type a TypeError as well, a
-name that there is not a KeyError, what the operating system refuses an OSError. dspace.rover, which
-works without the compiled part, raises these themselves.
+fixed parameters do not take (TypeError), an attribute that cannot be set (AttributeError). Each is also the built-in
+exception that Python would raise for such a thing: a value that is refused is a ValueError, one of a wrong type a
+TypeError as well, a name that there is not a KeyError, what the operating system refuses an OSError. dspace.rover,
+which works without the compiled part, raises these themselves.
 """
 
 

@@ -142,9 +142,9 @@ class Playback(TelemetryReading):
 
     def play(self, speed=1.0, on_step=None, until=None):
         """Steps on, or with a negative speed back, in `speed` times real time, to the end, to the time `until` [s]
-        (with a step that passes it by no more than a rounding, as seek() has it), or until on_step(playback), called after each step, returns False. Of steps that are due by then only the
-        last one is gone to, so that it keeps its pace; with a speed of 0, or back with -inf, every step is, as fast
-        as it goes."""
+        (with a step that passes it by no more than a rounding, as seek() has it), or until on_step(playback), called
+        after each step, returns False. Of steps that are due by then only the last one is gone to, so that it keeps
+        its pace; with a speed of 0, or back with -inf, every step is, as fast as it goes."""
         speed = real(speed, "the speed", self.file.label)
         until = None if until is None else real(until, "until", self.file.label, "a time [s]")
         if on_step is not None and not callable(on_step):

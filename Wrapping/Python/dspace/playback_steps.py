@@ -123,6 +123,8 @@ def is_at(times, index, at):
     """Whether a step counts as at a time [s]: it is late or early by no more than a rounding. At the ends of a run its
     only neighbour counts; a step that is alone may be off by two spacings of doubles."""
     time = times[index]
+    if not abs(time - at) <= max(1e-4, 2 * math.ulp(time)):  # no rounding is larger
+        return False
     side = -1 if time > at else 1
     other = _neighbour(times, index, side)
     other = _neighbour(times, index, -side) if other is None else other

@@ -26,23 +26,22 @@ class Series:
     floats, NaN where there is no value: also where the channel was removed, and where commands are lost.
     Choices are their numbers (labels: {number: label}), texts str, None where there is none."""
 
-    def __init__(self, channel, times, values, clock=()):
+    def __init__(self, channel, times, values, clock=(), runs=()):
         self.name, self.unit, self.description = channel.name, channel.unit, channel.description
         self.kind = ("number", "text", "choice")[channel.kind]
         self.labels = {label.value: label.label for label in channel.label}
         self.times, self.values = times, values
-        self._clock = clock  # times [s] that the simulation set: the steps of a Playback of this scene
-        self._runs = None
+        # Times [s] that the simulation set, the steps of a Playback of this scene, and their runs; all series' own.
+        self._clock, self._runs = clock, runs
 
     def __iter__(self):
         return iter((self.times, self.values))
 
     def at(self, time):
         """The value that holds at a time [s]: the last one that was set at or before it, or NaN (of a text
-        None). At it is a step, too, that is later by no more than a rounding, as Playback.seek() has it. Where time went
+        None). At it is a step, too, that is later by no more than a rounding, as seek() of a Playback of its scene
+        has it. Where time went
         back in the recording, the last that was set at such a time."""
-        if self._runs is None:
-            self._runs = runs_of(self._clock)
         before = np.flatnonzero(self.times <= step_at(self._clock, time, self._runs))
         if not len(before):
             return None if self.kind == "text" else float("nan")
@@ -134,13 +133,14 @@ class _Scene:
 
     def series(self):
         self.sort()
-        made = {}
+        made, clock = {}, list(self.clock)
+        runs = runs_of(clock)
         for name in sorted(self.found):
             channel, parts = self.channels[name], self.found[name]
             times = np.concatenate([np.asarray(each, dtype=float) for each, _ in parts]) if parts else np.zeros(0)
             kind = object if channel.kind == TEXT else float
             values = np.concatenate([np.array(each, dtype=kind) for _, each in parts]) if parts else np.zeros(0, kind)
-            made[name] = Series(channel, times, values, list(self.clock))
+            made[name] = Series(channel, times, values, clock, runs)
         return Named("telemetry channel", made)
 
     def apply(self, command, seq, from_now=False):

@@ -1,5 +1,6 @@
 """`dspace watch`: pictures of a simulation that runs, from a server."""
 import math
+import itertools
 import os
 import signal
 import sys
@@ -106,8 +107,7 @@ class Pictures:
             kind, name, there = "scene", options.scene, self.watcher.scenes
             if scene is not None:
                 kind, name, there = "frame", options.frame, scene.frames
-        names = list(map(repr, there))
-        names = names[:LISTED] + ["..."] * (len(names) > LISTED)
+        names = list(map(repr, itertools.islice(there, LISTED))) + ["..."] * (len(there) > LISTED)
         return f"a {kind}" if name is None else f"{kind} {name!r}", ", ".join(names) or "none"
 
     def save(self):
@@ -146,20 +146,24 @@ def run(options):
         make_folder(options.out)
         pictures, waiting = Pictures(watcher, options), Waiting()
         presence, due, told = Presence(watcher), time.monotonic(), ""
-        before = presence.gone_before() and not options.stay
+        began = time.monotonic()
         while not stop and pictures.count != options.count:
             watcher.update(min(0.2, max(0.0, due - time.monotonic())))
             if watcher.trouble != told:
                 told = watcher.trouble
                 if told:
                     print(f"dspace: note: the pictures lack what could not be done here: {told}", file=sys.stderr)
-            gone = presence.gone() or ("the simulation had gone before" if before else None)
+            gone = presence.gone()
+            # Not at once: its link may be about to be made again.
+            if not (gone or options.stay) and time.monotonic() - began > PATIENCE and presence.gone_before():
+                gone = "the simulation had gone before"
             if gone:
                 watcher.update()  # its picture says so
             if gone or time.monotonic() >= due:
                 pictures.save()
                 due = max(due + options.every, time.monotonic())
-            waiting.tell(pictures, presence)
+            if not gone or options.stay:
+                waiting.tell(pictures, presence)
             if gone:
                 if not options.stay:
                     if pictures.count == 0:
@@ -204,7 +208,7 @@ class Presence:
         self._watcher, self._driver, self._served = watcher, watcher.simulation, True
 
     def gone_before(self):
-        """Whether a simulation was there before one looked first, and is no more: its commands are in the state."""
+        """Whether a simulation was there before one looked first, and nobody is now: its commands are in the state."""
         return self._driver is None and self._watcher.sequence > 0
 
     def words(self):
