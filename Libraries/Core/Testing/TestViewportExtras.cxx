@@ -187,7 +187,7 @@ TEST_F(ViewportExtrasTest, ValuesHaveColoursOfTheirOwn) {
 }
 
 // VTK has one text renderer for all threads.
-TEST_F(ViewportExtrasTest, TablesBarsAndCaptionsWaitForTheTextRenderer) {
+TEST_F(ViewportExtrasTest, TablesAndBarsWaitForTheTextRenderer) {
   Look({});
   auto viewport = View(300, 200, 1);
   TextTable table;
@@ -197,6 +197,7 @@ TEST_F(ViewportExtrasTest, TablesBarsAndCaptionsWaitForTheTextRenderer) {
   ColorBar bar;
   bar.name = "b";
   bar.colors = {{0, 0, 0}, {1, 1, 1}};
+  viewport->GetCapture({}); // the first takes longer
   for (int i = 0; i < 2; ++i) {
     std::promise<void> held;
     std::atomic<bool> free{false};

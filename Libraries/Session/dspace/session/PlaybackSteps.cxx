@@ -36,7 +36,8 @@ std::vector<Range> Blocks(RecordingReader& reader) {
 // Of doubles at a time [s], on the side away from 0.
 double Spacing(double time_s) {
   const double size = std::abs(time_s);
-  return std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+  const double next = std::nextafter(size, std::numeric_limits<double>::infinity());
+  return std::isfinite(next) ? next - size : size - std::nextafter(size, 0.0);
 }
 
 // How far the next step of another time in the same run is, on (1) or back (-1).

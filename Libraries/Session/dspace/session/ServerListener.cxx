@@ -138,7 +138,8 @@ void ServerListener::ListenAtPath(const std::string& path) {
     Refuse("unix:" + path, std::strerror(errno));
   }
   this->Listeners_.push_back(listener);
-  // Its owner's alone, from the beginning. (The process's mask is that of all its threads.)
+  // Its owner's alone, from the beginning, less what the process's mask takes from the owner, too.
+  // (To set that for a moment would be for all its threads.)
   if (fchmod(listener, 0700) != 0 ||
       bind(listener, reinterpret_cast<sockaddr*>(&place), sizeof(place)) != 0 ||
       listen(listener, Backlog) != 0) {
