@@ -40,8 +40,7 @@ class Series:
     def at(self, time):
         """The value that holds at a time [s]: the last one that was set at or before it, or NaN (of a text
         None). At it is a step, too, that is later by no more than a rounding, as seek() of a Playback of its scene
-        has it. Where time went
-        back in the recording, the last that was set at such a time."""
+        has it. Where time went back in the recording, the last that was set at such a time."""
         before = np.flatnonzero(self.times <= step_at(self._clock, time, self._runs))
         if not len(before):
             return None if self.kind == "text" else float("nan")
