@@ -13,12 +13,15 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# ccache, where it is installed. Precompiled headers carry time stamps, which ccache would take for changes.
 find_program(DSPACE_CCACHE ccache)
 if(DSPACE_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${DSPACE_CCACHE}")
-  # Precompiled headers carry time stamps that ccache would otherwise take for changes.
-  set(ENV{CCACHE_SLOPPINESS} "pch_defines,time_macros,include_file_mtime,include_file_ctime")
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime "${DSPACE_CCACHE}")
 endif()
+
+# Several sources are compiled as one (a unity build): headers are parsed once for all of them.
+option(DSPACE_UNITY "Compile the sources of a library in groups" ON)
 
 add_library(DspaceOptions INTERFACE)
 # -ffp-contract=off: the same numbers whether or not the compiler finds a fused multiply-add.
@@ -36,10 +39,53 @@ function(dspace_options target)
   target_link_options(${target} PRIVATE $<TARGET_PROPERTY:DspaceOptions,INTERFACE_LINK_OPTIONS>)
 endfunction()
 
+# dspace_rooms(VARIABLE ROOT ROOM CLASS... [ROOM ROOM CLASS...]): sets VARIABLE to the sources
+# ROOT/ROOM/CLASS.cxx. The first word after each ROOM keyword is a folder; the others are class names.
+# A unity build compiles the sources of a room together, at most eight at a time.
+function(dspace_rooms variable root)
+  set(sources)
+  set(room)
+  foreach(word IN LISTS ARGN)
+    if(word STREQUAL "ROOM")
+      set(room)
+      set(count 0)
+    elseif(NOT room)
+      set(room "${root}/${word}")
+      string(MAKE_C_IDENTIFIER "${word}" group)
+    else()
+      list(APPEND sources "${room}/${word}.cxx")
+      math(EXPR part "${count} / 8")
+      math(EXPR count "${count} + 1")
+      set_source_files_properties("${room}/${word}.cxx" PROPERTIES UNITY_GROUP "${group}_${part}")
+    endif()
+  endforeach()
+  set(${variable} "${sources}" PARENT_SCOPE)
+endfunction()
+
+# dspace_install_headers(ROOT ROOM CLASS... [ROOM ROOM CLASS...]): the public headers ROOT/ROOM/CLASS.h,
+# installed under the path by which they are included.
+function(dspace_install_headers root)
+  set(room)
+  foreach(word IN LISTS ARGN)
+    if(word STREQUAL "ROOM")
+      set(room)
+    elseif(NOT room)
+      set(room "${root}/${word}")
+    else()
+      install(FILES "${room}/${word}.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/${room}")
+    endif()
+  endforeach()
+endfunction()
+
+# dspace_unity(TARGET): compiles the sources of each room together, where DSPACE_UNITY is on.
+function(dspace_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${DSPACE_UNITY} UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # dspace_plain_library(NAME SOURCES ... PUBLIC ... PRIVATE ...): plain C++, no VTK, no OpenGL.
-# Its headers stand under <dspace/...> beside its sources.
+# Its headers are <dspace/...>, relative to the folder of the library's CMakeLists.txt.
 function(dspace_plain_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${name} SHARED ${arg_SOURCES})
   add_library(Dspace::${name} ALIAS ${name})
   target_include_directories(${name} PUBLIC
@@ -47,43 +93,64 @@ function(dspace_plain_library name)
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   dspace_options(${name})
+  dspace_unity(${name})
   set_target_properties(${name} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
   install(TARGETS ${name} EXPORT Dspace LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  foreach(header IN LISTS arg_HEADERS)
-    get_filename_component(dir "${header}" DIRECTORY)
-    install(FILES "${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/${dir}")
-  endforeach()
 endfunction()
 
-# dspace_test(NAME [GRAPHICS] SOURCES ... LIBS ...): one GoogleTest program, one ctest entry.
-# GRAPHICS: needs an OpenGL context; runs with no display. Real data is found through DSPACE_DATA,
-# what ships through DSPACE_SHIPPED_DATA; a test skips, saying so, where the former is absent.
-function(dspace_test name)
-  cmake_parse_arguments(arg "GRAPHICS" "" "SOURCES;LIBS" ${ARGN})
+# The environment in which every test runs.
+set(DSPACE_TEST_ENVIRONMENT
+  "DISPLAY=;DSPACE_SHIPPED_DATA=${CMAKE_SOURCE_DIR}/Data;ASAN_OPTIONS=detect_leaks=0;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/Testing/cache")
+
+# dspace_tests(PROGRAM [GRAPHICS] SOURCES ... [HEADERS ...] [LIBS ...]): one GoogleTest program. ctest
+# lists one test for each source Test*.cxx, by the source's name, and runs each in a process of its own.
+# GRAPHICS: the tests need an OpenGL context; they run without a display. HEADERS are precompiled.
+# Tests find real data through DSPACE_DATA, and skip where it is absent; data that ship through
+# DSPACE_SHIPPED_DATA.
+function(dspace_tests program)
+  cmake_parse_arguments(arg "GRAPHICS" "" "SOURCES;HEADERS;LIBS" ${ARGN})
   if(NOT DSPACE_TESTS)
     return()
   endif()
-  add_executable(${name} ${arg_SOURCES})
-  target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}/Testing/Support")
-  target_link_libraries(${name} PRIVATE ${arg_LIBS} DspaceOptions GTest::gtest GTest::gtest_main)
-  add_test(NAME ${name} COMMAND ${name})
+  add_executable(${program} EXCLUDE_FROM_ALL ${arg_SOURCES})
+  add_dependencies(dspace_tests ${program})
+  target_include_directories(${program} PRIVATE "${CMAKE_SOURCE_DIR}/Testing/Support")
+  foreach(source IN LISTS arg_SOURCES) # for the support headers beside it
+    get_filename_component(folder "${CMAKE_CURRENT_SOURCE_DIR}/${source}" DIRECTORY)
+    target_include_directories(${program} PRIVATE "${folder}")
+  endforeach()
+  target_link_libraries(${program} PRIVATE ${arg_LIBS} DspaceOptions GTest::gtest GTest::gtest_main)
+  # Compiling the tests costs more than running them: -O1 takes half the time of -O3.
+  target_compile_options(${program} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(${program} PRIVATE <Eigen/Geometry> <gtest/gtest.h> ${arg_HEADERS})
   if(arg_GRAPHICS)
     set(label graphics)
   else()
     set(label plain)
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600
-    ENVIRONMENT "DISPLAY=;DSPACE_SHIPPED_DATA=${CMAKE_SOURCE_DIR}/Data;ASAN_OPTIONS=detect_leaks=0;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/Testing/cache")
-endfunction()
-
-# dspace_shared_headers(FIRST HEADERS ... TESTS ...): FIRST's headers, precompiled once, for programs that
-# are compiled alike.
-function(dspace_shared_headers first)
-  cmake_parse_arguments(arg "" "" "HEADERS;TESTS" ${ARGN})
-  if(DSPACE_TESTS)
-    target_precompile_headers(${first} PRIVATE ${arg_HEADERS})
-    foreach(test IN LISTS arg_TESTS)
-      target_precompile_headers(${test} REUSE_FROM ${first})
+  set(listed)
+  foreach(source IN LISTS arg_SOURCES)
+    get_filename_component(name "${source}" NAME_WE)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${source}")
+    file(STRINGS "${source}" lines REGEX "^TEST(_F|_P)?\\(")
+    set(filter)
+    foreach(line IN LISTS lines)
+      string(REGEX MATCH "^TEST(_F|_P)?\\( *([A-Za-z0-9_]+), *([A-Za-z0-9_]+)" found "${line}")
+      set(case "${CMAKE_MATCH_2}.${CMAKE_MATCH_3}")
+      if(CMAKE_MATCH_1 STREQUAL "_P")
+        set(case "*/${case}/*")
+      endif()
+      list(APPEND filter "${case}")
     endforeach()
-  endif()
+    list(APPEND listed ${filter})
+    string(REPLACE ";" ":" filter "${filter}")
+    add_test(NAME ${name} COMMAND ${program} "--gtest_filter=${filter}")
+    set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600
+      ENVIRONMENT "${DSPACE_TEST_ENVIRONMENT}")
+  endforeach()
+  # No case is left out: without all that are listed above, none remains.
+  string(REPLACE ";" ":" listed "${listed}")
+  add_test(NAME ${program}.listed COMMAND ${program} "--gtest_filter=-${listed}")
+  set_tests_properties(${program}.listed PROPERTIES LABELS ${label} TIMEOUT 60
+    ENVIRONMENT "${DSPACE_TEST_ENVIRONMENT}" PASS_REGULAR_EXPRESSION "Running 0 tests")
 endfunction()

@@ -19,7 +19,7 @@ FILES = ("commands", "frames", "objects", "robots", "cameras", "viewports", "ter
 TYPES = {getattr(Field, name): name[5:].lower() for name in dir(Field) if name.startswith("TYPE_")}
 HEAD = """# The commands
 
-Made by `Documentation/make_commands.py` from the comments of `Libraries/Session/dspace/session/*.proto`, which say the
+Made by `Documentation/make_commands.py` from the comments of `Libraries/Session/dspace/proto/*.proto`, which say the
 same: change those. [Wire.md](Wire.md) says how commands are sent.
 
 Units are in the comments: metres [m], seconds [s], degrees where the name ends in `_deg`, pixels. "absent" is what is
@@ -57,7 +57,7 @@ def read_protos():
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "all.pb"
         subprocess.run(["protoc", f"-I{PROTOS}", "--include_source_info", f"--descriptor_set_out={out}",
-                        *[f"dspace/session/{name}.proto" for name in FILES]], check=True, cwd=PROTOS)
+                        *[f"dspace/proto/{name}.proto" for name in FILES]], check=True, cwd=PROTOS)
         files = descriptor_pb2.FileDescriptorSet.FromString(out.read_bytes()).file
     return {pathlib.Path(file.name).stem: file for file in files}
 

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include <dspace/session/RemoteClient.h>
+#include <dspace/link/client/RemoteClient.h>
 
 namespace v1 = dspace::v1;
 

@@ -8,7 +8,7 @@ import queue
 import time
 
 import grpc
-from dspace.session import commands_pb2, service_pb2, service_pb2_grpc
+from dspace.proto import commands_pb2, service_pb2, service_pb2_grpc
 
 PROTOCOL = "dspace.v1"
 OPTIONS = [("grpc.max_receive_message_length", -1)]  # pictures are larger than gRPC's 4 MiB

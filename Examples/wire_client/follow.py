@@ -9,7 +9,7 @@ import argparse
 import sys
 
 import grpc
-from dspace.session import service_pb2, service_pb2_grpc
+from dspace.proto import service_pb2, service_pb2_grpc
 from drive import PROTOCOL, open_channel
 
 

@@ -1,7 +1,7 @@
 """A rover on a circle, driven over the wire by a program that has nothing of Dspace but its .proto files.
 
     protoc -I Libraries/Session --python_out=STUBS --grpc_out=STUBS \\
-        --plugin=protoc-gen-grpc=/usr/bin/grpc_python_plugin Libraries/Session/dspace/session/*.proto
+        --plugin=protoc-gen-grpc=/usr/bin/grpc_python_plugin Libraries/Session/dspace/proto/*.proto
     PYTHONPATH=STUBS python3 Examples/wire_client/rover.py unix:/tmp/dspace --out rover.ppm
 
 Debian: protobuf-compiler, protobuf-compiler-grpc, python3-grpcio, python3-protobuf.

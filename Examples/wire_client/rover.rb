@@ -1,13 +1,13 @@
 # The rover of rover.py in another language, in short: no going on after a break.
 #
 #   protoc -I Libraries/Session --ruby_out=STUBS --grpc_out=STUBS \
-#       --plugin=protoc-gen-grpc=/usr/bin/grpc_ruby_plugin Libraries/Session/dspace/session/*.proto
+#       --plugin=protoc-gen-grpc=/usr/bin/grpc_ruby_plugin Libraries/Session/dspace/proto/*.proto
 #   ruby -I STUBS Examples/wire_client/rover.rb unix:/tmp/dspace rover.ppm
 #
 # Debian: protobuf-compiler, protobuf-compiler-grpc, ruby-grpc.
 require "grpc"
 require "securerandom"
-require "dspace/session/service_services_pb"
+require "dspace/proto/service_services_pb"
 
 include Dspace::V1
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include <dspace/session/ErrorReply.h>
-#include <dspace/session/RecordedFiles.h>
+#include <dspace/messages/ErrorReply.h>
+#include <dspace/recording/RecordedFiles.h>
 
 #include "vtkObjectFactory.h"
 

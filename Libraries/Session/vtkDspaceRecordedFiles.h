@@ -2,7 +2,7 @@
  * @class vtkDspaceRecordedFiles
  * @brief The files that a recording's commands need, where it is played: checked, or unpacked.
  *
- * Wraps <dspace/session/RecordedFiles.h> for Python. What can fail returns a serialized Reply,
+ * Wraps <dspace/recording/RecordedFiles.h> for Python. What can fail returns a serialized Reply,
  * whose error says what did; no C++ exception leaves a method. Paths are bytes as the system has
  * them.
  */

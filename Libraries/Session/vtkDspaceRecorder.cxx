@@ -4,8 +4,8 @@
 
 #include <unistd.h>
 
-#include <dspace/session/ErrorReply.h>
-#include <dspace/session/RecorderThread.h>
+#include <dspace/messages/ErrorReply.h>
+#include "RecorderThread.h"
 
 #include "vtkObjectFactory.h"
 

@@ -3,8 +3,8 @@
 #include <deque>
 #include <utility>
 
-#include <dspace/session/ErrorReply.h>
-#include <dspace/session/RemoteClient.h>
+#include <dspace/messages/ErrorReply.h>
+#include <dspace/link/client/RemoteClient.h>
 
 #include "vtkObjectFactory.h"
 

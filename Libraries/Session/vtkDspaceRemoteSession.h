@@ -3,7 +3,7 @@
  * @brief A session in a server process: vtkDspaceSession's Execute over the simulation link.
  *
  * Everything that can fail returns a serialized Reply, whose error says what did; no C++ exception
- * leaves a method. See <dspace/session/RemoteClient.h>, which this wraps for Python.
+ * leaves a method. See <dspace/link/client/RemoteClient.h>, which this wraps for Python.
  */
 #ifndef vtkDspaceRemoteSession_h
 #define vtkDspaceRemoteSession_h

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
-#include <dspace/session/Confinement.h>
-#include <dspace/session/ErrorReply.h>
-#include <dspace/session/Ledger.h>
-#include <dspace/session/Server.h>
+#include <dspace/link/Confinement.h>
+#include <dspace/messages/ErrorReply.h>
+#include <dspace/ledger/Ledger.h>
+#include <dspace/link/server/Server.h>
 
 #include "vtkDspaceSession.h"
 #include "vtkNew.h"

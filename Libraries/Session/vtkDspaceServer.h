@@ -3,7 +3,7 @@
  * @brief Serves a session of its own: one writer drives it, viewers watch.
  *
  * Commands are carried out, and pictures drawn, in the thread that calls Run. Paths in commands are
- * confined to the allowed roots. No C++ exception leaves a method. See <dspace/session/Server.h>.
+ * confined to the allowed roots. No C++ exception leaves a method. See <dspace/link/server/Server.h>.
  */
 #ifndef vtkDspaceServer_h
 #define vtkDspaceServer_h

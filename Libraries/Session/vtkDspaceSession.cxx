@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include <dspace/session/RecordingWriter.h>
-#include <dspace/session/ViewportCommands.h>
-#include <dspace/terrain/ClipmapDrawer.h>
+#include <dspace/recording/RecordingWriter.h>
+#include <dspace/commands/viewports/ViewportCommands.h>
+#include <dspace/clipmap/gl/ClipmapDrawer.h>
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"

@@ -2,7 +2,7 @@
  * @class vtkDspaceSession
  * @brief A session in process: the interpreter with viewports that draw.
  *
- * Commands and replies are the protobuf messages of <dspace/session/commands.proto>. No C++
+ * Commands and replies are the protobuf messages of <dspace/proto/commands.proto>. No C++
  * exception leaves a method that Python calls: errors travel in the reply.
  */
 #ifndef vtkDspaceSession_h
@@ -15,9 +15,9 @@
 #include "vtkObject.h"
 
 #ifndef __VTK_WRAP__
-#include <dspace/session/Interpreter.h>
-#include <dspace/session/Ledger.h>
-#include <dspace/session/RecordingWriter.h>
+#include <dspace/interpreter/Interpreter.h>
+#include <dspace/ledger/Ledger.h>
+#include <dspace/recording/RecordingWriter.h>
 #endif
 
 class vtkDataArray;

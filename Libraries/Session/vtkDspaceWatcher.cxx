@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include <dspace/session/ErrorReply.h>
-#include <dspace/session/LatestSteps.h>
-#include <dspace/session/LinkBanner.h>
-#include <dspace/session/OwnViews.h>
-#include <dspace/session/Watcher.h>
+#include <dspace/messages/ErrorReply.h>
+#include <dspace/link/watching/LatestSteps.h>
+#include <dspace/link/watching/LinkBanner.h>
+#include <dspace/link/watching/OwnViews.h>
+#include <dspace/link/watching/Watcher.h>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceSession.h"

@@ -13,7 +13,7 @@
 #include "vtkSmartPointer.h"
 
 #include <dspace/scene/Scene.h>
-#include <dspace/terrain/StreamedTerrain.h>
+#include <dspace/surface/StreamedTerrain.h>
 
 class vtkDspaceRenderContext;
 

@@ -8,7 +8,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <dspace/import/Model.h>
+#include <dspace/import/model/Model.h>
 
 #include "Alternate.h"
 

@@ -16,9 +16,9 @@
 
 #include "Alternate.h"
 
-#include <dspace/session/Interpreter.h>
-#include <dspace/session/RemoteClient.h>
-#include <dspace/session/Server.h>
+#include <dspace/interpreter/Interpreter.h>
+#include <dspace/link/client/RemoteClient.h>
+#include <dspace/link/server/Server.h>
 
 namespace {
 

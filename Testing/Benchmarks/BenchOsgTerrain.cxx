@@ -13,7 +13,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include <dspace/terrain/ClipmapDrawer.h>
+#include <dspace/clipmap/gl/ClipmapDrawer.h>
 
 #include "Alternate.h"
 #include "BenchGround.h"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include <dspace/session/RecordingWriter.h>
+#include <dspace/recording/RecordingWriter.h>
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <gdal_priv.h>
 #include <unistd.h>
 
-#include <dspace/terrain/GridTerrain.h>
-#include <dspace/terrain/StreamedTerrain.h>
+#include <dspace/surface/GridTerrain.h>
+#include <dspace/surface/StreamedTerrain.h>
 
 #include "Alternate.h"
 

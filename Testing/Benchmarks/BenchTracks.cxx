@@ -14,9 +14,9 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
-#include <dspace/terrain/ClipmapDrawer.h>
-#include <dspace/terrain/ClipmapTerrain.h>
-#include <dspace/terrain/StreamedTerrain.h>
+#include <dspace/clipmap/gl/ClipmapDrawer.h>
+#include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/surface/StreamedTerrain.h>
 
 #include "Alternate.h"
 

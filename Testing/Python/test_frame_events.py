@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 ARM = """<robot name="arm"><link name="base"/><link name="upper"/>
 <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>

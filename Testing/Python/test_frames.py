@@ -79,7 +79,7 @@ def test_thousands_of_poses_in_one_call(scene):
 
 def test_arrays_on_the_wire_are_protobufs_own():
     from dspace import _wire
-    from dspace.session import commands_pb2 as pb
+    from dspace.proto import commands_pb2 as pb
     rng = np.random.default_rng(3)
     for n in (0, 1, 15, 16, 300):
         quick, slow = pb.Command(), pb.Command()

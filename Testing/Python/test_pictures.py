@@ -202,7 +202,7 @@ def test_both_import_orders_work(tmp_path):
     """Messages before the compiled part, and after: both pools know the same files."""
     import subprocess
     import sys
-    for first in ("from dspace.session import commands_pb2", "import dspace.vtk"):
+    for first in ("from dspace.proto import commands_pb2", "import dspace.vtk"):
         code = f"{first}\nimport dspace\nwith dspace.Session() as s: print(s.scene().add_frame('a'))"
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
         assert done.returncode == 0 and "'a'" in done.stdout, done.stderr

@@ -13,7 +13,7 @@ import dspace
 from dspace.command_line import main
 from dspace.command_line.log_salvage import gaps, rows_in
 from dspace.recording_file import RecordingFile, Row, checksum, write_recording
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from served_support import socket_folder
 
 

@@ -12,7 +12,7 @@ import dspace
 from connected_support import build, drive, folder, last_place  # noqa: F401 (a fixture)
 from dspace.command_line import main
 from dspace.recording_file import RecordingFile
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from served_support import Served
 
 

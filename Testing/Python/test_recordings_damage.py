@@ -15,7 +15,7 @@ from dspace.command_line import main
 from dspace.command_line.log_salvage import rows_in
 from dspace.playback_steps import Gap, Step, index_at, runs_of, steps_of
 from dspace.recording_file import RecordingFile, Row, create_recording, put_rows, write_recording
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 PAGE = 65536
 

@@ -6,7 +6,7 @@ import pytest
 
 from dspace.command_line import main
 from dspace.recording_file import Row, write_recording
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 
 def recorded(path, commands, start=()):

@@ -20,7 +20,7 @@ from dspace.command_line import main
 from dspace.recorded_files import RecordedFiles
 from dspace.recording_assets import Asset, Content
 from dspace.recording_file import RecordingFile, Row, create_recording, put_rows, write_recording
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from terrain_support import gdal
 
 ogr = pytest.importorskip("osgeo.ogr")

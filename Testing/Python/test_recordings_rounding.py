@@ -11,7 +11,7 @@ from dspace.command_line import main
 from dspace.movies_draw import open_run
 from dspace.playback_steps import index_at, is_at, runs_of
 from dspace.recording_file import RecordingFile, Row, write_recording
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 COUNT, STEP = 2000, 0.001
 SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER

@@ -16,7 +16,7 @@ import pytest
 
 import dspace
 from dspace.serving import ServerProcess
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from served_support import Served, socket_folder
 
 

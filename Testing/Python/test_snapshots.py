@@ -7,7 +7,7 @@ import pytest
 
 import dspace
 from dspace.recording_file import commands_of
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from terrain_support import write_raster
 
 COLORS = ("#d04020", "#20a040", "#3060d0", "#c0b020")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from served_support import Served
 
 

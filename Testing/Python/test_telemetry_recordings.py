@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 
 @pytest.fixture

@@ -278,7 +278,7 @@ def test_changes_of_frames_are_told_to_a_viewer(tmp_path):
 
 def test_what_is_no_event_is_refused(tmp_path):
     with watched(tmp_path) as (_, session, watcher):
-        from dspace.session import service_pb2
+        from dspace.proto import service_pb2
         for bad in (float("nan"), float("inf")):
             with pytest.raises(dspace.InvalidArgument):
                 watcher.edited("speed", bad)

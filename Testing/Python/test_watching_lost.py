@@ -58,7 +58,7 @@ def test_a_click_does_not_wait_for_a_server_that_stands_still(tmp_path):
 OUTLASTS = """
 from dspace import vtk
 from dspace._client import to_reply
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 server = vtk.vtkDspaceServer()
 session = server.GetSession()

@@ -28,7 +28,7 @@ def test_the_page_is_up_to_date():
     run = subprocess.run([sys.executable, str(SCRIPT), "--check"], stderr=subprocess.PIPE, text=True)
     assert run.returncode == 0, run.stderr
     page = (SOURCE / "Documentation" / "Commands.md").read_text(encoding="utf-8")
-    from dspace.session import commands_pb2
+    from dspace.proto import commands_pb2
     for field in commands_pb2.Command.DESCRIPTOR.oneofs_by_name["command"].fields:
         assert f"| [{field.name}](#{field.message_type.name.lower()}) | {field.number} | " in page
         assert f"\n`{field.name}`, {field.number} in Command; result: " in page

@@ -6,7 +6,7 @@ import warnings
 from dspace import vtk as _vtk
 from dspace.errors import KINDS, Closed, DspaceWarning, Internal, WrongThread
 from dspace.events import EventQueue, FrameListeners
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 DEFAULT_SCENE = "scene"  # what a command means that names no scene
 

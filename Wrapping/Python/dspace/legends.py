@@ -1,7 +1,7 @@
 """What is written over a viewport's picture: colour bars, labels of grids."""
 from dspace._fields import flag, items, keywords, number, put, put_color, put_given, refuse, word
 from dspace.errors import InvalidArgument, WrongType
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from dspace.telemetry import Channel
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}

@@ -8,7 +8,7 @@ from dspace._fields import items, number, put, put_vector, real, refuse, shown, 
 from dspace._strict import Strict
 from dspace.errors import DeadlineExceeded, NotFound, WrongType
 from dspace.frames import Frame
-from dspace.session import service_pb2
+from dspace.proto import service_pb2
 from dspace.viewer_events import ViewerEvents
 
 SEVERITIES = {"info": 0, "caution": 1, "warning": 2, "alarm": 3}

@@ -3,7 +3,7 @@ import bisect
 import math
 from typing import NamedTuple, Optional
 
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 
 class Step(NamedTuple):

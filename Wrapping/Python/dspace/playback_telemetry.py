@@ -7,8 +7,8 @@ from dspace.errors import InvalidArgument, NotFound, Unsupported
 from dspace.messages import Event
 from dspace.playback_steps import blocks_of, runs_of, step_at
 from dspace.recording_file import commands_of
-from dspace.session import commands_pb2 as pb
-from dspace.session import telemetry_pb2
+from dspace.proto import commands_pb2 as pb
+from dspace.proto import telemetry_pb2
 
 TEXT = telemetry_pb2.CreateTelemetry.TEXT
 FIELDS = pb.Command.DESCRIPTOR.fields_by_name

@@ -2,7 +2,7 @@
 import bisect
 
 from dspace.recording_file import commands_of
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 KINDS = sorted(pb.Command.DESCRIPTOR.fields_by_name[name].number for name in (
     "create_scene", "remove_scene", "remove_vantage", "set_camera", "remove_camera", "create_viewport",

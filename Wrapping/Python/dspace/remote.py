@@ -9,9 +9,9 @@ from dspace._fields import flag, number, refuse, text
 from dspace._links import SLICE, hear_signals, make_connection, prepare
 from dspace.errors import Closed, DeadlineExceeded, Unsupported
 from dspace.served_recordings import ServedRecording
-from dspace.session import commands_pb2 as pb
-from dspace.session import service_pb2
-from dspace.sessions import Session
+from dspace.proto import commands_pb2 as pb
+from dspace.proto import service_pb2
+from dspace.protos import Session
 
 # Commands whose replies say nothing but whether they were done.
 SILENT = {"set_time", "set_poses", "append_trail", "set_joints", "set_tilt", "set_text", "set_text_table",

@@ -15,7 +15,7 @@ from dspace.messages import Messages
 from dspace.objects import GraphicsObject
 from dspace.poses import to_pose
 from dspace.robots import Robot
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from dspace.telemetry import Telemetry
 from dspace.terrain import TerrainMaking
 from dspace.viewports import SIZE, Viewport

@@ -4,7 +4,7 @@ from dspace._fields import Named, flag, refuse, text
 from dspace.errors import AlreadyExists, WrongType
 from dspace.recordings import Recording
 from dspace.scenes import Scene
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 from dspace.viewer_events import ViewerEvents
 from dspace.viewports import Viewport
 
@@ -33,9 +33,9 @@ class Session(ViewerEvents):
         self._client.close()
 
     def execute(self, command):
-        """Carries out a message of dspace.session.commands_pb2.Command; returns the Reply."""
+        """Carries out a message of dspace.proto.commands_pb2.Command; returns the Reply."""
         if not isinstance(command, pb.Command):
-            refuse("session", "the command", command, "a dspace.session.commands_pb2.Command", WrongType)
+            refuse("session", "the command", command, "a dspace.proto.commands_pb2.Command", WrongType)
         return self._client.execute(command)
 
     def scene(self, name="scene", lights=True):

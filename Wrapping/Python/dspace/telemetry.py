@@ -9,8 +9,8 @@ from dspace import _wire
 from dspace._fields import about, array_of, items, number, put, refuse, shown, text, word
 from dspace._strict import Strict
 from dspace.errors import InvalidArgument, NotFound, WrongType
-from dspace.session import commands_pb2 as pb
-from dspace.session import telemetry_pb2
+from dspace.proto import commands_pb2 as pb
+from dspace.proto import telemetry_pb2
 
 KINDS = {"number": telemetry_pb2.CreateTelemetry.NUMBER, "text": telemetry_pb2.CreateTelemetry.TEXT,
          "choice": telemetry_pb2.CreateTelemetry.CHOICE}

@@ -7,7 +7,7 @@ from dspace.errors import DspaceWarning, WrongType
 from dspace.frames import Frame, put_pose
 from dspace.objects import GraphicsObject
 from dspace.poses import Pose, to_pose
-from dspace.session import service_pb2
+from dspace.proto import service_pb2
 
 KINDS = {kind: kind for kind in ("picked", "selection", "answer", "edited", "dragged")}
 
@@ -29,7 +29,7 @@ class ViewerEvents:
     # --- Hearing -------------------------------------------------------------------------------
 
     def on_event(self, callback, kind=None):
-        """Calls `callback` with a ViewerEvent (dspace.session.service_pb2) for everything that viewers
+        """Calls `callback` with a ViewerEvent (dspace.proto.service_pb2) for everything that viewers
         say, or of one kind only: "picked", "selection", "answer", "edited" or "dragged". Called by
         process_events(). Callbacks stay until the session is closed."""
         if not callable(callback):
@@ -84,10 +84,10 @@ class ViewerEvents:
     # --- Saying --------------------------------------------------------------------------------
 
     def tell(self, event):
-        """Says a dspace.session.service_pb2.ViewerEvent to the simulation. Of a Watcher:
+        """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:
         dspace.NotFound when nobody drives; up to 1 MiB."""
         if not isinstance(event, service_pb2.ViewerEvent):
-            refuse("event", "it", event, "a dspace.session.service_pb2.ViewerEvent", WrongType)
+            refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
         self._client.tell(event)
 
     def answer(self, question, answer):

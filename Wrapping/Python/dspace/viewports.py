@@ -9,8 +9,8 @@ from dspace.errors import Internal, WrongType
 from dspace.fragments import Fragment
 from dspace.legends import LegendMaking, put_value
 from dspace.objects import file_path
-from dspace.session import commands_pb2 as pb
-from dspace.session import service_pb2
+from dspace.proto import commands_pb2 as pb
+from dspace.proto import service_pb2
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 PLANES = {"color": 0, "depth": 1, "label": 2}

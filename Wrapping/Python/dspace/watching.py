@@ -7,7 +7,7 @@ from dspace._fields import real, refuse, text
 from dspace._links import SLICE, hear_signals, make_connection, prepare
 from dspace.errors import Closed, WrongType
 from dspace.scenes import Scene
-from dspace.sessions import Session
+from dspace.protos import Session
 
 
 OWN = "viewer:"  # begins the names of what is a watcher's own

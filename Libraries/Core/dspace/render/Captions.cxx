@@ -4,7 +4,7 @@
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
 
-#include <dspace/render/OverlayText.h>
+#include <dspace/render/text/OverlayText.h>
 #include <dspace/render/SceneDrawer.h>
 #include <dspace/scene/TextLimits.h>
 

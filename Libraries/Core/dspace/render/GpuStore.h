@@ -5,7 +5,7 @@
 #include <memory>
 #include <unordered_map>
 
-#include <dspace/import/Model.h>
+#include <dspace/import/model/Model.h>
 #include <dspace/render/Capture.h>
 
 namespace dspace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <dspace/FrameTree.h>
-#include <dspace/import/Model.h>
+#include <dspace/import/model/Model.h>
 #include <dspace/scene/CustomGeometry.h>
 
 namespace dspace {

@@ -9,8 +9,8 @@
 
 #include <Eigen/Geometry>
 
-#include <dspace/import/Model.h>
-#include <dspace/import/SolidMesh.h>
+#include <dspace/import/model/Model.h>
+#include <dspace/import/model/SolidMesh.h>
 #include <dspace/scene/Checks.h>
 
 namespace dspace {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include <dspace/import/Model.h>
+#include <dspace/import/model/Model.h>
 
 namespace dspace {
 

@@ -4,15 +4,11 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
-#include <dspace/terrain/Crs.h>
-#include <dspace/terrain/PostPlacement.h>
+#include <dspace/crs/Crs.h>
+#include <dspace/posts/PostPlacement.h>
 
 namespace dspace {
-
-class StreamedTerrain;
-struct ClipmapChart;
 
 // A tile of zoom z has TileTexels texels a side; each has four of zoom z + 1. Texels are squares in
 // the chart's posts (degrees of a degree grid); x grows with the posts' columns, y with their rows.
@@ -57,10 +53,6 @@ struct ColorGrid {
   // The least zoom whose texels are no larger than `pixel` [m]; at most MostZoom.
   int ZoomFor(double pixel) const;
 };
-
-// Of a terrain and of the charts of its poles (PoleChartsOf), in this order.
-std::vector<ColorGrid> ColorGridsOf(const StreamedTerrain& terrain,
-                                    const std::vector<ClipmapChart>& poles);
 
 } // namespace dspace
 

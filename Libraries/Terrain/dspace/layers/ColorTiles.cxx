@@ -9,10 +9,10 @@
 #include <tuple>
 
 #include <dspace/Error.h>
-#include <dspace/terrain/PostLattice.h>
+#include <dspace/posts/PostLattice.h>
 
-#include "../terrain/TileQueue.h"
-#include "LayerTiles.h"
+#include <dspace/pyramid/TileQueue.h>
+#include <dspace/layers/LayerTiles.h>
 
 namespace dspace {
 namespace {

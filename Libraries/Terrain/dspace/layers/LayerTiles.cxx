@@ -1,4 +1,4 @@
-#include "LayerTiles.h"
+#include <dspace/layers/LayerTiles.h>
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 
 #include <dspace/scene/Checks.h>
 
-#include "TexelSides.h"
+#include <dspace/layers/TexelSides.h>
 
 namespace dspace {
 namespace {

@@ -10,7 +10,7 @@ from dspace.command_line.log_salvage import salvage
 from dspace.command_line.log_telemetry import add_arguments as add_telemetry
 from dspace.playback_steps import is_after, is_at, led_in
 from dspace.recording_file import RecordingFile, write_recording
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 
 def add_arguments(parser):

@@ -4,7 +4,7 @@ import math
 
 from dspace.command_line import Failed
 from dspace.recording_file import RecordingFile, commands_of
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
 
 NAMES = pb.Command.DESCRIPTOR.fields_by_number
 

@@ -60,7 +60,7 @@ def ask(name, options, **values):
     """A request's entries and folder."""
     import dspace
     from dspace._fields import put, put_given
-    from dspace.session import commands_pb2
+    from dspace.proto import commands_pb2
     command = commands_pb2.Command()
     message = getattr(command, name)
     put(message, "the cache", folder=options.folder or "")

@@ -1,0 +1,88 @@
+// The walk over a VRML 2.0 file: transforms to nodes, shapes to meshes.
+#include <dspace/import/vrml/Vrml2Shape.h>
+#include <dspace/import/vrml/VrmlBuilder.h>
+#include <dspace/import/vrml/VrmlFields.h>
+
+#include <Inventor/VRMLnodes/SoVRMLCollision.h>
+#include <Inventor/VRMLnodes/SoVRMLInline.h>
+#include <Inventor/VRMLnodes/SoVRMLLOD.h>
+#include <Inventor/VRMLnodes/SoVRMLParent.h>
+#include <Inventor/VRMLnodes/SoVRMLShape.h>
+#include <Inventor/VRMLnodes/SoVRMLSwitch.h>
+#include <Inventor/VRMLnodes/SoVRMLTransform.h>
+#include <Inventor/nodes/SoSeparator.h>
+
+namespace dspace {
+
+namespace {
+
+class Vrml2Walker {
+public:
+  Vrml2Walker(VrmlBuilder& builder, const VrmlFile& file) : Builder_(builder), File_(file) {}
+
+  void Visit(SoNode* raw, int parent, int depth) {
+    this->Builder_.Step(this->File_, depth);
+    SoNode* node = ResolveProto(raw);
+    if (!node) {
+      return;
+    }
+    const SoType type = node->getTypeId();
+    if (node->isOfType(SoVRMLShape::getClassTypeId())) {
+      AddVrml2Shape(this->Builder_, this->File_, static_cast<SoVRMLShape*>(node), parent);
+    } else if (node->isOfType(SoVRMLTransform::getClassTypeId())) {
+      const auto& t = *static_cast<SoVRMLTransform*>(node);
+      const int own = this->Builder_.AddNode(
+          parent, this->File_.NameOf(node),
+          VrmlTransform(t.translation.getValue(), t.center.getValue(), t.rotation.getValue(),
+                        t.scale.getValue(), t.scaleOrientation.getValue()));
+      this->VisitAll(t.children, own, depth);
+    } else if (type == SoVRMLSwitch::getClassTypeId()) {
+      const auto& s = *static_cast<SoVRMLSwitch*>(node);
+      this->VisitOne(s.choice, s.whichChoice.getValue(), this->Named(node, parent), depth);
+    } else if (type == SoVRMLLOD::getClassTypeId()) {
+      // The nearest level, which is the finest.
+      this->VisitOne(static_cast<SoVRMLLOD*>(node)->level, 0, this->Named(node, parent), depth);
+    } else if (type == SoVRMLInline::getClassTypeId()) {
+      this->Builder_.Inline(this->File_, ToVector(static_cast<SoVRMLInline*>(node)->url),
+                            this->Named(node, parent), depth);
+    } else if (node->isOfType(SoVRMLParent::getClassTypeId())) {
+      this->VisitAll(static_cast<SoVRMLParent*>(node)->children, this->Named(node, parent), depth);
+    } else if (node->isOfType(SoGroup::getClassTypeId())) {
+      const auto& group = *static_cast<SoGroup*>(node);
+      for (int i = 0; i < group.getNumChildren(); ++i) {
+        this->Visit(group.getChild(i), parent, depth + 1);
+      }
+    }
+  }
+
+private:
+  // A grouping node moves nothing: it becomes a node only where DEF gives it a name.
+  int Named(const SoNode* node, int parent) {
+    const std::string name = this->File_.NameOf(node);
+    return name.empty() ? parent
+                        : this->Builder_.AddNode(parent, name, Eigen::Affine3d::Identity());
+  }
+
+  void VisitAll(const SoMFNode& children, int parent, int depth) {
+    for (int i = 0; i < children.getNum(); ++i) {
+      this->Visit(children[i], parent, depth + 1);
+    }
+  }
+
+  void VisitOne(const SoMFNode& children, int which, int parent, int depth) {
+    if (which >= 0 && which < children.getNum()) {
+      this->Visit(children[which], parent, depth + 1);
+    }
+  }
+
+  VrmlBuilder& Builder_;
+  const VrmlFile& File_;
+};
+
+} // namespace
+
+void WalkVrml2(VrmlBuilder& builder, const VrmlFile& file, int parent, int depth) {
+  Vrml2Walker(builder, file).Visit(file.root.get(), parent, depth);
+}
+
+} // namespace dspace

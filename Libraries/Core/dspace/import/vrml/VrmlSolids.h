@@ -1,0 +1,53 @@
+// VRML's primitive shapes, extrusions and elevation grids. Internal, not installed.
+#ifndef DSPACE_IMPORT_VRML_SOLIDS_H
+#define DSPACE_IMPORT_VRML_SOLIDS_H
+
+#include <dspace/import/vrml/VrmlFaces.h>
+
+#include <Eigen/Geometry>
+
+namespace dspace {
+
+// How round shapes are cut: triangles of a sphere 2 * 32 * 15, of a cylinder's or cone's side 2 *
+// 32 and 32, of each cap 30.
+constexpr int VrmlSlices = 32;
+constexpr int VrmlStacks = 16;
+
+// Shapes as VRML97 chapter 6 and VRML 1.0 place them: centred at the origin, axis along Y, with
+// their texture coordinates and outward normals. Sizes are positive.
+Mesh MakeVrmlBox(const Eigen::Vector3d& size);
+Mesh MakeVrmlSphere(double radius);
+Mesh MakeVrmlCylinder(double radius, double height, bool side, bool top, bool bottom);
+Mesh MakeVrmlCone(double bottomRadius, double height, bool side, bool bottom);
+
+// ElevationGrid, VRML97 6.17: heights row by row (X fastest), facing +Y.
+struct VrmlElevationGrid {
+  int xDimension = 0;
+  int zDimension = 0;
+  double xSpacing = 1.0;
+  double zSpacing = 1.0;
+  std::vector<float> heights;
+};
+// Points, quadrilaterals and default texture coordinates; the caller adds colours and normals,
+// whose PerCornerIndexed and PerFace run over points and quadrilaterals. False, and a complaint,
+// when there are fewer than 2 x 2 heights or fewer heights than the dimensions say.
+bool MakeVrmlElevationGrid(const VrmlElevationGrid& grid, VrmlFaces& faces,
+                           VrmlComplaints& complaints);
+
+// Extrusion, VRML97 6.18.
+struct VrmlExtrusion {
+  std::vector<Eigen::Vector2d> crossSection;
+  std::vector<Eigen::Vector3d> spine;
+  std::vector<Eigen::Vector2d> scale;          // one for all, or one a spine point
+  std::vector<Eigen::Quaterniond> orientation; // likewise
+  bool beginCap = true;
+  bool endCap = true;
+};
+// False, and a complaint, when the spine or cross-section has fewer than two points or the surface
+// more than 10,000,000.
+bool MakeVrmlExtrusion(const VrmlExtrusion& extrusion, VrmlFaces& faces,
+                       VrmlComplaints& complaints);
+
+} // namespace dspace
+
+#endif

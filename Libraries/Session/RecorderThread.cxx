@@ -1,0 +1,214 @@
+#include "RecorderThread.h"
+
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "vtkDspaceRenderContext.h"
+
+namespace dspace::session {
+namespace {
+
+constexpr double Slice = 0.1;         // [s]: so often the thread looks what is wanted of it
+constexpr std::size_t MostNews = 100; // that wait to be taken
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.15g", value);
+  return text;
+}
+
+} // namespace
+
+void RecorderThread::Start() {
+  try {
+    this->thread = std::thread([this] { this->Run(); });
+  } catch (const std::exception& error) {
+    this->Fail(this->Name() + error.what());
+    this->over = true;
+  }
+}
+
+void RecorderThread::End() {
+  {
+    const std::lock_guard lock(this->mutex);
+    this->ending = true;
+  }
+  if (this->thread.joinable()) {
+    this->thread.join();
+  }
+}
+
+void RecorderThread::Tell(const std::string& text) {
+  const std::lock_guard lock(this->mutex);
+  if (this->news.size() < MostNews) {
+    this->news.push_back(text);
+  }
+}
+
+void RecorderThread::Fail(const std::string& why) {
+  const std::lock_guard lock(this->mutex);
+  this->SetFailure(why);
+}
+
+void RecorderThread::SetFailure(const std::string& why) {
+  if (!this->counts.failure.empty() || why.empty()) {
+    return;
+  }
+  this->counts.failure = why;
+  if (this->recording) {
+    this->news.push_back(why + "; recording has stopped, what was written stays");
+  }
+}
+
+void RecorderThread::Run() {
+  try {
+    this->Follow();
+  } catch (const std::exception& error) {
+    this->Fail(this->Name() + error.what());
+  }
+  if (this->session) {
+    const std::string failure = this->session->StopRecording();
+    this->Look();
+    if (!failure.empty()) {
+      this->Fail(failure);
+    }
+    this->session = nullptr; // its graphics context is this thread's
+  }
+  this->watcher.reset(); // its place is free again
+  const std::lock_guard lock(this->mutex);
+  this->over = true;
+  this->changed.notify_all();
+}
+
+void RecorderThread::Follow() {
+  std::vector<v1::WatchReply> messages;
+  this->heard = Clock::now();
+  while (this->Going()) {
+    if (this->watcher->TakeAll(messages, Slice)) {
+      for (v1::WatchReply& message : messages) {
+        if (!this->Going()) {
+          return;
+        }
+        this->Take(message);
+      }
+      this->heard = Clock::now(); // however long that took
+    }
+    this->LookAtLink();
+    this->Look();
+  }
+}
+
+bool RecorderThread::Going() {
+  const std::lock_guard lock(this->mutex);
+  return !this->ending && this->counts.failure.empty();
+}
+
+void RecorderThread::Take(v1::WatchReply& message) {
+  if (message.has_snapshot()) {
+    this->Begin(message);
+  } else if (message.has_command()) {
+    this->CarryOut(*message.mutable_command());
+  }
+  const std::lock_guard lock(this->mutex);
+  this->sequence = message.sequence();
+}
+
+void RecorderThread::CarryOut(v1::Command& command) {
+  if (command.has_set_time()) {
+    this->time_s = command.set_time().time_s();
+  }
+  const v1::Reply reply = this->session->GetInterpreter().Execute(command);
+  if (reply.has_error()) {
+    this->session->Miss(command, reply.error().message());
+    if (!std::exchange(this->unlike, true)) {
+      this->Tell(this->Name() + "what the server has done cannot be done here (" +
+                 reply.error().message() + "): it is recorded, without snapshots from here on");
+    }
+  }
+}
+
+void RecorderThread::Begin(v1::WatchReply& message) {
+  std::uint64_t before = 0;
+  bool first = false;
+  {
+    const std::lock_guard lock(this->mutex);
+    before = this->sequence;
+    first = !this->recording;
+  }
+  if (!first && message.sequence() < before) {
+    this->Fail(this->Name() + "the server at '" + this->options.address +
+               "' was started anew: its scenes are others");
+    return;
+  }
+  const vtkSmartPointer<vtkDspaceSession> old = this->session;
+  this->session = vtkSmartPointer<vtkDspaceSession>::New();
+  if (old) { // the context goes on, with what is on the GPU already
+    this->session->SetRenderContext(old->GetRenderContext());
+  }
+  this->unlike = false;
+  for (v1::Command& command : *message.mutable_snapshot()->mutable_command()) {
+    this->CarryOut(command);
+  }
+  if (!first) {
+    this->session->TakeRecording(old);
+    this->Tell(this->Name() + "it was cut off from the server, or too slow for it: " +
+               std::to_string(message.sequence() - before) +
+               " commands are missing before simulation time " + Number(this->time_s) +
+               " s, and it has a gap there");
+    return;
+  }
+  const std::string failure = this->session->Record(this->path, this->commitEvery_s, this->pack);
+  const std::lock_guard lock(this->mutex);
+  this->counts.failure = failure;
+  this->recording = failure.empty();
+  this->sequence = message.sequence();
+  this->changed.notify_all();
+}
+
+// Whether the server is there, and lets this in.
+void RecorderThread::LookAtLink() {
+  std::string why;
+  if (this->watcher->Connected(&why)) {
+    this->heard = Clock::now();
+    this->refusal.clear();
+    return;
+  }
+  const std::string said = this->watcher->Refusal();
+  if (!said.empty()) { // it may be let in again
+    this->heard = Clock::now();
+    if (said != this->refusal) {
+      this->refusal = said;
+      this->Tell(this->Name() + "nothing is recorded while the server refuses it: " + said);
+    }
+  } else if (Clock::now() - this->heard > std::chrono::duration<double>(this->options.timeout_s)) {
+    this->Fail(this->Name() + "the server at '" + this->options.address +
+               "' is gone: nobody answers within " + Number(this->options.timeout_s) + " s");
+  }
+}
+
+// How far it is; does what is wanted.
+void RecorderThread::Look() {
+  if (!this->session) {
+    return;
+  }
+  std::uint64_t wanted = 0;
+  bool flush = false;
+  {
+    const std::lock_guard lock(this->mutex);
+    wanted = this->flushesWanted;
+    flush = wanted > this->flushesDone;
+  }
+  if (flush) {
+    this->session->FlushRecording();
+  }
+  RecordingCounts now = this->session->GetRecordingCounts();
+  const std::lock_guard lock(this->mutex);
+  this->flushesDone = wanted;
+  this->SetFailure(now.failure);
+  now.failure = this->counts.failure;
+  this->counts = std::move(now);
+  this->changed.notify_all();
+}
+
+} // namespace dspace::session

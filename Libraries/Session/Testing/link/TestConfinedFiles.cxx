@@ -1,0 +1,142 @@
+// Files that allowed files lead to: what lies outside of the roots is not read.
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include <dspace/FilesRead.h>
+#include <dspace/link/Confinement.h>
+#include <dspace/interpreter/Interpreter.h>
+
+namespace dspace::testing {
+namespace {
+
+class ConfinedFiles : public ::testing::Test {
+protected:
+  void SetUp() override {
+    char name[] = "/tmp/dspace-confined-XXXXXX";
+    this->Folder = mkdtemp(name);
+    std::filesystem::create_directory(this->Folder + "/root");
+    for (const char* place : {"/root/inside.asc", "/secret.asc"}) { // an Esri grid of 2 x 2
+      this->Write(place, "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n");
+    }
+    v1::Command scene;
+    scene.mutable_create_scene();
+    ASSERT_FALSE(this->Interpreter.Execute(scene).has_error());
+  }
+  void TearDown() override { std::filesystem::remove_all(this->Folder); }
+
+  void Write(const std::string& place, const std::string& text) const {
+    std::ofstream(this->Folder + place) << text;
+  }
+  // A mosaic of 2 x 2 posts with this band, below the allowed root.
+  void WriteMosaic(const std::string& band, const std::string& name = "mosaic.vrt") const {
+    this->Write("/root/" + name,
+                "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><SRS>LOCAL_CS[\"grid\"]</SRS>"
+                "<GeoTransform>0, 1, 0, 2, 0, -1</GeoTransform>" +
+                    band + "</VRTDataset>");
+  }
+  static std::string Band(const std::string& source, const std::string& attributes = "") {
+    return "<VRTRasterBand dataType=\"Float32\" band=\"1\"" + attributes +
+           "><SimpleSource><SourceFilename relativeToVRT=\"1\">" + source +
+           "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>";
+  }
+  // As a server does.
+  v1::Reply Execute(v1::Command command) {
+    const session::Confinement confinement({this->Folder + "/root"});
+    confinement.Apply(command);
+    const FilesGuard guard([&](const std::string& path) { confinement.RequireWithin(path); });
+    return this->Interpreter.Execute(command);
+  }
+  v1::Reply OpenTerrain(const std::string& name = "mosaic.vrt") {
+    v1::Command command;
+    command.mutable_open_terrain()->set_path(this->Folder + "/root/" + name);
+    return this->Execute(command);
+  }
+  v1::Reply Import(const std::string& name) {
+    v1::Command command;
+    command.mutable_import_object()->add_level()->set_path(this->Folder + "/root/" + name);
+    return this->Execute(command);
+  }
+  static void ExpectRefused(const v1::Reply& reply) {
+    EXPECT_EQ(reply.error().kind(), v1::Error::INVALID_ARGUMENT) << reply.ShortDebugString();
+    EXPECT_TRUE(reply.error().message().find("outside of what the server allows") !=
+                    std::string::npos ||
+                reply.error().message().find("mosaic (VRT) of plain files") != std::string::npos)
+        << reply.error().message();
+  }
+
+  std::string Folder;
+  session::Interpreter Interpreter;
+};
+
+TEST_F(ConfinedFiles, AMosaicOfAllowedFilesIsOpened) {
+  this->WriteMosaic(Band("inside.asc"));
+  const v1::Reply reply = this->OpenTerrain();
+  EXPECT_FALSE(reply.has_error()) << reply.error().message();
+}
+
+TEST_F(ConfinedFiles, AMosaicOfOtherFilesIsNot) {
+  std::filesystem::create_symlink(this->Folder + "/secret.asc", this->Folder + "/root/link.asc");
+  for (const std::string& band : std::initializer_list<std::string>{
+           Band("../secret.asc"), Band("link.asc"), Band("../nowhere.asc"),
+           Band("GTIFF_DIR:1:../secret.asc"), Band("/vsizip/../secret.zip/x"),
+           Band("/vsicurl/http://127.0.0.1:9/x.tif"), Band("&lt;VRTDataset/&gt;"),
+           "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><sourceFILENAME>" +
+               this->Folder + "/secret.asc</sourceFILENAME></SimpleSource></VRTRasterBand>",
+           "<VRTRasterBand dataType=\"Float32\" band=\"1\" subClass=\"VRTRawRasterBand\">"
+           "<SourceFilename relativetoVRT=\"1\">inside.asc</SourceFilename></VRTRasterBand>",
+           Band("inside.asc", " SUBCLASS=\"VRTDerivedRasterBand\"")}) {
+    this->WriteMosaic(band);
+    ExpectRefused(this->OpenTerrain());
+  }
+  // Nor one of mosaics, however deep.
+  this->WriteMosaic(Band("../secret.asc"), "inner.vrt");
+  this->WriteMosaic(Band("inner.vrt"));
+  ExpectRefused(this->OpenTerrain());
+  this->WriteMosaic(Band("mosaic.vrt")); // of itself
+  ExpectRefused(this->OpenTerrain());
+  for (const char* document :
+       {"<GDAL_WMS><Service name=\"TMS\"/></GDAL_WMS>", "<OGRVRTDataSource></OGRVRTDataSource>"}) {
+    this->Write("/root/mosaic.vrt", document);
+    ExpectRefused(this->OpenTerrain());
+  }
+}
+
+TEST_F(ConfinedFiles, AModelsOwnFilesAreConfinedToo) {
+  const std::string gltf =
+      R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,)"
+      R"("componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"NAME"}]})";
+  const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  for (const char* place : {"/root/inside.bin", "/secret.bin"}) {
+    std::ofstream(this->Folder + place, std::ios::binary)
+        .write(reinterpret_cast<const char*>(corners), sizeof(corners));
+  }
+  std::filesystem::create_symlink(this->Folder + "/secret.bin", this->Folder + "/root/link.bin");
+  const auto import = [&](const std::string& name) {
+    std::string text = gltf;
+    text.replace(text.find("NAME"), 4, name);
+    this->Write("/root/" + name + ".gltf", text);
+    return this->Import(name + ".gltf");
+  };
+  const v1::Reply inside = import("inside.bin");
+  EXPECT_FALSE(inside.has_error()) << inside.error().message();
+  ExpectRefused(import("link.bin"));
+  this->Write("/root/urdf.urdf",
+              R"(<robot name="r"><link name="a"><visual><geometry><mesh filename=")" +
+                  this->Folder + R"(/secret.stl"/></geometry></visual></link></robot>)");
+  this->Write("/secret.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                             "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
+  v1::Command command;
+  command.mutable_load_robot()->set_path(this->Folder + "/root/urdf.urdf");
+  const v1::Reply robot = this->Execute(command);
+  // A mesh that is not there has a stand-in; of this one nothing is told either.
+  EXPECT_TRUE(robot.has_error() || robot.warning_size() > 0) << robot.ShortDebugString();
+}
+
+} // namespace
+} // namespace dspace::testing

@@ -1,0 +1,85 @@
+// What objects there are, and what they are like.
+#include <dspace/scene/CustomGeometry.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/commands/objects/ObjectTools.h>
+
+namespace dspace::session {
+namespace {
+
+std::uint64_t TrianglesOf(const DetailLevel& level) {
+  std::uint64_t triangles = 0;
+  for (const Part& part : level.parts) {
+    if (part.mesh && part.mesh->primitive == Mesh::Primitive::Triangles) {
+      triangles += part.mesh->PrimitiveCount();
+    }
+  }
+  return triangles;
+}
+
+void Describe(const GraphicsObject& object, v1::ObjectInfo* info) {
+  info->set_id(object.id);
+  info->set_name(object.name);
+  info->set_frame(object.frame);
+  info->set_nature(FromNature(object.nature));
+  info->set_fragment(object.fragment);
+  info->set_visible(object.visible);
+  PutMaterial(object.material, info->mutable_material());
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      info->add_offset(object.X_FO(row, column));
+    }
+  }
+  for (const DetailLevel& level : object.levels) {
+    info->add_level(level.minimumPixels);
+  }
+  if (!object.levels.empty()) {
+    const BoundingSphere& bounds = object.levels.front().sphere;
+    info->set_triangles(TrianglesOf(object.levels.front()));
+    Put(bounds.center, info->mutable_bounds_center());
+    info->set_bounds_radius(bounds.radius);
+    if (const Eigen::AlignedBox3d& box = object.levels.front().box; !box.isEmpty()) {
+      Put(Eigen::Vector3d(box.min()), info->mutable_box_minimum());
+      Put(Eigen::Vector3d(box.max()), info->mutable_box_maximum());
+    }
+  }
+  if (object.custom) {
+    const BoundingSphere bounds = object.custom->Bounds();
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bounds.radius);
+    Put(bounds.center, info->mutable_bounds_center());
+    info->set_bounds_radius(bounds.radius);
+    Put(bounds.center - reach, info->mutable_box_minimum());
+    Put(bounds.center + reach, info->mutable_box_maximum());
+  }
+}
+
+void FindObject(const Context& context, v1::FindObject& command) {
+  const ObjectId id = context.TheScene().FindObject(command.name());
+  if (id == 0) {
+    throw Error(Error::Kind::NotFound, "object '" + command.name() + "'",
+                "there is no such object in scene '" + context.sceneName + "'");
+  }
+  context.reply.mutable_object()->set_object(id);
+  context.reply.mutable_object()->set_name(command.name());
+}
+
+void DescribeObject(const Context& context, v1::DescribeObject& command) {
+  Describe(context.TheScene().Object(command.object()), context.reply.mutable_object_info());
+}
+
+void ListObjects(const Context& context, v1::ListObjects&) {
+  v1::ObjectList* list = context.reply.mutable_objects();
+  for (const auto& [id, object] : context.TheScene().Objects()) {
+    Describe(object, list->add_object());
+  }
+}
+
+} // namespace
+
+void AddObjectRequests(Registry& registry) {
+  using C = v1::Command;
+  registry.Add(C::kFindObject, &C::mutable_find_object, Effect::Request, FindObject);
+  registry.Add(C::kDescribeObject, &C::mutable_describe_object, Effect::Request, DescribeObject);
+  registry.Add(C::kListObjects, &C::mutable_list_objects, Effect::Request, ListObjects);
+}
+
+} // namespace dspace::session

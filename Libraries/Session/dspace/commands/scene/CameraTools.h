@@ -1,0 +1,21 @@
+// What several commands say of cameras.
+#ifndef DSPACE_SESSION_CAMERA_TOOLS_H
+#define DSPACE_SESSION_CAMERA_TOOLS_H
+
+#include <string>
+#include <utility>
+
+#include <dspace/scene/Scene.h>
+#include <dspace/proto/cameras.pb.h>
+
+namespace dspace::session {
+
+// An empty name is the active camera. Throws Error(NotFound).
+void DescribeCamera(const std::string& sceneName, const Scene& scene, const std::string& vantage,
+                    const std::string& name, v1::CameraInfo* info);
+void PutLag(const std::pair<std::string, std::string>& camera, const ChaseState& from,
+            v1::CameraLag* to);
+
+} // namespace dspace::session
+
+#endif

@@ -1,0 +1,149 @@
+// The frame tree.
+#include <dspace/scene/Checks.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/interpreter/Registry.h>
+
+namespace dspace::session {
+namespace {
+
+void AddPose(const Pose& X, google::protobuf::RepeatedField<double>* out) {
+  for (const double value : {X.position.x(), X.position.y(), X.position.z(), X.rotation.w(),
+                             X.rotation.x(), X.rotation.y(), X.rotation.z(), X.scale}) {
+    out->Add(value);
+  }
+}
+
+void CreateFrame(const Context& context, v1::CreateFrame& command) {
+  const FrameId parent = ToFrame(command.parent());
+  const Pose X_PF = ToPose(command.pose(), "frame '" + command.name() + "'");
+  const FrameId id = context.Frames().Create(parent, command.name(), X_PF, command.id());
+  command.set_id(id);
+  context.reply.mutable_frame()->set_frame(id);
+}
+
+// A link's frame belongs to its robot: poses may be set, the linkage may not be taken apart.
+void RefuseRobotsLink(const Context& context, FrameId frame, const char* what) {
+  for (const auto& [name, robot] : context.scene->robots) {
+    if (frame != robot->Base() && robot->HasFrame(frame)) {
+      Refuse("frame '" + context.Frames().Path(frame) + "'",
+             std::string("it is a link of robot '") + name + "' and cannot be " + what +
+                 "; accepted: the robot's base frame");
+    }
+  }
+}
+
+void RemoveFrame(const Context& context, v1::RemoveFrame& command) {
+  FrameTree& frames = context.Frames();
+  std::vector<FrameId> removed;
+  if (frames.Contains(command.frame())) {
+    RefuseRobotsLink(context, command.frame(), "removed");
+    std::vector<FrameId> open = {command.frame()};
+    while (!open.empty()) { // parents first; turned round below
+      removed.push_back(open.back());
+      open.pop_back();
+      const std::vector<FrameId>& children = frames.Children(removed.back());
+      open.insert(open.end(), children.begin(), children.end());
+    }
+  }
+  context.TheScene().RemoveFrame(command.frame());
+  context.scene->ForgetRemoved();
+  v1::RemovedFrames* reply = context.reply.mutable_removed_frames();
+  for (auto it = removed.rbegin(); it != removed.rend(); ++it) {
+    reply->add_frame(*it);
+  }
+}
+
+void ReparentFrame(const Context& context, v1::ReparentFrame& command) {
+  if (context.Frames().Contains(command.frame())) {
+    RefuseRobotsLink(context, command.frame(), "moved to another parent");
+  }
+  context.Frames().Reparent(command.frame(), ToFrame(command.parent()), command.keep_world_pose());
+  AddPose(context.Frames().LocalPose(command.frame()),
+          context.reply.mutable_poses()->mutable_pose());
+}
+
+void RenameFrame(const Context& context, v1::RenameFrame& command) {
+  context.Frames().Rename(command.frame(), command.name());
+}
+
+void SetPoses(const Context& context, v1::SetPoses& command) {
+  const std::size_t n = RowsOf(command.pose_size(), PoseSize, "command set_poses", "pose");
+  if (n != std::size_t(command.frame_size())) {
+    Refuse("command set_poses", "pose holds " + std::to_string(n) + " poses for " +
+                                    std::to_string(command.frame_size()) +
+                                    " frames; accepted: one of 8 numbers for each");
+  }
+  context.Frames().SetLocalPoses(command.frame().data(), command.pose().data(), n);
+}
+
+void FindFrame(const Context& context, v1::FindFrame& command) {
+  const FrameId base = ToFrame(command.base());
+  const FrameId found = context.Frames().Find(command.path(), base);
+  if (found == NoFrame) {
+    throw Error(Error::Kind::NotFound, "frame '" + command.path() + "'",
+                "there is no such frame below '" + context.Frames().Path(base) + "'");
+  }
+  context.reply.mutable_frame()->set_frame(found);
+}
+
+void GetPoses(const Context& context, v1::GetPoses& command) {
+  const FrameTree& frames = context.Frames();
+  const FrameId W = ToFrame(command.relative_to());
+  google::protobuf::RepeatedField<double>* out = context.reply.mutable_poses()->mutable_pose();
+  out->Reserve(command.frame_size() * PoseSize);
+  for (const FrameId id : command.frame()) {
+    AddPose(command.local() ? frames.LocalPose(id) : frames.RelativePose(W, id), out);
+  }
+}
+
+void AddFrameInfo(const FrameTree& frames, FrameId id, v1::FrameList* list) {
+  v1::FrameInfo* info = list->add_frame();
+  info->set_id(id);
+  info->set_parent(frames.Parent(id));
+  info->set_name(frames.Name(id));
+  info->set_path(frames.Path(id));
+  for (const FrameId child : frames.Children(id)) {
+    info->add_child(child);
+  }
+}
+
+void ListFrames(const Context& context, v1::ListFrames& command) {
+  const FrameTree& frames = context.Frames();
+  v1::FrameList* list = context.reply.mutable_frames();
+  std::vector<FrameId> open = {ToFrame(command.below())};
+  while (!open.empty()) {
+    const FrameId id = open.back();
+    open.pop_back();
+    AddFrameInfo(frames, id, list);
+    if (!command.shallow()) {
+      const std::vector<FrameId>& children = frames.Children(id);
+      open.insert(open.end(), children.rbegin(), children.rend());
+    }
+  }
+}
+
+void FollowFrames(const Context& context, v1::FollowFrames& command) {
+  std::unique_ptr<FrameFollower>& follower = context.scene->follower;
+  if (command.stop()) {
+    follower.reset();
+  } else if (!follower) {
+    follower = std::make_unique<FrameFollower>(context.scene->scene, context.state.frameEvents);
+  }
+}
+
+} // namespace
+
+void AddFrameCommands(Registry& registry) {
+  using C = v1::Command;
+  registry.Add(C::kCreateFrame, &C::mutable_create_frame, Effect::Change, CreateFrame);
+  registry.Add(C::kRemoveFrame, &C::mutable_remove_frame, Effect::Change, RemoveFrame);
+  registry.Add(C::kReparentFrame, &C::mutable_reparent_frame, Effect::Change, ReparentFrame);
+  registry.Add(C::kRenameFrame, &C::mutable_rename_frame, Effect::Change, RenameFrame);
+  registry.Add(C::kSetPoses, &C::mutable_set_poses, Effect::Change, SetPoses);
+  registry.Add(C::kFindFrame, &C::mutable_find_frame, Effect::Request, FindFrame);
+  registry.Add(C::kGetPoses, &C::mutable_get_poses, Effect::Request, GetPoses);
+  registry.Add(C::kListFrames, &C::mutable_list_frames, Effect::Request, ListFrames);
+  registry.Add(C::kFollowFrames, &C::mutable_follow_frames, Effect::Request, FollowFrames);
+}
+
+} // namespace dspace::session

@@ -1,0 +1,100 @@
+// Scenes and time.
+#include <algorithm>
+#include <cmath>
+
+#include <dspace/scene/Checks.h>
+#include <dspace/commands/scene/CameraTools.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/interpreter/Registry.h>
+
+namespace dspace::session {
+namespace {
+
+void AddDefaultLights(Scene& scene) {
+  Light sun;
+  sun.name = "sun";
+  // From the north-west, 45 degrees high, as shaded relief is lit by default.
+  sun.direction = Eigen::Vector3d(0.5, -0.5, -std::sqrt(0.5));
+  sun.intensity = 0.9;
+  scene.SetLight(sun);
+  Light sky;
+  sky.name = "sky";
+  sky.kind = Light::Kind::Ambient;
+  sky.intensity = 0.25;
+  scene.SetLight(sky);
+}
+
+void CreateScene(const Context& context, v1::CreateScene& command) {
+  RequireName("scene", context.sceneName);
+  if (context.state.scenes.count(context.sceneName)) {
+    throw Error(Error::Kind::AlreadyExists, "scene '" + context.sceneName + "'",
+                "there is a scene of this name already");
+  }
+  auto scene = std::make_shared<Scene>(context.sceneName);
+  const std::vector<std::string> vantages = scene->VantageNames();
+  if (std::find(vantages.begin(), vantages.end(), DefaultVantage) == vantages.end()) {
+    scene->CreateVantage(DefaultVantage);
+  }
+  if (!command.no_lights()) {
+    AddDefaultLights(*scene);
+  }
+  context.state.scenes[context.sceneName].scene = std::move(scene);
+  context.reply.mutable_scenes()->add_name(context.sceneName);
+}
+
+void RemoveScene(const Context& context, v1::RemoveScene&) {
+  for (const auto& [name, viewport] : context.state.viewports) {
+    if (viewport.scene == context.sceneName) {
+      Refuse("scene '" + context.sceneName + "'",
+             "viewport '" + name + "' shows it; remove the viewport first");
+    }
+  }
+  context.state.scenes.erase(context.sceneName);
+}
+
+void ListScenes(const Context& context, v1::ListScenes&) {
+  v1::SceneList* list = context.reply.mutable_scenes();
+  for (const auto& [name, scene] : context.state.scenes) {
+    list->add_name(name);
+  }
+}
+
+void SetTime(const Context& context, v1::SetTime& command) {
+  RequireFinite("scene '" + context.sceneName + "'", "the time", command.time_s());
+  Scene& scene = context.TheScene();
+  Scene::Lags lags;
+  for (const v1::CameraLag& lag : command.lag()) {
+    const Camera& camera = scene.Vantage(lag.vantage()).GetCamera(lag.camera());
+    RequirePosition("camera '" + camera.name + "'", "its lag", ToVector(lag.position()));
+    RequireFinite("camera '" + camera.name + "'", "the time of its lag", lag.time_s());
+    lags[{lag.vantage(), lag.camera()}] = {true, lag.time_s(), lag.frame(), lag.parent(),
+                                           ToVector(lag.position())};
+  }
+  scene.SetTime(command.time_s());
+  if (command.put_lags()) {
+    scene.SetLags(std::move(lags));
+  }
+  context.reply.mutable_time()->set_time_s(command.time_s());
+  for (const auto& [camera, lag] : scene.GetLags()) {
+    PutLag(camera, lag, context.reply.mutable_time()->add_lag());
+  }
+}
+
+void GetTime(const Context& context, v1::GetTime&) {
+  context.reply.mutable_time()->set_time_s(context.TheScene().Time());
+}
+
+} // namespace
+
+void AddSceneCommands(Registry& registry) {
+  using C = v1::Command;
+  registry.Add(C::kCreateScene, &C::mutable_create_scene, Effect::Change, CreateScene,
+               Needs::Nothing);
+  registry.Add(C::kRemoveScene, &C::mutable_remove_scene, Effect::Change, RemoveScene);
+  registry.Add(C::kListScenes, &C::mutable_list_scenes, Effect::Request, ListScenes,
+               Needs::Nothing);
+  registry.Add(C::kSetTime, &C::mutable_set_time, Effect::Change, SetTime);
+  registry.Add(C::kGetTime, &C::mutable_get_time, Effect::Request, GetTime);
+}
+
+} // namespace dspace::session

@@ -1,0 +1,76 @@
+// Telemetry: named values of a simulation.
+#include <algorithm>
+
+#include <dspace/scene/Checks.h>
+#include <dspace/interpreter/Registry.h>
+
+namespace dspace::session {
+namespace {
+
+void List(const Context& context, const Telemetry::Channel& channel) {
+  PutInfo(channel, context.reply.mutable_telemetry()->add_channel());
+}
+
+void CreateTelemetry(const Context& context, v1::CreateTelemetry& command) {
+  // Ids go on through the session, so that a scene that is made anew has others.
+  const std::uint64_t id =
+      context.scene->telemetry.Create(command, context.state.lastTelemetryId + 1);
+  context.state.lastTelemetryId = std::max(context.state.lastTelemetryId, id);
+  command.set_id(id);
+  List(context, context.scene->telemetry.Get(id));
+}
+
+void ListTelemetry(const Context& context, v1::ListTelemetry& command) {
+  const Telemetry& telemetry = context.scene->telemetry;
+  context.reply.mutable_telemetry();
+  const bool named = command.id_size() > 0 || command.name_size() > 0;
+  if (named && !command.below().empty()) {
+    Refuse("command list_telemetry", "ids or names are given, and below is '" + command.below() +
+                                         "'; accepted: one or the other");
+  }
+  for (const std::uint64_t id : command.id()) {
+    List(context, telemetry.Get(id));
+  }
+  for (const std::string& name : command.name()) {
+    List(context, telemetry.Get(name));
+  }
+  if (named) {
+    return;
+  }
+  const std::string& below = command.below();
+  for (const auto& [name, id] : telemetry.Names()) {
+    const bool in = below.empty() || name == below ||
+                    (name.size() > below.size() && name[below.size()] == '/' &&
+                     name.compare(0, below.size(), below) == 0);
+    if (in) {
+      List(context, telemetry.Get(id));
+    }
+  }
+}
+
+} // namespace
+
+void AddTelemetryCommands(Registry& registry) {
+  using C = v1::Command;
+  const Effect change = Effect::Change;
+  registry.Add(C::kCreateTelemetry, &C::mutable_create_telemetry, change, CreateTelemetry);
+  registry.Add(C::kSetTelemetryLimits, &C::mutable_set_telemetry_limits, change,
+               [](const Context& context, v1::SetTelemetryLimits& command) {
+                 context.scene->telemetry.SetLimits(command);
+               });
+  registry.Add(C::kSetTelemetry, &C::mutable_set_telemetry, change,
+               [](const Context& context, v1::SetTelemetry& command) {
+                 context.scene->telemetry.Set(command, context.TheScene().Time());
+               });
+  registry.Add(C::kSetTelemetryTexts, &C::mutable_set_telemetry_texts, change,
+               [](const Context& context, v1::SetTelemetryTexts& command) {
+                 context.scene->telemetry.SetTexts(command, context.TheScene().Time());
+               });
+  registry.Add(C::kRemoveTelemetry, &C::mutable_remove_telemetry, change,
+               [](const Context& context, v1::RemoveTelemetry& command) {
+                 context.scene->telemetry.Remove(command);
+               });
+  registry.Add(C::kListTelemetry, &C::mutable_list_telemetry, Effect::Request, ListTelemetry);
+}
+
+} // namespace dspace::session

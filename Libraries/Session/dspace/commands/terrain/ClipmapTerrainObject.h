@@ -1,0 +1,53 @@
+// Terrain as a clipmap over tiles that are read as they are needed.
+#ifndef DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
+#define DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <dspace/commands/terrain/TerrainLayers.h>
+#include <dspace/state/TerrainObject.h>
+#include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/raster/OverviewBuild.h>
+#include <dspace/surface/StreamedTerrain.h>
+
+namespace dspace::session {
+
+// Its frame S: X east, Y north, Z up, metres; or the body-fixed frame.
+class ClipmapTerrainObject : public TerrainObject {
+public:
+  // `cacheFolder`: where overviews are kept; empty: in memory only. Throws what ClipmapTerrain
+  // throws.
+  ClipmapTerrainObject(std::string name, std::shared_ptr<const StreamedTerrain> surface,
+                       const ClipmapOptions& options, const ElevationPyramidOptions& pyramid,
+                       std::string cacheFolder);
+
+  ClipmapTerrain& Clipmap() { return *this->Clipmap_; }
+  TerrainLayers& Layers() { return this->Layers_; }
+  const std::string& CacheFolder() const { return this->CacheFolder_; }
+  // Its layers, and what their tiles have cost.
+  void DescribeLayers(v1::TerrainLayerList& list) const;
+  bool OnBody() const override { return this->Surface_->Placement().OnBody(); }
+  const StreamedTerrain& Surface() const override { return *this->Surface_; }
+  const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
+  void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }
+  void Describe(v1::TerrainReply& reply) const override;
+  // In the background, into `folder`; `options` as for ElevationCache::Build.
+  void BuildOverviews(const std::string& folder, const ElevationOptions& options);
+  // Checks its arguments only: a clipmap's posts follow the cameras.
+  bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) override;
+
+private:
+  std::shared_ptr<const StreamedTerrain> Surface_;
+  std::shared_ptr<ClipmapTerrain> Clipmap_;
+  TerrainLayers Layers_;
+  std::string CacheFolder_;
+  std::atomic<int> Overviews_{0};        // that were built since it was opened
+  std::unique_ptr<OverviewBuild> Build_; // ends before what it changes
+};
+
+} // namespace dspace::session
+
+#endif

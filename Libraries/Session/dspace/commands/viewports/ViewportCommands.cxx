@@ -1,0 +1,260 @@
+#include <dspace/commands/viewports/ViewportCommands.h>
+
+#include <algorithm>
+
+#include <dspace/scene/Checks.h>
+#include <dspace/messages/Convert.h>
+
+#include "vtkDspaceRenderContext.h"
+#include "vtkDspaceViewport.h"
+
+namespace dspace::session {
+namespace {
+
+std::string Label(const std::string& name) {
+  return "viewport '" + name + "'";
+}
+
+std::string FreeName(const std::map<std::string, ViewportPlace>& viewports) {
+  std::string name = "viewport";
+  for (int n = 2; viewports.count(name); ++n) {
+    name = "viewport " + std::to_string(n);
+  }
+  return name;
+}
+
+// Sizes beyond int's range are refused by the viewport as the largest int.
+int ToSize(std::uint32_t value) {
+  return int(std::min<std::uint32_t>(value, 0x7fffffffu));
+}
+
+void RequireCamera(const Scene& scene, const std::string& vantage, const std::string& camera) {
+  const SceneVantage& found = scene.Vantage(vantage);
+  if (!camera.empty()) {
+    found.GetCamera(camera);
+  }
+}
+
+} // namespace
+
+ViewportCommands::ViewportCommands() = default;
+ViewportCommands::~ViewportCommands() {
+  this->Clear();
+}
+
+void ViewportCommands::Clear() {
+  for (const auto& [name, viewport] : this->Viewports_) {
+    viewport->SetBeforeDrawing({}); // somebody may keep it
+  }
+  this->Viewports_.clear();
+  this->RenderContext_ = nullptr;
+}
+
+vtkDspaceViewport* ViewportCommands::Find(const std::string& name) const {
+  const auto found = this->Viewports_.find(name);
+  return found == this->Viewports_.end() ? nullptr : found->second.Get();
+}
+
+vtkDspaceViewport& ViewportCommands::Get(const std::string& name) const {
+  vtkDspaceViewport* viewport = this->Find(name);
+  if (!viewport) {
+    throw Error(Error::Kind::NotFound, Label(name), "there is no such viewport");
+  }
+  return *viewport;
+}
+
+void ViewportCommands::SetRenderContext(vtkDspaceRenderContext* context) {
+  this->RenderContext_ = context;
+}
+
+vtkDspaceRenderContext* ViewportCommands::GetRenderContext() {
+  if (!this->RenderContext_) {
+    this->RenderContext_ = vtkSmartPointer<vtkDspaceRenderContext>::New();
+  }
+  return this->RenderContext_;
+}
+
+void ViewportCommands::Create(const Context& context, v1::CreateViewport& command) {
+  const std::string name =
+      command.name().empty() ? FreeName(context.state.viewports) : command.name();
+  const std::string vantage = command.vantage().empty() ? DefaultVantage : command.vantage();
+  RequireName("viewport", name);
+  if (this->Viewports_.count(name)) {
+    throw Error(Error::Kind::AlreadyExists, Label(name),
+                "there is a viewport of this name already");
+  }
+  RequireCamera(context.TheScene(), vantage, command.camera());
+  auto viewport = vtkSmartPointer<vtkDspaceViewport>::New();
+  const int samples = command.has_samples() ? ToSize(command.samples()) : viewport->GetSamples();
+  viewport->Initialize(this->GetRenderContext(), context.scene->scene, name, vantage,
+                       ToSize(command.width()), ToSize(command.height()), samples);
+  if (!command.camera().empty()) {
+    viewport->SetCamera(command.camera());
+  }
+  viewport->SetVisible(!command.hidden());
+  const State& state = context.state;
+  viewport->SetBeforeDrawing(
+      [this, &state, name, scene = context.sceneName, drawn = viewport.Get()] {
+        const auto found = state.scenes.find(scene);
+        if (found != state.scenes.end()) {
+          this->LiveTables_.Update(name, found->second.telemetry, *drawn);
+        }
+      });
+  command.set_name(name);
+  this->Viewports_[name] = viewport;
+  ViewportPlace& place = context.state.viewports[name];
+  place.scene = context.sceneName;
+  place.vantage = vantage;
+  place.camera = command.camera();
+  context.reply.mutable_viewport()->set_name(name);
+}
+
+void ViewportCommands::Remove(const Context& context, v1::RemoveViewport& command) {
+  this->Get(command.viewport()).SetBeforeDrawing({});
+  this->LiveTables_.RemoveViewport(command.viewport());
+  this->Controllers_.erase(command.viewport());
+  this->Viewports_.erase(command.viewport());
+  context.state.viewports.erase(command.viewport());
+}
+
+void ViewportCommands::Resize(const Context&, v1::ResizeViewport& command) {
+  this->Get(command.viewport()).Resize(ToSize(command.width()), ToSize(command.height()));
+}
+
+void ViewportCommands::Move(const Context& context, v1::MoveViewport& command) {
+  this->Get(command.viewport());
+  ViewportPlace& place = context.state.viewports[command.viewport()];
+  place.x = command.x();
+  place.y = command.y();
+}
+
+void ViewportCommands::Set(const Context& context, v1::SetViewport& command) {
+  vtkDspaceViewport& viewport = this->Get(command.viewport());
+  ViewportPlace& place = context.state.viewports[command.viewport()];
+  const std::string label = Label(command.viewport());
+  // All checks first.
+  const std::string vantage = command.has_vantage() ? command.vantage() : place.vantage;
+  std::string camera = command.has_camera() ? command.camera() : place.camera;
+  if (command.has_vantage() && !command.has_camera() && vantage != place.vantage) {
+    camera.clear(); // another vantage has other cameras: its active one
+  }
+  const Scene& scene = *viewport.GetScene();
+  RequireCamera(scene, vantage, camera);
+  if (command.has_samples()) {
+    viewport.RequireSamples(ToSize(command.samples()));
+  }
+  std::array<double, 3> bottom = place.background;
+  std::array<double, 3> top = place.backgroundTop;
+  if (command.has_background()) {
+    bottom = top = ToColor(command.background(), label);
+  }
+  if (command.has_background_top()) {
+    top = ToColor(command.background_top(), label);
+  }
+  if (vantage != place.vantage) {
+    viewport.SetCamera("");
+    viewport.SetVantage(vantage);
+  }
+  viewport.SetCamera(camera);
+  place.vantage = vantage;
+  place.camera = camera;
+  if (command.has_visible()) {
+    viewport.SetVisible(command.visible());
+  }
+  if (command.has_background() || command.has_background_top()) {
+    viewport.SetBackground(bottom, top);
+    place.background = bottom;
+    place.backgroundTop = top;
+  }
+  if (command.has_samples()) {
+    viewport.SetSamples(int(command.samples()));
+  }
+  if (command.has_ornaments()) {
+    viewport.SetOrnamentsVisible(command.ornaments());
+    place.ornaments = command.ornaments();
+  }
+  if (command.has_corner_axes()) {
+    viewport.SetCornerAxes(command.corner_axes());
+    place.cornerAxes = command.corner_axes();
+  }
+}
+
+void ViewportCommands::SetFragment(const Context& context, v1::SetViewportFragment& command) {
+  vtkDspaceViewport& viewport = this->Get(command.viewport());
+  viewport.GetScene()->Fragments().Get(command.fragment()); // throws where there is none
+  viewport.SetFragmentVisible(command.fragment(), command.visible());
+  std::set<std::string>& hidden = context.state.viewports[command.viewport()].hiddenFragments;
+  if (command.visible()) {
+    hidden.erase(command.fragment());
+  } else {
+    hidden.insert(command.fragment());
+  }
+}
+
+void ViewportCommands::SetTable(const Context&, v1::SetTextTable& command) {
+  this->LiveTables_.Set(command, this->Get(command.viewport()));
+}
+
+void ViewportCommands::RemoveTable(const Context&, v1::RemoveTextTable& command) {
+  this->Get(command.viewport()).RemoveTextTable(command.name());
+  this->LiveTables_.Remove(command.viewport(), command.name());
+}
+
+void ViewportCommands::Describe(const Context& context, v1::DescribeViewport& command) {
+  vtkDspaceViewport& viewport = this->Get(command.viewport());
+  const ViewportPlace& place = context.state.viewports[command.viewport()];
+  v1::ViewportInfo* info = context.reply.mutable_viewport_info();
+  info->set_name(command.viewport());
+  info->set_scene(place.scene);
+  info->set_vantage(place.vantage);
+  info->set_camera(place.camera);
+  info->set_width(std::uint32_t(viewport.GetWidth()));
+  info->set_height(std::uint32_t(viewport.GetHeight()));
+  info->set_x(place.x);
+  info->set_y(place.y);
+  info->set_visible(viewport.GetVisible());
+  info->set_samples(std::uint32_t(viewport.GetSamples()));
+  info->set_ornaments(place.ornaments);
+  info->set_corner_axes(place.cornerAxes);
+  for (const std::string& fragment : place.hiddenFragments) {
+    info->add_hidden_fragment(fragment);
+  }
+}
+
+void ViewportCommands::List(const Context& context, v1::ListViewports&) {
+  v1::ViewportList* list = context.reply.mutable_viewports();
+  for (const auto& [name, viewport] : this->Viewports_) {
+    list->add_name(name);
+  }
+}
+
+void ViewportCommands::AddTo(Registry& registry) {
+  using C = v1::Command;
+  const auto bind = [this](auto method) {
+    return [this, method](const Context& context, auto& message) {
+      (this->*method)(context, message);
+    };
+  };
+  using V = ViewportCommands;
+  const auto change = Effect::Change;
+  const auto none = Needs::Nothing; // viewports are the session's
+  registry.Add(C::kCreateViewport, &C::mutable_create_viewport, change, bind(&V::Create));
+  registry.Add(C::kRemoveViewport, &C::mutable_remove_viewport, change, bind(&V::Remove), none);
+  registry.Add(C::kResizeViewport, &C::mutable_resize_viewport, change, bind(&V::Resize), none);
+  registry.Add(C::kMoveViewport, &C::mutable_move_viewport, change, bind(&V::Move), none);
+  registry.Add(C::kSetViewport, &C::mutable_set_viewport, change, bind(&V::Set), none);
+  registry.Add(C::kSetViewportFragment, &C::mutable_set_viewport_fragment, change,
+               bind(&V::SetFragment), none);
+  registry.Add(C::kSetTextTable, &C::mutable_set_text_table, change, bind(&V::SetTable), none);
+  registry.Add(C::kRemoveTextTable, &C::mutable_remove_text_table, change, bind(&V::RemoveTable),
+               none);
+  registry.Add(C::kViewportEvent, &C::mutable_viewport_event, change, bind(&V::Event), none);
+  registry.Add(C::kDescribeViewport, &C::mutable_describe_viewport, Effect::Request,
+               bind(&V::Describe), none);
+  registry.Add(C::kListViewports, &C::mutable_list_viewports, Effect::Request, bind(&V::List),
+               none);
+  this->AddColorBarsTo(registry);
+  this->AddRequestsTo(registry);
+}
+
+} // namespace dspace::session

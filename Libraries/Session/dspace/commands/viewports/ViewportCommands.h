@@ -1,0 +1,78 @@
+// The viewport commands: the part of a session that draws. Needs VTK.
+#ifndef DSPACE_SESSION_VIEWPORT_COMMANDS_H
+#define DSPACE_SESSION_VIEWPORT_COMMANDS_H
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include <vtkSmartPointer.h>
+
+#include <dspace/render/Capture.h>
+#include <dspace/scene/OrbitController.h>
+#include <dspace/commands/viewports/LiveTables.h>
+#include <dspace/interpreter/Registry.h>
+
+class vtkDspaceRenderContext;
+class vtkDspaceViewport;
+
+namespace dspace::session {
+
+// A session's viewports by name. Must live as long as the registry that it was added to.
+class ViewportCommands {
+public:
+  ViewportCommands();
+  ~ViewportCommands();
+  ViewportCommands(const ViewportCommands&) = delete;
+  ViewportCommands& operator=(const ViewportCommands&) = delete;
+
+  void AddTo(Registry& registry);
+
+  // Null when there is none of that name.
+  vtkDspaceViewport* Find(const std::string& name) const;
+  void SetRenderContext(vtkDspaceRenderContext* context);
+  vtkDspaceRenderContext* GetRenderContext(); // made on demand
+
+  // The planes of the last capture command, which the taker may move away.
+  dspace::Capture& LastCapture() { return this->LastCapture_; }
+  void Clear(); // viewports first, then the context
+
+private:
+  vtkDspaceViewport& Get(const std::string& name) const; // throws Error(NotFound)
+
+  void Create(const Context& context, v1::CreateViewport& command);
+  void Remove(const Context& context, v1::RemoveViewport& command);
+  void Resize(const Context& context, v1::ResizeViewport& command);
+  void Move(const Context& context, v1::MoveViewport& command);
+  void Set(const Context& context, v1::SetViewport& command);
+  void SetFragment(const Context& context, v1::SetViewportFragment& command);
+  void SetTable(const Context& context, v1::SetTextTable& command);
+  void RemoveTable(const Context& context, v1::RemoveTextTable& command);
+  void Describe(const Context& context, v1::DescribeViewport& command);
+  void List(const Context& context, v1::ListViewports& command);
+
+  // ColorBarCommands.cxx
+  void AddColorBarsTo(Registry& registry);
+  void SetBar(const Context& context, v1::SetColorBar& command);
+  void RemoveBar(const Context& context, v1::RemoveColorBar& command);
+
+  void Event(const Context& context, v1::ViewportEvent& command); // ViewportEvents.cxx
+
+  // ViewportRequests.cxx
+  void AddRequestsTo(Registry& registry);
+  void Capture(const Context& context, v1::Capture& command);
+  void SaveImage(const Context& context, v1::SaveImage& command);
+  void Render(const Context& context, v1::Render& command);
+  void Pick(const Context& context, v1::Pick& command);
+  void Statistics(const Context& context, v1::GetStatistics& command);
+
+  vtkSmartPointer<vtkDspaceRenderContext> RenderContext_;
+  std::map<std::string, vtkSmartPointer<vtkDspaceViewport>> Viewports_;
+  std::map<std::string, OrbitController> Controllers_; // of viewports that events came to
+  LiveTables LiveTables_;
+  dspace::Capture LastCapture_;
+};
+
+} // namespace dspace::session
+
+#endif

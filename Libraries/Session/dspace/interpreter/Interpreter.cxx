@@ -1,0 +1,131 @@
+#include <dspace/interpreter/Interpreter.h>
+
+#include <new>
+
+#include <google/protobuf/unknown_field_set.h>
+
+#include <dspace/messages/Convert.h>
+
+namespace dspace::session {
+namespace {
+
+void PutError(v1::Reply& reply, v1::Error::Kind kind, const std::string& object,
+              const std::string& message) {
+  reply.Clear();
+  reply.mutable_error()->set_kind(kind);
+  reply.mutable_error()->set_object(object);
+  reply.mutable_error()->set_message(message);
+}
+
+class Nesting {
+public:
+  explicit Nesting(int& depth) : Depth_(++depth) {}
+  ~Nesting() { --this->Depth_; }
+  Nesting(const Nesting&) = delete;
+  Nesting& operator=(const Nesting&) = delete;
+
+private:
+  int& Depth_;
+};
+
+} // namespace
+
+std::string CommandName(const v1::Command& command) {
+  const google::protobuf::FieldDescriptor* field =
+      v1::Command::descriptor()->FindFieldByNumber(command.command_case());
+  if (command.command_case() != v1::Command::COMMAND_NOT_SET && field) {
+    return field->name();
+  }
+  const auto& unknown = command.GetReflection()->GetUnknownFields(command);
+  return unknown.empty() ? "none" : "number " + std::to_string(unknown.field(0).number());
+}
+
+Interpreter::Interpreter() {
+  AddSceneCommands(this->Registry_);
+  AddFrameCommands(this->Registry_);
+  AddObjectCommands(this->Registry_);
+  AddObjectRequests(this->Registry_);
+  AddPrimitiveCommands(this->Registry_);
+  AddTrailCommands(this->Registry_);
+  AddRobotCommands(this->Registry_);
+  AddFragmentCommands(this->Registry_);
+  AddCameraCommands(this->Registry_);
+  AddTerrainCommands(this->Registry_);
+  AddTelemetryCommands(this->Registry_);
+  AddMessageCommands(this->Registry_);
+  AddLaterCommands(this->Registry_);
+}
+
+v1::Reply Interpreter::Execute(v1::Command& command) {
+  v1::Reply reply;
+  FrameEventLog& events = this->State_.frameEvents;
+  const std::size_t before = events.Close();
+  try {
+    const Nesting nesting(this->Depth_);
+    this->Run(command, reply);
+  } catch (const Error& error) {
+    PutError(reply, FromKind(error.GetKind()), error.GetObjectName(), error.what());
+  } catch (const std::bad_alloc&) {
+    PutError(reply, v1::Error::RESOURCE, "command " + CommandName(command), "out of memory");
+  } catch (const std::exception& error) {
+    PutError(reply, v1::Error::INTERNAL, "command " + CommandName(command), error.what());
+  }
+  if (reply.has_error()) {
+    events.ForgetUndone(before);
+  } else if (this->Depth_ == 0) {
+    events.MoveTo(reply); // what listeners caused
+  }
+  return reply;
+}
+
+void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
+  const Registry::Entry* entry = this->Registry_.Find(command.command_case());
+  if (!entry) {
+    throw Error(Error::Kind::Unsupported, "command " + CommandName(command),
+                "this session does not carry out such a command");
+  }
+  const std::string name = command.scene().empty() ? DefaultScene : command.scene();
+  SceneState* scene = entry->needs == Needs::Scene ? &this->State_.FindScene(name) : nullptr;
+  const FilesReadScope read;
+  entry->run(Context{this->State_, scene, name, reply}, command);
+  this->State_.files.Note(command, read.Files());
+  if (this->Depth_ == 1) {
+    this->State_.frameEvents.MoveTo(reply); // before it is told: listeners pass the reply on
+  }
+  if (entry->effect == Effect::Change) {
+    this->Tell(command, reply);
+  }
+}
+
+void Interpreter::Tell(const v1::Command& command, v1::Reply& reply) {
+  const auto listeners = this->Listeners_; // they may come and go meanwhile
+  for (const auto& [token, listener] : listeners) {
+    try {
+      listener(command, reply);
+    } catch (const std::exception& error) {
+      reply.add_warning(std::string("done, but a listener failed: ") + error.what());
+    }
+  }
+}
+
+Interpreter::Token Interpreter::AddListener(Listener listener) {
+  this->Listeners_.emplace_back(++this->LastToken_, std::move(listener));
+  return this->LastToken_;
+}
+
+bool Interpreter::RemoveListener(Token token) {
+  for (auto it = this->Listeners_.begin(); it != this->Listeners_.end(); ++it) {
+    if (it->first == token) {
+      this->Listeners_.erase(it);
+      return true;
+    }
+  }
+  return false;
+}
+
+std::shared_ptr<Scene> Interpreter::FindScene(const std::string& name) const {
+  const auto found = this->State_.scenes.find(name);
+  return found == this->State_.scenes.end() ? nullptr : found->second.scene;
+}
+
+} // namespace dspace::session

@@ -1,0 +1,67 @@
+// An event of a viewer on its way to whoever drives. Inside the library only.
+#ifndef DSPACE_SESSION_TELLING_H
+#define DSPACE_SESSION_TELLING_H
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include <grpcpp/grpcpp.h>
+
+#include <dspace/proto/service.grpc.pb.h>
+
+namespace dspace::session {
+
+// One call of Tell, under way from its beginning on: so that whoever waits may do so in parts. It
+// ends by itself after `timeout_s` seconds, at the latest; being destroyed cancels it.
+class Telling {
+public:
+  Telling(v1::Dspace::Stub& stub, const v1::TellRequest& request, double timeout_s) {
+    this->Context_.set_deadline(In(timeout_s));
+    this->Call_ = stub.AsyncTell(&this->Context_, request, &this->Queue_);
+    this->Call_->Finish(&this->Reply_, &this->Status_, nullptr);
+  }
+  Telling(const Telling&) = delete;
+  Telling& operator=(const Telling&) = delete;
+  ~Telling() {
+    if (!this->Done_) {
+      this->Context_.TryCancel();
+    }
+    this->Queue_.Shutdown();
+    void* tag = nullptr; // what gRPC still writes to is there until it has done so
+    bool good = false;
+    while (this->Queue_.Next(&tag, &good)) {
+    }
+  }
+
+  // Up to so many seconds; whether it is over.
+  bool Wait(double seconds) {
+    void* tag = nullptr;
+    bool good = false;
+    this->Done_ = this->Done_ || this->Queue_.AsyncNext(&tag, &good, In(seconds)) ==
+                                     grpc::CompletionQueue::GOT_EVENT;
+    return this->Done_;
+  }
+  // These once it is over.
+  bool Done() const { return this->Done_; }
+  const grpc::Status& Status() const { return this->Status_; }
+  bool Delivered() const { return this->Reply_.delivered(); }
+
+private:
+  static std::chrono::system_clock::time_point In(double seconds) {
+    return std::chrono::system_clock::now() +
+           std::chrono::duration_cast<std::chrono::milliseconds>(
+               std::chrono::duration<double>(std::clamp(seconds, 0.0, 1e6)));
+  }
+
+  grpc::CompletionQueue Queue_;
+  grpc::ClientContext Context_;
+  std::unique_ptr<grpc::ClientAsyncResponseReader<v1::TellReply>> Call_;
+  v1::TellReply Reply_;
+  grpc::Status Status_;
+  bool Done_ = false;
+};
+
+} // namespace dspace::session
+
+#endif

@@ -1,0 +1,79 @@
+// The frames and robots of one scene, for the ledger.
+#ifndef DSPACE_SESSION_LEDGER_FRAMES_H
+#define DSPACE_SESSION_LEDGER_FRAMES_H
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include <dspace/proto/commands.pb.h>
+
+namespace dspace::session {
+
+using LedgerId = std::uint64_t;
+
+struct LedgerRobot {
+  v1::Command load;
+  v1::RobotReply about;         // as loaded
+  std::vector<double> initial;  // of each joint
+  std::vector<double> position; // now
+};
+
+class LedgerFrames {
+public:
+  using Emit = std::vector<v1::Command>&;
+
+  LedgerFrames();
+  void Create(const v1::Command& command);
+  struct Removed {
+    std::unordered_set<LedgerId> frames;
+    std::vector<v1::Command> robots; // that loaded them
+  };
+  // The frame with its subtree.
+  Removed Remove(LedgerId frame);
+  void Reparent(const v1::ReparentFrame& command, const v1::Reply& reply);
+  void Rename(const v1::RenameFrame& command);
+  void SetPoses(const v1::SetPoses& command);
+  void Load(const v1::Command& command, const v1::RobotReply& reply);
+  void SetJoints(const v1::SetJoints& command);
+
+  const std::map<std::string, LedgerRobot>& Robots() const { return this->Robots_; }
+  std::map<std::string, LedgerRobot>& Robots() { return this->Robots_; }
+  // Frames, robots, joints, poses. `scene` is the name that commands bear, `fragments` those that
+  // there are: where a robot's is gone its visuals are moved later.
+  void Put(const std::string& scene, const std::vector<std::string>& fragments, Emit out) const;
+  bool Contains(LedgerId frame) const { return this->Nodes_.count(frame) > 0; }
+  // A name that no child of the root has.
+  std::string FreeName() const;
+
+private:
+  using Row = std::array<double, 8>;
+  struct Node {
+    LedgerId parent = 0;
+    std::string name;
+    std::vector<LedgerId> children;
+    v1::Pose created;
+    std::optional<Row> pose; // set since
+    std::string robot;       // whose base or link it is
+  };
+  void AddNode(LedgerId id, LedgerId parent, const std::string& name, const std::string& robot);
+  void PutTree(const std::string& scene, const std::vector<std::string>& fragments, Emit out) const;
+  void PutRenames(const std::string& scene, std::vector<std::pair<LedgerId, std::string>> present,
+                  Emit out) const;
+  void PutJoints(const std::string& scene, Emit out) const;
+  void PutPoses(const std::string& scene, Emit out) const;
+
+  std::unordered_map<LedgerId, Node> Nodes_; // stay where they are until removed
+  std::map<std::string, LedgerRobot> Robots_;
+  // A simulation's steps mostly name the same frames: their nodes need not be found again.
+  std::vector<LedgerId> LastIds_;
+  std::vector<Node*> LastNodes_;
+};
+
+} // namespace dspace::session
+
+#endif

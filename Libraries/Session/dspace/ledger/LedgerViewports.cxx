@@ -1,0 +1,150 @@
+// The viewports of the ledger.
+#include <algorithm>
+
+#include <dspace/ledger/LedgerViews.h>
+#include <dspace/state/State.h>
+
+namespace dspace::session {
+namespace {
+
+template<class Message> void PutNamed(const Message& message, std::vector<Message>& all) {
+  const auto found = std::find_if(
+      all.begin(), all.end(), [&](const Message& each) { return each.name() == message.name(); });
+  if (found == all.end()) {
+    all.push_back(message);
+  } else {
+    *found = message;
+  }
+}
+
+template<class Message> void RemoveNamed(const std::string& name, std::vector<Message>& all) {
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const Message& each) { return each.name() == name; }),
+            all.end());
+}
+
+} // namespace
+
+bool LedgerViewports::Add(const v1::Command& command) {
+  using C = v1::Command;
+  switch (command.command_case()) {
+  case C::kCreateViewport:
+    this->Viewports_[command.create_viewport().name()].create = command;
+    return true;
+  case C::kRemoveViewport:
+    this->Viewports_.erase(command.remove_viewport().viewport());
+    return true;
+  case C::kResizeViewport: {
+    v1::CreateViewport* create =
+        this->Find(command.resize_viewport().viewport()).create.mutable_create_viewport();
+    create->set_width(command.resize_viewport().width());
+    create->set_height(command.resize_viewport().height());
+    return true;
+  }
+  case C::kMoveViewport:
+    this->Find(command.move_viewport().viewport()).place = command.move_viewport();
+    return true;
+  case C::kSetViewport:
+    Set(this->Find(command.set_viewport().viewport()), command.set_viewport());
+    return true;
+  case C::kSetViewportFragment: {
+    const v1::SetViewportFragment& set = command.set_viewport_fragment();
+    std::set<std::string>& hidden = this->Find(set.viewport()).hidden;
+    if (set.visible()) {
+      hidden.erase(set.fragment());
+    } else {
+      hidden.insert(set.fragment());
+    }
+    return true;
+  }
+  case C::kSetTextTable:
+    PutNamed(command.set_text_table(), this->Find(command.set_text_table().viewport()).tables);
+    return true;
+  case C::kRemoveTextTable:
+    RemoveNamed(command.remove_text_table().name(),
+                this->Find(command.remove_text_table().viewport()).tables);
+    return true;
+  case C::kSetColorBar:
+    PutNamed(command.set_color_bar(), this->Find(command.set_color_bar().viewport()).bars);
+    return true;
+  case C::kRemoveColorBar:
+    RemoveNamed(command.remove_color_bar().name(),
+                this->Find(command.remove_color_bar().viewport()).bars);
+    return true;
+  default:
+    return false;
+  }
+}
+
+// As ViewportCommands::Set does it.
+void LedgerViewports::Set(Viewport& viewport, const v1::SetViewport& command) {
+  v1::CreateViewport& create = *viewport.create.mutable_create_viewport();
+  const std::string present = create.vantage().empty() ? DefaultVantage : create.vantage();
+  if (command.has_vantage()) {
+    if (!command.has_camera() && command.vantage() != present) {
+      create.clear_camera(); // another vantage has other cameras
+    }
+    create.set_vantage(command.vantage());
+  }
+  if (command.has_camera()) {
+    create.set_camera(command.camera());
+  }
+  if (command.has_visible()) {
+    create.set_hidden(!command.visible());
+  }
+  if (command.has_samples()) {
+    create.set_samples(command.samples());
+  }
+  v1::SetViewport& set = viewport.set;
+  if (command.has_background()) { // one without the other is no gradient
+    *set.mutable_background() = command.background();
+    set.clear_background_top();
+  }
+  if (command.has_background_top()) {
+    *set.mutable_background_top() = command.background_top();
+  }
+  if (command.has_ornaments()) {
+    set.set_ornaments(command.ornaments());
+  }
+  if (command.has_corner_axes()) {
+    set.set_corner_axes(command.corner_axes());
+  }
+}
+
+void LedgerViewports::PutOne(const std::string& name, const Viewport& viewport,
+                             const std::vector<std::string>& fragments, Emit out) {
+  const auto add = [&]() -> v1::Command& {
+    out.emplace_back().set_scene(viewport.create.scene());
+    return out.back();
+  };
+  out.push_back(viewport.create);
+  if (viewport.set.ByteSizeLong() > 0) {
+    v1::SetViewport* set = add().mutable_set_viewport();
+    *set = viewport.set;
+    set->set_viewport(name);
+  }
+  if (viewport.place) {
+    *add().mutable_move_viewport() = *viewport.place;
+  }
+  for (const std::string& fragment : viewport.hidden) {
+    // A viewport goes on hiding the name of one that was removed.
+    const bool gone = std::find(fragments.begin(), fragments.end(), fragment) == fragments.end();
+    if (gone) {
+      add().mutable_create_fragment()->set_name(fragment);
+    }
+    v1::SetViewportFragment* hide = add().mutable_set_viewport_fragment();
+    hide->set_viewport(name);
+    hide->set_fragment(fragment);
+    if (gone) {
+      add().mutable_remove_fragment()->set_name(fragment);
+    }
+  }
+  for (const v1::SetTextTable& table : viewport.tables) {
+    *add().mutable_set_text_table() = table;
+  }
+  for (const v1::SetColorBar& bar : viewport.bars) {
+    *add().mutable_set_color_bar() = bar;
+  }
+}
+
+} // namespace dspace::session

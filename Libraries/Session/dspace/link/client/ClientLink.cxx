@@ -1,0 +1,345 @@
+#include <dspace/link/client/ClientLink.h>
+
+#include <algorithm>
+#include <random>
+
+#include <unistd.h>
+
+#include <grpcpp/impl/codegen/sync_stream.h>
+
+#include <dspace/Error.h>
+#include <dspace/scene/Checks.h>
+#include <dspace/link/ProcessName.h>
+
+namespace dspace::session {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::chrono::seconds ToLeave{3};
+
+Error::Kind ToKind(v1::Error::Kind kind) {
+  switch (kind) {
+  case v1::Error::INVALID_ARGUMENT:
+    return Error::Kind::InvalidArgument;
+  case v1::Error::NOT_FOUND:
+    return Error::Kind::NotFound;
+  case v1::Error::ALREADY_EXISTS:
+    return Error::Kind::AlreadyExists;
+  case v1::Error::UNSUPPORTED:
+    return Error::Kind::Unsupported;
+  case v1::Error::CORRUPT:
+    return Error::Kind::Corrupt;
+  case v1::Error::IO:
+    return Error::Kind::Io;
+  case v1::Error::RESOURCE:
+    return Error::Kind::Resource;
+  case v1::Error::DEADLINE_EXCEEDED:
+    return Error::Kind::DeadlineExceeded;
+  default:
+    return Error::Kind::Internal;
+  }
+}
+
+} // namespace
+
+void Raise(const v1::Error& error) {
+  const std::string& text = error.message();
+  const std::string prefix = error.object() + ": ";
+  throw Error(ToKind(error.kind()), error.object(),
+              text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text);
+}
+
+std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const LinkSecurity& security,
+                                           double silence_s) {
+  const LinkAddress parsed = LinkAddress::Parse(address);
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);                  // pictures
+  arguments.SetMaxSendMessageSize(-1);                     // the server has its limit
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // a connection of one's own
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
+  // A connection that is dead without a word is found out by asking, also while nothing is sent.
+  const int silence_ms = int(std::clamp(1e3 * silence_s, 1.0, 1e9));
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, silence_ms);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(silence_ms, 10000));
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 0);
+  arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  // Steps are large: fewer and larger reads and frames.
+  arguments.SetInt(GRPC_ARG_TCP_READ_CHUNK_SIZE, LinkReadBytes);
+  arguments.SetInt(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, LinkFrameBytes);
+  return grpc::CreateCustomChannel(parsed.target, MakeClientCredentials(parsed, security),
+                                   arguments);
+}
+
+v1::Error ToError(const std::string& address, const grpc::Status& status, bool& final) {
+  v1::Error error;
+  error.set_object("server '" + address + "'");
+  const auto say = [&](v1::Error::Kind kind, const std::string& message, bool last) {
+    error.set_kind(kind);
+    error.set_message(error.object() + ": " + message);
+    final = last;
+    return error;
+  };
+  using Code = grpc::StatusCode;
+  switch (status.error_code()) {
+  case Code::ALREADY_EXISTS:
+    return say(v1::Error::ALREADY_EXISTS, status.error_message(), true);
+  case Code::FAILED_PRECONDITION:
+    return say(v1::Error::UNSUPPORTED, status.error_message(), true);
+  case Code::UNIMPLEMENTED:
+    return say(v1::Error::UNSUPPORTED, "it does not speak protocol 'dspace.v1'", true);
+  case Code::INVALID_ARGUMENT:
+    return say(v1::Error::INVALID_ARGUMENT, status.error_message(), true);
+  case Code::RESOURCE_EXHAUSTED:
+    return say(v1::Error::RESOURCE, status.error_message(), true);
+  case Code::ABORTED:
+    return say(v1::Error::IO, status.error_message(), true);
+  case Code::OK:
+  case Code::CANCELLED:
+  case Code::UNAVAILABLE:
+    return say(v1::Error::IO,
+               status.error_message().empty() ? "it has gone" : status.error_message(), false);
+  default:
+    return say(v1::Error::IO, "the connection failed: " + status.error_message(), true);
+  }
+}
+
+std::string RandomKey() {
+  std::random_device device;
+  std::string key;
+  for (int i = 0; i < 8; ++i) {
+    const unsigned value = device();
+    key.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  return key;
+}
+
+grpc::ByteBuffer ToBytes(const v1::DriveRequest& request) {
+  const std::size_t size = request.ByteSizeLong();
+  grpc_slice bytes = grpc_slice_malloc(size);
+  request.SerializeWithCachedSizesToArray(GRPC_SLICE_START_PTR(bytes));
+  const grpc::Slice slice(bytes, grpc::Slice::STEAL_REF);
+  return grpc::ByteBuffer(&slice, 1);
+}
+
+RemoteClient::Link::Link(const RemoteClientOptions& from)
+    : options(from), process(getpid()), key(RandomKey()) {
+  if (!(this->options.timeout_s > 0 && this->options.timeout_s <= 1e6)) {
+    throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
+                "the timeout is " + NumberText(this->options.timeout_s) +
+                    " s; accepted: above 0, up to 1e6");
+  }
+  if (!(this->options.silence_s > 0 && this->options.silence_s <= 1e6)) {
+    throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
+                "the silence is " + NumberText(this->options.silence_s) +
+                    " s; accepted: above 0, up to 1e6");
+  }
+  this->pacer.SetRate(this->options.pace);
+  this->channel =
+      MakeChannel(this->options.address, this->options.security, this->options.silence_s);
+}
+
+// The generated stub's Drive, but for messages that are in bytes already.
+std::unique_ptr<RemoteClient::Link::Stream> RemoteClient::Link::Call(grpc::ClientContext& context) {
+  static const grpc::internal::RpcMethod method("/dspace.v1.Dspace/Drive",
+                                                grpc::internal::RpcMethod::BIDI_STREAMING);
+  return std::unique_ptr<Stream>(
+      grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, v1::DriveReply>::Create(
+          this->channel.get(), method, &context));
+}
+
+bool RemoteClient::Link::Forked() const {
+  return getpid() != this->process;
+}
+
+v1::Reply RemoteClient::Link::Foreign() {
+  return this->Fault(v1::Error::UNSUPPORTED,
+                     "process " + std::to_string(this->process) +
+                         " connected to it, and this one is its child; accepted: a connection of "
+                         "its own");
+}
+
+void RemoteClient::Link::Break(v1::Error::Kind kind, const std::string& message) {
+  this->error = this->Fault(kind, message).error();
+  this->broken = true;
+  this->changed.notify_all();
+  this->toSend.notify_all();
+}
+
+void RemoteClient::Link::End() {
+  {
+    std::unique_lock lock(this->mutex);
+    this->ending = true;
+    this->toSend.notify_all();
+    // The writing thread says goodbye, so that the server keeps no place for this client.
+    if (this->leaving || (this->connected && !this->broken)) {
+      this->changed.wait_for(lock, ToLeave, [this] { return !this->context; });
+    }
+    if (this->context) {
+      this->context->TryCancel();
+    }
+  }
+  if (this->thread.joinable()) {
+    this->thread.join();
+  }
+}
+
+void RemoteClient::Link::Keep() {
+  auto lost = LinkClock::now();
+  std::unique_lock lock(this->mutex);
+  while (!this->ending && !this->broken) {
+    lock.unlock();
+    grpc::Status status;
+    const bool opened = this->Drive(status);
+    lock.lock();
+    if (opened) {
+      lost = LinkClock::now();
+    }
+    if (this->ending || this->broken) {
+      break;
+    }
+    bool final = false;
+    const v1::Error error = ToError(this->options.address, status, final);
+    // A client that was let in once is not sent away because its former self is still there. (What
+    // a stream that was opened has too much of is its messages' size.)
+    const bool crowded =
+        this->opened && !opened && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+    final = final && !crowded;
+    if (final || LinkClock::now() - lost > std::chrono::duration<double>(this->options.timeout_s)) {
+      this->error = error;
+      this->broken = true;
+      this->changed.notify_all();
+      break;
+    }
+    this->toSend.wait_for(lock, milliseconds(50));
+  }
+}
+
+bool RemoteClient::Link::Drive(grpc::Status& status) {
+  const auto soon = std::chrono::system_clock::now() + milliseconds(200);
+  if (!this->channel->WaitForConnected(soon)) {
+    status = {grpc::StatusCode::UNAVAILABLE, "nobody answers, or nobody who may"};
+    return false;
+  }
+  grpc::ClientContext drive;
+  std::unique_ptr<Stream> stream;
+  v1::DriveRequest open;
+  {
+    const std::lock_guard lock(this->mutex);
+    if (this->ending) {
+      return false;
+    }
+    this->context = &drive;
+    open.mutable_open()->set_protocol(LinkProtocol);
+    open.mutable_open()->set_client(this->options.name);
+    open.mutable_open()->set_key(this->key);
+    open.mutable_open()->set_take_over(this->options.takeOver && !this->opened);
+    open.mutable_open()->set_acknowledged(this->acknowledged);
+    open.mutable_open()->set_command_set(v1::COMMAND_SET_VERSION);
+    open.mutable_open()->set_process(ProcessName());
+    open.mutable_open()->set_again(this->opened);
+  }
+  stream = this->Call(drive);
+  v1::DriveReply message;
+  const bool answered = stream->Write(ToBytes(open)) && stream->Read(&message);
+  bool good = answered && message.has_opened();
+  bool over = !answered; // there is a status, or soon
+  v1::Reply refused;
+  if (good) {
+    const std::lock_guard lock(this->mutex);
+    refused = this->Resume(message.opened());
+    good = !refused.has_error();
+    this->leaving = !good;
+    this->changed.notify_all();
+  }
+  if (refused.has_error()) { // the place that it was given is not wanted: first that, then the news
+    stream->WritesDone();
+    over = true;
+    while (stream->Read(&message)) {
+    }
+    const std::lock_guard lock(this->mutex);
+    this->error = refused.error();
+    this->broken = true;
+    this->changed.notify_all();
+  }
+  std::thread writer;
+  if (good) {
+    writer = std::thread([&] { this->Write(*stream); });
+    over = true;
+    while (over && stream->Read(&message)) {
+      {
+        const std::lock_guard lock(this->mutex);
+        this->Hear(message);
+        over = !this->broken;
+      }
+      this->changed.notify_all(); // without the mutex, which whoever wakes up wants
+    }
+  }
+  {
+    const std::lock_guard lock(this->mutex);
+    this->connected = false;
+    this->toSend.notify_all();
+  }
+  if (!over) {
+    drive.TryCancel();
+  }
+  if (writer.joinable()) {
+    writer.join();
+  }
+  status = stream->Finish();
+  const std::lock_guard lock(this->mutex);
+  this->context = nullptr;
+  this->leaving = false;
+  this->changed.notify_all(); // End waits for it
+  return good;
+}
+
+v1::Reply RemoteClient::Link::Resume(const v1::Opened& message) {
+  if (message.protocol() != LinkProtocol) {
+    return this->Fault(v1::Error::UNSUPPORTED, "it speaks protocol '" + message.protocol() +
+                                                   "'; accepted: '" + LinkProtocol + "'");
+  }
+  if (this->opened && !message.resumed()) { // of a server that does not know `again`
+    return this->Fault(v1::Error::IO,
+                       "it was started anew, or somebody else has driven it since: what was "
+                       "made there is gone or not known; accepted: to connect again");
+  }
+  this->counts.reconnections += this->opened ? 1 : 0;
+  this->opened = this->connected = true;
+  this->server = {message.server(), message.command_set(), message.maximum_message()};
+  this->Rewind(message.last());
+  return {};
+}
+
+void RemoteClient::Link::Write(Stream& stream) {
+  std::unique_lock lock(this->mutex);
+  while (true) {
+    this->toSend.wait(lock, [&] {
+      return this->ending || this->broken || !this->connected || this->next < this->pending.size();
+    });
+    if (this->ending && this->connected && !this->broken) {
+      lock.unlock();
+      stream.WritesDone();
+      return;
+    }
+    if (this->broken || !this->connected) {
+      return;
+    }
+    const auto request = this->TakeNext();
+    grpc::WriteOptions options;
+    if (this->next < this->pending.size()) {
+      options.set_buffer_hint(); // what follows takes it along
+    }
+    lock.unlock();
+    const bool written = stream.Write(request, options);
+    lock.lock();
+    if (!written) {
+      return; // reading ends too
+    }
+  }
+}
+
+} // namespace dspace::session

@@ -1,0 +1,238 @@
+#include <dspace/link/client/RemoteClient.h>
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include <dspace/Error.h>
+#include <dspace/link/client/ClientLink.h>
+#include <dspace/link/Confinement.h>
+#include <dspace/link/LinkDiagnosis.h>
+#include <dspace/state/State.h>
+
+namespace dspace::session {
+namespace {
+
+constexpr double LongWait = 1e6; // [s]: longer than any timeout
+
+} // namespace
+
+RemoteClient::RemoteClient(const RemoteClientOptions& options) : RemoteClient(options, Later()) {
+  while (!this->WaitToOpen(options.timeout_s)) {
+  }
+}
+
+RemoteClient::RemoteClient(const RemoteClientOptions& options, Later) : Link_(new Link(options)) {
+  this->Link_->deadline = After(options.timeout_s);
+  this->Link_->thread = std::thread([this] { this->Link_->Keep(); });
+}
+
+RemoteClient::~RemoteClient() {
+  if (this->Link_->Forked()) {
+    (void)this->Link_.release(); // its threads and connections are the parent's
+    return;
+  }
+  this->Link_->End();
+}
+
+bool RemoteClient::WaitToOpen(double seconds) {
+  Link& link = *this->Link_;
+  if (link.Forked()) {
+    Raise(link.Foreign().error());
+  }
+  std::unique_lock lock(link.mutex);
+  if (link.changed.wait_until(lock, std::min(link.deadline, After(seconds)),
+                              [&] { return link.opened || link.broken; })) {
+    if (!link.broken) {
+      return true;
+    }
+  } else if (LinkClock::now() < link.deadline) {
+    return false;
+  } else {
+    lock.unlock(); // to look takes a moment
+    const std::string why =
+        WhyNoAnswer(link.options.address, link.options.security.HasCertificates());
+    lock.lock();
+    if (link.opened && !link.broken) {
+      return true;
+    }
+    if (!link.broken) {
+      std::ostringstream text;
+      text << "no answer within " << link.options.timeout_s << " s: " << why;
+      link.Break(v1::Error::DEADLINE_EXCEEDED, text.str());
+    }
+  }
+  const v1::Error error = link.error;
+  lock.unlock();
+  link.End();
+  Raise(error);
+}
+
+v1::Reply RemoteClient::Execute(v1::Command command) {
+  this->Begin(std::move(command));
+  while (!this->Wait(LongWait)) {
+  }
+  return this->Take();
+}
+
+v1::Reply RemoteClient::Send(v1::Command command) {
+  this->Begin(std::move(command), false);
+  while (!this->Wait(LongWait)) {
+  }
+  return this->Take();
+}
+
+v1::Reply RemoteClient::Flush() {
+  this->BeginFlush();
+  while (!this->Wait(LongWait)) {
+  }
+  return this->Take();
+}
+
+void RemoteClient::Begin(v1::Command command, bool reply) {
+  Link& link = *this->Link_;
+  if (link.Forked()) {
+    link.Finish(link.Foreign());
+    return;
+  }
+  MakePathsAbsolute(command);
+  this->Abandon();
+  link.noReply = !reply;
+  link.command = std::move(command);
+  link.doing = Link::Doing::Pace;
+  const double ahead =
+      link.command.has_set_time()
+          ? link.pacer.Ahead(
+                link.command.scene().empty() ? DefaultScene : link.command.scene(),
+                link.command.set_time().time_s(),
+                std::chrono::duration<double>(LinkClock::now().time_since_epoch()).count())
+          : 0;
+  link.due = ahead > 0 ? After(ahead) : LinkClock::time_point();
+}
+
+void RemoteClient::BeginFlush() {
+  if (this->Link_->Forked()) {
+    this->Link_->Finish(this->Link_->Foreign());
+    return;
+  }
+  this->Abandon();
+  this->Link_->doing = Link::Doing::Flush;
+  this->Link_->deadline = After(this->Link_->options.timeout_s);
+}
+
+bool RemoteClient::Wait(double seconds) {
+  Link& link = *this->Link_;
+  if (link.Forked()) {
+    return true;
+  }
+  const auto until = After(std::clamp(seconds, 0.0, LongWait));
+  std::unique_lock lock(link.mutex);
+  if (link.doing == Link::Doing::Pace) {
+    const auto wake = std::min(link.due, until);
+    if (link.due >
+        LinkClock::time_point()) { // not cut short by a broken link: it is due when it is
+      while (LinkClock::now() < wake) {
+        link.changed.wait_until(lock, wake);
+      }
+      if (LinkClock::now() < link.due) {
+        return false;
+      }
+    }
+    link.Settle();
+  }
+  if (link.doing == Link::Doing::Settle && !link.WaitToSettle(lock, until)) {
+    return false;
+  }
+  if (link.doing == Link::Doing::Room && !link.WaitForRoom(lock, until)) {
+    return false;
+  }
+  if (link.doing == Link::Doing::Reply) {
+    return link.WaitForReply(lock, until);
+  }
+  return link.doing != Link::Doing::Flush || link.WaitForFlush(lock, until);
+}
+
+v1::Reply RemoteClient::Take() {
+  Link& link = *this->Link_;
+  if (link.Forked()) {
+    return link.Foreign();
+  }
+  if (link.doing != Link::Doing::Done) {
+    return link.Fault(v1::Error::INTERNAL, "nothing is there to take; accepted: Begin and Wait");
+  }
+  const std::lock_guard lock(link.mutex);
+  link.doing = Link::Doing::Nothing;
+  v1::Reply reply = std::exchange(link.reply, {});
+  link.MoveUnasked(reply);
+  return reply;
+}
+
+void RemoteClient::Abandon() {
+  Link& link = *this->Link_;
+  if (link.doing == Link::Doing::Nothing || link.Forked()) {
+    return;
+  }
+  const std::lock_guard lock(link.mutex);
+  if (link.doing == Link::Doing::Reply) {
+    if (link.awaited != 0) { // its reply has not come
+      link.abandoned.insert(std::exchange(link.awaited, 0));
+    }
+    link.filter.Forget(); // whether it was carried out will not be known
+  }
+  link.reply.Clear();
+  link.doing = Link::Doing::Nothing;
+}
+
+void RemoteClient::SetPace(double rate) {
+  this->Link_->pacer.SetRate(rate);
+}
+
+std::size_t RemoteClient::TakeEvents(const std::function<void(const v1::ViewerEvent&)>& hear,
+                                     double wait_s) {
+  Link& link = *this->Link_;
+  if (link.Forked()) {
+    return 0;
+  }
+  std::unique_lock lock(link.mutex);
+  link.changed.wait_until(lock, After(std::clamp(wait_s, 0.0, 1e6)),
+                          [&] { return link.broken || !link.events.empty(); });
+  const auto events = std::exchange(link.events, {});
+  link.eventBytes = 0;
+  lock.unlock(); // whoever hears may give commands
+  for (const v1::ViewerEvent& event : events) {
+    hear(event);
+  }
+  return events.size();
+}
+
+v1::Reply RemoteClient::Broken() const {
+  if (this->Link_->Forked()) {
+    return this->Link_->Foreign();
+  }
+  const std::lock_guard lock(this->Link_->mutex);
+  v1::Reply reply;
+  if (this->Link_->broken) {
+    *reply.mutable_error() = this->Link_->error;
+  }
+  return reply;
+}
+
+RemoteClient::Counts RemoteClient::GetCounts() const {
+  if (this->Link_->Forked()) {
+    return {};
+  }
+  const std::lock_guard lock(this->Link_->mutex);
+  Counts counts = this->Link_->counts;
+  counts.posesLeftOut = this->Link_->filter.LeftOut();
+  return counts;
+}
+
+RemoteClient::ServerInfo RemoteClient::GetServer() const {
+  if (this->Link_->Forked()) {
+    return {};
+  }
+  const std::lock_guard lock(this->Link_->mutex);
+  return this->Link_->server;
+}
+
+} // namespace dspace::session

@@ -1,0 +1,48 @@
+// Wire types to the core's and back. What is absent on the wire takes its documented default.
+#ifndef DSPACE_SESSION_CONVERT_H
+#define DSPACE_SESSION_CONVERT_H
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <dspace/Error.h>
+#include <dspace/FrameTree.h>
+#include <dspace/Pose.h>
+#include <dspace/scene/Camera.h>
+#include <dspace/scene/GraphicsObject.h>
+#include <dspace/proto/cameras.pb.h>
+#include <dspace/proto/common.pb.h>
+
+namespace dspace::session {
+
+// `object` names what the value belongs to, for the message of Error(InvalidArgument).
+Eigen::Vector3d ToVector(const v1::Vector3& v);
+Eigen::Quaterniond ToRotation(const v1::Quaternion& q, const std::string& object); // checked
+Pose ToPose(const v1::Pose& pose, const std::string& object);                      // checked
+Eigen::Affine3d ToAffine(const v1::Offset& offset, const std::string& object);     // checked
+std::array<double, 3> ToColor(const v1::Color& color, const std::string& object);  // checked
+Nature ToNature(v1::Nature nature, const std::string& object);
+inline FrameId ToFrame(FrameId frame) {
+  return frame == NoFrame ? RootFrame : frame;
+}
+Projection ToProjection(const v1::Projection& from); // not checked: Projection::Check is
+// Takes a file's `up` axis to Z.
+Eigen::Quaterniond RotationToZUp(v1::UpAxis up, const std::string& object);
+
+void Put(const Eigen::Vector3d& from, v1::Vector3* to);
+void Put(const Pose& from, v1::Pose* to);
+void Put(const std::array<double, 3>& from, v1::Color* to);
+void Put(const Projection& from, v1::Projection* to);
+void Put(const CameraMount& from, v1::Mount* to);
+v1::Nature FromNature(Nature nature);
+v1::Error::Kind FromKind(Error::Kind kind);
+
+// `values` as rows of `size`; throws Error(InvalidArgument) when their number is no multiple.
+std::size_t RowsOf(int values, int size, const std::string& object, const char* what);
+
+} // namespace dspace::session
+
+#endif

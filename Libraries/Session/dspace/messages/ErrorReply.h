@@ -1,0 +1,40 @@
+// Errors as replies, for classes that let no exception out. Inside the library only.
+#ifndef DSPACE_SESSION_ERROR_REPLY_H
+#define DSPACE_SESSION_ERROR_REPLY_H
+
+#include <exception>
+#include <string>
+
+#include <dspace/Error.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/proto/commands.pb.h>
+
+namespace dspace::session {
+
+inline v1::Reply ErrorReply(v1::Error::Kind kind, const std::string& object,
+                            const std::string& message) {
+  v1::Reply reply;
+  reply.mutable_error()->set_kind(kind);
+  reply.mutable_error()->set_object(object);
+  reply.mutable_error()->set_message(message);
+  return reply;
+}
+
+// What `work` returns, or the error that it throws.
+template<class Work> v1::Reply Catch(Work work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    return ErrorReply(FromKind(error.GetKind()), error.GetObjectName(), error.what());
+  } catch (const std::exception& error) {
+    return ErrorReply(v1::Error::INTERNAL, "link", error.what());
+  }
+}
+
+inline v1::Reply NotACommand() {
+  return ErrorReply(v1::Error::CORRUPT, "command", "command: the bytes are not a Command message");
+}
+
+} // namespace dspace::session
+
+#endif

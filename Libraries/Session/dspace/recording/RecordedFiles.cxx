@@ -1,0 +1,337 @@
+#include <dspace/recording/RecordedFiles.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <set>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <dspace/Error.h>
+#include <dspace/messages/CommandFiles.h>
+#include <dspace/recording/RecordedNames.h>
+#include <dspace/recording/RecordingFile.h>
+#include <dspace/crs/ProjFolders.h>
+
+namespace dspace::session {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Object(const RecordingReader& reader) {
+  return "recording '" + reader.Path() + "'";
+}
+
+// Whether the files that there were are in the recording, all of them.
+bool IsPacked(const std::vector<RecordingAsset>& assets) {
+  bool any = false;
+  for (const RecordingAsset& asset : assets) {
+    any = any || asset.packed;
+    if (asset.state == "read" && !asset.packed) {
+      return false;
+    }
+  }
+  return any;
+}
+
+[[noreturn]] void HadChanged(const RecordingReader& reader, const RecordingAsset& asset,
+                             const std::string& accepted) {
+  throw Error(Error::Kind::Corrupt, Object(reader),
+              "file '" + asset.path + "' had changed between its reading and its recording" +
+                  accepted);
+}
+
+void RequireAbsent(const RecordingReader& reader, const RecordingAsset& asset) {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(asset.path, error))) {
+    throw Error(Error::Kind::Corrupt, Object(reader),
+                "file '" + asset.path + "' was not there when it was recorded, and now is");
+  }
+}
+
+// The SHA-256 of a file of so many bytes; empty where it has another number of them.
+std::string HashOf(const std::string& path, std::int64_t size, const std::string& object) {
+  std::error_code error;
+  if (std::int64_t(fs::file_size(path, error)) != size && !error) {
+    return {};
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string part(std::size_t(RecordingPartBytes), '\0');
+  Sha256 sum;
+  while (file.read(part.data(), std::streamsize(part.size())), file.gcount() > 0) {
+    sum.Add(part.data(), std::size_t(file.gcount()));
+  }
+  if (!file.eof() || file.bad()) {
+    throw Error(Error::Kind::Io, object, "file '" + path + "', which it needs, cannot be read");
+  }
+  return sum.Finish();
+}
+
+std::string Hexadecimal(const std::string& bytes) {
+  std::string text;
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    text += "0123456789abcdef"[byte >> 4];
+    text += "0123456789abcdef"[byte & 15];
+  }
+  return text;
+}
+
+// An absolute path without "." and "..", of any text.
+std::string Below(const std::string& text) {
+  std::vector<std::string> names;
+  std::string name;
+  for (const char c : text + "/") {
+    if (c != '/') {
+      name += c == '\0' ? std::string() : std::string(1, c);
+      continue;
+    }
+    if (name == "..") {
+      names.resize(names.empty() ? 0 : names.size() - 1);
+    } else if (!name.empty() && name != ".") {
+      names.push_back(name);
+    }
+    name.clear();
+  }
+  std::string path;
+  for (const std::string& each : names) {
+    path += "/" + each;
+  }
+  return path;
+}
+
+} // namespace
+
+// Goes with its content.
+class RecordedFiles::OwnFolder {
+public:
+  explicit OwnFolder(const std::string& object) {
+    std::error_code error;
+    const fs::path above = fs::canonical(fs::temp_directory_path(error), error);
+    std::string name = (above / "dspace-play-XXXXXX").string();
+    if (error || !::mkdtemp(name.data())) {
+      throw Error(Error::Kind::Io, object,
+                  "its files cannot be unpacked below '" + above.string() +
+                      "': " + (error ? error.message() : std::strerror(errno)) +
+                      "; accepted: TMPDIR, a folder to write into");
+    }
+    this->Path = name;
+  }
+  ~OwnFolder() {
+    if (getpid() == this->Process_) { // else it is the parent's, which reads it
+      std::error_code ignored;
+      fs::remove_all(this->Path, ignored);
+    }
+  }
+  OwnFolder(const OwnFolder&) = delete;
+  OwnFolder& operator=(const OwnFolder&) = delete;
+  std::string Path;
+
+private:
+  const pid_t Process_ = getpid();
+};
+
+RecordedFiles::RecordedFiles(RecordingReader& reader, bool check) : Reader_(reader), Check_(check) {
+  this->Update();
+}
+
+RecordedFiles::~RecordedFiles() = default;
+
+void RecordedFiles::Update() {
+  const std::vector<RecordingAsset> assets = this->Reader_.Assets(this->Seen_);
+  if (assets.empty()) {
+    return;
+  }
+  if (this->Owned_) {
+    this->Unpack(assets);
+  } else if (const auto all = this->Reader_.Assets(); IsPacked(all)) {
+    this->Owned_ = std::make_unique<OwnFolder>(Object(this->Reader_));
+    this->Folder_ = this->Owned_->Path;
+    this->Unpack(all);
+  } else if (this->Check_) {
+    this->Check(assets);
+  }
+  for (const RecordingAsset& asset : assets) {
+    this->Seen_ = std::max(this->Seen_, asset.id);
+  }
+}
+
+void RecordedFiles::Check(const std::vector<RecordingAsset>& assets) const {
+  for (const RecordingAsset& asset : assets) {
+    const std::string object = Object(this->Reader_);
+    const std::string named = "file '" + asset.path + "'";
+    std::error_code error;
+    if (asset.state == "changed") {
+      HadChanged(this->Reader_, asset,
+                 "; accepted: only without a look at files (check_assets=False), where its present "
+                 "content will do");
+    }
+    if (asset.state == "absent") {
+      RequireAbsent(this->Reader_, asset);
+    }
+    if (asset.state != "read") { // it could not be read then: a folder, or on a server
+      continue;
+    }
+    if (!fs::is_regular_file(asset.path, error)) {
+      throw Error(Error::Kind::NotFound, object, named + ", which it needs, is not there");
+    }
+    if (HashOf(asset.path, asset.size, object) != asset.sha256) {
+      throw Error(Error::Kind::Corrupt, object,
+                  named + " has changed since it was recorded; accepted: its " +
+                      std::to_string(asset.size) + " bytes of SHA-256 " +
+                      Hexadecimal(asset.sha256));
+    }
+  }
+}
+
+void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
+  std::uintmax_t needed = 0;
+  std::vector<const RecordingAsset*> packed;
+  for (const RecordingAsset& asset : assets) {
+    if (asset.state == "changed") {
+      HadChanged(this->Reader_, asset, "; accepted: one that is packed as it was read");
+    }
+    if (asset.state == "absent" && IsProjGrid(asset.path)) {
+      RequireAbsent(this->Reader_, asset); // PROJ would find it where it is
+    }
+    if (asset.packed) {
+      packed.push_back(&asset);
+      const auto size = std::uintmax_t(std::max<std::int64_t>(asset.size, 0));
+      needed += std::min(size, std::numeric_limits<std::uintmax_t>::max() - needed);
+    }
+  }
+  std::error_code error;
+  const std::uintmax_t free = fs::space(this->Folder_, error).available;
+  if (!error && needed > free) {
+    throw Error(Error::Kind::Resource, Object(this->Reader_),
+                "its files need " + std::to_string(needed) + " bytes in '" + this->Folder_ +
+                    "', where " + std::to_string(free) + " are free; accepted: TMPDIR with more");
+  }
+  for (const RecordingAsset* asset : packed) { // of a path that is there already in its place
+    const auto known = this->Places_.find(asset->path);
+    if (known != this->Places_.end() && fs::is_regular_file(known->second, error)) {
+      fs::remove(known->second, error);
+    }
+  }
+  for (const RecordingAsset* asset : packed) {
+    this->Places_[asset->path] = this->Place(asset->path);
+  }
+  const RecordingReader::PartNumbers numbers = this->Reader_.Parts();
+  for (const RecordingAsset* asset : packed) {
+    const auto parts = numbers.find(asset->id);
+    this->UnpackOne(*asset, parts == numbers.end() ? std::vector<std::int64_t>() : parts->second);
+  }
+  std::set<std::string> folders;
+  for (const auto& entry : this->Places_) {
+    if (IsProjGrid(entry.first)) {
+      folders.insert(fs::path(entry.second).parent_path().string());
+    }
+  }
+  // PROJ would take these for its own, in all of the process.
+  for (const auto& entry : this->Places_) {
+    const fs::path place(entry.second);
+    if ((place.filename() == "proj.db" || place.filename() == "proj.ini") &&
+        folders.count(place.parent_path().string()) != 0) {
+      throw Error(Error::Kind::Corrupt, Object(this->Reader_),
+                  "'" + entry.first + "', packed beside a grid, would stand in for PROJ's own; " +
+                      "accepted: grids without it");
+    }
+  }
+  if (!folders.empty()) {
+    this->Grids_ =
+        std::make_unique<ProjFolders>(std::vector<std::string>(folders.begin(), folders.end()));
+  }
+  const RecordedNames names(this->Places_);
+  for (const auto& entry : this->Places_) { // one that came before may name one that has come now
+    names.Mend(entry.second);
+  }
+}
+
+void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std::int64_t>& parts) {
+  const std::string object = Object(this->Reader_);
+  const std::string named = "'" + asset.path + "'";
+  if (asset.path.empty() || asset.path[0] != '/' || asset.path.find('\0') != std::string::npos) {
+    throw Error(Error::Kind::Corrupt, object, named + " is no path of a file");
+  }
+  const auto fail = [&](int reason) {
+    if (reason == EEXIST || reason == ENOTDIR || reason == EISDIR) {
+      throw Error(Error::Kind::Corrupt, object,
+                  named + " is there twice, or is a file and a folder");
+    }
+    throw Error(Error::Kind::Io, object, named + " cannot be unpacked: " + std::strerror(reason));
+  };
+  const std::string target = this->Place(asset.path);
+  std::error_code error;
+  fs::create_directories(fs::path(target).parent_path(), error);
+  if (error) {
+    fail(error.value());
+  }
+  const int file =
+      ::open(target.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  if (file < 0) {
+    fail(errno);
+  }
+  const std::unique_ptr<const int, void (*)(const int*)> closer(
+      &file, [](const int* each) { ::close(*each); });
+  Sha256 sum;
+  this->Reader_.ReadContent(asset, parts, [&](const std::string& part) {
+    sum.Add(part.data(), part.size());
+    for (std::size_t done = 0; done < part.size();) {
+      const ssize_t n = ::write(file, part.data() + done, part.size() - done);
+      if (n < 0 && errno != EINTR) {
+        fail(errno);
+      }
+      done += n > 0 ? std::size_t(n) : 0;
+    }
+  });
+  if (sum.Finish() != asset.sha256) {
+    throw Error(Error::Kind::Corrupt, object,
+                "the content of " + named +
+                    " is not what it was; `dspace log salvage` brings back "
+                    "what survives");
+  }
+}
+
+std::string RecordedFiles::Place(const std::string& path) const {
+  return this->Folder_.empty() ? path : this->Folder_ + Below(path);
+}
+
+void RecordedFiles::Map(v1::Command& command) const {
+  if (this->Folder_.empty() || command.has_set_poses()) { // which names no file and is most of all
+    return;
+  }
+  MapPaths(command, [this](const std::string& path) { return this->MapPath(path); });
+  if (command.has_open_terrain()) {
+    v1::OpenTerrain& terrain = *command.mutable_open_terrain();
+    const bool built = !terrain.has_build_overviews() || terrain.build_overviews();
+    if (!terrain.has_overview_cache() || !terrain.overview_cache().empty()) {
+      terrain.set_overview_cache(built ? this->Folder_ + "/overviews" : "");
+    }
+  }
+}
+
+std::string RecordedFiles::MapPath(const std::string& path) const {
+  if (path[0] == '/' && path.compare(0, 4, "/vsi") != 0) {
+    return this->Place(path);
+  }
+  const std::pair<const std::string, std::string>* longest = nullptr;
+  for (const auto& entry : this->Places_) { // a part of a file: "/vsizip/...", NETCDF:"..."
+    if (path.find(entry.first) != std::string::npos &&
+        (!longest || entry.first.size() > longest->first.size())) {
+      longest = &entry;
+    }
+  }
+  std::string mapped = path;
+  for (std::size_t at = 0; longest && (at = mapped.find(longest->first, at)) != std::string::npos;
+       at += longest->second.size()) {
+    mapped.replace(at, longest->first.size(), longest->second);
+  }
+  return mapped;
+}
+
+} // namespace dspace::session

@@ -1,0 +1,127 @@
+#include <dspace/recording/RecordingAssets.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <zlib.h>
+
+#include <dspace/raster/DatasetFiles.h>
+
+namespace dspace::session {
+namespace {
+
+constexpr auto PartBytes = std::size_t(RecordingPartBytes);
+constexpr std::size_t TransactionBytes = 64u << 20;
+
+// Empty where zlib saves less than a tenth.
+std::string Compress(const std::string& part) {
+  std::string out(part.size() - part.size() / 10, '\0');
+  uLongf size = out.size();
+  if (compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                reinterpret_cast<const Bytef*>(part.data()), part.size(), 1) != Z_OK) {
+    return {};
+  }
+  out.resize(size);
+  return out;
+}
+
+} // namespace
+
+void RecordingAssets::Put(const std::string& path, const FileStamp& stamp) {
+  const auto [known, isNew] = this->Known_.emplace(path, stamp);
+  if (!isNew) {
+    if (!(known->second == stamp)) {
+      known->second = stamp;
+      this->PutRow(path, "changed");
+    }
+    return;
+  }
+  this->PutOne(path, stamp);
+  for (const std::string& part : MosaicFiles(path)) {
+    const FileStamp now = FileStamp::Of(part);
+    if (this->Known_.emplace(part, now).second) {
+      this->PutOne(part, now);
+    }
+  }
+}
+
+void RecordingAssets::PutRow(const std::string& path, const char* state) {
+  RecordingAsset asset;
+  asset.id = ++this->Assets_;
+  asset.path = path;
+  asset.state = state;
+  this->File_.Put(asset);
+  if (this->Pack_ && asset.state != "absent") {
+    this->Missing_.push_back(path);
+  }
+}
+
+void RecordingAssets::PutOne(const std::string& path, const FileStamp& stamp) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  // What is on a server is no file here, and not absent.
+  if (status.type() == fs::file_type::not_found && fs::path(path).is_absolute() &&
+      path.compare(0, 4, "/vsi") != 0 && path.find("://") == std::string::npos) {
+    this->PutRow(path, stamp.size < 0 ? "absent" : "changed");
+    return;
+  }
+  RecordingAsset asset;
+  asset.path = path;
+  asset.id = this->Assets_ + 1;
+  if (!fs::is_regular_file(status) || !this->Read(asset)) {
+    this->PutRow(path, "unreadable");
+    return;
+  }
+  if (!(FileStamp::Of(path) == stamp)) {
+    this->PutRow(path, "changed");
+    return;
+  }
+  ++this->Assets_;
+  asset.state = "read";
+  asset.packed = this->Pack_;
+  this->File_.Put(asset);
+}
+
+bool RecordingAssets::Read(RecordingAsset& asset) {
+  std::ifstream file(asset.path, std::ios::binary);
+  std::string part(PartBytes, '\0');
+  Sha256 sum;
+  this->Incompressible_ = 0;
+  while (file.read(part.data(), std::streamsize(PartBytes)), file.gcount() > 0) {
+    part.resize(std::size_t(file.gcount()));
+    sum.Add(part.data(), part.size());
+    if (this->Pack_) {
+      this->PutPart(asset, part);
+    }
+    asset.size += std::int64_t(part.size());
+    part.resize(PartBytes);
+  }
+  asset.sha256 = sum.Finish();
+  return file.eof() && !file.bad();
+}
+
+void RecordingAssets::PutPart(RecordingAsset& asset, const std::string& part) {
+  RecordingContent content;
+  content.id = ++this->Parts_;
+  content.asset = asset.id;
+  content.place = asset.size;
+  content.size = std::int64_t(part.size());
+  if (this->Incompressible_ == 0) {
+    content.data = Compress(part);
+    this->Incompressible_ = content.data.empty() ? 8 : 1;
+  }
+  --this->Incompressible_;
+  if (content.data.empty()) {
+    content.data = part;
+  }
+  this->File_.Put(content);
+  this->Uncommitted_ += content.data.size();
+  if (this->Uncommitted_ >= TransactionBytes) {
+    this->Uncommitted_ = 0;
+    this->File_.Commit();
+    this->File_.Begin();
+  }
+}
+
+} // namespace dspace::session

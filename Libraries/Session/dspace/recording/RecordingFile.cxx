@@ -1,0 +1,255 @@
+#include <dspace/recording/RecordingFile.h>
+
+#include <array>
+#include <cstring>
+#include <fstream>
+
+#include <openssl/evp.h>
+#include <sqlite3.h>
+
+#include <dspace/Error.h>
+#include <dspace/recording/RecordingWriter.h>
+
+namespace dspace::session {
+namespace {
+
+constexpr std::size_t ChecksumBytes = 16;
+constexpr const char* Schema = R"(
+CREATE TABLE meta(key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+CREATE TABLE command(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT NULL,
+  kind INTEGER NOT NULL, payload BLOB NOT NULL, checksum BLOB NOT NULL);
+CREATE TABLE snapshot(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT NULL,
+  kind INTEGER NOT NULL, payload BLOB NOT NULL, checksum BLOB NOT NULL);
+-- The steps of the simulation: SetTime is command 13.
+CREATE INDEX step ON command(time) WHERE kind = 13;
+CREATE TABLE asset(id INTEGER PRIMARY KEY, path TEXT NOT NULL, state TEXT NOT NULL,
+  size INTEGER NOT NULL, sha256 BLOB NOT NULL, packed INTEGER NOT NULL, checksum BLOB NOT NULL);
+CREATE TABLE content(id INTEGER PRIMARY KEY, asset INTEGER NOT NULL, place INTEGER NOT NULL,
+  size INTEGER NOT NULL, data BLOB NOT NULL, checksum BLOB NOT NULL);
+)";
+
+template<class Number> void Add(Sha256& sum, Number value) {
+  sum.Add(&value, sizeof value); // little-endian, as are the machines that Dspace runs on
+}
+
+} // namespace
+
+Sha256::Sha256() : Context_(EVP_MD_CTX_new()) {
+  if (!this->Context_ ||
+      EVP_DigestInit_ex(static_cast<EVP_MD_CTX*>(this->Context_), EVP_sha256(), nullptr) != 1) {
+    throw Error(Error::Kind::Internal, "recording", "SHA-256 is not available");
+  }
+}
+
+Sha256::~Sha256() {
+  EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(this->Context_));
+}
+
+void Sha256::Add(const void* data, std::size_t size) {
+  EVP_DigestUpdate(static_cast<EVP_MD_CTX*>(this->Context_), data, size);
+}
+
+std::string Sha256::Finish() {
+  const auto context = static_cast<EVP_MD_CTX*>(this->Context_);
+  std::string digest(32, '\0');
+  EVP_DigestFinal_ex(context, reinterpret_cast<unsigned char*>(digest.data()), nullptr);
+  EVP_DigestInit_ex(context, nullptr, nullptr); // the same digest anew
+  return digest;
+}
+
+std::string RecordingChecksum(Sha256& sum, const RecordingRow& row) {
+  std::array<char, 29> head;
+  head[0] = row.snapshot ? 'S' : 'C';
+  std::memcpy(head.data() + 1, &row.seq, 8);
+  std::memcpy(head.data() + 9, &row.time_s, 8);
+  std::memcpy(head.data() + 17, &row.wall_s, 8);
+  std::memcpy(head.data() + 25, &row.kind, 4);
+  sum.Add(head.data(), head.size());
+  sum.Add(row.payload.data(), row.payload.size());
+  return sum.Finish().substr(0, ChecksumBytes);
+}
+
+std::string RecordingChecksum(const RecordingRow& row) {
+  Sha256 sum;
+  return RecordingChecksum(sum, row);
+}
+
+std::string RecordingChecksum(const RecordingAsset& asset) {
+  Sha256 sum;
+  sum.Add("A", 1);
+  Add(sum, asset.id);
+  Add(sum, asset.size);
+  Add(sum, char(asset.packed));
+  for (const std::string* text : {&asset.state, &asset.path, &asset.sha256}) {
+    Add(sum, std::uint64_t(text->size()));
+  }
+  for (const std::string* text : {&asset.state, &asset.path, &asset.sha256}) {
+    sum.Add(text->data(), text->size());
+  }
+  return sum.Finish().substr(0, ChecksumBytes);
+}
+
+std::string RecordingChecksum(const RecordingContent& content) {
+  Sha256 sum;
+  sum.Add("P", 1);
+  for (const std::int64_t number : {content.id, content.asset, content.place, content.size}) {
+    Add(sum, number);
+  }
+  sum.Add(content.data.data(), content.data.size());
+  return sum.Finish().substr(0, ChecksumBytes);
+}
+
+RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages,
+                             int checkpointPages)
+    : Path_(path) {
+  if (std::ifstream(path).good()) {
+    throw Error(Error::Kind::AlreadyExists, "recording '" + path + "'",
+                "there is a file of this name; accepted: a new one");
+  }
+  if (sqlite3_open_v2(path.c_str(), &this->Database_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
+                      nullptr) != SQLITE_OK) {
+    const std::string why = this->Database_ ? sqlite3_errmsg(this->Database_) : "out of memory";
+    this->Close();
+    throw Error(Error::Kind::Io, "recording '" + path + "'", why);
+  }
+  try {
+    sqlite3_busy_timeout(this->Database_, 10000); // a reader that checkpoints
+    this->Run("PRAGMA page_size=65536");          // a step of a thousand poses in few pages
+    this->Run("PRAGMA journal_mode=WAL");
+    this->Run("PRAGMA synchronous=NORMAL");
+    this->Run("PRAGMA cache_size=-16384");    // KiB: a transaction is written once, at its end
+    this->Run("PRAGMA wal_autocheckpoint=0"); // RecordingCheckpoints does it
+    if (maximumPages > 0) {
+      this->Run(("PRAGMA max_page_count=" + std::to_string(maximumPages)).c_str());
+    }
+    this->Begin();
+    this->Run(Schema);
+    this->Run(
+        ("INSERT INTO meta VALUES('format', " + std::to_string(RecordingFormat) + ")").c_str());
+    this->Commit();
+    this->Command_ = this->Prepare("INSERT INTO command VALUES(?,?,?,?,?,?)");
+    this->Snapshot_ = this->Prepare("INSERT INTO snapshot VALUES(?,?,?,?,?,?)");
+    this->Asset_ = this->Prepare("INSERT INTO asset VALUES(?,?,?,?,?,?,?)");
+    this->Content_ = this->Prepare("INSERT INTO content VALUES(?,?,?,?,?,?)");
+    this->Lost_ = this->Prepare("INSERT OR REPLACE INTO meta VALUES('lost', ?)");
+    sqlite3_wal_hook(
+        this->Database_,
+        [](void* self, sqlite3*, const char*, int pages) {
+          static_cast<RecordingFile*>(self)->PagesInLog_ = pages;
+          return SQLITE_OK;
+        },
+        this);
+    this->Checkpoints_ = std::make_unique<RecordingCheckpoints>(path, checkpointPages);
+  } catch (...) {
+    this->Close();
+    throw;
+  }
+}
+
+RecordingFile::~RecordingFile() {
+  this->Close();
+}
+
+void RecordingFile::Close() noexcept {
+  this->Checkpoints_.reset();
+  for (sqlite3_stmt* statement :
+       {this->Command_, this->Snapshot_, this->Asset_, this->Content_, this->Lost_}) {
+    sqlite3_finalize(statement);
+  }
+  if (this->Database_) {
+    // All goes into the file itself, also while somebody has it open (else the last one who closes it
+    // would have to be able to write it), as far as nobody is in the middle of reading.
+    sqlite3_busy_timeout(this->Database_, 2000);
+    sqlite3_wal_checkpoint_v2(this->Database_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr,
+                              nullptr);
+    // If nobody has it open it needs no log any more, and can be read where nothing can be written.
+    sqlite3_busy_timeout(this->Database_, 0);
+    sqlite3_exec(this->Database_, "PRAGMA journal_mode=DELETE", nullptr, nullptr, nullptr);
+  }
+  sqlite3_close(this->Database_);
+}
+
+void RecordingFile::Fail(const char* what) {
+  throw Error(Error::Kind::Io, "recording '" + this->Path_ + "'",
+              std::string(what) + ": " + sqlite3_errmsg(this->Database_));
+}
+
+void RecordingFile::Run(const char* sql) {
+  if (sqlite3_exec(this->Database_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) {
+    this->Fail("it cannot be written");
+  }
+}
+
+sqlite3_stmt* RecordingFile::Prepare(const char* sql) {
+  sqlite3_stmt* statement = nullptr;
+  if (sqlite3_prepare_v2(this->Database_, sql, -1, &statement, nullptr) != SQLITE_OK) {
+    this->Fail("it cannot be written");
+  }
+  return statement;
+}
+
+void RecordingFile::Step(sqlite3_stmt* statement) {
+  const int result = sqlite3_step(statement);
+  sqlite3_reset(statement);
+  if (result != SQLITE_DONE) {
+    this->Fail("it cannot be written");
+  }
+}
+
+void RecordingFile::Begin() {
+  this->Run("BEGIN IMMEDIATE");
+}
+
+void RecordingFile::Commit() {
+  this->Run("COMMIT");
+  if (this->Checkpoints_) {
+    this->Checkpoints_->After(this->Database_, this->PagesInLog_);
+  }
+}
+
+void RecordingFile::Rollback() noexcept {
+  sqlite3_exec(this->Database_, "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void RecordingFile::Put(const RecordingRow& row, const std::string& checksum) {
+  sqlite3_stmt* statement = row.snapshot ? this->Snapshot_ : this->Command_;
+  sqlite3_bind_int64(statement, 1, sqlite3_int64(row.seq));
+  sqlite3_bind_double(statement, 2, row.time_s);
+  sqlite3_bind_double(statement, 3, row.wall_s);
+  sqlite3_bind_int(statement, 4, row.kind);
+  sqlite3_bind_blob64(statement, 5, row.payload.data(), row.payload.size(), SQLITE_STATIC);
+  sqlite3_bind_blob64(statement, 6, checksum.data(), checksum.size(), SQLITE_STATIC);
+  this->Step(statement);
+}
+
+void RecordingFile::PutLost(const std::string& ranges) {
+  sqlite3_bind_text(this->Lost_, 1, ranges.data(), int(ranges.size()), SQLITE_STATIC);
+  this->Step(this->Lost_);
+}
+
+void RecordingFile::Put(const RecordingAsset& asset) {
+  const std::string checksum = RecordingChecksum(asset);
+  sqlite3_stmt* statement = this->Asset_;
+  sqlite3_bind_int64(statement, 1, asset.id);
+  sqlite3_bind_text(statement, 2, asset.path.data(), int(asset.path.size()), SQLITE_STATIC);
+  sqlite3_bind_text(statement, 3, asset.state.data(), int(asset.state.size()), SQLITE_STATIC);
+  sqlite3_bind_int64(statement, 4, asset.size);
+  sqlite3_bind_blob64(statement, 5, asset.sha256.data(), asset.sha256.size(), SQLITE_STATIC);
+  sqlite3_bind_int(statement, 6, asset.packed ? 1 : 0);
+  sqlite3_bind_blob64(statement, 7, checksum.data(), checksum.size(), SQLITE_STATIC);
+  this->Step(statement);
+}
+
+void RecordingFile::Put(const RecordingContent& content) {
+  const std::string checksum = RecordingChecksum(content);
+  sqlite3_stmt* statement = this->Content_;
+  sqlite3_bind_int64(statement, 1, content.id);
+  sqlite3_bind_int64(statement, 2, content.asset);
+  sqlite3_bind_int64(statement, 3, content.place);
+  sqlite3_bind_int64(statement, 4, content.size);
+  sqlite3_bind_blob64(statement, 5, content.data.data(), content.data.size(), SQLITE_STATIC);
+  sqlite3_bind_blob64(statement, 6, checksum.data(), checksum.size(), SQLITE_STATIC);
+  this->Step(statement);
+}
+
+} // namespace dspace::session

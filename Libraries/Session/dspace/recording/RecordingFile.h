@@ -1,0 +1,98 @@
+// The tables of a recording: made and filled. Used from one thread at a time.
+#ifndef DSPACE_SESSION_RECORDING_FILE_H
+#define DSPACE_SESSION_RECORDING_FILE_H
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <dspace/recording/RecordingAsset.h>
+#include <dspace/recording/RecordingCheckpoints.h>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace dspace::session {
+
+class Sha256 {
+public:
+  Sha256();
+  ~Sha256();
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+  void Add(const void* data, std::size_t size);
+  std::string Finish(); // 32 bytes; ready for the next one
+
+private:
+  void* Context_;
+};
+
+// A row before its checksum.
+struct RecordingRow {
+  bool snapshot = false;
+  std::uint64_t seq = 0; // of a snapshot: the command after which it was taken; 0: before any
+  double time_s = 0.0;   // of the simulation
+  double wall_s = 0.0;   // seconds past 1970 UTC
+  std::int32_t kind = 0; // field number of the command; of a snapshot: the number of its commands
+  std::string payload;
+};
+
+// The first 16 bytes of the SHA-256 of the letter C (a command) or S (a snapshot), seq (8 bytes),
+// time_s, wall_s (doubles) and kind (4 bytes), all little-endian, and the payload.
+std::string RecordingChecksum(const RecordingRow& row);
+// As above; `sum` is kept, since making one takes longer than a small row.
+std::string RecordingChecksum(Sha256& sum, const RecordingRow& row);
+
+// A part of a packed file's content.
+struct RecordingContent {
+  std::int64_t id = 0;
+  std::int64_t asset = 0;
+  std::int64_t place = 0; // byte of the file that it begins with
+  std::int64_t size = 0;  // bytes of the file; where `data` has fewer, it is zlib's
+  std::string data;
+};
+
+// As above, each number after its letter: A, id, size, packed (1 byte), the lengths of state, path
+// and hash, these. P, id, asset, place, size, data. Numbers have 8 bytes.
+std::string RecordingChecksum(const RecordingAsset& asset);
+std::string RecordingChecksum(const RecordingContent& content);
+
+// Throws Error(Io) with SQLite's words.
+class RecordingFile {
+public:
+  RecordingFile(const std::string& path, std::int64_t maximumPages, int checkpointPages);
+  ~RecordingFile();
+  RecordingFile(const RecordingFile&) = delete;
+  RecordingFile& operator=(const RecordingFile&) = delete;
+
+  void Begin();
+  // `checksum`: RecordingChecksum(row).
+  void Put(const RecordingRow& row, const std::string& checksum);
+  // Commands that nobody has: "3-5 9-9".
+  void PutLost(const std::string& ranges);
+  void Put(const RecordingAsset& asset);
+  void Put(const RecordingContent& content);
+  void Commit();
+  void Rollback() noexcept;
+
+private:
+  void Run(const char* sql);
+  sqlite3_stmt* Prepare(const char* sql);
+  void Step(sqlite3_stmt* statement);
+  [[noreturn]] void Fail(const char* what);
+  void Close() noexcept;
+
+  std::string Path_;
+  sqlite3* Database_ = nullptr;
+  sqlite3_stmt* Command_ = nullptr;
+  sqlite3_stmt* Snapshot_ = nullptr;
+  sqlite3_stmt* Asset_ = nullptr;
+  sqlite3_stmt* Content_ = nullptr;
+  sqlite3_stmt* Lost_ = nullptr;
+  int PagesInLog_ = 0;
+  std::unique_ptr<RecordingCheckpoints> Checkpoints_;
+};
+
+} // namespace dspace::session
+
+#endif

@@ -1,0 +1,73 @@
+// What an interpreter owns: scenes, and what hangs on them besides what the core keeps.
+#ifndef DSPACE_SESSION_STATE_H
+#define DSPACE_SESSION_STATE_H
+
+#include <array>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <dspace/scene/Scene.h>
+#include <dspace/scene/Trail.h>
+#include <dspace/messages/CommandFiles.h>
+#include <dspace/state/FrameEventLog.h>
+#include <dspace/state/MessageLog.h>
+#include <dspace/state/ModelCache.h>
+#include <dspace/state/Robot.h>
+#include <dspace/state/Telemetry.h>
+#include <dspace/state/TerrainObject.h>
+#include <dspace/proto/objects.pb.h>
+
+namespace dspace::session {
+
+constexpr const char* DefaultScene = "scene";
+constexpr const char* DefaultVantage = "main";
+
+// One scene with its robots, terrains and trails, by name or object.
+struct SceneState {
+  std::shared_ptr<Scene> scene;
+  std::map<std::string, std::unique_ptr<Robot>> robots;
+  std::map<std::string, std::unique_ptr<TerrainObject>> terrains;
+  std::map<ObjectId, Trail> trails;
+  std::set<ObjectId> primitives;                       // objects whose shape may be replaced
+  std::map<ObjectId, std::pair<double, double>> tilts; // warning and limit of tilt markers [deg]
+  std::map<ObjectId, v1::CreateText> texts;            // with their style
+  Telemetry telemetry;
+  MessageLog messages;
+  std::unique_ptr<FrameFollower> follower;             // null while nobody follows the frames
+
+  // Drops the robots, terrains, trails and primitives whose frames or objects are gone.
+  void ForgetRemoved();
+};
+
+// A viewport as the interpreter knows it, whoever draws it.
+struct ViewportPlace {
+  std::string scene;
+  std::string vantage;
+  std::string camera; // empty: the vantage's active one
+  int x = 0;          // pixels, in a window or a sheet of several
+  int y = 0;
+  bool ornaments = true;
+  bool cornerAxes = false;
+  std::array<double, 3> background = {0, 0, 0};
+  std::array<double, 3> backgroundTop = {0, 0, 0};
+  std::set<std::string> hiddenFragments; // in this viewport only
+};
+
+struct State {
+  FrameEventLog frameEvents; // before the scenes, whose followers write into it
+  std::map<std::string, SceneState> scenes;
+  std::map<std::string, ViewportPlace> viewports;
+  ModelCache models;
+  std::uint64_t lastTelemetryId = 0; // of all scenes that there were
+  CommandFiles files;
+
+  // Throws Error(NotFound) naming the scenes there are.
+  SceneState& FindScene(const std::string& name);
+};
+
+} // namespace dspace::session
+
+#endif

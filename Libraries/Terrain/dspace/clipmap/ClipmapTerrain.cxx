@@ -1,0 +1,144 @@
+#include <dspace/clipmap/ClipmapTerrain.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <dspace/Error.h>
+#include <dspace/clipmap/ClipmapLevels.h>
+
+namespace dspace {
+namespace {
+
+BoundingSphere BoundsOf(const PostLattice& lattice, const PostPlacement& placement,
+                        const std::array<double, 2>& heights) {
+  BoundingSphere sphere;
+  if (placement.OnBody()) {
+    sphere.radius = placement.Radius() + std::max(heights[0], heights[1]);
+    return sphere;
+  }
+  Eigen::AlignedBox3d box;
+  for (const double c : {0.0, double(lattice.columns - 1)}) {
+    for (const double r : {0.0, double(lattice.rows - 1)}) {
+      for (const double h : heights) {
+        box.extend(placement.ToScene({c, r}, h));
+      }
+    }
+  }
+  sphere.center = box.center();
+  sphere.radius = 0.5 * box.diagonal().norm();
+  return sphere;
+}
+
+// IEC 61966-2-1.
+double Linear(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+// Of all pixels, in linear light.
+Eigen::Vector3d MeanOf(const Image& image) {
+  std::array<double, 256> linear;
+  for (std::size_t v = 0; v < linear.size(); ++v) {
+    linear[v] = Linear(double(v) / 255.0);
+  }
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const std::size_t count = std::size_t(image.width) * image.height;
+  const auto channels = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum[Eigen::Index(k)] += linear[image.pixels[i * channels + (channels < 3 ? 0 : k)]];
+    }
+  }
+  return (sum / double(count)).cwiseMax(1e-4);
+}
+
+} // namespace
+
+ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
+                               const PostPlacement& placement, const ClipmapOptions& options,
+                               std::vector<ClipmapChart> poles, std::vector<ColorGrid> grids)
+    : Charts_{{std::move(pyramid), placement}}, Options_(options),
+      Bounds_(BoundsOf(Charts_[0].pyramid->Lattice(), placement, options.heights)),
+      Grids_(std::move(grids)) {
+  const std::string& name = this->Pyramid()->Source().GetName();
+  for (ClipmapChart& pole : poles) {
+    this->Charts_.push_back(std::move(pole));
+  }
+  if (options.cells > 252) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "level size " + std::to_string(options.cells) +
+                    " is refused; accepted is 12 to 252");
+  }
+  for (const ClipmapChart& chart : this->Charts_) {
+    ClipmapLevels(chart.pyramid, options.cells); // refuses what cannot be drawn
+  }
+  if (!(options.heights[0] <= options.heights[1]) || !std::isfinite(options.heights[0]) ||
+      !std::isfinite(options.heights[1])) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "its least height must not exceed its greatest");
+  }
+  if (!this->Grids_.empty() && this->Grids_.size() != this->Charts_.size()) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                std::to_string(this->Grids_.size()) +
+                    " grids of colour layers are refused; accepted: " +
+                    std::to_string(this->Charts_.size()) + ", one a chart, or none");
+  }
+  if (!this->Grids_.empty()) {
+    this->Layers_ = std::make_shared<LayerStack>(name);
+  }
+  if (!this->Options_.material) {
+    this->Options_.material = std::make_shared<const Material>();
+  }
+}
+
+std::uint64_t ClipmapTerrain::Revision() const {
+  std::uint64_t revision = this->StyleRevision_ + (this->Layers_ ? this->Layers_->Revision() : 0);
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    revision += this->Tiles_ ? this->Tiles_->Arrivals() : 0;
+  }
+  for (const ClipmapChart& chart : this->Charts_) {
+    revision += chart.pyramid->Arrivals();
+  }
+  return revision;
+}
+
+ColorTiles& ClipmapTerrain::Tiles() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  if (!this->Tiles_) {
+    this->Tiles_ = std::make_unique<ColorTiles>(this->Layers_, this->Grids_);
+  }
+  return *this->Tiles_;
+}
+
+ColorTilesStatistics ClipmapTerrain::TileStatistics() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  return this->Tiles_ ? this->Tiles_->Statistics() : ColorTilesStatistics();
+}
+
+std::size_t ClipmapTerrain::ChartAt(const Eigen::Vector3d& p_S) const {
+  const double sine = p_S.z() / std::max(p_S.norm(), 1e-300);
+  for (std::size_t i = 1; i < this->Charts_.size(); ++i) {
+    // 60 degrees: there a degree of longitude is half as long as one of latitude.
+    if ((this->Charts_[i].placement.South() ? -sine : sine) > std::sqrt(0.75)) {
+      return i;
+    }
+  }
+  return 0;
+}
+
+void ClipmapTerrain::SetStyle(const ClipmapStyle& style) {
+  style.Check(this->Pyramid()->Source().GetName());
+  if (!style.details.empty() && this->Placement().OnBody()) {
+    throw Error(Error::Kind::Unsupported, this->Pyramid()->Source().GetName(),
+                "details tile a plane; accepted on a body: none");
+  }
+  std::vector<Eigen::Vector3d> means;
+  for (const ClipmapStyle::Detail& detail : style.details) {
+    means.push_back(MeanOf(*detail.image));
+  }
+  this->DetailMeans_ = std::move(means);
+  this->Style_ = style;
+  ++this->StyleRevision_;
+}
+
+} // namespace dspace

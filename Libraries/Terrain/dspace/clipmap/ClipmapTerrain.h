@@ -1,0 +1,88 @@
+// Terrain that is drawn as a clipmap: its posts, where they stand, and how they look.
+#ifndef DSPACE_TERRAIN_CLIPMAPTERRAIN_H
+#define DSPACE_TERRAIN_CLIPMAPTERRAIN_H
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include <dspace/layers/ColorTiles.h>
+#include <dspace/scene/CustomGeometry.h>
+#include <dspace/scene/GraphicsObject.h>
+#include <dspace/clipmap/ClipmapStyle.h>
+#include <dspace/pyramid/ElevationPyramid.h>
+#include <dspace/posts/PostPlacement.h>
+
+namespace dspace {
+
+struct ClipmapOptions {
+  int cells = 124;                          // a side of each level: a multiple of 4 from 12 to 252
+  std::array<double, 2> heights = {0, 0};   // [m] that the posts stay within
+  std::shared_ptr<const Material> material; // null: Material's defaults
+  // From level-0 posts (c, r) to the texture coordinates of the material's texture; (0, 0) is its
+  // bottom-left corner.
+  Eigen::Affine2d postToTexture = Eigen::Affine2d::Identity();
+  // From level-0 posts to the map's coordinates, along which a plane's grid lines run; a body's run
+  // along its meridians and parallels [deg].
+  Eigen::Affine2d postToMap = Eigen::Affine2d::Identity();
+  double deadline = 60.0; // [s] that a picture that is kept waits for its data
+};
+
+// Posts and where they stand.
+struct ClipmapChart {
+  std::shared_ptr<ElevationPyramid> pyramid;
+  PostPlacement placement;
+};
+
+class ClipmapTerrain : public CustomGeometry {
+public:
+  // `poles`: charts (Pole) of a whole body's poles, which are drawn instead while the camera is
+  // within 30 degrees of one. `grids`: where colour layers lie, one a chart (ColorGridsOf); none:
+  // there are no layers. Throws Error(InvalidArgument) for an option out of range.
+  ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid, const PostPlacement& placement,
+                 const ClipmapOptions& options, std::vector<ClipmapChart> poles = {},
+                 std::vector<ColorGrid> grids = {});
+
+  BoundingSphere Bounds() const override { return this->Bounds_; }
+  std::uint64_t Revision() const override;
+
+  // May change at any time between two pictures. Throws what ClipmapStyle::Check throws, and
+  // Error(Unsupported) for details on a body.
+  void SetStyle(const ClipmapStyle& style);
+  const ClipmapStyle& Style() const { return this->Style_; }
+  // Mean colours of the style's details, linear light.
+  const std::vector<Eigen::Vector3d>& DetailMeans() const { return this->DetailMeans_; }
+
+  // What is painted on it, under the style; it may change at any time. Null without grids.
+  const std::shared_ptr<LayerStack>& Layers() const { return this->Layers_; }
+  const std::vector<ColorGrid>& Grids() const { return this->Grids_; }
+  // Theirs; made at the first call, which starts threads. Not without grids.
+  ColorTiles& Tiles() const;
+  // As they are so far; nothing where no picture has asked for any.
+  ColorTilesStatistics TileStatistics() const;
+
+  // The terrain's own, which comes first, then the poles'.
+  const std::vector<ClipmapChart>& Charts() const { return this->Charts_; }
+  const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Charts_[0].pyramid; }
+  const PostPlacement& Placement() const { return this->Charts_[0].placement; }
+  // Index of the chart that is drawn for a camera at p_S.
+  std::size_t ChartAt(const Eigen::Vector3d& p_S) const;
+  const ClipmapOptions& Options() const { return this->Options_; }
+
+private:
+  std::vector<ClipmapChart> Charts_;
+  ClipmapOptions Options_;
+  BoundingSphere Bounds_;
+  ClipmapStyle Style_;
+  std::vector<Eigen::Vector3d> DetailMeans_;
+  std::uint64_t StyleRevision_ = 0;
+  std::vector<ColorGrid> Grids_;
+  std::shared_ptr<LayerStack> Layers_;
+  mutable std::mutex Mutex_; // of what follows
+  mutable std::unique_ptr<ColorTiles> Tiles_;
+};
+
+} // namespace dspace
+
+#endif

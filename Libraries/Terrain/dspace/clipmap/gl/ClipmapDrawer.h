@@ -1,0 +1,69 @@
+// Draws a ClipmapTerrain with OpenGL.
+#ifndef DSPACE_TERRAIN_CLIPMAPDRAWER_H
+#define DSPACE_TERRAIN_CLIPMAPDRAWER_H
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <dspace/clipmap/gl/LayerDrawing.h>
+#include <dspace/render/CustomDrawer.h>
+#include <dspace/clipmap/arithmetic/ClipmapIndices.h>
+#include <dspace/clipmap/ClipmapLevels.h>
+#include <dspace/clipmap/ClipmapTerrain.h>
+
+namespace dspace {
+
+// From now on scenes may hold a ClipmapTerrain. Any number of calls.
+void RegisterClipmapDrawer();
+
+// One layer of a texture array holds a level's posts; each level is drawn as a ring around the next
+// finer one with indices that all levels share, in blocks that are left out where the view does not
+// see them. Of a body the chart under the camera is drawn.
+class ClipmapDrawer : public CustomDrawer {
+public:
+  // The terrain is not kept alive: it is drawn while a scene has it, and then this goes, too.
+  explicit ClipmapDrawer(const ClipmapTerrain& terrain);
+  ~ClipmapDrawer() override;
+
+  bool Prepare(const CustomDrawing& drawing) override;
+  void DrawColor(const CustomDrawing& drawing) override;
+  void DrawLabels(const CustomDrawing& drawing) override;
+  std::vector<Caption> Captions(const CustomDrawing& drawing, const RenderTarget& target) override;
+
+private:
+  // What is kept of one chart of the terrain.
+  struct Chart {
+    Chart(const ClipmapChart& from, const ClipmapOptions& options)
+        : placement(from.placement), levels(from.pyramid, options.cells), heights(options.heights) {
+    }
+    PostPlacement placement;
+    ClipmapLevels levels;
+    ClipmapLevels::State state;
+    std::array<double, 2> heights; // [m] that nothing that is drawn leaves; at first a guess
+    unsigned int texture = 0;
+    // Some level of it is there.
+    bool Drawable() const { return this->state.finest < this->levels.Count(); }
+  };
+  void LoadTextures(const CustomDrawing& drawing) const;
+  void Update(Chart& chart, const CustomDrawing& drawing) const;
+  static void UpdateAbout(Chart& chart, const Eigen::Vector3d& p_S, const CustomDrawing& drawing,
+                          double deadline);
+  bool PrepareLayers(const CustomDrawing& drawing);
+  void Create();
+  static void CreateTexture(Chart& chart);
+  void Draw(const CustomDrawing& drawing, unsigned features);
+
+  const ClipmapTerrain* Terrain_;
+  ClipmapIndices Indices_;
+  std::vector<std::unique_ptr<Chart>> Charts_; // of the terrain's; null until the camera is there
+  Chart* Active_ = nullptr;
+  LayerDrawing Layers_;
+  unsigned int VertexArray_ = 0;
+  unsigned int VertexBuffer_ = 0;
+  unsigned int IndexBuffer_ = 0;
+};
+
+} // namespace dspace
+
+#endif

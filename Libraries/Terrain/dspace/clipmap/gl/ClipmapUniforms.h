@@ -1,0 +1,60 @@
+// What a clipmap's shaders are told. Not a public header.
+#ifndef DSPACE_TERRAIN_CLIPMAPUNIFORMS_H
+#define DSPACE_TERRAIN_CLIPMAPUNIFORMS_H
+
+#include <string>
+
+#include <dspace/render/CustomDrawer.h>
+#include <dspace/clipmap/ClipmapLevels.h>
+#include <dspace/clipmap/ClipmapTerrain.h>
+
+class vtkShaderProgram;
+
+namespace dspace {
+
+// The camera over one chart of a terrain, in double precision.
+struct ClipmapCamera {
+  Eigen::Affine3d X_VS = Eigen::Affine3d::Identity(); // view axes from the terrain's frame
+  Eigen::Vector3d position = Eigen::Vector3d::Zero(); // in the terrain's frame
+  Eigen::Vector3d posts = Eigen::Vector3d::Zero();    // of it: column, row, height
+  float mirrored = 1.0f; // 1 where triangles turn counter-clockwise seen from above
+
+  ClipmapCamera(const Eigen::Affine3d& X_VS, const PostPlacement& placement);
+};
+
+// [m] of a level-0 cell at the lattice's nearest place.
+double CellSizeNear(const PostPlacement& placement, const PostLattice& lattice,
+                    const Eigen::Vector2d& post);
+
+class ClipmapUniforms {
+public:
+  ClipmapUniforms(vtkShaderProgram* program, const ClipmapTerrain& terrain,
+                  const PostPlacement& placement, const ClipmapLevels& levels,
+                  const ClipmapLevels::State& state, const ClipmapCamera& camera)
+      : Program_(program), Terrain_(terrain), Placement_(placement), Levels_(levels), State_(state),
+        Camera_(camera) {}
+
+  // Lines of definitions that the placement and the style ask of the shaders.
+  static std::string Defines(const PostPlacement& placement, const ClipmapStyle* style);
+
+  void SetLook(const GraphicsObject& object) const; // not for labels
+  void SetStyle(const CustomDrawing& drawing) const;
+  void SetPlacement() const; // the same for all levels
+  void SetLevel(int level) const;
+
+private:
+  void SetDetails(const CustomDrawing& drawing) const;
+  void SetExtent(int level, const Eigen::Vector2d& first) const;
+  void SetMaps(int level, const Eigen::Vector2d& first) const;
+
+  vtkShaderProgram* Program_;
+  const ClipmapTerrain& Terrain_;
+  const PostPlacement& Placement_;
+  const ClipmapLevels& Levels_;
+  const ClipmapLevels::State& State_;
+  const ClipmapCamera& Camera_;
+};
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,48 @@
+// One view's drawing of a terrain's colour layers.
+#ifndef DSPACE_LAYERS_LAYERDRAWING_H
+#define DSPACE_LAYERS_LAYERDRAWING_H
+
+#include <array>
+#include <memory>
+
+#include <dspace/clipmap/gl/LayerAtlas.h>
+#include <dspace/clipmap/SeenTiles.h>
+#include <dspace/render/CustomDrawer.h>
+#include <dspace/clipmap/ClipmapLevels.h>
+#include <dspace/clipmap/ClipmapTerrain.h>
+
+namespace dspace {
+
+// Every function needs the view's context to be current.
+class LayerDrawing {
+public:
+  explicit LayerDrawing(const ClipmapTerrain& terrain) : Terrain_(terrain) {}
+
+  // Brings what the view sees of a chart. False where some of it is not there yet; waits with
+  // view.complete, and throws then what ColorTiles::Get throws.
+  bool Prepare(const CustomDrawing& drawing, std::size_t chart, const ClipmapLevels& levels,
+               const ClipmapLevels::State& state, const ClipmapSight& sight,
+               const std::array<double, 2>& heights);
+  // Whether there is something to draw, hence #define DSPACE_LAYERS.
+  bool Shown() const { return this->Shown_; }
+
+  // For all levels, then for one: `first` is its window's first post, `step` how many level-0 posts
+  // are between two of its.
+  void SetLook(vtkShaderProgram* program, int samples) const;
+  void SetLevel(vtkShaderProgram* program, const Eigen::Vector2d& first, double step) const;
+
+private:
+  const ClipmapTerrain& Terrain_;
+  std::unique_ptr<LayerAtlas> Atlas_;
+  int Slots_ = 0; // that it was asked for
+  bool Shown_ = false;
+  // Of the latest Prepare().
+  const ColorGrid* Grid_ = nullptr;
+  int Finest_ = 0;
+  Eigen::Vector2d Corner_ = Eigen::Vector2d::Zero(); // of the tile below the camera [tiles]
+  Eigen::Vector2d Place_ = Eigen::Vector2d::Zero();  // below the camera [posts]
+};
+
+} // namespace dspace
+
+#endif

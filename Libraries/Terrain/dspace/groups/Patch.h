@@ -1,0 +1,63 @@
+// One patch of a terrain group: its source, place, posts and weight.
+#ifndef DSPACE_TERRAIN_PATCH_H
+#define DSPACE_TERRAIN_PATCH_H
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <dspace/groups/GroupPosts.h>
+#include <dspace/posts/RasterPosts.h>
+
+#include <dspace/groups/PatchPlace.h>
+#include <dspace/groups/PatchWeight.h>
+
+namespace dspace {
+
+class Patch {
+public:
+  // Throws what OpenPatches throws. Adds what is in doubt to `warnings`.
+  Patch(const ElevationInfo& base, const TerrainPatch& options, std::vector<std::string>& warnings);
+
+  // One that was settled, on another base of the same body.
+  Patch(const Patch& other, const ElevationInfo& on);
+
+  const std::string& Object() const { return this->Object_; } // "patch 'name'"
+  const ElevationSource& Source() const { return *this->Source_; }
+  const PatchPlace& Place() const { return this->Place_; }
+  const PatchWeight& Weight() const { return *this->Weight_; }
+  PatchReport& Report() { return this->Report_; }
+
+  // Chooses the lattice, and reads the patch for its weights where it lies within. False, with a
+  // warning, where the patch adds nothing.
+  bool Settle(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
+              std::vector<std::string>& warnings);
+  // What its heights lie between in a box of places of level 0; least above greatest where it does
+  // not reach, infinite where nothing is known.
+  std::array<double, 2> HeightsIn(const Eigen::AlignedBox2d& posts) const;
+  // Which posts of a block are made up so far; asked for by the first patch that reaches it.
+  using MadeUp = std::function<std::vector<char>&()>;
+  // Over the heights of a block of that lattice, alone where they are none or made up. `madeUp` may
+  // be empty: nothing is.
+  void Blend(const PostBlock& block, float* heights, const MadeUp& madeUp) const;
+  // Of one that was settled elsewhere: its weights are known. False where it does not lie within.
+  bool SettleAgain(const PostLattice& lattice, const Eigen::Affine2d& postToMap);
+
+private:
+  class Heights;
+  int LevelFor(int level) const;
+
+  std::string Object_;
+  std::shared_ptr<const ElevationSource> Source_;
+  PatchPlace Place_;
+  PatchReport Report_;
+  std::shared_ptr<const RasterPosts> Posts_;
+  std::shared_ptr<const PatchWeight> Weight_;
+  double PostPixels_ = 1.0; // of the patch, between level-0 posts
+};
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,264 @@
+#include <dspace/groups/PatchPlace.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <dspace/Error.h>
+
+#include <dspace/crs/MapTurn.h>
+
+namespace dspace {
+namespace {
+
+constexpr double Degree = M_PI / 180.0;
+constexpr double OneBody = 0.01; // of an axis: what spheres of one body differ by at most
+const Eigen::Vector2d Nowhere = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+
+std::string NameOf(const Crs& crs) {
+  return crs.GetKind() == Crs::Kind::None
+             ? std::string("none")
+             : "'" + crs.GetName() + "' (semi-major axis " +
+                   std::to_string(std::llround(crs.GetAxes().semiMajor)) + " m)";
+}
+
+void RefuseOthers(const std::string& object, const Crs& base, const Crs& patch) {
+  const bool baseHas = base.Ogr() != nullptr;
+  const bool patchHas = patch.Ogr() != nullptr;
+  if (baseHas != patchHas) {
+    throw Error(Error::Kind::InvalidArgument, object,
+                "its CRS is " + NameOf(patch) + ", that of the raster below is " + NameOf(base) +
+                    "; accepted is a CRS for both (give crs), or for neither");
+  }
+  const double a = base.GetAxes().semiMajor;
+  const double b = patch.GetAxes().semiMajor;
+  if (a > 0.0 && b > 0.0 && std::abs(a - b) > OneBody * a) {
+    throw Error(Error::Kind::InvalidArgument, object,
+                "it is of another body: its CRS is " + NameOf(patch) +
+                    ", that of the raster below is " + NameOf(base) +
+                    "; accepted is a patch of the same body");
+  }
+}
+
+Eigen::Vector2d Applied(const CrsTransform* transform, const Eigen::Vector2d& p, bool inverse) {
+  if (!p.allFinite() || !transform) {
+    return p;
+  }
+  try {
+    return inverse ? transform->ApplyInverse(p) : transform->Apply(p);
+  } catch (const Error&) {
+    return Nowhere;
+  }
+}
+
+} // namespace
+
+PatchPlace::PatchPlace(const std::string& object, const ElevationInfo& base,
+                       const ElevationInfo& patch)
+    : Base_(base), Patch_(patch), MapToPixel_(patch.pixelToMap.inverse()) {
+  RefuseOthers(object, base.crs, patch.crs);
+  if (base.crs.Ogr() && base.crs.GetWkt() != patch.crs.GetWkt()) {
+    this->Transform_ = std::make_shared<const CrsTransform>(base.crs, patch.crs);
+  }
+  this->BaseTurn_ = MapTurn(base.crs);
+  if (this->MapToPixel_.linear()(1, 0) == 0.0) {
+    this->PatchTurn_ = MapTurn(patch.crs) * std::abs(this->MapToPixel_.linear()(0, 0));
+  }
+  this->FindSizes();
+}
+
+Eigen::Vector2d PatchPlace::PixelOf(const Eigen::Vector2d& baseMap) const {
+  Eigen::Vector2d pixel = this->MapToPixel_ * Applied(this->Transform_.get(), baseMap, false);
+  if (this->PatchTurn_ > 0.0) {
+    const double middle = 0.5 * this->Patch_.window.width;
+    pixel.x() -= this->PatchTurn_ * std::round((pixel.x() - middle) / this->PatchTurn_);
+  }
+  return pixel;
+}
+
+Eigen::Vector2d PatchPlace::BaseMapOf(const Eigen::Vector2d& pixel) const {
+  return Applied(this->Transform_.get(), this->Patch_.pixelToMap * pixel, true);
+}
+
+void PatchPlace::FindSizes() {
+  const RasterWindow& window = this->Patch_.window;
+  const Eigen::Vector2d middle(0.5 * window.width, 0.5 * window.height);
+  const Eigen::Affine2d& toMap = this->Patch_.pixelToMap;
+  const Crs& crs = this->Patch_.crs;
+  const auto half = [](int axis) { return Eigen::Vector2d(0.5 * Eigen::Vector2d::Unit(axis)); };
+  std::unique_ptr<CrsTransform> geographic;
+  double degrees = 1.0;
+  if (crs.HasGeographic()) {
+    const Crs below = crs.Geographic();
+    geographic = std::make_unique<CrsTransform>(crs, below);
+    degrees = below.GetUnit();
+  }
+  for (const int axis : {0, 1}) {
+    this->Metres_[axis] = toMap.linear().col(axis).norm() * crs.GetUnit();
+    if (geographic) {
+      const auto direction = [&](const Eigen::Vector2d& pixel) {
+        const Eigen::Vector2d p =
+            Applied(geographic.get(), toMap * pixel, false) * degrees * Degree;
+        return Eigen::Vector3d(std::cos(p.y()) * std::cos(p.x()), std::cos(p.y()) * std::sin(p.x()),
+                               std::sin(p.y()));
+      };
+      const double metres =
+          crs.GetAxes().semiMajor *
+          (direction(middle + half(axis)) - direction(middle - half(axis))).norm();
+      if (std::isfinite(metres) && metres > 0.0) {
+        this->Metres_[axis] = metres;
+      } else if (crs.GetKind() == Crs::Kind::Geographic) {
+        this->Metres_[axis] =
+            toMap.linear().col(axis).norm() * crs.GetUnit() * Degree * crs.GetAxes().semiMajor;
+      }
+    }
+  }
+  // A thousandth of a base pixel's side, since the whole of it may leave the projection.
+  const double part = 1.0 / 1024.0;
+  Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  for (int j = 0; j <= 8; ++j) {
+    for (int i = 0; i <= 8; ++i) {
+      const Eigen::Vector2d map =
+          this->BaseMapOf({window.width * i / 8.0, window.height * j / 8.0});
+      const Eigen::Vector2d here = this->PixelOf(map);
+      for (const int axis : {0, 1}) {
+        const Eigen::Vector2d side = this->Base_.pixelToMap.linear().col(axis) * part;
+        const double size = (this->PixelOf(map + side) - here).norm() / part;
+        if (std::isfinite(size)) {
+          this->BasePixel_ = std::max(this->BasePixel_, size);
+          least[axis] = std::min(least[axis], size);
+        }
+      }
+    }
+  }
+  const double tiny = 1e-9 * this->BasePixel_; // where meridians meet
+  this->Widening_ = 2.0 * this->BasePixel_ * least.cwiseMax(tiny).cwiseInverse();
+}
+
+void PatchPlace::Settle(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap,
+                        bool poles) {
+  this->Lattice_ = lattice;
+  this->PostToBaseMap_ = postToBaseMap;
+  this->Poles_ = poles;
+  this->Turn_ = 0.0;
+  if (lattice.periodic) {
+    this->Turn_ = double(lattice.columns);
+  } else if (postToBaseMap.linear()(1, 0) == 0.0) {
+    this->Turn_ = this->BaseTurn_ / std::abs(postToBaseMap.linear()(0, 0));
+  }
+  this->FindReach();
+}
+
+double PatchPlace::Unwrapped(double column) const {
+  if (this->Turn_ > 0.0) {
+    const double middle = 0.5 * (this->Columns_.from + this->Columns_.to);
+    column -= this->Turn_ * std::round((column - middle) / this->Turn_);
+  }
+  return column;
+}
+
+Eigen::Vector2d PatchPlace::PostOf(const Eigen::Vector2d& pixel) const {
+  Eigen::Vector2d post = this->PostToBaseMap_.inverse() * this->BaseMapOf(pixel);
+  if (this->Lattice_.periodic) {
+    post.x() -= this->Turn_ * std::floor(post.x() / this->Turn_);
+  } else if (this->Turn_ > 0.0) {
+    const double middle = 0.5 * double(this->Lattice_.columns - 1);
+    post.x() -= this->Turn_ * std::round((post.x() - middle) / this->Turn_);
+  }
+  return post;
+}
+
+double PatchPlace::PostSize() const {
+  return this->BasePixel_ * this->PostToBaseMap_.linear().col(0).norm() /
+         this->Base_.pixelToMap.linear().col(0).norm();
+}
+
+// By places along the patch's edges and within.
+void PatchPlace::FindReach() {
+  const RasterWindow& window = this->Patch_.window;
+  std::vector<Eigen::Vector2d> posts;
+  const auto take = [&](double u, double v) {
+    Eigen::Vector2d post = this->PostOf({u * window.width, v * window.height});
+    if (!post.allFinite()) {
+      return;
+    }
+    if (!posts.empty() && this->Turn_ > 0.0) {
+      post.x() -= this->Turn_ * std::round((post.x() - posts.front().x()) / this->Turn_);
+    }
+    posts.push_back(post);
+  };
+  take(0.5, 0.5);
+  constexpr int Edge = 64;
+  for (int i = 0; i <= Edge; ++i) {
+    const double s = double(i) / Edge;
+    take(s, 0.0);
+    take(s, 1.0);
+    take(0.0, s);
+    take(1.0, s);
+  }
+  constexpr int Within = 12;
+  for (int j = 1; j < Within; ++j) {
+    for (int i = 1; i < Within; ++i) {
+      take(double(i) / Within, double(j) / Within);
+    }
+  }
+  this->Inside_ = !posts.empty();
+  if (posts.empty()) {
+    return;
+  }
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& post : posts) {
+    box.extend(post);
+  }
+  const Eigen::Vector2d more = 0.02 * box.sizes() + Eigen::Vector2d::Ones(); // between the places
+  this->Columns_ = {box.min().x() - more.x(), box.max().x() + more.x(), false};
+  this->Rows_ = {box.min().y() - more.y(), box.max().y() + more.y(), false};
+  this->Columns_.all = this->Turn_ > 0.0 && box.sizes().x() > 0.4 * this->Turn_;
+  this->TakePoles();
+  const auto& lattice = this->Lattice_;
+  this->Inside_ = this->Rows_.to >= 0.0 && this->Rows_.from <= double(lattice.rows - 1);
+  if (!lattice.periodic && !this->Columns_.all) { // the first post was nearest to the middle
+    this->Inside_ &= this->Columns_.to >= 0.0 && this->Columns_.from <= double(lattice.columns - 1);
+  }
+}
+
+// About a pole a patch reaches all longitudes, and all rows as far as the pole.
+void PatchPlace::TakePoles() {
+  const Crs& crs = this->Base_.crs;
+  if (!(this->Turn_ > 0.0) || !crs.HasGeographic()) {
+    return;
+  }
+  const Crs geographic = crs.Geographic();
+  const CrsTransform toBase(geographic, crs);
+  const Eigen::Vector2d size(this->Patch_.window.width, this->Patch_.window.height);
+  for (const double latitude : {-90.0, 90.0}) {
+    const Eigen::Vector2d map = Applied(&toBase, {0.0, latitude / geographic.GetUnit()}, false);
+    const Eigen::Vector2d pixel = this->PixelOf(map);
+    if (pixel.allFinite() && pixel.minCoeff() >= -1.0 && pixel.x() <= size.x() + 1.0 &&
+        pixel.y() <= size.y() + 1.0) {
+      const double row = (this->PostToBaseMap_.inverse() * map).y();
+      this->Columns_.all = true;
+      this->Rows_.from = std::min(this->Rows_.from, row);
+      this->Rows_.to = std::max(this->Rows_.to, row);
+    }
+  }
+}
+
+bool PatchPlace::Reaches(const Eigen::Vector2d& post, int level, double sides) const {
+  const Eigen::Vector2d widened = std::ldexp(0.5 * sides, level) * this->Widening_;
+  return this->Inside_ && this->Columns_.Has(this->Unwrapped(post.x()), widened.x()) &&
+         this->Rows_.Has(post.y(), widened.y());
+}
+
+bool PatchPlace::Touches(const Eigen::AlignedBox2d& posts) const {
+  const auto meets = [](const Reach& reach, double from, double to, double widened) {
+    return reach.all || (to >= reach.from - widened && from <= reach.to + widened);
+  };
+  const Eigen::Vector2d half = 0.5 * posts.sizes();
+  const double column = this->Unwrapped(posts.center().x()); // the nearest turn
+  return this->Inside_ &&
+         meets(this->Columns_, column - half.x(), column + half.x(), this->Widening_.x()) &&
+         meets(this->Rows_, posts.min().y(), posts.max().y(), this->Widening_.y());
+}
+
+} // namespace dspace

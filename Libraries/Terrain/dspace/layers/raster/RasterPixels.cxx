@@ -1,0 +1,199 @@
+// Pixels as GDAL gives them, once or each time, and what they become.
+#include <dspace/layers/raster/RasterLevels.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <dspace/Error.h>
+
+#include <dspace/raster/NetworkScope.h>
+
+namespace dspace {
+namespace {
+
+constexpr double MostKept = 64e6; // pixels of an image that is kept in memory
+constexpr double LargeBlock =
+    1 << 20;                  // pixels of a quarter of a file or more, which are decoded together
+constexpr int StripRows = 64; // that are decoded at a time
+constexpr std::array<const char*, 7> Streams = {"JPEG", "PNG",    "GIF",   "BIGGIF",
+                                                "WEBP", "JPEGXL", "JPEGLS"};
+
+} // namespace
+
+// Whatever part of such a file is read, all that stands before it is decoded.
+void RasterLevels::PlanKeeping(GDALDataset& file) {
+  int width = 1;
+  int height = 1;
+  file.GetRasterBand(1)->GetBlockSize(&width, &height);
+  const GDALDriver* driver = file.GetDriver();
+  const std::string format = driver ? GDALGetDriverShortName(file.GetDriver()) : "";
+  const bool stream = std::find(Streams.begin(), Streams.end(), format) != Streams.end();
+  const double pixels = double(this->Width_) * this->Height_;
+  const double block = double(width) * height;
+  if (this->Remote_ || !(stream || (block > LargeBlock && 4.0 * block > pixels))) {
+    return;
+  }
+  this->Keeps_ = pixels <= MostKept;
+  if (!this->Keeps_) {
+    this->Warnings_.push_back(this->Object_ + " has " + std::to_string(this->Width_) + " x " +
+                              std::to_string(this->Height_) + " pixels in a format (" + format +
+                              ") whose parts cannot be read by themselves: each of its tiles " +
+                              "takes long; convert it to a tiled TIFF (gdal_translate -co "
+                              "TILED=YES)");
+  }
+}
+
+// `columns` x `rows` pixels of `part`, which may have more.
+void RasterLevels::ReadRaw(const Level& level, const RasterWindow& part, int columns, int rows,
+                           Raw& raw) const {
+  const std::size_t count = std::size_t(columns) * rows;
+  GdalErrors errors;
+  const auto check = [&](CPLErr result) {
+    if (result == CE_None && !errors.Failed()) {
+      return;
+    }
+    const std::string message = errors.Message("GDAL gave no reason");
+    if (level.cached) {
+      this->RemoveOverviews();
+      throw Error(Error::Kind::Corrupt, this->Object_,
+                  "its overviews in the cache are damaged; they are made anew: " + message);
+    }
+    if (this->Remote_) {
+      ForgetAnswers(this->Path_);
+      if (IsUnanswered(message)) {
+        throw Error(Error::Kind::Io, this->Object_, "cannot be read: " + InWords(message));
+      }
+    }
+    throw Error(Error::Kind::Corrupt, this->Object_, "cannot be read: " + message);
+  };
+  const GDALDataType type = level.colors[0]->GetRasterDataType();
+  const int size = GDALGetDataTypeSizeBytes(type);
+  const auto pixel = GSpacing((level.colors.size() + (level.alpha ? 1 : 0)) * size);
+  raw.samples.resize(count * std::size_t(pixel));
+  std::uint8_t* to = raw.samples.data();
+  const auto read = [&](GDALRasterBand* band) {
+    check(band->RasterIO(GF_Read, part.column, part.row, part.width, part.height, to, columns, rows,
+                         type, pixel, pixel * columns, nullptr));
+    to += size;
+  };
+  std::for_each(level.colors.begin(), level.colors.end(), read);
+  raw.mask.clear();
+  if (level.alpha) {
+    read(level.alpha);
+  } else if (level.gaps) {
+    raw.mask.assign(count, 255);
+    MaskGaps(*level.colors[0], part, columns, rows, columns, raw.mask.data());
+    check(CE_None);
+  }
+  std::vector<std::uint8_t> mask(level.masks.empty() ? 0 : count);
+  for (GDALRasterBand* band : level.masks) {
+    check(band->GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width, part.height,
+                                        mask.data(), columns, rows, GDT_Byte, 0, 0, nullptr));
+    raw.mask.resize(count, 0);
+    std::transform(mask.begin(), mask.end(), raw.mask.begin(), raw.mask.begin(),
+                   [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
+  }
+}
+
+// Null where parts are read as they are needed. Whoever comes first decodes, the others wait.
+std::shared_ptr<const RasterLevels::Raw> RasterLevels::KeptOf(const Handle& handle,
+                                                              const Level& level) const {
+  if (!this->Keeps_ || level.cached) {
+    return nullptr;
+  }
+  const std::lock_guard<std::mutex> lock(this->Keeping_);
+  std::shared_ptr<const Raw>& kept = this->Kept_[std::size_t(&level - handle.levels.data())];
+  if (!kept) {
+    auto whole = std::make_shared<Raw>();
+    Raw strip;
+    for (int row = 0; row < level.height; row += StripRows) {
+      const int rows = std::min(StripRows, level.height - row);
+      this->ReadRaw(level, {0, row, level.width, rows}, level.width, rows, strip);
+      if (row == 0) {
+        whole->samples.reserve(strip.samples.size() / rows * level.height);
+        whole->mask.reserve(strip.mask.size() / rows * level.height);
+      }
+      whole->samples.insert(whole->samples.end(), strip.samples.begin(), strip.samples.end());
+      whole->mask.insert(whole->mask.end(), strip.mask.begin(), strip.mask.end());
+    }
+    if (std::all_of(whole->mask.begin(), whole->mask.end(), [](auto m) { return m == 255; })) {
+      whole->mask = {};
+    }
+    const GdalErrors quiet;
+    for (GDALRasterBand* band : level.colors) { // GDAL has decoded them a second time
+      band->FlushCache(false);
+    }
+    this->KeptBytes_ += whole->samples.size() + whole->mask.size();
+    kept = std::move(whole);
+  }
+  return kept;
+}
+
+// Channels times opacity, and opacity.
+void RasterLevels::Convert(const Level& level, const Raw& raw, std::size_t first, std::size_t count,
+                           float* pixels) const {
+  const GDALDataType type = level.colors[0]->GetRasterDataType();
+  const int samples = int(level.colors.size()) + (level.alpha ? 1 : 0);
+  const int size = GDALGetDataTypeSizeBytes(type);
+  const void* from = raw.samples.data() + first * std::size_t(samples * size);
+  const std::uint8_t* mask = raw.mask.empty() ? nullptr : raw.mask.data() + first;
+  const int step = this->Channels_ + 1;
+  if (this->Band_ > 0) {
+    // A value may need more digits than a float has, until the bias is gone.
+    std::vector<double> values(count * std::size_t(samples));
+    GDALCopyWords64(from, type, size, values.data(), GDT_Float64, sizeof(double),
+                    GPtrDiff_t(values.size()));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* p = &values[i * std::size_t(samples)];
+      const double value = level.cached ? *p : *p * this->Scale_ + this->Offset_;
+      float opacity = level.alpha ? float(p[1]) * (1.0f / 255.0f) : mask ? mask[i] / 255.0f : 1.0f;
+      opacity = std::isfinite(value) ? opacity : 0.0f;
+      if (this->Shown_ == Shown::Holes && !level.cached) {
+        pixels[2 * i] = 0.0f;
+        pixels[2 * i + 1] = 1.0f - opacity;
+        continue;
+      }
+      pixels[2 * i] = opacity > 0.0f ? float(value - this->Bias_) * opacity : 0.0f;
+      pixels[2 * i + 1] = opacity;
+    }
+    return;
+  }
+  const float scale = level.cached ? 1.0f : float(this->Scale_);
+  const float alphaScale = level.cached ? 1.0f / 255.0f : float(this->AlphaScale_);
+  const bool indexed = !this->Palette_.empty() && !level.cached;
+  const auto convert = [&](auto* p) {
+    if (!level.alpha && !mask && !indexed && this->Channels_ == 3) { // most, and the quickest
+      for (std::size_t i = 0; i < count; ++i, p += 3, pixels += 4) {
+        pixels[0] = p[0] * scale;
+        pixels[1] = p[1] * scale;
+        pixels[2] = p[2] * scale;
+        pixels[3] = 1.0f;
+      }
+      return;
+    }
+    for (std::size_t i = 0; i < count; ++i, p += samples, pixels += step) {
+      float opacity = level.alpha ? p[samples - 1] * alphaScale : mask ? mask[i] / 255.0f : 1.0f;
+      if (indexed) {
+        const std::array<float, 4>& color =
+            this->Palette_[std::min(std::size_t(p[0]), this->Palette_.size() - 1)];
+        opacity *= color[3];
+        for (int k = 0; k < 3; ++k) {
+          pixels[k] = color[std::size_t(k)] * opacity;
+        }
+      } else {
+        for (int k = 0; k < this->Channels_; ++k) {
+          pixels[k] = opacity > 0.0f ? p[k] * scale * opacity : 0.0f;
+        }
+      }
+      pixels[this->Channels_] = opacity;
+    }
+  };
+  if (type == GDT_Byte) {
+    convert(static_cast<const std::uint8_t*>(from));
+  } else {
+    convert(static_cast<const std::uint16_t*>(from));
+  }
+}
+
+} // namespace dspace

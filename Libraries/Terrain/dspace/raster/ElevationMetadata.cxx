@@ -1,0 +1,216 @@
+#include <dspace/raster/ElevationMetadata.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <gdal_priv.h>
+
+#include <dspace/Error.h>
+
+namespace dspace {
+
+namespace {
+
+std::string Object(const ElevationInfo& info) {
+  return "raster '" + info.path + "'";
+}
+
+[[noreturn]] void Refuse(const ElevationInfo& info, const std::string& message) {
+  throw Error(Error::Kind::InvalidArgument, Object(info), message);
+}
+
+RasterWindow CheckedWindow(const ElevationOptions& options, int width, int height,
+                           const ElevationInfo& info) {
+  if (!options.window)
+    return {0, 0, width, height};
+  const RasterWindow& w = *options.window;
+  if (w.column < 0 || w.row < 0 || w.width < 1 || w.height < 1 || w.width > width - w.column ||
+      w.height > height - w.row)
+    Refuse(info, "window " + std::to_string(w.width) + " x " + std::to_string(w.height) + " at (" +
+                     std::to_string(w.column) + ", " + std::to_string(w.row) +
+                     ") does not lie within its " + std::to_string(width) + " x " +
+                     std::to_string(height) + " pixels");
+  return w;
+}
+
+Crs ReadCrs(GDALDataset& dataset, const ElevationOptions& options) {
+  if (options.crs)
+    return Crs::FromText(*options.crs);
+  const OGRSpatialReference* srs = dataset.GetSpatialRef();
+  return srs ? Crs::FromOgr(*srs) : Crs();
+}
+
+// A CRS given by hand goes before the file's, which may be wrong or no CRS of a map at all.
+void WarnOfAnotherBody(const OGRSpatialReference* own, ElevationInfo& info) {
+  Crs stated;
+  try {
+    if (own)
+      stated = Crs::FromOgr(*own);
+  } catch (const Error&) {
+    return;
+  }
+  const double a = stated.GetAxes().semiMajor, b = info.crs.GetAxes().semiMajor;
+  if (a > 0.0 && b > 0.0 && std::abs(a - b) > 0.005 * a)
+    info.warnings.push_back("the CRS given, '" + info.crs.GetName() + "', is of a body of radius " +
+                            std::to_string(b) + " m; the file's own, '" + stated.GetName() +
+                            "', of one of " + std::to_string(a) + " m");
+}
+
+// Latitudes beyond the poles mean a wrong geotransform, and would be drawn at a wrong place.
+void CheckLatitudes(const ElevationInfo& info) {
+  if (info.crs.GetKind() != Crs::Kind::Geographic)
+    return;
+  for (double c : {0.5, info.window.width - 0.5})
+    for (double r : {0.5, info.window.height - 0.5}) {
+      const double latitude = (info.pixelToMap * Eigen::Vector2d(c, r)).y() * info.crs.GetUnit();
+      if (std::abs(latitude) > 90.0 + 1e-6)
+        Refuse(info, "its georeference puts a pixel at latitude " + std::to_string(latitude) +
+                         "; accepted is -90 to 90");
+    }
+}
+
+} // namespace
+
+double MetresOfUnit(const std::string& unit) {
+  std::string u;
+  for (char c : unit)
+    if (c != ' ' && c != '_' && c != '-' && c != '.')
+      u += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), u) != names.end();
+  };
+  if (is({"", "m", "metre", "metres", "meter", "meters"}))
+    return 1.0;
+  if (is({"km", "kilometre", "kilometres", "kilometer", "kilometers"}))
+    return 1000.0;
+  if (is({"dm", "decimetre", "decimetres", "decimeter", "decimeters"}))
+    return 0.1;
+  if (is({"cm", "centimetre", "centimetres", "centimeter", "centimeters"}))
+    return 0.01;
+  if (is({"ft", "foot", "feet", "internationalfoot", "internationalfeet"}))
+    return 0.3048;
+  if (is({"usft", "ftus", "footus", "ussurveyfoot", "ussurveyfeet"}))
+    return 1200.0 / 3937.0;
+  return 0.0;
+}
+
+void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, ElevationInfo& info) {
+  const int width = dataset.GetRasterXSize(), height = dataset.GetRasterYSize();
+  info.window = CheckedWindow(options, width, height, info);
+  if (options.pixelSize && (!(*options.pixelSize > 0.0) || !std::isfinite(*options.pixelSize)))
+    Refuse(info, "pixel size " + std::to_string(*options.pixelSize) +
+                     " given; accepted is a positive number");
+  info.crs = ReadCrs(dataset, options);
+  if (options.crs)
+    WarnOfAnotherBody(dataset.GetSpatialRef(), info);
+
+  double g[6] = {0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  info.georeferenced = dataset.GetGeoTransform(g) == CE_None;
+  if (!info.georeferenced) {
+    const double size = options.pixelSize.value_or(1.0);
+    const double north[6] = {0.0, size, 0.0, size * height, 0.0, -size};
+    std::copy(north, north + 6, g);
+    if (dataset.GetGCPCount() > 0)
+      info.warnings.push_back(
+          "its ground control points are not used: warp it first (gdalwarp), or "
+          "it has no place on the map");
+    if (!options.pixelSize)
+      info.warnings.push_back("no georeference: pixels are taken as 1 m squares, the top row to "
+                              "the north; give a pixel size");
+    if (info.crs.GetKind() != Crs::Kind::None && !options.crs) {
+      info.warnings.push_back("its CRS '" + info.crs.GetName() +
+                              "' is not used, since it has no geotransform");
+      info.crs = Crs();
+    }
+    if (info.crs.GetKind() == Crs::Kind::Geographic)
+      Refuse(info, "a geographic CRS was given for a raster without georeference; give a "
+                   "projected one, or georeference the file");
+  } else if (info.crs.GetKind() == Crs::Kind::None) {
+    info.warnings.push_back("no CRS: map coordinates are taken as metres in a plane, without "
+                            "longitude and latitude; give a CRS");
+  }
+  for (double v : g)
+    if (!std::isfinite(v))
+      Refuse(info, "its geotransform has a value that is not finite");
+  const double det = g[1] * g[5] - g[2] * g[4];
+  const double size = std::hypot(g[1], g[4]) * std::hypot(g[2], g[5]);
+  if (!(std::abs(det) > 1e-6 * size) || size == 0.0)
+    Refuse(info, "its geotransform is degenerate (pixel vectors " + std::to_string(g[1]) + ", " +
+                     std::to_string(g[4]) + " and " + std::to_string(g[2]) + ", " +
+                     std::to_string(g[5]) + " span no area)");
+  Eigen::Matrix2d linear;
+  linear << g[1], g[2], g[4], g[5];
+  info.pixelToMap.linear() = linear;
+  info.pixelToMap.translation() =
+      Eigen::Vector2d(g[0], g[3]) + linear * Eigen::Vector2d(info.window.column, info.window.row);
+  CheckLatitudes(info);
+}
+
+void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, ElevationInfo& info) {
+  const char* unit = band.GetUnitType();
+  info.unit = unit ? unit : "";
+  if (options.verticalScale || options.verticalOffset) {
+    info.verticalScale = options.verticalScale.value_or(1.0);
+    info.verticalOffset = options.verticalOffset.value_or(0.0);
+    if (!std::isfinite(info.verticalScale) || info.verticalScale == 0.0)
+      Refuse(info, "vertical scale " + std::to_string(info.verticalScale) +
+                       " given; accepted is a finite number other than 0");
+    if (!std::isfinite(info.verticalOffset))
+      Refuse(info, "the vertical offset given is not finite");
+  } else {
+    const double metres = MetresOfUnit(info.unit);
+    if (metres == 0.0)
+      throw Error(Error::Kind::Unsupported, Object(info),
+                  "heights in unit '" + info.unit +
+                      "'; known are m, km, dm, cm, ft and US survey feet; else give the vertical "
+                      "scale by hand");
+    int hasScale = 0, hasOffset = 0;
+    const double scale = band.GetScale(&hasScale), offset = band.GetOffset(&hasOffset);
+    info.verticalScale = (hasScale ? scale : 1.0) * metres;
+    info.verticalOffset = (hasOffset ? offset : 0.0) * metres;
+    if (!std::isfinite(info.verticalScale) || info.verticalScale == 0.0 ||
+        !std::isfinite(info.verticalOffset))
+      Refuse(info, "its scale " + std::to_string(scale) + " or offset " + std::to_string(offset) +
+                       " is not usable; give them by hand");
+    if (info.unit.empty())
+      info.warnings.push_back("the unit of height is not stated: metres are taken; if it is not "
+                              "so, give the vertical scale");
+  }
+
+  const double a = info.crs.GetAxes().semiMajor;
+  GDALDataset* dataset = band.GetDataset();
+  const char* stated = dataset ? dataset->GetMetadataItem("VERTICAL_DATUM") : nullptr;
+  if (options.verticalDatum) {
+    info.verticalDatum = *options.verticalDatum;
+  } else if (stated) {
+    // Our own item, written as VerticalDatum::Text(). Others' words there are no such text.
+    try {
+      info.verticalDatum = VerticalDatum::FromText(stated);
+    } catch (const Error&) {
+      info.verticalDatum.name = stated;
+      info.warnings.push_back("its metadata item VERTICAL_DATUM says '" + std::string(stated) +
+                              "', which is not understood; give the vertical datum by hand");
+    }
+  } else if (!info.crs.GetVerticalName().empty()) {
+    // A compound CRS names its vertical part; all registered ones but ellipsoidal heights are
+    // tied to a geoid or areoid.
+    info.verticalDatum.kind = VerticalDatum::Kind::Geoid;
+    info.verticalDatum.name = info.crs.GetVerticalName();
+  } else if (a > 0.0 && std::abs(info.verticalOffset - a) < 0.1 * a) {
+    // ISIS: radius = multiplier * DN + base. An offset of a body's radius is the file's statement
+    // that its values are radii.
+    info.verticalDatum.kind = VerticalDatum::Kind::Radius;
+  }
+  VerticalDatum& datum = info.verticalDatum;
+  if ((datum.kind == VerticalDatum::Kind::Radius || datum.kind == VerticalDatum::Kind::Sphere) &&
+      datum.radius == 0.0) {
+    if (a == 0.0)
+      Refuse(info, "vertical datum '" + datum.Text() + "' needs a radius (" + datum.Text() +
+                       ":R), since there is no CRS that "
+                       "has one");
+    datum.radius = a;
+  }
+}
+
+} // namespace dspace

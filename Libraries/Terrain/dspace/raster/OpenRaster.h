@@ -1,0 +1,62 @@
+// Rasters opened with GDAL, and what GDAL does not say of them by itself. Not for public headers.
+#ifndef DSPACE_TERRAIN_OPENRASTER_H
+#define DSPACE_TERRAIN_OPENRASTER_H
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gdal_priv.h>
+#include <sys/stat.h>
+
+#include <dspace/raster/ElevationSource.h>
+
+#include <dspace/gdal/GdalErrors.h>
+
+namespace dspace {
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const {
+    const GdalErrors quiet;
+    GDALClose(dataset);
+  }
+};
+using DatasetPointer = std::unique_ptr<GDALDataset, CloseDataset>;
+
+// Throws what ElevationSource's constructor says, naming `object`; "raster 'path'" where it is
+// empty.
+DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
+                          std::vector<std::string>& warnings, std::string object = {});
+
+// A local file as it was when it was opened; empty for what is none.
+struct FileState {
+  bool local = false;
+  struct stat state = {};
+
+  static FileState Of(const std::string& path);
+  // What a changed file gives is partly of the one and partly of the other. One that was replaced
+  // or removed by name is still read whole.
+  bool ChangedInPlace(const std::string& path) const;
+};
+
+// Whether it is a mosaic with a file on a server.
+bool IsRemoteMosaic(GDALDataset& dataset);
+
+// The files that it consists of, a line each, with size and time of change.
+std::string FilesOf(GDALDataset& dataset);
+
+// Whether GDAL gives zeros for what the file leaves out (blocks of a sparse or unfinished TIFF,
+// gaps of a mosaic), since it has neither a no-data value nor a mask.
+bool GivesZerosForGaps(GDALRasterBand& band);
+
+// Whether there are such parts.
+bool LeavesBlocksOut(GDALRasterBand& band, const RasterWindow& part);
+
+// No data, in a mask of `columns` x `rows` that was read of `part`, where a pixel is left out.
+void MaskGaps(GDALRasterBand& band, const RasterWindow& part, int columns, int rows, int stride,
+              std::uint8_t* mask);
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,38 @@
+// Pixels of a raster about places that are asked for one by one.
+#ifndef DSPACE_TERRAIN_PIXELTILES_H
+#define DSPACE_TERRAIN_PIXELTILES_H
+
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include <dspace/raster/ElevationSource.h>
+
+#include <dspace/raster/LatestKept.h>
+
+namespace dspace {
+
+// Squares of 64 x 64 pixels, the latest 128 of them (4 MiB), so that a few pixels here and there do
+// not cost a read each. Any thread may call.
+class PixelTiles {
+public:
+  static constexpr int Most = 64; // pixels of a window that is worth it
+
+  explicit PixelTiles(std::shared_ptr<const ElevationSource> source)
+      : Source_(std::move(source)), Tiles_(128) {}
+
+  // As ElevationSource::Read.
+  std::vector<double> Read(const RasterWindow& window) const;
+
+private:
+  using Tile = std::shared_ptr<const std::vector<double>>;
+  Tile TileAt(int column, int row) const; // counts tiles
+  std::shared_ptr<const ElevationSource> Source_;
+  mutable std::mutex Mutex_; // of what follows
+  mutable LatestKept<std::pair<int, int>, Tile> Tiles_;
+};
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,144 @@
+#include <dspace/rays/RayPath.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dspace {
+namespace {
+
+constexpr double Border = 1e-9; // cells; as wide as that of HeightGrid
+
+} // namespace
+
+// Narrows First..Last to where low <= o + t d <= high.
+bool RayPath::Clip(double o, double d, double low, double high) {
+  if (d == 0.0) {
+    return o >= low && o <= high;
+  }
+  const double a = (low - o) / d;
+  const double b = (high - o) / d;
+  this->First_ = std::max(this->First_, std::min(a, b));
+  this->Last_ = std::min(this->Last_, std::max(a, b));
+  return this->First_ <= this->Last_;
+}
+
+RayPath::RayPath(const PostPlacement& placement, const PostLattice& lattice,
+                 const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S, double maximum,
+                 double low, double high)
+    : Placement_(placement), Curved_(placement.GetKind() == PostPlacement::Kind::Sphere),
+      Last_(maximum), Origin_(origin_S), Direction_(unit_S) {
+  // The bounds are of heights as doubles, posts are floats.
+  const double pad = 1e-6 * (1.0 + high - low) + 1.2e-7 * std::max(std::abs(low), std::abs(high));
+  low -= pad;
+  high += pad;
+  bool meets = true;
+  if (!this->Curved_) {
+    const Eigen::Affine2d& toPosts = placement.SceneToPost();
+    this->Origin_ << toPosts * Eigen::Vector2d(origin_S.head<2>()),
+        origin_S.z() + placement.OriginHeight();
+    this->Direction_.head<2>() = toPosts.linear() * Eigen::Vector2d(unit_S.head<2>());
+    meets = this->Clip(this->Origin_.x(), this->Direction_.x(), -Border,
+                       double(lattice.columns - 1) + Border) &&
+            this->Clip(this->Origin_.y(), this->Direction_.y(), -Border,
+                       double(lattice.rows - 1) + Border) &&
+            this->Clip(this->Origin_.z(), this->Direction_.z(), low, high);
+  } else {
+    const double nearest = -origin_S.dot(unit_S);
+    const double radius = (origin_S + nearest * unit_S).norm();
+    const double outer = placement.Radius() + high;
+    meets = radius < outer;
+    if (meets) {
+      const double half = std::sqrt((outer - radius) * (outer + radius));
+      meets = this->Clip(0.0, 1.0, nearest - half, nearest + half);
+    }
+  }
+  if (!meets || !std::isfinite(this->Last_)) {
+    this->First_ = 1.0;
+    this->Last_ = 0.0;
+    return;
+  }
+  // From where it comes in, so that a far origin costs no digits inside.
+  this->Entry_ = this->First_;
+  this->Origin_ += this->Entry_ * this->Direction_;
+  this->Last_ -= this->Entry_;
+  this->First_ = 0.0;
+  if (!this->Curved_) {
+    this->Slack_ =
+        1e-12 * (1.0 + std::abs(this->Origin_.z()) + std::abs(this->Direction_.z()) * this->Last_);
+    return;
+  }
+  this->Slack_ = 1e-14 * (placement.Radius() + std::abs(high)) + 1e-9;
+  this->Nearest_ = -this->Origin_.dot(this->Direction_);
+  const Eigen::Vector3d nearest = this->Origin_ + this->Nearest_ * this->Direction_;
+  this->NearestRadius_ = nearest.norm();
+  const double z = this->NearestRadius_ > 0.0 ? nearest.z() / this->NearestRadius_ : 0.0;
+  this->Amplitude_ = std::hypot(z, this->Direction_.z());
+  this->Phase_ = std::atan2(this->Direction_.z(), z);
+}
+
+Eigen::Vector2d RayPath::Post(double t, double column) const {
+  const Eigen::Vector3d p = this->Origin_ + t * this->Direction_;
+  if (!this->Curved_) {
+    return p.head<2>();
+  }
+  const Eigen::Vector2d& step = this->Placement_.Step();
+  const double longitude = std::atan2(p.y(), p.x()) - this->Placement_.First().x();
+  const double latitude = std::atan2(p.z(), p.head<2>().norm());
+  const double c = std::remainder(longitude - column * step.x(), 2.0 * M_PI) / step.x() + column;
+  return {c, (latitude - this->Placement_.First().y()) / step.y()};
+}
+
+double RayPath::Height(double t) const {
+  const Eigen::Vector3d p = this->Origin_ + t * this->Direction_;
+  return this->Curved_ ? p.norm() - this->Placement_.Radius() : p.z();
+}
+
+bool RayPath::Rises(double t) const {
+  return this->Curved_ ? t > this->Nearest_ : this->Direction_.z() > 0.0;
+}
+
+std::pair<double, double> RayPath::Heights(double t0, double t1) const {
+  const double a = this->Height(t0);
+  const double b = this->Height(t1);
+  const bool dips = this->Curved_ && t0 < this->Nearest_ && this->Nearest_ < t1;
+  const double least = dips ? this->Height(this->Nearest_) : std::min(a, b);
+  return {least, std::max(a, b)};
+}
+
+void RayPath::ColumnCrossings(double column, std::vector<double>& t) const {
+  if (!this->Curved_) {
+    if (this->Direction_.x() != 0.0) {
+      t.push_back((column - this->Origin_.x()) / this->Direction_.x());
+    }
+    return;
+  }
+  const double longitude = this->Placement_.First().x() + column * this->Placement_.Step().x();
+  const Eigen::Vector3d side(-std::sin(longitude), std::cos(longitude), 0.0);
+  const double rate = side.dot(this->Direction_);
+  if (rate != 0.0) {
+    t.push_back(-side.dot(this->Origin_) / rate);
+  }
+}
+
+void RayPath::RowCrossings(double row, std::vector<double>& t) const {
+  if (!this->Curved_) {
+    if (this->Direction_.y() != 0.0) {
+      t.push_back((row - this->Origin_.y()) / this->Direction_.y());
+    }
+    return;
+  }
+  const double sine = std::sin(this->Placement_.First().y() + row * this->Placement_.Step().y());
+  if (std::abs(sine) > this->Amplitude_ || this->Amplitude_ == 0.0) {
+    return;
+  }
+  const double away = std::acos(sine / this->Amplitude_);
+  for (const double a : {this->Phase_ - away, this->Phase_ + away}) {
+    const double angle = std::remainder(a, 2.0 * M_PI);
+    if (std::abs(angle) < 0.5 * M_PI) { // seen from the centre the ray spans half a turn
+      t.push_back(this->Nearest_ + this->NearestRadius_ * std::tan(angle));
+    }
+  }
+}
+
+} // namespace dspace

@@ -1,0 +1,63 @@
+// A ray as a lattice of posts sees it: where it is in post coordinates, and where it crosses lines.
+#ifndef DSPACE_TERRAIN_RAYPATH_H
+#define DSPACE_TERRAIN_RAYPATH_H
+
+#include <utility>
+#include <vector>
+
+#include <dspace/posts/PostLattice.h>
+#include <dspace/posts/PostPlacement.h>
+
+namespace dspace {
+
+// t is the distance [m] along the ray from an origin of its own. Lines of the lattice are lines on
+// a plane, and half-planes of longitude and cones of latitude on a sphere.
+class RayPath {
+public:
+  // `unit_S` is of length 1. Heights outside [low, high] are of no interest.
+  RayPath(const PostPlacement& placement, const PostLattice& lattice,
+          const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S, double maximum,
+          double low, double high);
+
+  // The part that may meet the surface; empty where first > last.
+  double First() const { return this->First_; }
+  double Last() const { return this->Last_; }
+  // From t to the distance from the origin given.
+  double Distance(double t) const { return this->Entry_ + t; }
+
+  // (c, r); on a sphere with c within half a turn of `column`.
+  Eigen::Vector2d Post(double t, double column) const;
+  double Height(double t) const; // [m] above the datum
+  bool Rises(double t) const;
+  std::pair<double, double> Heights(double t0, double t1) const; // least and greatest between
+  // All t at which it may cross a column's or a row's line, in any order; also some where it does
+  // not.
+  void ColumnCrossings(double column, std::vector<double>& t) const;
+  void RowCrossings(double row, std::vector<double>& t) const;
+  bool Curved() const { return this->Curved_; } // not a straight line over the posts
+  // What heights along it may be off by through rounding.
+  double Slack() const { return this->Slack_; }
+
+private:
+  bool Clip(double o, double d, double low, double high);
+
+  const PostPlacement& Placement_;
+  bool Curved_;
+  double Entry_ = 0.0;
+  double First_ = 0.0;
+  double Last_ = 0.0;
+  double Slack_ = 0.0;
+  // Plane: (c, r, height) and its change a metre. Sphere: in the scene.
+  Eigen::Vector3d Origin_;
+  Eigen::Vector3d Direction_;
+  // Sphere: the ray's closest place to the centre, its t, and the sine of latitude at angle a past
+  // it, Amplitude cos(a - Phase).
+  double Nearest_ = 0.0;
+  double NearestRadius_ = 0.0;
+  double Amplitude_ = 0.0;
+  double Phase_ = 0.0;
+};
+
+} // namespace dspace
+
+#endif

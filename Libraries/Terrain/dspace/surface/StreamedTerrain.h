@@ -1,0 +1,226 @@
+// A raster of any size as a TerrainSurface: heights come from a pyramid of tiles.
+#ifndef DSPACE_TERRAIN_STREAMEDTERRAIN_H
+#define DSPACE_TERRAIN_STREAMEDTERRAIN_H
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <dspace/pyramid/ElevationPyramid.h>
+#include <dspace/raster/ElevationSource.h>
+#include <dspace/groups/GroupPosts.h>
+#include <dspace/posts/HeightGrid.h>
+#include <dspace/posts/PostPlacement.h>
+#include <dspace/crs/SceneFrame.h>
+#include <dspace/surface/TerrainSurface.h>
+#include <dspace/tracks/WheelTracks.h>
+
+namespace dspace {
+
+struct DegreeGrid;
+class FilledPosts;
+class PostSurface;
+class RasterPosts;
+class SurfaceRay;
+class TrackPosts;
+
+struct StreamedTerrainOptions {
+  ElevationOptions elevation;
+  // On a plane (SceneFrame): scene origin in map coordinates; the raster's middle by default.
+  std::optional<Eigen::Vector2d> origin;
+  double originHeight = 0.0; // [m] above the vertical datum, where scene z = 0
+  // On the body: the scene is the body-fixed frame (Z to the north pole, X to longitude 0), and
+  // height 0 the sphere of the vertical datum's radius, or where it states none of the CRS's
+  // semi-major axis. A degree grid on a sphere is needed. One that
+  // goes once around is closed across its edge, and where it reaches the poles over them.
+  bool onBody = false;
+  // On a plane each cell between pixels is halved so often: wheel tracks need posts some
+  // centimetres apart. 0 to 12; on a body it follows from its size.
+  int subdivisions = 0;
+  WheelTracksOptions tracks; // on a plane
+  // Holes are filled where data are within so many of the raster's pixels, infinity for all of them
+  // (FilledPosts): drawn and answered alike, told apart by Filled(). Patches lie on it, and over
+  // holes of the raster alone, without a margin. > 0; absent: holes stay.
+  std::optional<double> fillHoles;
+  int cells = 124; // of a clipmap level that it will be drawn with: how far it is halved
+  ElevationPyramidOptions pyramid;
+  double deadline = 60.0; // [s] that a query waits for tiles
+  // Of higher resolution, later ones on top; see GroupPosts. Level 0 is as fine as the finest.
+  std::vector<TerrainPatch> patches;
+};
+
+// A degree grid whose columns do not halve often enough is resampled along its parallels: posts lie
+// on its surface, but not at its pixels.
+struct ResamplingReport {
+  std::int64_t columns = 0; // around the body instead of the raster's
+  // The surface that is drawn and answered against the raster's pixels, at `posts` of them taken at
+  // random. 0 posts: not measured.
+  int posts = 0;
+  double rmsError = 0.0;      // [m]
+  double greatestError = 0.0; // [m]
+};
+
+// Posts stand at pixel centres; on a body they are divided until a chord departs from the sphere by
+// at most a millimetre, and resampled where ResamplingReport says so. Between the posts of level 0
+// are the triangles of HeightGrid: heights are linear in post coordinates. Queries read what is
+// missing, hence wait, and are the same whatever was drawn before; they are for any thread but a
+// drawing one.
+class StreamedTerrain : public TerrainSurface {
+public:
+  // Reads the raster's header and what HeightRange() says. Throws what ElevationSource throws, and
+  // Error(Unsupported) for a raster that cannot stand on a body.
+  static std::shared_ptr<const StreamedTerrain> Open(const std::string& path,
+                                                     const StreamedTerrainOptions& options = {});
+  ~StreamedTerrain() override;
+
+  const ElevationInfo& Info() const;
+  const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
+  const PostPlacement& Placement() const { return this->Placement_; }
+  // Least and greatest height [m]: exact where the raster has at most 4 million pixels, else that
+  // of up to 512 x 512 of them widened by half to either side, a guess that only culling uses.
+  const std::array<double, 2>& HeightRange() const { return this->HeightRange_; }
+  bool HeightRangeIsExact() const { return this->HeightRangeIsExact_; }
+  // Map coordinates to level-0 posts; without meaning outside a plane's map or the body.
+  Eigen::Vector2d MapToPost(const Eigen::Vector2d& map) const;
+  // Level-0 posts from pixels of the raster's corners: the place of an image that lies on it.
+  const Eigen::Affine2d& PixelToPost() const { return this->PixelToPost_; }
+  // On a plane only.
+  const SceneFrame& Frame() const;
+  std::uint64_t GetVersion() const override { return this->Pyramid_->Arrivals(); }
+  // How often cells between pixels are halved: 2^n posts of level 0 a pixel.
+  int Subdivisions() const { return this->Subdivisions_; }
+  // Whether it goes from pole to pole of its body.
+  bool ReachesPoles() const { return this->Poles_; }
+  // What became of its patches; null without any.
+  const GroupReport* Group() const { return this->Group_ ? &this->Group_->Report() : nullptr; }
+
+  // What resampling costs; none where every pixel is a post.
+  const std::optional<ResamplingReport>& Resampling() const { return this->Resampling_; }
+  // Reads the overviews that its cache folder has by now, here and in `others` (its pole charts),
+  // where coarse levels are read anew; finer ones and queries stay as they are. Their number of
+  // levels; 0 where there are none, and where holes are filled: fills are made from what the raster
+  // had when it was opened. Throws what ElevationSource::TakeOverviews throws.
+  int TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {}) const;
+  // The level whose posts say all of the raster; those of a group's patches stand closer.
+  int FullLevel() const { return this->FullLevel_; }
+
+  // Wheels leave ruts, in what is drawn and in all that is answered from then on. Places are of the
+  // scene's frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
+  void AddTracks(const std::vector<TrackAddition>& additions) const;
+  void ClearTracks() const;
+  // Throws what WheelTracks::Restore throws, and Error(Unsupported) on a body.
+  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn = false) const;
+  // See TrackFile.h. What is loaded is added; a wheel of its name goes on with it.
+  void SaveTracks(const std::string& path) const;
+  // Throws Error(Resource) for a file of more contacts than `most`.
+  void LoadTracks(const std::string& path,
+                  std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+  const WheelTracks& Tracks() const; // throws Error(Unsupported) on a body
+  // The same ground as it was before all wheels; lives as long as this.
+  const StreamedTerrain& Undisturbed() const;
+  // HeightRange() and as far as ruts and rims reach beyond it.
+  std::array<double, 2> DrawnHeights() const;
+
+  // Into `filled` 1 where the ground is made up (StreamedTerrainOptions::fillHoles), 0 where it is
+  // between posts with data, NaN where there is none.
+  void Filled(const Eigen::Ref<const Rows3>& points_S, Eigen::Ref<Eigen::VectorXd> filled) const;
+  void FilledMap(const Eigen::Ref<const Rows2>& map, Eigen::Ref<Eigen::VectorXd> filled) const;
+  bool FillsHoles() const { return this->Filled_ != nullptr; }
+
+  // Root mean square [m] of the heights of the raster's pixels within `radius` [m] of each point
+  // about the plane that fits them best (least squares, of heights above the vertical datum): the
+  // "RMS height" of Shepard et al., J. Geophys. Res. 106 (E12), 32777, 2001, detrended by a plane,
+  // over n. Wheels' ruts count as deep as they are where a pixel stands. Distances are level: in
+  // the scene on a plane, along the sphere on a body. NaN where fewer than 4 pixels with data, or
+  // less than half of those there, span no plane. Throws Error(InvalidArgument) for a radius that
+  // is not positive or reaches over 4 million pixels.
+  void Roughness(const Eigen::Ref<const Rows3>& points_S, double radius,
+                 Eigen::Ref<Eigen::VectorXd> roughness) const;
+
+protected:
+  TerrainBounds DoGetBounds() const override;
+  SurfaceSample DoSample(const Eigen::Vector3d& p_S) const override;
+  SurfaceSample DoSampleMap(const Eigen::Vector2d& map) const override;
+  RayHit DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,
+                     double maximumDistance) const override;
+  Eigen::Vector3d DoMapToScene(const Eigen::Vector3d& map) const override;
+  Eigen::Vector3d DoSceneToMap(const Eigen::Vector3d& p_S) const override;
+  Eigen::Vector3d DoUp(const Eigen::Vector3d& p_S) const override;
+  Eigen::Vector3d DoNorth(const Eigen::Vector3d& p_S) const override;
+  int DoResidentLevel(const Eigen::Vector2d& map) const override;
+  void DoHeights(const Eigen::Ref<const Rows3>& points_S,
+                 Eigen::Ref<Eigen::VectorXd> heights) const override;
+  void DoHeightsMap(const Eigen::Ref<const Rows2>& map,
+                    Eigen::Ref<Eigen::VectorXd> heights) const override;
+
+private:
+  StreamedTerrain(const std::string& name, std::shared_ptr<const ElevationSource> source,
+                  std::vector<std::string> warnings);
+  void StandOnPlane(const StreamedTerrainOptions& options);
+  void StandOnBody(const StreamedTerrainOptions& options);
+  void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
+  void Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options);
+  Eigen::Affine2d PlanePosts() const; // level-0 posts to the scene
+  std::shared_ptr<const PostSource> WithTracks(std::shared_ptr<const PostSource> source,
+                                               const StreamedTerrainOptions& options);
+  bool Tracked() const { return this->Tracks_ && !this->Tracks_->Empty(); }
+  // What answers there.
+  const PostSurface& SurfaceAt(const Eigen::Vector2d& post) const;
+  void FilledAt(const std::vector<Eigen::Vector2d>& posts,
+                Eigen::Ref<Eigen::VectorXd> filled) const;
+  std::vector<Eigen::Vector2d> PostsOf(const Eigen::Ref<const Rows3>& points_S) const;
+  void HeightsAt(const std::vector<Eigen::Vector2d>& posts,
+                 Eigen::Ref<Eigen::VectorXd> heights) const;
+  const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
+  const PostSurface& Bottom() const;
+  const SurfaceRay& Ray() const;
+  void FindHeightRange();
+  void TakePatches();
+  SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
+  Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;
+  bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
+
+  std::shared_ptr<const ElevationSource> Source_;
+  std::shared_ptr<const RasterPosts> Posts_;
+  std::shared_ptr<const FilledPosts> Filled_;
+  std::shared_ptr<const PostSurface> Holed_; // the surface as it is without what is filled
+  std::shared_ptr<const GroupPosts> Group_;
+  std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
+  std::shared_ptr<ElevationPyramid> Pyramid_;
+  std::unique_ptr<PostSurface> Surface_;
+  std::shared_ptr<const PostSource> Ground_; // without patches and tracks
+  ElevationPyramidOptions BottomOptions_;
+  mutable std::once_flag BottomOnce_; // made when the first ray needs it, as are rays
+  mutable std::unique_ptr<PostSurface> Bottom_;
+  mutable std::once_flag RayOnce_;
+  mutable std::unique_ptr<SurfaceRay> Ray_;
+  std::shared_ptr<WheelTracks> Tracks_; // on a plane; and what follows
+  std::shared_ptr<const TrackPosts> TrackPosts_;
+  std::shared_ptr<const PostSource> Bare_;
+  std::unique_ptr<PostSurface> Tracked_; // of level 0: ruts are between the raster's posts
+  mutable std::once_flag TrackedRayOnce_;
+  mutable std::unique_ptr<SurfaceRay> TrackedRay_;
+  mutable std::mutex Mutex_; // of what follows
+  mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
+  PostPlacement Placement_;
+  std::optional<SceneFrame> Frame_;
+  Eigen::Affine2d PixelToPost_ = Eigen::Affine2d::Identity();
+  Eigen::Affine2d MapToPost_ = Eigen::Affine2d::Identity();
+  bool Poles_ = false;
+  int Subdivisions_ = 0;
+  int FullLevel_ = 0;
+  std::optional<ResamplingReport> Resampling_;
+  std::shared_ptr<ElevationPyramid> Pixels_; // the raster's own where it is resampled, and their
+  PostPlacement PixelPlacement_;             // places
+  double Deadline_ = 60.0;
+  std::array<double, 2> HeightRange_ = {0.0, 0.0};
+  bool HeightRangeIsExact_ = false;
+};
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,223 @@
+#include <dspace/tracks/TrackPosts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <dspace/pyramid/ElevationPyramid.h>
+
+#include <dspace/raster/LatestKept.h>
+
+namespace dspace {
+namespace {
+
+constexpr int Size = ElevationPyramid::TileSize;
+constexpr std::size_t KeptTiles = 128; // 64 KiB each
+constexpr int MostPlaces = 8;          // along a side of a cell
+constexpr double Widest = 4.0;         // rut widths that posts may be apart
+
+// Depths at places within the cells of a block, where there are any.
+class Canvas {
+public:
+  // `places` along a side of each cell; 1 is the post's own.
+  Canvas(const PostLattice& lattice, const PostBlock& block, int places)
+      : Lattice_(lattice), Block_(block), Places_(places),
+        First_(std::size_t(block.width) * block.height, None) {}
+
+  void Draw(const TrackSegment& segment, const Eigen::Affine2d& postToScene,
+            const Eigen::Affine2d& sceneToPost);
+  // Lowers heights and sets weights.
+  void Apply(float* heights, float* weights) const;
+
+private:
+  static constexpr std::size_t None = std::numeric_limits<std::size_t>::max();
+  const PostLattice& Lattice_;
+  PostBlock Block_;
+  int Places_;                     // along a side
+  std::vector<std::size_t> First_; // of a post's places
+  std::vector<TrackDepth> Depths_;
+};
+
+void Canvas::Draw(const TrackSegment& segment, const Eigen::Affine2d& postToScene,
+                  const Eigen::Affine2d& sceneToPost) {
+  const Eigen::AlignedBox2d box = segment.Box();
+  Eigen::AlignedBox2d posts;
+  for (int i = 0; i < 4; ++i) {
+    posts.extend(sceneToPost * box.corner(Eigen::AlignedBox2d::CornerType(i)));
+  }
+  const double step = std::ldexp(1.0, this->Block_.level);
+  const double half = this->Block_.level == 0 ? 0.0 : 0.5;
+  // Posts whose cells may reach into it; the lattice's last one stands nearer than its number says.
+  const auto first = [&](double place, std::int64_t from, int count) {
+    return int(std::clamp(std::ceil(place / step - half) - double(from), 0.0, double(count)));
+  };
+  const auto end = [&](double place, std::int64_t from, int count) {
+    return int(
+        std::clamp(std::floor(place / step + half) + 2.0 - double(from), 0.0, double(count)));
+  };
+  const int left = first(posts.min().x(), this->Block_.column, this->Block_.width);
+  const int right = end(posts.max().x(), this->Block_.column, this->Block_.width);
+  const int top = first(posts.min().y(), this->Block_.row, this->Block_.height);
+  const int bottom = end(posts.max().y(), this->Block_.row, this->Block_.height);
+  const int n = this->Places_;
+  for (int j = top; j < bottom; ++j) {
+    const auto r = double(this->Lattice_.RowPlace(this->Block_.level, this->Block_.row + j));
+    for (int i = left; i < right; ++i) {
+      const auto c =
+          double(this->Lattice_.ColumnPlace(this->Block_.level, this->Block_.column + i));
+      std::size_t& at = this->First_[std::size_t(j) * this->Block_.width + i];
+      for (int k = 0; k < n * n; ++k) {
+        const int place[2] = {k % n, k / n};
+        const double dc = n == 1 ? 0.0 : ((place[0] + 0.5) / n - 0.5) * step;
+        const double dr = n == 1 ? 0.0 : ((place[1] + 0.5) / n - 0.5) * step;
+        TrackDepth depth;
+        if (!segment.At(postToScene * Eigen::Vector2d(c + dc, r + dr), depth)) {
+          continue;
+        }
+        if (at == None) {
+          at = this->Depths_.size();
+          this->Depths_.resize(at + std::size_t(n) * n);
+        }
+        this->Depths_[at + std::size_t(k)].Join(depth);
+      }
+    }
+  }
+}
+
+void Canvas::Apply(float* heights, float* weights) const {
+  const std::size_t n = std::size_t(this->Places_) * this->Places_;
+  for (std::size_t i = 0; i < this->First_.size(); ++i) {
+    if (this->First_[i] == None || std::isnan(heights[i])) {
+      continue;
+    }
+    double depth = 0.0;
+    double weight = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const TrackDepth& place = this->Depths_[this->First_[i] + k];
+      depth += place.depth;
+      weight += place.weight;
+    }
+    heights[i] = float(double(heights[i]) - depth / double(n));
+    if (weights) {
+      weights[i] = float(weight / double(n));
+    }
+  }
+}
+
+} // namespace
+
+TrackPosts::TrackPosts(std::shared_ptr<const PostSource> source,
+                       std::shared_ptr<const WheelTracks> tracks,
+                       const Eigen::Affine2d& postToScene)
+    : Source_(std::move(source)), Tracks_(std::move(tracks)), PostToScene_(postToScene),
+      SceneToPost_(postToScene.inverse()),
+      Tiles_(
+          std::make_unique<LatestKept<Key, std::shared_ptr<const std::vector<float>>>>(KeptTiles)) {
+}
+
+TrackPosts::~TrackPosts() = default;
+
+double TrackPosts::Spacing(int level) const {
+  return std::ldexp(this->PostToScene_.linear().colwise().norm().minCoeff(), level);
+}
+
+// What reaches into the cells of its posts.
+std::vector<TrackSegment> TrackPosts::Near(const PostBlock& block, double width) const {
+  const double step = std::ldexp(1.0, block.level);
+  const Eigen::Vector2d first(double(block.column) - 2.0, double(block.row) - 2.0);
+  const Eigen::Vector2d last(double(block.column + block.width) + 1.0,
+                             double(block.row + block.height) + 1.0);
+  const Eigen::AlignedBox2d posts(first * step, last * step);
+  Eigen::AlignedBox2d box;
+  for (int i = 0; i < 4; ++i) {
+    box.extend(this->PostToScene_ * posts.corner(Eigen::AlignedBox2d::CornerType(i)));
+  }
+  return this->Tracks_->Near(box, width);
+}
+
+std::shared_ptr<const std::vector<float>> TrackPosts::TileOf(const Key& key) const {
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    if (const auto* kept = this->Tiles_->Find(key)) {
+      return *kept;
+    }
+  }
+  auto heights = std::make_shared<std::vector<float>>(std::size_t(Size) * Size);
+  this->Source_->Read({int(key[0]), key[1] * Size, key[2] * Size, Size, Size}, heights->data());
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  this->Tiles_->Keep(key, heights);
+  return heights;
+}
+
+// From a tile that is kept where the block lies in one, as a pyramid's do.
+void TrackPosts::ReadSource(const PostBlock& block, float* heights) const {
+  if (block.column < 0 || block.row < 0 || block.column % Size + block.width > Size ||
+      block.row % Size + block.height > Size) {
+    this->Source_->Read(block, heights);
+    return;
+  }
+  const auto tile = this->TileOf({block.level, block.column / Size, block.row / Size});
+  for (int j = 0; j < block.height; ++j) {
+    std::copy_n(tile->data() + (block.row % Size + j) * Size + block.column % Size, block.width,
+                heights + std::size_t(j) * block.width);
+  }
+}
+
+void TrackPosts::Read(const PostBlock& block, float* heights) const {
+  this->ReadWithTracks(block, heights, nullptr);
+}
+
+bool TrackPosts::ReadWithTracks(const PostBlock& block, float* heights, float* tracks) const {
+  const std::vector<TrackSegment> segments = this->Near(block, this->Spacing(block.level) / Widest);
+  if (segments.empty()) {
+    this->Source_->Read(block, heights);
+    return false;
+  }
+  this->ReadSource(block, heights);
+  Canvas canvas(this->GetLattice(), block, std::min(1 << std::min(block.level, 16), MostPlaces));
+  for (const TrackSegment& segment : segments) {
+    canvas.Draw(segment, this->PostToScene_, this->SceneToPost_);
+  }
+  if (tracks) {
+    std::fill_n(tracks, std::size_t(block.width) * block.height, 0.0f);
+  }
+  canvas.Apply(heights, tracks);
+  return true;
+}
+
+void TrackPosts::Lower(const PostBlock& block, float* heights) const {
+  Canvas canvas(this->GetLattice(), block, 1);
+  for (const TrackSegment& segment : this->Near(block, this->Spacing(0) / Widest)) {
+    canvas.Draw(segment, this->PostToScene_, this->SceneToPost_);
+  }
+  canvas.Apply(heights, nullptr);
+}
+
+std::vector<PostRectangle> TrackPosts::RectanglesOf(const std::vector<TrackReach>& changed) const {
+  const PostLattice& lattice = this->GetLattice();
+  std::vector<PostRectangle> rectangles;
+  for (const TrackReach& reach : changed) {
+    Eigen::AlignedBox2d posts;
+    for (int i = 0; i < 4; ++i) {
+      posts.extend(this->SceneToPost_ * reach.box.corner(Eigen::AlignedBox2d::CornerType(i)));
+    }
+    const auto clamped = [](double v, std::int64_t count) {
+      return std::int64_t(std::clamp(std::floor(v), -1.0, double(count)));
+    };
+    PostRectangle rectangle;
+    rectangle.column = clamped(posts.min().x(), lattice.columns);
+    rectangle.row = clamped(posts.min().y(), lattice.rows);
+    rectangle.width = clamped(posts.max().x(), lattice.columns) + 2 - rectangle.column;
+    rectangle.height = clamped(posts.max().y(), lattice.rows) + 2 - rectangle.row;
+    rectangle.levels = 0;
+    while (rectangle.levels < lattice.levels &&
+           this->Spacing(rectangle.levels) <= Widest * reach.width) {
+      ++rectangle.levels;
+    }
+    rectangles.push_back(rectangle);
+  }
+  return rectangles;
+}
+
+} // namespace dspace
