@@ -20,12 +20,16 @@ if(DSPACE_CCACHE)
     CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime "${DSPACE_CCACHE}")
 endif()
 
-# Several sources are compiled as one (a unity build): headers are parsed once for all of them.
+# Several sources are compiled as one (a unity build): headers are parsed once for all of them. GCC then takes
+# a source for a header, where a member whose type is in an anonymous namespace would be a mistake.
 option(DSPACE_UNITY "Compile the sources of a library in groups" ON)
 
 add_library(DspaceOptions INTERFACE)
 # -ffp-contract=off: the same numbers whether or not the compiler finds a fused multiply-add.
 target_compile_options(DspaceOptions INTERFACE -Wall -Wextra -Werror -ffp-contract=off)
+if(DSPACE_UNITY)
+  target_compile_options(DspaceOptions INTERFACE -Wno-subobject-linkage)
+endif()
 if(DSPACE_SANITIZE)
   target_compile_options(DspaceOptions INTERFACE
     -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -Og -g1)

@@ -19,7 +19,6 @@
 namespace dspace {
 namespace {
 
-constexpr int Size = ElevationPyramid::TileSize;
 
 constexpr std::uint64_t StaleAfter = 1000; // later calls
 
@@ -150,7 +149,7 @@ struct ElevationPyramid::Implementation {
       const auto resident = this->tiles.find(key);
       const bool patch = resident != this->tiles.end();
       const std::shared_ptr<const PyramidTile> old = patch ? resident->second.tile : nullptr;
-      const TileBox box = patch ? resident->second.stale : TileBox{0, 0, Size, Size};
+      const TileBox box = patch ? resident->second.stale : TileBox{0, 0, PyramidTileSize, PyramidTileSize};
       lock.unlock();
       std::shared_ptr<const PyramidTile> tile;
       std::exception_ptr error;

@@ -9,11 +9,11 @@
 
 #include <dspace/raster/LatestKept.h>
 #include <dspace/posts/PostsBetween.h>
+#include <dspace/pyramid/PyramidTiles.h>
 
 namespace dspace {
 namespace {
 
-constexpr int Size = ElevationPyramid::TileSize;
 constexpr std::size_t KeptTiles = 256; // 64 KiB each
 constexpr int Sweeps = 8;              // towards the mean of four neighbours, a level
 constexpr int TopSweeps = 20000;       // at most; some thousand posts
@@ -140,7 +140,7 @@ FilledPosts::Heights FilledPosts::TileOf(const Key& key) const {
     }
   }
   const auto heights = std::make_shared<const std::vector<float>>(
-      this->Fill({int(key[0]), key[1] * Size, key[2] * Size, Size, Size}));
+      this->Fill({int(key[0]), key[1] * PyramidTileSize, key[2] * PyramidTileSize, PyramidTileSize, PyramidTileSize}));
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   this->Tiles_->Keep(key, heights);
   return heights;
@@ -155,14 +155,14 @@ std::vector<float> FilledPosts::FromTiles(const PostBlock& block) const {
   for (std::int64_t c = lattice.periodic ? block.column : std::max<std::int64_t>(block.column, 0);
        c < end && (lattice.periodic || c < columns);) {
     const std::int64_t in = lattice.Wrapped(block.level, c);
-    const std::int64_t run = std::min({Size - in % Size, columns - in, end - c});
+    const std::int64_t run = std::min({PyramidTileSize - in % PyramidTileSize, columns - in, end - c});
     for (std::int64_t r = std::max<std::int64_t>(block.row, 0);
          r < std::min(block.row + block.height, rows);) {
       const std::int64_t to =
-          std::min({(r / Size + 1) * Size, rows, std::int64_t(block.row + block.height)});
-      const Heights tile = this->TileOf({block.level, in / Size, r / Size});
+          std::min({(r / PyramidTileSize + 1) * PyramidTileSize, rows, std::int64_t(block.row + block.height)});
+      const Heights tile = this->TileOf({block.level, in / PyramidTileSize, r / PyramidTileSize});
       for (; r < to; ++r) {
-        std::copy_n(tile->data() + r % Size * Size + in % Size, run,
+        std::copy_n(tile->data() + r % PyramidTileSize * PyramidTileSize + in % PyramidTileSize, run,
                     heights.data() + (r - block.row) * block.width + (c - block.column));
       }
     }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double ReachPosts = 64.0; // distances are told in posts no finer than that
 constexpr int Far = 1 << 28;        // posts; no data in that row
-constexpr float None = std::numeric_limits<float>::quiet_NaN();
+constexpr float NoHeight = std::numeric_limits<float>::quiet_NaN();
 
 } // namespace
 
@@ -82,7 +82,7 @@ void FilledPosts::DropBeyondReach(const PostBlock& block, std::vector<float>& he
         near = away * away + double((k - r) * (k - r)) <= reach * reach;
       }
       if (!near) {
-        heights[at] = None;
+        heights[at] = NoHeight;
       }
     }
   }

@@ -9,11 +9,11 @@
 #include <dspace/Error.h>
 
 #include <dspace/raster/LatestKept.h>
+#include <dspace/pyramid/PyramidTiles.h>
 
 namespace dspace {
 namespace {
 
-constexpr int Size = ElevationPyramid::TileSize;
 constexpr std::size_t MostSingles = 16; // of a tile: then it is read
 
 // Posts with one of margin, so that the rims of holes can look around.
@@ -101,7 +101,7 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
       continue;
     }
     const auto [c, r] = cellOf(posts[i]);
-    items.push_back({r / Size, FloorDiv(c, Size), i});
+    items.push_back({r / PyramidTileSize, FloorDiv(c, PyramidTileSize), i});
   }
   const auto before = [](const Item& a, const Item& b) {
     return a.tileRow != b.tileRow ? a.tileRow < b.tileRow : a.tileColumn < b.tileColumn;

@@ -5,7 +5,6 @@
 namespace dspace {
 namespace {
 
-constexpr int Size = ElevationPyramid::TileSize;
 constexpr std::size_t KeptChanges = 4096;
 
 } // namespace
@@ -38,14 +37,14 @@ std::vector<TilePiece> CutIntoTiles(const PostLattice& lattice, const PostBlock&
     right = std::clamp<std::int64_t>(right, 0, columns);
   }
   for (std::int64_t r = top; r < bottom;) {
-    const std::int64_t nextRow = std::min((r / Size + 1) * Size, bottom);
+    const std::int64_t nextRow = std::min((r / PyramidTileSize + 1) * PyramidTileSize, bottom);
     for (std::int64_t c = left; c < right;) {
       const std::int64_t at = lattice.Wrapped(block.level, c);
-      const std::int64_t end = std::min((at / Size + 1) * Size, columns);
+      const std::int64_t end = std::min((at / PyramidTileSize + 1) * PyramidTileSize, columns);
       const std::int64_t run = std::min(end - at, right - c);
-      const int x = int(at % Size);
-      const int y = int(r % Size);
-      pieces.push_back({{block.level, at / Size, r / Size},
+      const int x = int(at % PyramidTileSize);
+      const int y = int(r % PyramidTileSize);
+      pieces.push_back({{block.level, at / PyramidTileSize, r / PyramidTileSize},
                         {x, y, x + int(run), y + int(nextRow - r)},
                         int(c - block.column),
                         int(r - block.row)});
@@ -62,10 +61,10 @@ TileBox TouchedOfTile(const PostLattice& lattice, const PostRectangle& posts, co
   // Around a body the rectangle may begin a turn away.
   const std::int64_t turns = lattice.periodic ? FloorDiv(posts.column, columns) : 0;
   for (std::int64_t turn = turns; turn <= (lattice.periodic ? turns + 1 : 0); ++turn) {
-    const std::int64_t column = posts.column - turn * columns - key[1] * Size;
-    const std::int64_t row = posts.row - key[2] * Size;
+    const std::int64_t column = posts.column - turn * columns - key[1] * PyramidTileSize;
+    const std::int64_t row = posts.row - key[2] * PyramidTileSize;
     const auto within = [](std::int64_t value) {
-      return int(std::clamp<std::int64_t>(value, 0, Size));
+      return int(std::clamp<std::int64_t>(value, 0, PyramidTileSize));
     };
     touched.Widen(
         {within(column), within(row), within(column + posts.width), within(row + posts.height)});
@@ -77,11 +76,11 @@ std::shared_ptr<const PyramidTile> ReadPyramidTile(const PostSource& source, con
                                                    const TileBox& box, const PyramidTile* old) {
   const int width = box.right - box.left;
   const int height = box.bottom - box.top;
-  const std::size_t posts = std::size_t(Size) * Size;
+  const std::size_t posts = std::size_t(PyramidTileSize) * PyramidTileSize;
   std::vector<float> heights(std::size_t(width) * height);
   std::vector<float> tracks(heights.size());
   const bool tracked = source.ReadWithTracks(
-      {int(key[0]), key[1] * Size + box.left, key[2] * Size + box.top, width, height},
+      {int(key[0]), key[1] * PyramidTileSize + box.left, key[2] * PyramidTileSize + box.top, width, height},
       heights.data(), tracks.data());
   auto tile = old ? std::make_shared<PyramidTile>(*old) : std::make_shared<PyramidTile>();
   tile->heights.resize(posts);
@@ -93,7 +92,7 @@ std::shared_ptr<const PyramidTile> ReadPyramidTile(const PostSource& source, con
   }
   for (int r = 0; r < height; ++r) {
     const std::size_t from = std::size_t(r) * width;
-    const std::size_t to = std::size_t(box.top + r) * Size + box.left;
+    const std::size_t to = std::size_t(box.top + r) * PyramidTileSize + box.left;
     std::copy_n(heights.data() + from, width, tile->heights.data() + to);
     if (!tile->tracks.empty()) {
       std::copy_n(tracks.data() + from, width, tile->tracks.data() + to);
@@ -110,7 +109,7 @@ void CopyPiece(const PyramidTile& tile, const TilePiece& piece, int blockWidth,
   const TileBox& box = piece.box;
   const int width = box.right - box.left;
   for (int r = 0; r < box.bottom - box.top; ++r) {
-    const std::size_t from = std::size_t(box.top + r) * Size + box.left;
+    const std::size_t from = std::size_t(box.top + r) * PyramidTileSize + box.left;
     const std::size_t to = std::size_t(piece.row + r) * blockWidth + piece.column;
     std::copy_n(tile.heights.data() + from, width, planes.heights + to);
     if (planes.tracks && !tile.tracks.empty()) {

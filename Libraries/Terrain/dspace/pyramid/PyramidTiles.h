@@ -13,6 +13,8 @@
 
 namespace dspace {
 
+inline constexpr int PyramidTileSize = ElevationPyramid::TileSize; // posts a side
+
 using TileKey = std::array<std::int64_t, 3>; // level, tile column, tile row
 
 // Posts of a tile: columns left..right-1, rows top..bottom-1 of it.

@@ -19,7 +19,7 @@
 namespace dspace {
 namespace {
 
-constexpr int Tile = OverviewHeader::TileSize;
+constexpr int TileSide = OverviewHeader::TileSize;
 
 // The file under way.
 class Output {
@@ -148,7 +148,7 @@ private:
     std::fill(level.counts.begin(), level.counts.end(), 0);
     level.rowsIn = 0;
     ++level.rowsFinished;
-    if (level.rowsFinished % Tile == 0 || last) {
+    if (level.rowsFinished % TileSide == 0 || last) {
       this->WriteTiles(l);
     }
   }
@@ -156,10 +156,10 @@ private:
   void WriteTiles(int l) {
     Level& level = this->Levels_[l];
     const int rows = int(level.finished.size() / std::size_t(level.columns));
-    const int tileRow = (level.rowsFinished - 1) / Tile;
+    const int tileRow = (level.rowsFinished - 1) / TileSide;
     const auto sample = std::size_t(this->Header_.sampleBytes);
-    for (int left = 0; left < level.columns; left += Tile) {
-      const int width = std::min(Tile, level.columns - left);
+    for (int left = 0; left < level.columns; left += TileSide) {
+      const int width = std::min(TileSide, level.columns - left);
       const std::size_t count = std::size_t(width) * rows;
       std::vector<char> planes(count * sample);
       for (std::size_t i = 0; i < count; ++i) {
@@ -177,7 +177,7 @@ private:
         throw Error(Error::Kind::Internal, "overviews", "a tile cannot be compressed");
       }
       OverviewHeader::Tile& tile =
-          this->Header_.tiles[this->Header_.TileIndex(l, left / Tile, tileRow)];
+          this->Header_.tiles[this->Header_.TileIndex(l, left / TileSide, tileRow)];
       tile = {this->Output_.Written(), std::uint32_t(bytes), Checksum(packed.data(), bytes)};
       this->Output_.Append(packed.data(), bytes);
     }
@@ -226,7 +226,7 @@ bool WriteOverviews(const ElevationSource& source, const std::string& identity,
   header.sampleBytes = fine ? 8 : 4;
   do { // until one tile holds a level
     ++header.levels;
-  } while (std::max(header.ColumnsAt(header.levels - 1), header.RowsAt(header.levels - 1)) > Tile);
+  } while (std::max(header.ColumnsAt(header.levels - 1), header.RowsAt(header.levels - 1)) > TileSide);
 
   Output output(file);
   OverviewPreamble start = {};

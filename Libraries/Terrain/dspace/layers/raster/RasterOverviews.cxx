@@ -19,14 +19,14 @@ namespace {
 
 constexpr int FirstLevel = 2; // a sixteenth of the pixels; finer ones are read from the raster
 constexpr int Smallest = 512; // cells a side of the coarsest
-constexpr int Large = 4096;   // pixels a side, of a raster that needs them
+constexpr int NeedsOverviews = 4096;   // pixels a side, of a raster that needs them
 constexpr std::size_t PartCells = std::size_t(1) << 20; // that are written at once
 const char* const IdentityItem = "DSPACE_SOURCE";
 
 } // namespace
 
 void RasterLevels::PlanOverviews(GDALDataset& file, const std::string& folder, bool hasOwn) {
-  if (this->Remote_ || hasOwn || std::max(this->Width_, this->Height_) <= Large) {
+  if (this->Remote_ || hasOwn || std::max(this->Width_, this->Height_) <= NeedsOverviews) {
     return;
   }
   static std::atomic<int> count{0};
