@@ -5,7 +5,9 @@ import pathlib
 import numpy as np
 import pytest
 
-gdal = pytest.importorskip("osgeo.gdal")  # an independent reader
+from needs import needs_module
+
+gdal = needs_module("osgeo.gdal", "python3-gdal")  # an independent reader
 gdal.UseExceptions()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FIELD = ROOT / "Data/field/field.tif"

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from needs import needs_module
+
 DATA = Path(__file__).resolve().parents[2] / "Data"
 sys.path.append(str(DATA / "generators"))
 sys.path.append(str(DATA.parent / "Wrapping" / "Python"))
@@ -15,7 +17,7 @@ sys.path.append(str(DATA.parent / "Wrapping" / "Python"))
 import make_field  # noqa: E402
 import make_rover  # noqa: E402
 
-gdal = pytest.importorskip("osgeo.gdal")
+gdal = needs_module("osgeo.gdal", "python3-gdal")
 MESHES = sorted(p.name for p in (DATA / "rover").iterdir() if p.suffix in (".glb", ".gltf"))
 
 

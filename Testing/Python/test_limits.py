@@ -2,7 +2,9 @@
 import numpy as np
 import pytest
 
-dspace = pytest.importorskip("dspace", reason="build the Python package first")
+import dspace
+from needs import needs_module
+
 
 HEADER = ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
           "property float z\n")
@@ -130,7 +132,7 @@ def test_cameras(scene, refused):
 
 
 def test_heights(scene, refused, tmp_path):
-    gdal = pytest.importorskip("osgeo.gdal")
+    gdal = needs_module("osgeo.gdal", "python3-gdal")
     heights = np.zeros((4, 5))
     heights[2, 3] = 1e30
     path = str(tmp_path / "high.tif")

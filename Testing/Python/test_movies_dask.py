@@ -13,8 +13,9 @@ import dspace
 from dspace import movies_dask
 from dspace.movies_draw import png
 from movies_support import SIZE, files, flight, run  # noqa: F401  (run: a fixture)
+from needs import needs_module
 
-distributed = pytest.importorskip("distributed", reason="python3-distributed is not installed")
+distributed = needs_module("distributed", "python3-distributed")
 ASKED = []  # (run, numbers): what workers were asked for, in this process
 GATE = threading.Event()
 

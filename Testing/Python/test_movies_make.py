@@ -13,6 +13,7 @@ import dspace
 from dspace.movies_encode import Encoder
 from dspace.movies_folder import FRAME, identity
 from movies_support import RUN, SIZE, files, flight, pixels, run  # noqa: F401  (run: a fixture)
+from needs import needs_module
 
 
 def test_one_process_two_processes_and_a_resumed_one_make_the_same(run, tmp_path):
@@ -86,8 +87,6 @@ def test_movie_files(run, tmp_path, ending, codec):
 
 def test_a_recording_makes_the_movie_of_the_live_run(run, tmp_path):
     """Its run begins at 100 s; that is where the movie begins if nothing is said."""
-    if not hasattr(dspace, "Playback"):
-        pytest.skip("this build plays no recordings back")
     made = {}
     exec(RUN, made)
     session, advance, _ = made["run"]()
@@ -118,7 +117,7 @@ def test_a_recording_makes_the_movie_of_the_live_run(run, tmp_path):
 
 
 def test_dask_workers_make_the_same(run, tmp_path):
-    distributed = pytest.importorskip("distributed", reason="python3-distributed is not installed")
+    distributed = needs_module("distributed", "python3-distributed")
     movie = flight()
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False, protocol="tcp://",
                                   dashboard_address=None, local_directory=str(tmp_path / "workers")) as cluster:

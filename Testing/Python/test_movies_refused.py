@@ -11,6 +11,7 @@ from dspace.command_line import main
 from dspace.movies_draw import fill
 from dspace.movies_folder import FRAME
 from movies_support import SIZE, run  # noqa: F401  (run: a fixture)
+from needs import needs_module
 
 
 def raised(kind, call):
@@ -180,7 +181,7 @@ def test_schedulers_addresses(run, script, tmp_path, monkeypatch, capsys):  # no
         said = capsys.readouterr().err
         assert f"the scheduler is {address!r}; accepted: tcp://HOST:PORT or tls://HOST:PORT" in said
     assert not out.exists()
-    pytest.importorskip("distributed", reason="python3-distributed is not installed")
+    needs_module("distributed", "python3-distributed")
     # Nobody listens: one line, from a process that ends.
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", "import sys\nfrom dspace import movies_dask\n"
                            "movies_dask._TO_CONNECT = 0.3\nfrom dspace.command_line import main\n"

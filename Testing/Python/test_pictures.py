@@ -4,6 +4,7 @@ import pytest
 
 import dspace
 from conftest import picture_of
+from needs import needs_module
 
 RED, SIZE = (1, 0, 0), (160, 120)
 
@@ -91,7 +92,7 @@ def test_pick(scene, view, field):
 
 
 def test_saved_files(view, tmp_path):
-    OIIO = pytest.importorskip("osgeo.gdal")  # an independent reader
+    OIIO = needs_module("osgeo.gdal", "python3-gdal")  # an independent reader
     viewport, cube = view
     image, depth = viewport.image(), viewport.depth()
     for name in ("a.png", "a.tif"):

@@ -21,10 +21,11 @@ from dspace.recorded_files import RecordedFiles
 from dspace.recording_assets import Asset, Content
 from dspace.recording_file import RecordingFile, Row, create_recording, put_rows, write_recording
 from dspace.proto import commands_pb2 as pb
+from needs import lacks, needs_module
 from terrain_support import gdal
 
-ogr = pytest.importorskip("osgeo.ogr")
-osr = pytest.importorskip("osgeo.osr")
+ogr = needs_module("osgeo.ogr", "python3-gdal")
+osr = needs_module("osgeo.osr", "python3-gdal")
 
 TETRA = "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nvt 0 0\nvt 1 0\nvt 0 1\n"
 FACES = "f 1/1 2/2 3/3\nf 1/1 2/2 4/3\nf 1/1 3/2 4/3\nf 2/1 3/2 4/3\n"
@@ -392,7 +393,7 @@ def test_grids_of_datum_shifts_come_along(tmp_path):
     """PROJ's grid from the German DHDN to WGS 84: without it shapes are elsewhere, here by 0.2 m."""
     proj = pathlib.Path("/usr/share/proj")
     if not (proj / "BETA2007.gsb").exists() or not (proj / "proj.db").exists():
-        pytest.skip("PROJ's grid BETA2007.gsb is not installed (Debian: proj-data)")
+        lacks("proj-data")
     here = tmp_path / "here"
     here.mkdir()
     german, degrees = (osr.SpatialReference() for _ in range(2))

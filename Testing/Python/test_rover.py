@@ -7,6 +7,8 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
+from needs import needs_module
+
 ROOT = File(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "Wrapping" / "Python"))
 
@@ -32,7 +34,7 @@ def rover():
 
 @pytest.fixture(scope="module")
 def field():
-    pytest.importorskip("osgeo.gdal")
+    needs_module("osgeo.gdal", "python3-gdal")
     return GridTerrain.from_file(FIELD)
 
 
@@ -327,7 +329,7 @@ def test_bad_input_is_named(rover, tmp_path):
 
 @real_data
 def test_perseverance_with_z_down():
-    pytest.importorskip("osgeo.gdal")
+    needs_module("osgeo.gdal", "python3-gdal")
     urdf = REAL / "models" / "m2020_rover" / "m2020.urdf"
     v = load_vehicle(urdf)
     assert isinstance(v, RockerBogie)
@@ -350,7 +352,7 @@ def test_perseverance_with_z_down():
 @real_data
 @pytest.mark.parametrize("folder,kind,wheels", [("rocky7_vrml", RockerBogie, 6), ("viper_obj", IndependentSuspension, 4)])
 def test_vehicles_from_frames(folder, kind, wheels):
-    pytest.importorskip("osgeo.gdal")
+    needs_module("osgeo.gdal", "python3-gdal")
     v = load_vehicle(REAL / "models" / folder)
     assert isinstance(v, kind) and len(v.wheels) == wheels
     assert {p.frame for p in v.parts} == {v.description.root} | {j.child for j in v.description.joints}

@@ -8,7 +8,9 @@ import sys
 import numpy as np
 import pytest
 
-gdal = pytest.importorskip("osgeo.gdal")
+from needs import needs_module
+
+gdal = needs_module("osgeo.gdal", "python3-gdal")
 gdal.UseExceptions()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FIELD = ROOT / "Data/field/field.tif"

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import dspace
+from needs import needs_module
 from terrain_support import gdal, real, write_raster
 from test_terrain_layers import write
 
-osr = pytest.importorskip("osgeo.osr")
+osr = needs_module("osgeo.osr", "python3-gdal")
 osr.UseExceptions()
 
 RADIUS = 3396190.0

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import dspace
+from needs import needs_module
 
-gdal = pytest.importorskip("osgeo.gdal")  # an independent writer and reader
+gdal = needs_module("osgeo.gdal", "python3-gdal")  # an independent writer and reader
 gdal.UseExceptions()
 RADIUS = 1737400.0
 PLANE = f"+proj=eqc +lon_0=20 +R={RADIUS} +no_defs"

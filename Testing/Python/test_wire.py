@@ -3,7 +3,6 @@ the wire. What they make is compared with closed forms and with what the package
 import math
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
 
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 
 import dspace
+from needs import lacks, needs_module, needs_program
 from served_support import Served
 
 SOURCE = pathlib.Path(__file__).parents[2]
@@ -22,11 +22,10 @@ CORNERS = {11: (0.5, 0.45), 12: (0.5, -0.45), 13: (-0.5, 0.45), 14: (-0.5, -0.45
 
 def make_stubs(folder, language):
     """The protocol's messages and calls in a language, by protoc."""
-    plugin = shutil.which(f"grpc_{language}_plugin")
-    if plugin is None or shutil.which("protoc") is None:
-        pytest.skip("protobuf-compiler-grpc is not installed")
+    plugin = needs_program(f"grpc_{language}_plugin", "protobuf-compiler-grpc")
+    protoc = needs_program("protoc", "protobuf-compiler")
     folder.mkdir()
-    subprocess.run(["protoc", f"-I{PROTOS}", f"--{language}_out={folder}", f"--grpc_out={folder}",
+    subprocess.run([protoc, f"-I{PROTOS}", f"--{language}_out={folder}", f"--grpc_out={folder}",
                     f"--plugin=protoc-gen-grpc={plugin}",
                     *sorted(str(path) for path in (PROTOS / "dspace" / "session").glob("*.proto"))], check=True)
     return folder
@@ -34,7 +33,7 @@ def make_stubs(folder, language):
 
 @pytest.fixture(scope="module")
 def stubs(tmp_path_factory):
-    pytest.importorskip("grpc", reason="python3-grpcio is not installed")
+    needs_module("grpc", "python3-grpcio")
     return make_stubs(tmp_path_factory.mktemp("wire") / "python", "python")
 
 
@@ -132,9 +131,9 @@ def test_a_broken_connection_loses_and_repeats_nothing(tmp_path, stubs):
 
 
 def test_the_same_in_ruby(tmp_path):
-    ruby = shutil.which("ruby", path="/usr/bin")
-    if ruby is None or subprocess.run([ruby, "-e", "require 'grpc'"], stderr=subprocess.DEVNULL).returncode:
-        pytest.skip("ruby-grpc is not installed")
+    ruby = needs_program("ruby", "ruby-grpc")
+    if subprocess.run([ruby, "-e", "require 'grpc'"], stderr=subprocess.DEVNULL).returncode:
+        lacks("ruby-grpc")
     stubs, out = make_stubs(tmp_path / "ruby", "ruby"), tmp_path / "rover.ppm"
     with Served(tmp_path) as server:
         for _ in range(2):  # again in the same server

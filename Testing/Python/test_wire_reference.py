@@ -1,15 +1,14 @@
 """Documentation/Commands.md is what the .proto files say, and what commands answer."""
 import importlib.util
 import pathlib
-import shutil
 import subprocess
 import sys
 
 import numpy as np
-import pytest
 
 import dspace
 from dspace._client import LocalClient
+from needs import needs_program
 
 SOURCE = pathlib.Path(__file__).parents[2]
 SCRIPT = SOURCE / "Documentation" / "make_commands.py"
@@ -23,8 +22,7 @@ def load():
 
 
 def test_the_page_is_up_to_date():
-    if shutil.which("protoc") is None:
-        pytest.skip("protobuf-compiler is not installed")
+    needs_program("protoc", "protobuf-compiler")
     run = subprocess.run([sys.executable, str(SCRIPT), "--check"], stderr=subprocess.PIPE, text=True)
     assert run.returncode == 0, run.stderr
     page = (SOURCE / "Documentation" / "Commands.md").read_text(encoding="utf-8")

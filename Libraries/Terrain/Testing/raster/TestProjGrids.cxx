@@ -13,6 +13,7 @@
 #include <dspace/crs/Crs.h>
 #include <dspace/crs/ProjFolders.h>
 
+#include "MissingPackage.h"
 #include "TemporaryFolder.h"
 
 namespace dspace::testing {
@@ -47,7 +48,7 @@ TEST(ProjGrids, AreNotedWhereADatumIsShifted) {
   }
   const std::string grid = GridOf(scope.Files());
   if (grid.empty()) {
-    GTEST_SKIP() << "PROJ's grid BETA2007.gsb is not installed (Debian: proj-data)";
+    DSPACE_MISSING_PACKAGE("proj-data"); // PROJ's grid BETA2007.gsb
   }
   EXPECT_TRUE(IsProjGrid(grid)) << grid;
   EXPECT_EQ(scope.Files().at(grid).size, std::int64_t(fs::file_size(grid)));
@@ -85,7 +86,7 @@ TEST(ProjGrids, ThoseOfARecordingComeFirst) {
     grid = GridOf(scope.Files());
   }
   if (grid.empty()) {
-    GTEST_SKIP() << "PROJ's grid BETA2007.gsb is not installed (Debian: proj-data)";
+    DSPACE_MISSING_PACKAGE("proj-data"); // PROJ's grid BETA2007.gsb
   }
   std::ifstream in(grid, std::ios::binary);
   std::ostringstream read;
