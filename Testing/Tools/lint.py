@@ -48,8 +48,9 @@ def sample(root=ROOT):
 
 
 def in_parallel(work, items):
+    """The results in the order of the items, each as soon as it is there."""
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(work, items))
+        yield from pool.map(work, items)
 
 
 def check_format(files):
@@ -121,7 +122,7 @@ def check_tidy(build, files):
     for done in in_parallel(run, entries):
         if done.returncode != 0:
             failed += 1
-            print(done.stdout or done.stderr, end="")
+            print(done.stdout or done.stderr, end="", flush=True)
     print(f"clang-tidy: findings in {failed} of {len(entries)} files")
     return failed
 

@@ -98,6 +98,7 @@ bool HasLabel(const v1::CreateTelemetry& about, double value) {
 
 // All NaNs are one: there is no value.
 bool Same(double a, double b) {
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): equal bits, so that -0 and 0 differ.
   return (std::isnan(a) && std::isnan(b)) || std::memcmp(&a, &b, sizeof(a)) == 0;
 }
 

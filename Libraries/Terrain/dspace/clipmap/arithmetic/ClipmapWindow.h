@@ -54,8 +54,14 @@ public:
 
   // Distance from the place, in posts, at which a level begins to turn into the next coarser one
   // and at which it has done so: before its outline by more than two cells wherever it is snapped.
-  double BlendFrom() const { return this->BlendTo() - this->Cells_ / 8; }
-  double BlendTo() const { return this->Cells_ / 2 - 5.0; }
+  double BlendFrom() const {
+    const int blended = this->Cells_ / 8; // whole cells
+    return this->BlendTo() - blended;
+  }
+  double BlendTo() const {
+    const int half = this->Cells_ / 2;
+    return half - 5;
+  }
 
   int Texel(std::int64_t post) const {
     return static_cast<int>(post & (this->Texels_ - 1)); // two's complement: also below 0
