@@ -150,10 +150,7 @@ void AtomicFile::CloseFile() {
 
 void AtomicFile::Fail(int reason) const {
   const bool full = reason == ENOSPC || reason == EFBIG || reason == EDQUOT;
-  FailWith(this->Object_, reason,
-           full ? " after " + std::to_string(this->Bytes_) +
-                      " bytes; accepted: a folder with free space"
-                : "");
+  FailWith(this->Object_, reason, full ? "; accepted: a folder with free space" : "");
 }
 
 void AtomicFile::Write(const void* data, std::size_t bytes) {

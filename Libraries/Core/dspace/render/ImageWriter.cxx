@@ -6,10 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <unistd.h>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
 
 namespace dspace {
@@ -44,49 +45,79 @@ Type TypeOf(const std::string& path) {
   Refuse(path, "its extension is '" + extension + "'; accepted: .png .jpg .jpeg .tif .tiff .exr");
 }
 
-// A name beside `path` that keeps the extension, removed again unless the file was kept.
-class Draft {
-public:
-  explicit Draft(const std::string& path) : Path_(path) {
-    const std::filesystem::path target(path);
-    this->Draft_ =
-        (target.parent_path() / ("." + target.stem().string() + "." + std::to_string(::getpid()) +
-                                 ".part" + target.extension().string()))
-            .string();
-  }
-  ~Draft() {
-    std::error_code ignored;
-    std::filesystem::remove(this->Draft_, ignored);
-  }
-  const std::string& Name() const { return this->Draft_; }
-  void Keep() {
-    std::error_code error;
-    std::filesystem::rename(this->Draft_, this->Path_, error);
-    if (error) {
-      throw Error(Error::Kind::Io, Label(this->Path_), "cannot be written: " + error.message());
-    }
-  }
+// A date of the day would make two equal pictures differ.
+constexpr const char* Software = "Dspace";
+constexpr const char* DateTime = "2000:01:01 12:00:00";
 
-private:
-  std::string Path_;
-  std::string Draft_;
+struct Pixels {
+  OIIO::TypeDesc type;
+  const void* data;
+  OIIO::stride_t pixelBytes;
 };
+
+std::unique_ptr<OIIO::ImageOutput> EncoderFor(const std::string& path) {
+  std::unique_ptr<OIIO::ImageOutput> encoder =
+      OIIO::ImageOutput::create("picture" + std::filesystem::path(path).extension().string());
+  if (!encoder) {
+    throw Error(Error::Kind::Internal, Label(path), "cannot be encoded: " + OIIO::geterror());
+  }
+  return encoder;
+}
+
+bool Encode(OIIO::ImageOutput& encoder, const std::string& path, const OIIO::ImageSpec& spec,
+            const Pixels& pixels) {
+  return encoder.open(path, spec) &&
+         encoder.write_image(pixels.type, pixels.data, pixels.pixelBytes) && encoder.close();
+}
+
+// Reads a TIFF to its end, where its texts are.
+bool IsComplete(const std::string& path, const OIIO::ImageSpec& spec) {
+  const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create("tiff");
+  OIIO::ImageSpec found;
+  const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+  if (!in || !in->open(path, found) || found.get_string_attribute("Software") != Software ||
+      found.get_string_attribute("DateTime") != DateTime ||
+      (!space.empty() && found.get_string_attribute("oiio:ColorSpace") != space) ||
+      found.width != spec.width || found.height != spec.height ||
+      found.nchannels != spec.nchannels) {
+    return false;
+  }
+  std::vector<unsigned char> pixels(found.image_bytes());
+  return in->read_image(0, 0, 0, found.nchannels, found.format, pixels.data());
+}
+
+// OpenImageIO 2.4 makes damaged TIFFs in memory, hence a file. It does not report every failure at
+// the end of a file either, hence the look at what was written.
+void WriteTiff(const std::string& path, const OIIO::ImageSpec& spec, const Pixels& pixels) {
+  AtomicFile file(path);
+  const std::unique_ptr<OIIO::ImageOutput> encoder = EncoderFor(path);
+  if (!Encode(*encoder, file.TemporaryPath(), spec, pixels) ||
+      !IsComplete(file.TemporaryPath(), spec)) {
+    // The library does not say why. The system does, when the same pixels are written uncompressed.
+    file.Write(pixels.data, spec.image_bytes());
+    throw Error(Error::Kind::Io, Label(path),
+                "cannot be written: it is incomplete " + encoder->geterror());
+  }
+  file.Commit();
+}
 
 void Write(const std::string& path, OIIO::ImageSpec spec, const OIIO::TypeDesc& type,
            const void* data, OIIO::stride_t pixelBytes = OIIO::AutoStride) {
-  Draft draft(path);
-  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(draft.Name());
-  if (!out) {
-    throw Error(Error::Kind::Io, Label(path), "cannot be written: " + OIIO::geterror());
+  spec.attribute("Software", Software);
+  spec.attribute("DateTime", DateTime);
+  const Pixels pixels = {type, data, pixelBytes};
+  if (TypeOf(path) == Type::Tiff) {
+    WriteTiff(path, spec, pixels);
+    return;
   }
-  // A date in the file would make two equal pictures differ.
-  spec.attribute("Software", "Dspace");
-  spec.attribute("DateTime", "2000:01:01 12:00:00");
-  if (!out->open(draft.Name(), spec) || !out->write_image(type, data, pixelBytes) ||
-      !out->close()) {
-    throw Error(Error::Kind::Io, Label(path), "cannot be written: " + out->geterror());
+  // Into memory: libjpeg ends the process when it cannot write a file.
+  OIIO::Filesystem::IOVecOutput memory;
+  const std::unique_ptr<OIIO::ImageOutput> encoder = EncoderFor(path);
+  if (!encoder->set_ioproxy(&memory) || !Encode(*encoder, "picture", spec, pixels) ||
+      memory.buffer().empty()) {
+    throw Error(Error::Kind::Internal, Label(path), "cannot be encoded: " + encoder->geterror());
   }
-  draft.Keep();
+  AtomicFile::Save(path, memory.buffer().data(), memory.buffer().size());
 }
 
 void RequireSize(const std::string& path, int width, int height, int channels, std::size_t values) {
@@ -120,14 +151,7 @@ void CheckImageFile(const std::string& path, ImagePlane plane, const ImageFileOp
   if (options.jpegQuality < 1 || options.jpegQuality > 100) {
     Refuse(path, "the quality is " + std::to_string(options.jpegQuality) + "; accepted: 1 to 100");
   }
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
-    throw Error(Error::Kind::Io, Label(path), "there is no folder '" + folder.string() + "'");
-  }
-  if (std::filesystem::is_directory(path, error)) {
-    throw Error(Error::Kind::Io, Label(path), "it is a folder");
-  }
+  AtomicFile::Check(path);
 }
 
 void WriteColor(const std::string& path, int width, int height,

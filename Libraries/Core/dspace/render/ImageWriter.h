@@ -14,9 +14,8 @@ struct ImageFileOptions {
   int jpegQuality = 95; // 1 to 100
 };
 
-// The type is the extension's: .png .jpg .jpeg .tif .tiff .exr. A file is written beside its final
-// name and moved there when it is whole, so that a failure leaves an earlier file as it was. The
-// same input gives the same bytes.
+// The type is the extension's: .png .jpg .jpeg .tif .tiff .exr. AtomicFile writes it, so that a
+// failure leaves an earlier file as it was. The same input gives the same bytes.
 //
 // Color: PNG, JPEG, TIFF with 8 bits, sRGB; EXR with linear half floats. RGB: alpha is left out.
 // Depth: TIFF or EXR with 32-bit floats, metres, channel Z; +infinity where nothing was hit.
