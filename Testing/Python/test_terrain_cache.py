@@ -244,7 +244,7 @@ def test_listed_verified_and_cleared(folder, tmp_path):
     assert len(list(folder.glob("*.overviews"))) == 1 and str(second) in run("--list").stdout
     again = run("--clear", first)
     assert again.returncode == 1 and str(first) in again.stderr
-    (folder / "0-1-0.overviews-part").write_bytes(b"killed")
+    (folder / ".0.overviews.0123456789abcdef.part").write_bytes(b"killed")
     assert run("--clear").returncode == 0 and list(folder.iterdir()) == [other]
 
 
@@ -276,7 +276,7 @@ def test_a_cancelled_build_leaves_nothing(folder, tmp_path, how):
     command = subprocess.Popen([sys.executable, "-m", "dspace", "terrain", "cache", str(path)],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                start_new_session=True)
-    while command.poll() is None and not list(folder.glob("*.overviews-part")):
+    while command.poll() is None and not list(folder.glob(".*.overviews.*.part")):
         time.sleep(0.01)
     (os.killpg if how == signal.SIGINT else os.kill)(command.pid, how)
     out, err = command.communicate()

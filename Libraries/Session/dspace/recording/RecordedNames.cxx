@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include <dspace/Error.h>
+#include <dspace/AtomicFile.h>
 
 namespace dspace::session {
 namespace {
@@ -82,11 +82,8 @@ void RecordedNames::Mend(const std::string& path) const {
     rest << in.rdbuf();
   }
   in.close();
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out << this->Mended(start + rest.str());
-  if (!out.flush()) {
-    throw Error(Error::Kind::Io, "file '" + path + "'", "it cannot be unpacked");
-  }
+  const std::string mended = this->Mended(start + rest.str());
+  AtomicFile::Save(path, mended.data(), mended.size());
 }
 
 } // namespace dspace::session

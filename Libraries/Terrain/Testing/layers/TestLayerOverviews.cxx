@@ -189,7 +189,8 @@ TEST_F(Overviews, TheCacheListsVerifiesAndClearsThem) {
   std::filesystem::resize_file(entries[0].file, 600);
   EXPECT_THROW(dspace::ElevationCache::Verify(entries[0]), dspace::Error);
   const std::string hash = std::filesystem::path(entries[0].file).filename().string().substr(0, 32);
-  std::ofstream(folder + "/" + hash + "-layer-part-1-0.tif") << "killed";
+  const std::string killed = folder + "/." + hash + "-layer-2.tif.0123456789abcdef.part";
+  std::ofstream(killed) << "killed";
   std::ofstream(folder + "/mine-layer-2.tif") << "of somebody";
   std::ofstream(folder + "/" + hash + ".tif") << "of somebody";
   EXPECT_EQ(cache.Entries().size(), 1u);
@@ -197,5 +198,5 @@ TEST_F(Overviews, TheCacheListsVerifiesAndClearsThem) {
   EXPECT_TRUE(cache.Entries().empty());
   EXPECT_TRUE(std::filesystem::exists(folder + "/mine-layer-2.tif"));
   EXPECT_TRUE(std::filesystem::exists(folder + "/" + hash + ".tif"));
-  EXPECT_FALSE(std::filesystem::exists(folder + "/" + hash + "-layer-part-1-0.tif"));
+  EXPECT_FALSE(std::filesystem::exists(killed));
 }

@@ -145,12 +145,12 @@ TEST_F(DamagedCache, AFullDiskIsToldAndLeavesNothing) {
       this->Builder.Build(path);
     } catch (const Error& error) {
       message = error.what();
-      EXPECT_EQ(int(error.GetKind()), int(Error::Kind::Resource)) << message;
+      EXPECT_EQ(int(error.GetKind()), int(Error::Kind::Io)) << message;
     }
     ::setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
     EXPECT_NE(message.find(this->Overviews), std::string::npos) << message;
-    EXPECT_NE(message.find(" bytes"), std::string::npos) << message;
+    EXPECT_NE(message.find("File too large"), std::string::npos) << message;
   };
   refused();
   EXPECT_EQ(this->Files(this->Overviews), 0);

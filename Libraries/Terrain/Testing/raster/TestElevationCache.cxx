@@ -131,7 +131,7 @@ TEST_F(Cache, ClearRemovesItsOwnFilesOnly) {
   this->Builder.Clear(); // of a folder that is absent
   const std::string file = *this->Builder.Build(path);
   std::ofstream(this->Overviews + "/notes.txt") << "mine";
-  std::ofstream(this->Overviews + "/x-1-0.overviews-part") << "a killed build's";
+  std::ofstream(this->Overviews + "/.x.overviews.0123456789abcdef.part") << "a killed build's";
   ASSERT_EQ(this->Builder.Entries().size(), 1u);
   EXPECT_EQ(this->Builder.Entries()[0].path, path);
   EXPECT_EQ(this->Builder.Entries()[0].file, file);

@@ -13,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* Mark = "-layer-";
-constexpr const char* Part = "part-"; // after the mark, of one that is being written
 constexpr std::size_t HashLength = 32;
 
 DatasetPointer OpenLayer(const std::string& file) {
@@ -35,9 +34,6 @@ std::vector<ElevationCacheEntry> LayerEntries(const std::vector<std::string>& fi
   std::sort(sorted.begin(), sorted.end());
   for (const std::string& file : sorted) {
     const std::string stem = file.substr(0, file.rfind('-') + 1);
-    if (stem.find(Part, stem.rfind(Mark)) != std::string::npos) {
-      continue;
-    }
     std::error_code gone;
     const auto bytes = fs::file_size(file, gone);
     if (gone) {

@@ -12,9 +12,9 @@ namespace dspace {
 // A metadata item of such files: the raster's path.
 inline const char* const LayerPathItem = "DSPACE_PATH";
 
-// By its name: HASH-layer-N.tif, also one that was not finished.
+// By its name: HASH-layer-N.tif.
 bool IsLayerFile(const std::string& file);
-// What of `files` belongs to one raster and band is one entry; what was not finished is none.
+// What of `files` belongs to one raster and band is one entry.
 std::vector<ElevationCacheEntry> LayerEntries(const std::vector<std::string>& files);
 // Reads all pixels. Throws Error(Corrupt) naming the file.
 void VerifyLayerFile(const std::string& file);

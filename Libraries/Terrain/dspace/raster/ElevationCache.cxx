@@ -1,14 +1,12 @@
 #include <dspace/raster/ElevationCache.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
-#include <unistd.h>
-
+#include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
 
 #include <dspace/raster/CachedLayers.h>
@@ -20,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* Ending = ".overviews";
-constexpr const char* Unfinished = ".overviews-part";
 
 std::string Hash(const std::string& text) {
   // FNV-1a, twice from different starts.
@@ -54,30 +51,18 @@ bool EndsWith(const std::string& name, const std::string& ending) {
          name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-// A build's own file, removed unless it was moved into place.
-class PartFile {
-public:
-  explicit PartFile(const std::string& file) {
-    static std::atomic<int> count{0};
-    this->Name_ = file.substr(0, file.size() - std::string(Ending).size()) + "-" +
-                  std::to_string(::getpid()) + "-" + std::to_string(count++) + Unfinished;
-    std::remove(this->Name_.c_str()); // of a process of the same number that was killed
-  }
-  ~PartFile() { std::remove(this->Name_.c_str()); }
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
-  const std::string& Name() const { return this->Name_; }
-
-private:
-  std::string Name_;
-};
+// A file that a build is writing, or that a killed one has left.
+bool IsUnfinished(const fs::path& path) {
+  const std::string target = AtomicFile::TargetName(path.filename().string());
+  return EndsWith(target, Ending) || IsLayerFile(target);
+}
 
 // What no build can still be writing to.
 void RemoveAbandoned(const std::string& folder) {
   std::error_code ignored;
   const auto yesterday = fs::file_time_type::clock::now() - std::chrono::hours(24);
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (EndsWith(entry.path().string(), Unfinished) && entry.last_write_time(ignored) < yesterday) {
+    if (IsUnfinished(entry.path()) && entry.last_write_time(ignored) < yesterday) {
       fs::remove(entry.path(), ignored);
     }
   }
@@ -157,19 +142,15 @@ ElevationCache::Build(const std::string& path, const ElevationOptions& options,
                 "cannot be made: " + failure.message());
   }
   RemoveAbandoned(this->Folder_);
-  const PartFile part(file);
-  if (!WriteOverviews(source, identity, part.Name(), progress)) {
+  AtomicFile overviews(file);
+  if (!WriteOverviews(source, identity, overviews, progress)) {
     return std::nullopt;
   }
   if (source.Identity() != identity) {
     throw Error(Error::Kind::Io, "raster '" + path + "'",
                 "it has changed while its overviews were built; build them anew");
   }
-  fs::rename(part.Name(), file, failure);
-  if (failure) {
-    throw Error(Error::Kind::Io, "cache folder '" + this->Folder_ + "'",
-                "a file cannot be renamed: " + failure.message());
-  }
+  overviews.Commit();
   return file;
 }
 
@@ -234,7 +215,7 @@ void ElevationCache::Clear() const {
   }
   for (const auto& found : files) {
     const std::string name = found.path().string();
-    if (!EndsWith(name, Ending) && !EndsWith(name, Unfinished) && !IsLayerFile(name)) {
+    if (!EndsWith(name, Ending) && !IsLayerFile(name) && !IsUnfinished(found.path())) {
       continue;
     }
     if (!fs::remove(found.path(), failure) && failure) {

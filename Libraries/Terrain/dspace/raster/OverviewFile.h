@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <dspace/AtomicFile.h>
 #include <dspace/raster/ElevationSource.h>
 
 namespace dspace {
@@ -67,12 +68,12 @@ private:
   OverviewHeader Header_;
 };
 
-// Writes the overviews of `source`'s values, read from its first row to its last, into `file`,
-// which must not exist. Every cell is the mean of its pixels, however coarse. False where
-// `progress`, called with the part done, said so; what was written stays then, and when Error is
-// thrown: what the source throws; Resource where the disk is full; Io.
-bool WriteOverviews(const ElevationSource& source, const std::string& identity,
-                    const std::string& file, const std::function<bool(double)>& progress);
+// Writes the overviews of `source`'s values, read from its first row to its last, into `output`,
+// which is empty; the caller commits it. Every cell is the mean of its pixels, however coarse.
+// False where `progress`, called with the part done, said so. Throws what the source and the output
+// throw.
+bool WriteOverviews(const ElevationSource& source, const std::string& identity, AtomicFile& output,
+                    const std::function<bool(double)>& progress);
 
 // CRC-32 as in zlib and PNG.
 std::uint32_t Checksum(const char* data, std::size_t bytes);

@@ -1,6 +1,5 @@
 // Means of all pixels of every cell, gathered in one pass over the raster.
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -9,9 +8,8 @@
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
-#include <fcntl.h>
-#include <unistd.h>
 
+#include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
 
 #include <dspace/raster/OverviewFile.h>
@@ -20,67 +18,6 @@ namespace dspace {
 namespace {
 
 constexpr int TileSide = OverviewHeader::TileSize;
-
-// The file under way.
-class Output {
-public:
-  explicit Output(const std::string& file) : Name_(file) {
-    this->File_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (this->File_ < 0) {
-      this->Fail(errno);
-    }
-  }
-  ~Output() {
-    if (this->File_ >= 0) {
-      ::close(this->File_);
-    }
-  }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-
-  std::uint64_t Written() const { return this->Written_; }
-  void Append(const char* data, std::size_t bytes) {
-    this->WriteAt(this->Written_, data, bytes);
-    this->Written_ += bytes;
-  }
-  void WriteAt(std::uint64_t offset, const char* data, std::size_t bytes) {
-    while (bytes > 0) {
-      const ssize_t wrote = ::pwrite(this->File_, data, bytes, off_t(offset));
-      if (wrote < 0 && errno == EINTR) {
-        continue;
-      }
-      if (wrote <= 0) {
-        this->Fail(wrote == 0 ? ENOSPC : errno);
-      }
-      data += wrote;
-      offset += std::uint64_t(wrote);
-      bytes -= std::size_t(wrote);
-    }
-  }
-  void Finish() {
-    const bool synced = ::fsync(this->File_) == 0;
-    const int reason = errno;
-    const bool closed = ::close(this->File_) == 0;
-    this->File_ = -1;
-    if (!synced || !closed) {
-      this->Fail(synced ? errno : reason);
-    }
-  }
-
-private:
-  [[noreturn]] void Fail(int reason) const {
-    const bool full = reason == ENOSPC || reason == EFBIG || reason == EDQUOT;
-    const std::string folder = this->Name_.substr(0, this->Name_.rfind('/'));
-    throw Error(full ? Error::Kind::Resource : Error::Kind::Io, "cache folder '" + folder + "'",
-                "overviews cannot be written: " + std::string(std::strerror(reason)) + ", after " +
-                    std::to_string(this->Written_) + " bytes" +
-                    (full ? "; make room, or give another folder" : ""));
-  }
-
-  std::string Name_;
-  int File_ = -1;
-  std::uint64_t Written_ = 0;
-};
 
 // One level: the cells of the row under way, and the finished rows of the tiles under way.
 struct Level {
@@ -94,7 +31,7 @@ struct Level {
 
 class Gatherer {
 public:
-  Gatherer(OverviewHeader& header, Output& output) : Header_(header), Output_(output) {
+  Gatherer(OverviewHeader& header, AtomicFile& output) : Header_(header), Output_(output) {
     header.tiles.resize(header.TileCount());
     this->Levels_.resize(header.levels);
     for (int l = 0; l < header.levels; ++l) {
@@ -178,14 +115,14 @@ private:
       }
       OverviewHeader::Tile& tile =
           this->Header_.tiles[this->Header_.TileIndex(l, left / TileSide, tileRow)];
-      tile = {this->Output_.Written(), std::uint32_t(bytes), Checksum(packed.data(), bytes)};
-      this->Output_.Append(packed.data(), bytes);
+      tile = {this->Output_.Bytes(), std::uint32_t(bytes), Checksum(packed.data(), bytes)};
+      this->Output_.Write(packed.data(), bytes);
     }
     level.finished.clear();
   }
 
   OverviewHeader& Header_;
-  Output& Output_;
+  AtomicFile& Output_;
   std::vector<Level> Levels_;
   std::int64_t PixelRows_ = 0;
 };
@@ -212,8 +149,8 @@ std::string IndexOf(const OverviewHeader& header) {
 
 } // namespace
 
-bool WriteOverviews(const ElevationSource& source, const std::string& identity,
-                    const std::string& file, const std::function<bool(double)>& progress) {
+bool WriteOverviews(const ElevationSource& source, const std::string& identity, AtomicFile& output,
+                    const std::function<bool(double)>& progress) {
   const ElevationInfo& info = source.Info();
   OverviewHeader header;
   header.identity = identity;
@@ -228,9 +165,8 @@ bool WriteOverviews(const ElevationSource& source, const std::string& identity,
     ++header.levels;
   } while (std::max(header.ColumnsAt(header.levels - 1), header.RowsAt(header.levels - 1)) > TileSide);
 
-  Output output(file);
   OverviewPreamble start = {};
-  output.Append(reinterpret_cast<const char*>(&start), sizeof(start));
+  output.Write(&start, sizeof(start));
   Gatherer gatherer(header, output);
   const int most = int(std::clamp<std::int64_t>((std::int64_t(1) << 22) / header.width, 1, 256));
   for (int row = 0; row < header.height; row += most) {
@@ -245,14 +181,13 @@ bool WriteOverviews(const ElevationSource& source, const std::string& identity,
   }
   const std::string index = IndexOf(header);
   std::memcpy(start.magic, OverviewMagic, 8);
-  start.indexOffset = output.Written();
+  start.indexOffset = output.Bytes();
   start.indexBytes = index.size();
   start.indexChecksum = Checksum(index.data(), index.size());
   start.ownChecksum =
       Checksum(reinterpret_cast<const char*>(&start), offsetof(OverviewPreamble, ownChecksum));
-  output.Append(index.data(), index.size());
-  output.WriteAt(0, reinterpret_cast<const char*>(&start), sizeof(start));
-  output.Finish();
+  output.Write(index.data(), index.size());
+  output.WriteAt(0, &start, sizeof(start));
   return true;
 }
 

@@ -1,11 +1,13 @@
 #include <dspace/tracks/TrackFile.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
 
+#include <cpl_vsi.h>
+#include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
 #include <dspace/raster/DatasetFiles.h>
 #include <gdal_priv.h>
@@ -36,6 +38,19 @@ struct Closer {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 };
 using Dataset = std::unique_ptr<GDALDataset, Closer>;
+
+// A name in GDAL's memory, removed with what was written to it.
+class MemoryFile {
+public:
+  MemoryFile() : Name_("/vsimem/dspace-tracks-" + std::to_string(std::uintptr_t(this))) {}
+  ~MemoryFile() { VSIUnlink(this->Name_.c_str()); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  const std::string& Name() const { return this->Name_; }
+
+private:
+  std::string Name_;
+};
 
 [[noreturn]] void FailToWrite(const std::string& file, const GdalErrors& errors) {
   throw Error(Error::Kind::Io, file, errors.Message("it cannot be written"));
@@ -156,13 +171,13 @@ void WriteTracks(const std::string& path, const std::vector<TrackStroke>& stroke
                  const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& sceneToMap) {
   const std::string object = "file '" + path + "'";
   RegisterGdal();
-  const std::string part = path + ".part"; // what is there stays until all is written
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
+  AtomicFile file(path);
+  const MemoryFile text; // the driver overwrites no file
   {
     GdalErrors errors;
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GeoJSON");
-    Dataset dataset(driver ? driver->Create(part.c_str(), 0, 0, 0, GDT_Unknown, nullptr) : nullptr);
+    Dataset dataset(driver ? driver->Create(text.Name().c_str(), 0, 0, 0, GDT_Unknown, nullptr)
+                           : nullptr);
     if (!dataset) {
       FailToWrite(object, errors);
     }
@@ -215,16 +230,13 @@ void WriteTracks(const std::string& path, const std::vector<TrackStroke>& stroke
     }
     dataset.reset(); // writes what is left
     if (!made || errors.Failed()) {
-      std::filesystem::remove(part, ignored);
       FailToWrite(object, errors);
     }
   }
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) {
-    std::filesystem::remove(part, ignored);
-    throw Error(Error::Kind::Io, object, "it cannot be written: " + error.message());
-  }
+  vsi_l_offset bytes = 0;
+  const GByte* data = VSIGetMemFileBuffer(text.Name().c_str(), &bytes, FALSE);
+  file.Write(data, data ? std::size_t(bytes) : 0);
+  file.Commit();
 }
 
 std::vector<TrackAddition>

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include <cpl_vsi.h>
-#include <unistd.h>
 
+#include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
 #include <dspace/layers/raster/ImageLayer.h>
 #include <dspace/raster/ElevationCache.h>
@@ -129,16 +130,24 @@ void RasterLevels::MakeOverviews(const LevelWindow& window) const {
 
 // Straight colours of 8 bits, or values as doubles; opacity 0 to 255.
 void RasterLevels::WriteOverview(Handle& handle, int level) const {
-  static std::atomic<int> count{0};
   const int step = this->Channels_ + 1;
   const int columns = this->ColumnsAt(level);
   const int rows = this->RowsAt(level);
-  const std::string part = this->OverviewStem_ + "part-" + std::to_string(::getpid()) + "-" +
-                           std::to_string(count++) + ".tif";
+  const std::string target = this->OverviewFileOf(level);
+  std::optional<AtomicFile> disk; // removes what is not committed
+  if (!this->InMemory_) {
+    disk.emplace(target, this->Object_ + ", overviews '" + target + "'");
+  }
+  const std::string part = disk ? disk->TemporaryPath() : target + ".part";
+  const auto discard = [&] {
+    if (!disk) {
+      VSIUnlink(part.c_str());
+    }
+  };
   GdalErrors errors;
   const auto check = [&](bool good) {
     if (!good || errors.Failed()) {
-      VSIUnlink(part.c_str());
+      discard();
       throw Error(Error::Kind::Io, this->Object_,
                   "its overviews cannot be written to '" + this->Folder_ +
                       "': " + errors.Message("GDAL gave no reason"));
@@ -166,7 +175,7 @@ void RasterLevels::WriteOverview(Handle& handle, int level) const {
       this->ReadCells(handle, {level, level, 0, row, columns, some}, cells.data());
     } catch (const Error&) {
       file.reset();
-      VSIUnlink(part.c_str());
+      discard();
       throw;
     }
     for (std::size_t i = 0; i < size; ++i) {
@@ -183,7 +192,11 @@ void RasterLevels::WriteOverview(Handle& handle, int level) const {
   }
   file.reset(); // writes what is left
   check(!this->File_.ChangedInPlace(this->Path_));
-  check(VSIRename(part.c_str(), this->OverviewFileOf(level).c_str()) == 0);
+  if (disk) {
+    disk->Commit();
+  } else {
+    check(VSIRename(part.c_str(), target.c_str()) == 0);
+  }
 }
 
 } // namespace dspace
