@@ -1,12 +1,13 @@
 """Pictures of the demo: several in one, and to files."""
 import numpy as np
 
+from dspace._files import atomic_write
 from dspace.movies_draw import png
 
 
 def save_image(path, picture):
     """A PNG; `picture`: an array (height, width, 3) of sRGB bytes."""
-    path.write_bytes(png(picture))
+    atomic_write(path, png(picture))
 
 
 def tile(pictures):

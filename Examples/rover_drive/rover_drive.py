@@ -13,6 +13,7 @@ import warnings
 import numpy as np
 
 import dspace
+from dspace._files import atomic_write
 from dspace.movies_encode import Encoder
 from dspace.rover import Path, load_vehicle
 from dspace.serving import ServerProcess
@@ -230,7 +231,7 @@ def report(options, session, terrain, described, views, way, states, frames, dra
         f"ground      drawn within {median:.2g} pixels of the height query in half of a view from behind "
         f"the rover, within {most:.2g} in 99 % of it",
     ]
-    (options.out / "report.txt").write_text("\n".join(lines) + "\n")
+    atomic_write(options.out / "report.txt", ("\n".join(lines) + "\n").encode())
     print("\n".join("  " + line for line in lines))
     print("made:")
     for path in sorted(options.out.iterdir()):

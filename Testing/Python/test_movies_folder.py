@@ -123,7 +123,7 @@ def test_a_folder_that_was_only_begun_is_taken(run, tmp_path):
     """A process that was ended before it could say whose the folder is."""
     out = tmp_path / "pictures"
     out.mkdir()
-    (out / "movie.json.4711.part").write_text("")
+    (out / ".movie.json.0123456789abcdef.part").write_text("")
     (out / "movie.lock").write_text("")
     assert flight().make(run, out) == 12
     assert json.loads((out / "movie.json").read_text())["kind"] and not list(out.glob("*.part"))

@@ -14,7 +14,7 @@ import dspace
 from dspace.command_line import main
 from dspace.command_line.log_salvage import rows_in
 from dspace.playback_steps import Gap, Step, index_at, runs_of, steps_of
-from dspace.recording_file import RecordingFile, Row, create_recording, put_rows, write_recording
+from dspace.recording_file import RecordingFile, Row, new_recording, put_rows, write_recording
 from dspace.proto import commands_pb2 as pb
 
 PAGE = 65536
@@ -146,7 +146,7 @@ def logged(tmp_path_factory):
     folder = tmp_path_factory.mktemp("logged")
     path = folder / "a.dspace"
     rows = {}
-    with contextlib.closing(create_recording(str(path))) as database:
+    with new_recording(str(path)) as database:
         database.execute("PRAGMA journal_mode=WAL")
         database.execute("PRAGMA wal_autocheckpoint=0")
         for begin in range(1, 121, 10):

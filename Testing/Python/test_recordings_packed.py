@@ -19,7 +19,7 @@ import dspace
 from dspace.command_line import main
 from dspace.recorded_files import RecordedFiles
 from dspace.recording_assets import Asset, Content
-from dspace.recording_file import RecordingFile, Row, create_recording, put_rows, write_recording
+from dspace.recording_file import RecordingFile, Row, new_recording, put_rows, write_recording
 from dspace.proto import commands_pb2 as pb
 from needs import lacks, needs_module
 from terrain_support import gdal
@@ -345,7 +345,7 @@ def test_large_files_are_packed_in_parts(tmp_path):
     for name, data in content.items():
         (tmp_path / name).write_bytes(data)
     path = tmp_path / "a.dspace"
-    with contextlib.closing(create_recording(str(path))) as database, database:
+    with new_recording(str(path)) as database, database:
         put_rows(database, "snapshot", [Row(0, 0.0, 0.0, 0, b"")])
         for number, (name, data) in enumerate(content.items(), 1):
             asset = Asset(number, str(tmp_path / name), "read", len(data), hashlib.sha256(data).digest(), False)

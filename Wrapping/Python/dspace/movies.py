@@ -1,12 +1,11 @@
 """Movies: cameras through key frames, several views in one picture, texts over it."""
-import contextlib
 import math
-import os
 
 from dspace import movies_file
 from dspace._fields import Named, integer, integers, number, path as path_of, refuse
+from dspace._files import atomic_write
 from dspace.cameras import Camera
-from dspace.errors import AlreadyExists, Error, InvalidArgument, Io, NotFound, WrongType
+from dspace.errors import AlreadyExists, Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath, Key, RunTime, in_order
 from dspace.movies_views import Overlay, View
 from dspace.poses import Pose, quaternion_of_matrix
@@ -156,16 +155,7 @@ class Movie:
         """Writes its file (TOML), at once or not at all."""
         self.check()
         path = path_of(path, "the path", "movie")
-        part = f"{path}.part"
-        try:
-            with open(part, "w", encoding="utf-8") as file:
-                file.write(self.text)
-            os.replace(part, path)
-        except OSError as error:
-            with contextlib.suppress(OSError):
-                os.unlink(part)
-            raise Io(f"movie {path!r}: {error.strerror}; accepted: a file in a folder that may be written",
-                     path) from None
+        atomic_write(path, self.text.encode(), f"movie {path!r}")
 
     @classmethod
     def load(cls, path, **settings):

@@ -9,9 +9,10 @@ import tempfile
 import time as clock
 
 import dspace
+from dspace._files import atomic_write
 from dspace.errors import Error, Internal, InvalidArgument, Io, NotFound
 from dspace.movies_draw import is_whole
-from dspace.movies_folder import FRAME, SCRIPT, files_of, put, states_of
+from dspace.movies_folder import FRAME, SCRIPT, files_of, states_of
 from dspace.movies_make import finish, worker
 
 _AT_ONCE = 24  # pictures that a worker draws of one request
@@ -48,7 +49,7 @@ def share(scheduler, words, run, missing, folder, tell):
             for drawn in _finished(client, scheduler, waiting):
                 for number, data in drawn:
                     path = folder.path(FRAME % number)
-                    put(path, data)
+                    atomic_write(path, data)
                     if not is_whole(path):
                         raise Internal(f"picture {number} came damaged from the scheduler {scheduler!r}")
                 left -= len(drawn)
@@ -142,8 +143,7 @@ def pictures(words, run, numbers, expected):
                               "recording that is still written", run)
     with tempfile.TemporaryDirectory(prefix="dspace-movie-") as folder:
         script = os.path.join(folder, SCRIPT)
-        with open(script, "w", encoding="utf-8") as file:
-            file.write(words)
+        atomic_write(script, words.encode())
         process = worker(script, run, folder, numbers)
         try:
             finish(process)

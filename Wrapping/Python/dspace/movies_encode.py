@@ -7,6 +7,7 @@ import tempfile
 import numpy as np
 
 from dspace._fields import path as path_of
+from dspace._files import AtomicFile
 from dspace.errors import InvalidArgument, Io, NotFound
 
 CODECS = {
@@ -47,9 +48,8 @@ class _Part:
 
     def __init__(self, path):
         self.label = os.fspath(path)
-        # Absolute: of "12:30.mp4" and "-x.mp4" ffmpeg thinks otherwise.
-        self.path = os.path.abspath(path)
-        self.part = self.path + ".part"
+        self.file = AtomicFile(path, f"movie {self.label!r}")
+        self.part = self.file.temporary  # absolute: of "12:30.mp4" and "-x.mp4" ffmpeg thinks otherwise
         self.said = tempfile.TemporaryFile()  # a pipe that nobody reads would stop it
 
     def start(self, words, codec, **settings):
@@ -74,18 +74,11 @@ class _Part:
         held = seen.stdout.strip().rstrip(",")
         if seen.returncode != 0 or seen.stderr.strip() or held != str(count):
             raise self.failed(f"of {count} pictures it holds {held or 'none'} {' '.join(seen.stderr.split())}".strip())
-        try:
-            with open(self.part, "rb") as file:
-                os.fsync(file.fileno())
-            os.replace(self.part, self.path)
-        except OSError as error:
-            raise Io(f"movie {self.label!r}: {error.strerror}; accepted: a folder with room, that may be written",
-                     self.label) from None
+        self.file.commit()
 
     def close(self):
         self.said.close()
-        if os.path.exists(self.part):
-            os.unlink(self.part)
+        self.file.close()
 
 
 class Encoder:

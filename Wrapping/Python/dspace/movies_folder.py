@@ -6,6 +6,7 @@ import os
 import re
 
 import dspace
+from dspace._files import atomic_write
 from dspace.errors import Error, InvalidArgument, Io, Resource
 from dspace.movies_draw import is_whole
 
@@ -13,22 +14,9 @@ FRAME = "frame_%06d.png"
 SCRIPT = "movie.toml"
 _STATE, _LOCK = "movie.json", "movie.lock"
 _KIND = "pictures of a dspace movie"
-_OURS = re.compile(r"(frame_\d{6,}\.png|movie\.toml|movie\.json)(\.\d+\.part)?|movie\.lock")
-_BEGUN = re.compile(r"movie\.json\.\d+\.part|movie\.lock")  # by a process that was ended at once
-
-
-def put(path, data):
-    """A file that is there as a whole or not at all."""
-    part = f"{path}.{os.getpid()}.part"
-    try:
-        with open(part, "wb") as file:
-            file.write(data)
-        os.replace(part, path)
-    except OSError as error:
-        if os.path.exists(part):
-            os.unlink(part)
-        raise Io(f"file {path!r}: {error.strerror}; accepted: a folder with room, that may be written",
-                 path) from None
+_FILES, _PART = r"(frame_\d{6,}\.png|movie\.toml|movie\.json)", r"\.[0-9a-f]{16}\.part"
+_OURS = re.compile(rf"{_FILES}|\.{_FILES}{_PART}|movie\.lock")
+_BEGUN = re.compile(rf"\.movie\.json{_PART}|movie\.lock")  # by a process that was ended at once
 
 
 # --- Runs ------------------------------------------------------------------------------------------
@@ -154,14 +142,14 @@ class Folder:
             for name in self._ours():
                 if name.startswith("frame_"):
                     os.unlink(self.path(name))
-            put(self.path(SCRIPT), self.movie.text.encode())
+            atomic_write(self.path(SCRIPT), self.movie.text.encode())
             self._say(now)
         for name in self._ours():
             if name.endswith(".part"):  # of a process that was ended
                 os.unlink(self.path(name))
 
     def _say(self, state):
-        put(self.path(_STATE), json.dumps({"kind": _KIND, "hash": state}).encode())
+        atomic_write(self.path(_STATE), json.dumps({"kind": _KIND, "hash": state}).encode())
 
     def _ours(self):
         return [name for name in os.listdir(self.folder) if _OURS.fullmatch(name)]

@@ -15,10 +15,11 @@ import tempfile
 import time as clock
 
 from dspace._fields import integer, path as path_of, refuse, text
+from dspace._files import AtomicFile, atomic_write
 from dspace.errors import Error, Io
 from dspace.movies_draw import Stage, open_run, png, require_run
 from dspace.movies_encode import codec_of, encode, programs
-from dspace.movies_folder import FRAME, SCRIPT, Folder, absolute, put
+from dspace.movies_folder import FRAME, SCRIPT, Folder, absolute
 
 
 def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progress=None, encoding=None, anew=False):
@@ -78,7 +79,7 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
         elif shown is not folder:
             for number in range(total):
                 with open(folder.path(FRAME % number), "rb") as file:
-                    put(shown.path(FRAME % number), file.read())
+                    atomic_write(shown.path(FRAME % number), file.read())
     if codec is not None and not keep:
         folder.remove()
     return len(missing)
@@ -105,14 +106,11 @@ def _in_file(label):
 
 def _check_place(out):
     """Whether a file can be written there."""
-    part = f"{out}.part"
     try:
         os.makedirs(os.path.dirname(os.path.abspath(out)), exist_ok=True)
-        with open(part, "wb"):
-            pass
-        os.unlink(part)
     except OSError as error:
         raise Io(f"movie {out!r}: {error.strerror}; accepted: a folder that may be written", out) from None
+    AtomicFile(out, f"movie {out!r}").close()
 
 
 def draw(movie, run, numbers, path, tell=lambda left: None):
@@ -122,7 +120,7 @@ def draw(movie, run, numbers, path, tell=lambda left: None):
         stage = Stage(movie, source)
         try:
             for count, number in enumerate(numbers, 1):
-                put(path(FRAME % number), png(stage.picture(number)))
+                atomic_write(path(FRAME % number), png(stage.picture(number)))
                 tell(len(numbers) - count)
         finally:
             stage.close()

@@ -7,7 +7,8 @@ import struct
 from typing import NamedTuple
 
 from dspace._fields import refuse, text
-from dspace.errors import AlreadyExists, Closed, Corrupt, Io, NotFound, Unsupported, WrongThread
+from dspace._files import AtomicFile
+from dspace.errors import Closed, Corrupt, Io, NotFound, Unsupported, WrongThread
 from dspace.recording_assets import assets_of, part_numbers, parts_of
 
 FORMAT = 1
@@ -276,46 +277,30 @@ class RecordingFile:
         return self.ask("SELECT min(seq) FROM command")[0][0] or 1
 
 
-def create_recording(path):
-    """A new recording with empty tables: its open database."""
-    if os.path.lexists(path):
-        raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
-    folder = os.path.dirname(os.path.abspath(path))
-    if not os.path.isdir(folder):
-        raise NotFound(f"recording {path!r}: there is no folder {folder!r}; accepted: a folder that is there", "recording")
-    database = None
-    try:
-        database = sqlite3.connect(path)
-        database.executescript("PRAGMA page_size=65536; PRAGMA cache_size=-65536;" + SCHEMA)
-        with database:
-            database.execute("INSERT INTO meta VALUES('format', ?)", (FORMAT,))
-    except BaseException as error:
-        if database is not None:
-            database.close()
-        _leave(path, error)
-    return database
-
-
 @contextlib.contextmanager
 def new_recording(path):
-    """create_recording() in a `with` statement, which closes it. One that does not become whole does not stay."""
-    database = create_recording(path)
-    try:
-        with contextlib.closing(database):
-            yield database
-    except BaseException as error:
-        _leave(path, error)
-
-
-def _leave(path, error):
-    """Removes what was begun; raises why it was not ended."""
-    for each in (path, f"{path}-wal", f"{path}-shm", f"{path}-journal"):
-        with contextlib.suppress(OSError):
-            os.unlink(each)
-    if not isinstance(error, sqlite3.Error):
-        raise error
-    raise Io(f"recording {str(path)!r}: {error}; accepted: a new file in a folder that may be written and has room",
-             "recording") from None
+    """A new recording with empty tables, in a `with` statement: its open database. The file appears at the end of the
+    block, complete; when the block raises there is none."""
+    about, accepted = f"recording {path!r}", "a new file in a folder that may be written and has room"
+    folder = os.path.dirname(os.path.abspath(path))
+    if not os.path.isdir(folder):
+        raise NotFound(f"{about}: there is no folder {folder!r}; accepted: a folder that is there", "recording")
+    with AtomicFile(path, about, new=True, accepted=accepted) as file:
+        log = file.temporary + "-wal"
+        try:
+            with contextlib.closing(sqlite3.connect(file.temporary)) as database:
+                database.executescript("PRAGMA page_size=65536; PRAGMA cache_size=-65536;" + SCHEMA)
+                with database:
+                    database.execute("INSERT INTO meta VALUES('format', ?)", (FORMAT,))
+                yield database
+            if os.path.exists(log) and os.path.getsize(log):  # close() tells of no failure
+                raise Io(f"{about}: its log cannot be written into it; accepted: {accepted}", "recording")
+        except sqlite3.Error as error:
+            raise Io(f"{about}: {error}; accepted: {accepted}", "recording") from None
+        finally:
+            for each in (log, f"{file.temporary}-shm", f"{file.temporary}-journal"):
+                with contextlib.suppress(OSError):
+                    os.unlink(each)
 
 
 def put_rows(database, table, rows):

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import tempfile
 
+from dspace._files import atomic_write
 from dspace.command_line import Failed
 
 DAYS = "30"
@@ -27,13 +28,20 @@ def make_test_certificates(folder):
     there = [name for name in names if (folder / name).exists()]
     if there:
         raise Failed(f"folder '{folder}': it has {', '.join(there)}; accepted: a folder without them")
-    mask = os.umask(0o077)
+    mask, made = os.umask(0o077), []
     try:
-        _make(openssl, folder)
+        with tempfile.TemporaryDirectory(prefix="dspace-certificates-") as work:  # forgets the authority's own key
+            work = pathlib.Path(work)
+            _make(openssl, work)
+            for name in names:
+                atomic_write(folder / name, (work / name).read_bytes(), new=True)
+                made.append(folder / name)
+    except BaseException:
+        for path in made:  # one without the others is of no use
+            path.unlink(missing_ok=True)
+        raise
     finally:
         os.umask(mask)
-        for name in ("ca.key", "ca.srl", "request.pem", "extensions.txt"):
-            (folder / name).unlink(missing_ok=True)
 
 
 def _make(openssl, folder):
@@ -50,7 +58,7 @@ def _make(openssl, folder):
     for name, use in (("server", "serverAuth"), ("client", "clientAuth")):
         run("req", *new_key, "-keyout", f"{name}.key", "-out", "request.pem",
             "-subj", f"/CN=Dspace test {name}")
-        (folder / "extensions.txt").write_text(
-            f"extendedKeyUsage={use}\nsubjectAltName=DNS:localhost,IP:127.0.0.1,IP:::1\n")
+        atomic_write(folder / "extensions.txt",
+                     f"extendedKeyUsage={use}\nsubjectAltName=DNS:localhost,IP:127.0.0.1,IP:::1\n".encode())
         run("x509", "-req", "-in", "request.pem", "-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial",
             "-out", f"{name}.pem", "-days", DAYS, "-extfile", "extensions.txt")

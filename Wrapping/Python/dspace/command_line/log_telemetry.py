@@ -1,9 +1,10 @@
 """`dspace log telemetry` and `dspace log events`: what a simulation said in a recording, as tables."""
 import csv
+import io
 import math
 import sys
 
-from dspace.command_line import Failed
+from dspace._files import atomic_write
 from dspace.errors import InvalidArgument
 from dspace.playback_telemetry import History
 from dspace.recording_file import RecordingFile
@@ -45,15 +46,12 @@ def write(path, head, rows):
         out.writerow(head)
         out.writerows(rows)
         return
-    try:
-        file = open(path, "x", newline="", encoding="utf-8")
-    except OSError as error:
-        raise Failed(f"--csv {path!r}: {error.strerror}; accepted: a new file in a folder that may be written, or "
-                     "'-'") from None
-    with file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(head)
-        out.writerows(rows)
+    text = io.StringIO(newline="")
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(head)
+    out.writerows(rows)
+    atomic_write(path, text.getvalue().encode(), f"--csv {path!r}", new=True,
+                 accepted="a new file in a folder that may be written and has free space, or '-'")
 
 
 def cell(series, value):

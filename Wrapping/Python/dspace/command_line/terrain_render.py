@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 
+from dspace._files import atomic_write
 from dspace.command_line import Failed, terrain_layers
 from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, open_raster
 from dspace.command_line.terrain_map import draw_disc, draw_map
@@ -46,7 +47,21 @@ def save(path, picture):
     memory = gdal.GetDriverByName("MEM").Create("", width, height, 3, gdal.GDT_Byte)
     memory.WriteArray(np.ascontiguousarray(np.moveaxis(picture[..., :3], -1, 0)))
     gdal.SetConfigOption("GDAL_PAM_ENABLED", "NO")  # nothing is written beside it
-    gdal.GetDriverByName(driver).CreateCopy(str(path), memory)
+    name = f"/vsimem/dspace-render-{id(memory)}"
+    try:
+        gdal.GetDriverByName(driver).CreateCopy(name, memory).FlushCache()
+        atomic_write(path, bytes_of(gdal, name))
+    finally:
+        gdal.Unlink(name)
+
+
+def bytes_of(gdal, name):
+    """A file in GDAL's memory."""
+    file = gdal.VSIFOpenL(name, "rb")
+    try:
+        return bytes(gdal.VSIFReadL(1, gdal.VSIStatL(name).size, file))
+    finally:
+        gdal.VSIFCloseL(file)
 
 
 class Ground:
