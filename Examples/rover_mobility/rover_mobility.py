@@ -18,7 +18,6 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import dspace  # noqa: E402
-from dspace._files import atomic_write  # noqa: E402
 from mobility import Hills, Mobility  # noqa: E402
 from model import RoverModel  # noqa: E402
 from skeleton import build  # noqa: E402
@@ -58,7 +57,7 @@ class Simulation:
         text = (f"ncols {POSTS}\nnrows {POSTS}\nxllcorner {edge}\nyllcorner {edge}\ncellsize {SPACING}\n"
                 + "\n".join(" ".join(f"{v:.6f}" for v in row) for row in z) + "\n")
         if not path.is_file() or path.read_text() != text:  # one that a server or a recording knows stays what it is
-            atomic_write(path, text.encode())
+            path.write_text(text)
         return self.scene.add_terrain(path, name="ground", mode="clipmap", vertical_datum="relative",
                                       crs='LOCAL_CS["ground",UNIT["metre",1]]', vertical_scale=1.0,
                                       color=(0.62, 0.48, 0.38))

@@ -270,8 +270,7 @@ def test_every_writer_uses_the_one():
     root, found = pathlib.Path(__file__).resolve().parents[2], {}
     for folder, pattern, writes in (("Libraries", "*.cxx", CXX_WRITES),
                                     ("Wrapping/Python/dspace", "*.py", PYTHON_WRITES),
-                                    ("Examples/rover_drive", "*.py", PYTHON_WRITES),
-                                    ("Examples/rover_mobility", "*.py", PYTHON_WRITES)):
+                                    ("Examples/rover_drive", "*.py", PYTHON_WRITES)):
         for path in (root / folder).rglob(pattern):
             count = len(writes.findall(path.read_text()))
             if count and "Testing" not in path.relative_to(root).parts:

@@ -48,9 +48,9 @@ class _Part:
 
     def __init__(self, path):
         self.label = os.fspath(path)
+        self.said = tempfile.TemporaryFile()  # a pipe that nobody reads would stop it
         self.file = AtomicFile(path, f"movie {self.label!r}")
         self.part = self.file.temporary  # absolute: of "12:30.mp4" and "-x.mp4" ffmpeg thinks otherwise
-        self.said = tempfile.TemporaryFile()  # a pipe that nobody reads would stop it
 
     def start(self, words, codec, **settings):
         ffmpeg, _ = programs()
