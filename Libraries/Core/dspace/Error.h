@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <dspace/Utf8.h>
+
 namespace dspace {
 
 // Thrown by every plain class when input is refused or a resource fails. The message names the
@@ -25,9 +27,10 @@ public:
   };
 
   // `object` names what the error is about: "frame 'rover/mast'", "file 'a.gltf'", "camera 'left'".
+  // Both texts may quote a file or a library; they are kept as ToUtf8 (Utf8.h) makes them.
   Error(Kind kind, const std::string& object, const std::string& message)
-      : std::runtime_error(object.empty() ? message : object + ": " + message), Kind_(kind),
-        Object_(object) {}
+      : std::runtime_error(ToUtf8(object.empty() ? message : object + ": " + message)), Kind_(kind),
+        Object_(ToUtf8(object)) {}
 
   Kind GetKind() const { return this->Kind_; }
   const std::string& GetObjectName() const { return this->Object_; }

@@ -5,7 +5,9 @@
 
 #include <sys/stat.h>
 
+#include <dspace/Error.h>
 #include <dspace/SystemFiles.h>
+#include <dspace/Utf8.h>
 
 namespace dspace {
 namespace {
@@ -54,13 +56,22 @@ void FilesGuard::Show(const std::string& path) {
   }
 }
 
+void RequireUtf8Path(const std::string& path) {
+  if (!IsUtf8(path)) {
+    throw Error(Error::Kind::Unsupported, "file '" + path + "'",
+                "its name, or that of a folder above it, is not UTF-8; accepted: names of UTF-8, "
+                "which commands and recordings can hold");
+  }
+}
+
 void NoteFileRead(const std::string& path) {
+  std::error_code error;
+  const std::string whole = std::filesystem::absolute(path, error).string();
+  RequireUtf8Path(error ? path : whole);
   FilesGuard::Show(path);
   if (!Innermost || path.empty()) {
     return;
   }
-  std::error_code error;
-  const std::string whole = std::filesystem::absolute(path, error).string();
   Innermost->Files_.emplace(error ? path : whole, FileStamp::Of(path));
 }
 

@@ -60,8 +60,13 @@ private:
   FilesGuard* Outer_;
 };
 
-// Told by whoever opens a file; nothing happens where no scope lives. The first stamp of a file
-// stays. Files of a cache count too: say again what was read when it was filled.
+// Throws Error(Unsupported) for a path that is not UTF-8: no command, reply or recording could hold
+// it.
+void RequireUtf8Path(const std::string& path);
+
+// Told by whoever opens a file; where no scope lives nothing is noted. The first stamp of a file
+// stays. Throws what RequireUtf8Path throws of the path, made absolute. Files of a cache count too:
+// say again what was read when it was filled.
 void NoteFileRead(const std::string& path);
 void NoteFilesRead(const FilesRead& files);
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 namespace dspace {
 
@@ -42,17 +43,18 @@ std::string Quoted(const std::string& name) {
 
 bool IsValidFrameName(const std::string& name) {
   return !name.empty() && name.size() <= MaximumFrameName && name != "." && name != ".." &&
-         std::none_of(name.begin(), name.end(), [](char c) {
+         IsUtf8(name) && std::none_of(name.begin(), name.end(), [](char c) {
            const auto byte = static_cast<unsigned char>(c);
            return c == '/' || byte < 32 || byte == 127;
          });
 }
 
 void RefuseFrameName(const std::string& object, const std::string& name) {
-  throw Error(Error::Kind::InvalidArgument, object,
-              "the name " + Quoted(name) + " is not accepted: it must have 1 to " +
-                  std::to_string(MaximumFrameName) +
-                  " bytes, be neither '.' nor '..', and hold no '/' and no control characters");
+  throw Error(
+      Error::Kind::InvalidArgument, object,
+      "the name " + Quoted(name) + " is not accepted: it must have 1 to " +
+          std::to_string(MaximumFrameName) +
+          " bytes of UTF-8, be neither '.' nor '..', and hold no '/' and no control characters");
 }
 
 bool IsValidPosition(const Eigen::Vector3d& p) {

@@ -21,8 +21,8 @@ constexpr double MaximumScale = 1e12;
 // Names are at most so many bytes of UTF-8, as those of files are.
 constexpr std::size_t MaximumFrameName = 255;
 
-// 1 to MaximumFrameName bytes, neither "." nor "..", no '/' and no control character (a byte below
-// 32, or 127).
+// 1 to MaximumFrameName bytes of UTF-8, neither "." nor "..", no '/' and no control character (a
+// byte below 32, or 127).
 bool IsValidFrameName(const std::string& name);
 
 // Throws Error(InvalidArgument) naming `object` and the name.

@@ -34,6 +34,69 @@ TEST(ImportVrml, BadFiles) {
   bad(Error::Kind::Corrupt, "does not end", Head2 + "WorldInfo { title \"abc }");
 }
 
+// Coin frees the first value, and crashes at its USE: each of these ended the process.
+TEST(ImportVrml, FieldsOfNodesThatAreGivenTwice) {
+  const TempFolder folder;
+  const auto bad = [&folder](const std::string& field, const std::string& text) {
+    for (const std::string& bytes : {Head2 + text, Gzip(Head2 + text)}) {
+      ExpectReadError(Error::Kind::Corrupt, "field " + field + " is given twice",
+                      folder.Write("bad.wrl", bytes));
+    }
+  };
+  const std::string points = "Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] }";
+  const std::string twice = "Shape { geometry DEF A Box { } geometry Sphere { } }\n";
+  bad("'geometry' of Shape", twice + Shape("USE A"));
+  bad("'geometry' of Shape", "Shape { geometry DEF A Box { } geometry NULL }\n" + Shape("USE A"));
+  bad("'appearance' of Shape",
+      "Shape { appearance DEF A Appearance { } appearance Appearance { } geometry Box { } }\n" +
+          Shape("Box { }", "appearance USE A"));
+  bad("'appearance' of Shape", // the DEF stands deeper
+      "Shape { appearance Appearance { material DEF A Material { } } appearance Appearance { } "
+      "geometry Box { } }\n" +
+          Shape("Box { }", "appearance Appearance { material USE A }"));
+  bad("'material' of Appearance",
+      Shape("Box { }", "appearance Appearance { material DEF A Material { } material Material { } "
+                       "}") +
+          Shape("Box { }", "appearance Appearance { material USE A }"));
+  bad("'coord' of IndexedFaceSet", Shape("IndexedFaceSet { coord DEF A " + points + " coord " +
+                                         points + " coordIndex [ 0 1 2 -1 ] }") +
+                                       Shape("PointSet { coord USE A }"));
+  bad("'proxy' of Collision", "Collision { proxy DEF A " + Shape("Box { }") +
+                                  "proxy Group { } }\nGroup { children [ USE A ] }");
+  bad("'children' of Group", "Group { children [ DEF A Group { children [ DEF B " +
+                                 Shape("Box { }") +
+                                 " ] } ] children [ ] }\nGroup { children [ USE A USE B ] }");
+  // In a PROTO's body, through IS, and in an instance.
+  bad("'geometry' of Shape",
+      "PROTO P [ ] { Group { children [ " + twice + Shape("USE A") + " ] } }\nP { }");
+  bad("'geometry' of Shape",
+      "PROTO P [ field SFNode g Sphere { } ] { Group { children [ Shape { geometry DEF A Box { } "
+      "geometry IS g } " +
+          Shape("USE A") + " ] } }\nP { }");
+  bad("'g' of P", "PROTO P [ field SFNode g Sphere { } ] { " + Shape("IS g") +
+                      " }\nP { g DEF A Box { } g Sphere { } }\n" + Shape("USE A"));
+  bad("'g' of P", "PROTO P [ field MFNode g [ ] ] { Group { children IS g } }\nP { g [ DEF A " +
+                      Shape("Box { }") + " ] g [ ] }\nGroup { children [ USE A ] }");
+  // Fields without nodes: the last value holds, as in Coin.
+  const Model model = Read(folder, Head2 + Shape("Box { size 1 1 1 size 2 2 2 }"));
+  EXPECT_NEAR(model.Bounds().sizes().x(), 2.0, 1e-6);
+  // VRML 1.0 and Inventor have no such field that is read; the children of a node are no field.
+  const std::string vertices = "VertexProperty { vertex [ 0 0 0, 1 0 0, 0 1 0 ] }";
+  const std::string faces = "Coordinate3 { point [ 0 0 0, 1 0 0, 0 1 0 ] } IndexedFaceSet { "
+                            "vertexProperty DEF A " +
+                            vertices + " vertexProperty " + vertices +
+                            " coordIndex [ 0 1 2 -1 ] }\nIndexedFaceSet { vertexProperty USE A "
+                            "coordIndex [ 0 1 2 -1 ] }";
+  for (const std::string& head : {Head1, std::string("#Inventor V2.1 ascii\n")}) {
+    const std::string text = head + "Separator { " + faces + " DEF B Cube { } USE B }";
+    for (const std::string& bytes : {text, Gzip(text)}) {
+      const Model old = Read(folder, bytes);
+      EXPECT_EQ(old.TriangleCount(), 26u);
+      EXPECT_TRUE(HasWarning(old.warnings, "unknown field 'vertexProperty'"));
+    }
+  }
+}
+
 TEST(ImportVrml, CirclesAndBombsAreRefusedBeforeParsing) {
   const TempFolder folder;
   const auto bad = [&folder](Error::Kind kind, const std::string& part, const std::string& text) {

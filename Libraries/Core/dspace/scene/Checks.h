@@ -10,6 +10,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/FrameRules.h>
+#include <dspace/Utf8.h>
 
 namespace dspace {
 
@@ -62,10 +63,11 @@ inline void RequireFraction(const std::string& object, const char* what, double 
   Require(value >= 0.0 && value <= 1.0, object, what, value, "0 to 1");
 }
 
-// Names of objects, fragments, lights, vantages and cameras: not empty, no control characters.
+// Names of objects, fragments, lights, vantages and cameras: UTF-8, not empty, no control
+// characters.
 inline void RequireName(const char* kind, const std::string& name) {
   std::string shown = name;
-  bool good = !name.empty();
+  bool good = !name.empty() && IsUtf8(name);
   for (char& c : shown) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte < 32 || byte == 127) {
@@ -75,7 +77,7 @@ inline void RequireName(const char* kind, const std::string& name) {
   }
   if (!good) {
     Refuse(std::string(kind) + " '" + shown + "'",
-           "its name is empty or holds control characters; accepted: any other");
+           "its name is empty, holds control characters or is not UTF-8; accepted: any other");
   }
 }
 

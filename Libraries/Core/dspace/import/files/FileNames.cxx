@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 namespace dspace {
 
@@ -51,7 +52,7 @@ std::string ResolveReference(const std::string& fromFile, const std::string& ref
     throw Error(Error::Kind::Unsupported, "file '" + fromFile + "'",
                 "refers to '" + reference + "', " + why);
   };
-  std::string name = reference;
+  std::string name = ToUtf8(reference);
   std::replace(name.begin(), name.end(), '\\', '/');
   const std::size_t colon = name.find(':');
   if (name.empty() || name.find('\0') != std::string::npos) {

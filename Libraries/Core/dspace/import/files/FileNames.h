@@ -13,9 +13,9 @@ std::string LowerExtension(const std::string& path);
 std::string PercentDecode(const std::string& text);
 
 // The file that `reference`, written in `fromFile`, names: relative to fromFile's folder, with
-// \ read as /. Confined: throws Error(Unsupported) for absolute names, other schemes (http:, ...)
-// and names that lead out of the folder above fromFile's own, so that a hostile model reads no
-// other file.
+// \ read as / and bytes of another encoding as ToUtf8 (Utf8.h) takes them. Confined: throws
+// Error(Unsupported) for absolute names, other schemes (http:, ...) and names that lead out of the
+// folder above fromFile's own, so that a hostile model reads no other file.
 std::string ResolveReference(const std::string& fromFile, const std::string& reference);
 
 } // namespace dspace

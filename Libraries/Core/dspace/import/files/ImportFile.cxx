@@ -2,6 +2,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
+#include <dspace/Utf8.h>
 
 #include <filesystem>
 #include <fstream>
@@ -42,6 +43,10 @@ std::string ReadFileBytes(const std::string& path, std::size_t maximum) {
     throw Error(Error::Kind::Io, FileObject(path), "cannot be read");
   }
   return bytes;
+}
+
+std::string ReadFileText(const std::string& path, std::size_t maximum) {
+  return ToUtf8(ReadFileBytes(path, maximum));
 }
 
 } // namespace dspace

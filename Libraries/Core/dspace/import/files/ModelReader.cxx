@@ -7,6 +7,7 @@
 #include <new>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 #include <dspace/import/model/SolidMesh.h>
 
 #include <dspace/import/files/FileNames.h>
@@ -96,6 +97,23 @@ Reader ReaderFor(const std::string& path) {
   throw Error(Error::Kind::Unsupported, object, std::string("is of no known type; ") + Accepted);
 }
 
+// The boundary for text: whatever a reader or its library made of a file's names, a Model holds
+// UTF-8.
+void MakeTextUtf8(Model& model) {
+  for (Mesh& mesh : model.meshes) {
+    mesh.name = ToUtf8(std::move(mesh.name));
+  }
+  for (Material& material : model.materials) {
+    material.name = ToUtf8(std::move(material.name));
+  }
+  for (ModelNode& node : model.nodes) {
+    node.name = ToUtf8(std::move(node.name));
+  }
+  for (std::string& warning : model.warnings) {
+    warning = ToUtf8(std::move(warning));
+  }
+}
+
 // Something must be there to draw, and more than points unless they are what is asked for.
 void CheckFaces(const Model& model, const ImportOptions& options) {
   bool more = false;
@@ -146,6 +164,7 @@ Model ReadModel(const std::string& path, const ImportOptions& options) {
   try {
     Model model = ReaderFor(path)(path, options);
     model.path = path;
+    MakeTextUtf8(model);
     CheckResult(model, options);
     for (std::string& warning : model.warnings) {
       if (warning.find("file '") == std::string::npos) { // as some readers leave it

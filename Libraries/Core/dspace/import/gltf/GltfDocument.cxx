@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include <dspace/Utf8.h>
 #include <dspace/import/files/FileNames.h>
 #include <dspace/import/files/ImportFile.h>
 
@@ -56,14 +57,13 @@ bool DecodeBase64(const char* begin, const char* end, std::string& out) {
 } // namespace
 
 GltfDocument::GltfDocument(const std::string& path, Contents contents) : Path_(path) {
-  const std::string bytes = ReadFileBytes(path);
-  if (bytes.compare(0, 4, "glTF") == 0) {
-    const std::string json = this->SplitContainer(bytes);
-    this->ParseJson(json.data(), json.data() + json.size());
-  } else {
-    const std::size_t mark = bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
-    this->ParseJson(bytes.data() + mark, bytes.data() + bytes.size());
+  std::string json = ReadFileBytes(path);
+  if (json.compare(0, 4, "glTF") == 0) {
+    json = this->SplitContainer(json);
   }
+  json = ToUtf8(std::move(json));
+  const std::size_t mark = json.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
+  this->ParseJson(json.data() + mark, json.data() + json.size());
   this->CheckVersionAndExtensions();
   if (contents == Contents::All) {
     this->LoadBuffers();
@@ -129,8 +129,7 @@ void GltfDocument::ParseJson(const char* begin, const char* end) {
     message = e.what();
   }
   if (!good || !this->Root_.isObject()) {
-    this->Fail("is no glTF: its JSON is damaged or truncated: " +
-               message.substr(0, std::min<std::size_t>(message.size(), 200)));
+    this->Fail("is no glTF: its JSON is damaged or truncated: " + Utf8Beginning(message, 200));
   }
   for (const char* name :
        {"accessors", "bufferViews", "buffers", "images", "materials", "meshes", "nodes", "samplers",

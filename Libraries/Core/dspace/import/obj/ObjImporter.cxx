@@ -201,7 +201,7 @@ private:
 Model ReadObj(const std::string& path, const ImportOptions& options) {
   Model model;
   model.path = path;
-  ObjText text = CheckObjText(path, ReadFileBytes(path), options.maximumTriangles);
+  ObjText text = CheckObjText(path, ReadFileText(path), options.maximumTriangles);
   if (text.sections.empty() && text.vertices == 0) {
     throw Error(Error::Kind::Corrupt, FileObject(path), "has no vertices and no faces");
   }

@@ -63,7 +63,7 @@ private:
     std::string path, bytes;
     try {
       path = ResolveReference(this->ObjPath_, name);
-      bytes = ReadFileBytes(path, std::size_t(1) << 28);
+      bytes = ReadFileText(path, std::size_t(1) << 28);
     } catch (const Error& e) {
       this->Out_.complete = false;
       this->Warnings_.push_back("material library '" + name + "' is left out: " + e.what());

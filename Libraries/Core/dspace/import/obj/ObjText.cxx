@@ -6,6 +6,7 @@
 #include <set>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <dspace/import/files/ImportFile.h>
 
@@ -130,7 +131,7 @@ private:
     }
     if (error != std::errc() || stop != end || !std::isfinite(value) ||
         std::abs(value) > double(std::numeric_limits<float>::max())) {
-      this->Fail(std::string(keyword) + " has '" + word.substr(0, 40) +
+      this->Fail(std::string(keyword) + " has '" + Utf8Beginning(word, 40) +
                  "'; finite numbers are accepted");
     }
   }
@@ -199,7 +200,7 @@ private:
     const bool good = error == std::errc() && stop == word.data() + word.size();
     const long long absolute = index < 0 ? static_cast<long long>(list.size) + 1 + index : index;
     if (!good || absolute < 1) {
-      this->Fail(std::string(keyword) + " names '" + word.substr(0, 40) + "' of " +
+      this->Fail(std::string(keyword) + " names '" + Utf8Beginning(word, 40) + "' of " +
                  std::to_string(list.size) + " " + list.name);
     }
     if (absolute > list.largest) {

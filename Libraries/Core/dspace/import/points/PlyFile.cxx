@@ -3,6 +3,7 @@
 #include <dspace/import/files/ImportFile.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <algorithm>
 #include <array>
@@ -74,7 +75,7 @@ PlyType ParseType(const std::string& word, const Lines& lines) {
       return type.type;
     }
   }
-  lines.Fail("'" + word.substr(0, 60) +
+  lines.Fail("'" + Utf8Beginning(word, 60) +
              "' is no type; char, uchar, short, ushort, int, uint, "
              "float and double are");
 }
@@ -174,7 +175,7 @@ PlyHeader ParsePlyHeader(const std::string& bytes, const std::string& path) {
         lines.Fail("property '" + words.back() + "' of " + element.name + " stands there twice");
       }
     } else {
-      lines.Fail("'" + words[0].substr(0, 60) + "' is not understood");
+      lines.Fail("'" + Utf8Beginning(words[0], 60) + "' is not understood");
     }
   }
   if (!format) {

@@ -3,6 +3,7 @@
 #include <dspace/import/files/Importers.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <algorithm>
 #include <array>
@@ -192,7 +193,7 @@ public:
   [[noreturn]] void Fail(const std::string& found, const std::string& expected) const {
     throw Error(Error::Kind::Corrupt, FileObject(this->Path_),
                 "line " + std::to_string(this->Line_) + ": found " +
-                    (found.empty() ? "the end of the file" : "'" + found.substr(0, 60) + "'") +
+                    (found.empty() ? "the end of the file" : "'" + Utf8Beginning(found, 60) + "'") +
                     " where " + expected + " is expected");
   }
 

@@ -5,10 +5,12 @@
 #include <deque>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <dspace/Error.h>
 #include <dspace/FrameRules.h>
+#include <dspace/Utf8.h>
 #include <dspace/import/files/ImageReader.h>
 
 #include <dspace/import/files/FileNames.h>
@@ -30,15 +32,16 @@ public:
 
   Urdf Read() {
     this->Out_.path = this->Path_;
-    const std::string bytes = ReadFileBytes(this->Path_, std::size_t(1) << 28);
+    const std::string text = ReadFileText(this->Path_, std::size_t(1) << 28);
     const urdf::ModelInterfaceSharedPtr model =
-        ParseUrdfText(this->Path_, bytes, this->Out_.warnings);
+        ParseUrdfText(this->Path_, text, this->Out_.warnings);
     try {
       this->Convert(*model);
     } catch (...) {
       Unlink(*model);
       throw;
     }
+    this->MakeTextUtf8();
     return std::move(this->Out_);
   }
 
@@ -53,6 +56,33 @@ private:
     for (auto& link : model.links_) {
       link.second->child_links.clear();
       link.second->child_joints.clear();
+    }
+  }
+
+  // The parser makes other bytes of character references (&#228;) even in a text of UTF-8.
+  void MakeTextUtf8() {
+    std::set<std::string> links, joints;
+    this->Out_.name = ToUtf8(this->Out_.name);
+    for (UrdfLink& link : this->Out_.links) {
+      this->MakeNameUtf8("link", link.name, links);
+      for (UrdfVisual& visual : link.visuals) {
+        visual.name = ToUtf8(visual.name);
+        visual.material.name = ToUtf8(visual.material.name);
+      }
+    }
+    for (UrdfJoint& joint : this->Out_.joints) {
+      this->MakeNameUtf8("joint", joint.name, joints);
+    }
+    for (std::string& warning : this->Out_.warnings) {
+      warning = ToUtf8(warning);
+    }
+  }
+
+  void MakeNameUtf8(const char* kind, std::string& name, std::set<std::string>& taken) const {
+    name = ToUtf8(name);
+    if (!taken.insert(name).second) {
+      this->Fail(std::string(kind) + " '" + name + "': two " + kind +
+                 "s have this name in different encodings; accepted: one of each name");
     }
   }
 
@@ -327,13 +357,14 @@ private:
 
   // Absolute path of a mesh or texture: file:// and plain names as they are, relative ones from the
   // URDF's folder; package://name/rest as name/rest in that folder or one above it.
-  std::string Resolve(const std::string& name) const {
+  std::string Resolve(const std::string& text) const {
+    const std::string name = ToUtf8(text);
     const fs::path folder = fs::absolute(fs::path(this->Path_)).parent_path();
     const std::size_t scheme = name.find("://");
     if (scheme == std::string::npos) {
       return (folder / name).lexically_normal().string();
     }
-    const std::string rest = PercentDecode(name.substr(scheme + 3));
+    const std::string rest = ToUtf8(PercentDecode(name.substr(scheme + 3)));
     if (name.compare(0, scheme, "file") == 0) {
       return (folder / rest).lexically_normal().string();
     }

@@ -7,6 +7,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <dspace/import/files/ImportFile.h>
 

@@ -5,6 +5,7 @@
 #include <dspace/import/files/ImportFile.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -27,7 +28,7 @@ std::string Canonical(const std::string& path) {
 std::string List(const std::vector<std::string>& urls) {
   std::string list;
   for (std::size_t i = 0; i < urls.size() && i < 3; ++i) {
-    list += (i ? ", '" : "'") + urls[i].substr(0, 200) + "'";
+    list += (i ? ", '" : "'") + Utf8Beginning(urls[i], 200) + "'";
   }
   return list + (urls.size() > 3 ? ", ..." : "");
 }

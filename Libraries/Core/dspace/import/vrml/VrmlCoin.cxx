@@ -3,6 +3,7 @@
 #include <dspace/import/files/ImportFile.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <Inventor/SoDB.h>
 #include <Inventor/SoInput.h>
@@ -42,7 +43,7 @@ std::string OneLine(const std::string& message) {
       line.push_back(space ? ' ' : c);
     }
   }
-  return line.substr(0, 300);
+  return Utf8Beginning(line, 300);
 }
 
 } // namespace

@@ -7,10 +7,12 @@
 #include <dspace/import/vrml/text/VrmlValues.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <set>
 
 namespace dspace {
 
@@ -263,6 +265,7 @@ private:
   void InstanceBody(const VrmlProto& proto, const std::string& type, VrmlScope& scope,
                     VrmlWeight& weight) {
     std::map<std::string, VrmlWeight> values;
+    std::set<std::string, std::less<>> given;
     while (!this->Tokens_.At(Kind::CloseBrace)) {
       const VrmlToken name = this->Tokens_.Expect(Kind::Word, "a field or '}'");
       const auto found = proto.interface.find(std::string(name.text));
@@ -271,6 +274,7 @@ private:
         this->SkipField(type, name, found != proto.interface.end());
         continue;
       }
+      this->RequireOnce(found->second.type, type, name.text, given);
       values[found->second.emitted] = {};
       this->Field(found->second.type, found->second.emitted, type, scope,
                   values[found->second.emitted]);
@@ -293,6 +297,7 @@ private:
 
   void NodeBody(const VrmlNodeType& known, const std::string& type, const std::string& emitted,
                 VrmlScope& scope, VrmlWeight& weight) {
+    std::set<std::string, std::less<>> given;
     while (!this->Tokens_.At(Kind::CloseBrace)) {
       this->CheckWeight({});
       if (this->Declaration(scope)) {
@@ -310,7 +315,10 @@ private:
       const auto field = known.fields.find(std::string(name.text));
       if (field == known.fields.end()) {
         this->SkipField(type, name, false);
-      } else if (type == "Texture2" && name.text == "filename") {
+        continue;
+      }
+      this->RequireOnce(field->second, type, name.text, given);
+      if (type == "Texture2" && name.text == "filename") {
         const std::string_view quoted =
             this->Tokens_.At(Kind::Word)
                 ? this->Tokens_.Take().text
@@ -325,6 +333,16 @@ private:
       }
     }
     this->Tokens_.Take();
+  }
+
+  // Coin frees the nodes of a field that is given again, and crashes where one of them is used
+  // further on. Fields of other types hold no nodes: there the last value holds.
+  void RequireOnce(const VrmlFieldType& field, const std::string& node, std::string_view name,
+                   std::set<std::string, std::less<>>& given) const {
+    if (field.base == Base::Node && !given.emplace(name).second) {
+      this->Tokens_.Fail("field '" + Utf8Beginning(name, 60) + "' of " + node +
+                         " is given twice; accepted: once, as it holds nodes");
+    }
   }
 
   static std::string Unquote(std::string_view quoted) {
@@ -432,8 +450,7 @@ private:
         in.Take();
         in.Expect(Kind::Word, "a name to DEF");
       }
-      in.Expect(Kind::Word,
-                ("the value of '" + std::string(name.text.substr(0, 60)) + "'").c_str());
+      in.Expect(Kind::Word, ("the value of '" + Utf8Beginning(name.text, 60) + "'").c_str());
       if (in.At(Kind::OpenBrace)) {
         in.SkipBalanced();
       }

@@ -23,8 +23,9 @@ struct GuardedVrml {
 // an unknown name, text; silently: ROUTE, scripts, sensors, lights, viewpoints.
 // DEF, PROTO and interface names are replaced by numbered ones.
 // Throws Error: Corrupt (a syntax error, with its line; a number that is none, not finite, or out
-// of range; USE of a node inside itself), Resource (nodes nested deeper than 256 through braces,
-// USE and PROTO; more than 1,000,000 nodes when each USE is counted, or 200,000 copies by PROTO).
+// of range; USE of a node inside itself; a field of nodes that one node is given twice), Resource
+// (nodes nested deeper than 256 through braces, USE and PROTO; more than 1,000,000 nodes when each
+// USE is counted, or 200,000 copies by PROTO).
 GuardedVrml GuardVrml(const VrmlText& text, const std::string& path,
                       std::vector<std::string>& warnings);
 

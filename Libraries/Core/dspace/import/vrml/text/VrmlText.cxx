@@ -3,6 +3,7 @@
 #include <dspace/import/files/ImportFile.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <zlib.h>
 
@@ -59,11 +60,12 @@ VrmlText ReadVrmlText(const std::string& path) {
   if (StartsWith(text, "\x1f\x8b")) {
     text = Gunzip(text, path);
   }
+  text = ToUtf8(std::move(text));
   if (StartsWith(text, "\xef\xbb\xbf")) {
     text.erase(0, 3); // byte order mark
   }
   const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-  const std::string header = text.substr(0, std::min<std::size_t>(end, 200));
+  const std::string header = Utf8Beginning(std::string_view(text).substr(0, end), 200);
   VrmlText result;
   if (StartsWith(header, "#VRML V2.0 utf8")) {
     result.dialect = VrmlDialect::Vrml2;

@@ -3,6 +3,7 @@
 #include <dspace/import/files/ImportFile.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <algorithm>
 #include <charconv>
@@ -90,7 +91,7 @@ VrmlToken VrmlTokens::Expect(VrmlToken::Kind kind, const char* what) {
   if (this->Next_.kind != kind) {
     const std::string found = this->Next_.kind == VrmlToken::Kind::End
                                   ? "the end of the file"
-                                  : "'" + std::string(this->Next_.text.substr(0, 60)) + "'";
+                                  : "'" + Utf8Beginning(this->Next_.text, 60) + "'";
     this->Fail("found " + found + " where " + what + " is expected");
   }
   return this->Take();

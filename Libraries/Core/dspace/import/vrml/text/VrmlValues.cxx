@@ -1,5 +1,6 @@
 #include <dspace/import/vrml/text/VrmlValues.h>
 
+#include <dspace/Utf8.h>
 #include <dspace/import/files/ImportFile.h>
 
 #include <algorithm>
@@ -102,7 +103,7 @@ private:
 
   [[noreturn]] void Expected(const std::string& what) {
     const VrmlToken& token = this->Tokens_.Peek();
-    this->Tokens_.Fail("found '" + std::string(token.text.substr(0, 60)) + "' where " + what +
+    this->Tokens_.Fail("found '" + Utf8Beginning(token.text, 60) + "' where " + what +
                        " is expected");
   }
 
@@ -115,7 +116,7 @@ private:
       if (!std::all_of(token.text.begin(), token.text.end(), [](unsigned char c) {
             return std::isalnum(c) || c == '_' || c == '(' || c == ')' || c == '|';
           })) {
-        this->Tokens_.Fail("'" + std::string(token.text.substr(0, 60)) + "' is not a word");
+        this->Tokens_.Fail("'" + Utf8Beginning(token.text, 60) + "' is not a word");
       }
       this->Emit(token.text);
       inside = inside && token.text.back() != ')';
