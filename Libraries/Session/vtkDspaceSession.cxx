@@ -4,9 +4,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include <dspace/recording/RecordingWriter.h>
-#include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/clipmap/gl/ClipmapDrawer.h>
+#include <dspace/commands/viewports/ViewportCommands.h>
+#include <dspace/messages/ErrorReply.h>
+#include <dspace/recording/RecordingWriter.h>
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
@@ -110,9 +111,7 @@ std::string vtkDspaceSession::Execute(const std::string& bytes) {
   dspace::v1::Command& command = this->Impl->command;
   if (!command.ParseFromString(bytes)) {
     command.Clear();
-    reply.mutable_error()->set_kind(dspace::v1::Error::CORRUPT);
-    reply.mutable_error()->set_object("command");
-    reply.mutable_error()->set_message("command: the bytes are not a Command message");
+    reply = dspace::session::NotACommand();
   } else {
     reply = this->Impl->interpreter.Execute(command);
   }
@@ -244,12 +243,10 @@ std::string vtkDspaceSession::Replay(const std::string& bytes) {
                           : nullptr;
   if (entry && entry->effect == dspace::session::Effect::Request) {
     const std::string name = dspace::session::CommandName(command);
-    dspace::v1::Reply reply;
-    reply.mutable_error()->set_kind(dspace::v1::Error::CORRUPT);
-    reply.mutable_error()->set_object("command " + name);
-    reply.mutable_error()->set_message("command " + name +
-                                       ": it changes nothing, and no recording holds such a one");
-    return reply.SerializeAsString();
+    return dspace::session::ErrorReply(
+               dspace::v1::Error::CORRUPT, "command " + name,
+               "command " + name + ": it changes nothing, and no recording holds such a one")
+        .SerializeAsString();
   }
   return this->Execute(bytes);
 }

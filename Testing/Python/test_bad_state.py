@@ -82,7 +82,7 @@ def test_poses_of_frames(scene, refused):
 
 def test_names_of_frames(scene, refused):
     for name in ("", ".", "..", "a/b", "n" * 256, "\u00e9" * 128, "x" * 10**6):
-        with refused(dspace.InvalidArgument, "1 to 255 bytes, be neither '.' nor '..'"):
+        with refused(dspace.InvalidArgument, "1 to 255 bytes of UTF-8, be neither '.' nor '..'"):
             scene.add_frame(name)
     try:
         scene.add_frame("x" * 10**6)

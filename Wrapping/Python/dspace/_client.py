@@ -4,6 +4,7 @@ import threading
 import warnings
 
 from dspace import vtk as _vtk
+from dspace._wire import decode, encode
 from dspace.errors import KINDS, Closed, DspaceWarning, Internal, WrongThread
 from dspace.events import EventQueue, FrameListeners
 from dspace.proto import commands_pb2 as pb
@@ -32,7 +33,7 @@ def to_bytes(answer):
 
 
 def to_reply(answer):
-    return pb.Reply.FromString(to_bytes(answer))
+    return decode(pb.Reply, to_bytes(answer), "reply", Internal)
 
 
 class LocalClient:
@@ -65,7 +66,7 @@ class LocalClient:
         return self._finish(command, self._carry(command))
 
     def _carry(self, command):
-        return to_reply(self.local().Execute(command.SerializeToString()))
+        return to_reply(self.local().Execute(encode(command)))
 
     def _finish(self, command, reply):
         if reply.HasField("error"):

@@ -1,8 +1,33 @@
-"""Arrays in and out of messages without a Python number for each element.
+"""Messages in and out of bytes, and arrays in and out of messages without a Python number for each element.
 
 A packed repeated field is, on the wire, its tag, its length and the little-endian array itself.
 """
 import numpy as np
+from google.protobuf.message import DecodeError, EncodeError
+
+from dspace.errors import Corrupt, Resource
+from dspace.proto import commands_pb2 as pb
+
+
+def decode(kind, data, about, error=Corrupt):
+    """The message of a kind that the bytes are; raises `error`, naming what it is about, where they are none."""
+    try:
+        return kind.FromString(data)
+    except DecodeError:
+        raise error(f"{about}: its {len(data)} bytes are not a {kind.DESCRIPTOR.name} message", about) from None
+
+
+def command_of(payload, about="command"):
+    """The Command that the bytes of a recording are."""
+    return decode(pb.Command, payload, about)
+
+
+def encode(message, about="command"):
+    """The bytes of a message; raises Resource for one that is too large to be sent."""
+    try:
+        return message.SerializeToString()
+    except EncodeError:
+        raise Resource(f"{about}: it has more than 2 GiB; accepted: less in one", about) from None
 
 
 def _varint(value):

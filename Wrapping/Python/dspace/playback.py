@@ -3,6 +3,7 @@ import math
 import time
 
 from dspace._client import to_reply, warn
+from dspace._wire import command_of
 from dspace._fields import flag, integer, number, real, refuse, text
 from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
 from dspace.playback_steps import index_at, is_after, is_at, rounding, runs_of, set_times, steps_of
@@ -19,7 +20,7 @@ SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER
 
 
 def scene_of(payload):
-    return pb.Command.FromString(payload).scene or "scene"
+    return command_of(payload).scene or "scene"
 
 
 class Playback(TelemetryReading):
@@ -238,7 +239,7 @@ class Playback(TelemetryReading):
         if reply.HasField("error"):
             raise Corrupt(f"{self.file.label}: {what} is refused: {reply.error.message}", self.file.label)
         if self._files.folder and b"/overviews" in payload:
-            self._wait_for_overviews(pb.Command.FromString(payload))
+            self._wait_for_overviews(command_of(payload))
 
     def _wait_for_overviews(self, opened):
         """What was drawn of a large raster was its overviews, which are built anew beside the unpacked file."""

@@ -3,7 +3,7 @@ import bisect
 import math
 from typing import NamedTuple, Optional
 
-from dspace.proto import commands_pb2 as pb
+from dspace._wire import command_of
 
 
 class Step(NamedTuple):
@@ -51,7 +51,7 @@ def set_times(file, scene):
         return file.steps()
     found = []
     for seq, time, payload in file.ask("SELECT seq, time, payload FROM command INDEXED BY step WHERE kind = 13"):
-        if (pb.Command.FromString(payload).scene or "scene") == scene:
+        if (command_of(payload).scene or "scene") == scene:
             found.append((seq, time))
     return sorted(found)
 

@@ -2,7 +2,7 @@
 import numpy as np
 
 from dspace._fields import Named, shown, text
-from dspace._wire import get_array
+from dspace._wire import command_of, get_array
 from dspace.errors import InvalidArgument, NotFound, Unsupported
 from dspace.messages import Event
 from dspace.playback_steps import blocks_of, runs_of, step_at
@@ -181,7 +181,7 @@ class History:
                 continue
             self._begin(file.snapshot(snapshot[0][0]), number > 0)
             for row in file.rows_of(KINDS, snapshot[0][0] + 1, last):
-                command = pb.Command.FromString(row.payload)
+                command = command_of(row.payload)
                 self._scene(command).apply(command, row.seq)
 
     def _scene(self, command):
@@ -193,7 +193,7 @@ class History:
     def _begin(self, snapshot, after_loss):
         """The state of a snapshot: the first one, or the one after lost commands, of whose values it is not
         known since when they hold."""
-        commands = [pb.Command.FromString(payload) for payload in commands_of(snapshot)]
+        commands = [command_of(payload) for payload in commands_of(snapshot)]
         events, there = {}, {self._scene(command) for command in commands}
         for command in commands:
             if command.WhichOneof("command") == "log_event":

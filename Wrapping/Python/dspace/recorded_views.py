@@ -1,6 +1,7 @@
 """When a recording's scenes, cameras and viewports are there: what can be drawn at which of its steps."""
 import bisect
 
+from dspace._wire import command_of
 from dspace.recording_file import commands_of
 from dspace.proto import commands_pb2 as pb
 
@@ -67,14 +68,14 @@ def spans_of(playback):
         snapshot = file.snapshot(ends[begin])
         present.now = {}
         for command in commands_of(snapshot):
-            present.apply(pb.Command.FromString(command))
+            present.apply(command_of(command))
         index = begin
         for row in file.only(KINDS, snapshot.seq + 1, ends[end - 1]):
             following = max(begin, bisect.bisect_left(ends, row.seq, begin, end))
             if following != index:
                 note(index)
                 index = following
-            present.apply(pb.Command.FromString(row.payload))
+            present.apply(command_of(row.payload))
         note(index)
     return {key: [(a, len(ends) if b is None else b) for a, b in ranges if a != b] for key, ranges in spans.items()}
 

@@ -7,7 +7,8 @@ from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_bytes, to_reply, warn
 from dspace._fields import flag, number, refuse, text
 from dspace._links import SLICE, hear_signals, make_connection, prepare
-from dspace.errors import Closed, DeadlineExceeded, Unsupported
+from dspace._wire import decode, encode
+from dspace.errors import Closed, DeadlineExceeded, Internal, Unsupported
 from dspace.served_recordings import ServedRecording
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
@@ -60,7 +61,7 @@ class RemoteClient(LocalClient):
         link = self._open()
         asks = self.wait or command.WhichOneof("command") not in SILENT
         self.later = self.later or not asks
-        link.Begin(command.SerializeToString(), asks)
+        link.Begin(encode(command), asks)
         reply = self._take(link, asks)
         for news in self.recording.take_news() if self.recording is not None else ():
             warn(news) if reply.HasField("error") else reply.warning.append(news)
@@ -91,7 +92,7 @@ class RemoteClient(LocalClient):
             sent = self._take(link, end=end)
             command = pb.Command()
             command.list_scenes.SetInParent()
-            link.Begin(command.SerializeToString(), True)
+            link.Begin(encode(command), True)
             last = self._take(link, True, end)
             self._finish(pb.Command(), sent)
             self._finish(command, last)
@@ -116,7 +117,7 @@ class RemoteClient(LocalClient):
                     raise make_error(broken.error)
                 hear_signals()
                 data = to_bytes(link.TakeEvent(min(SLICE, max(0.0, end - time.monotonic()))))
-            event = service_pb2.ViewerEvent.FromString(data) if data else None
+            event = decode(service_pb2.ViewerEvent, data, "event", Internal) if data else None
         return event
 
     def flush(self):

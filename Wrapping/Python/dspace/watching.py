@@ -5,6 +5,7 @@ from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_reply
 from dspace._fields import real, refuse, text
 from dspace._links import SLICE, hear_signals, make_connection, prepare
+from dspace._wire import encode
 from dspace.errors import Closed, WrongType
 from dspace.scenes import Scene
 from dspace.protos import Session
@@ -33,7 +34,7 @@ class WatchClient(LocalClient):
 
     def _carry(self, command):
         self.local()  # whose planes a capture is read from
-        return to_reply(self.watcher().Execute(command.SerializeToString()))
+        return to_reply(self.watcher().Execute(encode(command)))
 
     def update(self, wait):
         """How many messages came; then calls who follows frames."""
@@ -52,7 +53,7 @@ class WatchClient(LocalClient):
 
     def tell(self, event):
         watcher = self.watcher()
-        reply = to_reply(watcher.TellLater(event.SerializeToString()))
+        reply = to_reply(watcher.TellLater(encode(event, "event")))
         state = -1 if reply.HasField("error") else 0
         try:
             while state == 0:

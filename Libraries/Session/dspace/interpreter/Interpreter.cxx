@@ -5,17 +5,11 @@
 #include <google/protobuf/unknown_field_set.h>
 
 #include <dspace/messages/Convert.h>
+#include <dspace/messages/ErrorReply.h>
+#include <dspace/messages/TextFields.h>
 
 namespace dspace::session {
 namespace {
-
-void PutError(v1::Reply& reply, v1::Error::Kind kind, const std::string& object,
-              const std::string& message) {
-  reply.Clear();
-  reply.mutable_error()->set_kind(kind);
-  reply.mutable_error()->set_object(object);
-  reply.mutable_error()->set_message(message);
-}
 
 class Nesting {
 public:
@@ -64,17 +58,18 @@ v1::Reply Interpreter::Execute(v1::Command& command) {
     const Nesting nesting(this->Depth_);
     this->Run(command, reply);
   } catch (const Error& error) {
-    PutError(reply, FromKind(error.GetKind()), error.GetObjectName(), error.what());
+    reply = ErrorReply(FromKind(error.GetKind()), error.GetObjectName(), error.what());
   } catch (const std::bad_alloc&) {
-    PutError(reply, v1::Error::RESOURCE, "command " + CommandName(command), "out of memory");
+    reply = ErrorReply(v1::Error::RESOURCE, "command " + CommandName(command), "out of memory");
   } catch (const std::exception& error) {
-    PutError(reply, v1::Error::INTERNAL, "command " + CommandName(command), error.what());
+    reply = ErrorReply(v1::Error::INTERNAL, "command " + CommandName(command), error.what());
   }
   if (reply.has_error()) {
     events.ForgetUndone(before);
   } else if (this->Depth_ == 0) {
     events.MoveTo(reply); // what listeners caused
   }
+  MakeTextUtf8(reply);
   return reply;
 }
 
@@ -83,6 +78,10 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   if (!entry) {
     throw Error(Error::Kind::Unsupported, "command " + CommandName(command),
                 "this session does not carry out such a command");
+  }
+  if (const auto* field = FindForeignText(command)) {
+    throw Error(Error::Kind::InvalidArgument, "command " + CommandName(command),
+                "its field '" + field->name() + "' is not UTF-8; accepted: text of UTF-8");
   }
   const std::string name = command.scene().empty() ? DefaultScene : command.scene();
   SceneState* scene = entry->needs == Needs::Scene ? &this->State_.FindScene(name) : nullptr;
@@ -93,6 +92,8 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
     this->State_.frameEvents.MoveTo(reply); // before it is told: listeners pass the reply on
   }
   if (entry->effect == Effect::Change) {
+    MakeTextUtf8(command); // listeners send and record both
+    MakeTextUtf8(reply);
     this->Tell(command, reply);
   }
 }

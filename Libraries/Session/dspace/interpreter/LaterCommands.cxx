@@ -1,5 +1,6 @@
 // Commands that are typed (measurements.proto) and that this version does not carry out.
 #include <dspace/interpreter/Interpreter.h>
+#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 
@@ -7,11 +8,9 @@ void Registry::AddLater(v1::Command::CommandCase kind) {
   this->Entries_[kind] = {
       Effect::Request, Needs::Nothing, [](const Context& context, v1::Command& command) {
         const std::string name = "command " + CommandName(command);
-        v1::Error* error = context.reply.mutable_error();
-        error->set_kind(v1::Error::UNIMPLEMENTED);
-        error->set_object(name);
-        error->set_message(name + ": it is typed, and this version does not carry it out yet; "
-                                  "accepted: a later version");
+        PutError(context.reply.mutable_error(), v1::Error::UNIMPLEMENTED, name,
+                 name + ": it is typed, and this version does not carry it out yet; "
+                        "accepted: a later version");
       }};
 }
 

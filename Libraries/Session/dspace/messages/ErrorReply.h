@@ -1,4 +1,5 @@
-// Errors as replies, for classes that let no exception out. Inside the library only.
+// Errors as messages, and as replies for classes that let no exception out. Inside the library
+// only.
 #ifndef DSPACE_SESSION_ERROR_REPLY_H
 #define DSPACE_SESSION_ERROR_REPLY_H
 
@@ -6,17 +7,24 @@
 #include <string>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/proto/commands.pb.h>
 
 namespace dspace::session {
 
+// Both texts may quote a file, a library or another process: they are made UTF-8 here.
+inline void PutError(v1::Error* error, v1::Error::Kind kind, const std::string& object,
+                     const std::string& message) {
+  error->set_kind(kind);
+  error->set_object(ToUtf8(object));
+  error->set_message(ToUtf8(message));
+}
+
 inline v1::Reply ErrorReply(v1::Error::Kind kind, const std::string& object,
                             const std::string& message) {
   v1::Reply reply;
-  reply.mutable_error()->set_kind(kind);
-  reply.mutable_error()->set_object(object);
-  reply.mutable_error()->set_message(message);
+  PutError(reply.mutable_error(), kind, object, message);
   return reply;
 }
 

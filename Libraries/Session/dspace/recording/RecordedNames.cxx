@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include <dspace/AtomicFile.h>
+#include <dspace/Utf8.h>
 
 namespace dspace::session {
 namespace {
@@ -82,7 +83,8 @@ void RecordedNames::Mend(const std::string& path) const {
     rest << in.rdbuf();
   }
   in.close();
-  const std::string mended = this->Mended(start + rest.str());
+  // UTF-8, as the names are: a robot description in Latin-1 is read as its text in UTF-8 is.
+  const std::string mended = this->Mended(ToUtf8(start + rest.str()));
   AtomicFile::Save(path, mended.data(), mended.size());
 }
 

@@ -54,7 +54,12 @@ std::shared_ptr<const Image> ModelCache::LoadImage(const std::string& path) {
 }
 
 std::string AbsolutePath(const std::string& path) {
-  return path.empty() ? path : std::filesystem::absolute(path).lexically_normal().string();
+  if (path.empty()) {
+    return path;
+  }
+  std::string absolute = std::filesystem::absolute(path).lexically_normal().string();
+  RequireUtf8Path(absolute);
+  return absolute;
 }
 
 } // namespace dspace::session

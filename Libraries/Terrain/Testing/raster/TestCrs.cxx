@@ -5,9 +5,11 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <ogr_spatialref.h>
 #include <proj.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 #include <dspace/crs/Crs.h>
 #include <dspace/crs/SceneFrame.h>
 #include <dspace/crs/VerticalDatum.h>
@@ -50,6 +52,35 @@ Error::Kind KindOf(const std::function<void()>& call) {
 }
 
 } // namespace
+
+// Old GeoTIFF and .prj files hold Latin-1; protobuf accepts no such text.
+TEST(Crs, NamesOfAnotherEncodingBecomeUtf8) {
+  OGRSpatialReference srs;
+  ASSERT_EQ(srs.importFromWkt("PROJCS[\"Sch\xF6"
+                              "fthal\",GEOGCS[\"Mond \xE4\","
+                              "DATUM[\"D_\xFC\",SPHEROID[\"S\",1737400,0]],"
+                              "PRIMEM[\"Reference_Meridian\",0],UNIT[\"Degree\","
+                              "0.0174532925199433]],PROJECTION[\"Equirectangular\"],"
+                              "PARAMETER[\"standard_parallel_1\",0],"
+                              "PARAMETER[\"central_meridian\",0],UNIT[\"metre\",1]]"),
+            OGRERR_NONE);
+  const Crs crs = Crs::FromOgr(srs);
+  EXPECT_EQ(crs.GetName(), "Sch\xC3\xB6"
+                           "fthal");
+  EXPECT_TRUE(dspace::IsUtf8(crs.GetWkt()));
+  EXPECT_NE(crs.GetWkt().find("Sch\xC3\xB6"
+                              "fthal"),
+            std::string::npos);
+  EXPECT_TRUE(dspace::IsUtf8(crs.Geographic().GetName()));
+  EXPECT_EQ(crs.GetAxes().semiMajor, 1737400.0);
+  // It is the same reference: the text leads back to it, and coordinates agree.
+  const Crs again = Crs::FromText(crs.GetWkt());
+  EXPECT_EQ(again.GetName(), crs.GetName());
+  const Eigen::Vector2d p =
+      CrsTransform(crs, Crs::FromText("+proj=longlat +R=1737400 +type=crs")).Apply({1e4, 2e4});
+  EXPECT_NEAR(p.x(), 1e4 / 1737400.0 * 180.0 / M_PI, 1e-9);
+  EXPECT_NEAR(p.y(), 2e4 / 1737400.0 * 180.0 / M_PI, 1e-9);
+}
 
 TEST(Crs, NamesItself) {
   const Crs moon = Crs::FromText("IAU_2015:30100");

@@ -2,12 +2,14 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 #include <dspace/raster/ElevationSource.h>
 #include <dspace/surface/GridTerrain.h>
 
@@ -68,6 +70,31 @@ protected:
 };
 
 } // namespace
+
+TEST_F(Raster, TextOfAnotherEncodingBecomesUtf8) {
+  RasterFile file = this->File();
+  file.crs = "PROJCS[\"Sch\xF6"
+             "fthal\",GEOGCS[\"Mond \xE4\",DATUM[\"D_\xFC\",SPHEROID[\"S\","
+             "1737400,0]],PRIMEM[\"Reference_Meridian\",0],UNIT[\"Degree\",0.0174532925199433]],"
+             "PROJECTION[\"Equirectangular\"],PARAMETER[\"standard_parallel_1\",0],"
+             "PARAMETER[\"central_meridian\",0],UNIT[\"metre\",1]]";
+  const std::string path = file.Write(this->Folder / "latin.tif");
+  // GDAL writes the name as it is: the file does hold Latin-1.
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  ASSERT_NE(bytes.find("Sch\xF6"
+                       "fthal"),
+            std::string::npos);
+  const ElevationSource source(path);
+  EXPECT_EQ(source.Info().crs.GetName(), "Sch\xC3\xB6"
+                                         "fthal");
+  EXPECT_TRUE(dspace::IsUtf8(source.Info().crs.GetWkt()));
+  for (const std::string& warning : source.Info().warnings)
+    EXPECT_TRUE(dspace::IsUtf8(warning)) << warning;
+  file.unit = "\xE4";
+  this->Refused(file.Write(this->Folder / "unit.tif"), Error::Kind::Unsupported,
+                "heights in unit '\xC3\xA4'");
+}
 
 TEST_F(Raster, ReadsValuesByScaleOffsetAndUnit) {
   RasterFile file = this->File();

@@ -7,6 +7,7 @@
 #include <proj.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <dspace/gdal/GdalErrors.h>
 #include <dspace/gdal/OfflineScope.h>
@@ -27,6 +28,14 @@ Eigen::Vector2d AxisSigns(const OGRSpatialReference& srs) {
   if (polar)
     return Eigen::Vector2d::Ones();
   return {way[0] == OAO_West ? -1.0 : 1.0, way[1] == OAO_South ? -1.0 : 1.0};
+}
+
+std::string WktOf(const OGRSpatialReference& srs) {
+  char* text = nullptr;
+  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  const std::string wkt = srs.exportToWkt(&text, options) == OGRERR_NONE ? text : "";
+  CPLFree(text);
+  return wkt;
 }
 
 std::string AuthorityOf(const OGRSpatialReference& srs) {
@@ -55,10 +64,20 @@ Crs Crs::FromOgr(const OGRSpatialReference& source) {
   Crs crs;
   if (source.IsEmpty())
     return crs;
+  crs.Wkt_ = WktOf(source);
+  if (!IsUtf8(crs.Wkt_)) {
+    // GeoTIFF says nothing of its texts' encoding, and old writers use Latin-1. Nothing of it
+    // remains: the reference is made anew from text of UTF-8.
+    OGRSpatialReference readable;
+    if (readable.importFromWkt(ToUtf8(crs.Wkt_).c_str()) != OGRERR_NONE)
+      throw Error(Error::Kind::Unsupported, "CRS '" + crs.Wkt_ + "'",
+                  "its text is not UTF-8; " + errors.Message("accepted: WKT of UTF-8"));
+    return FromOgr(readable);
+  }
   auto srs = std::make_shared<OGRSpatialReference>(source);
   const char* vertical = srs->IsCompound() ? srs->GetAttrValue("COMPD_CS|VERT_CS") : nullptr;
-  crs.VerticalName_ = vertical ? vertical : "";
-  crs.Name_ = srs->GetName() ? srs->GetName() : "";
+  crs.VerticalName_ = ToUtf8(vertical ? vertical : "");
+  crs.Name_ = ToUtf8(srs->GetName() ? srs->GetName() : "");
   crs.Authority_ = AuthorityOf(*srs);
   if (srs->IsCompound())
     srs->StripVertical();
@@ -88,11 +107,6 @@ Crs Crs::FromOgr(const OGRSpatialReference& source) {
   if (!(crs.Unit_ > 0.0) || !std::isfinite(crs.Unit_))
     throw Error(Error::Kind::InvalidArgument, "CRS '" + crs.Name_ + "'", "its unit has no size");
   crs.AxisSigns_ = AxisSigns(*srs);
-  char* wkt = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  if (source.exportToWkt(&wkt, options) == OGRERR_NONE)
-    crs.Wkt_ = wkt;
-  CPLFree(wkt);
   crs.Srs_ = srs;
   return crs;
 }

@@ -6,6 +6,8 @@
 #include <cpl_error.h>
 #include <gdal.h>
 
+#include <dspace/Utf8.h>
+
 namespace dspace {
 
 namespace {
@@ -32,8 +34,8 @@ void GdalErrors::Add(bool failure, const char* message) {
   auto& list = failure ? this->Failures_ : this->Warnings_;
   // A damaged file can repeat one message for every row.
   constexpr std::size_t most = 20;
-  if (list.size() < most && (list.empty() || list.back() != message))
-    list.emplace_back(message);
+  if (list.size() < most && (list.empty() || list.back() != ToUtf8(message)))
+    list.push_back(ToUtf8(message));
 }
 
 std::string GdalErrors::Message(const std::string& otherwise) const {

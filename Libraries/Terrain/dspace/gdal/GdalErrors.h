@@ -9,7 +9,8 @@
 
 namespace dspace {
 
-// While it lives, this thread's GDAL and PROJ messages are collected here. Not for public headers.
+// While it lives, this thread's GDAL and PROJ messages are collected here, made UTF-8: they quote
+// files. Not for public headers.
 class GdalErrors {
 public:
   GdalErrors();

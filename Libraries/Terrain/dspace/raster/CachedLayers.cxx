@@ -5,6 +5,7 @@
 #include <map>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 #include <dspace/raster/OpenRaster.h>
 
@@ -48,7 +49,7 @@ std::vector<ElevationCacheEntry> LayerEntries(const std::vector<std::string>& fi
     const DatasetPointer dataset = OpenLayer(file);
     entry.damaged |= !dataset;
     const char* path = dataset ? dataset->GetMetadataItem(LayerPathItem) : nullptr;
-    entry.path = path ? path : entry.path;
+    entry.path = path ? ToUtf8(path) : entry.path;
   }
   std::vector<ElevationCacheEntry> all;
   all.reserve(entries.size());

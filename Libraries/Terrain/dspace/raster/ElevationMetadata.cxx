@@ -7,6 +7,7 @@
 #include <gdal_priv.h>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 
 namespace dspace {
 
@@ -149,7 +150,7 @@ void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, Ele
 
 void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, ElevationInfo& info) {
   const char* unit = band.GetUnitType();
-  info.unit = unit ? unit : "";
+  info.unit = ToUtf8(unit ? unit : "");
   if (options.verticalScale || options.verticalOffset) {
     info.verticalScale = options.verticalScale.value_or(1.0);
     info.verticalOffset = options.verticalOffset.value_or(0.0);
@@ -180,16 +181,17 @@ void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, Elevati
 
   const double a = info.crs.GetAxes().semiMajor;
   GDALDataset* dataset = band.GetDataset();
-  const char* stated = dataset ? dataset->GetMetadataItem("VERTICAL_DATUM") : nullptr;
+  const char* item = dataset ? dataset->GetMetadataItem("VERTICAL_DATUM") : nullptr;
+  const std::string stated = ToUtf8(item ? item : "");
   if (options.verticalDatum) {
     info.verticalDatum = *options.verticalDatum;
-  } else if (stated) {
+  } else if (item) {
     // Our own item, written as VerticalDatum::Text(). Others' words there are no such text.
     try {
       info.verticalDatum = VerticalDatum::FromText(stated);
     } catch (const Error&) {
       info.verticalDatum.name = stated;
-      info.warnings.push_back("its metadata item VERTICAL_DATUM says '" + std::string(stated) +
+      info.warnings.push_back("its metadata item VERTICAL_DATUM says '" + stated +
                               "', which is not understood; give the vertical datum by hand");
     }
   } else if (!info.crs.GetVerticalName().empty()) {

@@ -1,7 +1,6 @@
 #include <dspace/raster/OverviewFile.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <dspace/Error.h>
 
@@ -58,21 +58,7 @@ private:
 } // namespace
 
 std::uint32_t Checksum(const char* data, std::size_t bytes) {
-  static const std::array<std::uint32_t, 256> table = [] {
-    std::array<std::uint32_t, 256> t{};
-    for (std::uint32_t i = 0; i < 256; ++i) {
-      t[i] = i;
-      for (int k = 0; k < 8; ++k) {
-        t[i] = t[i] & 1 ? 0xedb88320u ^ (t[i] >> 1) : t[i] >> 1;
-      }
-    }
-    return t;
-  }();
-  std::uint32_t c = 0xffffffffu;
-  for (std::size_t i = 0; i < bytes; ++i) {
-    c = table[(c ^ static_cast<unsigned char>(data[i])) & 255] ^ (c >> 8);
-  }
-  return ~c;
+  return std::uint32_t(::crc32_z(0, reinterpret_cast<const Bytef*>(data), bytes));
 }
 
 std::size_t OverviewHeader::TileIndex(int level, int tileColumn, int tileRow) const {

@@ -9,6 +9,7 @@
 #include <cpl_vsi.h>
 #include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 #include <dspace/raster/DatasetFiles.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
@@ -116,7 +117,7 @@ TrackAddition ToStroke(const OGRFeature& feature, const std::string& object,
   stroke.begin = true;
   stroke.exact = true;
   const int wheel = feature.GetFieldIndex("wheel");
-  stroke.name = wheel >= 0 ? feature.GetFieldAsString(wheel) : "";
+  stroke.name = ToUtf8(wheel >= 0 ? feature.GetFieldAsString(wheel) : "");
   for (const ProfileField& field : ProfileFields) {
     std::vector<double> value;
     if (ListOf(feature, field.name, 1, object, value)) {

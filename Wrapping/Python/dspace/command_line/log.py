@@ -3,6 +3,7 @@ import datetime
 import math
 import os
 
+from dspace._wire import command_of
 from dspace.command_line import Failed
 from dspace.command_line.log_diff import compare, name_of
 from dspace.command_line.log_pack import pack
@@ -10,7 +11,6 @@ from dspace.command_line.log_salvage import salvage
 from dspace.command_line.log_telemetry import add_arguments as add_telemetry
 from dspace.playback_steps import is_after, is_at, led_in
 from dspace.recording_file import RecordingFile, write_recording
-from dspace.proto import commands_pb2 as pb
 
 
 def add_arguments(parser):
@@ -78,7 +78,7 @@ def write_out(options):
         first = max(file.first, options.first or 1)
         last = file.last if options.last is None else min(file.last, options.last)
         for row in there(file, first, last):
-            command = pb.Command.FromString(row.payload)
+            command = command_of(row.payload)
             text = str(command).replace("\n", " ") if row.kind != 24 else poses_text(command.set_poses)
             print(f"{row.seq} {row.time!r} {name_of(row.kind)}: {text.strip()}")
     return 0

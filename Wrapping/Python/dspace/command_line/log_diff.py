@@ -2,6 +2,7 @@
 import itertools
 import math
 
+from dspace._wire import command_of
 from dspace.command_line import Failed
 from dspace.recording_file import RecordingFile, commands_of
 from dspace.proto import commands_pb2 as pb
@@ -74,14 +75,14 @@ def difference(a, b):
     differ in anything else."""
     if a == b:
         return 0.0, ""
-    found = of_messages(pb.Command.FromString(a), pb.Command.FromString(b), "")
+    found = of_messages(command_of(a), command_of(b), "")
     # Different bytes may be the same values; but they may also be fields that are not known here.
     return found if found[0] or unknown(a) == unknown(b) else (math.inf, "a field that is not known here")
 
 
 def unknown(payload):
     """What of a command this version does not know, at any depth: what is left when the rest is dropped."""
-    message = pb.Command.FromString(payload)
+    message = command_of(payload)
     kept = message.SerializeToString(deterministic=True)
     message.DiscardUnknownFields()
     return None if kept == message.SerializeToString(deterministic=True) else kept

@@ -10,6 +10,7 @@
 #include <dspace/Error.h>
 #include <dspace/scene/Checks.h>
 #include <dspace/link/ProcessName.h>
+#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 namespace {
@@ -76,10 +77,9 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const Lin
 
 v1::Error ToError(const std::string& address, const grpc::Status& status, bool& final) {
   v1::Error error;
-  error.set_object("server '" + address + "'");
+  const std::string object = "server '" + address + "'";
   const auto say = [&](v1::Error::Kind kind, const std::string& message, bool last) {
-    error.set_kind(kind);
-    error.set_message(error.object() + ": " + message);
+    PutError(&error, kind, object, object + ": " + message);
     final = last;
     return error;
   };

@@ -4,6 +4,7 @@
 
 #include <dspace/scene/Checks.h>
 #include <dspace/link/client/ClientLink.h>
+#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 namespace {
@@ -21,11 +22,8 @@ constexpr std::chrono::milliseconds ToCatchUp{5};
 // --- The user's thread -------------------------------------------------------------------------
 
 v1::Reply RemoteClient::Link::Fault(v1::Error::Kind kind, const std::string& message) {
-  v1::Reply reply;
-  reply.mutable_error()->set_kind(kind);
-  reply.mutable_error()->set_object("server '" + this->options.address + "'");
-  reply.mutable_error()->set_message("server '" + this->options.address + "': " + message);
-  return reply;
+  const std::string object = "server '" + this->options.address + "'";
+  return ErrorReply(kind, object, object + ": " + message);
 }
 
 void RemoteClient::Link::Finish(v1::Reply&& with) {

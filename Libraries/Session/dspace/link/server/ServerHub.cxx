@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <dspace/link/ProcessName.h>
+#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 namespace {
@@ -62,11 +63,9 @@ void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply) {
   message->mutable_done()->set_number(number);
   std::size_t size = reply.ByteSizeLong() + 64;
   if (size > LargestReply) {
-    v1::Error* error = message->mutable_done()->mutable_reply()->mutable_error();
-    error->set_kind(v1::Error::RESOURCE);
-    error->set_object("reply");
-    error->set_message("reply: it has " + std::to_string(size) +
-                       " bytes; accepted: up to 2000 MiB in one");
+    PutError(message->mutable_done()->mutable_reply()->mutable_error(), v1::Error::RESOURCE,
+             "reply",
+             "reply: it has " + std::to_string(size) + " bytes; accepted: up to 2000 MiB in one");
     size = 256;
   } else {
     message->mutable_done()->mutable_reply()->Swap(&reply);

@@ -3,8 +3,9 @@
 #include <thread>
 
 #include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/link/server/ServerHub.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 namespace {
@@ -38,10 +39,7 @@ bool HasLeft(const grpc::ServerContext& context) {
 
 std::shared_ptr<v1::DriveReply> MakeClosed(v1::Error::Kind kind, const std::string& message) {
   auto reply = std::make_shared<v1::DriveReply>();
-  v1::Error* error = reply->mutable_closed()->mutable_error();
-  error->set_kind(kind);
-  error->set_object("link");
-  error->set_message("link: " + message);
+  PutError(reply->mutable_closed()->mutable_error(), kind, "link", "link: " + message);
   return reply;
 }
 

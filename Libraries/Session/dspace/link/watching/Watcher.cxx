@@ -7,10 +7,11 @@
 
 #include <dspace/Error.h>
 #include <dspace/scene/Checks.h>
-#include <dspace/link/client/ClientLink.h>
+#include <dspace/interpreter/Telling.h>
 #include <dspace/link/LinkDiagnosis.h>
 #include <dspace/link/SnapshotMessages.h>
-#include <dspace/interpreter/Telling.h>
+#include <dspace/link/client/ClientLink.h>
+#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 namespace {
@@ -47,10 +48,10 @@ struct Watcher::Link {
   bool Forked() const { return getpid() != this->process; }
   v1::Error Foreign() const {
     v1::Error told;
-    told.set_kind(v1::Error::UNSUPPORTED);
-    told.set_object("server '" + this->options.address + "'");
-    told.set_message(told.object() + ": process " + std::to_string(this->process) +
-                     " watches it, and this one is its child; accepted: a connection of its own");
+    const std::string object = "server '" + this->options.address + "'";
+    PutError(&told, v1::Error::UNSUPPORTED, object,
+             object + ": process " + std::to_string(this->process) +
+                 " watches it, and this one is its child; accepted: a connection of its own");
     return told;
   }
 
@@ -213,11 +214,10 @@ bool Watcher::WaitToOpen(double seconds) {
   }
   v1::Error error = link.error;
   if (late) {
-    error.set_kind(v1::Error::DEADLINE_EXCEEDED);
-    error.set_object("server '" + link.options.address + "'");
+    const std::string object = "server '" + link.options.address + "'";
     std::ostringstream text;
-    text << error.object() << ": nobody answers within " << link.options.timeout_s << " s: " << why;
-    error.set_message(text.str());
+    text << object << ": nobody answers within " << link.options.timeout_s << " s: " << why;
+    PutError(&error, v1::Error::DEADLINE_EXCEEDED, object, text.str());
   }
   lock.unlock();
   link.End();

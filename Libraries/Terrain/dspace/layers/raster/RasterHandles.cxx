@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <dspace/Error.h>
+#include <dspace/Utf8.h>
 #include <dspace/layers/raster/ImageLayer.h>
 
 #include <dspace/raster/NetworkScope.h>
@@ -111,7 +112,7 @@ void RasterLevels::InspectBand(GDALRasterBand& band) {
                     std::to_string(this->Offset_) + " are no numbers to be used");
   }
   this->AlphaScale_ = 1.0 / 255.0;
-  this->Unit_ = band.GetUnitType() ? band.GetUnitType() : "";
+  this->Unit_ = ToUtf8(band.GetUnitType() ? band.GetUnitType() : "");
 }
 
 void RasterLevels::InspectImage(GDALDataset& file) {

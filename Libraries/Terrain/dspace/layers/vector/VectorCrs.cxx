@@ -6,6 +6,8 @@
 #include <cpl_vsi.h>
 #include <ogrsf_frmts.h>
 
+#include <dspace/Utf8.h>
+
 namespace dspace {
 namespace {
 
@@ -97,7 +99,7 @@ Crs VectorCrsOf(OGRLayer& layer, GDALDataset& file, const std::string& path,
   if (const OGRSpatialReference* srs = layer.GetSpatialRef()) {
     return Crs::FromOgr(*srs);
   }
-  warnings.push_back(object + ", layer '" + layer.GetName() + "', states no CRS: that of " +
+  warnings.push_back(object + ", layer '" + ToUtf8(layer.GetName()) + "', states no CRS: that of " +
                      terrain.name + " is taken; `crs` states another");
   return terrain.crs;
 }

@@ -6,6 +6,7 @@
 
 #include <ogrsf_frmts.h>
 
+#include <dspace/Utf8.h>
 #include <dspace/scene/Checks.h>
 #include <dspace/raster/DatasetFiles.h>
 #include <dspace/crs/MapTurn.h>
@@ -56,7 +57,7 @@ private:
     if (index < 0 || !feature.IsFieldSetAndNotNull(index)) {
       return std::nullopt;
     }
-    return const_cast<OGRFeature&>(feature).GetFieldAsString(index);
+    return ToUtf8(const_cast<OGRFeature&>(feature).GetFieldAsString(index));
   }
   void Ignore(const char* name, const std::string& value, const char* accepted) {
     if (!this->Ignored_) {
@@ -296,8 +297,9 @@ VectorFile ReadVectorFile(const std::string& path, const RasterPlace& terrain,
   std::string names;
   bool found = !options.layer;
   for (OGRLayer* layer : file->GetLayers()) {
-    names += (names.empty() ? "'" : "', '") + std::string(layer->GetName());
-    if (!options.layer || *options.layer == layer->GetName()) {
+    const std::string name = ToUtf8(layer->GetName());
+    names += (names.empty() ? "'" : "', '") + name;
+    if (!options.layer || *options.layer == name) {
       found = true;
       reader.Read(*layer, VectorCrsOf(*layer, *file, path, terrain, options, result.warnings));
     }
