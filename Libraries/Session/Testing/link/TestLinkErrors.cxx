@@ -27,6 +27,21 @@ TEST_F(LinkTest, PipelinedCommandsComeInOrderAndTheirErrorsToo) {
   EXPECT_EQ(client.Execute(list).frames().frame_size(), 2001);
 }
 
+// The server could not parse it, and the client would wait for ever.
+TEST_F(LinkTest, ACommandWhoseTextIsNotUtf8IsNotSent) {
+  this->StartServer();
+  RemoteClient client(this->ClientOptions());
+  Accept(client.Execute(MakeScene()));
+  v1::Command wrong = MakeFrame(7);
+  wrong.mutable_create_frame()->set_name("M\xE4st");
+  for (const v1::Reply& reply : {client.Execute(wrong), client.Send(wrong)}) {
+    EXPECT_EQ(reply.error().kind(), v1::Error::INVALID_ARGUMENT);
+    EXPECT_EQ(reply.error().message(), "command create_frame: its field 'name' is not UTF-8; "
+                                       "accepted: text of UTF-8");
+  }
+  Accept(client.Execute(MakeFrame(7))); // the link goes on
+}
+
 // Whoever was interrupted twice, or waited too long, is not told of it by what comes later.
 TEST_F(LinkTest, ErrorsOfWhatWasAbandonedHitNothingElse) {
   this->StartServer();

@@ -79,9 +79,8 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
     throw Error(Error::Kind::Unsupported, "command " + CommandName(command),
                 "this session does not carry out such a command");
   }
-  if (const auto* field = FindForeignText(command)) {
-    throw Error(Error::Kind::InvalidArgument, "command " + CommandName(command),
-                "its field '" + field->name() + "' is not UTF-8; accepted: text of UTF-8");
+  if (FindForeignText(command)) {
+    RequireUtf8(command, "command " + CommandName(command));
   }
   const std::string name = command.scene().empty() ? DefaultScene : command.scene();
   SceneState* scene = entry->needs == Needs::Scene ? &this->State_.FindScene(name) : nullptr;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <dspace/Error.h>
 #include <dspace/Utf8.h>
 
 namespace dspace::session {
@@ -43,6 +44,13 @@ const Field* FindForeignText(const Message& message) {
     }
   }
   return nullptr;
+}
+
+void RequireUtf8(const Message& message, const std::string& object) {
+  if (const Field* field = FindForeignText(message)) {
+    throw Error(Error::Kind::InvalidArgument, object,
+                "its field '" + field->name() + "' is not UTF-8; accepted: text of UTF-8");
+  }
 }
 
 void MakeTextUtf8(Message& message) {

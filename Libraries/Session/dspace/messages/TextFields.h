@@ -1,7 +1,9 @@
 // The text in messages: protobuf accepts a message only where each of its texts is UTF-8. Inside
 // the library only.
-#ifndef DSPACE_MESSAGES_TEXT_FIELDS_H
-#define DSPACE_MESSAGES_TEXT_FIELDS_H
+#ifndef DSPACE_SESSION_TEXT_FIELDS_H
+#define DSPACE_SESSION_TEXT_FIELDS_H
+
+#include <string>
 
 #include <google/protobuf/message.h>
 
@@ -10,6 +12,9 @@ namespace dspace::session {
 // The first field of text, at any depth, that is not UTF-8; null where all are. Unknown fields and
 // fields of bytes hold no text.
 const google::protobuf::FieldDescriptor* FindForeignText(const google::protobuf::Message& message);
+
+// Throws Error(InvalidArgument) naming `object` and that field, if there is one.
+void RequireUtf8(const google::protobuf::Message& message, const std::string& object);
 
 // The last guard before a message leaves: every text that is not UTF-8 is made so (Utf8.h). A
 // receiver could not parse the message otherwise, and would wait for it for ever.

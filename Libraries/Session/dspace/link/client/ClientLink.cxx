@@ -234,7 +234,7 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
     }
     this->context = &drive;
     open.mutable_open()->set_protocol(LinkProtocol);
-    open.mutable_open()->set_client(this->options.name);
+    open.mutable_open()->set_client(ToUtf8(this->options.name));
     open.mutable_open()->set_key(this->key);
     open.mutable_open()->set_take_over(this->options.takeOver && !this->opened);
     open.mutable_open()->set_acknowledged(this->acknowledged);

@@ -3,8 +3,10 @@
 #include <utility>
 
 #include <dspace/scene/Checks.h>
+#include <dspace/interpreter/Interpreter.h>
 #include <dspace/link/client/ClientLink.h>
 #include <dspace/messages/ErrorReply.h>
+#include <dspace/messages/TextFields.h>
 
 namespace dspace::session {
 namespace {
@@ -63,6 +65,13 @@ void RemoteClient::Link::Admit() {
   this->catchUp = LinkClock::now() + ToCatchUp;
   if (this->failure.has_error()) {
     this->Finish(std::exchange(this->failure, {}));
+    return;
+  }
+  if (FindForeignText(this->command)) { // the server could not parse it, and would never answer
+    this->Finish(Catch([&]() -> v1::Reply {
+      RequireUtf8(this->command, "command " + CommandName(this->command));
+      return {};
+    }));
     return;
   }
   if (this->options.onlyChanges && !this->filter.Pass(this->command) && !this->broken) {

@@ -62,7 +62,7 @@ Status Server::Service::Hello(grpc::ServerContext*, const v1::HelloRequest* requ
   }
   const std::lock_guard lock(this->Hub_.mutex);
   reply->set_protocol(LinkProtocol);
-  reply->set_server(this->Hub_.options.name);
+  reply->set_server(ToUtf8(this->Hub_.options.name));
   reply->set_writer(this->Hub_.writer.stream ? this->Hub_.writer.name : "");
   reply->set_viewers(std::uint32_t(this->Hub_.viewers.size()));
   reply->set_maximum_message(this->Hub_.options.maximumMessage);
@@ -221,7 +221,7 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
   hub.Acknowledge(open.acknowledged());
   auto reply = std::make_shared<v1::DriveReply>();
   reply->mutable_opened()->set_protocol(LinkProtocol);
-  reply->mutable_opened()->set_server(hub.options.name);
+  reply->mutable_opened()->set_server(ToUtf8(hub.options.name));
   reply->mutable_opened()->set_resumed(resumed);
   reply->mutable_opened()->set_last(writer.queued);
   reply->mutable_opened()->set_maximum_message(hub.options.maximumMessage);

@@ -12,6 +12,7 @@
 #include <dspace/link/SnapshotMessages.h>
 #include <dspace/link/client/ClientLink.h>
 #include <dspace/messages/ErrorReply.h>
+#include <dspace/messages/TextFields.h>
 
 namespace dspace::session {
 namespace {
@@ -70,7 +71,7 @@ struct Watcher::Link {
       }
       v1::WatchRequest request;
       request.set_protocol(LinkProtocol);
-      request.set_viewer(this->options.name);
+      request.set_viewer(ToUtf8(this->options.name));
       request.set_parts(true);
       const auto stream = this->stub->Watch(&watch, request);
       v1::WatchReply message;
@@ -294,7 +295,8 @@ void Watcher::BeginTell(const v1::ViewerEvent& event, double timeout_s) {
   v1::TellRequest request;
   request.set_protocol(LinkProtocol);
   *request.mutable_event() = event;
-  request.mutable_event()->set_from(link.options.name);
+  request.mutable_event()->set_from(ToUtf8(link.options.name));
+  RequireUtf8(request, "event");
   link.telling = std::make_unique<Telling>(*link.stub, request,
                                            std::clamp(timeout_s, 0.0, link.options.timeout_s));
 }
