@@ -80,7 +80,7 @@ TEST(ImportText, ErrorsQuoteTheFileAsUtf8) {
   ExpectReadError(Error::Kind::Corrupt, "v has '\xC3\xA4'", folder.Write("a.obj", "v \xE4 0 0\n"));
   // Cut to 40 bytes, of which the last would be half a letter.
   ExpectReadError(Error::Kind::Corrupt, "v has '" + std::string(39, 'x') + "';",
-                  folder.Write("b.obj", "v " + std::string(39, 'x') + Name + " 0 0\n"));
+                  folder.Write("b.obj", "v " + std::string(39, 'x') + "\xC3\xA4 0 0\n"));
   ExpectReadError(Error::Kind::Corrupt, "\xC3\xA4",
                   folder.Write("a.ply", "ply\nformat ascii 1.0\n\xE4 1\nend_header\n"));
   ExpectReadError(Error::Kind::Corrupt, "\xC3\xA4",
@@ -202,7 +202,7 @@ TEST(ImportText, FilesWhoseNamesAreNotUtf8) {
   folder.Write(Latin + ".mtl", "newmtl a\nKd 1 0 0\n");
   const Model model =
       ReadModel(folder.Write("a.obj", "mtllib " + Latin + ".mtl\n" + Faces + "f 1 2 3\n"));
-  EXPECT_TRUE(HasWarning(model.warnings, Name + ".mtl' does not exist"));
+  EXPECT_TRUE(HasWarning(model.warnings, Name + ".mtl': does not exist"));
   ExpectReadError(Error::Kind::Unsupported, "is not UTF-8",
                   folder.Write(Latin + ".obj", Faces + "f 1 2 3\n"));
   ExpectError(Error::Kind::Unsupported, "is not UTF-8",
