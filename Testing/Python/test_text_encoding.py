@@ -15,7 +15,7 @@ from terrain_support import gdal
 
 LATIN, NAME = b"M\xe4st", "Mäst"
 FACES = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
-WKT = ('PROJCS["M\udce4st",GEOGCS["Mond",DATUM["D",SPHEROID["S",1737400,0]],PRIMEM["Reference_Meridian",0],'
+WKT = ('PROJCS["M?st",GEOGCS["Mond",DATUM["D",SPHEROID["S",1737400,0]],PRIMEM["Reference_Meridian",0],'
        'UNIT["Degree",0.0174532925199433]],PROJECTION["Equirectangular"],PARAMETER["standard_parallel_1",0],'
        'PARAMETER["central_meridian",0],UNIT["metre",1]]')
 
@@ -58,17 +58,17 @@ def urdf(folder):
 
 
 def tiff(folder):
-    # Through a VRT, as GDAL's Python takes no text that is not UTF-8 for a GeoTIFF to write.
-    grid = folder / "grid.tif"
-    data = gdal.GetDriverByName("GTiff").Create(str(grid), 33, 33, 1, gdal.GDT_Float32)
+    path = folder / "a.tif"
+    data = gdal.GetDriverByName("GTiff").Create(str(path), 33, 33, 1, gdal.GDT_Float32)
+    data.SetGeoTransform((0, 1, 0, 33, 0, -1))
+    data.SetProjection(WKT)
+    data.GetRasterBand(1).SetUnitType("m")
     data.GetRasterBand(1).WriteArray(np.add.outer(np.arange(33.0), np.arange(33.0)))
-    data = None
-    path = folder / "a.vrt"
-    path.write_bytes(('<VRTDataset rasterXSize="33" rasterYSize="33"><SRS>' + WKT.replace('"', "&quot;") + '</SRS>'
-                      '<GeoTransform>0,1,0,33,0,-1</GeoTransform><VRTRasterBand dataType="Float32" band="1">'
-                      '<UnitType>m</UnitType><SimpleSource><SourceFilename relativeToVRT="1">grid.tif</SourceFilename>'
-                      '<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>')
-                     .encode("utf-8", "surrogateescape"))
+    data = None  # writes it
+    # GDAL's Python takes no text that is not UTF-8: the name is changed in the file.
+    written = path.read_bytes()
+    assert written.count(b"M?st") == 1
+    path.write_bytes(written.replace(b"M?st", LATIN))
     return path
 
 
@@ -79,7 +79,7 @@ def load(scene, path):
         if path.suffix == ".urdf":
             robot = scene.load(str(path))
             texts = [robot.name, *robot.links, *robot.joints]
-        elif path.suffix == ".vrt":
+        elif path.suffix == ".tif":
             terrain = scene.add_terrain(str(path), vertical_datum="relative")
             texts = [terrain.crs]
         else:
@@ -170,7 +170,7 @@ os.chdir(os.fsdecode(bytes.fromhex(sys.argv[1])))
 with dspace.Session() as session:
     scene = session.scene()
     for call in (lambda: scene.load("a.obj"), lambda: scene.load("a.urdf"),
-                 lambda: scene.add_terrain("a.vrt")):
+                 lambda: scene.add_terrain("a.tif")):
         try:
             call()
         except dspace.Unsupported as error:
