@@ -30,7 +30,7 @@ Eigen::Vector2d AxisSigns(const OGRSpatialReference& srs) {
   return {way[0] == OAO_West ? -1.0 : 1.0, way[1] == OAO_South ? -1.0 : 1.0};
 }
 
-std::string WktOf(const OGRSpatialReference& srs) {
+std::string ExportedWkt(const OGRSpatialReference& srs) {
   char* text = nullptr;
   const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   const std::string wkt = srs.exportToWkt(&text, options) == OGRERR_NONE ? text : "";
@@ -64,7 +64,7 @@ Crs Crs::FromOgr(const OGRSpatialReference& source) {
   Crs crs;
   if (source.IsEmpty())
     return crs;
-  crs.Wkt_ = WktOf(source);
+  crs.Wkt_ = ExportedWkt(source);
   if (!IsUtf8(crs.Wkt_)) {
     // GeoTIFF says nothing of its texts' encoding, and old writers use Latin-1. Nothing of it
     // remains: the reference is made anew from text of UTF-8.
