@@ -3,10 +3,11 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
-#include <dspace/link/Confinement.h>
-#include <dspace/messages/ErrorReply.h>
 #include <dspace/ledger/Ledger.h>
+#include <dspace/link/Confinement.h>
 #include <dspace/link/server/Server.h>
+#include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/ErrorReply.h>
 
 #include "vtkDspaceSession.h"
 #include "vtkNew.h"
@@ -50,8 +51,7 @@ struct vtkDspaceServer::Internals {
     if (!command.has_create_frame() && !command.has_load_robot()) {
       return;
     }
-    const std::string name =
-        command.scene().empty() ? dspace::session::DefaultScene : command.scene();
+    const std::string& name = dspace::session::SceneName(command);
     const auto scene = this->session->GetInterpreter().FindScene(name);
     const long long frames = scene ? static_cast<long long>(scene->Frames().Size()) : 0;
     if (frames >= this->maximumFrames) {

@@ -241,7 +241,7 @@ std::string vtkDspaceSession::Replay(const std::string& bytes) {
   const auto* entry = command.ParseFromString(bytes)
                           ? this->Impl->interpreter.Commands().Find(command.command_case())
                           : nullptr;
-  if (entry && entry->effect == dspace::session::Effect::Request) {
+  if (entry && entry->effect != dspace::session::Effect::Change) {
     const std::string name = dspace::session::CommandName(command);
     return dspace::session::ErrorReply(
                dspace::v1::Error::CORRUPT, "command " + name,

@@ -4,11 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include <dspace/messages/ErrorReply.h>
 #include <dspace/link/watching/LatestSteps.h>
 #include <dspace/link/watching/LinkBanner.h>
 #include <dspace/link/watching/OwnViews.h>
 #include <dspace/link/watching/Watcher.h>
+#include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/ErrorReply.h>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceSession.h"
@@ -22,10 +23,6 @@ namespace {
 constexpr int MostChanges = 100000;      // of frames, that wait to be taken
 constexpr double WriterToldWithin = 2.0; // [s] of a snapshot
 constexpr double LongestTellPick = 1.0;  // [s]: a click is not to stop the viewer for longer
-
-std::string SceneOf(const dspace::v1::Command& command) {
-  return command.scene().empty() ? dspace::session::DefaultScene : command.scene();
-}
 
 } // namespace
 
@@ -122,7 +119,7 @@ struct vtkDspaceWatcher::Internals {
     if (this->changes.frame_event_size() > MostChanges) {
       this->changes.mutable_frame_event()->DeleteSubrange(0, MostChanges / 2);
     }
-    if (command.has_create_scene() && this->followed.count(SceneOf(command))) {
+    if (command.has_create_scene() && this->followed.count(dspace::session::SceneName(command))) {
       this->Follow(command.scene());
     }
   }
@@ -153,13 +150,14 @@ struct vtkDspaceWatcher::Internals {
     if (command.has_follow_frames()) {
       dspace::v1::Reply reply = this->Interpreter().Execute(command);
       if (!reply.has_error()) {
-        command.follow_frames().stop() ? void(this->followed.erase(SceneOf(command)))
-                                       : void(this->followed.insert(SceneOf(command)));
+        command.follow_frames().stop()
+            ? void(this->followed.erase(dspace::session::SceneName(command)))
+            : void(this->followed.insert(dspace::session::SceneName(command)));
       }
       return reply;
     }
     const auto* entry = this->Interpreter().Commands().Find(command.command_case());
-    if (!entry || entry->effect == Effect::Request) {
+    if (!entry || entry->effect != Effect::Change) {
       return this->Interpreter().Execute(command);
     }
     if (!this->own.Owns(command)) {

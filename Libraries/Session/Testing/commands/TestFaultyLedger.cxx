@@ -26,7 +26,6 @@ using session::Watcher;
 void BreakRemoveRobot(vtkDspaceSession& session) {
   using C = v1::Command;
   session.GetInterpreter().Commands().Add(C::kRemoveRobot, &C::mutable_remove_robot,
-                                          session::Effect::Change,
                                           [](const session::Context&, v1::RemoveRobot&) {});
 }
 

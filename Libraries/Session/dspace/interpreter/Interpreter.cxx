@@ -4,6 +4,7 @@
 
 #include <google/protobuf/unknown_field_set.h>
 
+#include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/messages/TextFields.h>
@@ -47,7 +48,7 @@ Interpreter::Interpreter() {
   AddTerrainCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);
   AddMessageCommands(this->Registry_);
-  AddLaterCommands(this->Registry_);
+  this->Registry_.AddLater();
 }
 
 v1::Reply Interpreter::Execute(v1::Command& command) {
@@ -82,8 +83,9 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   if (FindForeignText(command)) {
     RequireUtf8(command, "command " + CommandName(command));
   }
-  const std::string name = command.scene().empty() ? DefaultScene : command.scene();
+  const std::string name = SceneName(command);
   SceneState* scene = entry->needs == Needs::Scene ? &this->State_.FindScene(name) : nullptr;
+  RequireLimits(command);
   const FilesReadScope read;
   entry->run(Context{this->State_, scene, name, reply}, command);
   this->State_.files.Note(command, read.Files());

@@ -5,8 +5,9 @@
 #include <functional>
 #include <map>
 
-#include <dspace/state/State.h>
+#include <dspace/messages/CommandTraits.h>
 #include <dspace/proto/commands.pb.h>
+#include <dspace/state/State.h>
 
 namespace dspace::session {
 
@@ -21,10 +22,6 @@ struct Context {
   FrameTree& Frames() const { return this->scene->scene->Frames(); }
 };
 
-enum class Effect {
-  Change, // told to listeners once accepted, and recorded
-  Request // changes nothing
-};
 enum class Needs { Scene, Nothing };
 
 // A handler checks all that it is given before it changes anything, throws dspace::Error, and
@@ -37,18 +34,18 @@ public:
     std::function<void(const Context&, v1::Command&)> run;
   };
 
-  // `get` is v1::Command::mutable_..., which names the command.
+  // `get` is v1::Command::mutable_..., which names the command. Throws Error(Internal) where the
+  // command's .proto lacks an option (CommandTraits).
   template<class Message, class Handler>
-  void Add(v1::Command::CommandCase kind, Message* (v1::Command::*get)(), Effect effect,
-           Handler handler, Needs needs = Needs::Scene) {
-    this->Entries_[kind] = {effect, needs,
+  void Add(v1::Command::CommandCase kind, Message* (v1::Command::*get)(), Handler handler,
+           Needs needs = Needs::Scene) {
+    this->Entries_[kind] = {CommandTraits::Find(kind)->GetEffect(), needs,
                             [get, handler](const Context& context, v1::Command& command) {
                               handler(context, *(command.*get)());
                             }};
   }
-  // A command that is typed and not carried out yet: answered with Error.UNIMPLEMENTED, which names
-  // it.
-  void AddLater(v1::Command::CommandCase kind);
+  // The commands that are typed only: they are answered with Error.UNIMPLEMENTED, which names them.
+  void AddLater();
   const Entry* Find(v1::Command::CommandCase kind) const {
     const auto found = this->Entries_.find(kind);
     return found == this->Entries_.end() ? nullptr : &found->second;
@@ -71,7 +68,6 @@ void AddCameraCommands(Registry& registry);
 void AddTerrainCommands(Registry& registry);
 void AddTelemetryCommands(Registry& registry);
 void AddMessageCommands(Registry& registry);
-void AddLaterCommands(Registry& registry);
 void AddTextCommands(Registry& registry); // needs VTK: in the module, not in the plain library
 
 } // namespace dspace::session

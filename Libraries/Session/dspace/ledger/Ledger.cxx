@@ -8,6 +8,8 @@
 #include <dspace/ledger/LedgerFrames.h>
 #include <dspace/ledger/LedgerObjects.h>
 #include <dspace/ledger/LedgerViews.h>
+#include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/CommandTraits.h>
 #include <dspace/state/MessageLog.h>
 #include <dspace/state/State.h>
 #include <dspace/state/Telemetry.h>
@@ -147,19 +149,18 @@ struct Ledger::Impl {
   const State* state = nullptr;
   std::map<std::string, LedgerScene> scenes;
   LedgerViewports viewports;
-  std::vector<v1::Command> others; // of kinds that are not known here
+  std::vector<v1::Command> others; // of a later version: numbers that no command here has
   // What is not known any more, and why: by scene, "" for all that is no scene's.
   std::map<std::string, std::string> faults;
   bool unnamed = false; // there was no memory to say which
 
   void Take(const v1::Command& accepted, const v1::Reply& reply, const std::string& name);
   void Fail(const v1::Command& command, const std::string& name, const std::string& why);
-  static bool IsOfViewport(const v1::Command& command) {
-    const int kind = command.command_case();
-    return kind >= v1::Command::kCreateViewport && kind <= v1::Command::kRemoveColorBar;
-  }
-  static std::string SceneOf(const v1::Command& command) {
-    return command.scene().empty() ? DefaultScene : command.scene();
+  // Of the scene that the command changes; empty for viewports, which are the session's.
+  static std::string FaultKey(const v1::Command& command) {
+    const CommandTraits* traits = CommandTraits::Find(command.command_case());
+    const bool viewport = traits && traits->GetOwner() == CommandTraits::Owner::Viewport;
+    return viewport ? std::string() : SceneName(command);
   }
 };
 
@@ -183,14 +184,21 @@ void Ledger::Impl::Take(const v1::Command& accepted, const v1::Reply& reply,
     this->faults.erase(name);
     return;
   }
+  if (!CommandTraits::Find(accepted.command_case())) {
+    this->others.push_back(accepted);
+    return;
+  }
   if (this->viewports.Add(accepted)) {
     return;
   }
   const auto found = this->scenes.find(name);
-  if (found == this->scenes.end() ||
-      !(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
+  if (found == this->scenes.end()) {
+    throw Error(Error::Kind::Internal, "ledger", "it knows no scene '" + name + "'");
+  }
+  if (!(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
         found->second.AddMessages(accepted) || found->second.names.Add(accepted, reply))) {
-    this->others.push_back(accepted);
+    throw Error(Error::Kind::Internal, "ledger",
+                "its .proto says that the ledger keeps it, and the ledger has no code for it");
   }
 }
 
@@ -213,8 +221,8 @@ void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
     return;
   }
   Impl& impl = *this->Impl_;
-  const std::string scene = Impl::SceneOf(accepted);
-  const std::string name = Impl::IsOfViewport(accepted) ? std::string() : scene;
+  const std::string& scene = SceneName(accepted);
+  const std::string name = Impl::FaultKey(accepted);
   const bool anew = accepted.has_create_scene() || accepted.has_remove_scene();
   if (!impl.faults.empty() && !anew && impl.faults.count(name)) {
     return;
@@ -228,8 +236,7 @@ void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
 }
 
 void Ledger::Miss(const v1::Command& accepted, const std::string& why) {
-  this->Impl_->Fail(accepted,
-                    Impl::IsOfViewport(accepted) ? std::string() : Impl::SceneOf(accepted), why);
+  this->Impl_->Fail(accepted, Impl::FaultKey(accepted), why);
 }
 
 std::vector<v1::Command> Ledger::Commands() const {
@@ -243,7 +250,7 @@ std::vector<v1::Command> Ledger::Commands() const {
   }
   this->Impl_->viewports.Put(
       [this](const std::string& scene) {
-        const auto found = this->Impl_->scenes.find(scene.empty() ? DefaultScene : scene);
+        const auto found = this->Impl_->scenes.find(scene.empty() ? DefaultScene() : scene);
         return found == this->Impl_->scenes.end() ? std::vector<std::string>()
                                                   : found->second.names.Fragments();
       },

@@ -23,8 +23,10 @@ struct State;
 // Fields that are not known here are kept where a message is kept whole (objects, lights, tables,
 // terrains, channels of telemetry, events, questions), not in frames, poses, values and times.
 //
-// Commands that it does not know are kept all, in their order, at the end. Of wheel tracks it keeps
-// nothing: Commands() asks the terrain for them. Not synchronised.
+// A command whose option `kept` is LATEST (options.proto) needs no code here: the last one for its
+// owner is kept as it is. Add throws for any other change that it has no code for. Commands of a
+// later version, whose numbers no command here has, are kept all, in their order, at the end. Of
+// wheel tracks it keeps nothing: Commands() asks the terrain for them. Not synchronised.
 class Ledger {
 public:
   // `state` is the interpreter's, which must outlive this; without one Commands() throws

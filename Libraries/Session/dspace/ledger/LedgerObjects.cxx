@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <dspace/FrameTree.h>
+#include <dspace/messages/CommandTraits.h>
 
 namespace dspace::session {
 namespace {
@@ -145,52 +146,21 @@ void LedgerObjects::RemoveOn(const LedgerFrames::Removed& removed) {
 }
 
 bool LedgerObjects::Change(const v1::Command& command, const v1::Reply& reply) {
-  using C = v1::Command;
-  std::uint32_t id = 0;
-  switch (command.command_case()) {
-  case C::kSetObjectVisible:
-    id = command.set_object_visible().object();
-    break;
-  case C::kSetMaterial:
-    id = command.set_material().object();
-    break;
-  case C::kSetTilt:
-    id = command.set_tilt().object();
-    break;
-  case C::kSetPrimitive:
-    id = command.set_primitive().object();
-    break;
-  case C::kSetText:
-    id = command.set_text().object();
-    break;
-  case C::kSetObjectOffset:
-    id = command.set_object_offset().object();
-    break;
-  case C::kAttachObject:
-    id = command.attach_object().object();
-    break;
-  case C::kMoveToFragment:
-    id = command.move_to_fragment().object();
-    break;
-  case C::kAppendTrail:
-    id = command.append_trail().object();
-    break;
-  case C::kClearTrail:
-    id = command.clear_trail().object();
-    break;
-  default:
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  if (!traits || traits->GetOwner() != CommandTraits::Owner::Object) {
     return this->ChangeTerrain(command, reply);
   }
-  Thing* thing = this->Find(id);
+  Thing* thing = this->Find(traits->OwnerId(command));
+  if (thing && traits->LatestIsKept()) {
+    thing->latest.Keep(command);
+    return true;
+  }
   return thing && this->ChangeLook(*thing, command);
 }
 
 bool LedgerObjects::ChangeLook(Thing& thing, const v1::Command& command) {
   using C = v1::Command;
   switch (command.command_case()) {
-  case C::kSetObjectVisible:
-    thing.visible = command.set_object_visible().visible();
-    break;
   case C::kSetMaterial: {
     const v1::SetMaterial& set = command.set_material();
     if (set.replace() || set.material().has_color()) {
@@ -206,15 +176,6 @@ bool LedgerObjects::ChangeLook(Thing& thing, const v1::Command& command) {
   case C::kSetTilt:
     thing.tilt = command.set_tilt();
     break;
-  case C::kSetPrimitive:
-    thing.shape = command.set_primitive();
-    break;
-  case C::kSetText:
-    thing.text = command.set_text();
-    break;
-  case C::kSetObjectOffset:
-    thing.offset = command.set_object_offset();
-    break;
   case C::kAttachObject:
     thing.frame = OrRoot(command.attach_object().frame());
     break;
@@ -226,8 +187,11 @@ bool LedgerObjects::ChangeLook(Thing& thing, const v1::Command& command) {
       thing.trail->Add(Eigen::Vector3d(command.append_trail().point().data() + i));
     }
     break;
-  default:
+  case C::kClearTrail:
     thing.trail->Clear();
+    break;
+  default:
+    return false;
   }
   return true;
 }
@@ -262,24 +226,12 @@ void LedgerObjects::PutThing(const std::string& scene, std::uint32_t id, const T
       append->mutable_point()->Add(end.data(), end.data() + 3);
     }
   }
-  if (thing.shape) {
-    *add().mutable_set_primitive() = *thing.shape;
-  }
-  if (thing.text) {
-    *add().mutable_set_text() = *thing.text;
-  }
+  thing.latest.Put(scene, out);
   if (thing.material) {
     *add().mutable_set_material() = *thing.material;
   }
   if (thing.tilt) {
     *add().mutable_set_tilt() = *thing.tilt;
-  }
-  if (thing.offset) {
-    *add().mutable_set_object_offset() = *thing.offset;
-  }
-  if (thing.visible) {
-    add().mutable_set_object_visible()->set_object(id);
-    out.back().mutable_set_object_visible()->set_visible(*thing.visible);
   }
 }
 

@@ -9,8 +9,9 @@
 #include <unordered_set>
 #include <vector>
 
-#include <dspace/scene/Trail.h>
+#include <dspace/ledger/LatestCommands.h>
 #include <dspace/ledger/LedgerFrames.h>
+#include <dspace/scene/Trail.h>
 
 namespace dspace::session {
 
@@ -47,18 +48,14 @@ private:
     std::string asked;   // fragment that a robot's command names
     v1::Nature nature = v1::PHYSICAL;
     std::string fragment;
-    std::optional<bool> visible;
+    LatestCommands latest;
     std::optional<v1::SetMaterial> material;
     std::optional<v1::SetTilt> tilt; // after the material
-    std::optional<v1::SetPrimitive> shape;
-    std::optional<v1::SetText> text;
-    std::optional<v1::SetObjectOffset> offset;
     std::optional<Trail> trail;
   };
   struct Ground {
     v1::Command open;
-    std::optional<v1::FocusTerrain> focus;
-    std::optional<v1::StyleTerrain> style;
+    LatestCommands latest;
     bool tracked = false;                    // wheels have rolled there
     std::vector<v1::AddTerrainLayer> layers; // bottom first; of no kind: those that it opens with
     std::vector<std::string> opened;         // names of these: "drape", "filled"

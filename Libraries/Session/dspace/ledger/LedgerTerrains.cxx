@@ -4,8 +4,9 @@
 #include <dspace/Error.h>
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/ledger/LedgerObjects.h>
-#include <dspace/state/State.h>
+#include <dspace/messages/CommandTraits.h>
 #include <dspace/messages/TrackMessages.h>
+#include <dspace/state/State.h>
 
 namespace dspace::session {
 namespace {
@@ -53,13 +54,12 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
     added.set_opacity(reply.terrain_layer().opacity());
     added.set_hidden(!reply.terrain_layer().visible());
   };
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  if (traits && traits->GetOwner() == CommandTraits::Owner::Terrain && traits->LatestIsKept()) {
+    ground(traits->OwnerName(command)).latest.Keep(command);
+    return true;
+  }
   switch (command.command_case()) {
-  case C::kFocusTerrain:
-    ground(command.focus_terrain().terrain()).focus = command.focus_terrain();
-    return true;
-  case C::kStyleTerrain:
-    ground(command.style_terrain().terrain()).style = command.style_terrain();
-    return true;
   case C::kTrackWheels:
     ground(command.track_wheels().terrain()).tracked = true;
     return true;
@@ -104,9 +104,6 @@ void LedgerObjects::PutTerrains(const std::string& scene, const State* state, Em
     open.mutable_open_terrain()->set_frame(thing.frame);
     open.mutable_open_terrain()->set_fragment(thing.fragment);
     out.push_back(open);
-    if (ground.focus) {
-      *add().mutable_focus_terrain() = *ground.focus;
-    }
     for (const std::string& opened : ground.opened) { // unless it has been removed
       if (std::none_of(ground.layers.begin(), ground.layers.end(),
                        [&opened](const v1::AddTerrainLayer& layer) {
@@ -132,9 +129,7 @@ void LedgerObjects::PutTerrains(const std::string& scene, const State* state, Em
         change->set_visible(!layer.hidden());
       }
     }
-    if (ground.style) {
-      *add().mutable_style_terrain() = *ground.style;
-    }
+    ground.latest.Put(scene, out);
     if (ground.tracked) {
       PutTracks(TracksOf(state, scene, name), scene, name, out);
     }

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include <dspace/ledger/LedgerViews.h>
+#include <dspace/messages/CommandTraits.h>
 #include <dspace/state/State.h>
 
 namespace dspace::session {
@@ -27,6 +28,14 @@ template<class Message> void RemoveNamed(const std::string& name, std::vector<Me
 
 bool LedgerViewports::Add(const v1::Command& command) {
   using C = v1::Command;
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  if (!traits || traits->GetOwner() != CommandTraits::Owner::Viewport) {
+    return false;
+  }
+  if (traits->LatestIsKept()) {
+    this->Find(traits->OwnerName(command)).latest.Keep(command);
+    return true;
+  }
   switch (command.command_case()) {
   case C::kCreateViewport:
     this->Viewports_[command.create_viewport().name()].create = command;
@@ -41,9 +50,6 @@ bool LedgerViewports::Add(const v1::Command& command) {
     create->set_height(command.resize_viewport().height());
     return true;
   }
-  case C::kMoveViewport:
-    this->Find(command.move_viewport().viewport()).place = command.move_viewport();
-    return true;
   case C::kSetViewport:
     Set(this->Find(command.set_viewport().viewport()), command.set_viewport());
     return true;
@@ -123,9 +129,7 @@ void LedgerViewports::PutOne(const std::string& name, const Viewport& viewport,
     *set = viewport.set;
     set->set_viewport(name);
   }
-  if (viewport.place) {
-    *add().mutable_move_viewport() = *viewport.place;
-  }
+  viewport.latest.Put(viewport.create.scene(), out);
   for (const std::string& fragment : viewport.hidden) {
     // A viewport goes on hiding the name of one that was removed.
     const bool gone = std::find(fragments.begin(), fragments.end(), fragment) == fragments.end();

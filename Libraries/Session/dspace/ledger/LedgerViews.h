@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <dspace/ledger/LatestCommands.h>
 #include <dspace/proto/commands.pb.h>
 
 namespace dspace::session {
@@ -76,7 +77,7 @@ private:
   struct Viewport {
     v1::Command create;
     v1::SetViewport set; // background, ornaments, corner axes; all else goes into `create`
-    std::optional<v1::MoveViewport> place;
+    LatestCommands latest;
     std::set<std::string> hidden;
     std::vector<v1::SetTextTable> tables;
     std::vector<v1::SetColorBar> bars;

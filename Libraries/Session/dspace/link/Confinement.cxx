@@ -3,141 +3,27 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <functional>
-#include <map>
-#include <set>
 
 #include <google/protobuf/descriptor.h>
 
 #include <dspace/Error.h>
+#include <dspace/messages/CommandTexts.h>
+#include <dspace/messages/CommandTraits.h>
 
 namespace dspace::session {
 namespace {
 
 namespace fs = std::filesystem;
-using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
 
-// Plain for all that their message's own name says: paths of frames, not of files.
-const std::set<std::string> FramePaths = {"dspace.v1.FindFrame.path"};
-
-enum class FieldKind { Path, Crs, Plain, Unknown };
-
-bool Has(const std::vector<std::string>& list, const std::string& name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
-}
-
-FieldKind KindOf(const FieldDescriptor& field) {
-  if (Has(PathFields(), field.full_name())) {
-    return FieldKind::Path;
-  }
-  if (Has(CrsFields(), field.name())) {
-    return FieldKind::Crs;
-  }
-  const bool plain = Has(PlainFields(), field.name()) || FramePaths.count(field.full_name()) > 0;
-  return plain ? FieldKind::Plain : FieldKind::Unknown;
-}
-
-bool IsText(const FieldDescriptor& field) {
-  return field.type() == FieldDescriptor::TYPE_STRING ||
-         field.type() == FieldDescriptor::TYPE_BYTES;
-}
-
-// What may hold texts, for each kind of message that a command can hold: others need no look.
-class TextTree {
-public:
-  static const TextTree& Get() {
-    static const TextTree tree;
-    return tree;
-  }
-  const std::vector<const FieldDescriptor*>& FieldsOf(const Descriptor* message) const {
-    static const std::vector<const FieldDescriptor*> none;
-    const auto found = this->Fields_.find(message);
-    return found == this->Fields_.end() ? none : found->second;
-  }
-  FieldKind Kind(const FieldDescriptor* field) const { return this->Kinds_.at(field); }
-  const std::map<const FieldDescriptor*, FieldKind>& Texts() const { return this->Kinds_; }
-
-private:
-  TextTree() {
-    std::set<const Descriptor*> open;
-    this->Visit(v1::Command::descriptor(), open);
-  }
-  bool Visit(const Descriptor* message, std::set<const Descriptor*>& seen) {
-    if (!seen.insert(message).second) {
-      return !this->FieldsOf(message).empty();
-    }
-    std::vector<const FieldDescriptor*> fields;
-    for (int i = 0; i < message->field_count(); ++i) {
-      const FieldDescriptor* field = message->field(i);
-      if (IsText(*field)) {
-        this->Kinds_[field] = KindOf(*field);
-        fields.push_back(field);
-      } else if (field->message_type() && this->Visit(field->message_type(), seen)) {
-        fields.push_back(field);
-      }
-    }
-    const bool any = !fields.empty();
-    this->Fields_[message] = std::move(fields);
-    return any;
-  }
-  std::map<const Descriptor*, std::vector<const FieldDescriptor*>> Fields_;
-  std::map<const FieldDescriptor*, FieldKind> Kinds_;
-};
-
-using Change = std::function<std::string(const std::string&, const FieldDescriptor&, FieldKind)>;
-
-void ForEachText(Message& message, const Change& change) {
-  const auto* reflection = message.GetReflection();
-  std::string scratch;
-  for (const FieldDescriptor* field : TextTree::Get().FieldsOf(message.GetDescriptor())) {
-    const int n = field->is_repeated() ? reflection->FieldSize(message, field) : 0;
-    if (!IsText(*field)) {
-      if (field->is_repeated()) {
-        for (int i = 0; i < n; ++i) {
-          ForEachText(*reflection->MutableRepeatedMessage(&message, field, i), change);
-        }
-      } else if (reflection->HasField(message, field)) {
-        ForEachText(*reflection->MutableMessage(&message, field), change);
-      }
-      continue;
-    }
-    const FieldKind kind = TextTree::Get().Kind(field);
-    if (field->is_repeated()) {
-      for (int i = 0; i < n; ++i) {
-        const std::string before =
-            reflection->GetRepeatedStringReference(message, field, i, &scratch);
-        reflection->SetRepeatedString(&message, field, i, change(before, *field, kind));
-      }
-    } else if (reflection->HasField(message, field)) {
-      const std::string before = reflection->GetStringReference(message, field, &scratch);
-      const std::string after = change(before, *field, kind);
-      if (after != before) {
-        reflection->SetString(&message, field, after);
-      }
-    }
-  }
+bool IsPath(TextKind kind) {
+  return kind == TextKind::ReadFile || kind == TextKind::NewFile;
 }
 
 bool Within(const fs::path& path, const fs::path& root) {
   const auto [end, at] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
   return end == root.end();
 }
-
-// Texts that say where a file is to be written, or a folder that need not be there: all others are
-// of what is there to be read.
-const std::set<std::string> NewPaths = {"dspace.v1.BuildTerrainCache.folder",
-                                        "dspace.v1.ClearTerrainCache.folder",
-                                        "dspace.v1.HorizonMap.path",
-                                        "dspace.v1.IlluminationMap.path",
-                                        "dspace.v1.ListTerrainCache.folder",
-                                        "dspace.v1.OpenTerrain.overview_cache",
-                                        "dspace.v1.SaveImage.path",
-                                        "dspace.v1.SaveTracks.path",
-                                        "dspace.v1.SimulateImage.path",
-                                        "dspace.v1.VerifyTerrainCache.folder",
-                                        "dspace.v1.Viewshed.path"};
 
 // Whether a coordinate system names a file, which PROJ would open: by itself, as a grid of shifts
 // or a file of parameters in WKT or PROJ, as PROJ within WKT 1, or as a definition in a file.
@@ -168,68 +54,14 @@ bool NamesFile(const std::string& crs) {
 
 } // namespace
 
-const std::vector<std::string>& PathFields() {
-  static const std::vector<std::string> fields = {"dspace.v1.AddTerrainLayer.FalseColor.path",
-                                                  "dspace.v1.AddTerrainLayer.Image.path",
-                                                  "dspace.v1.AddTerrainLayer.Shapes.path",
-                                                  "dspace.v1.BuildTerrainCache.folder",
-                                                  "dspace.v1.BuildTerrainCache.path",
-                                                  "dspace.v1.ClearTerrainCache.folder",
-                                                  "dspace.v1.ClearTerrainCache.path",
-                                                  "dspace.v1.CameraModel.model_path",
-                                                  "dspace.v1.HorizonMap.path",
-                                                  "dspace.v1.IlluminationMap.horizon_path",
-                                                  "dspace.v1.IlluminationMap.path",
-                                                  "dspace.v1.ImportObject.Level.path",
-                                                  "dspace.v1.ListTerrainCache.folder",
-                                                  "dspace.v1.LoadRobot.path",
-                                                  "dspace.v1.LoadTracks.path",
-                                                  "dspace.v1.Material.texture",
-                                                  "dspace.v1.OpenTerrain.Drape.path",
-                                                  "dspace.v1.OpenTerrain.Patch.path",
-                                                  "dspace.v1.OpenTerrain.overview_cache",
-                                                  "dspace.v1.OpenTerrain.path",
-                                                  "dspace.v1.SaveImage.path",
-                                                  "dspace.v1.SaveTracks.path",
-                                                  "dspace.v1.SimulateImage.path",
-                                                  "dspace.v1.StyleTerrain.Detail.path",
-                                                  "dspace.v1.VerifyTerrainCache.folder",
-                                                  "dspace.v1.Viewshed.path"};
-  return fields;
-}
-
-const std::vector<std::string>& CrsFields() {
-  static const std::vector<std::string> fields = {"crs", "vertical_datum"};
-  return fields;
-}
-
-const std::vector<std::string>& PlainFields() {
-  static const std::vector<std::string> fields = {
-      "answer",      "axes",     "below",      "body",      "camera",          "choice",
-      "description", "fragment", "frame_path", "from",      "hidden_fragment", "key",
-      "kind",        "label",    "layer",      "name",      "object_name",     "observer",
-      "robot",       "scene",    "target",     "telemetry", "terrain",         "text",
-      "title",       "unit",     "value",      "vantage",   "viewport"};
-  return fields;
-}
-
-std::vector<std::string> UnlistedFields() {
-  std::vector<std::string> unlisted;
-  for (const auto& [field, kind] : TextTree::Get().Texts()) {
-    if (kind == FieldKind::Unknown) {
-      unlisted.push_back(field->full_name());
-    }
-  }
-  return unlisted;
-}
-
 void MakePathsAbsolute(v1::Command& command) {
-  if (command.has_set_poses()) {
-    return; // has none, and comes a thousand times a second
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  if (!traits || !traits->NamesFiles()) {
+    return;
   }
-  ForEachText(command, [](const std::string& text, const FieldDescriptor&, FieldKind kind) {
+  ChangeTexts(command, [](const std::string& text, const FieldDescriptor&, TextKind kind) {
     std::error_code error;
-    return kind == FieldKind::Path && !text.empty() &&
+    return IsPath(kind) && !text.empty() &&
                    (text.find(':') == std::string::npos || fs::exists(text, error))
                ? fs::absolute(text).lexically_normal().string()
                : text;
@@ -249,17 +81,14 @@ Confinement::Confinement(const std::vector<std::string>& roots) {
 }
 
 void Confinement::Apply(v1::Command& command) const {
-  ForEachText(
+  ChangeTexts(
       command,
-      [this](const std::string& text, const FieldDescriptor& field, FieldKind kind) -> std::string {
-        if (text.empty() || kind == FieldKind::Plain) {
+      [this](const std::string& text, const FieldDescriptor& field, TextKind kind) -> std::string {
+        if (text.empty() || kind == TextKind::Plain) {
           return text;
         }
-        if (kind == FieldKind::Path) {
-          return this->Check(text, field.full_name());
-        }
-        if (kind == FieldKind::Unknown) {
-          RefusePath(text, field.full_name(), "is of no kind that a server knows");
+        if (IsPath(kind)) {
+          return this->Check(text, field.full_name(), kind == TextKind::ReadFile);
         }
         if (NamesFile(text)) {
           RefusePath(
@@ -300,7 +129,8 @@ void Confinement::RequireThere(const std::string& real, const std::string& text,
   }
 }
 
-std::string Confinement::Check(const std::string& text, const std::string& field) const {
+std::string Confinement::Check(const std::string& text, const std::string& field,
+                               bool isRead) const {
   if (text.find('\0') != std::string::npos) {
     RefusePath(text, field, "holds a zero byte");
   }
@@ -315,7 +145,7 @@ std::string Confinement::Check(const std::string& text, const std::string& field
   const bool plain = path.string().rfind("/vsi", 0) != 0;
   for (const std::string& root : this->Roots_) {
     if (!error && plain && Within(real, root)) {
-      if (NewPaths.count(field) == 0) {
+      if (isRead) {
         this->RequireThere(real, text, field);
       }
       return path;

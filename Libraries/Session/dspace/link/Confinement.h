@@ -1,4 +1,7 @@
-// Which files commands that come from elsewhere may name.
+// Which files commands that come from elsewhere may name. The option `(holds)` of a text field
+// (options.proto) says whether it names a file to be read or written, or states a coordinate
+// system, for which libraries take names of files and URLs as well. No command is carried out while
+// any text field lacks the option.
 #ifndef DSPACE_SESSION_CONFINEMENT_H
 #define DSPACE_SESSION_CONFINEMENT_H
 
@@ -8,18 +11,6 @@
 #include <dspace/proto/commands.pb.h>
 
 namespace dspace::session {
-
-// Every text field that a command can hold is of one of three kinds, so that none is taken for
-// harmless because nobody thought of it: a command with a text of no known kind is refused by
-// Confinement. Path fields, by full name ("dspace.v1.SaveImage.path"), name a file or a folder. CRS
-// fields, by their own name, state a coordinate system or a datum, for which libraries take names
-// of files and URLs as well. Plain fields, by their own name, name none; a path field's name is
-// never among them.
-const std::vector<std::string>& PathFields();
-const std::vector<std::string>& CrsFields();
-const std::vector<std::string>& PlainFields();
-// Full names of those that a command can hold and that are of no known kind: to be listed.
-std::vector<std::string> UnlistedFields();
 
 // Paths that are relative become those of this process's working folder. What is no path of a file
 // that there is ("/vsicurl/...", a GDAL connection) stays as it is where a field may hold such a
@@ -49,7 +40,7 @@ public:
   const std::vector<std::string>& Roots() const { return this->Roots_; }
 
 private:
-  std::string Check(const std::string& path, const std::string& field) const;
+  std::string Check(const std::string& path, const std::string& field, bool isRead) const;
   void RequireThere(const std::string& real, const std::string& text,
                     const std::string& field) const;
   std::vector<std::string> Roots_;

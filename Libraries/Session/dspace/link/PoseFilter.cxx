@@ -2,6 +2,9 @@
 
 #include <cstring>
 
+#include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/CommandTraits.h>
+
 namespace dspace::session {
 namespace {
 
@@ -10,8 +13,7 @@ constexpr std::size_t MostFrames = 10000000; // remembered in all scenes; beyond
 
 // Of a scene's poses, or of its telemetry.
 std::string KeyOf(const v1::Command& command) {
-  return (command.scene().empty() ? "scene" : command.scene()) +
-         (command.has_set_telemetry() ? std::string(1, '\0') : std::string());
+  return SceneName(command) + (command.has_set_telemetry() ? std::string(1, '\0') : std::string());
 }
 
 template<class Message> bool HasUnknown(const Message& message) {
@@ -21,52 +23,8 @@ template<class Message> bool HasUnknown(const Message& message) {
 } // namespace
 
 bool LeavesPoses(const v1::Command& command) {
-  using C = v1::Command;
-  switch (command.command_case()) {
-  case C::kListScenes:
-  case C::kSetTime:
-  case C::kGetTime:
-  case C::kCreateFrame: // a new frame's id was never used before
-  case C::kRenameFrame:
-  case C::kFindFrame:
-  case C::kGetPoses:
-  case C::kListFrames:
-  case C::kFollowFrames:
-  case C::kCreatePrimitive:
-  case C::kSetPrimitive:
-  case C::kCreateTrail:
-  case C::kAppendTrail:
-  case C::kClearTrail:
-  case C::kSetObjectVisible:
-  case C::kSetMaterial:
-  case C::kSetTilt:
-  case C::kCreateText:
-  case C::kSetText:
-  case C::kSetLight:
-  case C::kSetCamera:
-  case C::kDescribeCamera:
-  case C::kSetTextTable:
-  case C::kCapture:
-  case C::kSaveImage:
-  case C::kRender:
-  case C::kPick:
-  case C::kQueryTerrain:
-  case C::kTrackWheels:
-  case C::kFocusTerrain:
-  case C::kCreateTelemetry:
-  case C::kSetTelemetryLimits:
-  case C::kSetTelemetry:
-  case C::kSetTelemetryTexts:
-  case C::kListTelemetry:
-  case C::kLogEvent:
-  case C::kAskOperator:
-  case C::kCloseQuestion:
-  case C::kListEvents:
-  case C::kListQuestions:
-    return true;
-  default:
-    return false;
-  }
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  return traits && traits->KeepsPoses();
 }
 
 bool PoseFilter::Pass(v1::Command& command) {

@@ -1,72 +1,39 @@
 #include <dspace/messages/CommandFiles.h>
 
-#include <vector>
+#include <dspace/messages/CommandTexts.h>
+#include <dspace/messages/CommandTraits.h>
 
 namespace dspace::session {
 namespace {
 
-bool IsPath(const google::protobuf::FieldDescriptor& field) {
-  return !field.is_repeated() &&
-         field.cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_STRING &&
-         (field.name() == "path" || field.name() == "texture");
-}
-
-void Gather(const google::protobuf::Message& message, std::set<std::string>& paths) {
-  const google::protobuf::Reflection* reflection = message.GetReflection();
-  std::vector<const google::protobuf::FieldDescriptor*> fields;
-  reflection->ListFields(message, &fields);
-  for (const google::protobuf::FieldDescriptor* field : fields) {
-    if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
-      const int n = field->is_repeated() ? reflection->FieldSize(message, field) : 1;
-      for (int i = 0; i < n; ++i) {
-        Gather(field->is_repeated() ? reflection->GetRepeatedMessage(message, field, i)
-                                    : reflection->GetMessage(message, field),
-               paths);
-      }
-    } else if (IsPath(*field)) {
-      const std::string path = reflection->GetString(message, field);
-      if (path.size() > 1 && path[0] == '/') {
-        paths.insert(path);
-      }
-    }
-  }
-}
-
-void MapBelow(google::protobuf::Message& message,
-              const std::function<std::string(const std::string&)>& map) {
-  const google::protobuf::Reflection* reflection = message.GetReflection();
-  std::vector<const google::protobuf::FieldDescriptor*> fields;
-  reflection->ListFields(message, &fields);
-  for (const google::protobuf::FieldDescriptor* field : fields) {
-    if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
-      const int n = field->is_repeated() ? reflection->FieldSize(message, field) : 1;
-      for (int i = 0; i < n; ++i) {
-        MapBelow(field->is_repeated() ? *reflection->MutableRepeatedMessage(&message, field, i)
-                                      : *reflection->MutableMessage(&message, field),
-                 map);
-      }
-    } else if (IsPath(*field)) {
-      const std::string path = reflection->GetString(message, field);
-      if (!path.empty()) {
-        reflection->SetString(&message, field, map(path));
-      }
-    }
-  }
+bool ReadsFiles(const v1::Command& command) {
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  return traits && traits->ReadsFiles();
 }
 
 } // namespace
 
 std::set<std::string> PathsIn(const v1::Command& command) {
   std::set<std::string> paths;
-  // One names no file and is most of all; the other says what was in it.
-  if (!command.has_set_poses() && !command.load_tracks().has_read()) {
-    Gather(command, paths);
+  // A command that holds what was in its file needs the file no more.
+  if (ReadsFiles(command) && !command.load_tracks().has_read()) {
+    ForEachText(command, [&paths](const std::string& text, const google::protobuf::FieldDescriptor&,
+                                  TextKind kind) {
+      if (kind == TextKind::ReadFile && text.size() > 1 && text[0] == '/') {
+        paths.insert(text);
+      }
+    });
   }
   return paths;
 }
 
 void MapPaths(v1::Command& command, const std::function<std::string(const std::string&)>& map) {
-  MapBelow(command, map);
+  if (ReadsFiles(command)) {
+    ChangeTexts(command, [&map](const std::string& text, const google::protobuf::FieldDescriptor&,
+                                TextKind kind) {
+      return kind == TextKind::ReadFile && !text.empty() ? map(text) : text;
+    });
+  }
 }
 
 void CommandFiles::Note(const v1::Command& accepted, const FilesRead& files) {

@@ -12,10 +12,12 @@
 
 namespace dspace::session {
 
-// Absolute paths in a command's fields, at any depth.
+// Absolute paths of files that a command reads, at any depth of its fields (READ_FILE in
+// options.proto).
 std::set<std::string> PathsIn(const v1::Command& command);
 
-// Each text in such a field that is not empty, absolute or not, made what `map` returns for it.
+// Replaces each text in such a field that is not empty, absolute or not, by what `map` returns for
+// it.
 void MapPaths(v1::Command& command, const std::function<std::string(const std::string&)>& map);
 
 // What was read when each path was last named: filled by the interpreter, asked by recordings.

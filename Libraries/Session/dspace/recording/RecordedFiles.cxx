@@ -302,7 +302,7 @@ std::string RecordedFiles::Place(const std::string& path) const {
 }
 
 void RecordedFiles::Map(v1::Command& command) const {
-  if (this->Folder_.empty() || command.has_set_poses()) { // which names no file and is most of all
+  if (this->Folder_.empty()) {
     return;
   }
   MapPaths(command, [this](const std::string& path) { return this->MapPath(path); });

@@ -183,9 +183,7 @@ struct RecordingWriter::Impl {
     if (recorded->has_set_time()) {
       this->time_s = WithoutMinus0(recorded->set_time().time_s());
     }
-    if (!recorded->has_set_poses()) { // which names no file and is most of all
-      this->HandFiles(*recorded);
-    }
+    this->HandFiles(*recorded);
     RecordingRow row;
     row.seq = ++this->seq;
     row.time_s = this->time_s;

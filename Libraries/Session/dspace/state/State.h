@@ -22,7 +22,6 @@
 
 namespace dspace::session {
 
-constexpr const char* DefaultScene = "scene";
 constexpr const char* DefaultVantage = "main";
 
 // One scene with its robots, terrains and trails, by name or object.

@@ -115,14 +115,13 @@ void MoveToFragment(const Context& context, v1::MoveToFragment& command) {
 
 void AddObjectCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kImportObject, &C::mutable_import_object, Effect::Change, ImportObject);
-  registry.Add(C::kRemoveObject, &C::mutable_remove_object, Effect::Change, RemoveObject);
-  registry.Add(C::kSetObjectVisible, &C::mutable_set_object_visible, Effect::Change,
-               SetObjectVisible);
-  registry.Add(C::kSetMaterial, &C::mutable_set_material, Effect::Change, SetMaterial);
-  registry.Add(C::kSetObjectOffset, &C::mutable_set_object_offset, Effect::Change, SetObjectOffset);
-  registry.Add(C::kAttachObject, &C::mutable_attach_object, Effect::Change, AttachObject);
-  registry.Add(C::kMoveToFragment, &C::mutable_move_to_fragment, Effect::Change, MoveToFragment);
+  registry.Add(C::kImportObject, &C::mutable_import_object, ImportObject);
+  registry.Add(C::kRemoveObject, &C::mutable_remove_object, RemoveObject);
+  registry.Add(C::kSetObjectVisible, &C::mutable_set_object_visible, SetObjectVisible);
+  registry.Add(C::kSetMaterial, &C::mutable_set_material, SetMaterial);
+  registry.Add(C::kSetObjectOffset, &C::mutable_set_object_offset, SetObjectOffset);
+  registry.Add(C::kAttachObject, &C::mutable_attach_object, AttachObject);
+  registry.Add(C::kMoveToFragment, &C::mutable_move_to_fragment, MoveToFragment);
 }
 
 } // namespace dspace::session

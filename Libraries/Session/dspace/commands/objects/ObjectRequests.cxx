@@ -77,9 +77,9 @@ void ListObjects(const Context& context, v1::ListObjects&) {
 
 void AddObjectRequests(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kFindObject, &C::mutable_find_object, Effect::Request, FindObject);
-  registry.Add(C::kDescribeObject, &C::mutable_describe_object, Effect::Request, DescribeObject);
-  registry.Add(C::kListObjects, &C::mutable_list_objects, Effect::Request, ListObjects);
+  registry.Add(C::kFindObject, &C::mutable_find_object, FindObject);
+  registry.Add(C::kDescribeObject, &C::mutable_describe_object, DescribeObject);
+  registry.Add(C::kListObjects, &C::mutable_list_objects, ListObjects);
 }
 
 } // namespace dspace::session

@@ -62,9 +62,9 @@ void SetTilt(const Context& context, v1::SetTilt& command) {
 
 void AddPrimitiveCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kCreatePrimitive, &C::mutable_create_primitive, Effect::Change, CreatePrimitive);
-  registry.Add(C::kSetPrimitive, &C::mutable_set_primitive, Effect::Change, SetPrimitive);
-  registry.Add(C::kSetTilt, &C::mutable_set_tilt, Effect::Change, SetTilt);
+  registry.Add(C::kCreatePrimitive, &C::mutable_create_primitive, CreatePrimitive);
+  registry.Add(C::kSetPrimitive, &C::mutable_set_primitive, SetPrimitive);
+  registry.Add(C::kSetTilt, &C::mutable_set_tilt, SetTilt);
 }
 
 } // namespace dspace::session

@@ -248,11 +248,11 @@ void ListRobots(const Context& context, v1::ListRobots&) {
 
 void AddRobotCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kLoadRobot, &C::mutable_load_robot, Effect::Change, LoadRobot);
-  registry.Add(C::kRemoveRobot, &C::mutable_remove_robot, Effect::Change, RemoveRobot);
-  registry.Add(C::kSetJoints, &C::mutable_set_joints, Effect::Change, SetJoints);
-  registry.Add(C::kDescribeRobot, &C::mutable_describe_robot, Effect::Request, DescribeRobot);
-  registry.Add(C::kListRobots, &C::mutable_list_robots, Effect::Request, ListRobots);
+  registry.Add(C::kLoadRobot, &C::mutable_load_robot, LoadRobot);
+  registry.Add(C::kRemoveRobot, &C::mutable_remove_robot, RemoveRobot);
+  registry.Add(C::kSetJoints, &C::mutable_set_joints, SetJoints);
+  registry.Add(C::kDescribeRobot, &C::mutable_describe_robot, DescribeRobot);
+  registry.Add(C::kListRobots, &C::mutable_list_robots, ListRobots);
 }
 
 } // namespace dspace::session

@@ -58,9 +58,9 @@ void ClearTrail(const Context& context, v1::ClearTrail& command) {
 
 void AddTrailCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kCreateTrail, &C::mutable_create_trail, Effect::Change, CreateTrail);
-  registry.Add(C::kAppendTrail, &C::mutable_append_trail, Effect::Change, AppendTrail);
-  registry.Add(C::kClearTrail, &C::mutable_clear_trail, Effect::Change, ClearTrail);
+  registry.Add(C::kCreateTrail, &C::mutable_create_trail, CreateTrail);
+  registry.Add(C::kAppendTrail, &C::mutable_append_trail, AppendTrail);
+  registry.Add(C::kClearTrail, &C::mutable_clear_trail, ClearTrail);
 }
 
 } // namespace dspace::session

@@ -160,13 +160,13 @@ void DescribeCamera(const std::string& sceneName, const Scene& scene, const std:
 
 void AddCameraCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kCreateVantage, &C::mutable_create_vantage, Effect::Change, CreateVantage);
-  registry.Add(C::kRemoveVantage, &C::mutable_remove_vantage, Effect::Change, RemoveVantage);
-  registry.Add(C::kListVantages, &C::mutable_list_vantages, Effect::Request, ListVantages);
-  registry.Add(C::kSetCamera, &C::mutable_set_camera, Effect::Change, SetCamera);
-  registry.Add(C::kRemoveCamera, &C::mutable_remove_camera, Effect::Change, RemoveCamera);
-  registry.Add(C::kSetActiveCamera, &C::mutable_set_active_camera, Effect::Change, SetActiveCamera);
-  registry.Add(C::kDescribeCamera, &C::mutable_describe_camera, Effect::Request, AnswerCamera);
+  registry.Add(C::kCreateVantage, &C::mutable_create_vantage, CreateVantage);
+  registry.Add(C::kRemoveVantage, &C::mutable_remove_vantage, RemoveVantage);
+  registry.Add(C::kListVantages, &C::mutable_list_vantages, ListVantages);
+  registry.Add(C::kSetCamera, &C::mutable_set_camera, SetCamera);
+  registry.Add(C::kRemoveCamera, &C::mutable_remove_camera, RemoveCamera);
+  registry.Add(C::kSetActiveCamera, &C::mutable_set_active_camera, SetActiveCamera);
+  registry.Add(C::kDescribeCamera, &C::mutable_describe_camera, AnswerCamera);
 }
 
 } // namespace dspace::session

@@ -120,14 +120,13 @@ void ListLights(const Context& context, v1::ListLights&) {
 
 void AddFragmentCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kCreateFragment, &C::mutable_create_fragment, Effect::Change, CreateFragment);
-  registry.Add(C::kRemoveFragment, &C::mutable_remove_fragment, Effect::Change, RemoveFragment);
-  registry.Add(C::kSetFragmentVisible, &C::mutable_set_fragment_visible, Effect::Change,
-               SetFragmentVisible);
-  registry.Add(C::kListFragments, &C::mutable_list_fragments, Effect::Request, ListFragments);
-  registry.Add(C::kSetLight, &C::mutable_set_light, Effect::Change, SetLight);
-  registry.Add(C::kRemoveLight, &C::mutable_remove_light, Effect::Change, RemoveLight);
-  registry.Add(C::kListLights, &C::mutable_list_lights, Effect::Request, ListLights);
+  registry.Add(C::kCreateFragment, &C::mutable_create_fragment, CreateFragment);
+  registry.Add(C::kRemoveFragment, &C::mutable_remove_fragment, RemoveFragment);
+  registry.Add(C::kSetFragmentVisible, &C::mutable_set_fragment_visible, SetFragmentVisible);
+  registry.Add(C::kListFragments, &C::mutable_list_fragments, ListFragments);
+  registry.Add(C::kSetLight, &C::mutable_set_light, SetLight);
+  registry.Add(C::kRemoveLight, &C::mutable_remove_light, RemoveLight);
+  registry.Add(C::kListLights, &C::mutable_list_lights, ListLights);
 }
 
 } // namespace dspace::session

@@ -135,15 +135,15 @@ void FollowFrames(const Context& context, v1::FollowFrames& command) {
 
 void AddFrameCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kCreateFrame, &C::mutable_create_frame, Effect::Change, CreateFrame);
-  registry.Add(C::kRemoveFrame, &C::mutable_remove_frame, Effect::Change, RemoveFrame);
-  registry.Add(C::kReparentFrame, &C::mutable_reparent_frame, Effect::Change, ReparentFrame);
-  registry.Add(C::kRenameFrame, &C::mutable_rename_frame, Effect::Change, RenameFrame);
-  registry.Add(C::kSetPoses, &C::mutable_set_poses, Effect::Change, SetPoses);
-  registry.Add(C::kFindFrame, &C::mutable_find_frame, Effect::Request, FindFrame);
-  registry.Add(C::kGetPoses, &C::mutable_get_poses, Effect::Request, GetPoses);
-  registry.Add(C::kListFrames, &C::mutable_list_frames, Effect::Request, ListFrames);
-  registry.Add(C::kFollowFrames, &C::mutable_follow_frames, Effect::Request, FollowFrames);
+  registry.Add(C::kCreateFrame, &C::mutable_create_frame, CreateFrame);
+  registry.Add(C::kRemoveFrame, &C::mutable_remove_frame, RemoveFrame);
+  registry.Add(C::kReparentFrame, &C::mutable_reparent_frame, ReparentFrame);
+  registry.Add(C::kRenameFrame, &C::mutable_rename_frame, RenameFrame);
+  registry.Add(C::kSetPoses, &C::mutable_set_poses, SetPoses);
+  registry.Add(C::kFindFrame, &C::mutable_find_frame, FindFrame);
+  registry.Add(C::kGetPoses, &C::mutable_get_poses, GetPoses);
+  registry.Add(C::kListFrames, &C::mutable_list_frames, ListFrames);
+  registry.Add(C::kFollowFrames, &C::mutable_follow_frames, FollowFrames);
 }
 
 } // namespace dspace::session

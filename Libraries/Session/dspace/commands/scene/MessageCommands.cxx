@@ -78,14 +78,14 @@ void ListQuestions(const Context& context, v1::ListQuestions&) {
 
 void AddMessageCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kLogEvent, &C::mutable_log_event, Effect::Change, LogEvent);
-  registry.Add(C::kAskOperator, &C::mutable_ask_operator, Effect::Change, AskOperator);
-  registry.Add(C::kCloseQuestion, &C::mutable_close_question, Effect::Change,
+  registry.Add(C::kLogEvent, &C::mutable_log_event, LogEvent);
+  registry.Add(C::kAskOperator, &C::mutable_ask_operator, AskOperator);
+  registry.Add(C::kCloseQuestion, &C::mutable_close_question,
                [](const Context& context, v1::CloseQuestion& command) {
                  context.scene->messages.Close(command);
                });
-  registry.Add(C::kListEvents, &C::mutable_list_events, Effect::Request, ListEvents);
-  registry.Add(C::kListQuestions, &C::mutable_list_questions, Effect::Request, ListQuestions);
+  registry.Add(C::kListEvents, &C::mutable_list_events, ListEvents);
+  registry.Add(C::kListQuestions, &C::mutable_list_questions, ListQuestions);
 }
 
 } // namespace dspace::session

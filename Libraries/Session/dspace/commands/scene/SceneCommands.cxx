@@ -88,13 +88,11 @@ void GetTime(const Context& context, v1::GetTime&) {
 
 void AddSceneCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kCreateScene, &C::mutable_create_scene, Effect::Change, CreateScene,
-               Needs::Nothing);
-  registry.Add(C::kRemoveScene, &C::mutable_remove_scene, Effect::Change, RemoveScene);
-  registry.Add(C::kListScenes, &C::mutable_list_scenes, Effect::Request, ListScenes,
-               Needs::Nothing);
-  registry.Add(C::kSetTime, &C::mutable_set_time, Effect::Change, SetTime);
-  registry.Add(C::kGetTime, &C::mutable_get_time, Effect::Request, GetTime);
+  registry.Add(C::kCreateScene, &C::mutable_create_scene, CreateScene, Needs::Nothing);
+  registry.Add(C::kRemoveScene, &C::mutable_remove_scene, RemoveScene);
+  registry.Add(C::kListScenes, &C::mutable_list_scenes, ListScenes, Needs::Nothing);
+  registry.Add(C::kSetTime, &C::mutable_set_time, SetTime);
+  registry.Add(C::kGetTime, &C::mutable_get_time, GetTime);
 }
 
 } // namespace dspace::session

@@ -52,25 +52,24 @@ void ListTelemetry(const Context& context, v1::ListTelemetry& command) {
 
 void AddTelemetryCommands(Registry& registry) {
   using C = v1::Command;
-  const Effect change = Effect::Change;
-  registry.Add(C::kCreateTelemetry, &C::mutable_create_telemetry, change, CreateTelemetry);
-  registry.Add(C::kSetTelemetryLimits, &C::mutable_set_telemetry_limits, change,
+  registry.Add(C::kCreateTelemetry, &C::mutable_create_telemetry, CreateTelemetry);
+  registry.Add(C::kSetTelemetryLimits, &C::mutable_set_telemetry_limits,
                [](const Context& context, v1::SetTelemetryLimits& command) {
                  context.scene->telemetry.SetLimits(command);
                });
-  registry.Add(C::kSetTelemetry, &C::mutable_set_telemetry, change,
+  registry.Add(C::kSetTelemetry, &C::mutable_set_telemetry,
                [](const Context& context, v1::SetTelemetry& command) {
                  context.scene->telemetry.Set(command, context.TheScene().Time());
                });
-  registry.Add(C::kSetTelemetryTexts, &C::mutable_set_telemetry_texts, change,
+  registry.Add(C::kSetTelemetryTexts, &C::mutable_set_telemetry_texts,
                [](const Context& context, v1::SetTelemetryTexts& command) {
                  context.scene->telemetry.SetTexts(command, context.TheScene().Time());
                });
-  registry.Add(C::kRemoveTelemetry, &C::mutable_remove_telemetry, change,
+  registry.Add(C::kRemoveTelemetry, &C::mutable_remove_telemetry,
                [](const Context& context, v1::RemoveTelemetry& command) {
                  context.scene->telemetry.Remove(command);
                });
-  registry.Add(C::kListTelemetry, &C::mutable_list_telemetry, Effect::Request, ListTelemetry);
+  registry.Add(C::kListTelemetry, &C::mutable_list_telemetry, ListTelemetry);
 }
 
 } // namespace dspace::session

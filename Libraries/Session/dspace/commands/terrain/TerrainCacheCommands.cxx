@@ -114,14 +114,10 @@ void VerifyTerrainCache(const Context& context, v1::VerifyTerrainCache& command)
 void AddTerrainCacheCommands(Registry& registry) {
   using C = v1::Command;
   const auto none = Needs::Nothing;
-  registry.Add(C::kBuildTerrainCache, &C::mutable_build_terrain_cache, Effect::Request,
-               BuildTerrainCache, none);
-  registry.Add(C::kListTerrainCache, &C::mutable_list_terrain_cache, Effect::Request,
-               ListTerrainCache, none);
-  registry.Add(C::kClearTerrainCache, &C::mutable_clear_terrain_cache, Effect::Request,
-               ClearTerrainCache, none);
-  registry.Add(C::kVerifyTerrainCache, &C::mutable_verify_terrain_cache, Effect::Request,
-               VerifyTerrainCache, none);
+  registry.Add(C::kBuildTerrainCache, &C::mutable_build_terrain_cache, BuildTerrainCache, none);
+  registry.Add(C::kListTerrainCache, &C::mutable_list_terrain_cache, ListTerrainCache, none);
+  registry.Add(C::kClearTerrainCache, &C::mutable_clear_terrain_cache, ClearTerrainCache, none);
+  registry.Add(C::kVerifyTerrainCache, &C::mutable_verify_terrain_cache, VerifyTerrainCache, none);
 }
 
 } // namespace dspace::session

@@ -317,9 +317,9 @@ void FocusTerrain(const Context& context, v1::FocusTerrain& command) {
 
 void AddTerrainCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kOpenTerrain, &C::mutable_open_terrain, Effect::Change, OpenTerrain);
-  registry.Add(C::kRemoveTerrain, &C::mutable_remove_terrain, Effect::Change, RemoveTerrain);
-  registry.Add(C::kFocusTerrain, &C::mutable_focus_terrain, Effect::Change, FocusTerrain);
+  registry.Add(C::kOpenTerrain, &C::mutable_open_terrain, OpenTerrain);
+  registry.Add(C::kRemoveTerrain, &C::mutable_remove_terrain, RemoveTerrain);
+  registry.Add(C::kFocusTerrain, &C::mutable_focus_terrain, FocusTerrain);
   AddTerrainRequests(registry);
   AddTerrainStyleCommands(registry);
   AddTerrainTrackCommands(registry);

@@ -290,13 +290,10 @@ void AddFilled(const Context& context, ClipmapTerrainObject& terrain,
 
 void AddTerrainLayerCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kAddTerrainLayer, &C::mutable_add_terrain_layer, Effect::Change, AddTerrainLayer);
-  registry.Add(C::kChangeTerrainLayer, &C::mutable_change_terrain_layer, Effect::Change,
-               ChangeTerrainLayer);
-  registry.Add(C::kRemoveTerrainLayer, &C::mutable_remove_terrain_layer, Effect::Change,
-               RemoveTerrainLayer);
-  registry.Add(C::kListTerrainLayers, &C::mutable_list_terrain_layers, Effect::Request,
-               ListTerrainLayers);
+  registry.Add(C::kAddTerrainLayer, &C::mutable_add_terrain_layer, AddTerrainLayer);
+  registry.Add(C::kChangeTerrainLayer, &C::mutable_change_terrain_layer, ChangeTerrainLayer);
+  registry.Add(C::kRemoveTerrainLayer, &C::mutable_remove_terrain_layer, RemoveTerrainLayer);
+  registry.Add(C::kListTerrainLayers, &C::mutable_list_terrain_layers, ListTerrainLayers);
 }
 
 } // namespace dspace::session

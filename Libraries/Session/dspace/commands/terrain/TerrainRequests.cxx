@@ -173,12 +173,11 @@ void ListTerrains(const Context& context, v1::ListTerrains&) {
 
 void AddTerrainRequests(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kQueryTerrain, &C::mutable_query_terrain, Effect::Request, QueryTerrain);
-  registry.Add(C::kIntersectTerrain, &C::mutable_intersect_terrain, Effect::Request,
-               IntersectTerrain);
-  registry.Add(C::kConvertTerrain, &C::mutable_convert_terrain, Effect::Request, ConvertTerrain);
-  registry.Add(C::kDescribeTerrain, &C::mutable_describe_terrain, Effect::Request, DescribeTerrain);
-  registry.Add(C::kListTerrains, &C::mutable_list_terrains, Effect::Request, ListTerrains);
+  registry.Add(C::kQueryTerrain, &C::mutable_query_terrain, QueryTerrain);
+  registry.Add(C::kIntersectTerrain, &C::mutable_intersect_terrain, IntersectTerrain);
+  registry.Add(C::kConvertTerrain, &C::mutable_convert_terrain, ConvertTerrain);
+  registry.Add(C::kDescribeTerrain, &C::mutable_describe_terrain, DescribeTerrain);
+  registry.Add(C::kListTerrains, &C::mutable_list_terrains, ListTerrains);
 }
 
 } // namespace dspace::session

@@ -183,9 +183,8 @@ void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
 
 void AddTerrainStyleCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kStyleTerrain, &C::mutable_style_terrain, Effect::Change, StyleTerrain);
-  registry.Add(C::kDescribeTerrainStyle, &C::mutable_describe_terrain_style, Effect::Request,
-               DescribeTerrainStyle);
+  registry.Add(C::kStyleTerrain, &C::mutable_style_terrain, StyleTerrain);
+  registry.Add(C::kDescribeTerrainStyle, &C::mutable_describe_terrain_style, DescribeTerrainStyle);
 }
 
 } // namespace dspace::session

@@ -84,11 +84,11 @@ void RestoreTracks(const Context& context, v1::RestoreTracks& command) {
 
 void AddTerrainTrackCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kTrackWheels, &C::mutable_track_wheels, Effect::Change, TrackWheels);
-  registry.Add(C::kClearTracks, &C::mutable_clear_tracks, Effect::Change, ClearTracks);
-  registry.Add(C::kSaveTracks, &C::mutable_save_tracks, Effect::Request, SaveTracks);
-  registry.Add(C::kLoadTracks, &C::mutable_load_tracks, Effect::Change, LoadTracks);
-  registry.Add(C::kRestoreTracks, &C::mutable_restore_tracks, Effect::Change, RestoreTracks);
+  registry.Add(C::kTrackWheels, &C::mutable_track_wheels, TrackWheels);
+  registry.Add(C::kClearTracks, &C::mutable_clear_tracks, ClearTracks);
+  registry.Add(C::kSaveTracks, &C::mutable_save_tracks, SaveTracks);
+  registry.Add(C::kLoadTracks, &C::mutable_load_tracks, LoadTracks);
+  registry.Add(C::kRestoreTracks, &C::mutable_restore_tracks, RestoreTracks);
 }
 
 } // namespace dspace::session

@@ -74,11 +74,11 @@ void ViewportCommands::RemoveBar(const Context&, v1::RemoveColorBar& command) {
 void ViewportCommands::AddColorBarsTo(Registry& registry) {
   using C = v1::Command;
   registry.Add(
-      C::kSetColorBar, &C::mutable_set_color_bar, Effect::Change,
+      C::kSetColorBar, &C::mutable_set_color_bar,
       [this](const Context& context, v1::SetColorBar& command) { this->SetBar(context, command); },
       Needs::Nothing);
   registry.Add(
-      C::kRemoveColorBar, &C::mutable_remove_color_bar, Effect::Change,
+      C::kRemoveColorBar, &C::mutable_remove_color_bar,
       [this](const Context& context, v1::RemoveColorBar& command) {
         this->RemoveBar(context, command);
       },

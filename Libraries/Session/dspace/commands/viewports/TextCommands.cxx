@@ -71,8 +71,8 @@ void SetText(const Context& context, v1::SetText& command) {
 
 void AddTextCommands(Registry& registry) {
   using C = v1::Command;
-  registry.Add(C::kCreateText, &C::mutable_create_text, Effect::Change, CreateText);
-  registry.Add(C::kSetText, &C::mutable_set_text, Effect::Change, SetText);
+  registry.Add(C::kCreateText, &C::mutable_create_text, CreateText);
+  registry.Add(C::kSetText, &C::mutable_set_text, SetText);
 }
 
 } // namespace dspace::session

@@ -236,23 +236,19 @@ void ViewportCommands::AddTo(Registry& registry) {
     };
   };
   using V = ViewportCommands;
-  const auto change = Effect::Change;
   const auto none = Needs::Nothing; // viewports are the session's
-  registry.Add(C::kCreateViewport, &C::mutable_create_viewport, change, bind(&V::Create));
-  registry.Add(C::kRemoveViewport, &C::mutable_remove_viewport, change, bind(&V::Remove), none);
-  registry.Add(C::kResizeViewport, &C::mutable_resize_viewport, change, bind(&V::Resize), none);
-  registry.Add(C::kMoveViewport, &C::mutable_move_viewport, change, bind(&V::Move), none);
-  registry.Add(C::kSetViewport, &C::mutable_set_viewport, change, bind(&V::Set), none);
-  registry.Add(C::kSetViewportFragment, &C::mutable_set_viewport_fragment, change,
-               bind(&V::SetFragment), none);
-  registry.Add(C::kSetTextTable, &C::mutable_set_text_table, change, bind(&V::SetTable), none);
-  registry.Add(C::kRemoveTextTable, &C::mutable_remove_text_table, change, bind(&V::RemoveTable),
+  registry.Add(C::kCreateViewport, &C::mutable_create_viewport, bind(&V::Create));
+  registry.Add(C::kRemoveViewport, &C::mutable_remove_viewport, bind(&V::Remove), none);
+  registry.Add(C::kResizeViewport, &C::mutable_resize_viewport, bind(&V::Resize), none);
+  registry.Add(C::kMoveViewport, &C::mutable_move_viewport, bind(&V::Move), none);
+  registry.Add(C::kSetViewport, &C::mutable_set_viewport, bind(&V::Set), none);
+  registry.Add(C::kSetViewportFragment, &C::mutable_set_viewport_fragment, bind(&V::SetFragment),
                none);
-  registry.Add(C::kViewportEvent, &C::mutable_viewport_event, change, bind(&V::Event), none);
-  registry.Add(C::kDescribeViewport, &C::mutable_describe_viewport, Effect::Request,
-               bind(&V::Describe), none);
-  registry.Add(C::kListViewports, &C::mutable_list_viewports, Effect::Request, bind(&V::List),
-               none);
+  registry.Add(C::kSetTextTable, &C::mutable_set_text_table, bind(&V::SetTable), none);
+  registry.Add(C::kRemoveTextTable, &C::mutable_remove_text_table, bind(&V::RemoveTable), none);
+  registry.Add(C::kViewportEvent, &C::mutable_viewport_event, bind(&V::Event), none);
+  registry.Add(C::kDescribeViewport, &C::mutable_describe_viewport, bind(&V::Describe), none);
+  registry.Add(C::kListViewports, &C::mutable_list_viewports, bind(&V::List), none);
   this->AddColorBarsTo(registry);
   this->AddRequestsTo(registry);
 }

@@ -173,13 +173,12 @@ void ViewportCommands::AddRequestsTo(Registry& registry) {
     };
   };
   using V = ViewportCommands;
-  const auto request = Effect::Request;
   const auto none = Needs::Nothing;
-  registry.Add(C::kCapture, &C::mutable_capture, request, bind(&V::Capture), none);
-  registry.Add(C::kSaveImage, &C::mutable_save_image, request, bind(&V::SaveImage), none);
-  registry.Add(C::kRender, &C::mutable_render, request, bind(&V::Render), none);
-  registry.Add(C::kPick, &C::mutable_pick, request, bind(&V::Pick), none);
-  registry.Add(C::kGetStatistics, &C::mutable_get_statistics, request, bind(&V::Statistics), none);
+  registry.Add(C::kCapture, &C::mutable_capture, bind(&V::Capture), none);
+  registry.Add(C::kSaveImage, &C::mutable_save_image, bind(&V::SaveImage), none);
+  registry.Add(C::kRender, &C::mutable_render, bind(&V::Render), none);
+  registry.Add(C::kPick, &C::mutable_pick, bind(&V::Pick), none);
+  registry.Add(C::kGetStatistics, &C::mutable_get_statistics, bind(&V::Statistics), none);
 }
 
 } // namespace dspace::session

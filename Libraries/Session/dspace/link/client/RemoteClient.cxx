@@ -5,9 +5,10 @@
 #include <utility>
 
 #include <dspace/Error.h>
-#include <dspace/link/client/ClientLink.h>
 #include <dspace/link/Confinement.h>
 #include <dspace/link/LinkDiagnosis.h>
+#include <dspace/link/client/ClientLink.h>
+#include <dspace/messages/CommandLimits.h>
 #include <dspace/state/State.h>
 
 namespace dspace::session {
@@ -103,8 +104,7 @@ void RemoteClient::Begin(v1::Command command, bool reply) {
   const double ahead =
       link.command.has_set_time()
           ? link.pacer.Ahead(
-                link.command.scene().empty() ? DefaultScene : link.command.scene(),
-                link.command.set_time().time_s(),
+                SceneName(link.command), link.command.set_time().time_s(),
                 std::chrono::duration<double>(LinkClock::now().time_since_epoch()).count())
           : 0;
   link.due = ahead > 0 ? After(ahead) : LinkClock::time_point();

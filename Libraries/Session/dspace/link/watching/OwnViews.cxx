@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include <dspace/ledger/Ledger.h>
+#include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/CommandTraits.h>
 
 namespace dspace::session {
 namespace {
@@ -11,54 +13,18 @@ bool Begins(const std::string& name) {
   return name.rfind(OwnViews::Prefix, 0) == 0;
 }
 
-std::string SceneOf(const v1::Command& command) {
-  return command.scene().empty() ? DefaultScene : command.scene();
-}
-
-// The viewport that the command is about, if it is about one of those that there are.
+// The viewport that the command is about, if it is about one.
 std::optional<std::string> ViewportOf(const v1::Command& command) {
-  using C = v1::Command;
-  switch (command.command_case()) {
-  case C::kRemoveViewport:
-    return command.remove_viewport().viewport();
-  case C::kResizeViewport:
-    return command.resize_viewport().viewport();
-  case C::kMoveViewport:
-    return command.move_viewport().viewport();
-  case C::kSetViewport:
-    return command.set_viewport().viewport();
-  case C::kSetViewportFragment:
-    return command.set_viewport_fragment().viewport();
-  case C::kSetTextTable:
-    return command.set_text_table().viewport();
-  case C::kRemoveTextTable:
-    return command.remove_text_table().viewport();
-  case C::kSetColorBar:
-    return command.set_color_bar().viewport();
-  case C::kRemoveColorBar:
-    return command.remove_color_bar().viewport();
-  case C::kViewportEvent:
-    return command.viewport_event().viewport();
-  default:
-    return std::nullopt;
-  }
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  const bool is = traits && traits->GetOwner() == CommandTraits::Owner::Viewport;
+  return is ? std::optional<std::string>(traits->OwnerName(command)) : std::nullopt;
 }
 
 // Likewise for vantages.
 std::optional<std::string> VantageOf(const v1::Command& command) {
-  using C = v1::Command;
-  switch (command.command_case()) {
-  case C::kRemoveVantage:
-    return command.remove_vantage().name();
-  case C::kSetCamera:
-    return command.set_camera().vantage();
-  case C::kRemoveCamera:
-    return command.remove_camera().vantage();
-  case C::kSetActiveCamera:
-    return command.set_active_camera().vantage();
-  default:
-    return std::nullopt;
-  }
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  const bool is = traits && traits->GetOwner() == CommandTraits::Owner::Vantage;
+  return is ? std::optional<std::string>(traits->OwnerName(command)) : std::nullopt;
 }
 
 bool IsBelow(const FrameTree& frames, FrameId frame, FrameId top) {
@@ -85,7 +51,7 @@ bool OwnViews::Owns(const v1::Command& command) const {
     return this->Viewports_.count(*viewport) != 0;
   }
   const auto vantage = VantageOf(command);
-  return vantage && this->OwnsVantage(SceneOf(command), *vantage);
+  return vantage && this->OwnsVantage(SceneName(command), *vantage);
 }
 
 v1::Reply OwnViews::Execute(Interpreter& interpreter, v1::Command& command) {
@@ -106,7 +72,7 @@ v1::Reply OwnViews::Execute(Interpreter& interpreter, v1::Command& command) {
         this->Forget(scene, command.create_viewport().name());
       }
     } else if (command.has_create_vantage()) {
-      this->Forget(SceneOf(command), command.create_vantage().name());
+      this->Forget(SceneName(command), command.create_vantage().name());
     }
     this->Keep(command, reply);
   }
@@ -122,9 +88,7 @@ void OwnViews::Forget(const std::string& scene, const std::string& name) {
   std::vector<v1::Command>& commands = found->second.commands;
   commands.erase(std::remove_if(commands.begin(), commands.end(),
                                 [&](const v1::Command& each) {
-                                  return ViewportOf(each) == name || VantageOf(each) == name ||
-                                         each.create_viewport().name() == name ||
-                                         each.create_vantage().name() == name;
+                                  return ViewportOf(each) == name || VantageOf(each) == name;
                                 }),
                  commands.end());
 }
@@ -139,7 +103,7 @@ void OwnViews::Keep(const v1::Command& command, const v1::Reply& reply) {
   if (this->Ledger_.Add(command)) {
     return;
   }
-  const std::string scene = SceneOf(command);
+  const std::string scene = SceneName(command);
   if (command.has_create_vantage()) {
     this->Vantages_.insert({scene, command.create_vantage().name()});
   } else if (command.has_remove_vantage()) {
@@ -227,7 +191,7 @@ std::vector<std::string> OwnViews::ViewportsIn(Interpreter& interpreter,
 }
 
 bool OwnViews::MakeRoom(Interpreter& interpreter, const v1::Command& refused) {
-  const std::string scene = SceneOf(refused);
+  const std::string scene = SceneName(refused);
   if (!interpreter.FindScene(scene)) {
     return false;
   }

@@ -4,17 +4,10 @@
 #include <algorithm>
 #include <set>
 
+#include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/Convert.h>
 
 namespace dspace::session {
-namespace {
-
-std::string SceneOf(const v1::Command& command) {
-  return command.scene().empty() ? DefaultScene : command.scene();
-}
-
-} // namespace
-
 std::optional<v1::SetCamera> OwnViews::CameraOf(Interpreter& interpreter, const std::string& scene,
                                                 const std::string& vantage,
                                                 const std::string& camera) {
@@ -89,7 +82,7 @@ std::vector<v1::Command> OwnViews::Commands(Interpreter& interpreter) const {
   }
   this->Ledger_.Put(
       [&](const std::string& scene) {
-        const auto found = interpreter.FindScene(scene.empty() ? DefaultScene : scene);
+        const auto found = interpreter.FindScene(scene.empty() ? DefaultScene() : scene);
         return found ? found->Fragments().Names() : std::vector<std::string>();
       },
       commands);
@@ -102,7 +95,7 @@ void OwnViews::Sleep(Interpreter& interpreter, const std::string& scene) {
   for (v1::Command& command : this->Commands(interpreter)) {
     // Time is the simulation's, and so are fragments: one that is hidden and gone is hidden no
     // more.
-    if (SceneOf(command) == scene && !command.has_set_time() && !command.has_create_fragment() &&
+    if (SceneName(command) == scene && !command.has_set_time() && !command.has_create_fragment() &&
         !command.has_remove_fragment()) {
       views.commands.push_back(std::move(command));
     }
@@ -113,7 +106,7 @@ void OwnViews::Sleep(Interpreter& interpreter, const std::string& scene) {
 void OwnViews::Enter(Interpreter& interpreter) {
   std::set<std::string> scenes;
   for (const v1::Command& command : this->Commands(interpreter)) {
-    scenes.insert(SceneOf(command));
+    scenes.insert(SceneName(command));
   }
   for (const std::string& scene : scenes) {
     this->Sleep(interpreter, scene);
@@ -157,7 +150,7 @@ bool OwnViews::IsReady(const Scene& scene, const Sleeping& views) const {
   for (const v1::Command& command : views.commands) {
     if (command.has_set_camera()) {
       const v1::SetCamera& set = command.set_camera();
-      const auto at = this->Cameras_.find({{SceneOf(command), set.vantage()}, set.name()});
+      const auto at = this->Cameras_.find({{SceneName(command), set.vantage()}, set.name()});
       if (at != this->Cameras_.end() && !at->second.path.empty() &&
           scene.Frames().Find(at->second.path) == NoFrame) {
         return false;
@@ -186,9 +179,9 @@ void OwnViews::MakeAgain(Interpreter& interpreter, v1::Command& command) {
   }
   if (command.has_set_camera() && command.set_camera().has_mount()) {
     v1::SetCamera& set = *command.mutable_set_camera();
-    const auto at = this->Cameras_.find({{SceneOf(command), set.vantage()}, set.name()});
+    const auto at = this->Cameras_.find({{SceneName(command), set.vantage()}, set.name()});
     if (at != this->Cameras_.end() && !at->second.path.empty()) {
-      const FrameTree& frames = interpreter.FindScene(SceneOf(command))->Frames();
+      const FrameTree& frames = interpreter.FindScene(SceneName(command))->Frames();
       const FrameId frame = frames.Find(at->second.path); // ids may be others than they were
       if (frame == NoFrame) {
         *set.mutable_mount() = at->second.mount;

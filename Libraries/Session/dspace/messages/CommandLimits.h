@@ -1,0 +1,25 @@
+// The ranges and defaults of command fields, as the .proto files state them (options.proto).
+#ifndef DSPACE_SESSION_COMMAND_LIMITS_H
+#define DSPACE_SESSION_COMMAND_LIMITS_H
+
+#include <string>
+
+namespace dspace::v1 {
+class Command;
+}
+
+namespace dspace::session {
+
+// Throws Error(InvalidArgument) for the first number, at any depth, outside of the range that its
+// field states: it names what the command is about, the field, the value and the range. A field
+// that is absent, or 0 where that means absent, is accepted.
+void RequireLimits(const v1::Command& command);
+
+// The scene that a command means which names none: the default of Command.scene.
+const std::string& DefaultScene();
+// The name of the scene that the command is about.
+const std::string& SceneName(const v1::Command& command);
+
+} // namespace dspace::session
+
+#endif

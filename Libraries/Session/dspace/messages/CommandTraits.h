@@ -1,0 +1,77 @@
+// What is true of each command, as its .proto file states it (options.proto).
+#ifndef DSPACE_SESSION_COMMAND_TRAITS_H
+#define DSPACE_SESSION_COMMAND_TRAITS_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace google::protobuf {
+class FieldDescriptor;
+}
+namespace dspace::v1 {
+class Command;
+}
+
+namespace dspace::session {
+
+// `Later`: typed only, answered with Error.UNIMPLEMENTED.
+enum class Effect { Change, Request, Later };
+
+// The options of one command. All commands are read once, when the first is asked for.
+class CommandTraits {
+public:
+  // What a change belongs to. `None`: the command is no change.
+  enum class Owner { None, Scene, Object, Terrain, Vantage, Viewport };
+
+  // The traits of the command with this number (v1::Command::CommandCase); null for a number that
+  // no command has. Throws Error(Internal) that names the command or field and the option, where
+  // any command lacks one.
+  static const CommandTraits* Find(int number);
+  // In the order of their numbers. Throws as Find does.
+  static const std::vector<CommandTraits>& All();
+
+  int Number() const { return this->Number_; }
+  const std::string& Name() const { return this->Name_; } // "create_frame"
+  Effect GetEffect() const { return this->Effect_; }
+  // Names of the results in v1::Reply of which the command gives one; none: it gives no result.
+  const std::vector<std::string>& Results() const { return this->Results_; }
+
+  Owner GetOwner() const { return this->Owner_; }
+  // A snapshot restores it by the last command of its kind for each owner, without code for the
+  // command.
+  bool LatestIsKept() const { return this->LatestIsKept_; }
+  // All local poses and values of telemetry that were set before are the same after it.
+  bool KeepsPoses() const { return this->KeepsPoses_; }
+  // A client that does not wait goes on without the reply.
+  bool MayGoUnawaited() const { return this->MayGoUnawaited_; }
+  // It has a field, at any depth, that names a file which is read, or any file.
+  bool ReadsFiles() const { return this->ReadsFiles_; }
+  bool NamesFiles() const { return this->NamesFiles_; }
+
+  // The owner's name in a command of this kind, for a vantage, viewport or terrain; empty for other
+  // owners.
+  std::string OwnerName(const v1::Command& command) const;
+  // The owner's id, for an object; 0 for other owners.
+  std::uint32_t OwnerId(const v1::Command& command) const;
+
+private:
+  friend class CommandTraitsReader;
+
+  int Number_ = 0;
+  std::string Name_;
+  Effect Effect_ = Effect::Request;
+  std::vector<std::string> Results_;
+  Owner Owner_ = Owner::None;
+  const google::protobuf::FieldDescriptor* Field_ = nullptr; // of v1::Command
+  const google::protobuf::FieldDescriptor* Key_ = nullptr;   // null: the scene is the owner
+  bool LatestIsKept_ = false;
+  bool KeepsPoses_ = true;
+  bool MayGoUnawaited_ = false;
+  bool ReadsFiles_ = false;
+  bool NamesFiles_ = false;
+};
+
+} // namespace dspace::session
+
+#endif
