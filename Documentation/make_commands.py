@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 
-from google.protobuf import descriptor_pb2
+from google.protobuf import descriptor_pb2, message_factory
 from google.protobuf.descriptor_pb2 import FieldDescriptorProto as Field
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -27,43 +27,62 @@ meant by a field that is left out. The number of a command or field is what stan
 twice.
 """
 
-# The result in a command's Reply, of several one or none; of the others none. A test holds it against what commands
-# answer.
-ANSWERS = {
-    "create_scene": "scenes", "list_scenes": "scenes", "set_time": "time", "get_time": "time",
-    "create_frame": "frame", "remove_frame": "removed_frames", "reparent_frame": "poses", "find_frame": "frame",
-    "get_poses": "poses", "list_frames": "frames", "import_object": "object", "create_primitive": "object",
-    "create_trail": "object", "find_object": "object", "describe_object": "object_info", "list_objects": "objects",
-    "create_text": "object", "load_robot": "robot", "describe_robot": "robot", "list_robots": "robots",
-    "list_fragments": "fragments", "list_lights": "lights", "list_vantages": "vantages", "set_camera": "camera",
-    "describe_camera": "camera", "create_viewport": "viewport", "viewport_event": "camera pick",
-    "capture": "capture", "render": "render", "pick": "pick", "describe_viewport": "viewport_info",
-    "list_viewports": "viewports", "get_statistics": "statistics", "open_terrain": "terrain",
-    "query_terrain": "terrain_values", "convert_terrain": "terrain_points", "describe_terrain": "terrain",
-    "list_terrains": "terrains", "intersect_terrain": "terrain_rays", "describe_terrain_style": "terrain_style",
-    "build_terrain_cache": "terrain_cache", "list_terrain_cache": "terrain_cache",
-    "clear_terrain_cache": "terrain_cache", "verify_terrain_cache": "terrain_cache",
-    "add_terrain_layer": "terrain_layer", "change_terrain_layer": "terrain_layer",
-    "list_terrain_layers": "terrain_layers", "create_telemetry": "telemetry", "list_telemetry": "telemetry",
-    "log_event": "event", "list_events": "events", "list_questions": "questions", "line_of_sight": "line_of_sight",
-    "lit_area": "lit_area", "horizon": "horizon", "horizon_map": "map", "viewshed": "map",
-    "illumination_map": "map", "simulate_image": "capture", "project_points": "project",
-    "unproject_pixels": "unproject", "ephemeris": "ephemeris", "sky_state": "sky",
-}
+EFFECTS = {"CHANGE": "changes the scene", "REQUEST": "a request", "LATER": "not carried out yet"}
 
 
 def read_protos():
-    """The files' descriptors with their comments, by name."""
+    """The files' descriptors with their comments, by name, and what reads the options of options.proto."""
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "all.pb"
-        subprocess.run(["protoc", f"-I{PROTOS}", "--include_source_info", f"--descriptor_set_out={out}",
-                        *[f"dspace/proto/{name}.proto" for name in FILES]], check=True, cwd=PROTOS)
+        subprocess.run(["protoc", f"-I{PROTOS}", "--include_imports", "--include_source_info",
+                        f"--descriptor_set_out={out}", *[f"dspace/proto/{name}.proto" for name in FILES]],
+                       check=True, cwd=PROTOS)
         files = descriptor_pb2.FileDescriptorSet.FromString(out.read_bytes()).file
-    return {pathlib.Path(file.name).stem: file for file in files}
+    return {pathlib.Path(file.name).stem: file for file in files}, Options(files)
+
+
+class Options:
+    """Reads the options of options.proto, without code that protoc made of it."""
+
+    def __init__(self, files):
+        self._classes = message_factory.GetMessages(
+            [file for file in files if pathlib.Path(file.name).stem in ("descriptor", "options")])
+        pool = self._classes["dspace.v1.CommandOptions"].DESCRIPTOR.file.pool
+        self._command = pool.FindExtensionByName("dspace.v1.command")
+        self._accepts = pool.FindExtensionByName("dspace.v1.accepts")
+        self._effects = self._classes["dspace.v1.CommandOptions"].DESCRIPTOR.enum_types_by_name["Effect"]
+
+    def _read(self, kind, options):
+        return self._classes[f"google.protobuf.{kind}"].FromString(options.SerializeToString())
+
+    def command(self, message):
+        """(effect in words, [results]) of a command's message."""
+        found = self._read("MessageOptions", message.options).Extensions[self._command]
+        results = list(found.reply)
+        return EFFECTS[self._effects.values_by_number[found.effect].name], [] if results == ["none"] else results
+
+    def limits(self, field):
+        """What a field accepts and its default, in words; "" without either."""
+        found = self._read("FieldOptions", field.options).Extensions[self._accepts]
+        words = []
+        if found.HasField("minimum") and found.HasField("maximum"):
+            words.append(f"{found.minimum:,.10g} to {found.maximum:,.10g}")
+        elif found.HasField("minimum"):
+            words.append(f"{found.minimum:,.10g} on")
+        elif found.HasField("maximum"):
+            words.append(f"up to {found.maximum:,.10g}")
+        if found.HasField("standard"):
+            words.append(("0" if found.zero_is_absent else "absent") + f": {found.standard:,.10g}")
+        elif found.zero_is_absent:
+            words.append("or 0")
+        if found.HasField("standard_text"):
+            words.append(f'empty: "{found.standard_text}"')
+        return "; ".join(words)
 
 
 class Page:
-    def __init__(self):
+    def __init__(self, options):
+        self.options = options
         self.lines = [HEAD]
         self.comments = {}
         self.headings = set()
@@ -111,6 +130,8 @@ class Page:
                 if message.name == "Command" and field.number >= 10:
                     continue  # in the table above
                 meaning = self.comment([*path, 2, index])
+                limits = self.options.limits(field)
+                meaning = "; ".join(part for part in (meaning, limits) if part)
                 if field.HasField("oneof_index") and not field.proto3_optional:
                     meaning = f"one of `{oneofs[field.oneof_index]}`" + (f": {meaning}" if meaning else "")
                 self.add(f"| `{field.name}` | {field.number} | {self.type_of(field)} | {meaning} |")
@@ -140,12 +161,12 @@ def anchor(title):
 
 
 def make():
-    files = read_protos()
+    files, options = read_protos()
     command = next(each for each in files["commands"].message_type if each.name == "Command")
     reply = next(each for each in files["commands"].message_type if each.name == "Reply")
     kinds = {field.type_name.split(".")[-1]: field for field in command.field if field.number >= 10}
     results = {field.name: field for field in reply.field if field.number >= 10}
-    page = Page()
+    page = Page(options)
     page.add("| command | number | what it does |", "| --- | --- | --- |")
     table = len(page.lines)
     rows = []
@@ -160,9 +181,9 @@ def make():
                 others.append((index, message))
                 continue
             page.message(message, [4, index], message.name, 3)
-            told = " or ".join(f"`{answer}` ({page.type_of(results[answer])})"
-                               for answer in ANSWERS.get(field.name, "").split())
-            page.add(f"`{field.name}`, {field.number} in Command; result: {told or 'none'}.", "")
+            effect, answers = options.command(message)
+            told = " or ".join(f"`{answer}` ({page.type_of(results[answer])})" for answer in answers)
+            page.add(f"`{field.name}`, {field.number} in Command; {effect}; result: {told or 'none'}.", "")
             page.fields(message, [4, index])
             page.nested(message, [4, index], message.name, 4)
             about = page.comment([4, index])

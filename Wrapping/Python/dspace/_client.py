@@ -4,12 +4,11 @@ import threading
 import warnings
 
 from dspace import vtk as _vtk
+from dspace._traits import scene_name
 from dspace._wire import decode, encode
 from dspace.errors import KINDS, Closed, DspaceWarning, Internal, WrongThread
 from dspace.events import EventQueue, FrameListeners
 from dspace.proto import commands_pb2 as pb
-
-DEFAULT_SCENE = "scene"  # what a command means that names no scene
 
 
 def make_error(error):
@@ -72,10 +71,10 @@ class LocalClient:
         if reply.HasField("error"):
             raise make_error(reply.error)
         if command.HasField("remove_scene"):
-            self.telemetry.pop(command.scene or DEFAULT_SCENE, None)
+            self.telemetry.pop(scene_name(command), None)
         listeners = self.frame_listeners
         if listeners and command.HasField("remove_scene"):
-            listeners.forget_scene(command.scene or DEFAULT_SCENE)
+            listeners.forget_scene(scene_name(command))
         listeners.put(reply.frame_event)
         try:
             for warning in reply.warning:

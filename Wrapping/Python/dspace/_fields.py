@@ -4,16 +4,9 @@ import os
 import numpy as np
 from google.protobuf.descriptor import FieldDescriptor as _Field
 
+from dspace import _traits
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 
-# What commands accept of fields whose type says less.
-_ACCEPTED = {
-    "width": "an integer from 1 to 16384", "height": "an integer from 1 to 16384",
-    "samples": "an integer from 1 to 8", "font_size": "an integer from 4 to 200",
-    "quality": "an integer from 1 to 100", "radius": "an integer from 0 to 256",
-    "capacity": "an integer from 2 to 10000000", "band": "an integer from 1 on",
-    "triangle_budget": "an integer from 1 on", "resolution": "an integer from 3 to 1024",
-}
 _INTEGERS = {_Field.TYPE_UINT32: (0, 2**32 - 1), _Field.TYPE_INT32: (-2**31, 2**31 - 1),
              _Field.TYPE_FIXED64: (0, 2**64 - 1), _Field.TYPE_UINT64: (0, 2**64 - 1)}
 _OTHERS = {_Field.TYPE_BOOL: "True or False", _Field.TYPE_STRING: "a str",
@@ -193,7 +186,7 @@ def put(message, about=None, **values):
             value = number(value, name, about)
         elif field.type in _INTEGERS:
             low, high = _INTEGERS[field.type]
-            accepted = _ACCEPTED.get(name, f"an integer from {low} to {high}")
+            accepted = _traits.accepted(field) or f"an integer from {low} to {high}"
             if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
                 refuse(about, name, value, accepted, WrongType)
             if not low <= value <= high:

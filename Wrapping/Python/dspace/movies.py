@@ -4,6 +4,7 @@ import math
 from dspace import movies_file
 from dspace._fields import Named, integer, integers, number, path as path_of, refuse
 from dspace._files import atomic_write
+from dspace._traits import DEFAULT_SAMPLES, SAMPLES, SIDE
 from dspace.cameras import Camera
 from dspace.errors import AlreadyExists, Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath, Key, RunTime, in_order
@@ -11,8 +12,7 @@ from dspace.movies_views import Overlay, View
 from dspace.poses import Pose, quaternion_of_matrix
 from dspace.viewports import Viewport
 
-SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": 2, "start": None, "speed": 1.0, "duration": None}
-LARGEST = 16384  # pixels
+SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": DEFAULT_SAMPLES, "start": None, "speed": 1.0, "duration": None}
 
 
 class Movie:
@@ -32,16 +32,17 @@ class Movie:
     def __init__(self, size=SETTINGS["size"], rate=SETTINGS["rate"], samples=SETTINGS["samples"],
                  start=SETTINGS["start"], speed=SETTINGS["speed"], duration=SETTINGS["duration"]):
         about = "movie"
-        accepted = f"(width, height), whole numbers from 1 to {LARGEST}"
+        accepted = f"(width, height), whole numbers from {SIDE[0]} to {SIDE[1]}"
         self.size = tuple(integers(size, 2, "the size", about, accepted))
-        if not all(1 <= each <= LARGEST for each in self.size):
+        if not all(SIDE[0] <= each <= SIDE[1] for each in self.size):
             refuse(about, "the size", self.size, accepted)
         self.rate = number(rate, "the rate", about)
         if not 0.01 <= self.rate <= 1000:
             refuse(about, "the rate", rate, "0.01 to 1000 pictures a second")
-        self.samples = integer(samples, "samples", about, "an integer from 1 to 8")
-        if not 1 <= self.samples <= 8:
-            refuse(about, "samples", samples, "an integer from 1 to 8")
+        accepted = f"an integer from {SAMPLES[0]} to {SAMPLES[1]}"
+        self.samples = integer(samples, "samples", about, accepted)
+        if not SAMPLES[0] <= self.samples <= SAMPLES[1]:
+            refuse(about, "samples", samples, accepted)
         self.start = None if start is None else number(start, "start", about)
         self.speed = number(speed, "speed", about)
         if not (math.isfinite(self.start or 0.0) and math.isfinite(self.speed)):

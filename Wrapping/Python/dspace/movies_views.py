@@ -4,10 +4,10 @@ import re
 from dataclasses import dataclass, field
 
 from dspace._fields import color, flag, integer, number, numbers, refuse, text
+from dspace._traits import DEFAULT_SCENE, FONT_SIZES
 from dspace.errors import WrongType
 from dspace.viewports import ANCHORS
 
-FONT_SIZES = 4, 200  # pixels
 FIELD = re.compile(r"\{\{|\}\}|\{([^{}:]*)(?::([^{}]*))?\}")  # {name:format}, and {{ and }}, which are braces
 WIDEST = 99
 
@@ -36,7 +36,7 @@ class View:
     root's axes are drawn in the corner."""
     name: str = "main"
     rectangle: tuple = (0.0, 0.0, 1.0, 1.0)
-    scene: str = "scene"
+    scene: str = DEFAULT_SCENE
     vantage: str = "main"
     camera: str = ""
     near: float = None

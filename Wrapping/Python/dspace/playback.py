@@ -5,6 +5,7 @@ import time
 from dspace._client import to_reply, warn
 from dspace._wire import command_of
 from dspace._fields import flag, integer, number, real, refuse, text
+from dspace._traits import scene_name
 from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
 from dspace.playback_steps import index_at, is_after, is_at, rounding, runs_of, set_times, steps_of
 from dspace.playback_telemetry import TelemetryReading
@@ -20,7 +21,7 @@ SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER
 
 
 def scene_of(payload):
-    return command_of(payload).scene or "scene"
+    return scene_name(command_of(payload))
 
 
 class Playback(TelemetryReading):

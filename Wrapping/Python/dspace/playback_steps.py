@@ -3,7 +3,9 @@ import bisect
 import math
 from typing import NamedTuple, Optional
 
+from dspace._traits import scene_name
 from dspace._wire import command_of
+from dspace.proto import commands_pb2 as pb
 
 
 class Step(NamedTuple):
@@ -51,7 +53,7 @@ def set_times(file, scene):
         return file.steps()
     found = []
     for seq, time, payload in file.ask("SELECT seq, time, payload FROM command INDEXED BY step WHERE kind = 13"):
-        if (command_of(payload).scene or "scene") == scene:
+        if scene_name(command_of(payload)) == scene:
             found.append((seq, time))
     return sorted(found)
 

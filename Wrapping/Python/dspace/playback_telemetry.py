@@ -2,6 +2,7 @@
 import numpy as np
 
 from dspace._fields import Named, shown, text
+from dspace._traits import DEFAULT_SCENE, scene_name
 from dspace._wire import command_of, get_array
 from dspace.errors import InvalidArgument, NotFound, Unsupported
 from dspace.messages import Event
@@ -185,7 +186,7 @@ class History:
                 self._scene(command).apply(command, row.seq)
 
     def _scene(self, command):
-        name = command.scene or "scene"
+        name = scene_name(command)
         if name not in self.scenes:
             self.scenes[name] = _Scene(self.file, name)
         return self.scenes[name]
@@ -219,7 +220,7 @@ class History:
         if len(telling) > 1:
             raise InvalidArgument(f"{self.file.label}: several scenes have telemetry or events; accepted: scene= one "
                                   "of " + ", ".join(repr(each.name) for each in telling), self.file.label)
-        return telling[0] if telling else _Scene(self.file, "scene")
+        return telling[0] if telling else _Scene(self.file, DEFAULT_SCENE)
 
 
 class TelemetryReading:

@@ -1,6 +1,7 @@
 """When a recording's scenes, cameras and viewports are there: what can be drawn at which of its steps."""
 import bisect
 
+from dspace._traits import scene_name
 from dspace._wire import command_of
 from dspace.recording_file import commands_of
 from dspace.proto import commands_pb2 as pb
@@ -17,7 +18,7 @@ class _Present:
         self.now = {}  # keys only, in the order in which they came
 
     def apply(self, command):
-        scene, kind = command.scene or "scene", command.WhichOneof("command")
+        scene, kind = scene_name(command), command.WhichOneof("command")
         if kind == "create_scene":
             self.now.setdefault(("scene", scene))
         elif kind == "remove_scene":

@@ -7,6 +7,7 @@ from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_bytes, to_reply, warn
 from dspace._fields import flag, number, refuse, text
 from dspace._links import SLICE, hear_signals, make_connection, prepare
+from dspace._traits import UNAWAITED
 from dspace._wire import decode, encode
 from dspace.errors import Closed, DeadlineExceeded, Internal, Unsupported
 from dspace.served_recordings import ServedRecording
@@ -14,10 +15,6 @@ from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
 from dspace.protos import Session
 
-# Commands whose replies say nothing but whether they were done.
-SILENT = {"set_time", "set_poses", "append_trail", "set_joints", "set_tilt", "set_text", "set_text_table",
-          "set_object_visible", "set_material", "set_object_offset", "set_light", "track_wheels", "set_telemetry",
-          "set_telemetry_texts"}
 
 class RemoteClient(LocalClient):
     """Hands commands to a server."""
@@ -59,7 +56,7 @@ class RemoteClient(LocalClient):
 
     def _carry(self, command):
         link = self._open()
-        asks = self.wait or command.WhichOneof("command") not in SILENT
+        asks = self.wait or command.WhichOneof("command") not in UNAWAITED
         self.later = self.later or not asks
         link.Begin(encode(command), asks)
         reply = self._take(link, asks)

@@ -1,6 +1,7 @@
 """Sessions own scenes and viewports."""
 from dspace._client import LocalClient
 from dspace._fields import Named, flag, refuse, text
+from dspace._traits import DEFAULT_SCENE
 from dspace.errors import AlreadyExists, WrongType
 from dspace.recordings import Recording
 from dspace.scenes import Scene
@@ -38,7 +39,7 @@ class Session(ViewerEvents):
             refuse("session", "the command", command, "a dspace.proto.commands_pb2.Command", WrongType)
         return self._client.execute(command)
 
-    def scene(self, name="scene", lights=True):
+    def scene(self, name=DEFAULT_SCENE, lights=True):
         """The scene of that name, made now if there is none.
 
         lights: whether a new one begins with the lights "sun" and "sky".

@@ -3,6 +3,7 @@ import math
 import warnings
 
 from dspace._fields import items, number, put, real, refuse, text, word
+from dspace._traits import DEFAULT_SCENE
 from dspace.errors import DspaceWarning, WrongType
 from dspace.frames import Frame, put_pose
 from dspace.objects import GraphicsObject
@@ -131,7 +132,7 @@ class ViewerEvents:
         event.selection.object.extend(each.id for each in objects)
         self.tell(event)
 
-    def dragged(self, goal, position=None, quaternion=None, pose=None, relative_to=None, scene="scene",
+    def dragged(self, goal, position=None, quaternion=None, pose=None, relative_to=None, scene=DEFAULT_SCENE,
                 done=True):
         """Says where a person wants a goal to be: of an end effector, a wheel, a drive.
 

@@ -5,6 +5,7 @@ import numpy as np
 
 from dspace._fields import flag, integers, items, put, put_color, put_given, refuse, word
 from dspace._strict import Strict
+from dspace._traits import SIDE
 from dspace.errors import Internal, WrongType
 from dspace.fragments import Fragment
 from dspace.legends import LegendMaking, put_value
@@ -14,7 +15,7 @@ from dspace.proto import service_pb2
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 PLANES = {"color": 0, "depth": 1, "label": 2}
-SIZE = "(width, height), two integers from 1 to 16384"
+SIZE = f"(width, height), two integers from {SIDE[0]} to {SIDE[1]}"
 EVENTS = {"move": 0, "press": 1, "release": 2, "wheel": 3, "key": 4}
 BUTTONS = {None: 0, "left": 1, "middle": 2, "right": 3}
 TYPES = {0: np.uint8, 1: np.uint32, 2: np.float32}

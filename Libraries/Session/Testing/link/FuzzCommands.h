@@ -124,7 +124,8 @@ private:
     return this->Below(8) == 0 ? numbers[this->Below(4)] : this->Below(6);
   }
   std::string Text(const FieldDescriptor& field) {
-    if (field.name() == "path" || field.name() == "texture" || field.name() == "folder") {
+    const v1::TextOptions::Kind kind = field.options().GetExtension(v1::holds);
+    if (kind == v1::TextOptions::READ_FILE || kind == v1::TextOptions::NEW_FILE) {
       const char* names[] = {"/grid.asc", "/part.obj", "/nothing", "", "/../x", "/out.json"};
       return TheRoot().Path + names[this->Below(6)];
     }

@@ -14,28 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(ConfinementFields, EveryTextOfACommandIsListed) {
-  std::string unlisted;
-  for (const std::string& field : UnlistedFields()) {
-    unlisted += "\n  " + field;
-  }
-  EXPECT_TRUE(unlisted.empty())
-      << "Say in Confinement.cxx whether these new fields name files (PathFields, by full name) or "
-         "none (PlainFields, by name):"
-      << unlisted;
-}
-
-TEST(ConfinementFields, EveryListedPathIsAField) {
-  const auto* pool = google::protobuf::DescriptorPool::generated_pool();
-  for (const std::string& name : PathFields()) {
-    const auto* field = pool->FindFieldByName(name);
-    ASSERT_TRUE(field) << name;
-    for (const std::string& plain : PlainFields()) {
-      EXPECT_NE(field->name(), plain) << name;
-    }
-  }
-}
-
 class ConfinementTest : public ::testing::Test {
 protected:
   void SetUp() override {

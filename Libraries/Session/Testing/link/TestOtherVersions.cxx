@@ -3,6 +3,8 @@
 #include <map>
 #include <vector>
 
+#include <dspace/messages/CommandTraits.h>
+
 #include "CommandTestSupport.h"
 #include "LinkTestSupport.h"
 
@@ -181,8 +183,8 @@ TEST_F(WireCommands, LaterOnesAreTypedAndSayThatTheyAreNotCarriedOut) {
   int later = 0;
   for (int i = 0; i < commands->field_count(); ++i) {
     const FieldDescriptor* field = commands->field(i);
-    if (!field->message_type() ||
-        field->message_type()->file()->name() != "dspace/proto/measurements.proto") {
+    const session::CommandTraits* traits = session::CommandTraits::Find(field->number());
+    if (!traits || traits->GetEffect() != session::Effect::Later) {
       continue;
     }
     v1::Command command;

@@ -3,6 +3,7 @@ import argparse
 import os
 import sys
 
+from dspace._traits import SAMPLES
 from dspace.command_line import terrain as values
 
 
@@ -14,7 +15,7 @@ def add_arguments(parser):
                                                            "X without a dot, or with a slash at its end")
     parser.add_argument("--size", type=values.size, metavar="WxH", help="pixels (default: the file's)")
     parser.add_argument("--rate", type=float, help="pictures a second (default: the file's)")
-    parser.add_argument("--samples", type=int, metavar="N", help="N x N samples a pixel, 1 to 8 (default: the file's)")
+    parser.add_argument("--samples", type=int, metavar="N", help=f"N x N samples a pixel, {SAMPLES[0]} to {SAMPLES[1]} (default: the file's)")
     parser.add_argument("--jobs", type=jobs, default=1, metavar="N", help="processes that share it (1)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers share it: tcp://HOST:PORT or tls://...")
     parser.add_argument("--work", metavar="DIR", help="folder for pictures (default: X.work)")

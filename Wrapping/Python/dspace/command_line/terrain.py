@@ -2,6 +2,7 @@
 import argparse
 import math
 
+from dspace._traits import SIDE
 from dspace.command_line import terrain_cache, terrain_info, terrain_layers, terrain_render
 
 # What a patch's keys hold.
@@ -70,8 +71,8 @@ def size(text):
         width, height = (int(part) for part in text.lower().split("x"))
     except ValueError:
         width = height = 0
-    if not (1 <= width <= 16384 and 1 <= height <= 16384):
-        raise argparse.ArgumentTypeError(f"'{text}'; accepted: WIDTHxHEIGHT, each 1 to 16384")
+    if not all(SIDE[0] <= side <= SIDE[1] for side in (width, height)):
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: WIDTHxHEIGHT, each {SIDE[0]} to {SIDE[1]}")
     return width, height
 
 
