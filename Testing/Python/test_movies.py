@@ -78,8 +78,10 @@ def test_keys_come_from_cameras_that_chase(scene):
     np.testing.assert_allclose(key.position, (5, -2, 1), atol=1e-12)  # 4 m behind; it heads along Y
     forward = dspace.Pose(quaternion=key.quaternion).rotation[:, 2]
     np.testing.assert_allclose(forward, (0, 1, 0), atol=1e-12)
-    with pytest.raises(dspace.InvalidArgument, match="it chases"):
-        dspace.Movie().add_key(scene.cameras["c"], 0.0)
+    assert dspace.Movie().add_key(scene.cameras["c"], 0.0) == key  # without a viewport, too
+    far = scene.add_frame("far", position=(1e12, 0, 0), quaternion=quaternion_of_axis("z", 90))
+    scene.cameras["c"].chase(far, offset=(-4, 0, 0), target=(0, 0, 0))
+    np.testing.assert_allclose(dspace.Movie().add_key(view, 0.0).position, (1e12, -4, 0), atol=1e-3)
     scene.add_camera("flat", eye=(0, 0, 1), target=(0, 0, 0), up=(0, 1, 0), height=3)
     with pytest.raises(dspace.InvalidArgument, match="a perspective camera"):
         dspace.Movie().add_key(scene.cameras["flat"], 0.0)

@@ -77,7 +77,7 @@ class Camera(Strict):
 
     @property
     def pose(self):
-        """X_FC on its frame; None for a chase camera. May be set."""
+        """X_FC on its frame; None for a chase camera, of which pose_in() tells where it is. May be set."""
         mount = self._info().mount
         if not mount.HasField("pose"):
             return None
@@ -87,6 +87,14 @@ class Camera(Strict):
     @pose.setter
     def pose(self, pose):
         self.attach(self.frame, pose)
+
+    def pose_in(self, frame=None):
+        """X_GC now, in `frame` G (default: the root), also of a camera that chases: with the lag that it has at
+        the scene's time. Its scale is 1."""
+        reply = self._scene._ask("get_camera_pose", vantage=self._vantage, name=self._name,
+                                 relative_to=self._scene._frame_id(frame))
+        p, q = reply.camera_pose.pose.position, reply.camera_pose.pose.rotation
+        return Pose._computed((p.x, p.y, p.z), (q.w, q.x, q.y, q.z), 1.0)
 
     # --- What it sees --------------------------------------------------------------------------
 

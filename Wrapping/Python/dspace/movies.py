@@ -9,7 +9,6 @@ from dspace.cameras import Camera
 from dspace.errors import AlreadyExists, Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath, Key, RunTime, in_order
 from dspace.movies_views import Overlay, View
-from dspace.poses import Pose, quaternion_of_matrix
 from dspace.viewports import Viewport
 
 SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": DEFAULT_SAMPLES, "start": None, "speed": 1.0, "duration": None}
@@ -228,36 +227,11 @@ def _seen(viewport, frame):
         raise InvalidArgument(f"camera {camera.name!r}: it has no field of view; accepted: a perspective camera",
                               camera.name)
     base, pose = camera.frame, camera.pose
-    if pose is None:
-        if isinstance(viewport, Camera):
-            raise InvalidArgument(f"camera {camera.name!r}: it chases; accepted: a viewport that looks through "
-                                  "it", camera.name)
-        base, pose = (scene.root if frame is None else base), _drawn_from(viewport)
-        if frame is None:
-            frame = base
-        pose, base = scene.root.pose_in(frame) @ pose, frame
+    if pose is None:  # it chases: where it is now, in a frame that does not move with what it follows
+        base = scene.root if frame is None else frame
+        pose = camera.pose_in(base)
     elif frame is not None:
-        pose, base = base.pose_in(frame) @ pose, frame
+        base, pose = frame, camera.pose_in(frame)
     base = base if isinstance(base, str) else base.path
     return {"position": tuple(pose.position), "quaternion": tuple(pose.quaternion), "fov_deg": fov_deg,
             "frame": "" if base == "/" else base}
-
-
-def _drawn_from(viewport):
-    """The pose in the root of the camera that a viewport was drawn from."""
-    import numpy as np
-    from vtkmodules.vtkRenderingCore import vtkActor
-    renderer, nothing = viewport.vtk.GetRenderer(), vtkActor()
-    renderer.AddViewProp(nothing)  # VTK's camera is put in place where VTK has something to draw
-    viewport.capture()
-    renderer.RemoveViewProp(nothing)
-    camera = renderer.GetActiveCamera()
-    if max(map(abs, camera.GetPosition())) > 1e8:  # VTK's camera looks at a point a metre away
-        raise InvalidArgument(f"{viewport!r}: it chases {max(map(abs, camera.GetPosition())):.3g} m from the "
-                              "root; accepted: up to 1e8 m, or a camera that stands on a frame")
-    forward = np.array(camera.GetDirectionOfProjection())
-    up = np.array(camera.GetViewUp())
-    right = np.cross(forward, up)
-    right /= np.linalg.norm(right)
-    return Pose(camera.GetPosition(), quaternion_of_matrix(np.column_stack((right, np.cross(forward, right),
-                                                                            forward))))

@@ -51,6 +51,37 @@ TEST_F(CameraCommands, WhatIsNotGivenStays) {
   EXPECT_EQ(info.mount().pose().position().z(), 10);
 }
 
+TEST_F(CameraCommands, TheirPoseIsAnsweredInAnyFrame) {
+  const FrameId carrier = this->AddFrame("carrier");
+  v1::Command move; // (5, 2, 1), a quarter turn about Z
+  move.mutable_set_poses()->add_frame(carrier);
+  for (const double v : {5.0, 2.0, 1.0, std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5), 1.0}) {
+    move.mutable_set_poses()->add_pose(v);
+  }
+  this->Accept(move);
+  v1::Command camera;
+  camera.mutable_set_camera()->set_name("chase");
+  camera.mutable_set_camera()->mutable_mount()->set_frame(carrier);
+  camera.mutable_set_camera()->mutable_mount()->mutable_chase()->mutable_offset()->set_x(-4);
+  this->Accept(camera);
+  v1::Command ask;
+  ask.mutable_get_camera_pose()->set_name("chase");
+  const v1::Pose inRoot = this->Accept(ask).camera_pose().pose(); // it heads along Y
+  EXPECT_NEAR(inRoot.position().x(), 5, 1e-12);
+  EXPECT_NEAR(inRoot.position().y(), -2, 1e-12);
+  EXPECT_NEAR(inRoot.position().z(), 1, 1e-12);
+  EXPECT_EQ(inRoot.scale(), 1);
+  ask.mutable_get_camera_pose()->set_relative_to(carrier);
+  const v1::Pose inCarrier = this->Accept(ask).camera_pose().pose();
+  EXPECT_NEAR(inCarrier.position().x(), -4, 1e-12);
+  EXPECT_NEAR(inCarrier.position().y(), 0, 1e-12);
+  EXPECT_NEAR(inCarrier.position().z(), 0, 1e-12);
+  ask.mutable_get_camera_pose()->set_relative_to(999);
+  this->Refuse(ask, Kind::NOT_FOUND, "999");
+  ask.mutable_get_camera_pose()->set_name("none");
+  this->Refuse(ask, Kind::NOT_FOUND, "camera 'none'");
+}
+
 TEST_F(CameraCommands, ChaseIsKept) {
   const FrameId rover = this->AddFrame("rover");
   v1::Command command;

@@ -130,7 +130,21 @@ void AnswerCamera(const Context& context, v1::DescribeCamera& command) {
                  command.name(), context.reply.mutable_camera());
 }
 
+void GetCameraPose(const Context& context, v1::GetCameraPose& command) {
+  Put(CameraPoseIn(context.TheScene(), VantageName(command.vantage()), command.name(),
+                   ToFrame(command.relative_to())),
+      context.reply.mutable_camera_pose()->mutable_pose());
+}
+
 } // namespace
+
+Pose CameraPoseIn(const Scene& scene, const std::string& vantage, const std::string& camera,
+                  FrameId frame) {
+  const CameraPose at = scene.PlaceCamera(vantage, camera);
+  Pose X_GC = scene.Frames().RelativePose(frame, at.frame) * at.X_FC;
+  X_GC.scale = 1.0; // a camera has none
+  return X_GC;
+}
 
 void PutLag(const std::pair<std::string, std::string>& camera, const ChaseState& from,
             v1::CameraLag* to) {
@@ -167,6 +181,7 @@ void AddCameraCommands(Registry& registry) {
   registry.Add(C::kRemoveCamera, &C::mutable_remove_camera, RemoveCamera);
   registry.Add(C::kSetActiveCamera, &C::mutable_set_active_camera, SetActiveCamera);
   registry.Add(C::kDescribeCamera, &C::mutable_describe_camera, AnswerCamera);
+  registry.Add(C::kGetCameraPose, &C::mutable_get_camera_pose, GetCameraPose);
 }
 
 } // namespace dspace::session

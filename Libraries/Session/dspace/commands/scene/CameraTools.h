@@ -13,6 +13,10 @@ namespace dspace::session {
 // An empty name is the active camera. Throws Error(NotFound).
 void DescribeCamera(const std::string& sceneName, const Scene& scene, const std::string& vantage,
                     const std::string& name, v1::CameraInfo* info);
+// X_GC of a camera now, in the frame G, with its lag; scale 1. An empty name is the active camera.
+// Throws Error(NotFound).
+Pose CameraPoseIn(const Scene& scene, const std::string& vantage, const std::string& camera,
+                  FrameId frame);
 void PutLag(const std::pair<std::string, std::string>& camera, const ChaseState& from,
             v1::CameraLag* to);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include <dspace/commands/scene/CameraTools.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/Convert.h>
 
@@ -29,12 +30,9 @@ std::optional<v1::SetCamera> OwnViews::CameraOf(Interpreter& interpreter, const 
 
 v1::Mount OwnViews::RootMount(const Scene& scene, const std::string& vantage,
                               const std::string& camera) {
-  const CameraPose at = scene.PlaceCamera(vantage, camera);
-  Pose X_RC = scene.Frames().WorldPose(at.frame) * at.X_FC;
-  X_RC.scale = 1.0; // a camera has none
   v1::Mount mount;
   mount.set_frame(RootFrame);
-  Put(X_RC, mount.mutable_pose());
+  Put(CameraPoseIn(scene, vantage, camera, RootFrame), mount.mutable_pose());
   return mount;
 }
 

@@ -1,0 +1,225 @@
+// One valid instance of every command, for tests that walk the whole protocol. A new command needs
+// an entry here: the tests name the one that has none.
+#ifndef DSPACE_EVERY_COMMAND_H
+#define DSPACE_EVERY_COMMAND_H
+
+#include <string>
+#include <vector>
+
+namespace dspace::testing {
+
+// Commands are v1::Command in protobuf's text format. FOLDER stands for a folder that the test may
+// write into: it holds arm.urdf, ground.asc, box.obj and tracks.json. VIEW is a viewport of 48 x 32
+// pixels.
+struct CommandInstance {
+  const char* command;             // the command's name is the name of its field
+  std::vector<const char*> before; // given first, after Everything()
+  // The reply may differ between two sessions in the same state: counters, times, paths of files.
+  bool replyVaries = false;
+};
+
+// Makes a scene with something of every kind in it.
+inline const std::vector<const char*>& Everything() {
+  static const std::vector<const char*> commands = {
+      R"(create_scene {})",
+      R"(scene: "other" create_scene { no_lights: true })",
+      R"(create_frame { id: 10 name: "base" pose { position { x: 1 y: 2 z: 0.5 } } })",
+      R"(create_frame { id: 11 parent: 10 name: "mast" pose { position { z: 1 } } })",
+      R"(create_primitive { object { id: 1 name: "box" frame: 11 } box { size { x: 1 y: 1 z: 1 } } })",
+      R"(create_trail { object { id: 2 name: "trail" frame: 10 } capacity: 10 })",
+      R"(append_trail { object: 2 point: [0, 0, 0, 1, 0, 0, 1, 1, 0] })",
+      R"(create_primitive { object { id: 3 name: "tilt" } tilt { radius: 1 tilt_deg: 5 } })",
+      R"(create_text { object { id: 4 name: "words" } text: "words" solid { height: 1 } })",
+      R"(create_text { object { id: 5 name: "label" } text: "label" label { font_size: 20 } })",
+      R"(load_robot { path: "FOLDER/arm.urdf" name: "arm" })",
+      R"(create_fragment { name: "parts" nature: PHYSICAL })",
+      R"(create_fragment { name: "empty" nature: PHYSICAL })",
+      R"(set_light { name: "lamp" kind: POINT position { z: 5 } })",
+      R"(create_vantage { name: "side" })",
+      R"(create_vantage { name: "spare" })",
+      R"(set_camera { vantage: "side" name: "chase"
+           mount { frame: 10 chase { offset { x: -5 z: 2 } smoothing_s: 1 } } })",
+      R"(set_camera { vantage: "side" name: "still" mount { frame: 11 pose {} } })",
+      R"(set_camera { name: "eye" mount { look_at { eye { x: 6 y: -7 z: 5 } target { z: 1 } } } })",
+      R"(open_terrain { name: "ground" path: "FOLDER/ground.asc" mode: CLIPMAP subdivisions: 5
+           fill_holes: 4 build_overviews: false overview_cache: "" })",
+      R"(add_terrain_layer { terrain: "ground" name: "dust" noise {} })",
+      R"(track_wheels { terrain: "ground" width: 0.3
+           wheel { name: "left" contact: [-2, -2, 0, 0.1, 0, 1, -2, 0, 0.1, 3] } })",
+      R"(create_telemetry { id: 1 name: "rover/power" unit: "W" })",
+      R"(create_telemetry { id: 2 name: "rover/mode" kind: TEXT })",
+      R"(set_telemetry { id: 1 value: 3 })",
+      R"(set_telemetry_texts { id: 2 text: "idle" })",
+      R"(log_event { kind: "note" text: "it begins" frame: 10 })",
+      R"(ask_operator { name: "go" text: "Go on?" choice: "yes" choice: "no" })",
+      R"(create_viewport { name: "VIEW" width: 48 height: 32 samples: 1 })",
+      R"(set_text_table { viewport: "VIEW" name: "table" row { label: "a" value: "1" } font_size: 6 })",
+      R"(set_color_bar { viewport: "VIEW" name: "bar" low: 0 high: 1 color { r: 1 } color { b: 1 }
+           length: 16 font_size: 6 })",
+      R"(create_viewport { name: "hidden" width: 16 height: 16 samples: 1 hidden: true })",
+      R"(set_time { time_s: 2 })",
+  };
+  return commands;
+}
+
+inline const std::vector<CommandInstance>& EveryCommand() {
+  static const std::vector<CommandInstance> commands = {
+      {R"(scene: "third" create_scene {})", {}},
+      {R"(scene: "other" remove_scene {})", {}},
+      {R"(list_scenes {})", {}},
+      {R"(set_time { time_s: 3.5 })", {}},
+      {R"(get_time {})", {}},
+
+      {R"(create_frame { id: 40 parent: 11 name: "tip" pose { position { x: 2 } } })", {}},
+      {R"(remove_frame { frame: 40 })", {R"(create_frame { id: 40 parent: 11 name: "tip" })"}},
+      {R"(reparent_frame { frame: 11 parent: 1 keep_world_pose: true })", {}},
+      {R"(rename_frame { frame: 11 name: "tower" })", {}},
+      {R"(set_poses { frame: 11 pose: [0, 0, 3, 1, 0, 0, 0, 1] })", {}},
+      {R"(find_frame { path: "base/mast" })", {}},
+      {R"(get_poses { frame: [10, 11] relative_to: 1 })", {}},
+      {R"(list_frames {})", {}},
+      {R"(follow_frames {})", {}},
+
+      {R"(import_object { object { id: 50 name: "model" frame: 10 } level { path: "FOLDER/box.obj" } })",
+       {}},
+      {R"(create_primitive { object { id: 50 name: "ball" } sphere { radius: 0.5 resolution: 8 } })",
+       {}},
+      {R"(set_primitive { object: 1 shape { sphere { radius: 0.7 resolution: 8 } } })", {}},
+      {R"(create_trail { object { id: 50 name: "way" } capacity: 5 minimum_spacing: 0.1 })", {}},
+      {R"(append_trail { object: 2 point: [2, 1, 0] })", {}},
+      {R"(clear_trail { object: 2 })", {}},
+      {R"(remove_object { object: 1 })", {}},
+      {R"(set_object_visible { object: 1 visible: false })", {}},
+      {R"(set_material { object: 1 material { color { r: 1 } opacity: 1 metallic: 0.5 roughness: 0.5 } })",
+       {}},
+      {R"(set_object_offset { object: 1 offset { position { x: 0.5 } } })", {}},
+      {R"(attach_object { object: 1 frame: 10 })", {}},
+      {R"(move_to_fragment { object: 1 fragment: "parts" })", {}},
+      {R"(find_object { name: "box" })", {}},
+      {R"(describe_object { object: 1 })", {}},
+      {R"(list_objects {})", {}},
+      {R"(set_tilt { object: 3 tilt_deg: 20 })", {}},
+      {R"(create_text { object { id: 50 name: "more" } text: "more" label { font_size: 16 } })",
+       {}},
+      {R"(set_text { object: 4 text: "other" })", {}},
+
+      {R"(load_robot { path: "FOLDER/arm.urdf" name: "second" frame: 10 })", {}},
+      {R"(remove_robot { robot: "arm" })", {}},
+      {R"(set_joints { robot: "arm" joint: 0 position: 30 })", {}},
+      {R"(describe_robot { robot: "arm" })", {}},
+      {R"(list_robots {})", {}},
+
+      {R"(create_fragment { name: "signs" nature: ORNAMENTAL })", {}},
+      {R"(remove_fragment { name: "empty" })", {}},
+      {R"(set_fragment_visible { name: "parts" visible: false })", {}},
+      {R"(list_fragments {})", {}},
+      {R"(set_light { name: "lamp" kind: SPOT position { z: 6 } cone_deg: 20 })", {}},
+      {R"(remove_light { name: "sun" })", {}},
+      {R"(list_lights {})", {}},
+
+      {R"(create_vantage { name: "top" })", {}},
+      {R"(remove_vantage { name: "spare" })", {}},
+      {R"(list_vantages {})", {}},
+      {R"(set_camera { vantage: "side" name: "still" projection { orthographic { height: 4 } } })",
+       {}},
+      {R"(remove_camera { vantage: "side" name: "chase" })", {}},
+      {R"(set_active_camera { vantage: "side" name: "still" })", {}},
+      {R"(describe_camera { vantage: "side" name: "chase" })", {}},
+      {R"(get_camera_pose { vantage: "side" name: "chase" relative_to: 10 })", {}},
+
+      {R"(create_viewport { name: "more" width: 16 height: 16 samples: 1 vantage: "side" })", {}},
+      {R"(remove_viewport { viewport: "hidden" })", {}},
+      {R"(resize_viewport { viewport: "VIEW" width: 40 height: 40 })", {}},
+      {R"(move_viewport { viewport: "VIEW" x: 5 y: 6 })", {}},
+      {R"(set_viewport { viewport: "VIEW" samples: 2 background { b: 1 } ornaments: false })", {}},
+      {R"(set_viewport_fragment { viewport: "VIEW" fragment: "physical" visible: false })", {}},
+      {R"(set_text_table { viewport: "VIEW" name: "table" row { label: "b" value: "2" digits: 3 }
+            font_size: 14 opacity: 1 background_opacity: 0.5 margin: 0 })",
+       {}},
+      {R"(remove_text_table { viewport: "VIEW" name: "table" })", {}},
+      {R"(viewport_event { viewport: "VIEW" type: WHEEL x: 20 y: 15 wheel: 1 })", {}},
+      {R"(capture { viewport: "VIEW" color: true depth: true label: true inline_data: true })", {}},
+      {R"(save_image { viewport: "VIEW" path: "FOLDER/view.jpg" quality: 90 })", {}},
+      {R"(render { viewport: "VIEW" })", {}, true},
+      {R"(pick { viewport: "VIEW" x: 24 y: 16 radius: 4 })", {}},
+      {R"(describe_viewport { viewport: "VIEW" })", {}},
+      {R"(list_viewports {})", {}},
+      {R"(get_statistics {})", {}, true},
+      {R"(set_color_bar { viewport: "VIEW" name: "bar" low: 0 high: 2 color { g: 1 } color { b: 1 }
+            ticks: 3 length: 20 thickness: 4 font_size: 6 opacity: 1 background_opacity: 0.5 })",
+       {}},
+      {R"(remove_color_bar { viewport: "VIEW" name: "bar" })", {}},
+
+      {R"(open_terrain { name: "second" path: "FOLDER/ground.asc" mode: TRIANGLES frame: 10 band: 1
+            triangle_budget: 1000 build_overviews: false overview_cache: "" })",
+       {}},
+      {R"(remove_terrain { terrain: "ground" })", {}},
+      {R"(focus_terrain { terrain: "ground" point: [1, 1] radius: 3 })", {}},
+      {R"(query_terrain { terrain: "ground" point: [0.5, 0.25, -2, -2] height: true normal: true
+            slope: true })",
+       {}},
+      {R"(convert_terrain { terrain: "ground" point: [1, 2, 3] to_map: true })", {}},
+      {R"(describe_terrain { terrain: "ground" })", {}, true},
+      {R"(list_terrains {})", {}},
+      {R"(style_terrain { terrain: "ground" ramp { opacity: 0.5 } contours { interval: 1 width: 1 opacity: 1 }
+            grid { interval: 2 width: 1 opacity: 1 } grid_labels { font_size: 6 background_opacity: 0.5 } })",
+       {}},
+      {R"(intersect_terrain { terrain: "ground" ray: [0.5, 0.25, 100, 0, 0, -1] })", {}},
+      {R"(describe_terrain_style { terrain: "ground" })",
+       {R"(style_terrain { terrain: "ground" ramp { opacity: 0.5 } })"}},
+      {R"(track_wheels { terrain: "ground" width: 0.3
+            wheel { name: "right" contact: [-2, 2, 0, 0.1, 0, 1, 2, 0, 0.1, 3] } })",
+       {}},
+      {R"(clear_tracks { terrain: "ground" })", {}},
+      {R"(save_tracks { terrain: "ground" path: "FOLDER/saved.json" })", {}},
+      {R"(load_tracks { terrain: "ground" path: "FOLDER/tracks.json" })",
+       {R"(save_tracks { terrain: "ground" path: "FOLDER/tracks.json" })",
+        R"(clear_tracks { terrain: "ground" })"}},
+      {R"(restore_tracks { terrain: "ground" stroke { name: "third" width: 0.3 wall: 0.02
+            place: [-1, 1, 1, 1] rolled: [0, 2] heading: [0, 0] sinkage: [0.05, 0.05] } })",
+       {}},
+      {R"(build_terrain_cache { folder: "FOLDER/cache" path: "FOLDER/ground.asc" band: 1 })",
+       {},
+       true},
+      {R"(list_terrain_cache { folder: "FOLDER/cache" })", {}, true},
+      {R"(clear_terrain_cache { folder: "FOLDER/cache" })", {}, true},
+      {R"(verify_terrain_cache { folder: "FOLDER/cache" })", {}, true},
+      {R"(add_terrain_layer { terrain: "ground" name: "sand" noise { octaves: 6 contrast: 0.25 }
+            opacity: 0.5 position: 0 })",
+       {}},
+      {R"(change_terrain_layer { terrain: "ground" name: "dust" opacity: 0.25 position: 0 })", {}},
+      {R"(remove_terrain_layer { terrain: "ground" name: "dust" })", {}},
+      {R"(list_terrain_layers { terrain: "ground" })", {}, true},
+
+      {R"(create_telemetry { id: 7 name: "rover/heater" kind: CHOICE label { value: 1 label: "on" } })",
+       {}},
+      {R"(set_telemetry_limits { id: 1 limits { alarm_high: 9 } })", {}},
+      {R"(set_telemetry { id: 1 value: 5 })", {}},
+      {R"(set_telemetry_texts { id: 2 text: "drive" })", {}},
+      {R"(remove_telemetry { id: 1 })", {}},
+      {R"(list_telemetry {})", {}},
+
+      {R"(log_event { kind: "contact" text: "ground" })", {}},
+      {R"(ask_operator { name: "stop" text: "Stop?" })", {}},
+      {R"(close_question { name: "go" answer: "yes" from: "operator" })", {}},
+      {R"(list_events {})", {}},
+      {R"(list_questions {})", {}},
+
+      {R"(line_of_sight {})", {}},
+      {R"(lit_area {})", {}},
+      {R"(horizon {})", {}},
+      {R"(horizon_map {})", {}},
+      {R"(viewshed {})", {}},
+      {R"(illumination_map {})", {}},
+      {R"(simulate_image {})", {}},
+      {R"(project_points {})", {}},
+      {R"(unproject_pixels {})", {}},
+      {R"(ephemeris {})", {}},
+      {R"(sky_state {})", {}},
+  };
+  return commands;
+}
+
+} // namespace dspace::testing
+
+#endif
