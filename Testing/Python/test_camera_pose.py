@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.kinematics import quaternion_of_axis
+from dspace.poses import quaternion_of_axis
 from served_support import Served
 
 

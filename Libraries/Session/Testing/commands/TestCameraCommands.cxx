@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "CommandTestSupport.h"
 
 namespace dspace::testing {
