@@ -67,8 +67,6 @@ protected:
     }
   };
 
-  static void SetUpTestSuite() { Context() = vtkSmartPointer<vtkDspaceRenderContext>::New(); }
-  static void TearDownTestSuite() { Context() = nullptr; }
   void SetUp() override {
     std::ofstream(this->Folder_ / "arm.urdf") << Arm;
     std::ofstream(this->Folder_ / "ground.asc") << Ground;
@@ -89,7 +87,7 @@ protected:
 
   std::unique_ptr<Session> Bare() const {
     auto session = std::make_unique<Session>();
-    session->vtk->SetRenderContext(Context());
+    session->vtk->SetRenderContext(this->Context_);
     return session;
   }
   // With everything in it, and what the command needs.
@@ -173,12 +171,7 @@ protected:
   }
 
   TemporaryFolder Folder_;
-
-private:
-  static vtkSmartPointer<vtkDspaceRenderContext>& Context() {
-    static vtkSmartPointer<vtkDspaceRenderContext> context;
-    return context;
-  }
+  vtkNew<vtkDspaceRenderContext> Context_;
 };
 
 TEST_F(EveryCommandTest, EveryCommandHasItsOptionsAndAnInstance) {

@@ -24,6 +24,12 @@ using google::protobuf::SourceLocation;
 
 // --- The wire ---------------------------------------------------------------------------------
 
+// A command that is typed only, or the reply to one: no other program relies on it yet.
+bool IsLater(const FieldDescriptor& field) {
+  return field.message_type() &&
+         field.message_type()->file()->name().find("measurements.proto") != std::string::npos;
+}
+
 // One for each field and each value of an enumeration: what must stay.
 void Describe(const EnumDescriptor& type, std::set<std::string>& lines) {
   for (int i = 0; i < type.value_count(); ++i) {
@@ -57,12 +63,6 @@ void Describe(const Descriptor& message, std::set<std::string>& lines) {
   for (int i = 0; i < message.enum_type_count(); ++i) {
     Describe(*message.enum_type(i), lines);
   }
-}
-
-// A command that is typed only, or the reply to one: no other program relies on it yet.
-bool IsLater(const FieldDescriptor& field) {
-  return field.message_type() &&
-         field.message_type()->file()->name().find("measurements.proto") != std::string::npos;
 }
 
 // service.proto and all that it imports, which is all that goes over the wire: options do not.
