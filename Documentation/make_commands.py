@@ -71,6 +71,8 @@ class Options:
             words.append(f"{found.minimum:,.10g} on")
         elif found.HasField("maximum"):
             words.append(f"up to {found.maximum:,.10g}")
+        if found.HasField("most_bytes"):
+            words.append(f"up to {found.most_bytes:,} bytes")
         if found.HasField("standard"):
             words.append(("0" if found.zero_is_absent else "absent") + f": {found.standard:,.10g}")
         elif found.zero_is_absent:

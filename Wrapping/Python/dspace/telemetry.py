@@ -8,6 +8,7 @@ import numpy as np
 from dspace import _wire
 from dspace._fields import about, array_of, items, number, put, refuse, shown, text, word
 from dspace._strict import Strict
+from dspace._traits import limits
 from dspace.errors import InvalidArgument, NotFound, WrongType
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import telemetry_pb2
@@ -15,7 +16,7 @@ from dspace.proto import telemetry_pb2
 KINDS = {"number": telemetry_pb2.CreateTelemetry.NUMBER, "text": telemetry_pb2.CreateTelemetry.TEXT,
          "choice": telemetry_pb2.CreateTelemetry.CHOICE}
 STATES = ("no value", "good", "warning", "alarm")
-MAXIMUM_TEXT = 4096  # bytes
+MAXIMUM_TEXT = limits(telemetry_pb2.SetTelemetryTexts, "text").most_bytes
 # As IsControlCharacter of TextCharacters.cxx.
 CONTROLS = re.compile("[\0-\x1f\x7f-\x9f\u034f\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufe00-\ufe0f\ufeff"
                       "\ufff0-\ufffc]")

@@ -48,6 +48,7 @@ inline const std::vector<const char*>& Everything() {
            wheel { name: "left" contact: [-2, -2, 0, 0.1, 0, 1, -2, 0, 0.1, 3] } })",
       R"(create_telemetry { id: 1 name: "rover/power" unit: "W" })",
       R"(create_telemetry { id: 2 name: "rover/mode" kind: TEXT })",
+      R"(create_telemetry { id: 3 name: "rover/lamp" kind: CHOICE label { value: 1 label: "on" } })",
       R"(set_telemetry { id: 1 value: 3 })",
       R"(set_telemetry_texts { id: 2 text: "idle" })",
       R"(log_event { kind: "note" text: "it begins" frame: 10 })",
@@ -191,7 +192,7 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(remove_terrain_layer { terrain: "ground" name: "dust" })", {}},
       {R"(list_terrain_layers { terrain: "ground" })", {}, true},
 
-      {R"(create_telemetry { id: 7 name: "rover/heater" kind: CHOICE label { value: 1 label: "on" } })",
+      {R"(create_telemetry { id: 7 name: "rover/heater" unit: "Cel" description: "of the battery" })",
        {}},
       {R"(set_telemetry_limits { id: 1 limits { alarm_high: 9 } })", {}},
       {R"(set_telemetry { id: 1 value: 5 })", {}},

@@ -142,6 +142,16 @@ void RequireLimits(const v1::Command& command) {
   Require(command, command);
 }
 
+std::size_t MostBytes(const char* field) {
+  const FieldDescriptor* found =
+      v1::Command::descriptor()->file()->pool()->FindFieldByName(std::string("dspace.v1.") + field);
+  if (!found || !LimitsOf(*found).has_most_bytes()) {
+    throw Error(Error::Kind::Internal, std::string("field ") + field,
+                "the option `(accepts).most_bytes` is missing (options.proto)");
+  }
+  return LimitsOf(*found).most_bytes();
+}
+
 const std::string& DefaultScene() {
   static const std::string& name =
       LimitsOf(*v1::Command::descriptor()->FindFieldByName("scene")).standard_text();

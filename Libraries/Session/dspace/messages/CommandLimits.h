@@ -2,6 +2,7 @@
 #ifndef DSPACE_SESSION_COMMAND_LIMITS_H
 #define DSPACE_SESSION_COMMAND_LIMITS_H
 
+#include <cstddef>
 #include <string>
 
 namespace dspace::v1 {
@@ -14,6 +15,10 @@ namespace dspace::session {
 // field states: it names what the command is about, the field, the value and the range. A field
 // that is absent, or 0 where that means absent, is accepted.
 void RequireLimits(const v1::Command& command);
+
+// The longest text that a field accepts [bytes]: `field` is its message and name, "LogEvent.text".
+// Throws Error(Internal) for a field whose .proto states no length.
+std::size_t MostBytes(const char* field);
 
 // The scene that a command means which names none: the default of Command.scene.
 const std::string& DefaultScene();

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <set>
 
+#include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/TextChecks.h>
 
 namespace dspace::session {
 namespace {
 
-constexpr std::size_t MaximumWord = 255;
-constexpr std::size_t MaximumText = 4096;
-constexpr std::size_t MaximumUnit = 64;
 constexpr std::size_t MaximumEvent = 16384; // bytes
 constexpr int MaximumData = 100;
 constexpr int MaximumChoices = 100;
@@ -30,9 +28,9 @@ void CheckData(const std::string& label, const v1::LogEvent& event) {
   }
   std::set<std::string> names;
   for (const v1::EventDatum& datum : event.datum()) {
-    RequireWord(label, "the name of a datum", datum.name(), MaximumWord);
-    RequireLines(label, "the text of a datum", datum.text(), MaximumText);
-    RequireLine(label, "the unit of a datum", datum.unit(), MaximumUnit);
+    RequireWord(label, "the name of a datum", datum.name(), MostBytes("EventDatum.name"));
+    RequireLines(label, "the text of a datum", datum.text(), MostBytes("EventDatum.text"));
+    RequireLine(label, "the unit of a datum", datum.unit(), MostBytes("EventDatum.unit"));
     if (!names.insert(datum.name()).second) {
       Refuse(label, "its datum " + QuotedText(datum.name()) + " is there twice; accepted: once");
     }
@@ -47,8 +45,8 @@ void CheckData(const std::string& label, const v1::LogEvent& event) {
 
 void MessageLog::Log(v1::LogEvent& event, double now) {
   const std::string label = "event " + QuotedText(event.kind());
-  RequireWord(label, "its kind", event.kind(), MaximumWord);
-  RequireLines(label, "its text", event.text(), MaximumText);
+  RequireWord(label, "its kind", event.kind(), MostBytes("LogEvent.kind"));
+  RequireLines(label, "its text", event.text(), MostBytes("LogEvent.text"));
   RequireLine(label, "its frame's path", event.frame_path(), MaximumEvent);
   CheckSeverity(label, event.severity());
   CheckData(label, event);
@@ -96,8 +94,8 @@ bool MessageLog::HasQuestion(const std::string& name) const {
 
 void MessageLog::Ask(v1::AskOperator& question, double now) {
   const std::string label = "question " + QuotedText(question.name());
-  RequireWord(label, "its name", question.name(), MaximumWord);
-  RequireLines(label, "its text", question.text(), MaximumText);
+  RequireWord(label, "its name", question.name(), MostBytes("AskOperator.name"));
+  RequireLines(label, "its text", question.text(), MostBytes("AskOperator.text"));
   CheckSeverity(label, question.severity());
   if (question.text().empty()) {
     Refuse(label, "its text is empty; accepted: what the operator is asked");
@@ -108,7 +106,7 @@ void MessageLog::Ask(v1::AskOperator& question, double now) {
   }
   std::set<std::string> choices;
   for (const std::string& choice : question.choice()) {
-    RequireWord(label, "a choice", choice, MaximumWord);
+    RequireWord(label, "a choice", choice, MostBytes("AskOperator.choice"));
     if (!choices.insert(choice).second) {
       Refuse(label, "its choice " + QuotedText(choice) + " is there twice; accepted: once");
     }
@@ -128,8 +126,8 @@ void MessageLog::Ask(v1::AskOperator& question, double now) {
 
 void MessageLog::Close(const v1::CloseQuestion& command) {
   const std::string label = "question " + QuotedText(command.name());
-  RequireLines(label, "its answer", command.answer(), MaximumText);
-  RequireLine(label, "the name of who answered", command.from(), MaximumWord);
+  RequireLines(label, "its answer", command.answer(), MostBytes("CloseQuestion.answer"));
+  RequireLine(label, "the name of who answered", command.from(), MostBytes("CloseQuestion.from"));
   const auto found =
       std::find_if(this->Questions_.begin(), this->Questions_.end(),
                    [&](const auto& question) { return question.name() == command.name(); });

@@ -5,9 +5,10 @@
 #include <cstring>
 #include <set>
 
+#include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/TextChecks.h>
 #include <dspace/scene/Checks.h>
 #include <dspace/scene/TextCharacters.h>
-#include <dspace/messages/TextChecks.h>
 
 namespace dspace::session {
 namespace {
@@ -15,10 +16,6 @@ namespace {
 constexpr std::size_t MaximumChannels = 100000;
 constexpr std::size_t MaximumBytes = 64u << 20; // of all definitions
 constexpr std::size_t PutBytes = 1u << 20;      // of a command that Put makes, about
-constexpr std::size_t MaximumName = 255;
-constexpr std::size_t MaximumUnit = 64;
-constexpr std::size_t MaximumDescription = 1024;
-constexpr std::size_t MaximumText = 4096;
 constexpr int MaximumLabels = 1000;
 constexpr std::uint64_t MaximumId = std::uint64_t(1) << 63;
 
@@ -29,7 +26,7 @@ std::string Label(const std::string& name) {
 // Names joined by '/', as paths of frames are.
 void CheckName(const std::string& name) {
   const std::string label = Label(name);
-  RequireWord(label, "its name", name, MaximumName);
+  RequireWord(label, "its name", name, MostBytes("CreateTelemetry.name"));
   std::size_t begin = 0;
   for (;;) {
     const std::size_t end = std::min(name.find('/', begin), name.size());
@@ -83,7 +80,7 @@ void CheckLabels(const std::string& label, const v1::CreateTelemetry& command) {
   std::set<std::int32_t> values;
   std::set<std::string> texts;
   for (const v1::CreateTelemetry::Label& each : command.label()) {
-    RequireWord(label, "a label", each.label(), MaximumName);
+    RequireWord(label, "a label", each.label(), MostBytes("CreateTelemetry.Label.label"));
     if (!values.insert(each.value()).second || !texts.insert(each.label()).second) {
       Refuse(label, "its label " + QuotedText(each.label()) + " of value " +
                         std::to_string(each.value()) + " is there twice; accepted: each once");
@@ -111,8 +108,9 @@ std::uint64_t Telemetry::Create(const v1::CreateTelemetry& command, std::uint64_
     Refuse(label, "its kind is " + std::to_string(int(command.kind())) + "; accepted: 0 to 2");
   }
   const bool number = command.kind() == v1::CreateTelemetry::NUMBER;
-  RequireLine(label, "its unit", command.unit(), MaximumUnit);
-  RequireLine(label, "its description", command.description(), MaximumDescription);
+  RequireLine(label, "its unit", command.unit(), MostBytes("CreateTelemetry.unit"));
+  RequireLine(label, "its description", command.description(),
+              MostBytes("CreateTelemetry.description"));
   if (!number && (!command.unit().empty() || command.has_limits())) {
     Refuse(label, "it has a unit or limits; accepted: of numbers only");
   }
@@ -258,12 +256,13 @@ void Telemetry::Set(const v1::SetTelemetry& command, double now) {
 void Telemetry::SetTexts(const v1::SetTelemetryTexts& command, double now) {
   const std::vector<Channel*> channels =
       this->Check(command, command.text(), "set_telemetry_texts");
+  const std::size_t most = MostBytes("SetTelemetryTexts.text");
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const v1::CreateTelemetry& about = channels[i]->about;
     if (about.kind() != v1::CreateTelemetry::TEXT) {
       Refuse(Label(about.name()), "it is a number; accepted: command set_telemetry");
     }
-    RequireLine(Label(about.name()), "its text", command.text(int(i)), MaximumText);
+    RequireLine(Label(about.name()), "its text", command.text(int(i)), most);
   }
   for (std::size_t i = 0; i < channels.size(); ++i) {
     Channel& channel = *channels[i];
