@@ -107,7 +107,7 @@ std::string RangeText(const v1::LimitOptions& limits) {
   return NumberText(limits.minimum()) + " to " + NumberText(limits.maximum());
 }
 
-void Require(const v1::Command& command, const Message& message) {
+void RequireNumbers(const v1::Command& command, const Message& message) {
   const auto* reflection = message.GetReflection();
   for (const FieldDescriptor* field : LimitTree::Get().FieldsOf(message.GetDescriptor())) {
     if (!field->message_type()) {
@@ -128,10 +128,10 @@ void Require(const v1::Command& command, const Message& message) {
       }
     } else if (field->is_repeated()) {
       for (int i = 0; i < reflection->FieldSize(message, field); ++i) {
-        Require(command, reflection->GetRepeatedMessage(message, field, i));
+        RequireNumbers(command, reflection->GetRepeatedMessage(message, field, i));
       }
     } else if (reflection->HasField(message, field)) {
-      Require(command, reflection->GetMessage(message, field));
+      RequireNumbers(command, reflection->GetMessage(message, field));
     }
   }
 }
@@ -139,7 +139,7 @@ void Require(const v1::Command& command, const Message& message) {
 } // namespace
 
 void RequireLimits(const v1::Command& command) {
-  Require(command, command);
+  RequireNumbers(command, command);
 }
 
 std::size_t MostBytes(const char* field) {

@@ -12,10 +12,11 @@ namespace dspace::session {
 
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
-using Options = v1::CommandOptions;
 
 // Reads the options of a command and checks that all are there.
 class CommandTraitsReader {
+  using Options = v1::CommandOptions;
+
 public:
   static std::vector<CommandTraits> ReadAll() {
     std::vector<CommandTraits> all;
