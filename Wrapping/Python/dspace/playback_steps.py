@@ -5,7 +5,6 @@ from typing import NamedTuple, Optional
 
 from dspace._traits import scene_name
 from dspace._wire import command_of
-from dspace.proto import commands_pb2 as pb
 
 
 class Step(NamedTuple):
