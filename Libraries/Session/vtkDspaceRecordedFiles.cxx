@@ -59,6 +59,10 @@ std::string vtkDspaceRecordedFiles::Map(const std::string& bytes) {
   return command.SerializeAsString();
 }
 
+dspace::FilesGuard::Look vtkDspaceRecordedFiles::GetLook() const {
+  return this->Impl->files ? this->Impl->files->Look() : dspace::FilesGuard::Look();
+}
+
 void vtkDspaceRecordedFiles::Close() {
   this->Impl->files.reset();
   this->Impl->reader.reset();

@@ -15,6 +15,10 @@
 #include "vtkDspaceSessionModule.h"
 #include "vtkObject.h"
 
+#ifndef __VTK_WRAP__
+#include <dspace/FilesRead.h>
+#endif
+
 class VTKDSPACESESSION_EXPORT vtkDspaceRecordedFiles : public vtkObject {
 public:
   static vtkDspaceRecordedFiles* New();
@@ -31,6 +35,10 @@ public:
   std::string Place(const std::string& path);
   /// A serialized Command with its paths made those of the folder.
   std::string Map(const std::string& command);
+#ifndef __VTK_WRAP__
+  /// See RecordedFiles::Look; empty where nothing is open.
+  dspace::FilesGuard::Look GetLook() const;
+#endif
   /// Removes what was unpacked. Twice is no error.
   void Close();
 

@@ -3,11 +3,12 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
+#include <dspace/messages/Confinement.h>
+#include <dspace/messages/ErrorReply.h>
 #include <dspace/ledger/Ledger.h>
-#include <dspace/link/Confinement.h>
 #include <dspace/link/server/Server.h>
 #include <dspace/messages/CommandLimits.h>
-#include <dspace/messages/ErrorReply.h>
+#include <dspace/raster/ConfinedDrivers.h>
 
 #include "vtkDspaceSession.h"
 #include "vtkNew.h"
@@ -20,8 +21,9 @@ struct vtkDspaceServer::Internals {
   std::vector<std::string> roots;
   long long maximumFrames = 1000000;
   vtkNew<vtkDspaceSession> session;
-  dspace::session::Interpreter::Token listener = 0; // there
-  std::unique_ptr<dspace::session::Confinement> confinement;
+  dspace::session::Interpreter::Token listener = 0;                // there
+  std::shared_ptr<const dspace::session::Confinement> confinement; // guards may outlive this
+  std::unique_ptr<dspace::ConfinedDrivers> drivers;
   std::unique_ptr<dspace::session::Server> server; // goes first: it calls what is above
   std::uint64_t published = 0;                     // commands: the server counts them alike
 
@@ -41,8 +43,9 @@ struct vtkDspaceServer::Internals {
       if (command.has_capture()) {
         command.mutable_capture()->set_inline_data(true); // the planes are wanted elsewhere
       }
-      const dspace::FilesGuard guard(
-          [this](const std::string& path) { this->confinement->RequireWithin(path); });
+      const dspace::FilesGuard guard([confinement = this->confinement](const std::string& path) {
+        confinement->RequireWithin(path);
+      });
       return this->session->GetInterpreter().Execute(command);
     });
   }
@@ -125,7 +128,8 @@ std::string vtkDspaceServer::Start() {
     return "server: it has been started";
   }
   const dspace::v1::Reply reply = dspace::session::Catch([this] {
-    this->Impl->confinement = std::make_unique<dspace::session::Confinement>(this->Impl->roots);
+    this->Impl->confinement = std::make_shared<dspace::session::Confinement>(this->Impl->roots);
+    this->Impl->drivers = std::make_unique<dspace::ConfinedDrivers>();
     this->Impl->server = std::make_unique<dspace::session::Server>(this->Impl->options);
     return dspace::v1::Reply();
   });

@@ -7,10 +7,12 @@
 #include <dspace/clipmap/gl/ClipmapDrawer.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/messages/ErrorReply.h>
+#include <dspace/raster/ConfinedDrivers.h>
 #include <dspace/recording/RecordingWriter.h>
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
+#include "vtkDspaceRecordedFiles.h"
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceScene.h"
 #include "vtkDspaceViewport.h"
@@ -236,7 +238,16 @@ std::string vtkDspaceSession::GetRecordingMissing() {
   return lines;
 }
 
-std::string vtkDspaceSession::Replay(const std::string& bytes) {
+std::string vtkDspaceSession::Replay(const std::string& bytes, vtkDspaceRecordedFiles* files) {
+  const dspace::FilesGuard::Look look = files ? files->GetLook() : dspace::FilesGuard::Look();
+  if (!look) {
+    dspace::v1::Reply reply;
+    reply.mutable_error()->set_kind(dspace::v1::Error::INVALID_ARGUMENT);
+    reply.mutable_error()->set_object("recording");
+    reply.mutable_error()->set_message("recording: its files are closed; accepted: open ones");
+    return reply.SerializeAsString();
+  }
+  const dspace::FilesGuard guard(look);
   dspace::v1::Command command;
   const auto* entry = command.ParseFromString(bytes)
                           ? this->Impl->interpreter.Commands().Find(command.command_case())
@@ -249,6 +260,10 @@ std::string vtkDspaceSession::Replay(const std::string& bytes) {
         .SerializeAsString();
   }
   return this->Execute(bytes);
+}
+
+void vtkDspaceSession::ConfineProcess() {
+  const dspace::ConfinedDrivers confined;
 }
 
 std::string vtkDspaceSession::Miss(const dspace::v1::Command& accepted, const std::string& why) {

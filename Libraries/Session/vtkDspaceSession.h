@@ -21,6 +21,7 @@
 #endif
 
 class vtkDataArray;
+class vtkDspaceRecordedFiles;
 class vtkDspaceRenderContext;
 class vtkDspaceScene;
 class vtkDspaceViewport;
@@ -74,9 +75,13 @@ public:
   std::string GetRecordingFailure();
   std::string GetRecordingMissing();
 
-  /// As Execute, for commands out of a recording: those that change nothing are refused, since none
-  /// is ever recorded and some write files.
-  std::string Replay(const std::string& command);
+  /// As Execute, for commands out of a recording with these files, which must be open. Commands that
+  /// change nothing are rejected, since none is ever recorded and some write files. Which files the
+  /// command may lead to: <dspace/recording/Playback.h>.
+  std::string Replay(const std::string& command, vtkDspaceRecordedFiles* files);
+  /// For a program that only plays recordings: restricts the formats of rasters and shapes in the
+  /// whole process for the rest of its life, see <dspace/raster/ConfinedDrivers.h>.
+  void ConfineProcess();
 
 #ifndef __VTK_WRAP__
   dspace::session::Interpreter& GetInterpreter();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 #include <sys/stat.h>
 
@@ -39,7 +40,9 @@ FilesReadScope::~FilesReadScope() {
 }
 
 FilesGuard::FilesGuard(Look look) : Look_(std::move(look)), Outer_(Guard) {
-  Guard = this;
+  if (this->Look_) {
+    Guard = this;
+  }
 }
 
 FilesGuard::~FilesGuard() {
@@ -48,6 +51,24 @@ FilesGuard::~FilesGuard() {
 
 bool FilesGuard::Lives() {
   return Guard != nullptr;
+}
+
+FilesGuard::Look FilesGuard::Current() {
+  if (!Guard) {
+    return {};
+  }
+  if (!Guard->Outer_) {
+    return Guard->Look_;
+  }
+  std::vector<Look> looks;
+  for (const FilesGuard* guard = Guard; guard; guard = guard->Outer_) {
+    looks.push_back(guard->Look_);
+  }
+  return [looks](const std::string& path) {
+    for (const Look& look : looks) {
+      look(path);
+    }
+  };
 }
 
 void FilesGuard::Show(const std::string& path) {

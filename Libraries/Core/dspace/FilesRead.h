@@ -43,15 +43,21 @@ private:
 // While it lives, this thread's NoteFileRead shows each file to `look`, which throws for one that
 // is not to be read. Whoever opens a file does so after NoteFileRead; of a raster or a file of
 // shapes also what belongs to it is shown, before anything of it is used.
+//
+// A guard acts on one thread. An object that reads a file again later, perhaps in another thread,
+// keeps Current() from the time when it opened the file and holds a guard with it while it reads.
 class FilesGuard {
 public:
   using Look = std::function<void(const std::string& path)>;
+  // With an empty `look` there is no guard.
   explicit FilesGuard(Look look);
   ~FilesGuard();
   FilesGuard(const FilesGuard&) = delete;
   FilesGuard& operator=(const FilesGuard&) = delete;
 
   static bool Lives();
+  // The looks of all guards of this thread as one; empty where no guard lives.
+  static Look Current();
   // Shows a file that is not noted. Throws what `look` throws.
   static void Show(const std::string& path);
 

@@ -236,7 +236,7 @@ class Playback(TelemetryReading):
 
     def _carry_out(self, payload, what):
         payload = self._files.map(payload)
-        reply = to_reply(self.session.vtk.Replay(payload))
+        reply = to_reply(self.session.vtk.Replay(payload, self._files.vtk))
         if reply.HasField("error"):
             raise Corrupt(f"{self.file.label}: {what} is refused: {reply.error.message}", self.file.label)
         if self._files.folder and b"/overviews" in payload:

@@ -13,26 +13,26 @@ class RecordedFiles:
     name it. RecordedFiles in C++ does it, for whoever plays there too (RecordedFiles.h); close() removes the folder."""
 
     def __init__(self, file, check=True):
-        self._vtk = _vtk.vtkDspaceRecordedFiles()
-        self._remove = weakref.finalize(self, self._vtk.Close)
-        self._raise(self._vtk.Open(os.fsencode(file.path), bool(check)))
-        self.folder = self._path(self._vtk.GetFolder())  # empty: nothing was packed
+        self.vtk = _vtk.vtkDspaceRecordedFiles()
+        self._remove = weakref.finalize(self, self.vtk.Close)
+        self._raise(self.vtk.Open(os.fsencode(file.path), bool(check)))
+        self.folder = self._path(self.vtk.GetFolder())  # empty: nothing was packed
 
     def update(self):
         """Unpacks or checks the files that were noted since."""
-        self._raise(self._vtk.Update())
-        self.folder = self._path(self._vtk.GetFolder())
+        self._raise(self.vtk.Update())
+        self.folder = self._path(self.vtk.GetFolder())
 
     def close(self):
         self._remove()
 
     def place(self, path):
         """Where a path of the recording's is: below the folder, whatever it holds."""
-        return self._path(self._vtk.Place(os.fsencode(path)))
+        return self._path(self.vtk.Place(os.fsencode(path)))
 
     def map(self, payload):
         """A serialized command with its paths made those of the folder."""
-        return to_bytes(self._vtk.Map(payload)) if self.folder and b"/" in payload else payload
+        return to_bytes(self.vtk.Map(payload)) if self.folder and b"/" in payload else payload
 
     @staticmethod
     def _raise(answer):

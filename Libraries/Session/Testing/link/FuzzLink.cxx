@@ -12,7 +12,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
-#include <dspace/link/Confinement.h>
+#include <dspace/messages/Confinement.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/ledger/Ledger.h>

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <dspace/FilesRead.h>
-#include <dspace/link/Confinement.h>
+#include <dspace/messages/Confinement.h>
 #include <dspace/interpreter/Interpreter.h>
 
 namespace dspace::testing {
@@ -60,6 +60,31 @@ protected:
     command.mutable_import_object()->add_level()->set_path(this->Folder + "/root/" + name);
     return this->Execute(command);
   }
+  v1::Reply AddShapes(const std::string& name) {
+    v1::Command command;
+    command.mutable_open_terrain()->set_path(this->Folder + "/root/inside.asc");
+    command.mutable_open_terrain()->set_name("ground");
+    command.mutable_open_terrain()->set_mode(v1::OpenTerrain::CLIPMAP);
+    command.mutable_open_terrain()->set_crs("LOCAL_CS[\"grid\",UNIT[\"metre\",1]]");
+    const v1::Reply ground = this->Execute(command);
+    EXPECT_FALSE(ground.has_error()) << ground.error().message();
+    command.Clear();
+    command.mutable_add_terrain_layer()->set_terrain("ground");
+    command.mutable_add_terrain_layer()->mutable_shapes()->set_path(this->Folder + "/root/" + name);
+    const v1::Reply reply = this->Execute(command);
+    v1::Command remove;
+    remove.mutable_remove_terrain()->set_terrain("ground");
+    EXPECT_FALSE(this->Execute(remove).has_error());
+    return reply;
+  }
+  // Of a file in a format that refers to others: named, with the formats that are accepted.
+  void ExpectUnsupported(const v1::Reply& reply, const std::string& name) const {
+    EXPECT_EQ(reply.error().kind(), v1::Error::UNSUPPORTED) << reply.ShortDebugString();
+    EXPECT_NE(reply.error().message().find(this->Folder + "/root/" + name), std::string::npos)
+        << reply.error().message();
+    EXPECT_NE(reply.error().message().find("; accepted here: "), std::string::npos)
+        << reply.error().message();
+  }
   static void ExpectRefused(const v1::Reply& reply) {
     EXPECT_EQ(reply.error().kind(), v1::Error::INVALID_ARGUMENT) << reply.ShortDebugString();
     EXPECT_TRUE(reply.error().message().find("outside of what the server allows") !=
@@ -98,11 +123,92 @@ TEST_F(ConfinedFiles, AMosaicOfOtherFilesIsNot) {
   ExpectRefused(this->OpenTerrain());
   this->WriteMosaic(Band("mosaic.vrt")); // of itself
   ExpectRefused(this->OpenTerrain());
-  for (const char* document :
-       {"<GDAL_WMS><Service name=\"TMS\"/></GDAL_WMS>", "<OGRVRTDataSource></OGRVRTDataSource>"}) {
-    this->Write("/root/mosaic.vrt", document);
-    ExpectRefused(this->OpenTerrain());
+}
+
+TEST_F(ConfinedFiles, FormatsThatReferToOtherFilesAreRejected) {
+  const std::string size = "<Size x=\"2\" y=\"2\" c=\"1\"/><PageSize x=\"2\" y=\"2\" c=\"1\"/>";
+  this->Write("/victim", "untouched");
+  const std::string cache = "<MRF_META><CachedSource><Source>" + this->Folder +
+                            "/secret.asc</Source></CachedSource><Raster>" + size + "<DataFile>" +
+                            this->Folder + "/victim</DataFile></Raster></MRF_META>";
+  for (const std::string& document :
+       {cache, std::string("<GDAL_WMS><Service name=\"TMS\"/></GDAL_WMS>"),
+        std::string(" \n<gdal_wms><service name=\"TMS\"/></gdal_wms>"),
+        std::string("<OGRVRTDataSource></OGRVRTDataSource>"),
+        std::string("<GDAL_WMTS></GDAL_WMTS>"),
+        std::string("\x89HDF\r\n\x1a\n") + std::string(64, 'x')}) {
+    this->Write("/root/other", document);
+    ExpectUnsupported(this->OpenTerrain("other"), "other");
+    // Nor as a source of a mosaic, nor as overviews.
+    this->WriteMosaic(Band("other"));
+    ExpectUnsupported(this->OpenTerrain(), "other");
+    this->Write("/root/inside.asc.ovr", document);
+    ExpectUnsupported(this->OpenTerrain("inside.asc"), "inside.asc.ovr");
+    std::filesystem::remove(this->Folder + "/root/inside.asc.ovr");
   }
+  std::ifstream victim(this->Folder + "/victim");
+  std::string left;
+  EXPECT_TRUE(std::getline(victim, left) && left == "untouched");
+  EXPECT_FALSE(this->OpenTerrain("inside.asc").has_error());
+}
+
+TEST_F(ConfinedFiles, ShapesReferToNoOtherFiles) {
+  const std::string line =
+      R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":)"
+      R"({},"geometry":{"type":"LineString","coordinates":[[0,0],[1,1]]}}]})";
+  this->Write("/secret.json", line);
+  this->Write("/root/line.json", line);
+  const v1::Reply good = this->AddShapes("line.json");
+  EXPECT_FALSE(good.has_error()) << good.error().message();
+  const std::string layer = "<OGRVRTDataSource><OGRVRTLayer name=\"secret\"><SrcDataSource>" +
+                            this->Folder +
+                            "/secret.json</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>";
+  this->Write("/root/a.vrt", layer);
+  ExpectUnsupported(this->AddShapes("a.vrt"), "a.vrt");
+  this->Write("/root/a.vrt",
+              "<!-- Product_Observational " + std::string(1200, ' ') + "-->" + layer);
+  ExpectUnsupported(this->AddShapes("a.vrt"), "a.vrt");
+}
+
+TEST_F(ConfinedFiles, SideFilesDoNotLeadOut) {
+  const std::string open = "<PAMDataset><Metadata domain=\"OVERVIEWS\"><MDI key=\"OVERVIEW_FILE\">";
+  for (const std::string& place :
+       {this->Folder + "/secret.asc", this->Folder + "/root/inside.asc"}) {
+    this->Write("/root/other.asc",
+                "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n");
+    this->Write("/root/other.asc.aux.xml", open + place + "</MDI></Metadata></PAMDataset>");
+    const v1::Reply reply = this->OpenTerrain("other.asc");
+    EXPECT_EQ(reply.error().kind(), v1::Error::INVALID_ARGUMENT) << reply.ShortDebugString();
+    EXPECT_NE(reply.error().message().find(this->Folder + "/root/other.asc'"), std::string::npos);
+    EXPECT_NE(reply.error().message().find("OVERVIEW_FILE"), std::string::npos);
+    // Nor those of a mosaic's sources.
+    this->WriteMosaic(Band("other.asc"));
+    EXPECT_NE(this->OpenTerrain().error().message().find("OVERVIEW_FILE"), std::string::npos);
+    std::filesystem::remove(this->Folder + "/root/other.asc.aux.xml");
+    EXPECT_FALSE(this->OpenTerrain("other.asc").has_error());
+  }
+  for (const char* side : {".ovr", ".msk", ".aux.xml"}) {
+    const std::string link = this->Folder + "/root/other.asc" + side;
+    std::filesystem::create_symlink(this->Folder + "/secret.asc", link);
+    ExpectRefused(this->OpenTerrain("other.asc"));
+    std::filesystem::remove(link);
+  }
+  // Overviews that are a mosaic of a file out there.
+  this->WriteMosaic(Band("../secret.asc"), "other.asc.ovr");
+  ExpectRefused(this->OpenTerrain("other.asc"));
+}
+
+// GDAL finds a link's relative sources beside what it points to.
+TEST_F(ConfinedFiles, ALinkToAMosaicHasItsSourcesBesideTheMosaic) {
+  std::filesystem::create_directories(this->Folder + "/root/deep");
+  std::filesystem::rename(this->Folder + "/root/inside.asc",
+                          this->Folder + "/root/deep/inside.asc");
+  this->WriteMosaic(Band("inside.asc"), "deep/a.vrt");
+  std::filesystem::create_symlink("deep/a.vrt", this->Folder + "/root/link.vrt");
+  const v1::Reply reply = this->OpenTerrain("link.vrt");
+  EXPECT_FALSE(reply.has_error()) << reply.error().message();
+  this->WriteMosaic(Band("../secret.asc"), "deep/a.vrt"); // which is not root/../secret.asc
+  EXPECT_EQ(this->OpenTerrain("link.vrt").error().kind(), v1::Error::INVALID_ARGUMENT);
 }
 
 TEST_F(ConfinedFiles, AModelsOwnFilesAreConfinedToo) {

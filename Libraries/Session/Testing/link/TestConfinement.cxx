@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
-#include <dspace/link/Confinement.h>
+#include <dspace/messages/Confinement.h>
 
 namespace dspace::session {
 namespace {

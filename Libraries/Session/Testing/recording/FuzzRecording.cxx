@@ -13,7 +13,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
-#include <dspace/link/Confinement.h>
+#include <dspace/messages/Confinement.h>
 #include <dspace/recording/Playback.h>
 #include <dspace/recording/RecordingWriter.h>
 

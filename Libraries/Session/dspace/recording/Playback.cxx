@@ -146,6 +146,7 @@ void Playback::Begin(const RecordedSnapshot& snapshot) {
 
 void Playback::CarryOut(v1::Command command, const char* table, std::uint64_t seq) {
   const Registry::Entry* entry = this->Interpreter_.Commands().Find(command.command_case());
+  const FilesGuard guard(this->Files_.Look());
   std::string refused;
   if (entry && entry->effect != Effect::Change) {
     refused = "command " + CommandName(command) +

@@ -52,6 +52,11 @@ bool IsAt(const std::vector<PlaybackStep>& steps, std::size_t index, double time
 // others.
 std::optional<std::size_t> StepAt(const std::vector<PlaybackStep>& steps, double time_s);
 
+// Its commands are carried out under a FilesGuard (RecordedFiles::Look): rasters and shapes are
+// opened in formats that read a file by itself only, and with packed files nothing else is read.
+// The guard holds for this recording's commands alone, also in the threads that read on; what else
+// the program does with rasters stays as it is (ConfinedDrivers.h).
+//
 // Gives a recording's commands to an interpreter, whose scenes and viewports are the recording's
 // from then on: what else is in it is removed with the next seek that begins from a snapshot.
 // Throws Error: those of RecordingReader and of RecordedFiles; Corrupt where a command is refused,

@@ -14,6 +14,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/messages/CommandFiles.h>
+#include <dspace/messages/Confinement.h>
 #include <dspace/recording/RecordedNames.h>
 #include <dspace/recording/RecordingFile.h>
 #include <dspace/crs/ProjFolders.h>
@@ -152,6 +153,8 @@ void RecordedFiles::Update() {
   } else if (const auto all = this->Reader_.Assets(); IsPacked(all)) {
     this->Owned_ = std::make_unique<OwnFolder>(Object(this->Reader_));
     this->Folder_ = this->Owned_->Path;
+    this->Confinement_ = std::make_shared<const Confinement>(
+        std::vector<std::string>{this->Folder_}, "the recording, whose files are packed,");
     this->Unpack(all);
   } else if (this->Check_) {
     this->Check(assets);
@@ -299,6 +302,15 @@ void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std
 
 std::string RecordedFiles::Place(const std::string& path) const {
   return this->Folder_.empty() ? path : this->Folder_ + Below(path);
+}
+
+FilesGuard::Look RecordedFiles::Look() const {
+  if (!this->Confinement_) {
+    return [](const std::string&) {};
+  }
+  return [confinement = this->Confinement_](const std::string& path) {
+    confinement->RequireWithin(path);
+  };
 }
 
 void RecordedFiles::Map(v1::Command& command) const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <dspace/FilesRead.h>
 #include <dspace/recording/RecordingReader.h>
 
 namespace dspace {
@@ -15,6 +16,8 @@ class ProjFolders;
 }
 
 namespace dspace::session {
+
+class Confinement;
 
 // Of a recording with packed files these are unpacked into a folder of their own (below TMPDIR,
 // readable by this user only), at their own paths below it, so that they name each other as they
@@ -46,6 +49,11 @@ public:
   // was packed there or not. The path itself without a folder.
   std::string Place(const std::string& path) const;
 
+  // For a FilesGuard around the recording's commands, valid also after this object is gone. Of
+  // packed files only those in the folder are accepted. Of others any is: they were checked, and
+  // the guard restricts the formats of rasters and shapes (ConfinedDrivers.h) all the same.
+  FilesGuard::Look Look() const;
+
   // A recorded command with its paths made those of the folder; with none it stays as it is.
   // Overviews of another machine are not to be had: terrains are told to build them in the folder.
   void Map(v1::Command& command) const;
@@ -62,8 +70,9 @@ private:
   std::int64_t Seen_ = 0; // the last row of a file that was looked at
   std::unique_ptr<OwnFolder> Owned_;
   std::string Folder_;
-  std::map<std::string, std::string> Places_; // of the recording's packed paths
-  std::unique_ptr<ProjFolders> Grids_;        // PROJ's, which it looks for by name
+  std::shared_ptr<const Confinement> Confinement_; // to the folder
+  std::map<std::string, std::string> Places_;      // of the recording's packed paths
+  std::unique_ptr<ProjFolders> Grids_;             // PROJ's, which it looks for by name
 };
 
 } // namespace dspace::session

@@ -11,20 +11,13 @@
 #include <ogr_spatialref.h>
 
 #include <dspace/Error.h>
-
 #include <dspace/gdal/GdalErrors.h>
+#include <dspace/raster/DatasetFiles.h>
+#include <dspace/raster/DatasetGate.h>
 
 namespace dspace {
 
 namespace {
-
-struct CloseDataset {
-  void operator()(GDALDataset* dataset) const {
-    const GdalErrors quiet;
-    GDALClose(dataset);
-  }
-};
-using DatasetPointer = std::unique_ptr<GDALDataset, CloseDataset>;
 
 // Empty, in memory, bytes.
 DatasetPointer Memory(int width, int height, int bands, const Eigen::Affine2d& pixelToMap,
@@ -57,8 +50,7 @@ Picture ReadPicture(const DrapeSource& source, const std::string& object,
                     std::vector<std::string>& warnings) {
   RegisterGdal();
   GdalErrors errors;
-  DatasetPointer file(GDALDataset::Open(source.path.c_str(),
-                                        GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  DatasetPointer file = OpenDataset(source.path, DatasetKind::Raster);
   if (!file) {
     VSIStatBufL stat;
     const bool exists = !source.path.empty() && VSIStatL(source.path.c_str(), &stat) == 0;
@@ -67,6 +59,7 @@ Picture ReadPicture(const DrapeSource& source, const std::string& object,
                                     : Error::Kind::Unsupported,
                 object, errors.Message("not an image that GDAL opens"));
   }
+  NoteDataset(*file);
   const int count = file->GetRasterCount();
   GDALColorTable* table = count == 1 ? file->GetRasterBand(1)->GetColorTable() : nullptr;
   if (count < 1 || count > 4)

@@ -16,10 +16,6 @@ namespace fs = std::filesystem;
 constexpr const char* Mark = "-layer-";
 constexpr std::size_t HashLength = 32;
 
-DatasetPointer OpenLayer(const std::string& file) {
-  return DatasetPointer(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
-}
-
 } // namespace
 
 bool IsLayerFile(const std::string& file) {
@@ -46,7 +42,7 @@ std::vector<ElevationCacheEntry> LayerEntries(const std::vector<std::string>& fi
     entry.bytes += bytes;
     ++entry.levels;
     const GdalErrors quiet;
-    const DatasetPointer dataset = OpenLayer(file);
+    const DatasetPointer dataset = OpenOwnTiff(file);
     entry.damaged |= !dataset;
     const char* path = dataset ? dataset->GetMetadataItem(LayerPathItem) : nullptr;
     entry.path = path ? ToUtf8(path) : entry.path;
@@ -61,7 +57,7 @@ std::vector<ElevationCacheEntry> LayerEntries(const std::vector<std::string>& fi
 
 void VerifyLayerFile(const std::string& file) {
   GdalErrors errors;
-  const DatasetPointer dataset = OpenLayer(file);
+  const DatasetPointer dataset = OpenOwnTiff(file);
   bool good = dataset != nullptr;
   for (int band = 1; good && band <= dataset->GetRasterCount(); ++band) {
     std::vector<double> row(std::size_t(dataset->GetRasterXSize()));

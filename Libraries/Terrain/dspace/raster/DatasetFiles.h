@@ -14,13 +14,6 @@ namespace dspace {
 // sources are not looked for here (MosaicFiles does), since a mosaic may have thousands.
 void NoteDataset(GDALDataset& dataset);
 
-// For FilesGuard, which must live (else nothing happens): to be called before GDAL opens a file.
-// Shows the file, and of a mosaic (a VRT) the sources that its document names, and theirs, without
-// any of them being opened. Throws what the guard throws, and Error(InvalidArgument) for a document
-// that names data in another way than as plain files (servers, warped or computed bands, formats
-// with a prefix).
-void ShowSources(const std::string& path);
-
 // All files below a mosaic (a VRT), with what belongs to each; empty for any other file and for one
 // that GDAL does not open. Reads every source's head.
 std::vector<std::string> MosaicFiles(const std::string& path);

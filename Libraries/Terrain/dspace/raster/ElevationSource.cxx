@@ -7,6 +7,7 @@
 #include <gdal_priv.h>
 
 #include <dspace/Error.h>
+#include <dspace/FilesRead.h>
 #include <dspace/raster/ElevationCache.h>
 
 #include <dspace/raster/DeflateCheck.h>
@@ -30,6 +31,7 @@ struct ElevationSource::Implementation {
   GDALRasterBand* band = nullptr;
   int bandNumber = 1;
   NetworkLimits network;
+  FilesGuard::Look look; // of the guard under which it was opened
   bool remote = false;  // itself, or what it is a mosaic of
   bool suspect = false; // a read failed
   bool gaps = false;    // there may be some, see GivesZerosForGaps
@@ -64,6 +66,7 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   this->Info_.path = path;
   CheckLimits(options.network, object);
   this->Impl_->network = options.network;
+  this->Impl_->look = FilesGuard::Current();
   this->Impl_->file = FileState::Of(path);
   this->Impl_->dataset = OpenRaster(path, options.network, this->Info_.warnings);
   const NetworkScope scope(options.network, path);
@@ -240,6 +243,7 @@ std::string ElevationSource::Identity() const {
   const Implementation& impl = *this->Impl_;
   const std::lock_guard<std::mutex> lock(impl.mutex);
   const NetworkScope scope(impl.network, this->Info_.path);
+  const FilesGuard guard(impl.look);
   const GdalErrors quiet;
   return "band " + std::to_string(impl.bandNumber) + " of " +
          std::to_string(impl.dataset->GetRasterXSize()) + " x " +
@@ -256,6 +260,7 @@ void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, 
   if (impl.file.ChangedInPlace(this->Info_.path))
     throw Error(Error::Kind::Io, object, Changed);
   const NetworkScope scope(impl.network, this->Info_.path);
+  const FilesGuard guard(impl.look);
   if (impl.suspect)
     impl.OpenAnew(this->Info_.path);
   GdalErrors errors;

@@ -100,9 +100,7 @@ DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
   RegisterGdal();
   const NetworkScope scope(limits, path);
   GdalErrors errors;
-  ShowSources(path);
-  DatasetPointer dataset(GDALDataset::Open(
-      GdalPath(path).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  DatasetPointer dataset = OpenDataset(GdalPath(path), DatasetKind::Raster);
   if (!dataset && IsRemote(path)) {
     ForgetAnswers(path);
     const std::string message = errors.Message("not recognised by GDAL");
@@ -124,7 +122,7 @@ DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
     const std::string message = errors.Message("not recognised by GDAL");
     const bool type = message.find("not recognized") != std::string::npos;
     throw Error(type ? Error::Kind::Unsupported : Error::Kind::Corrupt, object,
-                message + "; any raster that GDAL opens is accepted");
+                message + "; accepted: " + AcceptedFormats(DatasetKind::Raster));
   }
   NoteDataset(*dataset);
   errors.DemoteFailures();

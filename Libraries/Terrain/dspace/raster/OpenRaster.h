@@ -3,7 +3,6 @@
 #define DSPACE_TERRAIN_OPENRASTER_H
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,19 +12,12 @@
 #include <dspace/raster/ElevationSource.h>
 
 #include <dspace/gdal/GdalErrors.h>
+#include <dspace/raster/DatasetGate.h>
 
 namespace dspace {
 
-struct CloseDataset {
-  void operator()(GDALDataset* dataset) const {
-    const GdalErrors quiet;
-    GDALClose(dataset);
-  }
-};
-using DatasetPointer = std::unique_ptr<GDALDataset, CloseDataset>;
-
 // Throws what ElevationSource's constructor says, naming `object`; "raster 'path'" where it is
-// empty.
+// empty; and what OpenDataset throws.
 DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
                           std::vector<std::string>& warnings, std::string object = {});
 

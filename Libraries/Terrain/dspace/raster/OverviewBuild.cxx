@@ -8,6 +8,7 @@
 
 #include <sys/resource.h>
 
+#include <dspace/FilesRead.h>
 #include <dspace/raster/ElevationCache.h>
 
 namespace dspace {
@@ -114,7 +115,10 @@ OverviewBuild::OverviewBuild(std::string folder, std::string path, const Elevati
   try {
     impl->thread =
         std::thread([impl, folder = std::move(folder), path = std::move(path), options,
-                     built = std::move(built)] { impl->Run(folder, path, options, built); });
+                     built = std::move(built), look = FilesGuard::Current()] {
+          const FilesGuard guard(look);
+          impl->Run(folder, path, options, built);
+        });
   } catch (const std::exception& error) {
     impl->End(State::Failed, std::string("a thread for it could not be started: ") + error.what());
     return;

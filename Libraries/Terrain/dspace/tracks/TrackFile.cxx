@@ -17,6 +17,7 @@
 
 #include <dspace/gdal/GdalErrors.h>
 #include <dspace/gdal/OfflineScope.h>
+#include <dspace/raster/DatasetGate.h>
 
 namespace dspace {
 namespace {
@@ -249,11 +250,9 @@ ReadTracks(const std::string& path, const Crs& crs,
     throw Error(Error::Kind::NotFound, object, "there is no such file");
   }
   GdalErrors errors;
-  ShowSources(path);
   const OfflineScope offline;
   const char* const drivers[] = {"GeoJSON", nullptr};
-  const Dataset dataset(
-      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers));
+  const DatasetPointer dataset = OpenDataset(path, DatasetKind::Shapes, drivers);
   if (!dataset || dataset->GetLayerCount() != 1) {
     throw Error(Error::Kind::Corrupt, object,
                 errors.Message("it is no GeoJSON of lines") + "; accepted: as save_tracks writes");

@@ -40,9 +40,11 @@ def check(options):
 
 
 def run(options):
-    from dspace.playback import Playback  # needs the compiled part
+    from dspace import vtk  # needs the compiled part
+    from dspace.playback import Playback
 
     check(options)
+    vtk.vtkDspaceSession().ConfineProcess()  # it opens nothing but the recording's files
     with Playback(options.file) as playback:
         if options.at is not None:
             playback.seek(options.at)

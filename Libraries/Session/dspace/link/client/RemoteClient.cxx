@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <dspace/Error.h>
-#include <dspace/link/Confinement.h>
-#include <dspace/link/LinkDiagnosis.h>
 #include <dspace/link/client/ClientLink.h>
+#include <dspace/messages/Confinement.h>
+#include <dspace/link/LinkDiagnosis.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/state/State.h>
 

@@ -29,7 +29,7 @@ double Most(GDALRasterBand& band) {
 RasterLevels::RasterLevels(std::string object, std::string path, int band,
                            const RasterLayerOptions& options, Shown shown)
     : Object_(std::move(object)), Path_(std::move(path)), Band_(band), Shown_(shown),
-      Network_(options.network) {
+      Network_(options.network), Look_(FilesGuard::Current()) {
   CheckLimits(options.network, this->Object_);
   this->File_ = FileState::Of(this->Path_);
   DatasetPointer file = OpenRaster(this->Path_, this->Network_, this->Warnings_, this->Object_);
@@ -225,6 +225,7 @@ void RasterLevels::With(const std::function<void(Handle&)>& use) const {
     throw Error(Error::Kind::Io, this->Object_, Changed);
   }
   const NetworkScope scope(this->Network_, this->Path_);
+  const FilesGuard guard(this->Look_);
   std::unique_ptr<Handle> handle;
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <dspace/FilesRead.h>
 #include <dspace/raster/OpenRaster.h>
 
 namespace dspace {
@@ -123,6 +124,7 @@ private:
   Shown Shown_ = Shown::Data;
   NetworkLimits Network_;
   FileState File_;
+  FilesGuard::Look Look_; // of the guard under which it was opened
   bool Remote_ = false;
 
   int Width_ = 0;

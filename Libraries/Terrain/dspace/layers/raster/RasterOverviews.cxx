@@ -58,8 +58,7 @@ void RasterLevels::RemoveOverviews() const {
 
 bool RasterLevels::AddOverview(Handle& handle, int level) const {
   const GdalErrors quiet;
-  DatasetPointer file(
-      GDALDataset::Open(this->OverviewFileOf(level).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  DatasetPointer file = OpenOwnTiff(this->OverviewFileOf(level));
   const char* identity = file ? file->GetMetadataItem(IdentityItem) : nullptr;
   if (!identity || identity != this->Identity_ ||
       file->GetRasterXSize() != this->ColumnsAt(level) ||

@@ -266,9 +266,7 @@ private:
 };
 
 DatasetPointer Open(const std::string& path, const std::string& object, GdalErrors& errors) {
-  RegisterGdal();
-  DatasetPointer file(
-      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  DatasetPointer file = OpenDataset(path, DatasetKind::Shapes);
   if (!file) {
     VSIStatBufL stat;
     const bool exists = !path.empty() && VSIStatL(path.c_str(), &stat) == 0;
@@ -286,7 +284,6 @@ VectorFile ReadVectorFile(const std::string& path, const RasterPlace& terrain,
   const std::string object = "shapes '" + path + "'";
   VectorFile result;
   GdalErrors errors;
-  ShowSources(path);
   std::optional<OfflineScope> offline;
   if (!IsRemote(path)) {
     offline.emplace();

@@ -1,4 +1,4 @@
-#include <dspace/link/Confinement.h>
+#include <dspace/messages/Confinement.h>
 
 #include <algorithm>
 #include <cctype>
@@ -68,7 +68,8 @@ void MakePathsAbsolute(v1::Command& command) {
   });
 }
 
-Confinement::Confinement(const std::vector<std::string>& roots) {
+Confinement::Confinement(const std::vector<std::string>& roots, std::string who)
+    : Who_(std::move(who)) {
   for (const std::string& root : roots) {
     std::error_code error;
     const fs::path path = fs::canonical(root, error);
@@ -110,8 +111,8 @@ void Confinement::RequireWithin(const std::string& path) const {
     }
   }
   throw Error(Error::Kind::InvalidArgument, "file '" + path.substr(0, 1000) + "'",
-              "a file that the command names leads to it, and it lies outside of what the server "
-              "allows");
+              "a file that the command names leads to it, and it lies outside of what " + this->Who_ +
+                  " allows");
 }
 
 // What is not there may mean something else than a file to the library that is to read it, and what
@@ -156,7 +157,7 @@ std::string Confinement::Check(const std::string& text, const std::string& field
     accepted += (accepted.empty() ? "" : ", ") + root;
   }
   RefusePath(text, field,
-             "lies outside of what the server allows; accepted: files in " +
+             "lies outside of what " + this->Who_ + " allows; accepted: files in " +
                  (accepted.empty() ? "no folder" : accepted));
 }
 

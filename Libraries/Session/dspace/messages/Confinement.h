@@ -21,8 +21,8 @@ void MakePathsAbsolute(v1::Command& command);
 class Confinement {
 public:
   // Each root is a folder that there is; with links resolved. Throws Error(NotFound). Without roots
-  // no path is accepted.
-  explicit Confinement(const std::vector<std::string>& roots);
+  // no path is accepted. `who` allows them, for messages.
+  explicit Confinement(const std::vector<std::string>& roots, std::string who = "the server");
 
   // Makes every path of the command absolute, and throws Error(InvalidArgument) for one that leads
   // out of the roots: by "..", by a link, or because it is no plain path (URLs, GDAL's "/vsi...", a
@@ -43,6 +43,7 @@ private:
   std::string Check(const std::string& path, const std::string& field, bool isRead) const;
   void RequireThere(const std::string& real, const std::string& text,
                     const std::string& field) const;
+  const std::string Who_;
   std::vector<std::string> Roots_;
 };
 

@@ -1,0 +1,295 @@
+#include <dspace/raster/DatasetGate.h>
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include <cpl_error.h>
+#include <cpl_string.h>
+
+#include <dspace/Error.h>
+#include <dspace/FilesRead.h>
+
+#include <dspace/raster/FileBehind.h>
+#include <dspace/raster/MosaicSources.h>
+#include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/SelfContainedDrivers.h>
+
+namespace dspace {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int Nesting = 16;
+
+// An opening under way in this thread, within the one that caused it.
+class Opening {
+public:
+  Opening();
+  ~Opening();
+  Opening(const Opening&) = delete;
+  Opening& operator=(const Opening&) = delete;
+
+  int Depth() const { return this->Outer_ ? this->Outer_->Depth() + 1 : 0; }
+  // Also of the openings around it: GDAL itself would go on without an overview or a mask.
+  void Fail(const Error& error) {
+    this->Failure_ = this->Failure_ ? this->Failure_ : error;
+    if (this->Outer_) {
+      this->Outer_->Fail(error);
+    }
+  }
+  void Check() const {
+    if (this->Failure_) {
+      throw Error(*this->Failure_);
+    }
+  }
+  // Of mosaics, by name, whether their sources have been checked; kept by the outermost opening.
+  std::map<std::string, bool>& Mosaics() {
+    return this->Outer_ ? this->Outer_->Mosaics() : this->Mosaics_;
+  }
+
+private:
+  Opening* Outer_;
+  std::optional<Error> Failure_;
+  std::map<std::string, bool> Mosaics_;
+};
+
+thread_local Opening* Innermost = nullptr;
+
+Opening::Opening() : Outer_(Innermost) {
+  Innermost = this;
+}
+
+Opening::~Opening() {
+  Innermost = this->Outer_;
+}
+
+[[noreturn]] void Reject(const std::string& name, const std::string& why) {
+  throw Error(Error::Kind::InvalidArgument, "file '" + name.substr(0, 1000) + "'", why);
+}
+
+// The absolute name of what may be opened; see OpenDataset.
+std::string RequireName(const std::string& name) {
+  if (name.empty()) {
+    throw Error(Error::Kind::NotFound, "file ''", "there is no such file");
+  }
+  const auto begins = [&](const char* prefix) { return name.rfind(prefix, 0) == 0; };
+  if (name.find_first_of("<>\n") != std::string::npos) {
+    Reject(name, "it is a document in the place of a name; accepted here: names of files");
+  }
+  if (begins("/vsicurl/")) {
+    FilesGuard::Show(name);
+    return name;
+  }
+  const bool archive = begins("/vsizip/") || begins("/vsitar/") || begins("/vsigzip/");
+  if (begins("/vsi") && !archive) {
+    FilesGuard::Show(name);
+    Reject(name, "it is no plain file; accepted here: plain files, /vsizip/, /vsitar/, /vsigzip/");
+  }
+  std::error_code error;
+  const fs::path whole = archive ? fs::path(FileBehind(name)) : fs::absolute(name, error);
+  FilesGuard::Show(whole.string());
+  const fs::file_status status = fs::status(whole, error);
+  if (!fs::exists(status)) {
+    throw Error(Error::Kind::NotFound, "file '" + name.substr(0, 1000) + "'",
+                "there is no such file");
+  }
+  if (!fs::is_regular_file(status) && (archive || !fs::is_directory(status))) {
+    Reject(name, "it is neither a file nor a folder");
+  }
+  return archive ? name : whole.string();
+}
+
+bool IsMosaic(const std::string& path) {
+  GDALDriver* vrt = GetGDALDriverManager()->GetDriverByName("VRT");
+  GDALOpenInfo info(path.c_str(), GDAL_OF_RASTER);
+  return vrt && vrt->pfnIdentify && vrt->pfnIdentify(&info) == TRUE;
+}
+
+DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* const* drivers,
+                           const char* const* options);
+
+void CheckSources(const std::string& mosaic, Opening& opening) {
+  const auto [known, isNew] = opening.Mosaics().emplace(mosaic, false);
+  if (!isNew && !known->second) {
+    Reject(mosaic, "it is among its own sources; accepted here: a mosaic (VRT) of plain files");
+  }
+  if (!isNew) {
+    return;
+  }
+  for (const std::string& source : MosaicSources(mosaic)) {
+    if (!IsRemote(source) && !OpenGuarded(source, GDAL_OF_RASTER, nullptr, nullptr)) {
+      throw Error(Error::Kind::Corrupt, "file '" + source + "'",
+                  std::string("as a source of '") + mosaic +
+                      "' it cannot be read: " + CPLGetLastErrorMsg());
+    }
+  }
+  opening.Mosaics()[mosaic] = true;
+}
+
+// "format 'MRF'" of a file that no accepted driver opens; the drivers only look at its beginning.
+std::string FormatOf(const std::string& path, unsigned flags) {
+  GDALDriverManager& manager = *GetGDALDriverManager();
+  GDALOpenInfo info(path.c_str(), int(flags));
+  for (int i = 0; i < manager.GetDriverCount(); ++i) {
+    GDALDriver* driver = manager.GetDriver(i);
+    if (driver && driver->pfnIdentify && !IsSelfContained(driver->GetDescription()) &&
+        driver->pfnIdentify(&info) == TRUE) {
+      return std::string("its format is '") + driver->GetDescription() + "'";
+    }
+  }
+  return "its format is none of those that are accepted";
+}
+
+std::string AcceptedNames(unsigned flags) {
+  std::string text;
+  for (const char* const* name = SelfContainedDrivers(); *name; ++name) {
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(*name);
+    if (driver && (((flags & GDAL_OF_RASTER) && driver->GetMetadataItem(GDAL_DCAP_RASTER)) ||
+                   ((flags & GDAL_OF_VECTOR) && driver->GetMetadataItem(GDAL_DCAP_VECTOR)))) {
+      text += *name + std::string(", ");
+    }
+  }
+  return text + ((flags & GDAL_OF_RASTER) ? "and mosaics (VRT) of these" : "and no others");
+}
+
+void CheckOpened(GDALDataset& dataset, const std::string& path, const Opening& opening) {
+  const char* overviews = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
+  if (overviews) {
+    Reject(path,
+           "its metadata name '" + std::string(overviews).substr(0, 200) +
+               "' as OVERVIEW_FILE; accepted here: overviews within the file, or beside it in "
+               "a file of its name and .ovr");
+  }
+  const CPLStringList files(dataset.GetFileList()); // GDAL looks for overviews and masks, too
+  opening.Check();
+  for (int i = 0; i < files.size(); ++i) {
+    FilesGuard::Show(FileBehind(files[i]));
+  }
+}
+
+DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* const* drivers,
+                           const char* const* options) {
+  Opening opening;
+  if (opening.Depth() > Nesting) {
+    Reject(name, "files that name files lead to it, " + std::to_string(Nesting) + " deep");
+  }
+  if (flags & GDAL_OF_UPDATE) {
+    Reject(name, "a file that names it would have it written; accepted here: files that are read");
+  }
+  const std::string path = RequireName(name);
+  const char* const mosaic[] = {"VRT", nullptr};
+  const char* const* allowed = drivers ? drivers : SelfContainedDrivers();
+  if (!drivers && (flags & GDAL_OF_RASTER) && IsMosaic(path)) {
+    CheckSources(path, opening);
+    allowed = mosaic;
+    flags &= ~unsigned(GDAL_OF_VECTOR);
+  }
+  // As these drivers are named, GDAL does not come back here for this file.
+  CPLErrorReset();
+  DatasetPointer dataset(GDALDataset::Open(
+      path.c_str(), flags & ~unsigned(GDAL_OF_SHARED | GDAL_OF_VERBOSE_ERROR), allowed, options));
+  opening.Check();
+  if (!dataset && !drivers && CPLGetLastErrorType() < CE_Failure) {
+    throw Error(Error::Kind::Unsupported, "file '" + path + "'",
+                FormatOf(path, flags) + "; accepted here: " + AcceptedNames(flags));
+  }
+  if (dataset) {
+    CheckOpened(*dataset, path, opening);
+  }
+  return dataset;
+}
+
+// What GDAL opens by itself. No exception may pass through GDAL.
+GDALDataset* OpenForGdal(GDALOpenInfo* info) {
+  if (!FilesGuard::Lives() || info->pszFilename[0] == '\0') {
+    return nullptr; // the other drivers' turn
+  }
+  try {
+    return OpenGuarded(info->pszFilename, unsigned(info->nOpenFlags), nullptr,
+                       info->papszOpenOptions)
+        .release();
+  } catch (const Error& error) {
+    if (Innermost) {
+      Innermost->Fail(error);
+    }
+    CPLError(CE_Failure, CPLE_AppDefined, "%s", error.what()); // no other driver's turn
+  }
+  return nullptr;
+}
+
+void PutFirst(GDALDriver* gate) {
+  GDALDriverManager& manager = *GetGDALDriverManager();
+  std::vector<GDALDriver*> others;
+  for (int i = 0; i < manager.GetDriverCount(); ++i) {
+    if (manager.GetDriver(i) != gate) {
+      others.push_back(manager.GetDriver(i));
+    }
+  }
+  for (GDALDriver* driver : others) {
+    manager.DeregisterDriver(driver);
+  }
+  manager.RegisterDriver(gate);
+  for (GDALDriver* driver : others) {
+    manager.RegisterDriver(driver);
+  }
+}
+
+void Register() {
+  RegisterGdal();
+  GDALDriverManager& manager = *GetGDALDriverManager();
+  if (manager.GetDriverByName(DatasetGateName)) {
+    return;
+  }
+  auto* gate = new GDALDriver; // the manager's
+  gate->SetDescription(DatasetGateName);
+  gate->SetMetadataItem(GDAL_DMD_LONGNAME, "Dspace's check of names (opens nothing by itself)");
+  gate->SetMetadataItem(GDAL_DCAP_OPEN, "YES");
+  gate->SetMetadataItem(GDAL_DCAP_RASTER, "YES");
+  gate->SetMetadataItem(GDAL_DCAP_VECTOR, "YES");
+  gate->SetMetadataItem(GDAL_DCAP_GNM, "YES");
+  gate->SetMetadataItem(GDAL_DCAP_MULTIDIM_RASTER, "YES");
+  gate->pfnOpen = OpenForGdal;
+  PutFirst(gate);
+}
+
+// Once a process.
+void RegisterGate() {
+  static std::once_flag once;
+  std::call_once(once, Register);
+}
+
+unsigned FlagsOf(DatasetKind kind) {
+  return GDAL_OF_READONLY | (kind == DatasetKind::Raster   ? GDAL_OF_RASTER
+                             : kind == DatasetKind::Shapes ? GDAL_OF_VECTOR
+                                                           : GDAL_OF_RASTER | GDAL_OF_VECTOR);
+}
+
+} // namespace
+
+DatasetPointer OpenDataset(const std::string& path, DatasetKind kind, const char* const* drivers) {
+  RegisterGate();
+  if (FilesGuard::Lives()) {
+    return OpenGuarded(path, FlagsOf(kind), drivers, nullptr);
+  }
+  return DatasetPointer(
+      GDALDataset::Open(path.c_str(), FlagsOf(kind) | GDAL_OF_VERBOSE_ERROR, drivers));
+}
+
+DatasetPointer OpenOwnTiff(const std::string& path) {
+  RegisterGate();
+  const char* const tiff[] = {"GTiff", nullptr};
+  return DatasetPointer(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, tiff));
+}
+
+std::string AcceptedFormats(DatasetKind kind) {
+  if (FilesGuard::Lives()) {
+    return AcceptedNames(FlagsOf(kind));
+  }
+  return kind == DatasetKind::Shapes ? "any file of shapes that OGR opens"
+                                     : "any raster that GDAL opens";
+}
+
+} // namespace dspace

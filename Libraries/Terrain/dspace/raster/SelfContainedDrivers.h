@@ -1,0 +1,19 @@
+// GDAL's drivers that are safe for files of strangers. Not for public headers.
+#ifndef DSPACE_RASTER_SELFCONTAINEDDRIVERS_H
+#define DSPACE_RASTER_SELFCONTAINEDDRIVERS_H
+
+#include <string>
+
+namespace dspace {
+
+// Names, ending with a null pointer, as GDAL takes them. Each driver opens no other dataset by a
+// name that a file gives without asking GDAL's driver manager (where DatasetGate looks at it),
+// writes nothing when it reads, asks no server, and lists every file that it reads by a name from a
+// header. The mosaic driver (VRT) is not among them: DatasetGate checks its sources first.
+const char* const* SelfContainedDrivers();
+
+bool IsSelfContained(const std::string& driver);
+
+} // namespace dspace
+
+#endif
