@@ -28,13 +28,13 @@ std::string Head(const std::string& path) {
   return start;
 }
 
-bool IsMosaic(const std::string& path) {
+bool NamesSources(const std::string& path) {
   const std::string start = Head(path);
   return start.find("<VRTDataset") != std::string::npos ||
          start.find("<OGRVRTDataSource") != std::string::npos;
 }
 
-constexpr int Nesting = 16;
+constexpr int MostDeep = 16;
 
 void Gather(const std::string& path, int depth, std::set<std::string>& files) {
   const DatasetPointer dataset = OpenDataset(path, DatasetKind::Any);
@@ -44,8 +44,8 @@ void Gather(const std::string& path, int depth, std::set<std::string>& files) {
   const CPLStringList found(dataset->GetFileList());
   for (int i = 0; i < found.size(); ++i) {
     const std::string file = FileBehind(found[i]);
-    if (files.insert(file).second && file != path && depth < Nesting && !IsRemote(file) &&
-        IsMosaic(path)) {
+    if (files.insert(file).second && file != path && depth < MostDeep && !IsRemote(file) &&
+        NamesSources(path)) {
       Gather(found[i], depth + 1, files);
     }
   }
@@ -61,7 +61,7 @@ void NoteDataset(GDALDataset& dataset) {
 }
 
 std::vector<std::string> MosaicFiles(const std::string& path) {
-  if (!IsMosaic(path)) {
+  if (!NamesSources(path)) {
     return {};
   }
   RegisterGdal();
