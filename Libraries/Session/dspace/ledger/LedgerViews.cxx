@@ -23,7 +23,7 @@ std::string VantageName(const std::string& name) {
   return name.empty() ? DefaultVantage : name;
 }
 
-v1::Command& New(const std::string& scene, std::vector<v1::Command>& out) {
+v1::Command& NewCommand(const std::string& scene, std::vector<v1::Command>& out) {
   out.emplace_back().set_scene(scene);
   return out.back();
 }
@@ -157,18 +157,18 @@ std::vector<std::string> LedgerNames::Fragments() const {
 }
 
 void LedgerNames::PutFirst(const std::string& scene, Emit out) const {
-  *New(scene, out).mutable_create_scene() = this->Create_;
+  *NewCommand(scene, out).mutable_create_scene() = this->Create_;
   if (this->Time_) {
-    New(scene, out).mutable_set_time()->set_time_s(*this->Time_);
+    NewCommand(scene, out).mutable_set_time()->set_time_s(*this->Time_);
   }
   for (const Fragment& fragment : this->Fragments_) {
     if (fragment.made) {
-      v1::CreateFragment* create = New(scene, out).mutable_create_fragment();
+      v1::CreateFragment* create = NewCommand(scene, out).mutable_create_fragment();
       create->set_name(fragment.name);
       create->set_nature(fragment.nature);
     }
     if (fragment.visible) {
-      v1::SetFragmentVisible* set = New(scene, out).mutable_set_fragment_visible();
+      v1::SetFragmentVisible* set = NewCommand(scene, out).mutable_set_fragment_visible();
       set->set_name(fragment.name);
       set->set_visible(*fragment.visible);
     }
@@ -180,28 +180,28 @@ void LedgerNames::PutLast(const std::string& scene, Emit out) const {
     for (const char* name : {"sun", "sky"}) {
       const auto found = FindName(this->Lights_, name);
       if (found == this->Lights_.end() || !found->first) {
-        New(scene, out).mutable_remove_light()->set_name(name);
+        NewCommand(scene, out).mutable_remove_light()->set_name(name);
       }
     }
   }
   for (const Light& light : this->Lights_) {
     if (light.set) {
-      *New(scene, out).mutable_set_light() = *light.set;
+      *NewCommand(scene, out).mutable_set_light() = *light.set;
     }
   }
   const auto main = FindName(this->Vantages_, DefaultVantage);
   if (main == this->Vantages_.end() || !main->first) {
-    New(scene, out).mutable_remove_vantage()->set_name(DefaultVantage);
+    NewCommand(scene, out).mutable_remove_vantage()->set_name(DefaultVantage);
   }
   for (const Vantage& vantage : this->Vantages_) {
     if (!vantage.first) {
-      New(scene, out).mutable_create_vantage()->set_name(vantage.name);
+      NewCommand(scene, out).mutable_create_vantage()->set_name(vantage.name);
     }
     for (const v1::SetCamera& camera : vantage.cameras) {
-      *New(scene, out).mutable_set_camera() = camera;
+      *NewCommand(scene, out).mutable_set_camera() = camera;
     }
     if (!vantage.cameras.empty() && vantage.active != vantage.cameras.front().name()) {
-      v1::SetActiveCamera* set = New(scene, out).mutable_set_active_camera();
+      v1::SetActiveCamera* set = NewCommand(scene, out).mutable_set_active_camera();
       set->set_vantage(vantage.name);
       set->set_name(vantage.active);
     }
@@ -214,7 +214,7 @@ void LedgerNames::PutLast(const std::string& scene, Emit out) const {
             [](const v1::SetCamera& camera) { return camera.mount().chase().smoothing_s() > 0.0; });
       });
   if (lags) {
-    v1::SetTime* time = New(scene, out).mutable_set_time();
+    v1::SetTime* time = NewCommand(scene, out).mutable_set_time();
     time->set_put_lags(true);
     time->set_time_s(this->Time_.value_or(0.0));
     for (const auto& [camera, lag] : this->Lags_) {

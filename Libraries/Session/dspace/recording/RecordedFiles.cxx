@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string Object(const RecordingReader& reader) {
+std::string LabelOf(const RecordingReader& reader) {
   return "recording '" + reader.Path() + "'";
 }
 
@@ -42,7 +42,7 @@ bool IsPacked(const std::vector<RecordingAsset>& assets) {
 
 [[noreturn]] void HadChanged(const RecordingReader& reader, const RecordingAsset& asset,
                              const std::string& accepted) {
-  throw Error(Error::Kind::Corrupt, Object(reader),
+  throw Error(Error::Kind::Corrupt, LabelOf(reader),
               "file '" + asset.path + "' had changed between its reading and its recording" +
                   accepted);
 }
@@ -50,7 +50,7 @@ bool IsPacked(const std::vector<RecordingAsset>& assets) {
 void RequireAbsent(const RecordingReader& reader, const RecordingAsset& asset) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(asset.path, error))) {
-    throw Error(Error::Kind::Corrupt, Object(reader),
+    throw Error(Error::Kind::Corrupt, LabelOf(reader),
                 "file '" + asset.path + "' was not there when it was recorded, and now is");
   }
 }
@@ -151,7 +151,7 @@ void RecordedFiles::Update() {
   if (this->Owned_) {
     this->Unpack(assets);
   } else if (const auto all = this->Reader_.Assets(); IsPacked(all)) {
-    this->Owned_ = std::make_unique<OwnFolder>(Object(this->Reader_));
+    this->Owned_ = std::make_unique<OwnFolder>(LabelOf(this->Reader_));
     this->Folder_ = this->Owned_->Path;
     this->Confinement_ = std::make_shared<const Confinement>(
         std::vector<std::string>{this->Folder_}, "the recording, whose files are packed,");
@@ -166,7 +166,7 @@ void RecordedFiles::Update() {
 
 void RecordedFiles::Check(const std::vector<RecordingAsset>& assets) const {
   for (const RecordingAsset& asset : assets) {
-    const std::string object = Object(this->Reader_);
+    const std::string object = LabelOf(this->Reader_);
     const std::string named = "file '" + asset.path + "'";
     std::error_code error;
     if (asset.state == "changed") {
@@ -211,7 +211,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
   std::error_code error;
   const std::uintmax_t free = fs::space(this->Folder_, error).available;
   if (!error && needed > free) {
-    throw Error(Error::Kind::Resource, Object(this->Reader_),
+    throw Error(Error::Kind::Resource, LabelOf(this->Reader_),
                 "its files need " + std::to_string(needed) + " bytes in '" + this->Folder_ +
                     "', where " + std::to_string(free) + " are free; accepted: TMPDIR with more");
   }
@@ -240,7 +240,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
     const fs::path place(entry.second);
     if ((place.filename() == "proj.db" || place.filename() == "proj.ini") &&
         folders.count(place.parent_path().string()) != 0) {
-      throw Error(Error::Kind::Corrupt, Object(this->Reader_),
+      throw Error(Error::Kind::Corrupt, LabelOf(this->Reader_),
                   "'" + entry.first + "', packed beside a grid, would stand in for PROJ's own; " +
                       "accepted: grids without it");
     }
@@ -256,7 +256,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
 }
 
 void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std::int64_t>& parts) {
-  const std::string object = Object(this->Reader_);
+  const std::string object = LabelOf(this->Reader_);
   const std::string named = "'" + asset.path + "'";
   if (asset.path.empty() || asset.path[0] != '/' || asset.path.find('\0') != std::string::npos) {
     throw Error(Error::Kind::Corrupt, object, named + " is no path of a file");

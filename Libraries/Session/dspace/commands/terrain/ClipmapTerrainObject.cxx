@@ -5,6 +5,7 @@
 
 #include <dspace/scene/Checks.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/clipmap/ColorGridsOf.h>
 #include <dspace/clipmap/PoleCharts.h>
 
 namespace dspace::session {
