@@ -11,6 +11,7 @@
 
 #include <dspace/FrameEvents.h>
 #include <dspace/Pose.h>
+#include <dspace/WorldPoses.h>
 
 namespace dspace {
 
@@ -102,7 +103,7 @@ public:
   // The revision with which the frame's root-relative pose was last evaluated; 0 for the root.
   std::uint64_t ChangedAt(FrameId id) const;
   // Root-relative poses evaluated so far in this tree's life.
-  std::uint64_t Evaluations() const { return this->Evaluations_; }
+  std::uint64_t Evaluations() const { return this->World_.Evaluations(); }
 
   // --- Flat order --------------------------------------------------------------------------------
 
@@ -119,7 +120,6 @@ public:
 
 private:
   using SlotIndex = std::uint32_t;
-  static constexpr std::size_t Clean = SIZE_MAX; // FirstDirty_ when nothing is
   // What is not needed to evaluate poses.
   struct Node {
     std::string name;
@@ -147,7 +147,6 @@ private:
   std::vector<char> SubtreeFrom(SlotIndex slot) const;
   void Reorder(SlotIndex first, SlotIndex last, const std::vector<SlotIndex>& order);
   bool StorePose(SlotIndex slot, const Pose& X_PF);
-  void MarkDirty(SlotIndex slot);
   void Evaluate() const;
   void Emit(FrameEvent::Type type, std::vector<FrameId> ids);
 
@@ -156,17 +155,13 @@ private:
   std::vector<SlotIndex> Parents_; // the root's is 0
   std::vector<Pose> Local_;        // X_PF
   std::vector<Node> Nodes_;
-  mutable std::vector<Pose> World_; // X_RootF
-  mutable std::vector<std::uint64_t> ChangedAt_;
-  mutable std::vector<char> Dirty_; // local pose or parent changed since World_ was evaluated
+  mutable WorldPoses World_; // X_RootF, evaluated when somebody asks
 
   std::unordered_map<FrameId, SlotIndex> SlotOf_;
   std::unordered_map<ChildKey, FrameId, ChildKeyHash> ChildOf_;
   std::unordered_set<FrameId> Retired_; // ids of removed frames
   FrameId LargestId_ = RootFrame;
   std::uint64_t Revision_ = 0;
-  mutable std::size_t FirstDirty_ = Clean; // no dirty slot lies before it
-  mutable std::uint64_t Evaluations_ = 0;
   std::uint64_t ReportedRevision_ = 0; // of the last Update()
   std::vector<FrameId> Changed_;
   // Scratch of SetLocalPoses: slots by row, and by slot in which row of which call it came last.

@@ -1,4 +1,4 @@
-#include <dspace/scene/Camera.h>
+#include <dspace/scene/Projection.h>
 
 #include <cmath>
 

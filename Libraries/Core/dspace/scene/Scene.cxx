@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_set>
 
 #include <dspace/scene/Checks.h>
 
@@ -34,7 +35,17 @@ void CheckOffset(const std::string& object, const Eigen::Affine3d& X_FO) {
   }
 }
 
-template <typename Value> void EraseValue(std::vector<Value>& values, const Value& value) {
+// `top` and everything below it.
+std::vector<FrameId> SubtreeOf(const FrameTree& frames, FrameId top) {
+  std::vector<FrameId> ids = {top};
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const std::vector<FrameId>& children = frames.Children(ids[i]);
+    ids.insert(ids.end(), children.begin(), children.end());
+  }
+  return ids;
+}
+
+template<typename Value> void EraseValue(std::vector<Value>& values, const Value& value) {
   values.erase(std::find(values.begin(), values.end(), value));
 }
 
@@ -56,7 +67,7 @@ void Scene::MeshRegister::Check(const std::shared_ptr<const Mesh>& mesh,
   this->Good_[mesh.get()] = mesh;
 }
 
-Scene::Scene(std::string name) : Name_(std::move(name)) {
+Scene::Scene(std::string name) : Name_(std::move(name)), Views_(Name_, Frames_) {
   RequireName("scene", this->Name_);
 }
 
@@ -283,6 +294,88 @@ void Scene::SetLight(const Light& light) {
 void Scene::RemoveLight(const std::string& name) {
   this->Fragments_.RemoveLight(name);
   this->ContentChanged();
+}
+
+void Scene::RemoveFrame(FrameId frame) {
+  this->RequireFrame("scene '" + this->Name_ + "'", frame);
+  if (frame == RootFrame) {
+    this->Frames_.Remove(frame); // says why not
+    return;
+  }
+  const std::vector<FrameId> subtree = SubtreeOf(this->Frames_, frame);
+  this->Views_.RefuseWhileCamerasOn(frame, subtree);
+
+  // Nothing below can be refused. The tree comes last: its listeners see a scene without leftovers.
+  const std::unordered_set<FrameId> gone(subtree.begin(), subtree.end());
+  std::unordered_set<ObjectId> removed;
+  for (auto it = this->Objects_.begin(); it != this->Objects_.end();) {
+    if (gone.count(it->second.frame) == 0) {
+      ++it;
+      continue;
+    }
+    removed.insert(it->first);
+    this->RetiredObjects_.insert(it->first);
+    this->ObjectNames_.erase(it->second.name);
+    it = this->Objects_.erase(it);
+  }
+  for (SceneFragment& fragment : this->Fragments_.Fragments_) {
+    std::vector<ObjectId>& ids = fragment.objects;
+    ids.erase(
+        std::remove_if(ids.begin(), ids.end(), [&](ObjectId id) { return removed.count(id) != 0; }),
+        ids.end());
+  }
+  std::vector<Light>& lights = this->Fragments_.Lights_;
+  const std::size_t before = lights.size();
+  lights.erase(std::remove_if(lights.begin(), lights.end(),
+                              [&](const Light& light) { return gone.count(light.frame) != 0; }),
+               lights.end());
+  if (!removed.empty() || lights.size() != before) {
+    this->ContentChanged();
+  }
+  this->Frames_.Remove(frame);
+}
+
+void Scene::CreateVantage(const std::string& name) {
+  this->Views_.Create(name);
+  ++this->Revision_;
+}
+
+void Scene::RemoveVantage(const std::string& name) {
+  this->Views_.Remove(name);
+  ++this->Revision_;
+}
+
+const SceneVantage& Scene::Vantage(const std::string& name) const {
+  return this->Views_.Get(name);
+}
+
+void Scene::SetCamera(const std::string& vantage, const Camera& camera) {
+  this->Views_.Get(vantage);
+  this->RequireFrame("camera '" + camera.name + "'", camera.mount.frame);
+  this->Views_.SetCamera(vantage, camera);
+  ++this->Revision_;
+}
+
+void Scene::RemoveCamera(const std::string& vantage, const std::string& camera) {
+  this->Views_.RemoveCamera(vantage, camera);
+  ++this->Revision_;
+}
+
+void Scene::SetActiveCamera(const std::string& vantage, const std::string& camera) {
+  if (this->Views_.SetActiveCamera(vantage, camera)) {
+    ++this->Revision_;
+  }
+}
+
+void Scene::SetLags(Lags lags) {
+  this->Views_.SetLags(std::move(lags));
+  ++this->Revision_;
+}
+
+void Scene::SetTime(double time_s) {
+  if (this->Views_.SetTime(time_s)) {
+    ++this->Revision_;
+  }
 }
 
 } // namespace dspace

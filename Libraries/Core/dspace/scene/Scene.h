@@ -7,68 +7,14 @@
 #include <memory>
 #include <string>
 #include <unordered_set>
-#include <utility>
 #include <vector>
 
 #include <dspace/FrameTree.h>
-#include <dspace/scene/Camera.h>
 #include <dspace/scene/GraphicsObject.h>
-#include <dspace/scene/Light.h>
+#include <dspace/scene/SceneFragmentManager.h>
+#include <dspace/scene/SceneViews.h>
 
 namespace dspace {
-
-// A named group of objects that is shown or hidden as one.
-struct SceneFragment {
-  std::string name;
-  Nature nature = Nature::Physical;
-  bool visible = true;           // everywhere; a viewport or a request hides it for itself
-  std::vector<ObjectId> objects; // in the order they came
-};
-
-// The fragments of one scene, and its lights, which light all of it.
-// Two fragments always exist: "physical" and "ornamental".
-class SceneFragmentManager {
-public:
-  SceneFragmentManager();
-  // Throws Error(AlreadyExists, InvalidArgument).
-  void Create(const std::string& name, Nature nature);
-  // The fragment must be empty and not one of the two that always exist.
-  void Remove(const std::string& name);
-  void SetVisible(const std::string& name, bool visible);
-  const SceneFragment& Get(const std::string& name) const; // throws Error(NotFound)
-  bool Contains(const std::string& name) const;
-  std::vector<std::string> Names() const; // in creation order
-
-  // Lights, by unique name.
-  void SetLight(const Light& light); // creates or replaces; throws Error(InvalidArgument)
-  void RemoveLight(const std::string& name);
-  const std::vector<Light>& Lights() const { return this->Lights_; }
-
-private:
-  friend class Scene;
-  SceneFragment& Find(const std::string& name);
-  std::vector<SceneFragment> Fragments_;
-  std::vector<Light> Lights_;
-};
-
-// One SceneFragmentManager seen through one of its cameras; one camera is active.
-class SceneVantage {
-public:
-  explicit SceneVantage(std::string name) : Name_(std::move(name)) {}
-  const std::string& Name() const { return this->Name_; }
-  // Creates or replaces; the first camera becomes the active one. Checked before anything changes.
-  void SetCamera(const Camera& camera);
-  void RemoveCamera(const std::string& name); // not the active one, unless it is the last
-  void SetActiveCamera(const std::string& name);
-  const Camera& GetCamera(const std::string& name) const; // throws Error(NotFound)
-  const Camera& ActiveCamera() const;                     // throws Error(NotFound) without any
-  std::vector<std::string> CameraNames() const;
-
-private:
-  std::string Name_;
-  std::string Active_;
-  std::vector<Camera> Cameras_;
-};
 
 // Every change goes through the scene (or Frames()), is checked whole before it is made, and
 // raises Revision(); setting what an object, a fragment or the time
@@ -114,24 +60,26 @@ public:
   void CreateVantage(const std::string& name);
   void RemoveVantage(const std::string& name);
   const SceneVantage& Vantage(const std::string& name) const; // throws Error(NotFound)
-  std::vector<std::string> VantageNames() const;
+  std::vector<std::string> VantageNames() const { return this->Views_.Names(); }
   void SetCamera(const std::string& vantage, const Camera& camera);
   void RemoveCamera(const std::string& vantage, const std::string& camera);
   void SetActiveCamera(const std::string& vantage, const std::string& camera);
 
   // Where a camera of a vantage stands now ("": the active one): a function of the commands given
   // so far, however often and from however many viewports it is asked.
-  CameraPose PlaceCamera(const std::string& vantage, const std::string& camera = {}) const;
+  CameraPose PlaceCamera(const std::string& vantage, const std::string& camera = {}) const {
+    return this->Views_.Place(vantage, camera);
+  }
 
   // Simulation time [s], TDB past J2000 or any other that only grows; smoothing depends on it.
   // Poses set after SetTime(t) are those of t. A step back starts all lags anew.
   void SetTime(double time_s);
-  double Time() const { return this->Time_; }
+  double Time() const { return this->Views_.Time(); }
 
   // What chase cameras with smoothing go on from, by vantage and camera, for whoever brings a scene
   // back to a state. SetLags throws Error(NotFound) for a camera that is not there.
-  using Lags = std::map<std::pair<std::string, std::string>, ChaseState>;
-  const Lags& GetLags() const { return this->Lags_; }
+  using Lags = SceneViews::Lags;
+  const Lags& GetLags() const { return this->Views_.GetLags(); }
   void SetLags(Lags lags);
 
   // Raised by every change of anything above, poses included.
@@ -151,10 +99,8 @@ private:
   };
 
   GraphicsObject& Find(ObjectId id);
-  SceneVantage& FindVantage(const std::string& name);
   void RequireFrame(const std::string& object, FrameId frame) const;
   void CheckLevels(const std::string& object, std::vector<DetailLevel>& levels);
-  void RefuseWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const;
   void ContentChanged();
 
   std::string Name_;
@@ -166,10 +112,7 @@ private:
   std::unordered_set<ObjectId> RetiredObjects_; // ids of removed objects
   MeshRegister Meshes_;
   std::vector<std::shared_ptr<const CustomGeometry>> Customs_; // of the objects
-  std::vector<SceneVantage> Vantages_;
-  // Lags of chase cameras at the time before the present one, by vantage and camera.
-  Lags Lags_;
-  double Time_ = 0.0;
+  SceneViews Views_;
   std::uint64_t Revision_ = 1;
   std::uint64_t ContentRevision_ = 1;
 };

@@ -1,4 +1,4 @@
-#include <dspace/scene/Scene.h>
+#include <dspace/scene/SceneVantage.h>
 
 #include <algorithm>
 

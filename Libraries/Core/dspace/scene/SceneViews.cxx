@@ -1,24 +1,11 @@
-// The parts of Scene that bind frames, vantages, cameras and time together.
-#include <dspace/scene/Scene.h>
+#include <dspace/scene/SceneViews.h>
 
 #include <algorithm>
-#include <unordered_set>
 
 #include <dspace/scene/Checks.h>
 
 namespace dspace {
-
 namespace {
-
-// `top` and everything below it.
-std::vector<FrameId> SubtreeOf(const FrameTree& frames, FrameId top) {
-  std::vector<FrameId> ids = {top};
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const std::vector<FrameId>& children = frames.Children(ids[i]);
-    ids.insert(ids.end(), children.begin(), children.end());
-  }
-  return ids;
-}
 
 // Whether a changed camera goes on where its lag has brought it.
 bool FollowsTheSame(const CameraMount& a, const CameraMount& b) {
@@ -27,7 +14,10 @@ bool FollowsTheSame(const CameraMount& a, const CameraMount& b) {
 
 } // namespace
 
-void Scene::RefuseWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const {
+SceneViews::SceneViews(std::string scene, const FrameTree& frames)
+    : Scene_(std::move(scene)), Frames_(frames) {}
+
+void SceneViews::RefuseWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const {
   for (const SceneVantage& vantage : this->Vantages_) {
     for (const std::string& name : vantage.CameraNames()) {
       const CameraMount& mount = vantage.GetCamera(name).mount;
@@ -42,60 +32,21 @@ void Scene::RefuseWhileCamerasOn(FrameId removed, const std::vector<FrameId>& su
   }
 }
 
-void Scene::RemoveFrame(FrameId frame) {
-  this->RequireFrame("scene '" + this->Name_ + "'", frame);
-  if (frame == RootFrame) {
-    this->Frames_.Remove(frame); // says why not
-    return;
-  }
-  const std::vector<FrameId> subtree = SubtreeOf(this->Frames_, frame);
-  this->RefuseWhileCamerasOn(frame, subtree);
-
-  // Nothing below can be refused. The tree comes last: its listeners see a scene without leftovers.
-  const std::unordered_set<FrameId> gone(subtree.begin(), subtree.end());
-  std::unordered_set<ObjectId> removed;
-  for (auto it = this->Objects_.begin(); it != this->Objects_.end();) {
-    if (gone.count(it->second.frame) == 0) {
-      ++it;
-      continue;
-    }
-    removed.insert(it->first);
-    this->RetiredObjects_.insert(it->first);
-    this->ObjectNames_.erase(it->second.name);
-    it = this->Objects_.erase(it);
-  }
-  for (SceneFragment& fragment : this->Fragments_.Fragments_) {
-    std::vector<ObjectId>& ids = fragment.objects;
-    ids.erase(
-        std::remove_if(ids.begin(), ids.end(), [&](ObjectId id) { return removed.count(id) != 0; }),
-        ids.end());
-  }
-  std::vector<Light>& lights = this->Fragments_.Lights_;
-  const std::size_t before = lights.size();
-  lights.erase(std::remove_if(lights.begin(), lights.end(),
-                              [&](const Light& light) { return gone.count(light.frame) != 0; }),
-               lights.end());
-  if (!removed.empty() || lights.size() != before) {
-    this->ContentChanged();
-  }
-  this->Frames_.Remove(frame);
-}
-
-SceneVantage& Scene::FindVantage(const std::string& name) {
+SceneVantage& SceneViews::Find(const std::string& name) {
   const auto found = std::find_if(this->Vantages_.begin(), this->Vantages_.end(),
                                   [&](const SceneVantage& v) { return v.Name() == name; });
   if (found == this->Vantages_.end()) {
     throw Error(Error::Kind::NotFound, "vantage '" + name + "'",
-                "scene '" + this->Name_ + "' has none of this name");
+                "scene '" + this->Scene_ + "' has none of this name");
   }
   return *found;
 }
 
-const SceneVantage& Scene::Vantage(const std::string& name) const {
-  return const_cast<Scene*>(this)->FindVantage(name);
+const SceneVantage& SceneViews::Get(const std::string& name) const {
+  return const_cast<SceneViews*>(this)->Find(name);
 }
 
-std::vector<std::string> Scene::VantageNames() const {
+std::vector<std::string> SceneViews::Names() const {
   std::vector<std::string> names;
   for (const SceneVantage& vantage : this->Vantages_) {
     names.push_back(vantage.Name());
@@ -103,31 +54,28 @@ std::vector<std::string> Scene::VantageNames() const {
   return names;
 }
 
-void Scene::CreateVantage(const std::string& name) {
+void SceneViews::Create(const std::string& name) {
   RequireName("vantage", name);
   for (const SceneVantage& vantage : this->Vantages_) {
     if (vantage.Name() == name) {
       throw Error(Error::Kind::AlreadyExists, "vantage '" + name + "'",
-                  "scene '" + this->Name_ + "' has one; accepted: a name that no vantage has");
+                  "scene '" + this->Scene_ + "' has one; accepted: a name that no vantage has");
     }
   }
   this->Vantages_.emplace_back(name);
-  ++this->Revision_;
 }
 
-void Scene::RemoveVantage(const std::string& name) {
-  const SceneVantage& vantage = this->FindVantage(name);
+void SceneViews::Remove(const std::string& name) {
+  const SceneVantage& vantage = this->Find(name);
   for (const std::string& camera : vantage.CameraNames()) {
     this->Lags_.erase({name, camera});
   }
   this->Vantages_.erase(this->Vantages_.begin() + (&vantage - this->Vantages_.data()));
-  ++this->Revision_;
 }
 
-void Scene::SetCamera(const std::string& vantage, const Camera& camera) {
-  SceneVantage& views = this->FindVantage(vantage);
+void SceneViews::SetCamera(const std::string& vantage, const Camera& camera) {
+  SceneVantage& views = this->Find(vantage);
   const std::string label = "camera '" + camera.name + "'";
-  this->RequireFrame(label, camera.mount.frame);
   if (camera.mount.kind == CameraMount::Kind::Chase && camera.mount.frame == RootFrame) {
     Refuse(label, "it follows the root frame, which does not move; accepted: any other frame");
   }
@@ -144,43 +92,41 @@ void Scene::SetCamera(const std::string& vantage, const Camera& camera) {
       this->Lags_.count(key) == 0) {
     dspace::PlaceCamera(camera, this->Frames_, this->Time_, this->Lags_[key]);
   }
-  ++this->Revision_;
 }
 
-void Scene::RemoveCamera(const std::string& vantage, const std::string& camera) {
-  this->FindVantage(vantage).RemoveCamera(camera);
+void SceneViews::RemoveCamera(const std::string& vantage, const std::string& camera) {
+  this->Find(vantage).RemoveCamera(camera);
   this->Lags_.erase({vantage, camera});
-  ++this->Revision_;
 }
 
-void Scene::SetActiveCamera(const std::string& vantage, const std::string& camera) {
-  SceneVantage& views = this->FindVantage(vantage);
-  if (views.GetCamera(camera).name != views.ActiveCamera().name) {
+bool SceneViews::SetActiveCamera(const std::string& vantage, const std::string& camera) {
+  SceneVantage& views = this->Find(vantage);
+  const bool changes = views.GetCamera(camera).name != views.ActiveCamera().name;
+  if (changes) {
     views.SetActiveCamera(camera);
-    ++this->Revision_;
   }
+  return changes;
 }
 
-CameraPose Scene::PlaceCamera(const std::string& vantage, const std::string& camera) const {
-  const SceneVantage& views = this->Vantage(vantage);
+CameraPose SceneViews::Place(const std::string& vantage, const std::string& camera) const {
+  const SceneVantage& views = this->Get(vantage);
   const Camera& found = camera.empty() ? views.ActiveCamera() : views.GetCamera(camera);
   const auto lag = this->Lags_.find({vantage, found.name});
   ChaseState state = lag == this->Lags_.end() ? ChaseState() : lag->second;
   return dspace::PlaceCamera(found, this->Frames_, this->Time_, state);
 }
 
-void Scene::SetLags(Lags lags) {
+void SceneViews::SetLags(Lags lags) {
   for (const auto& [key, lag] : lags) {
-    this->Vantage(key.first).GetCamera(key.second);
+    this->Get(key.first).GetCamera(key.second);
   }
   this->Lags_ = std::move(lags);
-  ++this->Revision_;
 }
 
-void Scene::SetTime(double time_s) {
-  RequireFinite("scene '" + this->Name_ + "'", "time", time_s);
+bool SceneViews::SetTime(double time_s) {
+  RequireFinite("scene '" + this->Scene_ + "'", "time", time_s);
   if (time_s == this->Time_) {
-    return;
+    return false;
   }
   if (time_s < this->Time_) {
     this->Lags_.clear();
@@ -197,7 +143,7 @@ void Scene::SetTime(double time_s) {
     }
   }
   this->Time_ = time_s;
-  ++this->Revision_;
+  return true;
 }
 
 } // namespace dspace
