@@ -6,7 +6,9 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 
+#include <dspace/render/CustomDrawers.h>
 #include <dspace/render/GpuStore.h>
+#include <dspace/render/VtkMessages.h>
 
 vtkStandardNewMacro(vtkDspaceRenderContext);
 
@@ -14,6 +16,8 @@ struct vtkDspaceRenderContext::Internals {
   vtkNew<vtkDspaceHubWindow> hub;
   dspace::RenderStatistics statistics;
   dspace::GpuStore store{statistics};
+  dspace::CustomDrawers drawers;
+  dspace::VtkMessages messages;
 };
 
 vtkDspaceRenderContext::vtkDspaceRenderContext() : Impl(std::make_unique<Internals>()) {}
@@ -75,4 +79,12 @@ vtkDspaceHubWindow* vtkDspaceRenderContext::GetHub() {
 
 dspace::GpuStore& vtkDspaceRenderContext::GetStore() {
   return this->Impl->store;
+}
+
+dspace::CustomDrawers& vtkDspaceRenderContext::GetDrawers() {
+  return this->Impl->drawers;
+}
+
+dspace::VtkMessages& vtkDspaceRenderContext::GetMessages() {
+  return this->Impl->messages;
 }

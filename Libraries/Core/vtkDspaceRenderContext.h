@@ -23,7 +23,9 @@ class vtkDspaceHubWindow;
 class vtkDspaceViewport;
 class vtkRenderWindow;
 namespace dspace {
+class CustomDrawers;
 class GpuStore;
+class VtkMessages;
 }
 
 class VTKDSPACECORE_EXPORT vtkDspaceRenderContext : public vtkObject {
@@ -45,6 +47,10 @@ public:
   dspace::RenderStatistics& CountStatistics(); // for those who draw
   vtkDspaceHubWindow* GetHub();
   dspace::GpuStore& GetStore();
+  /// The drawers of geometry that is not made of meshes; libraries with such geometry add theirs.
+  dspace::CustomDrawers& GetDrawers();
+  /// What VTK reports while this context draws; its warnings are for the user.
+  dspace::VtkMessages& GetMessages();
 #endif
 
 protected:

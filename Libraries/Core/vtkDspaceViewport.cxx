@@ -14,7 +14,7 @@
 #include <dspace/render/LabelPicture.h>
 #include <dspace/render/text/TextTables.h>
 #include <dspace/render/ViewportLimits.h>
-#include <dspace/render/VtkErrors.h>
+#include <dspace/render/VtkErrorTrap.h>
 
 using dspace::Error;
 
@@ -342,7 +342,7 @@ dspace::PickResult vtkDspaceViewport::Pick(double x, double y, int radius) {
 void vtkDspaceViewport::Run(const std::function<void(vtkRenderWindow*)>& f) {
   Internals& self = *this->Impl;
   self.picture.Activate(self.width, self.height, self.samples);
-  dspace::VtkErrorTrap trap;
+  dspace::VtkErrorTrap trap(self.context->GetMessages());
   f(self.context->GetHub());
   self.stale = true;
   trap.Check(self.Object());

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include <dspace/clipmap/gl/ClipmapDrawer.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/raster/ConfinedDrivers.h>
@@ -99,7 +98,6 @@ vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
   dspace::session::Registry& commands = this->Impl->interpreter.Commands();
   this->Impl->viewports.AddTo(commands);
   dspace::session::AddTextCommands(commands);
-  dspace::RegisterClipmapDrawer();
   this->Impl->interpreter.AddListener(
       [this](const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
         this->Impl->Note(command, reply);

@@ -259,7 +259,6 @@ void HeightQueries(const std::string& path, int pairs) {
 } // namespace
 
 int main() {
-  RegisterClipmapDrawer();
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("dspace-bench-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
@@ -268,6 +267,7 @@ int main() {
   WriteImage(folder);
   {
     vtkNew<vtkDspaceRenderContext> context;
+    RegisterClipmapDrawer(context->GetDrawers());
     context->Initialize();
     std::printf("renderer: %s\n", context->GetRendererName().c_str());
     AgainstBare(context, small, false, Paint::None, 31, "clipmap frame unlit against bare OpenGL",

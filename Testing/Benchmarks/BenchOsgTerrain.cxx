@@ -239,7 +239,6 @@ void Compare(vtkDspaceRenderContext* context, const std::string& path, int level
 } // namespace
 
 int main() {
-  RegisterClipmapDrawer();
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("dspace-bench-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
@@ -247,6 +246,7 @@ int main() {
   const std::string path = WriteMosaic(folder, Side, Side);
   {
     vtkNew<vtkDspaceRenderContext> context;
+    RegisterClipmapDrawer(context->GetDrawers());
     context->Initialize();
     std::printf("renderer: %s\n", context->GetRendererName().c_str());
     for (const int level : {124, 252}) {

@@ -93,7 +93,6 @@ std::vector<TrackAddition> StepAt(double s) {
 } // namespace
 
 int main() {
-  RegisterClipmapDrawer();
   const std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                        ("dspace-bench-tracks-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
@@ -102,6 +101,7 @@ int main() {
   const auto terrain = StreamedTerrain::Open(Write((folder / "field.tif").string()), options);
   {
     vtkNew<vtkDspaceRenderContext> context;
+    RegisterClipmapDrawer(context->GetDrawers());
     context->Initialize();
     const auto scene = std::make_shared<Scene>("tracks");
     ClipmapOptions clipmap;

@@ -13,7 +13,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/render/CornerAxes.h>
-#include <dspace/render/VtkErrors.h>
+#include <dspace/render/VtkErrorTrap.h>
 #include <dspace/render/VtkMirror.h>
 
 namespace dspace {
@@ -98,7 +98,7 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   const DrawView& view = request.view;
   const int samples = request.samples;
   vtkDspaceHubWindow* hub = this->Context_->GetHub();
-  VtkErrorTrap trap;
+  VtkErrorTrap trap(this->Context_->GetMessages());
   hub->MakeCurrent();
   try {
     this->PrepareTargets(view.width / samples, view.height / samples, samples);
@@ -109,7 +109,8 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   }
   RenderStatistics& statistics = this->Context_->CountStatistics();
   if (!this->Drawer_) {
-    this->Drawer_ = std::make_unique<SceneDrawer>(hub, this->Context_->GetStore(), statistics);
+    this->Drawer_ = std::make_unique<SceneDrawer>(hub, this->Context_->GetStore(),
+                                                  this->Context_->GetDrawers(), statistics);
   }
   this->List_.Build(scene, view, request.filter);
   this->Complete_ = this->Drawer_->Prepare(this->List_, view, samples);

@@ -63,8 +63,9 @@ void CornerAxes::Draw(const Scene& scene, const DrawView& view, RenderTarget& ta
   state->vtkglClearDepth(1.0);
   RenderStatistics& statistics = this->Context_->CountStatistics();
   if (!this->Drawer_) {
-    this->Drawer_ = std::make_unique<SceneDrawer>(this->Context_->GetHub(),
-                                                  this->Context_->GetStore(), statistics);
+    this->Drawer_ =
+        std::make_unique<SceneDrawer>(this->Context_->GetHub(), this->Context_->GetStore(),
+                                      this->Context_->GetDrawers(), statistics);
   }
   const RenderStatistics before = statistics;
   this->Drawer_->DrawColor(this->List_, corner, target, samples);

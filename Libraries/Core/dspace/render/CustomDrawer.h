@@ -2,14 +2,10 @@
 #ifndef DSPACE_RENDER_CUSTOM_DRAWER_H
 #define DSPACE_RENDER_CUSTOM_DRAWER_H
 
-#include <functional>
-#include <memory>
-#include <typeindex>
 #include <vector>
 
 #include <dspace/render/Captions.h>
 #include <dspace/render/DrawList.h>
-#include <dspace/scene/CustomGeometry.h>
 
 class vtkDspaceHubWindow;
 
@@ -48,16 +44,6 @@ public:
     return {};
   }
 };
-
-// Makes the drawer of a geometry of the class that it is registered for. The geometry outlives it.
-using CustomDrawerMaker =
-    std::function<std::unique_ptr<CustomDrawer>(std::shared_ptr<const CustomGeometry>)>;
-
-// For objects whose geometry is of exactly this class; the latest registration counts.
-void RegisterCustomDrawer(std::type_index geometry, CustomDrawerMaker maker);
-// Throws Error(Unsupported) for a class that nobody registered.
-std::unique_ptr<CustomDrawer>
-MakeCustomDrawer(const std::shared_ptr<const CustomGeometry>& geometry);
 
 } // namespace dspace
 

@@ -1,41 +1,25 @@
-#include <dspace/render/CustomDrawer.h>
+#include <dspace/render/CustomDrawers.h>
 
-#include <map>
-#include <mutex>
 #include <typeinfo>
+#include <utility>
 
 #include <dspace/Error.h>
 
 namespace dspace {
-namespace {
 
-struct Makers {
-  std::mutex mutex;
-  std::map<std::type_index, CustomDrawerMaker> of;
-};
-
-Makers& AllMakers() {
-  static Makers makers;
-  return makers;
-}
-
-} // namespace
-
-void RegisterCustomDrawer(std::type_index geometry, CustomDrawerMaker maker) {
-  Makers& makers = AllMakers();
-  const std::lock_guard<std::mutex> lock(makers.mutex);
-  makers.of[geometry] = std::move(maker);
+void CustomDrawers::Register(std::type_index geometry, Maker maker) {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  this->Makers_[geometry] = std::move(maker);
 }
 
 std::unique_ptr<CustomDrawer>
-MakeCustomDrawer(const std::shared_ptr<const CustomGeometry>& geometry) {
+CustomDrawers::Make(const std::shared_ptr<const CustomGeometry>& geometry) const {
   const CustomGeometry& shape = *geometry;
-  Makers& makers = AllMakers();
-  const std::lock_guard<std::mutex> lock(makers.mutex);
-  const auto found = makers.of.find(std::type_index(typeid(shape)));
-  if (found == makers.of.end()) {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  const auto found = this->Makers_.find(std::type_index(typeid(shape)));
+  if (found == this->Makers_.end()) {
     throw Error(Error::Kind::Unsupported, std::string("geometry of class ") + typeid(shape).name(),
-                "nothing is registered that draws it");
+                "no drawer is registered for it");
   }
   return found->second(geometry);
 }

@@ -21,8 +21,8 @@ void LabelPicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, con
   hub->MakeCurrent();
   if (!this->Drawer_) {
     this->Target_ = std::make_unique<RenderTarget>(hub, RenderTarget::Format::Label, true);
-    this->Drawer_ =
-        std::make_unique<SceneDrawer>(hub, context->GetStore(), context->CountStatistics());
+    this->Drawer_ = std::make_unique<SceneDrawer>(hub, context->GetStore(), context->GetDrawers(),
+                                                  context->CountStatistics());
   }
   this->View_ = view;
   this->Filter_ = filter;

@@ -51,8 +51,10 @@ private:
 
 } // namespace
 
-SceneDrawer::SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, RenderStatistics& statistics)
-    : Window_(window), Store_(store), Statistics_(statistics), Shaders_(window) {}
+SceneDrawer::SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, const CustomDrawers& drawers,
+                         RenderStatistics& statistics)
+    : Window_(window), Store_(store), Drawers_(drawers), Statistics_(statistics), Shaders_(window) {
+}
 
 SceneDrawer::~SceneDrawer() {
   this->Release();
@@ -200,7 +202,7 @@ bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int sample
   for (const DrawCustom& object : list.Customs()) {
     Custom& custom = this->Customs_[object.object->custom.get()];
     if (!custom.drawer) {
-      custom = {object.object->custom, MakeCustomDrawer(object.object->custom)};
+      custom = {object.object->custom, this->Drawers_.Make(object.object->custom)};
     }
     CustomDrawing drawing = this->Drawing(object, list, view, samples);
     drawing.labels = labels;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <dspace/render/CustomDrawer.h>
+#include <dspace/render/CustomDrawers.h>
 #include <dspace/render/DrawList.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/RenderTarget.h>
@@ -26,7 +27,9 @@ class SceneDrawer {
 public:
   static constexpr int MaximumLayers = 16;
 
-  SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, RenderStatistics& statistics);
+  // All of them must outlive it.
+  SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, const CustomDrawers& drawers,
+              RenderStatistics& statistics);
   SceneDrawer(const SceneDrawer&) = delete;
   SceneDrawer& operator=(const SceneDrawer&) = delete;
   ~SceneDrawer();
@@ -67,6 +70,7 @@ private:
 
   vtkDspaceHubWindow* Window_;
   GpuStore& Store_;
+  const CustomDrawers& Drawers_;
   RenderStatistics& Statistics_;
   SurfaceShaders Shaders_;
   struct Custom {

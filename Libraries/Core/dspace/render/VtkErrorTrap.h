@@ -1,17 +1,19 @@
-// What VTK only logs becomes an exception.
-#ifndef DSPACE_RENDER_VTK_ERRORS_H
-#define DSPACE_RENDER_VTK_ERRORS_H
+// VTK's errors as exceptions.
+#ifndef DSPACE_RENDER_VTK_ERROR_TRAP_H
+#define DSPACE_RENDER_VTK_ERROR_TRAP_H
 
-#include <memory>
 #include <string>
 
 namespace dspace {
 
-// While it lives, VTK's error and warning messages are kept instead of printed.
-// Not for use in two threads at once: VTK has one message window a process.
+class VtkMessages;
+
+// Takes VTK's messages of the thread that made it, while it lives. Traps of one thread nest: each
+// message goes to the innermost one.
 class VtkErrorTrap {
 public:
-  VtkErrorTrap();
+  // `messages` must outlive the trap.
+  explicit VtkErrorTrap(VtkMessages& messages);
   VtkErrorTrap(const VtkErrorTrap&) = delete;
   VtkErrorTrap& operator=(const VtkErrorTrap&) = delete;
   ~VtkErrorTrap();
@@ -19,8 +21,9 @@ public:
   void Check(const std::string& object) const;
 
 private:
-  struct Internals;
-  std::unique_ptr<Internals> Impl_;
+  friend class VtkMessages;
+  VtkMessages& Messages_;
+  std::string FirstError_; // guarded by the mutex of Messages_
 };
 
 } // namespace dspace

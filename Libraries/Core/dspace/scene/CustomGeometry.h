@@ -10,8 +10,8 @@ namespace dspace {
 
 struct BoundingSphere;
 
-// What a scene knows of it. Who draws it is registered by its class (render/CustomDrawer.h): the
-// scene stays free of OpenGL.
+// What a scene knows of it. The render context knows a drawer for each class
+// (render/CustomDrawers.h): the scene stays free of OpenGL.
 class CustomGeometry {
 public:
   virtual ~CustomGeometry() = default;

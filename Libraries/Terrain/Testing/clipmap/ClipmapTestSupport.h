@@ -41,7 +41,7 @@ struct ClipmapFixture : RenderingFixture {
   ObjectId object = 0;
 
   void SetUp() override {
-    RegisterClipmapDrawer();
+    RegisterClipmapDrawer(context->GetDrawers());
     scene->CreateVantage("main");
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <dspace/scene/Checks.h>
+#include <dspace/clipmap/gl/ClipmapDrawer.h>
 #include <dspace/messages/Convert.h>
 
 #include "vtkDspaceRenderContext.h"
@@ -65,11 +66,14 @@ vtkDspaceViewport& ViewportCommands::Get(const std::string& name) const {
 
 void ViewportCommands::SetRenderContext(vtkDspaceRenderContext* context) {
   this->RenderContext_ = context;
+  if (context) {
+    RegisterClipmapDrawer(context->GetDrawers());
+  }
 }
 
 vtkDspaceRenderContext* ViewportCommands::GetRenderContext() {
   if (!this->RenderContext_) {
-    this->RenderContext_ = vtkSmartPointer<vtkDspaceRenderContext>::New();
+    this->SetRenderContext(vtkSmartPointer<vtkDspaceRenderContext>::New());
   }
   return this->RenderContext_;
 }

@@ -39,6 +39,7 @@ public:
 
 private:
   vtkDspaceViewport& Get(const std::string& name) const; // throws Error(NotFound)
+  void AddWarnings(v1::Reply& reply); // what VTK warned of while it drew
 
   void Create(const Context& context, v1::CreateViewport& command);
   void Remove(const Context& context, v1::RemoveViewport& command);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include <dspace/render/ImageWriter.h>
+#include <dspace/render/VtkMessages.h>
 #include <dspace/scene/Checks.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
@@ -149,6 +150,14 @@ void ViewportCommands::Pick(const Context& context, v1::Pick& command) {
   }
 }
 
+void ViewportCommands::AddWarnings(v1::Reply& reply) {
+  if (this->RenderContext_) {
+    for (const std::string& warning : this->RenderContext_->GetMessages().TakeWarnings()) {
+      reply.add_warning("VTK reported: " + warning);
+    }
+  }
+}
+
 void ViewportCommands::Statistics(const Context& context, v1::GetStatistics&) {
   vtkDspaceRenderContext* render = this->GetRenderContext();
   const RenderStatistics& from = render->GetStatistics();
@@ -170,6 +179,7 @@ void ViewportCommands::AddRequestsTo(Registry& registry) {
   const auto bind = [this](auto method) {
     return [this, method](const Context& context, auto& message) {
       (this->*method)(context, message);
+      this->AddWarnings(context.reply);
     };
   };
   using V = ViewportCommands;

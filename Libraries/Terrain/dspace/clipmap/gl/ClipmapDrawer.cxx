@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <typeindex>
 
 #include "vtk_glew.h"
 
@@ -16,6 +15,7 @@
 #include "vtkShaderProgram.h"
 
 #include <dspace/render/Capture.h>
+#include <dspace/render/CustomDrawers.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/SurfaceShaders.h>
 #include <dspace/clipmap/ClipmapBlocks.h>
@@ -26,8 +26,8 @@
 
 namespace dspace {
 
-void RegisterClipmapDrawer() {
-  RegisterCustomDrawer(
+void RegisterClipmapDrawer(CustomDrawers& drawers) {
+  drawers.Register(
       typeid(ClipmapTerrain),
       [](std::shared_ptr<const CustomGeometry> geometry) -> std::unique_ptr<CustomDrawer> {
         return std::make_unique<ClipmapDrawer>(static_cast<const ClipmapTerrain&>(*geometry));

@@ -14,8 +14,10 @@
 
 namespace dspace {
 
-// From now on scenes may hold a ClipmapTerrain. Any number of calls.
-void RegisterClipmapDrawer();
+class CustomDrawers;
+
+// From now on the context with these drawers draws a ClipmapTerrain. Any number of calls.
+void RegisterClipmapDrawer(CustomDrawers& drawers);
 
 // One layer of a texture array holds a level's posts; each level is drawn as a ring around the next
 // finer one with indices that all levels share, in blocks that are left out where the view does not
