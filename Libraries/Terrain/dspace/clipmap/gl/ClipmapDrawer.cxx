@@ -6,10 +6,6 @@
 
 #include "vtk_glew.h"
 
-#include "ClipmapColor_frag.h"
-#include "ClipmapLayers_frag.h"
-#include "Clipmap_vert.h"
-
 #include "vtkDspaceHubWindow.h"
 #include "vtkOpenGLState.h"
 #include "vtkShaderProgram.h"
@@ -21,6 +17,7 @@
 #include <dspace/clipmap/ClipmapBlocks.h>
 #include <dspace/clipmap/ClipmapFocus.h>
 
+#include <dspace/clipmap/gl/ClipmapShaders.h>
 #include <dspace/clipmap/gl/ClipmapUniforms.h>
 #include <dspace/clipmap/gl/GridCaptions.h>
 
@@ -294,7 +291,7 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   const bool layers = !labels && this->Layers_.Shown();
   const bool mixed = !labels && (poleTexture || tracks || layers || !style.Empty());
   ShaderPages pages;
-  pages.vertex = Clipmap_vert;
+  pages.vertex = ClipmapVertexShader(chart.placement.GetKind());
   pages.defines = ClipmapUniforms::Defines(chart.placement, mixed ? &style : nullptr);
   for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
     if (chart.levels.HasHoles(level)) { // what discards pixels costs time elsewhere
@@ -309,9 +306,8 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     pages.defines += "#define DSPACE_LAYERS\n";
   }
   if (mixed) {
-    static const std::string fragment = std::string(ClipmapLayers_frag) + ClipmapColor_frag;
     features |= SurfaceShaders::Mixed;
-    pages.fragment = fragment.c_str();
+    pages.fragment = ClipmapFragmentFunctions();
   }
   if (poleTexture) {
     features &= ~unsigned(SurfaceShaders::Texture);

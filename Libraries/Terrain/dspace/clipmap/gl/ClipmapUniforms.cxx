@@ -64,9 +64,7 @@ ClipmapCamera::ClipmapCamera(const Eigen::Affine3d& viewFromTerrain, const PostP
 
 std::string ClipmapUniforms::Defines(const PostPlacement& placement, const ClipmapStyle* style) {
   std::string defines;
-  if (placement.GetKind() == PostPlacement::Kind::Sphere) {
-    defines += "#define DSPACE_SPHERE\n";
-  } else if (placement.GetKind() == PostPlacement::Kind::Pole) {
+  if (placement.GetKind() == PostPlacement::Kind::Pole) {
     defines += "#define DSPACE_POLE\n";
   }
   if (style) {

@@ -1,0 +1,49 @@
+// What the fragment shader of all surfaces needs: label or colour, light, texture.
+#ifdef DSPACE_LABEL
+uniform int objectLabel;
+flat out uint label;
+#else
+uniform vec4 objectColor;
+flat out vec4 baseColor;
+#endif
+#ifdef DSPACE_LIT
+uniform vec3 objectSurface; // metallic, roughness, mirrored
+out vec3 positionVC;
+out vec3 normalVC;
+flat out vec3 surface;
+#endif
+#ifdef DSPACE_EMISSIVE
+uniform vec3 objectEmissive;
+flat out vec3 emissive;
+#endif
+#ifdef DSPACE_TEXTURE
+uniform vec2 originTexture;
+uniform mat2 postTexture;
+out vec2 tcoord;
+#endif
+#ifdef DSPACE_HOLES
+out float hole;
+#endif
+
+void putLook(Standing standing, vec2 place, bool missing)
+{
+#ifdef DSPACE_LABEL
+  label = uint(objectLabel);
+#else
+  baseColor = objectColor;
+#endif
+#ifdef DSPACE_LIT
+  positionVC = standing.positionVC;
+  normalVC = standing.normalVC;
+  surface = objectSurface;
+#endif
+#ifdef DSPACE_EMISSIVE
+  emissive = objectEmissive;
+#endif
+#ifdef DSPACE_TEXTURE
+  tcoord = originTexture + postTexture * place;
+#endif
+#ifdef DSPACE_HOLES
+  hole = missing ? 1.0 : 0.0;
+#endif
+}

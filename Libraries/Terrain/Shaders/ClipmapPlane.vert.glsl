@@ -1,0 +1,17 @@
+// Posts of a plane.
+uniform vec3 originVC; // first post, at the camera's height
+uniform vec3 columnVC; // a post
+uniform vec3 rowVC;
+uniform vec3 slopeColumnVC; // what a slope of 1 a level-0 post takes from the normal
+uniform vec3 slopeRowVC;
+uniform mat2 slopePlane; // slopes east and north of those a level-0 column and row
+
+Standing standingAt(vec2 place, vec4 here, float above)
+{
+  Standing standing;
+  standing.positionVC = originVC + place.x * columnVC + place.y * rowVC + above * upVC;
+  standing.normalVC = upNormalVC - here.y * slopeColumnVC - here.z * slopeRowVC;
+  standing.cosSlope = dot(normalize(standing.normalVC), normalize(upNormalVC));
+  standing.facing = vec3(-(slopePlane * here.yz), 1.0);
+  return standing;
+}

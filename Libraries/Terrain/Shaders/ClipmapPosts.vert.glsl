@@ -1,0 +1,49 @@
+#version 330 core
+//DSPACE::Defines
+// The heights of one clipmap level: posts are fetched, and near the level's outline turned into the
+// next coarser level's (Losasso and Hoppe 2004).
+uniform sampler2DArray posts; // height, slopes a level-0 column and row, 1 in a hole, else tracks
+uniform int texelMask;
+uniform int level;
+uniform ivec2 windowTexel; // texel of the window's first post, here and in the coarser level
+uniform ivec2 coarseTexel;
+uniform vec2 endPost; // where the lattice ends: nowhere around a body
+uniform vec2 cameraPost;
+uniform vec3 blend; // distance where blending begins, 1 / its width, the camera's distance [posts]
+
+struct Ground
+{
+  vec4 here; // as in `posts`
+  bool missing;
+};
+
+vec4 postAt(ivec2 texel, int layer)
+{
+  return texelFetch(posts, ivec3(texel & texelMask, layer), 0);
+}
+
+// At a post of the window.
+Ground groundAt(vec2 at)
+{
+  ivec2 post = ivec2(at);
+  Ground ground;
+  ground.here = postAt(windowTexel + post, level);
+  ground.missing = ground.here.w > 0.75;
+  vec2 away = abs(at - cameraPost);
+  float coarser = clamp((max(max(away.x, away.y), blend.z) - blend.x) * blend.y, 0.0, 1.0);
+  if (coarser > 0.0)
+  {
+    // The coarser surface at this place: a post of it, or the middle of an edge or a diagonal. The
+    // lattice's last post is one of every level.
+    ivec2 before = (post + ivec2(equal(at, endPost))) >> 1;
+    ivec2 after = (post + 1) >> 1;
+    vec4 there0 = postAt(coarseTexel + before, level + 1);
+    vec4 there1 = postAt(coarseTexel + after, level + 1);
+    if (max(there0.w, there1.w) < 0.75)
+    {
+      ground.here = mix(ground.here, 0.5 * (there0 + there1), coarser);
+      ground.missing = ground.missing && coarser < 1.0;
+    }
+  }
+  return ground;
+}
