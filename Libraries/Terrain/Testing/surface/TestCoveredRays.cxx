@@ -133,7 +133,7 @@ Seen Compare(const StreamedTerrain& terrain, int rays, double size, double heigh
 }
 
 // 40 m x 40 m of pixels 0.2 m apart.
-std::shared_ptr<const StreamedTerrain> Field(const TemporaryFolder& folder) {
+std::shared_ptr<StreamedTerrain> Field(const TemporaryFolder& folder) {
   RasterFile file;
   file.width = 201;
   file.height = 201;

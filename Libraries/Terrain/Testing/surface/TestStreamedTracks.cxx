@@ -24,7 +24,7 @@ using dspace::testing::TemporaryFolder;
 // 40 m x 40 m of pixels 0.2 m apart, a slope of 1 in 10 eastwards that a plane fits exactly.
 struct StreamedTracks : ::testing::Test {
   TemporaryFolder folder;
-  std::shared_ptr<const StreamedTerrain> terrain;
+  std::shared_ptr<StreamedTerrain> terrain;
   StreamedTerrainOptions options;
 
   void Open(double east = 500000.0) {

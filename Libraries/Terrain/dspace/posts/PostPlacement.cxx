@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <dspace/Error.h>
 
@@ -115,6 +116,48 @@ Eigen::Vector3d PostPlacement::Up(const Eigen::Vector3d& p_S) const {
   const double distance = p_S.norm();
   return this->Kind_ == Kind::Plane || distance == 0.0 ? Eigen::Vector3d(0.0, 0.0, 1.0)
                                                        : Eigen::Vector3d(p_S / distance);
+}
+
+Eigen::Vector3d PostPlacement::North(const Eigen::Vector3d& p_S) const {
+  if (this->Kind_ == Kind::Plane) {
+    return Eigen::Vector3d::UnitY();
+  }
+  const Eigen::Vector3d up = this->Up(p_S);
+  const double longitude = std::atan2(up.y(), up.x());
+  return up.cross(Eigen::Vector3d(-std::sin(longitude), std::cos(longitude), 0.0));
+}
+
+Eigen::AlignedBox3d PostPlacement::BoundsOf(const Eigen::Vector2d& last, double low,
+                                            double high) const {
+  Eigen::AlignedBox3d box;
+  const auto extend = [&](const Eigen::Vector2d& post) {
+    box.extend(this->ToScene(post, low));
+    box.extend(this->ToScene(post, high));
+  };
+  if (this->Kind_ == Kind::Plane) {
+    for (const double c : {0.0, last.x()}) {
+      for (const double r : {0.0, last.y()}) {
+        extend({c, r});
+      }
+    }
+    return box;
+  }
+  // Sines and cosines have their extremes at the ends and at whole quarters of a turn between.
+  const auto places = [](double from, double to) {
+    std::vector<double> angles = {from, to};
+    for (double a = std::ceil(std::min(from, to) / (0.5 * M_PI)) * 0.5 * M_PI;
+         a < std::max(from, to); a += 0.5 * M_PI) {
+      angles.push_back(a);
+    }
+    return angles;
+  };
+  const Eigen::Vector2d end = this->First_ + last.cwiseProduct(this->Step_);
+  for (const double longitude : places(this->First_.x(), end.x())) {
+    for (const double latitude : places(this->First_.y(), end.y())) {
+      extend((Eigen::Vector2d(longitude, latitude) - this->First_).cwiseQuotient(this->Step_));
+    }
+  }
+  return box;
 }
 
 double PostPlacement::CellSize(const Eigen::Vector2d& post) const {

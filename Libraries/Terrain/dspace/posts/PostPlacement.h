@@ -55,6 +55,11 @@ public:
   Eigen::Vector3d ToPosts(const Eigen::Vector3d& p_S) const;
   // The local vertical, unit; Z at the body's centre.
   Eigen::Vector3d Up(const Eigen::Vector3d& p_S) const;
+  // North, unit: Y on a plane; on a body towards its north pole, any direction at the poles.
+  Eigen::Vector3d North(const Eigen::Vector3d& p_S) const;
+  // What posts (0, 0) to `last` at heights from `low` to `high` [m] span in the scene; of a plane
+  // or a sphere.
+  Eigen::AlignedBox3d BoundsOf(const Eigen::Vector2d& last, double low, double high) const;
   // The greater of a cell's two sides there [m], at height 0.
   double CellSize(const Eigen::Vector2d& post) const;
 

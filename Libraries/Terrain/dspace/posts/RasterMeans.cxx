@@ -15,7 +15,7 @@ int RasterPosts::FirstReducedLevel() const {
   return this->Subdivisions_ + FullReads + 1;
 }
 
-void RasterPosts::ForgetReduced() const {
+void RasterPosts::ForgetReduced() {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   this->PoleHeights_.erase(this->PoleHeights_.lower_bound({this->FirstReducedLevel(), false}),
                            this->PoleHeights_.end());

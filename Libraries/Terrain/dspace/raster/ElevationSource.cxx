@@ -218,7 +218,7 @@ bool ElevationSource::ReadCached(const RasterWindow& w, int factor, double* valu
   return true;
 }
 
-int ElevationSource::TakeOverviews() const {
+int ElevationSource::TakeOverviews() {
   if (this->Impl_->cached.empty()) {
     return 0;
   }

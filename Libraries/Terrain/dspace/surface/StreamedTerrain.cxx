@@ -3,27 +3,288 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
+#include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/clipmap/arithmetic/ClipmapWindow.h>
+#include <dspace/pyramid/FilledPosts.h>
+#include <dspace/tracks/GroundTracks.h>
 #include <dspace/posts/RasterPosts.h>
 
+#include <dspace/raster/DegreeGrid.h>
+#include <dspace/surface/HeightRange.h>
+#include <dspace/raster/NetworkScope.h>
+#include <dspace/surface/PixelRoughness.h>
 #include <dspace/pyramid/PostSurface.h>
-#include <dspace/rays/SurfaceRay.h>
+#include <dspace/surface/ResamplingError.h>
+#include <dspace/surface/TerrainRays.h>
+#include <dspace/surface/TerrainWarnings.h>
 
 namespace dspace {
 namespace {
 
+constexpr double Degree = M_PI / 180.0;
+constexpr double Departure = 1e-3; // [m] of a flat cell's middle from the sphere, at most
+
+Eigen::Vector2d MiddleOf(const ElevationInfo& info) {
+  return info.pixelToMap * Eigen::Vector2d(0.5 * info.window.width, 0.5 * info.window.height);
+}
+
+// A square of side s departs from the sphere most in its middle, by (s sqrt 2)^2 / 8R.
+int SubdivisionsFor(const DegreeGrid& grid) {
+  const double side = grid.radius * grid.step_deg.cwiseAbs().maxCoeff() * Degree;
+  const double allowed = std::sqrt(4.0 * grid.radius * Departure);
+  const int needed = int(std::ceil(std::log2(std::max(1.0, side / allowed))));
+  return std::max(needed, grid.poles ? 1 : 0);
+}
+
+void RequireResults(const std::string& name, bool finite, Eigen::Index n, Eigen::Index results) {
+  if (!finite || n != results) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "finite points and as many results are accepted");
+  }
+}
 
 } // namespace
 
-StreamedTerrain::StreamedTerrain(const std::string& name,
-                                 std::shared_ptr<const ElevationSource> source,
+StreamedTerrain::StreamedTerrain(const std::string& name, std::shared_ptr<ElevationSource> source,
                                  std::vector<std::string> warnings)
     : TerrainSurface(name, source->Info().crs, source->Info().verticalDatum, std::move(warnings)),
       Source_(std::move(source)) {}
 
 StreamedTerrain::~StreamedTerrain() = default;
+
+std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
+                                                       const StreamedTerrainOptions& options) {
+  const std::string name = "terrain '" + path + "'";
+  if (options.onBody && (options.origin || options.originHeight != 0.0)) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "an origin was given, but on a body the scene's origin is its centre");
+  }
+  if (!(options.deadline > 0.0)) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "deadline " + std::to_string(options.deadline) +
+                    " s given; accepted is a positive number");
+  }
+  if (options.subdivisions < 0 || options.subdivisions > (options.onBody ? 0 : 12)) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                std::to_string(options.subdivisions) + " subdivisions are refused; accepted is " +
+                    (options.onBody ? "0: on a body they follow from its size" : "0 to 12"));
+  }
+  ClipmapGeometry geometry(options.cells); // refuses what is out of range
+  auto source = std::make_shared<ElevationSource>(path, options.elevation);
+  if (options.onBody && DegreeGridOf(source->Info()).repeats) {
+    ElevationOptions once = options.elevation;
+    once.window = source->Info().window;
+    --once.window->width;
+    source = std::make_shared<ElevationSource>(path, once);
+  }
+  std::vector<std::string> warnings = WarningsOfPlace(source->Info(), !options.onBody);
+  const std::shared_ptr<StreamedTerrain> terrain(
+      new StreamedTerrain(name, std::move(source), std::move(warnings)));
+  terrain->Deadline_ = options.deadline;
+  if (options.onBody) {
+    terrain->StandOnBody(options);
+  } else {
+    terrain->StandOnPlane(options);
+  }
+  terrain->TakeHeightRange();
+  terrain->TakePatches();
+  terrain->MakeRays();
+  return terrain;
+}
+
+void StreamedTerrain::StandOnPlane(const StreamedTerrainOptions& options) {
+  const ElevationInfo& info = this->Info();
+  this->Frame_.emplace(info.crs, options.origin.value_or(MiddleOf(info)), options.originHeight);
+  this->Subdivisions_ = options.subdivisions;
+  this->MakePyramid(options, false, false);
+  this->Placement_ = PostPlacement::OnPlane(this->PlanePosts(), options.originHeight);
+}
+
+void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
+  const DegreeGrid grid = DegreeGridOf(this->Info());
+  this->Subdivisions_ = SubdivisionsFor(grid);
+  const RasterWindow& window = this->Info().window;
+  if (grid.periodic && ColumnsAround(window.width, window.height - (grid.poles ? 0 : 1),
+                                     CoarsestFor(options.cells)) != window.width) {
+    this->Subdivisions_ = std::max(this->Subdivisions_, RasterPosts::Finer);
+  }
+  this->MakePyramid(options, grid.periodic, grid.poles);
+  const double parts = std::ldexp(1.0, this->Subdivisions_);
+  const PostLattice& lattice = this->Pyramid_->Lattice();
+  Eigen::Vector2d step = grid.step_deg / parts;
+  if (grid.periodic) {
+    step.x() = std::copysign(360.0 / double(lattice.columns), step.x());
+  }
+  Eigen::Vector2d first = grid.first_deg;
+  if (grid.poles) {
+    first.y() = 90.0;
+  }
+  this->Placement_ =
+      PostPlacement::OnSphere(first, step, grid.radius, 0.5 * double(lattice.columns - 1));
+  if (this->Posts_->Stretch() != 1.0) {
+    this->Resample(grid, options.pyramid);
+  }
+}
+
+// Its own pixels, for what is asked of them, and what the others cost.
+void StreamedTerrain::Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options) {
+  RasterPostsOptions own;
+  own.periodic = true;
+  own.levels = 1;
+  ElevationPyramidOptions small = options;
+  small.byteBudget = std::max(options.byteBudget / 16, std::size_t(4) << 20);
+  const auto pixels = std::make_shared<const RasterPosts>(this->Source_, own);
+  this->Pixels_ = std::make_shared<ElevationPyramid>(pixels, small);
+  this->PixelPlacement_ = PostPlacement::OnSphere(grid.first_deg, grid.step_deg, grid.radius,
+                                                  0.5 * double(pixels->GetLattice().columns - 1));
+  this->Resampling_ = MeasureResampling(*this->Posts_);
+  std::ostringstream text;
+  text.precision(3);
+  text << "its " << this->Info().window.width << " columns around the body are resampled to "
+       << this->Resampling_->columns << ", which halve often enough: what is drawn and answered "
+       << "departs from its pixels by " << this->Resampling_->rmsError << " m rms, at most "
+       << this->Resampling_->greatestError << " m, at " << this->Resampling_->posts
+       << " of them taken at random";
+  this->AddWarning(text.str());
+}
+
+void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool periodic,
+                                  bool poles) {
+  const ElevationInfo& info = this->Info();
+  std::optional<OpenPatches> patches;
+  if (!options.patches.empty()) {
+    patches.emplace(info, options.patches);
+    this->Subdivisions_ = std::max(this->Subdivisions_, patches->Subdivisions());
+  }
+  RasterPostsOptions posts;
+  posts.subdivisions = this->Subdivisions_;
+  posts.periodic = periodic;
+  posts.poles = poles;
+  posts.coarsest = CoarsestFor(options.cells);
+  if (periodic) {
+    posts.columns =
+        ColumnsAround(info.window.width, info.window.height - (poles ? 0 : 1), posts.coarsest);
+  }
+  auto raster = std::make_shared<RasterPosts>(this->Source_, posts);
+  this->Posts_ = raster;
+  this->Poles_ = poles;
+  const double parts = std::ldexp(1.0, this->Subdivisions_);
+  const double across = parts / raster->Stretch();
+  this->PixelToPost_.linear() = Eigen::Vector2d(across, parts).asDiagonal();
+  this->PixelToPost_.translation() << -0.5 * across, poles ? 0.0 : -0.5 * parts;
+  this->MapToPost_ = this->PixelToPost_ * info.pixelToMap.inverse();
+  std::shared_ptr<const PostSource> source = raster;
+  if (options.fillHoles) {
+    this->Filled_ = std::make_shared<const FilledPosts>(raster, *options.fillHoles);
+    source = this->Filled_;
+  }
+  const std::shared_ptr<const PostSource> base = source;
+  this->FullLevel_ = raster->FullLevel();
+  int level = this->FullLevel_;
+  if (patches) {
+    this->Group_ =
+        std::make_shared<const GroupPosts>(base, this->MapToPost_.inverse(), poles,
+                                           std::move(*patches), this->Filled_ ? raster : nullptr);
+    source = this->Group_;
+    level = 0; // patches have posts between those of the raster
+  }
+  if (this->Filled_) {
+    ElevationPyramidOptions small = options.pyramid;
+    small.byteBudget = std::max(options.pyramid.byteBudget / 16, std::size_t(4) << 20);
+    const std::shared_ptr<const PostSource> holed =
+        this->Group_ ? std::shared_ptr<const PostSource>(
+                           this->Group_->On(raster, info.crs, this->MapToPost_.inverse()))
+                     : std::shared_ptr<const PostSource>(raster);
+    this->Holed_ = std::make_shared<const PostSurface>(
+        std::make_shared<ElevationPyramid>(holed, small), level, poles, options.deadline);
+  }
+  if (this->Frame_) {
+    this->Tracks_ = std::make_unique<GroundTracks>(this->GetName(), source, this->PlanePosts(),
+                                                   *this->Frame_, info.crs, options.tracks);
+    source = this->Tracks_->Posts();
+  }
+  this->Pyramid_ = std::make_shared<ElevationPyramid>(source, options.pyramid);
+  // A group's tiles hold far more posts than pixels were read.
+  const bool local =
+      !IsRemote(GdalPath(info.path)) &&
+      std::none_of(options.patches.begin(), options.patches.end(),
+                   [](const TerrainPatch& patch) { return IsRemote(GdalPath(patch.path)); });
+  const bool scattered = this->Group_ && local;
+  this->Surface_ =
+      std::make_unique<PostSurface>(this->Pyramid_, level, poles, options.deadline, scattered);
+  if (this->Group_) {
+    this->Plain_ =
+        std::make_unique<PostSurface>(this->Pyramid_, this->FullLevel_, poles, options.deadline);
+  }
+  this->RayGround_ = std::make_unique<RayGround>(
+      RayGround{base, options.pyramid, this->FullLevel_, poles, options.deadline});
+  this->RayGround_->options.byteBudget = std::size_t(4) << 20; // rays keep what they need
+  this->RayGround_->options.threads = 1;
+  if (this->Tracks_) {
+    this->Tracked_ =
+        std::make_unique<PostSurface>(this->Pyramid_, 0, poles, options.deadline, scattered);
+  }
+}
+
+Eigen::Affine2d StreamedTerrain::PlanePosts() const {
+  // PostToScene() takes posts to stand half a unit from the corner.
+  const Eigen::Affine2d postToMap =
+      this->Info().pixelToMap * (this->PixelToPost_.inverse() * Eigen::Translation2d(-0.5, -0.5));
+  return this->Frame_->PostToScene(postToMap);
+}
+
+void StreamedTerrain::TakeHeightRange() {
+  const dspace::HeightRange range = FindHeightRange(
+      this->GetName(), *this->Source_, this->Placement_, this->PixelToPost_, *this->Pyramid_);
+  this->HeightRange_ = range.heights;
+  this->HeightRangeIsExact_ = range.exact;
+  for (const std::string& warning : range.warnings) {
+    this->AddWarning(warning);
+  }
+}
+
+// Their warnings and heights.
+void StreamedTerrain::TakePatches() {
+  if (!this->Group_) {
+    return;
+  }
+  for (const std::string& warning : this->Group_->Report().warnings) {
+    this->AddWarning(warning);
+  }
+  for (const PatchReport& patch : this->Group_->Report().patches) {
+    if (patch.used) {
+      const double more = patch.heightsAreExact ? 0.0 : 0.5 * (patch.heights[1] - patch.heights[0]);
+      this->HeightRange_ = {std::min(this->HeightRange_[0], patch.heights[0] - more),
+                            std::max(this->HeightRange_[1], patch.heights[1] + more)};
+      this->HeightRangeIsExact_ = this->HeightRangeIsExact_ && patch.heightsAreExact;
+    }
+  }
+}
+
+void StreamedTerrain::MakeRays() {
+  this->Rays_ = std::make_unique<TerrainRays>(
+      *this->RayGround_, *this->Surface_, this->Group_, this->Tracked_.get(),
+      this->Tracks_ ? this->Tracks_->Tracks() : nullptr, this->Placement_.PostToScene());
+}
+
+TerrainBounds StreamedTerrain::DoGetBounds() const {
+  const PostLattice& lattice = this->Pyramid_->Lattice();
+  TerrainBounds bounds;
+  // A lattice that goes around has no last post: its map ends a column further.
+  const Eigen::Vector2d end(double(lattice.columns - (lattice.periodic ? 0 : 1)),
+                            double(lattice.rows - 1));
+  const Eigen::Affine2d postToMap = this->MapToPost_.inverse();
+  for (const double c : {0.0, end.x()}) {
+    for (const double r : {0.0, end.y()}) {
+      bounds.map.extend(Eigen::Vector2d(postToMap * Eigen::Vector2d(c, r)));
+    }
+  }
+  bounds.scene = this->Placement_.BoundsOf(end, this->HeightRange_[0], this->HeightRange_[1]);
+  return bounds;
+}
 
 const ElevationInfo& StreamedTerrain::Info() const {
   return this->Source_->Info();
@@ -118,7 +379,7 @@ SurfaceSample StreamedTerrain::SampleAt(const Eigen::Vector2d& post,
     sample.position_S << vertical_S.head<2>(), facet.height - this->Placement_.OriginHeight();
   }
   sample.normal_S = this->NormalAt(facet, vertical_S);
-  sample.slope_deg = std::atan2(sample.normal_S.cross(up).norm(), sample.normal_S.dot(up)) * 180.0 / M_PI;
+  sample.slope_deg = std::atan2(sample.normal_S.cross(up).norm(), sample.normal_S.dot(up)) / Degree;
   return sample;
 }
 
@@ -181,12 +442,7 @@ Eigen::Vector3d StreamedTerrain::DoUp(const Eigen::Vector3d& p_S) const {
 }
 
 Eigen::Vector3d StreamedTerrain::DoNorth(const Eigen::Vector3d& p_S) const {
-  if (!this->OnBody()) {
-    return Eigen::Vector3d::UnitY();
-  }
-  const Eigen::Vector3d up = this->Placement_.Up(p_S);
-  const double longitude = std::atan2(up.y(), up.x());
-  return up.cross(Eigen::Vector3d(-std::sin(longitude), std::cos(longitude), 0.0));
+  return this->Placement_.North(p_S);
 }
 
 int StreamedTerrain::DoResidentLevel(const Eigen::Vector2d& map) const {
@@ -208,6 +464,212 @@ int StreamedTerrain::DoResidentLevel(const Eigen::Vector2d& map) const {
     }
   }
   return -1;
+}
+
+RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,
+                                    double maximumDistance) const {
+  const double most = 1e9; // [m] that heights are within
+  const RayPath path(this->Placement_, this->Pyramid_->Lattice(), origin_S, unit_S, maximumDistance,
+                     this->HeightRangeIsExact_ ? this->DrawnHeights()[0] : -most,
+                     this->HeightRangeIsExact_ ? this->DrawnHeights()[1] : most);
+  const SurfaceRay::Hit found = this->Rays_->Get().Intersect(path);
+  RayHit hit;
+  if (!found.hit || found.distance > maximumDistance) {
+    return hit;
+  }
+  hit.hit = true;
+  hit.fromBelow = found.fromBelow;
+  hit.distance = found.distance;
+  hit.position_S = origin_S + found.distance * unit_S;
+  hit.normal_S = this->NormalAt(found.facet, hit.position_S);
+  return hit;
+}
+
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is a view that is written through
+void StreamedTerrain::FilledAt(const std::vector<Eigen::Vector2d>& posts,
+                               Eigen::Ref<Eigen::VectorXd> filled) const {
+  this->HeightsAt(posts, filled);
+  for (double& height : filled) {
+    height = std::isnan(height) ? height : (this->Holed_ ? 1.0 : 0.0);
+  }
+  if (this->Holed_) {
+    this->Holed_->At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
+      if (facet.valid) {
+        filled[Eigen::Index(i)] = 0.0;
+      }
+    });
+  }
+}
+
+void StreamedTerrain::Filled(const Eigen::Ref<const Rows3>& points_S,
+                             Eigen::Ref<Eigen::VectorXd> filled) const {
+  RequireResults(this->GetName(), points_S.allFinite(), points_S.rows(), filled.size());
+  this->FilledAt(this->PostsOf(points_S), filled);
+}
+
+void StreamedTerrain::FilledMap(const Eigen::Ref<const Rows2>& map,
+                                Eigen::Ref<Eigen::VectorXd> filled) const {
+  RequireResults(this->GetName(), map.allFinite(), map.rows(), filled.size());
+  std::vector<Eigen::Vector2d> posts;
+  posts.reserve(std::size_t(map.rows()));
+  for (Eigen::Index i = 0; i < map.rows(); ++i) {
+    posts.push_back(this->MapToPost(map.row(i)));
+  }
+  this->FilledAt(posts, filled);
+}
+
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is a view that is written through
+void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double radius,
+                                Eigen::Ref<Eigen::VectorXd> roughness) const {
+  if (!(radius > 0.0) || !std::isfinite(radius)) {
+    throw Error(Error::Kind::InvalidArgument, this->GetName(),
+                "radius " + std::to_string(radius) + " m given; accepted is a positive number");
+  }
+  if (points_S.rows() != roughness.size() || !points_S.allFinite()) {
+    throw Error(Error::Kind::InvalidArgument, this->GetName(),
+                "finite points and as many results are accepted");
+  }
+  PixelRoughness::Pixels pixels;
+  if (this->Pixels_) {
+    pixels.lattice = this->Pixels_->Lattice();
+    pixels.placement = this->PixelPlacement_;
+    pixels.read = [this](const PostBlock& block, float* heights) {
+      this->Pixels_->Read(block, heights, this->Deadline_);
+    };
+  } else {
+    pixels.lattice = this->Pyramid_->Lattice();
+    pixels.placement = this->Placement_;
+    pixels.level = this->Surface_->Level();
+    pixels.between = this->Poles_ && pixels.level + 1 == this->Subdivisions_;
+    pixels.read = [this](const PostBlock& block, float* heights) {
+      this->ReadPixels(block, heights);
+    };
+  }
+  const PixelRoughness ground(this->GetName(), std::move(pixels));
+  for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
+    roughness[i] = ground.At(points_S.row(i), radius);
+  }
+}
+
+// Posts of pixels with ruts as they are, not the means that coarser posts show, and without what is
+// made up.
+void StreamedTerrain::ReadPixels(const PostBlock& block, float* heights) const {
+  if (this->Tracked()) {
+    this->Undisturbed().Pyramid_->Read(block, heights, this->Deadline_);
+    this->Tracks_->Posts()->Lower(block, heights);
+  } else {
+    this->Pyramid_->Read(block, heights, this->Deadline_);
+  }
+  if (this->Holed_) {
+    std::vector<float> own(std::size_t(block.width) * block.height);
+    this->Holed_->SharedPyramid()->Read(block, own.data(), this->Deadline_);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      heights[k] = std::isnan(own[k]) ? own[k] : heights[k];
+    }
+  }
+}
+
+bool StreamedTerrain::Tracked() const {
+  return this->Tracks_ && !this->Tracks_->Empty();
+}
+
+const GroundTracks& StreamedTerrain::RequireTracks() const {
+  if (!this->Tracks_) {
+    throw Error(Error::Kind::Unsupported, this->GetName(),
+                "it stands on a body; wheel tracks are accepted on a plane");
+  }
+  return *this->Tracks_;
+}
+
+const WheelTracks& StreamedTerrain::Tracks() const {
+  return *this->RequireTracks().Tracks();
+}
+
+void StreamedTerrain::AddTracks(const std::vector<TrackAddition>& additions) {
+  this->RequireTracks();
+  this->Pyramid_->Invalidate(this->Tracks_->Add(additions));
+}
+
+void StreamedTerrain::RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn) {
+  this->RequireTracks();
+  this->Pyramid_->Invalidate(this->Tracks_->Restore(strokes, goesOn));
+}
+
+void StreamedTerrain::ClearTracks() {
+  this->RequireTracks();
+  this->Pyramid_->Invalidate(this->Tracks_->Clear());
+}
+
+void StreamedTerrain::SaveTracks(const std::string& path) const {
+  this->RequireTracks().Save(path);
+}
+
+void StreamedTerrain::LoadTracks(const std::string& path, std::size_t most) {
+  this->AddTracks(this->RequireTracks().Read(path, most));
+}
+
+std::array<double, 2> StreamedTerrain::DrawnHeights() const {
+  if (!this->Tracks_) {
+    return this->HeightRange_;
+  }
+  return {this->HeightRange_[0] - TrackProfile::MostSinkage - TrackProfile::MostTread,
+          this->HeightRange_[1] + TrackProfile::MostRim};
+}
+
+const StreamedTerrain& StreamedTerrain::Undisturbed() const {
+  if (!this->Tracks_) {
+    return *this;
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  if (!this->Undisturbed_) {
+    ElevationPyramidOptions options;
+    options.byteBudget = std::size_t(16) << 20;
+    std::unique_ptr<StreamedTerrain> bare(
+        new StreamedTerrain(this->GetName(), this->Source_, this->GetWarnings()));
+    bare->Group_ = this->Group_;
+    bare->Pyramid_ = std::make_shared<ElevationPyramid>(this->Tracks_->Bare(), options);
+    bare->Surface_ = std::make_unique<PostSurface>(bare->Pyramid_, this->Surface_->Level(),
+                                                   this->Poles_, this->Deadline_);
+    if (this->Plain_) {
+      bare->Plain_ = std::make_unique<PostSurface>(bare->Pyramid_, this->Plain_->Level(),
+                                                   this->Poles_, this->Deadline_);
+    }
+    bare->Posts_ = this->Posts_;
+    bare->Filled_ = this->Filled_;
+    bare->Holed_ = this->Holed_;
+    bare->FullLevel_ = this->FullLevel_;
+    bare->RayGround_ = std::make_unique<RayGround>(*this->RayGround_);
+    bare->Placement_ = this->Placement_;
+    bare->Frame_ = this->Frame_;
+    bare->PixelToPost_ = this->PixelToPost_;
+    bare->MapToPost_ = this->MapToPost_;
+    bare->Poles_ = this->Poles_;
+    bare->Subdivisions_ = this->Subdivisions_;
+    bare->Deadline_ = this->Deadline_;
+    bare->HeightRange_ = this->HeightRange_;
+    bare->HeightRangeIsExact_ = this->HeightRangeIsExact_;
+    bare->MakeRays();
+    this->Undisturbed_ = std::move(bare);
+  }
+  return *this->Undisturbed_;
+}
+
+int StreamedTerrain::TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others) {
+  if (this->Filled_) { // fills follow from coarse levels, also where finer tiles were made already
+    return 0;
+  }
+  const int levels = this->Source_->TakeOverviews();
+  if (levels > 0) {
+    this->Posts_->ForgetReduced();
+    std::vector<std::shared_ptr<ElevationPyramid>> pyramids = others;
+    pyramids.push_back(this->Pyramid_);
+    for (const std::shared_ptr<ElevationPyramid>& pyramid : pyramids) {
+      PostRectangle coarse{0, 0, pyramid->Lattice().columns, pyramid->Lattice().rows};
+      coarse.from = this->Posts_->FirstReducedLevel();
+      pyramid->Invalidate({coarse});
+    }
+  }
+  return levels;
 }
 
 } // namespace dspace

@@ -22,11 +22,12 @@
 namespace dspace {
 
 struct DegreeGrid;
+struct RayGround;
 class FilledPosts;
+class GroundTracks;
 class PostSurface;
 class RasterPosts;
-class SurfaceRay;
-class TrackPosts;
+class TerrainRays;
 
 struct StreamedTerrainOptions {
   ElevationOptions elevation;
@@ -73,8 +74,8 @@ class StreamedTerrain : public TerrainSurface {
 public:
   // Reads the raster's header and what HeightRange() says. Throws what ElevationSource throws, and
   // Error(Unsupported) for a raster that cannot stand on a body.
-  static std::shared_ptr<const StreamedTerrain> Open(const std::string& path,
-                                                     const StreamedTerrainOptions& options = {});
+  static std::shared_ptr<StreamedTerrain> Open(const std::string& path,
+                                               const StreamedTerrainOptions& options = {});
   ~StreamedTerrain() override;
 
   const ElevationInfo& Info() const;
@@ -104,21 +105,21 @@ public:
   // where coarse levels are read anew; finer ones and queries stay as they are. Their number of
   // levels; 0 where there are none, and where holes are filled: fills are made from what the raster
   // had when it was opened. Throws what ElevationSource::TakeOverviews throws.
-  int TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {}) const;
+  int TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {});
   // The level whose posts say all of the raster; those of a group's patches stand closer.
   int FullLevel() const { return this->FullLevel_; }
 
   // Wheels leave ruts, in what is drawn and in all that is answered from then on. Places are of the
   // scene's frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
-  void AddTracks(const std::vector<TrackAddition>& additions) const;
-  void ClearTracks() const;
+  void AddTracks(const std::vector<TrackAddition>& additions);
+  void ClearTracks();
   // Throws what WheelTracks::Restore throws, and Error(Unsupported) on a body.
-  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn = false) const;
+  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn = false);
   // See TrackFile.h. What is loaded is added; a wheel of its name goes on with it.
   void SaveTracks(const std::string& path) const;
   // Throws Error(Resource) for a file of more contacts than `most`.
   void LoadTracks(const std::string& path,
-                  std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+                  std::size_t most = std::numeric_limits<std::size_t>::max());
   const WheelTracks& Tracks() const; // throws Error(Unsupported) on a body
   // The same ground as it was before all wheels; lives as long as this.
   const StreamedTerrain& Undisturbed() const;
@@ -158,16 +159,15 @@ protected:
                     Eigen::Ref<Eigen::VectorXd> heights) const override;
 
 private:
-  StreamedTerrain(const std::string& name, std::shared_ptr<const ElevationSource> source,
+  StreamedTerrain(const std::string& name, std::shared_ptr<ElevationSource> source,
                   std::vector<std::string> warnings);
   void StandOnPlane(const StreamedTerrainOptions& options);
   void StandOnBody(const StreamedTerrainOptions& options);
   void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
   void Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options);
-  Eigen::Affine2d PlanePosts() const; // level-0 posts to the scene
-  std::shared_ptr<const PostSource> WithTracks(std::shared_ptr<const PostSource> source,
-                                               const StreamedTerrainOptions& options);
-  bool Tracked() const { return this->Tracks_ && !this->Tracks_->Empty(); }
+  Eigen::Affine2d PlanePosts() const;        // level-0 posts to the scene
+  const GroundTracks& RequireTracks() const; // throws Error(Unsupported) on a body
+  bool Tracked() const;
   // What answers there.
   const PostSurface& SurfaceAt(const Eigen::Vector2d& post) const;
   void FilledAt(const std::vector<Eigen::Vector2d>& posts,
@@ -176,35 +176,27 @@ private:
   void HeightsAt(const std::vector<Eigen::Vector2d>& posts,
                  Eigen::Ref<Eigen::VectorXd> heights) const;
   const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
-  const PostSurface& Bottom() const;
-  const SurfaceRay& Ray() const;
-  void FindHeightRange();
+  void ReadPixels(const PostBlock& block, float* heights) const;
+  void TakeHeightRange();
   void TakePatches();
+  void MakeRays();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
   Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;
   bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
 
-  std::shared_ptr<const ElevationSource> Source_;
-  std::shared_ptr<const RasterPosts> Posts_;
+  std::shared_ptr<ElevationSource> Source_;
+  std::shared_ptr<RasterPosts> Posts_;
   std::shared_ptr<const FilledPosts> Filled_;
   std::shared_ptr<const PostSurface> Holed_; // the surface as it is without what is filled
   std::shared_ptr<const GroupPosts> Group_;
   std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
-  std::shared_ptr<const PostSource> Ground_; // without patches and tracks
-  ElevationPyramidOptions BottomOptions_;
-  mutable std::once_flag BottomOnce_; // made when the first ray needs it, as are rays
-  mutable std::unique_ptr<PostSurface> Bottom_;
-  mutable std::once_flag RayOnce_;
-  mutable std::unique_ptr<SurfaceRay> Ray_;
-  std::shared_ptr<WheelTracks> Tracks_; // on a plane; and what follows
-  std::shared_ptr<const TrackPosts> TrackPosts_;
-  std::shared_ptr<const PostSource> Bare_;
+  std::unique_ptr<GroundTracks> Tracks_; // on a plane; and what follows
   std::unique_ptr<PostSurface> Tracked_; // of level 0: ruts are between the raster's posts
-  mutable std::once_flag TrackedRayOnce_;
-  mutable std::unique_ptr<SurfaceRay> TrackedRay_;
-  mutable std::mutex Mutex_; // of what follows
+  std::unique_ptr<RayGround> RayGround_;
+  std::unique_ptr<TerrainRays> Rays_;
+  mutable std::mutex Mutex_; // of what follows, which is made when somebody asks
   mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
   PostPlacement Placement_;
   std::optional<SceneFrame> Frame_;

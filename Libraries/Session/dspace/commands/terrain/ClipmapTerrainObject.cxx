@@ -22,7 +22,7 @@ std::shared_ptr<ClipmapTerrain> MakeClipmap(const StreamedTerrain& surface,
 } // namespace
 
 ClipmapTerrainObject::ClipmapTerrainObject(std::string name,
-                                           std::shared_ptr<const StreamedTerrain> surface,
+                                           std::shared_ptr<StreamedTerrain> surface,
                                            const ClipmapOptions& options,
                                            const ElevationPyramidOptions& pyramid,
                                            std::string cacheFolder)

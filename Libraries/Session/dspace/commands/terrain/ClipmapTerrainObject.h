@@ -20,7 +20,7 @@ class ClipmapTerrainObject : public TerrainObject {
 public:
   // `cacheFolder`: where overviews are kept; empty: in memory only. Throws what ClipmapTerrain
   // throws.
-  ClipmapTerrainObject(std::string name, std::shared_ptr<const StreamedTerrain> surface,
+  ClipmapTerrainObject(std::string name, std::shared_ptr<StreamedTerrain> surface,
                        const ClipmapOptions& options, const ElevationPyramidOptions& pyramid,
                        std::string cacheFolder);
 
@@ -31,6 +31,7 @@ public:
   void DescribeLayers(v1::TerrainLayerList& list) const;
   bool OnBody() const override { return this->Surface_->Placement().OnBody(); }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
+  StreamedTerrain& ChangedSurface() { return *this->Surface_; } // wheel tracks change it
   const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
   void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }
   void Describe(v1::TerrainReply& reply) const override;
@@ -40,7 +41,7 @@ public:
   bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) override;
 
 private:
-  std::shared_ptr<const StreamedTerrain> Surface_;
+  std::shared_ptr<StreamedTerrain> Surface_;
   std::shared_ptr<ClipmapTerrain> Clipmap_;
   TerrainLayers Layers_;
   std::string CacheFolder_;

@@ -119,7 +119,7 @@ void WarnOfOverviews(const Context& context, const std::string& label, const Ele
 }
 
 // Overviews that prove damaged are removed by the read that finds it: the next does without.
-std::shared_ptr<const StreamedTerrain> OpenStreamed(const Context& context, const std::string& path,
+std::shared_ptr<StreamedTerrain> OpenStreamed(const Context& context, const std::string& path,
                                                     const StreamedTerrainOptions& options) {
   std::vector<std::string> damaged; // at most one a raster
   for (;;) {

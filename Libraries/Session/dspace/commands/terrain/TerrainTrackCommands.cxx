@@ -16,17 +16,17 @@ constexpr int ContactSize = 5; // x y heading_deg sinkage rolled
 // Of a file, in one command: 32 bytes each.
 constexpr std::size_t MostLoaded = std::size_t(16) << 20;
 
-const StreamedTerrain& FindTracked(const Context& context, const std::string& name) {
-  const auto* terrain = dynamic_cast<const ClipmapTerrainObject*>(&FindTerrain(context, name));
+StreamedTerrain& FindTracked(const Context& context, const std::string& name) {
+  auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&FindTerrain(context, name));
   if (!terrain) {
     throw Error(Error::Kind::Unsupported, "terrain '" + name + "'",
                 "it is drawn as triangles, which take no wheel tracks; accepted: mode clipmap");
   }
-  return terrain->Surface();
+  return terrain->ChangedSurface();
 }
 
 void TrackWheels(const Context& context, v1::TrackWheels& command) {
-  const StreamedTerrain& terrain = FindTracked(context, command.terrain());
+  StreamedTerrain& terrain = FindTracked(context, command.terrain());
   TrackProfile profile;
   profile.width = command.width();
   profile.wall = command.has_wall() ? command.wall() : profile.wall;
@@ -65,7 +65,7 @@ void SaveTracks(const Context& context, v1::SaveTracks& command) {
 }
 
 void LoadTracks(const Context& context, v1::LoadTracks& command) {
-  const StreamedTerrain& terrain = FindTracked(context, command.terrain());
+  StreamedTerrain& terrain = FindTracked(context, command.terrain());
   if (command.has_read()) {
     terrain.RestoreTracks(ToStrokes(command.read()));
     return;
