@@ -7,6 +7,7 @@
 #include "vtkObjectFactory.h"
 
 #include <dspace/render/CustomDrawers.h>
+#include <dspace/render/EglContext.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/VtkMessages.h>
 

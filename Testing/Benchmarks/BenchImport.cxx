@@ -9,6 +9,7 @@
 #include <assimp/scene.h>
 
 #include <dspace/import/model/Model.h>
+#include <dspace/import/files/ModelReader.h>
 
 #include "Alternate.h"
 

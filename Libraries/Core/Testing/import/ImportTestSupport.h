@@ -13,6 +13,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/import/model/Model.h>
+#include <dspace/import/files/ModelReader.h>
 
 namespace dspace::testing {
 

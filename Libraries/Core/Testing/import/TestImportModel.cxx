@@ -1,5 +1,6 @@
 // The model itself, images, and which reader a file gets.
 #include <dspace/import/model/Model.h>
+#include <dspace/import/model/Normals.h>
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include <dspace/render/GraphicsContext.h>
+#include <dspace/render/EglContext.h>
 
 #include <cstdio>
 #include <cstdlib>

@@ -16,11 +16,6 @@ public:
   virtual std::string Description() const = 0; // platform and version, for messages
 };
 
-// A context that needs neither display nor X server: an EGL device (GPU) where there is one,
-// Mesa's surfaceless platform (llvmpipe) otherwise. DSPACE_EGL=device|surfaceless chooses.
-// Throws Error(Resource) saying what was tried and what each answered.
-std::unique_ptr<GraphicsContext> MakeEglContext();
-
 } // namespace dspace
 
 #endif

@@ -8,6 +8,7 @@
 
 #include <dspace/FilesRead.h>
 #include <dspace/import/model/Model.h>
+#include <dspace/import/files/ModelReader.h>
 
 namespace dspace::session {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <dspace/import/model/Model.h>
+#include <dspace/import/files/ModelReader.h>
 
 namespace dspace {
 

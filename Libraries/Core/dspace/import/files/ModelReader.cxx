@@ -1,5 +1,4 @@
-// ReadModel: which reader a file needs, and what every reader's result must pass.
-#include <dspace/import/model/Model.h>
+#include <dspace/import/files/ModelReader.h>
 
 #include <cstring>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <dspace/import/files/FileNames.h>
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/files/Importers.h>
+#include <dspace/import/model/Normals.h>
 
 namespace dspace {
 

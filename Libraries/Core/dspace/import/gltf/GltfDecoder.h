@@ -9,6 +9,7 @@
 #include <json/json.h>
 
 #include <dspace/import/gltf/GltfDocument.h>
+#include <dspace/import/gltf/GltfMaterials.h>
 
 namespace dspace {
 

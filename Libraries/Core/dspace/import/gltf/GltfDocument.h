@@ -9,7 +9,6 @@
 #include <json/json.h>
 
 #include <dspace/Error.h>
-#include <dspace/import/model/Model.h>
 
 namespace dspace {
 
@@ -71,32 +70,6 @@ private:
   bool HasBinaryChunk_ = false;
   std::vector<std::string> Buffers_;
 };
-
-// The meshes of the document, one dspace::Mesh a primitive (GltfGeometry.cxx).
-struct GltfGeometry {
-  std::vector<Mesh> meshes;
-  std::vector<std::vector<int>> meshesOf; // for each mesh of the file, indices into `meshes`
-};
-
-// How a material's base colour texture finds its place on a mesh.
-struct GltfTextureUse {
-  std::size_t set = 0;                                     // TEXCOORD_<set>
-  Eigen::Affine2d transform = Eigen::Affine2d::Identity(); // KHR_texture_transform, in glTF's u v
-};
-
-struct GltfMaterials {
-  std::vector<Material> materials;
-  std::vector<GltfTextureUse> uses; // one a material
-  std::vector<bool> opaque;         // alpha of vertex colours is to be ignored
-};
-
-// The nodes of the default scene, parents first; `meshesOf` as in GltfGeometry. Throws
-// Error(Corrupt).
-std::vector<ModelNode> ReadGltfNodes(const GltfDocument& document,
-                                     const std::vector<std::vector<int>>& meshesOf);
-GltfMaterials ReadGltfMaterials(const GltfDocument& document, std::vector<std::string>& warnings);
-GltfGeometry ReadGltfGeometry(const GltfDocument& document, const GltfMaterials& materials,
-                              const ImportOptions& options, std::vector<std::string>& warnings);
 
 } // namespace dspace
 

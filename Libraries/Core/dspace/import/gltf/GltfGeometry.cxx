@@ -1,12 +1,13 @@
 // Geometry of a glTF file: what Assimp is asked to decode (accessors, sparse values, Draco, strips
 // and fans). It gets a document of our own making: only what a mesh needs, every range checked, and
 // integers that Assimp would misread (it copies their bytes as floats) turned into floats before.
+#include <dspace/import/gltf/GltfGeometry.h>
+
 #include <algorithm>
 #include <map>
 
 #include <dspace/import/gltf/GltfAccessor.h>
 #include <dspace/import/gltf/GltfDecoder.h>
-#include <dspace/import/gltf/GltfDocument.h>
 
 namespace dspace {
 

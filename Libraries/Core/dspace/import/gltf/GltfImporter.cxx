@@ -2,6 +2,9 @@
 #include <dspace/import/files/Importers.h>
 
 #include <dspace/import/gltf/GltfDocument.h>
+#include <dspace/import/gltf/GltfGeometry.h>
+#include <dspace/import/gltf/GltfMaterials.h>
+#include <dspace/import/gltf/GltfNodes.h>
 
 namespace dspace {
 

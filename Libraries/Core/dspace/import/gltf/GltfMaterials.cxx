@@ -1,6 +1,6 @@
 // Materials and textures of a glTF file (sections 3.8 and 3.9), taken from its JSON: Assimp loses
 // wrap modes, WebP alternatives and which texture coordinates a texture uses.
-#include <dspace/import/gltf/GltfDocument.h>
+#include <dspace/import/gltf/GltfMaterials.h>
 
 #include <algorithm>
 #include <cmath>

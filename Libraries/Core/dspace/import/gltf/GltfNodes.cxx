@@ -1,7 +1,6 @@
-// The node tree of a glTF file.
-#include <deque>
+#include <dspace/import/gltf/GltfNodes.h>
 
-#include <dspace/import/gltf/GltfDocument.h>
+#include <deque>
 
 namespace dspace {
 

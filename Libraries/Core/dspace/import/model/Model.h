@@ -83,25 +83,6 @@ struct Model {
   Eigen::Affine3d NodeToModel(int node) const;
 };
 
-// How a file is read.
-struct ImportOptions {
-  bool strict = false;                     // warnings (missing textures, meshes, ...) become errors
-  std::size_t maximumTriangles = 50000000; // a file that expands beyond this is refused
-  bool pointCloud = false; // points alone are drawn; else a file without faces or lines is refused
-};
-
-// Reads `path` by its content (magic bytes) and, where that is silent, its extension:
-// .gltf .glb .wrl .wrz .iv .obj .stl .ply. Triangles that the file gives no normals get them from
-// ComputeNormals with its default crease angle. A file without faces and lines is refused unless
-// options.pointCloud, with which the vertices of a PLY or OBJ become points. URDF is read by
-// ReadUrdf (Urdf.h), since it has joints. Throws Error: NotFound, Io, Unsupported (type), Corrupt
-// (with what is wrong and where).
-Model ReadModel(const std::string& path, const ImportOptions& options = {});
-
-// Appends normals to `mesh` when it has none: smooth across edges flatter than the crease angle
-// (degrees), splitting vertices where sharper. Triangles only; others are left alone.
-void ComputeNormals(Mesh& mesh, double creaseAngle_deg = 30.0);
-
 // Throws Error(Corrupt) naming `path` and the mesh when an index, vertex, node or material of the
 // model is out of range or not finite: what every importer's result passes before it is returned.
 void CheckModel(const Model& model);

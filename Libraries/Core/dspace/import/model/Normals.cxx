@@ -1,5 +1,4 @@
-// ComputeNormals: vertex normals with creases.
-#include <dspace/import/model/Model.h>
+#include <dspace/import/model/Normals.h>
 
 #include <algorithm>
 #include <array>

@@ -7,6 +7,7 @@
 
 #include <dspace/Pose.h>
 #include <dspace/import/model/Model.h>
+#include <dspace/import/files/ModelReader.h>
 
 namespace dspace {
 

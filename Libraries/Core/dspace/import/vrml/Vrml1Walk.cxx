@@ -1,6 +1,7 @@
 // The walk over a VRML 1.0 or Inventor file: a state that nodes change, and shapes that it draws.
+#include <dspace/import/vrml/Vrml1Walk.h>
+
 #include <dspace/import/vrml/Vrml1Shape.h>
-#include <dspace/import/vrml/VrmlBuilder.h>
 #include <dspace/import/vrml/VrmlFields.h>
 
 #include <Inventor/nodes/SoNodes.h>

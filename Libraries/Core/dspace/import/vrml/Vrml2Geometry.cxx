@@ -3,6 +3,7 @@
 #include <dspace/import/vrml/Vrml2Shape.h>
 #include <dspace/import/vrml/VrmlFields.h>
 #include <dspace/import/vrml/VrmlSolids.h>
+#include <dspace/import/vrml/VrmlExtrusion.h>
 
 #include <Inventor/VRMLnodes/SoVRMLBox.h>
 #include <Inventor/VRMLnodes/SoVRMLColor.h>

@@ -1,6 +1,7 @@
 // The walk over a VRML 2.0 file: transforms to nodes, shapes to meshes.
+#include <dspace/import/vrml/Vrml2Walk.h>
+
 #include <dspace/import/vrml/Vrml2Shape.h>
-#include <dspace/import/vrml/VrmlBuilder.h>
 #include <dspace/import/vrml/VrmlFields.h>
 
 #include <Inventor/VRMLnodes/SoVRMLCollision.h>

@@ -6,6 +6,8 @@
 
 #include <dspace/Error.h>
 #include <dspace/Utf8.h>
+#include <dspace/import/vrml/Vrml1Walk.h>
+#include <dspace/import/vrml/Vrml2Walk.h>
 
 #include <algorithm>
 #include <filesystem>

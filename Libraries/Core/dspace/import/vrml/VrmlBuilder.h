@@ -6,6 +6,7 @@
 #include <dspace/import/vrml/VrmlFaces.h>
 
 #include <dspace/import/model/Model.h>
+#include <dspace/import/files/ModelReader.h>
 
 #include <cstdint>
 #include <map>
@@ -73,10 +74,6 @@ private:
   std::size_t Steps_ = 0;
   std::size_t Triangles_ = 0;
 };
-
-// The walks, one a dialect: nodes below `parent` for what the file's root holds.
-void WalkVrml2(VrmlBuilder& builder, const VrmlFile& file, int parent, int depth);
-void WalkVrml1(VrmlBuilder& builder, const VrmlFile& file, int parent, int depth);
 
 } // namespace dspace
 

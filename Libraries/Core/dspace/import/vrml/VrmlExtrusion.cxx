@@ -1,5 +1,4 @@
-// VRML97 6.18: a cross-section swept along a spine.
-#include <dspace/import/vrml/VrmlSolids.h>
+#include <dspace/import/vrml/VrmlExtrusion.h>
 
 #include <algorithm>
 #include <cmath>

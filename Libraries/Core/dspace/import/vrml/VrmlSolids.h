@@ -1,4 +1,4 @@
-// VRML's primitive shapes, extrusions and elevation grids. Internal, not installed.
+// VRML's primitive shapes and elevation grids. Internal, not installed.
 #ifndef DSPACE_IMPORT_VRML_SOLIDS_H
 #define DSPACE_IMPORT_VRML_SOLIDS_H
 
@@ -33,20 +33,6 @@ struct VrmlElevationGrid {
 // when there are fewer than 2 x 2 heights or fewer heights than the dimensions say.
 bool MakeVrmlElevationGrid(const VrmlElevationGrid& grid, VrmlFaces& faces,
                            VrmlComplaints& complaints);
-
-// Extrusion, VRML97 6.18.
-struct VrmlExtrusion {
-  std::vector<Eigen::Vector2d> crossSection;
-  std::vector<Eigen::Vector3d> spine;
-  std::vector<Eigen::Vector2d> scale;          // one for all, or one a spine point
-  std::vector<Eigen::Quaterniond> orientation; // likewise
-  bool beginCap = true;
-  bool endCap = true;
-};
-// False, and a complaint, when the spine or cross-section has fewer than two points or the surface
-// more than 10,000,000.
-bool MakeVrmlExtrusion(const VrmlExtrusion& extrusion, VrmlFaces& faces,
-                       VrmlComplaints& complaints);
 
 } // namespace dspace
 

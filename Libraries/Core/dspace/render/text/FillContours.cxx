@@ -1,12 +1,12 @@
 // Areas within contours, cut into bands between the heights of all corners and crossings, in which
 // they are trapezoids.
+#include <dspace/render/text/FillContours.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <set>
-
-#include <dspace/render/text/TextOutlines.h>
 
 namespace dspace {
 namespace {
