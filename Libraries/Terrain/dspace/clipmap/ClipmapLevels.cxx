@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <dspace/Error.h>
+#include <dspace/clipmap/ClipmapNoise.h>
 
 namespace dspace {
 
@@ -26,6 +27,19 @@ ClipmapLevels::ClipmapLevels(std::shared_ptr<ElevationPyramid> pyramid, int cell
                 "its coarsest level has " + std::to_string(most) +
                     " cells to one side; a clipmap of level size " + std::to_string(cells) +
                     " shows " + std::to_string(CoarsestFor(cells)));
+  }
+}
+
+ClipmapLevels::~ClipmapLevels() = default;
+
+void ClipmapLevels::SetNoise(const std::optional<ClipmapStyle::Noise>& noise,
+                             const PostPlacement& placement) {
+  if (noise ? this->Noise_ && this->Noise_->Noise() == *noise : !this->Noise_) {
+    return;
+  }
+  this->Noise_ = noise ? std::make_unique<const ClipmapNoise>(*noise, placement) : nullptr;
+  for (Level& level : this->Levels_) {
+    level.window.reset();
   }
 }
 
@@ -172,7 +186,8 @@ bool ClipmapLevels::Bring(int index, const std::vector<ClipmapUpdate>& updates,
   }
   for (std::size_t i = 0; this->Noise_ && i < updates.size(); ++i) {
     const ClipmapUpdate& u = updates[i];
-    this->Roughen({index, u.column - 1, u.row - 1, u.width + 2, u.height + 2}, heights[i]);
+    this->Noise_->Roughen(this->Lattice(),
+                          {index, u.column - 1, u.row - 1, u.width + 2, u.height + 2}, heights[i]);
   }
   const int side = this->Geometry_.Texels();
   level.texels.resize(std::size_t(side) * side);

@@ -9,10 +9,12 @@
 
 #include <dspace/clipmap/ClipmapStyle.h>
 #include <dspace/clipmap/arithmetic/ClipmapWindow.h>
-#include <dspace/pyramid/ElevationPyramid.h>
 #include <dspace/posts/PostPlacement.h>
+#include <dspace/pyramid/ElevationPyramid.h>
 
 namespace dspace {
+
+class ClipmapNoise;
 
 // A post as the GPU reads it.
 struct ClipmapTexel {
@@ -50,6 +52,7 @@ public:
   // Throws what ClipmapGeometry throws, and Error(InvalidArgument) when the pyramid's coarsest
   // level is larger than a window.
   ClipmapLevels(std::shared_ptr<ElevationPyramid> pyramid, int cells);
+  ~ClipmapLevels();
 
   // What posts are raised by from the next update on, with slopes to match; none at first. A change
   // fills all levels anew. `placement` is where the posts stand. Throws what NoiseOptions::Check
@@ -86,14 +89,7 @@ private:
     std::vector<PostRectangle> changed; // posts of the level that it holds as they were before
   };
   enum class Filled { Not, Before, Wholly }; // Before: with posts as they were before a change
-  // What noise needs.
-  struct Roughening {
-    ClipmapStyle::Noise noise;
-    OctaveNoise octaves;
-    PostPlacement placement;
-  };
   void NoteChanges();
-  void Roughen(const PostBlock& block, std::vector<float>& heights) const;
   std::vector<ClipmapUpdate> ChangesIn(int level, const ClipmapWindow& window) const;
   bool Bring(int level, const std::vector<ClipmapUpdate>& updates,
              const std::optional<double>& wait, const Upload& upload);
@@ -108,8 +104,8 @@ private:
   ClipmapGeometry Geometry_;
   std::vector<Level> Levels_;
   double LastColumn_ = 0.0;
-  std::uint64_t Seen_ = 0; // change of the pyramid
-  std::optional<Roughening> Noise_;
+  std::uint64_t Seen_ = 0;                    // change of the pyramid
+  std::unique_ptr<const ClipmapNoise> Noise_; // null: none
 };
 
 } // namespace dspace

@@ -7,9 +7,10 @@
 #include <dspace/Error.h>
 #include <dspace/pyramid/ElevationPyramid.h>
 
-#include <dspace/raster/LatestKept.h>
 #include <dspace/posts/PostsBetween.h>
+#include <dspace/pyramid/FilledReach.h>
 #include <dspace/pyramid/PyramidTiles.h>
+#include <dspace/raster/LatestKept.h>
 
 namespace dspace {
 namespace {
@@ -324,7 +325,7 @@ void FilledPosts::Read(const PostBlock& block, float* heights) const {
   std::vector<float> filled =
       block.level > full && std::isinf(this->Reach_) ? this->FromTiles(block) : this->Fill(block);
   if (std::isfinite(this->Reach_)) {
-    this->DropBeyondReach(block, filled);
+    FilledReach(this->Posts_, this->Reach_).Drop(block, filled);
   }
   std::copy(filled.begin(), filled.end(), heights);
 }

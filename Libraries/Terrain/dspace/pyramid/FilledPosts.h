@@ -47,7 +47,6 @@ private:
   Heights Top() const;
   void StartFromCoarser(const PostBlock& block, const std::vector<float>& weights,
                         std::vector<double>& heights) const;
-  void DropBeyondReach(const PostBlock& block, std::vector<float>& heights) const;
 
   std::shared_ptr<const RasterPosts> Posts_;
   double Reach_;

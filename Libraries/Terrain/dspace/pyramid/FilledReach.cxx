@@ -1,21 +1,24 @@
-// How far from data holes are filled.
+#include <dspace/pyramid/FilledReach.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <dspace/pyramid/FilledPosts.h>
+#include <limits>
+#include <utility>
 
 namespace dspace {
 namespace {
 
 constexpr double ReachPosts = 64.0; // distances are told in posts no finer than that
 constexpr int Far = 1 << 28;        // posts; no data in that row
-constexpr float NoHeight = std::numeric_limits<float>::quiet_NaN();
 
 } // namespace
 
+FilledReach::FilledReach(std::shared_ptr<const RasterPosts> posts, double reach)
+    : Posts_(std::move(posts)), Reach_(reach) {}
+
 // Distances are between posts of this level or, where those are many, of a coarser one.
-void FilledPosts::DropBeyondReach(const PostBlock& block, std::vector<float>& heights) const {
-  const PostLattice& lattice = this->GetLattice();
+void FilledReach::Drop(const PostBlock& block, std::vector<float>& heights) const {
+  const PostLattice& lattice = this->Posts_->GetLattice();
   std::vector<float> own(heights.size());
   this->Posts_->Read(block, own.data());
   const auto made = [&](std::size_t at) { return std::isnan(own[at]) && !std::isnan(heights[at]); };
@@ -82,7 +85,7 @@ void FilledPosts::DropBeyondReach(const PostBlock& block, std::vector<float>& he
         near = away * away + double((k - r) * (k - r)) <= reach * reach;
       }
       if (!near) {
-        heights[at] = NoHeight;
+        heights[at] = std::numeric_limits<float>::quiet_NaN();
       }
     }
   }

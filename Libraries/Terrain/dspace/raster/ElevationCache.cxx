@@ -12,6 +12,7 @@
 #include <dspace/raster/CachedLayers.h>
 #include <dspace/raster/NetworkScope.h>
 #include <dspace/raster/OverviewFile.h>
+#include <dspace/raster/OverviewWriter.h>
 
 namespace dspace {
 namespace {

@@ -4,12 +4,10 @@
 #define DSPACE_TERRAIN_OVERVIEWFILE_H
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include <dspace/AtomicFile.h>
 #include <dspace/raster/ElevationSource.h>
 
 namespace dspace {
@@ -67,13 +65,6 @@ private:
   std::uint64_t Bytes_ = 0;
   OverviewHeader Header_;
 };
-
-// Writes the overviews of `source`'s values, read from its first row to its last, into `output`,
-// which is empty; the caller commits it. Every cell is the mean of its pixels, however coarse.
-// False where `progress`, called with the part done, said so. Throws what the source and the output
-// throw.
-bool WriteOverviews(const ElevationSource& source, const std::string& identity, AtomicFile& output,
-                    const std::function<bool(double)>& progress);
 
 // CRC-32 as in zlib and PNG.
 std::uint32_t Checksum(const char* data, std::size_t bytes);

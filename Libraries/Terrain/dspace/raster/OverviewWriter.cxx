@@ -1,9 +1,9 @@
-// Means of all pixels of every cell, gathered in one pass over the raster.
+#include <dspace/raster/OverviewWriter.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <functional>
 #include <limits>
 
 #include <cpl_conv.h>

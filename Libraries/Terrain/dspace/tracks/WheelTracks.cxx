@@ -58,7 +58,7 @@ WheelTracks::WheelTracks(std::string name, const WheelTracksOptions& options)
   }
 }
 
-TrackContact WheelTracks::Whole(const Contact& c) {
+TrackContact WheelTracks::Whole(const KeptContact& c) {
   return {{c.x, c.y}, double(c.sinkage), double(c.heading), c.rolled};
 }
 
@@ -69,7 +69,7 @@ TrackSegment WheelTracks::SegmentOf(const Stroke& stroke, std::size_t index) con
 
 // At most, and no more where all its lines are new: of its new contacts and of every cell that they
 // reach. `taken`: new cells of drafts before it.
-std::size_t WheelTracks::CostOf(const Draft& draft, std::unordered_set<Cell>& taken) const {
+std::size_t WheelTracks::CostOf(const TrackDraft& draft, std::unordered_set<Cell>& taken) const {
   const bool isNew = draft.stroke >= this->Strokes_.size();
   const std::size_t there =
       isNew ? 0 : this->Strokes_[draft.stroke].contacts.size() - draft.kept; // of its contacts
@@ -187,7 +187,7 @@ std::array<double, 2> WheelTracks::Changes() const {
   return this->Changes_;
 }
 
-void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
+void WheelTracks::Commit(TrackDraft& draft, std::vector<TrackReach>& changed) {
   if (draft.stroke == this->Strokes_.size()) {
     this->Strokes_.push_back({draft.name, draft.profile, {}, {}});
     this->Bytes_ += StrokeBytes;
@@ -195,7 +195,7 @@ void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
   Stroke& stroke = this->Strokes_[draft.stroke];
   this->Latest_[draft.name] = draft.stroke;
   const std::size_t before = stroke.contacts.size();
-  const auto same = [](const Contact& a, const Contact& b) {
+  const auto same = [](const KeptContact& a, const KeptContact& b) {
     return a.x == b.x && a.y == b.y && a.rolled == b.rolled && a.sinkage == b.sinkage;
   };
   // A last line that stays as it is has not changed.
@@ -213,7 +213,7 @@ void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
   stroke.contacts.resize(draft.kept);
   stroke.contacts.insert(stroke.contacts.end(), draft.contacts.begin(), draft.contacts.end());
   stroke.skipped = std::move(draft.skipped);
-  for (const Contact& contact : draft.contacts) {
+  for (const KeptContact& contact : draft.contacts) {
     this->Changes_[0] =
         std::min(this->Changes_[0], -double(contact.sinkage) - stroke.profile.treadDepth);
   }
@@ -240,7 +240,7 @@ void WheelTracks::Commit(Draft& draft, std::vector<TrackReach>& changed) {
 std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& additions) {
   std::set<std::string> names;
   for (const TrackAddition& addition : additions) {
-    this->Check(addition);
+    CheckStroke(addition, this->Name_);
     if (!names.insert(addition.name).second && !addition.begin) {
       throw Error(Error::Kind::InvalidArgument, this->Name_,
                   "track '" + addition.name + "' is given twice; accepted: once, or begun anew");
@@ -250,15 +250,15 @@ std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& addit
   std::vector<TrackReach> changed;
   std::size_t cost = 0;
   std::unordered_set<Cell> taken;
-  std::vector<Draft> drafts;
+  std::vector<TrackDraft> drafts;
   std::size_t strokes = this->Strokes_.size();
   for (const TrackAddition& addition : additions) {
     if (addition.contacts.empty()) {
       continue;
     }
-    Draft draft = this->Begin(addition);
+    TrackDraft draft = this->Begin(addition);
     for (const TrackContact& contact : addition.contacts) {
-      this->Append(draft, contact, addition.exact);
+      draft.Append(contact, addition.exact, this->Options_.tolerance);
     }
     cost += this->CostOf(draft, taken);
     this->RequireRoom(cost);
@@ -267,7 +267,7 @@ std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& addit
     }
     drafts.push_back(std::move(draft));
   }
-  for (Draft& draft : drafts) {
+  for (TrackDraft& draft : drafts) {
     this->Commit(draft, changed);
   }
   return changed;
@@ -335,6 +335,132 @@ std::vector<TrackSegment> WheelTracks::Near(const Eigen::AlignedBox2d& box, doub
     }
   }
   return segments;
+}
+
+TrackDraft WheelTracks::Begin(const TrackAddition& addition) const {
+  TrackDraft draft;
+  draft.name = addition.name;
+  draft.profile = addition.profile;
+  draft.stroke = this->Strokes_.size();
+  const auto latest = this->Latest_.find(addition.name);
+  if (addition.begin || latest == this->Latest_.end()) {
+    return draft;
+  }
+  const Stroke& stroke = this->Strokes_[latest->second];
+  if (!(stroke.profile == addition.profile)) {
+    draft.contacts = {stroke.contacts.back()};
+    return draft;
+  }
+  draft.stroke = latest->second;
+  draft.kept = stroke.contacts.size() - std::min<std::size_t>(stroke.contacts.size(), 2);
+  draft.contacts.assign(stroke.contacts.begin() + std::ptrdiff_t(draft.kept),
+                        stroke.contacts.end());
+  draft.skipped = stroke.skipped;
+  return draft;
+}
+
+bool WheelTracks::Empty() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  return this->Strokes_.empty();
+}
+
+TrackStatistics WheelTracks::Statistics() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  TrackStatistics statistics;
+  statistics.bytes = this->Bytes_;
+  statistics.strokes = this->Strokes_.size();
+  for (const Stroke& stroke : this->Strokes_) {
+    statistics.contacts += stroke.contacts.size();
+    for (std::size_t i = 1; i < stroke.contacts.size(); ++i) {
+      statistics.length += std::hypot(stroke.contacts[i].x - stroke.contacts[i - 1].x,
+                                      stroke.contacts[i].y - stroke.contacts[i - 1].y);
+    }
+  }
+  return statistics;
+}
+
+std::size_t WheelTracks::StrokeCount() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  return this->Strokes_.size();
+}
+
+std::vector<TrackStroke> WheelTracks::Strokes(std::size_t first) const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  std::vector<TrackStroke> strokes;
+  for (std::size_t i = first; i < this->Strokes_.size(); ++i) {
+    const Stroke& stroke = this->Strokes_[i];
+    TrackStroke& whole = strokes.emplace_back();
+    whole.name = stroke.name;
+    whole.profile = stroke.profile;
+    std::transform(stroke.contacts.begin(), stroke.contacts.end(),
+                   std::back_inserter(whole.contacts), Whole);
+    std::transform(stroke.skipped.begin(), stroke.skipped.end(), std::back_inserter(whole.skipped),
+                   Whole);
+  }
+  return strokes;
+}
+
+std::vector<TrackReach> WheelTracks::Restore(const std::vector<TrackStroke>& strokes, bool goesOn) {
+  const auto refuse = [this](const TrackStroke& stroke, const std::string& what) {
+    throw Error(Error::Kind::InvalidArgument, "track '" + stroke.name + "' on " + this->Name_,
+                what);
+  };
+  for (const TrackStroke& stroke : strokes) {
+    CheckStroke(stroke, this->Name_);
+    if (stroke.contacts.empty()) {
+      refuse(stroke, "it has no contact; accepted to be restored: one or more");
+    }
+    if (stroke.skipped.size() > TrackDraft::MostSkipped) {
+      refuse(stroke, "it has " + std::to_string(stroke.skipped.size()) +
+                         " contacts on its last line; accepted: up to " +
+                         std::to_string(TrackDraft::MostSkipped));
+    }
+    for (const auto* list : {&stroke.contacts, &stroke.skipped}) {
+      for (const TrackContact& contact : *list) {
+        if (std::isnan(contact.rolled)) {
+          refuse(stroke, "the distance rolled is nan; accepted to be restored: finite numbers");
+        }
+      }
+    }
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  if (goesOn &&
+      (strokes.empty() || this->Strokes_.empty() || this->Strokes_.back().name != strokes[0].name ||
+       !(this->Strokes_.back().profile == strokes[0].profile))) {
+    throw Error(Error::Kind::InvalidArgument, this->Name_,
+                "its last wheel track is not of the name and the sizes of the one that is to go on "
+                "with it; accepted: parts of one track, one after the other");
+  }
+  const auto half = [](const TrackContact& c) {
+    return KeptContact{c.place.x(), c.place.y(), c.rolled, float(c.heading), float(c.sinkage)};
+  };
+  std::vector<TrackDraft> drafts;
+  std::unordered_set<Cell> taken;
+  std::size_t cost = 0;
+  for (const TrackStroke& stroke : strokes) {
+    TrackDraft& draft = drafts.emplace_back();
+    draft.name = stroke.name;
+    draft.profile = stroke.profile;
+    draft.stroke = this->Strokes_.size() + drafts.size() - 1;
+    if (goesOn) {
+      --draft.stroke;
+      if (drafts.size() == 1) { // from its last contact on
+        draft.kept = this->Strokes_.back().contacts.size() - 1;
+        draft.contacts.push_back(this->Strokes_.back().contacts.back());
+      }
+    }
+    std::transform(stroke.contacts.begin(), stroke.contacts.end(),
+                   std::back_inserter(draft.contacts), half);
+    std::transform(stroke.skipped.begin(), stroke.skipped.end(), std::back_inserter(draft.skipped),
+                   half);
+    cost += this->CostOf(draft, taken);
+    this->RequireRoom(cost);
+  }
+  std::vector<TrackReach> changed;
+  for (TrackDraft& draft : drafts) {
+    this->Commit(draft, changed);
+  }
+  return changed;
 }
 
 } // namespace dspace

@@ -14,19 +14,11 @@
 #include <unordered_set>
 #include <vector>
 
+#include <dspace/tracks/TrackDraft.h>
 #include <dspace/tracks/TrackSegment.h>
+#include <dspace/tracks/TrackStroke.h>
 
 namespace dspace {
-
-// One wheel's way without a gap.
-struct TrackStroke {
-  std::string name; // the wheel's
-  TrackProfile profile;
-  std::vector<TrackContact> contacts;
-  // Of a stroke that is kept: contacts on its last line that were left out. As long as they lie on
-  // it, it may grow.
-  std::vector<TrackContact> skipped;
-};
 
 struct TrackAddition : TrackStroke {
   bool begin = false; // a new stroke; else the wheel's latest one goes on, where there is one
@@ -88,39 +80,20 @@ public:
   std::vector<TrackSegment> Near(const Eigen::AlignedBox2d& box, double width = 0.0) const;
 
 private:
-  static constexpr std::size_t MostSkipped = 64;
-  struct Contact { // half of TrackContact's size
-    double x;
-    double y;
-    double rolled;
-    float heading;
-    float sinkage;
-  };
   struct Stroke {
     std::string name;
     TrackProfile profile;
-    std::deque<Contact> contacts;
-    std::vector<Contact> skipped; // since the last but one
-  };
-  struct Draft { // what a stroke's end becomes
-    std::string name;
-    TrackProfile profile;
-    std::size_t stroke = 0; // to go on with; one more than there are: new
-    std::size_t kept = 0;   // contacts of it that stay
-    std::vector<Contact> contacts;
-    std::vector<Contact> skipped;
+    std::deque<KeptContact> contacts;
+    std::vector<KeptContact> skipped; // since the last but one
   };
   using Cell = std::uint64_t;
 
-  static TrackContact Whole(const Contact& contact);
-  Draft Begin(const TrackAddition& addition) const;
-  void Append(Draft& draft, const TrackContact& given, bool exact) const;
-  bool OnLine(const Contact& from, const Contact& to, const Contact& between) const;
-  void Check(const TrackStroke& stroke) const;
+  static TrackContact Whole(const KeptContact& contact);
+  TrackDraft Begin(const TrackAddition& addition) const;
   TrackSegment SegmentOf(const Stroke& stroke, std::size_t index) const;
-  std::size_t CostOf(const Draft& draft, std::unordered_set<Cell>& taken) const;
+  std::size_t CostOf(const TrackDraft& draft, std::unordered_set<Cell>& taken) const;
   void RequireRoom(std::size_t cost) const;
-  void Commit(Draft& draft, std::vector<TrackReach>& changed);
+  void Commit(TrackDraft& draft, std::vector<TrackReach>& changed);
   void Forget(std::uint64_t entry, const Eigen::AlignedBox2d& box);
   void TakeSquares(Cell cell);
   void GiveSquares(Cell cell);

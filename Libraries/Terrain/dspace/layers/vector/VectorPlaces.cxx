@@ -6,10 +6,11 @@
 
 #include <ogr_spatialref.h>
 
-#include <dspace/gdal/GdalErrors.h>
 #include <dspace/crs/MapTurn.h>
-#include <dspace/gdal/OgrLock.h>
 #include <dspace/crs/ProjGrids.h>
+#include <dspace/gdal/GdalErrors.h>
+#include <dspace/gdal/OgrLock.h>
+#include <dspace/layers/vector/VectorTurns.h>
 
 namespace dspace {
 namespace {

@@ -7,15 +7,16 @@
 #include <ogrsf_frmts.h>
 
 #include <dspace/Utf8.h>
-#include <dspace/scene/Checks.h>
-#include <dspace/raster/DatasetFiles.h>
 #include <dspace/crs/MapTurn.h>
-#include <dspace/raster/NetworkScope.h>
 #include <dspace/gdal/OfflineScope.h>
+#include <dspace/raster/DatasetFiles.h>
+#include <dspace/raster/NetworkScope.h>
 #include <dspace/raster/OpenRaster.h>
+#include <dspace/scene/Checks.h>
 
 #include <dspace/layers/vector/VectorCrs.h>
 #include <dspace/layers/vector/VectorPlaces.h>
+#include <dspace/layers/vector/VectorTurns.h>
 
 namespace dspace {
 namespace {

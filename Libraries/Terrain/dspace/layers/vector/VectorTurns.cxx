@@ -1,8 +1,7 @@
-// Shapes across the edge of a map that goes once around a body, and around its poles.
+#include <dspace/layers/vector/VectorTurns.h>
+
 #include <cmath>
 #include <optional>
-
-#include <dspace/layers/vector/VectorShapes.h>
 
 namespace dspace {
 

@@ -1,0 +1,27 @@
+// How far from data holes are filled. Not for public headers.
+#ifndef DSPACE_TERRAIN_FILLEDREACH_H
+#define DSPACE_TERRAIN_FILLEDREACH_H
+
+#include <memory>
+#include <vector>
+
+#include <dspace/posts/RasterPosts.h>
+
+namespace dspace {
+
+class FilledReach {
+public:
+  // `reach`: in the raster's pixels.
+  FilledReach(std::shared_ptr<const RasterPosts> posts, double reach);
+
+  // Takes away what was filled further from data than that.
+  void Drop(const PostBlock& block, std::vector<float>& heights) const;
+
+private:
+  std::shared_ptr<const RasterPosts> Posts_;
+  double Reach_;
+};
+
+} // namespace dspace
+
+#endif

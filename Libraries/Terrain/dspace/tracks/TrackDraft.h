@@ -1,0 +1,39 @@
+// The end of a wheel's stroke while contacts are added to it.
+#ifndef DSPACE_TERRAIN_TRACKDRAFT_H
+#define DSPACE_TERRAIN_TRACKDRAFT_H
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <dspace/tracks/TrackSegment.h>
+
+namespace dspace {
+
+// What is kept of a contact: half of TrackContact's size.
+struct KeptContact {
+  double x;
+  double y;
+  double rolled;
+  float heading;
+  float sinkage;
+};
+
+struct TrackDraft {
+  static constexpr std::size_t MostSkipped = 64;
+
+  std::string name;
+  TrackProfile profile;
+  std::size_t stroke = 0; // to go on with; one more than there are: new
+  std::size_t kept = 0;   // contacts of it that stay
+  std::vector<KeptContact> contacts;
+  std::vector<KeptContact> skipped; // on the last line, which were left out
+
+  // Leaves out contacts that lie on the line between others to `tolerance` (WheelTracksOptions),
+  // unless all are kept (`exact`).
+  void Append(const TrackContact& given, bool exact, double tolerance);
+};
+
+} // namespace dspace
+
+#endif
