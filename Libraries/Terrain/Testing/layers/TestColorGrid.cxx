@@ -6,6 +6,7 @@
 #include <dspace/layers/ColorGrid.h>
 #include <dspace/clipmap/PoleCharts.h>
 #include <dspace/surface/StreamedTerrain.h>
+#include <dspace/crs/CrsTransform.h>
 
 #include "Globe.h"
 

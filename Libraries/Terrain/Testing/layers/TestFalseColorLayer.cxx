@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
+#include <dspace/layers/raster/FalseColorLayer.h>
 #include <dspace/layers/raster/ImageLayer.h>
 
 #include "ColorBlocks.h"

@@ -5,6 +5,7 @@
 #include <ogrsf_frmts.h>
 
 #include "VectorTestSupport.h"
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace::testing {
 namespace {

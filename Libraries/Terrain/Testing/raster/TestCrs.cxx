@@ -11,6 +11,7 @@
 #include <dspace/Error.h>
 #include <dspace/Utf8.h>
 #include <dspace/crs/Crs.h>
+#include <dspace/crs/CrsTransform.h>
 #include <dspace/crs/SceneFrame.h>
 #include <dspace/crs/VerticalDatum.h>
 

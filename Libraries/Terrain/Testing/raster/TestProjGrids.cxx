@@ -11,6 +11,7 @@
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 #include <dspace/crs/Crs.h>
+#include <dspace/crs/CrsTransform.h>
 #include <dspace/crs/ProjFolders.h>
 
 #include "MissingPackage.h"

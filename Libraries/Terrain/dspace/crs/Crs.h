@@ -1,4 +1,4 @@
-// A coordinate reference system of any body, and conversion between two of them (PROJ).
+// A coordinate reference system of any body (PROJ).
 #ifndef DSPACE_TERRAIN_CRS_H
 #define DSPACE_TERRAIN_CRS_H
 
@@ -67,25 +67,6 @@ private:
   double Unit_ = 1.0;
   Eigen::Vector2d AxisSigns_ = Eigen::Vector2d::Ones();
   std::shared_ptr<const OGRSpatialReference> Srs_;
-};
-
-// Map coordinates of one CRS to those of another on the same body. Calls may come from any thread;
-// they take turns.
-class CrsTransform {
-public:
-  // Throws Error(Unsupported) when PROJ has no way between the two, as between two bodies.
-  CrsTransform(const Crs& from, const Crs& to);
-  ~CrsTransform();
-
-  // Throws Error(InvalidArgument) naming the point where the projection has no value for it.
-  Eigen::Vector2d Apply(const Eigen::Vector2d& p) const;
-  Eigen::Vector2d ApplyInverse(const Eigen::Vector2d& p) const;
-  // Many points at once; NaN where the projection has no value.
-  void TryApply(Eigen::Matrix2Xd& points) const;
-
-private:
-  struct Implementation;
-  std::unique_ptr<Implementation> Impl_;
 };
 
 } // namespace dspace

@@ -1,4 +1,4 @@
-#include <dspace/crs/Crs.h>
+#include <dspace/crs/CrsTransform.h>
 
 #include <cmath>
 #include <limits>

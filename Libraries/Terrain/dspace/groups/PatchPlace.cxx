@@ -8,6 +8,7 @@
 #include <dspace/Error.h>
 
 #include <dspace/crs/MapTurn.h>
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace {
 namespace {

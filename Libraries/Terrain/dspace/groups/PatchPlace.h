@@ -10,6 +10,7 @@
 
 #include <dspace/raster/ElevationSource.h>
 #include <dspace/posts/PostSource.h>
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace {
 

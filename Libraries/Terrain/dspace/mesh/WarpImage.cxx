@@ -12,6 +12,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/gdal/GdalErrors.h>
+#include <dspace/crs/CrsTransform.h>
 #include <dspace/raster/DatasetFiles.h>
 #include <dspace/raster/DatasetGate.h>
 

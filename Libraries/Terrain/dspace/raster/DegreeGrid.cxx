@@ -6,6 +6,7 @@
 #include <ogr_spatialref.h>
 
 #include <dspace/Error.h>
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace {
 namespace {

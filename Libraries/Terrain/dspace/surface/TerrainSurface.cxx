@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <dspace/Error.h>
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace {
 

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <dspace/crs/Crs.h>
+#include <dspace/crs/CrsTransform.h>
 #include <dspace/crs/VerticalDatum.h>
 
 namespace dspace {

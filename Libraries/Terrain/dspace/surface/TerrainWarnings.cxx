@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include <dspace/Error.h>
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace {
 

@@ -3,6 +3,7 @@
 #include <dspace/Error.h>
 
 #include <dspace/import/gltf/GltfDocument.h>
+#include <dspace/import/gltf/GltfNodes.h>
 
 namespace dspace {
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <dspace/layers/raster/FilledLayer.h>
+#include <dspace/layers/raster/FalseColorLayer.h>
 #include <dspace/layers/raster/ImageLayer.h>
 #include <dspace/layers/NoiseLayer.h>
 #include <dspace/layers/vector/VectorLayer.h>

@@ -7,6 +7,7 @@
 #include <dspace/posts/PostLattice.h>
 
 #include <dspace/layers/raster/SquareReader.h>
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace {
 namespace {

@@ -11,6 +11,7 @@
 #include <dspace/layers/ColorLayer.h>
 
 #include <dspace/layers/raster/RasterLevels.h>
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace {
 

@@ -1,4 +1,4 @@
-#include <dspace/layers/raster/ImageLayer.h>
+#include <dspace/layers/raster/FalseColorLayer.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Colour images and rasters in false colour, of any size and in any CRS, read as tiles.
+// Colour images of any size and in any CRS, read as tiles.
 #ifndef DSPACE_LAYERS_IMAGELAYER_H
 #define DSPACE_LAYERS_IMAGELAYER_H
 
@@ -44,28 +44,6 @@ struct RasterLayerOptions {
 std::shared_ptr<const ColorLayer> OpenImageLayer(const std::string& path,
                                                  const RasterPlace& terrain,
                                                  const RasterLayerOptions& options = {});
-
-// One band of any type through a colour ramp, linear between its colours, beyond its ends their
-// colours; no data is transparent. Values are means before they are coloured; the file's scale and
-// offset are applied.
-struct FalseColorOptions {
-  int band = 1;
-  ColorRamp ramp = TerrainRamp();
-  std::optional<double> low; // of the band's values; its least and greatest by default
-  std::optional<double> high;
-};
-
-class FalseColorLayer : public ColorLayer {
-public:
-  virtual const std::array<double, 2>& Range() const = 0; // of the ramp's ends
-  virtual const ColorRamp& Ramp() const = 0;
-  virtual const std::string& Unit() const = 0; // as the file states it; may be empty
-};
-
-std::shared_ptr<const FalseColorLayer> OpenFalseColorLayer(const std::string& path,
-                                                           const RasterPlace& terrain,
-                                                           const FalseColorOptions& colors,
-                                                           const RasterLayerOptions& options = {});
 
 } // namespace dspace
 

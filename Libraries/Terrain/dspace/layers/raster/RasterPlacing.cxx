@@ -8,6 +8,7 @@
 #include <dspace/layers/raster/ImageLayer.h>
 
 #include <dspace/crs/MapTurn.h>
+#include <dspace/crs/CrsTransform.h>
 
 namespace dspace {
 namespace {
