@@ -275,6 +275,14 @@ const dspace::session::Ledger& vtkDspaceSession::GetLedger() {
   return this->Impl->ledger;
 }
 
+void vtkDspaceSession::EndBackgroundWork() {
+  for (auto& [name, scene] : this->Impl->interpreter.GetState().scenes) {
+    for (auto& [terrainName, terrain] : scene.terrains) {
+      terrain->EndBackgroundWork();
+    }
+  }
+}
+
 dspace::session::Interpreter& vtkDspaceSession::GetInterpreter() {
   return this->Impl->interpreter;
 }

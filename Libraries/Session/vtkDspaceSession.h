@@ -55,6 +55,10 @@ public:
   void SetRenderContext(vtkDspaceRenderContext* context);
   vtkDspaceRenderContext* GetRenderContext();
 
+  /// Gives up what the session does in the background (overviews); to be called before the process
+  /// ends, unless the session is destroyed before.
+  void EndBackgroundWork();
+
   /// Records from the present state on into a new file, whose name ends as it likes. Every accepted
   /// command is written by a thread of its own, at most `commitEvery` seconds later (0.001 to 60);
   /// where that fails, one reply warns, the session goes on, and what was written stays. Both

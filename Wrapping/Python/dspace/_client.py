@@ -2,6 +2,7 @@
 import sys
 import threading
 import warnings
+import weakref
 
 from dspace import vtk as _vtk
 from dspace._traits import scene_name
@@ -41,10 +42,17 @@ class LocalClient:
     def __init__(self):
         self._thread = threading.get_ident()
         self.vtk = _vtk.vtkDspaceSession()
+        self._background = weakref.finalize(self, self.vtk.EndBackgroundWork)
         self.frame_listeners = FrameListeners()
         self.events = EventQueue()
         self.recording = None  # the last one that was begun
         self.telemetry = {}  # by scene: {name: (id, kind)} of the channels that are known
+
+    def _end_background_work_by(self, end):
+        """Called when the client is closed or gone, and at the latest as the program ends: GDAL, which
+        the session may read with in the background, is taken down then."""
+        self._background.detach()
+        self._background = weakref.finalize(self, end)
 
     def local(self):
         """The vtkDspaceSession; raises when it is closed."""
@@ -96,6 +104,7 @@ class LocalClient:
     def close(self):
         if self.vtk is not None:
             self._require_thread()
+        self._background()
         self.vtk = None
         self.frame_listeners.clear()
         self.events.clear()

@@ -21,6 +21,7 @@ class RemoteClient(LocalClient):
 
     def __init__(self, link, address, name, timeout, prepared):
         super().__init__()
+        self._background()
         self.vtk = None
         self.link = link
         self.address = address

@@ -21,6 +21,7 @@ class WatchClient(LocalClient):
         super().__init__()
         self._watcher = watcher
         self.vtk = watcher.GetSession()
+        self._end_background_work_by(lambda: watcher.GetSession().EndBackgroundWork())
 
     def watcher(self):
         if self._watcher is None:

@@ -35,6 +35,8 @@ public:
   // Every post is drawn within `radius` metres of the points (in S). Returns whether the drawing
   // changed. Throws Error(InvalidArgument) and changes nothing.
   virtual bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) = 0;
+  // Gives up what is done in the background; nothing half-made stays.
+  virtual void EndBackgroundWork() {}
 
 protected:
   explicit TerrainObject(std::string name) : Name_(std::move(name)) {}

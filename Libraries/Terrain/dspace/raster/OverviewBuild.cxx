@@ -1,9 +1,7 @@
 #include <dspace/raster/OverviewBuild.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <mutex>
-#include <set>
 #include <thread>
 
 #include <sys/resource.h>
@@ -31,7 +29,6 @@ struct OverviewBuild::Implementation {
   mutable std::mutex mutex; // of what follows
   State state = State::Building;
   std::string failure;
-  std::mutex joining;
   std::thread thread;
 
   void End(State how, const std::string& why = {}) {
@@ -64,42 +61,10 @@ struct OverviewBuild::Implementation {
 
   void Stop() {
     this->stopping = true;
-    const std::lock_guard<std::mutex> lock(this->joining);
     if (this->thread.joinable()) {
       this->thread.join();
     }
   }
-};
-
-// Those that still run when the process ends without having ended them: no thread reads while GDAL
-// is taken down, which was there before the first of them.
-class OverviewBuild::Unended {
-public:
-  static Unended& Instance() {
-    static auto* const all = new Unended; // what still lives then may still ask for it
-    static const int once = std::atexit([] { all->Stop(); });
-    static_cast<void>(once);
-    return *all;
-  }
-  void Add(Implementation* one) {
-    const std::lock_guard<std::mutex> lock(this->Mutex_);
-    this->All_.insert(one);
-  }
-  void Remove(Implementation* one) {
-    const std::lock_guard<std::mutex> lock(this->Mutex_);
-    this->All_.erase(one);
-  }
-
-private:
-  void Stop() {
-    const std::lock_guard<std::mutex> lock(this->Mutex_);
-    for (Implementation* one : this->All_) {
-      one->Stop();
-    }
-  }
-
-  std::mutex Mutex_;
-  std::set<Implementation*> All_;
 };
 
 bool OverviewBuild::Wanted(const ElevationInfo& info) {
@@ -111,7 +76,6 @@ OverviewBuild::OverviewBuild(std::string folder, std::string path, const Elevati
                              std::function<void()> built)
     : Impl_(std::make_unique<Implementation>()) {
   Implementation* impl = this->Impl_.get();
-  Unended& unended = Unended::Instance();
   try {
     impl->thread =
         std::thread([impl, folder = std::move(folder), path = std::move(path), options,
@@ -121,13 +85,10 @@ OverviewBuild::OverviewBuild(std::string folder, std::string path, const Elevati
         });
   } catch (const std::exception& error) {
     impl->End(State::Failed, std::string("a thread for it could not be started: ") + error.what());
-    return;
   }
-  unended.Add(impl); // it lives as long as this, and what has no thread needs no end
 }
 
 OverviewBuild::~OverviewBuild() {
-  Unended::Instance().Remove(this->Impl_.get());
   this->Impl_->Stop();
 }
 

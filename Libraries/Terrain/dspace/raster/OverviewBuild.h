@@ -12,6 +12,7 @@ namespace dspace {
 
 // ElevationCache::Build in a thread of its own, of low priority. It ends when this does: what is
 // under way is then given up between two reads of some million pixels, and nothing half-made stays.
+// Its owner ends it before the process ends, which takes down GDAL.
 class OverviewBuild {
 public:
   enum class State {
@@ -39,7 +40,6 @@ public:
 
 private:
   struct Implementation;
-  class Unended;
   std::unique_ptr<Implementation> Impl_;
 };
 

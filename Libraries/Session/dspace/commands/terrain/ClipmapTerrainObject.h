@@ -39,6 +39,7 @@ public:
   void BuildOverviews(const std::string& folder, const ElevationOptions& options);
   // Checks its arguments only: a clipmap's posts follow the cameras.
   bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) override;
+  void EndBackgroundWork() override { this->Build_.reset(); }
 
 private:
   std::shared_ptr<StreamedTerrain> Surface_;
