@@ -1,8 +1,7 @@
-// RasterPosts' coarser levels: means over boxes.
+#include <dspace/posts/RasterMeans.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <dspace/posts/RasterPosts.h>
 
 namespace dspace {
 namespace {
@@ -11,19 +10,22 @@ constexpr int FullReads = 3; // levels above the pixels whose means read every p
 
 } // namespace
 
-int RasterPosts::FirstReducedLevel() const {
+RasterMeans::RasterMeans(std::shared_ptr<const PixelWindows> pixels, const PostLattice& lattice,
+                         int subdivisions, bool poles, double stretch)
+    : Pixels_(std::move(pixels)), Lattice_(lattice), Subdivisions_(subdivisions), Poles_(poles),
+      Stretch_(stretch) {}
+
+int RasterMeans::FirstReducedLevel() const {
   return this->Subdivisions_ + FullReads + 1;
 }
 
-void RasterPosts::ForgetReduced() {
+void RasterMeans::ForgetReduced() {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   this->PoleHeights_.erase(this->PoleHeights_.lower_bound({this->FirstReducedLevel(), false}),
                            this->PoleHeights_.end());
 }
 
-// Of all that a level's boxes about a pole reach; up to the raster's own posts, of the row next to
-// it.
-double RasterPosts::PoleHeight(int level, bool last) const {
+double RasterMeans::PoleHeight(int level, bool last) const {
   const std::pair<int, bool> key(std::max(level, this->Subdivisions_), last);
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
@@ -32,7 +34,7 @@ double RasterPosts::PoleHeight(int level, bool last) const {
       return known->second;
     }
   }
-  const RasterWindow all = this->Source_->Info().window;
+  const RasterWindow all = this->Pixels_->Whole();
   const int above = key.first - this->Subdivisions_;
   const int factor = 1 << std::max(0, above - FullReads);
   const int columns = 1 + (all.width - 1) / factor;
@@ -42,7 +44,7 @@ double RasterPosts::PoleHeight(int level, bool last) const {
   const double to = double(all.height) / factor;
   const int height = std::min(rows, int(std::ceil(reach)) + 1);
   const int top = last ? rows - height : 0;
-  const std::vector<double> pixels = this->ReadPixels(0, top, columns, height, factor);
+  const std::vector<double> pixels = this->Pixels_->Read(0, top, columns, height, factor);
   const BoxSpan span = last ? BoxSpan{to - reach - top, to - top} : BoxSpan{0.0, reach};
   const double mean =
       BoxMeans(pixels, columns, height, {{0.0, double(all.width) / factor}}, {span}).front();
@@ -52,10 +54,10 @@ double RasterPosts::PoleHeight(int level, bool last) const {
 
 // BoxMeans of the raster at `factor`, its columns of any turn. The last reduced pixel of a row may
 // be narrower than the others: each turn is summed by itself.
-std::vector<double> RasterPosts::MeansAround(const std::vector<BoxSpan>& columns,
+std::vector<double> RasterMeans::MeansAround(const std::vector<BoxSpan>& columns,
                                              const std::vector<BoxSpan>& rows, int factor,
                                              std::vector<double>& shares) const {
-  const RasterWindow all = this->Source_->Info().window;
+  const RasterWindow all = this->Pixels_->Whole();
   const auto top = std::int64_t(std::floor(rows.front().from / factor));
   const auto bottom = std::int64_t(std::ceil(rows.back().to / factor));
   std::vector<BoxSpan> down = rows;
@@ -91,13 +93,13 @@ std::vector<double> RasterPosts::MeansAround(const std::vector<BoxSpan>& columns
     }
     const int width = int(right - left);
     const int height = int(bottom - top);
-    sums.Add(this->ReadPixels(left, top, width, height, factor), width, height, along, down);
+    sums.Add(this->Pixels_->Read(left, top, width, height, factor), width, height, along, down);
   }
   const double area = (columns.front().to - columns.front().from) / factor;
   return sums.Means(std::vector<double>(columns.size(), area), down, &shares);
 }
 
-std::vector<double> RasterPosts::MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows,
+std::vector<double> RasterMeans::MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows,
                                          int factor, std::vector<double>& shares) const {
   const std::int64_t left = FloorDiv(std::int64_t(std::floor(columns.front().from)), factor);
   const std::int64_t right = FloorDiv(std::int64_t(std::ceil(columns.back().to)) - 1, factor) + 1;
@@ -105,7 +107,7 @@ std::vector<double> RasterPosts::MeansOf(std::vector<BoxSpan> columns, std::vect
   const std::int64_t bottom = FloorDiv(std::int64_t(std::ceil(rows.back().to)) - 1, factor) + 1;
   const int width = int(right - left);
   const int height = int(bottom - top);
-  const std::vector<double> pixels = this->ReadPixels(left, top, width, height, factor);
+  const std::vector<double> pixels = this->Pixels_->Read(left, top, width, height, factor);
   for (BoxSpan& span : columns) {
     span = {span.from / factor - double(left), span.to / factor - double(left)};
   }
@@ -121,8 +123,8 @@ std::vector<double> RasterPosts::MeansOf(std::vector<BoxSpan> columns, std::vect
   return sums.Means(widths, rows, &shares);
 }
 
-void RasterPosts::ReadMeans(const PostBlock& block, float* heights, float* shares) const {
-  const RasterWindow all = this->Source_->Info().window;
+void RasterMeans::Read(const PostBlock& block, float* heights, float* shares) const {
+  const RasterWindow all = this->Pixels_->Whole();
   const int above = block.level - this->Subdivisions_;
   const double half = std::ldexp(0.5, above); // of a box [pixels]
   // Pixels are taken `factor` together where the means would read too many of them.

@@ -6,13 +6,12 @@
 
 #include <dspace/Error.h>
 
-#include <dspace/raster/PixelTiles.h>
+#include <dspace/posts/PixelWindows.h>
 #include <dspace/posts/PostsBetween.h>
+#include <dspace/posts/RasterMeans.h>
 
 namespace dspace {
 namespace {
-
-constexpr double NoData = std::numeric_limits<double>::quiet_NaN();
 
 PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& options) {
   const std::string object = "raster '" + info.path + "'";
@@ -88,50 +87,27 @@ std::int64_t ColumnsAround(int columns, int rowCells, int coarsest) {
 
 RasterPosts::RasterPosts(std::shared_ptr<const ElevationSource> source,
                          const RasterPostsOptions& options)
-    : Source_(std::move(source)), Few_(std::make_shared<const PixelTiles>(Source_)),
-      Name_("raster '" + Source_->Info().path + "'"),
-      Lattice_(LatticeOf(Source_->Info(), options)), Subdivisions_(options.subdivisions),
-      Poles_(options.poles) {
+    : Source_(std::move(source)),
+      Pixels_(std::make_shared<const PixelWindows>(Source_, options.periodic)),
+      Name_("raster '" + Source_->Info().path + "'"), Lattice_(LatticeOf(Source_->Info(), options)),
+      Subdivisions_(options.subdivisions), Poles_(options.poles) {
   const int width = this->Source_->Info().window.width;
   const bool stretched = options.columns > width;
   this->Stretch_ = stretched ? double(width) / double(options.columns) : 1.0;
   this->Full_ = stretched ? std::max(0, this->Subdivisions_ - Finer)
                           : this->Subdivisions_ - (this->Poles_ ? 1 : 0);
+  this->Means_ = std::make_unique<RasterMeans>(this->Pixels_, this->Lattice_, this->Subdivisions_,
+                                               this->Poles_, this->Stretch_);
 }
 
-// Pixels of any window of the raster reduced by `factor`; NaN outside it, wrapped where periodic.
-std::vector<double> RasterPosts::ReadPixels(std::int64_t column, std::int64_t row, int width,
-                                            int height, int factor) const {
-  const RasterWindow all = this->Source_->Info().window;
-  const std::int64_t columns = 1 + (all.width - 1) / factor;
-  const std::int64_t rows = 1 + (all.height - 1) / factor;
-  std::vector<double> pixels(static_cast<std::size_t>(width) * height, NoData);
-  const std::int64_t top = std::clamp<std::int64_t>(row, 0, rows);
-  const std::int64_t bottom = std::clamp<std::int64_t>(row + height, 0, rows);
-  std::int64_t c = column;
-  std::int64_t end = column + width;
-  if (!this->Lattice_.periodic) {
-    c = std::clamp<std::int64_t>(c, 0, columns);
-    end = std::clamp<std::int64_t>(end, 0, columns);
-  }
-  while (top < bottom && c < end) {
-    const std::int64_t from = c - FloorDiv(c, columns) * columns; // in the raster
-    const std::int64_t run = std::min(columns - from, end - c);
-    RasterWindow window;
-    window.column = int(from * factor);
-    window.row = int(top * factor);
-    window.width = int(std::min<std::int64_t>(run * factor, all.width - window.column));
-    window.height = int(std::min<std::int64_t>((bottom - top) * factor, all.height - window.row));
-    const bool few = factor == 1 && window.width * std::int64_t(window.height) <= PixelTiles::Most;
-    const std::vector<double> part =
-        few ? this->Few_->Read(window) : this->Source_->ReadReduced(window, factor);
-    for (std::int64_t r = top; r < bottom; ++r) {
-      std::copy_n(part.begin() + (r - top) * run, run,
-                  pixels.begin() + (r - row) * width + (c - column));
-    }
-    c += run;
-  }
-  return pixels;
+RasterPosts::~RasterPosts() = default;
+
+int RasterPosts::FirstReducedLevel() const {
+  return this->Means_->FirstReducedLevel();
+}
+
+void RasterPosts::ForgetReduced() {
+  this->Means_->ForgetReduced();
 }
 
 void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {
@@ -155,7 +131,7 @@ void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {
   const std::int64_t row = FloorDiv(first, step);
   const int width = int(cellOf(block.width - 1).first - column) + 2;
   const int height = int(FloorDiv(first + block.height - 1, step) - row) + 2;
-  const std::vector<double> pixels = this->ReadPixels(column, row, width, height, 1);
+  const std::vector<double> pixels = this->Pixels_->Read(column, row, width, height, 1);
   const std::int64_t lastRow = this->Source_->Info().window.height - 1;
   for (int j = 0; j < block.height; ++j) {
     const std::int64_t r = FloorDiv(first + j, step) - row;
@@ -163,7 +139,7 @@ void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {
     const bool north = r + row == -1;
     const bool south = r + row == lastRow && v > 0.0;
     if (this->Poles_ && (north || south)) {
-      const double pole = this->PoleHeight(block.level, south);
+      const double pole = this->Means_->PoleHeight(block.level, south);
       const double share = north ? 2.0 * v - 1.0 : 1.0 - 2.0 * v; // of the row of pixels
       for (int i = 0; i < block.width; ++i) {
         const auto [c, u] = cellOf(i);
@@ -197,7 +173,7 @@ void RasterPosts::ReadWithShares(const PostBlock& block, float* heights, float* 
   } else if (!means) {
     this->ReadSubdivided(block, heights);
   } else {
-    this->ReadMeans(block, heights, shares);
+    this->Means_->Read(block, heights, shares);
   }
   // What lies outside the lattice is no post.
   const std::int64_t columns = this->Lattice_.ColumnsAt(block.level);

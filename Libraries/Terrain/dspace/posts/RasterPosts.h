@@ -2,20 +2,16 @@
 #ifndef DSPACE_TERRAIN_RASTERPOSTS_H
 #define DSPACE_TERRAIN_RASTERPOSTS_H
 
-#include <map>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include <dspace/posts/BoxFilter.h>
-#include <dspace/raster/ElevationSource.h>
 #include <dspace/posts/PostSource.h>
+#include <dspace/raster/ElevationSource.h>
 
 namespace dspace {
 
-class PixelTiles;
+class PixelWindows;
+class RasterMeans;
 
 struct RasterPostsOptions {
   // Each cell between four pixels is divided into 2^subdivisions a side, flat in each of the two
@@ -51,6 +47,7 @@ public:
   // periodic raster that cannot be halved as often as `levels` or `coarsest` ask.
   explicit RasterPosts(std::shared_ptr<const ElevationSource> source,
                        const RasterPostsOptions& options = {});
+  ~RasterPosts() override;
 
   const std::string& GetName() const override { return this->Name_; }
   const PostLattice& GetLattice() const override { return this->Lattice_; }
@@ -74,27 +71,17 @@ public:
   double Stretch() const { return this->Stretch_; }
 
 private:
-  std::vector<double> ReadPixels(std::int64_t column, std::int64_t row, int width, int height,
-                                 int factor) const;
   void ReadSubdivided(const PostBlock& block, float* heights) const;
-  std::vector<double> MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows, int factor,
-                              std::vector<double>& shares) const;
-  std::vector<double> MeansAround(const std::vector<BoxSpan>& columns,
-                                  const std::vector<BoxSpan>& rows, int factor,
-                                  std::vector<double>& shares) const;
-  void ReadMeans(const PostBlock& block, float* heights, float* shares) const;
-  double PoleHeight(int level, bool last) const;
 
   std::shared_ptr<const ElevationSource> Source_;
-  std::shared_ptr<const PixelTiles> Few_; // of it
+  std::shared_ptr<const PixelWindows> Pixels_; // of it
   std::string Name_;
   PostLattice Lattice_;
   int Subdivisions_;
   bool Poles_;
   double Stretch_ = 1.0;
   int Full_ = 0;
-  mutable std::mutex Mutex_; // of what follows
-  mutable std::map<std::pair<int, bool>, double> PoleHeights_;
+  std::unique_ptr<RasterMeans> Means_;
 };
 
 // Levels until the coarsest has at most `coarsest` cells a side; for a periodic lattice at most as
