@@ -65,19 +65,17 @@ TEST_F(TextFields, OfCommandsAreRejectedByName) {
 // A handler that lets a library's text through: who hears of the command can read it all the same.
 TEST_F(TextFields, OfWhatListenersHearAreUtf8) {
   this->Interpreter_.Commands().Add(v1::Command::kSetTime, &v1::Command::mutable_set_time,
-                                    session::Effect::Change,
                                     [](const session::Context& context, v1::SetTime&) {
                                       context.reply.add_warning("driver M\xE4st");
                                       context.reply.mutable_robot()->set_name("\xE4");
                                     });
   this->Interpreter_.Commands().Add(v1::Command::kRemoveFrame, &v1::Command::mutable_remove_frame,
-                                    session::Effect::Request,
                                     [](const session::Context& context, v1::RemoveFrame&) {
                                       context.reply.mutable_robot()->set_name("\xE4");
                                       throw std::runtime_error("M\xE4st");
                                     });
   this->Interpreter_.Commands().Add(
-      v1::Command::kCreateFrame, &v1::Command::mutable_create_frame, session::Effect::Change,
+      v1::Command::kCreateFrame, &v1::Command::mutable_create_frame,
       [](const session::Context&, v1::CreateFrame& create) { create.set_name("\xE4"); });
   int heard = 0;
   this->Interpreter_.AddListener([&](const v1::Command& command, const v1::Reply& reply) {
