@@ -9,9 +9,9 @@
 
 #include <dspace/Error.h>
 
+#include <dspace/crs/ProjGrids.h>
 #include <dspace/gdal/GdalErrors.h>
 #include <dspace/gdal/OgrLock.h>
-#include <dspace/crs/ProjGrids.h>
 
 namespace dspace {
 

@@ -2,8 +2,8 @@
 #ifndef DSPACE_TERRAIN_CRSTRANSFORM_H
 #define DSPACE_TERRAIN_CRSTRANSFORM_H
 
-#include <memory>
 #include <Eigen/Core>
+#include <memory>
 
 #include <dspace/crs/Crs.h>
 

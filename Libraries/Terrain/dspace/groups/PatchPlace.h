@@ -8,9 +8,9 @@
 
 #include <Eigen/Geometry>
 
-#include <dspace/raster/ElevationSource.h>
-#include <dspace/posts/PostSource.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/posts/PostSource.h>
+#include <dspace/raster/ElevationSource.h>
 
 namespace dspace {
 

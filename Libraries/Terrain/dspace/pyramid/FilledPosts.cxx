@@ -141,7 +141,8 @@ FilledPosts::Heights FilledPosts::TileOf(const Key& key) const {
     }
   }
   const auto heights = std::make_shared<const std::vector<float>>(
-      this->Fill({int(key[0]), key[1] * PyramidTileSize, key[2] * PyramidTileSize, PyramidTileSize, PyramidTileSize}));
+      this->Fill({int(key[0]), key[1] * PyramidTileSize, key[2] * PyramidTileSize, PyramidTileSize,
+                  PyramidTileSize}));
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   this->Tiles_->Keep(key, heights);
   return heights;
@@ -156,15 +157,16 @@ std::vector<float> FilledPosts::FromTiles(const PostBlock& block) const {
   for (std::int64_t c = lattice.periodic ? block.column : std::max<std::int64_t>(block.column, 0);
        c < end && (lattice.periodic || c < columns);) {
     const std::int64_t in = lattice.Wrapped(block.level, c);
-    const std::int64_t run = std::min({PyramidTileSize - in % PyramidTileSize, columns - in, end - c});
+    const std::int64_t run =
+        std::min({PyramidTileSize - in % PyramidTileSize, columns - in, end - c});
     for (std::int64_t r = std::max<std::int64_t>(block.row, 0);
          r < std::min(block.row + block.height, rows);) {
-      const std::int64_t to =
-          std::min({(r / PyramidTileSize + 1) * PyramidTileSize, rows, std::int64_t(block.row + block.height)});
+      const std::int64_t to = std::min({(r / PyramidTileSize + 1) * PyramidTileSize, rows,
+                                        std::int64_t(block.row + block.height)});
       const Heights tile = this->TileOf({block.level, in / PyramidTileSize, r / PyramidTileSize});
       for (; r < to; ++r) {
-        std::copy_n(tile->data() + r % PyramidTileSize * PyramidTileSize + in % PyramidTileSize, run,
-                    heights.data() + (r - block.row) * block.width + (c - block.column));
+        std::copy_n(tile->data() + r % PyramidTileSize * PyramidTileSize + in % PyramidTileSize,
+                    run, heights.data() + (r - block.row) * block.width + (c - block.column));
       }
     }
     c += run;

@@ -163,7 +163,8 @@ bool WriteOverviews(const ElevationSource& source, const std::string& identity, 
   header.sampleBytes = fine ? 8 : 4;
   do { // until one tile holds a level
     ++header.levels;
-  } while (std::max(header.ColumnsAt(header.levels - 1), header.RowsAt(header.levels - 1)) > TileSide);
+  } while (std::max(header.ColumnsAt(header.levels - 1), header.RowsAt(header.levels - 1)) >
+           TileSide);
 
   OverviewPreamble start = {};
   output.Write(&start, sizeof(start));

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <dspace/posts/PostPlacement.h>
 #include <dspace/pyramid/ElevationPyramid.h>
 #include <dspace/raster/ElevationSource.h>
-#include <dspace/posts/PostPlacement.h>
 
 namespace dspace {
 

@@ -8,15 +8,15 @@
 
 #include <dspace/Error.h>
 #include <dspace/clipmap/arithmetic/ClipmapWindow.h>
+#include <dspace/posts/RasterPosts.h>
 #include <dspace/pyramid/FilledPosts.h>
 #include <dspace/tracks/GroundTracks.h>
-#include <dspace/posts/RasterPosts.h>
 
-#include <dspace/raster/DegreeGrid.h>
-#include <dspace/surface/HeightRange.h>
-#include <dspace/raster/NetworkScope.h>
-#include <dspace/surface/PixelRoughness.h>
 #include <dspace/pyramid/PostSurface.h>
+#include <dspace/raster/DegreeGrid.h>
+#include <dspace/raster/NetworkScope.h>
+#include <dspace/surface/HeightRange.h>
+#include <dspace/surface/PixelRoughness.h>
 #include <dspace/surface/ResamplingError.h>
 #include <dspace/surface/TerrainRays.h>
 #include <dspace/surface/TerrainWarnings.h>

@@ -10,12 +10,12 @@
 #include <optional>
 #include <string>
 
-#include <dspace/pyramid/ElevationPyramid.h>
-#include <dspace/raster/ElevationSource.h>
+#include <dspace/crs/SceneFrame.h>
 #include <dspace/groups/GroupPosts.h>
 #include <dspace/posts/HeightGrid.h>
 #include <dspace/posts/PostPlacement.h>
-#include <dspace/crs/SceneFrame.h>
+#include <dspace/pyramid/ElevationPyramid.h>
+#include <dspace/raster/ElevationSource.h>
 #include <dspace/surface/TerrainSurface.h>
 #include <dspace/tracks/WheelTracks.h>
 

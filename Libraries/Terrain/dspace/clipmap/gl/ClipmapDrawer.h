@@ -6,11 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include <dspace/clipmap/gl/LayerDrawing.h>
-#include <dspace/render/CustomDrawer.h>
-#include <dspace/clipmap/arithmetic/ClipmapIndices.h>
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/clipmap/arithmetic/ClipmapIndices.h>
+#include <dspace/clipmap/gl/LayerDrawing.h>
+#include <dspace/render/CustomDrawer.h>
 
 namespace dspace {
 
