@@ -26,7 +26,7 @@ namespace dspace {
 class CustomDrawers;
 class GpuStore;
 class VtkMessages;
-}
+} // namespace dspace
 
 class VTKDSPACECORE_EXPORT vtkDspaceRenderContext : public vtkObject {
 public:

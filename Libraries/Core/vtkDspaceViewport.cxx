@@ -8,13 +8,13 @@
 #include "vtkSmartPointer.h"
 
 #include <dspace/Error.h>
-#include <dspace/render/text/ColorBars.h>
 #include <dspace/render/ColorPicture.h>
 #include <dspace/render/CornerAxes.h>
 #include <dspace/render/LabelPicture.h>
-#include <dspace/render/text/TextTables.h>
 #include <dspace/render/ViewportLimits.h>
 #include <dspace/render/VtkErrorTrap.h>
+#include <dspace/render/text/ColorBars.h>
+#include <dspace/render/text/TextTables.h>
 
 using dspace::Error;
 

@@ -78,7 +78,8 @@ public:
   void RemoveColorBar(const std::string& name);
   void SetCornerAxes(bool visible);
 
-  /// Called before a picture is drawn or found up to date: may set overlays; must not throw. Empty: none.
+  /// Called before a picture is drawn or found up to date: may set overlays; must not throw. Empty:
+  /// none.
   void SetBeforeDrawing(std::function<void()> prepare);
 
   /// Draws if something changed; returns whether it did. Nothing is done while hidden.

@@ -12,8 +12,8 @@
 #include <string>
 #include <thread>
 
-#include <dspace/recording/RecordingWriter.h>
 #include <dspace/link/watching/Watcher.h>
+#include <dspace/recording/RecordingWriter.h>
 
 #include "vtkDspaceSession.h"
 #include "vtkSmartPointer.h"

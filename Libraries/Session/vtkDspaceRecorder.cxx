@@ -4,8 +4,8 @@
 
 #include <unistd.h>
 
-#include <dspace/messages/ErrorReply.h>
 #include "RecorderThread.h"
+#include <dspace/messages/ErrorReply.h>
 
 #include "vtkObjectFactory.h"
 

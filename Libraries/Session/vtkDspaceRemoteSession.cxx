@@ -3,8 +3,8 @@
 #include <deque>
 #include <utility>
 
-#include <dspace/messages/ErrorReply.h>
 #include <dspace/link/client/RemoteClient.h>
+#include <dspace/messages/ErrorReply.h>
 
 #include "vtkObjectFactory.h"
 

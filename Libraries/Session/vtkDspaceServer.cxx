@@ -3,11 +3,11 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
-#include <dspace/messages/Confinement.h>
-#include <dspace/messages/ErrorReply.h>
 #include <dspace/ledger/Ledger.h>
 #include <dspace/link/server/Server.h>
 #include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/Confinement.h>
+#include <dspace/messages/ErrorReply.h>
 #include <dspace/raster/ConfinedDrivers.h>
 
 #include "vtkDspaceSession.h"

@@ -4,8 +4,8 @@
  *
  * Commands are carried out, and pictures drawn, in the thread that calls Run. Paths in commands are
  * confined to the allowed roots. Start takes from the whole process, for the rest of its life, the
- * formats of rasters and shapes that refer to other files (<dspace/raster/ConfinedDrivers.h>). No C++
- * exception leaves a method. See <dspace/link/server/Server.h>.
+ * formats of rasters and shapes that refer to other files (<dspace/raster/ConfinedDrivers.h>). No
+ * C++ exception leaves a method. See <dspace/link/server/Server.h>.
  */
 #ifndef vtkDspaceServer_h
 #define vtkDspaceServer_h

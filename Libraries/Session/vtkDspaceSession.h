@@ -79,9 +79,9 @@ public:
   std::string GetRecordingFailure();
   std::string GetRecordingMissing();
 
-  /// As Execute, for commands out of a recording with these files, which must be open. Commands that
-  /// change nothing are rejected, since none is ever recorded and some write files. Which files the
-  /// command may lead to: <dspace/recording/Playback.h>.
+  /// As Execute, for commands out of a recording with these files, which must be open. Commands
+  /// that change nothing are rejected, since none is ever recorded and some write files. Which
+  /// files the command may lead to: <dspace/recording/Playback.h>.
   std::string Replay(const std::string& command, vtkDspaceRecordedFiles* files);
   /// For a program that only plays recordings: restricts the formats of rasters and shapes in the
   /// whole process for the rest of its life, see <dspace/raster/ConfinedDrivers.h>.

@@ -4,9 +4,9 @@
  *
  * Update applies what the server has accepted; between two calls nothing changes. Viewports,
  * vantages and cameras of the watcher's own, named "viewer:...", may be made, and outlast snapshots
- * (<dspace/link/watching/OwnViews.h>); all other changes are refused. Where the simulation or the server
- * is gone the last picture stays, and every viewport says so. No C++ exception leaves a method;
- * what can fail returns a serialized Reply. See <dspace/link/watching/Watcher.h>.
+ * (<dspace/link/watching/OwnViews.h>); all other changes are refused. Where the simulation or the
+ * server is gone the last picture stays, and every viewport says so. No C++ exception leaves a
+ * method; what can fail returns a serialized Reply. See <dspace/link/watching/Watcher.h>.
  */
 #ifndef vtkDspaceWatcher_h
 #define vtkDspaceWatcher_h

@@ -9,8 +9,8 @@
 #include <gdal_priv.h>
 #include <unistd.h>
 
-#include <dspace/layers/raster/ImageLayer.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/layers/raster/ImageLayer.h>
 
 namespace dspace::bench {
 

@@ -8,8 +8,8 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <dspace/import/model/Model.h>
 #include <dspace/import/files/ModelReader.h>
+#include <dspace/import/model/Model.h>
 
 #include "Alternate.h"
 

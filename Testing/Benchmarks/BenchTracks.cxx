@@ -14,8 +14,8 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
-#include <dspace/clipmap/gl/ClipmapDrawer.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/clipmap/gl/ClipmapDrawer.h>
 #include <dspace/surface/StreamedTerrain.h>
 
 #include "Alternate.h"

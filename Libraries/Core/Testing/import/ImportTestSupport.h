@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
-#include <dspace/import/model/Model.h>
 #include <dspace/import/files/ModelReader.h>
+#include <dspace/import/model/Model.h>
 
 namespace dspace::testing {
 

@@ -4,8 +4,8 @@
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
 
-#include <dspace/render/text/OverlayText.h>
 #include <dspace/render/SceneDrawer.h>
+#include <dspace/render/text/OverlayText.h>
 #include <dspace/scene/TextLimits.h>
 
 namespace dspace {

@@ -71,8 +71,8 @@ struct GraphicsObject {
   Nature nature = Nature::Physical;
   std::string fragment; // of the same nature
   Eigen::Affine3d X_FO =
-      Eigen::Affine3d::Identity(); // within 1e18 m; axes stretched by 1e-12 to 1e12
-  std::vector<DetailLevel> levels; // finest first, minimumPixels descending
+      Eigen::Affine3d::Identity();              // within 1e18 m; axes stretched by 1e-12 to 1e12
+  std::vector<DetailLevel> levels;              // finest first, minimumPixels descending
   std::shared_ptr<const CustomGeometry> custom; // drawn instead of levels, of which there are none
   MaterialOverride material;
   bool visible = true;

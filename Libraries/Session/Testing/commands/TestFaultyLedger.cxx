@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
-#include <dspace/recording/RecordingReader.h>
 #include <dspace/link/client/RemoteClient.h>
 #include <dspace/link/watching/Watcher.h>
+#include <dspace/recording/RecordingReader.h>
 
 #include "vtkDspaceServer.h"
 #include "vtkDspaceSession.h"

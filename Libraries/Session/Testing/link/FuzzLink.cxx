@@ -12,10 +12,10 @@
 
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
-#include <dspace/messages/Confinement.h>
-#include <dspace/messages/ErrorReply.h>
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/ledger/Ledger.h>
+#include <dspace/messages/Confinement.h>
+#include <dspace/messages/ErrorReply.h>
 #include <dspace/proto/service.pb.h>
 
 #include "FuzzDriver.h"

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <dspace/FilesRead.h>
-#include <dspace/messages/Confinement.h>
 #include <dspace/interpreter/Interpreter.h>
+#include <dspace/messages/Confinement.h>
 
 namespace dspace::testing {
 namespace {

@@ -2,8 +2,8 @@
 // large.
 #include "LinkTestSupport.h"
 
-#include <dspace/link/client/ClientLink.h>
 #include <dspace/link/SnapshotMessages.h>
+#include <dspace/link/client/ClientLink.h>
 
 namespace dspace::testing {
 namespace {

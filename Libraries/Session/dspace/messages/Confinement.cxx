@@ -111,8 +111,8 @@ void Confinement::RequireWithin(const std::string& path) const {
     }
   }
   throw Error(Error::Kind::InvalidArgument, "file '" + path.substr(0, 1000) + "'",
-              "a file that the command names leads to it, and it lies outside of what " + this->Who_ +
-                  " allows");
+              "a file that the command names leads to it, and it lies outside of what " +
+                  this->Who_ + " allows");
 }
 
 // What is not there may mean something else than a file to the library that is to read it, and what

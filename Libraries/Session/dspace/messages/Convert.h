@@ -11,10 +11,10 @@
 #include <dspace/Error.h>
 #include <dspace/FrameTree.h>
 #include <dspace/Pose.h>
-#include <dspace/scene/Camera.h>
-#include <dspace/scene/GraphicsObject.h>
 #include <dspace/proto/cameras.pb.h>
 #include <dspace/proto/common.pb.h>
+#include <dspace/scene/Camera.h>
+#include <dspace/scene/GraphicsObject.h>
 
 namespace dspace::session {
 

@@ -13,11 +13,11 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
+#include <dspace/crs/ProjFolders.h>
 #include <dspace/messages/CommandFiles.h>
 #include <dspace/messages/Confinement.h>
 #include <dspace/recording/RecordedNames.h>
 #include <dspace/recording/RecordingFile.h>
-#include <dspace/crs/ProjFolders.h>
 
 namespace dspace::session {
 namespace {

@@ -157,8 +157,8 @@ void RecordingFile::Close() noexcept {
     sqlite3_finalize(statement);
   }
   if (this->Database_) {
-    // All goes into the file itself, also while somebody has it open (else the last one who closes it
-    // would have to be able to write it), as far as nobody is in the middle of reading.
+    // All goes into the file itself, also while somebody has it open (else the last one who closes
+    // it would have to be able to write it), as far as nobody is in the middle of reading.
     sqlite3_busy_timeout(this->Database_, 2000);
     sqlite3_wal_checkpoint_v2(this->Database_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr,
                               nullptr);

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <dspace/recording/RecordingAsset.h>
 #include <dspace/proto/commands.pb.h>
+#include <dspace/recording/RecordingAsset.h>
 
 namespace dspace::session {
 

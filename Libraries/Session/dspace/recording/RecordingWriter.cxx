@@ -13,10 +13,10 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
-#include <dspace/scene/Checks.h>
 #include <dspace/recording/RecordingAssets.h>
 #include <dspace/recording/RecordingChecksums.h>
 #include <dspace/recording/RecordingFile.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <dspace/messages/CommandFiles.h>
 #include <dspace/ledger/Ledger.h>
+#include <dspace/messages/CommandFiles.h>
 
 namespace dspace::session {
 

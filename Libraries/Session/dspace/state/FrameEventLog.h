@@ -8,8 +8,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include <dspace/scene/Scene.h>
 #include <dspace/proto/frames.pb.h>
+#include <dspace/scene/Scene.h>
 
 namespace dspace::v1 {
 class Reply;

@@ -7,8 +7,8 @@
 #include <string>
 
 #include <dspace/FilesRead.h>
-#include <dspace/import/model/Model.h>
 #include <dspace/import/files/ModelReader.h>
+#include <dspace/import/model/Model.h>
 
 namespace dspace::session {
 

@@ -9,16 +9,16 @@
 #include <string>
 #include <utility>
 
+#include <dspace/messages/CommandFiles.h>
+#include <dspace/proto/objects.pb.h>
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/Trail.h>
-#include <dspace/messages/CommandFiles.h>
 #include <dspace/state/FrameEventLog.h>
 #include <dspace/state/MessageLog.h>
 #include <dspace/state/ModelCache.h>
 #include <dspace/state/Robot.h>
 #include <dspace/state/Telemetry.h>
 #include <dspace/state/TerrainObject.h>
-#include <dspace/proto/objects.pb.h>
 
 namespace dspace::session {
 
@@ -35,7 +35,7 @@ struct SceneState {
   std::map<ObjectId, v1::CreateText> texts;            // with their style
   Telemetry telemetry;
   MessageLog messages;
-  std::unique_ptr<FrameFollower> follower;             // null while nobody follows the frames
+  std::unique_ptr<FrameFollower> follower; // null while nobody follows the frames
 
   // Drops the robots, terrains, trails and primitives whose frames or objects are gone.
   void ForgetRemoved();

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <dspace/scene/GraphicsObject.h>
 #include <dspace/proto/terrain.pb.h>
+#include <dspace/scene/GraphicsObject.h>
 #include <dspace/surface/TerrainSurface.h>
 
 namespace dspace::session {

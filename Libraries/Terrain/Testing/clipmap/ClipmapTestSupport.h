@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "RenderingTestSupport.h"
 #include "FormulaPosts.h"
+#include "RenderingTestSupport.h"
 
-#include <dspace/clipmap/gl/ClipmapDrawer.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/clipmap/gl/ClipmapDrawer.h>
 
 namespace dspace::testing {
 

@@ -3,8 +3,8 @@
 
 #include <TestData.h>
 
-#include <dspace/posts/PolarPosts.h>
 #include <dspace/clipmap/PoleCharts.h>
+#include <dspace/posts/PolarPosts.h>
 #include <dspace/surface/StreamedTerrain.h>
 
 #include "ClipmapTestSupport.h"

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <dspace/layers/ColorGrid.h>
 #include <dspace/clipmap/PoleCharts.h>
-#include <dspace/surface/StreamedTerrain.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/layers/ColorGrid.h>
+#include <dspace/surface/StreamedTerrain.h>
 
 #include "Globe.h"
 

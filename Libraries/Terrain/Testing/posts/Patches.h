@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include <dspace/surface/GridTerrain.h>
 #include <dspace/groups/GroupPosts.h>
 #include <dspace/posts/RasterPosts.h>
+#include <dspace/surface/GridTerrain.h>
 
 #include "RasterFile.h"
 

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
-#include <dspace/pyramid/FilledPosts.h>
 #include <dspace/clipmap/PoleCharts.h>
+#include <dspace/pyramid/FilledPosts.h>
 #include <dspace/surface/StreamedTerrain.h>
 
 #include "Globe.h"
@@ -92,8 +92,9 @@ TEST(FilledPosts, APlaneIsFilledToThePlane) {
   RecordProperty("most", std::to_string(most));
 }
 
-// A membrane over a bowl's hole is level at the rim's height, which coarse posts (8 pixels apart) see
-// up to that far outside; a pixel's step at the rim is no greater than twice the bowl's own there.
+// A membrane over a bowl's hole is level at the rim's height, which coarse posts (8 pixels apart)
+// see up to that far outside; a pixel's step at the rim is no greater than twice the bowl's own
+// there.
 TEST(FilledPosts, CurvedGroundIsJoinedWithoutAStep) {
   const auto bowl = [](double c, double r) {
     return 0.004 * ((c - 150.0) * (c - 150.0) + (r - 200.0) * (r - 200.0));

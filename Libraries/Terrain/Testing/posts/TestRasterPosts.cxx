@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
-#include <dspace/surface/GridTerrain.h>
 #include <dspace/posts/RasterPosts.h>
+#include <dspace/surface/GridTerrain.h>
 
 #include "Grids.h"
 #include "RasterFile.h"

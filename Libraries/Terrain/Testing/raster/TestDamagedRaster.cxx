@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
+#include <dspace/posts/RasterPosts.h>
 #include <dspace/pyramid/ElevationPyramid.h>
 #include <dspace/raster/ElevationSource.h>
-#include <dspace/posts/RasterPosts.h>
 
 #include "RasterFile.h"
 

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 #include <pthread.h>
 
+#include <dspace/clipmap/PoleCharts.h>
 #include <dspace/raster/ElevationCache.h>
 #include <dspace/raster/OverviewBuild.h>
-#include <dspace/clipmap/PoleCharts.h>
 #include <dspace/surface/StreamedTerrain.h>
 
 #include "Globe.h"

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <dspace/surface/StreamedTerrain.h>
 #include <dspace/rays/SurfaceRay.h>
+#include <dspace/surface/StreamedTerrain.h>
 
 #include "Patches.h"
 #include "RasterFile.h"

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <dspace/clipmap/PoleCharts.h>
-#include <dspace/surface/StreamedTerrain.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/surface/StreamedTerrain.h>
 
 #include "Patches.h"
 #include "RasterFile.h"

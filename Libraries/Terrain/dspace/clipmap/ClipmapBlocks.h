@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include <dspace/clipmap/arithmetic/ClipmapIndices.h>
 #include <dspace/clipmap/ClipmapLevels.h>
+#include <dspace/clipmap/arithmetic/ClipmapIndices.h>
 #include <dspace/posts/PostPlacement.h>
 
 namespace dspace {

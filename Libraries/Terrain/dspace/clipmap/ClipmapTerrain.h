@@ -7,12 +7,12 @@
 #include <mutex>
 #include <vector>
 
+#include <dspace/clipmap/ClipmapStyle.h>
 #include <dspace/layers/ColorTiles.h>
+#include <dspace/posts/PostPlacement.h>
+#include <dspace/pyramid/ElevationPyramid.h>
 #include <dspace/scene/CustomGeometry.h>
 #include <dspace/scene/GraphicsObject.h>
-#include <dspace/clipmap/ClipmapStyle.h>
-#include <dspace/pyramid/ElevationPyramid.h>
-#include <dspace/posts/PostPlacement.h>
 
 namespace dspace {
 

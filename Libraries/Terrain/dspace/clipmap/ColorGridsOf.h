@@ -11,7 +11,8 @@ namespace dspace {
 class StreamedTerrain;
 struct ClipmapChart;
 
-// One grid for the terrain's own posts, then one for each polar chart (PoleChartsOf), in this order.
+// One grid for the terrain's own posts, then one for each polar chart (PoleChartsOf), in this
+// order.
 std::vector<ColorGrid> ColorGridsOf(const StreamedTerrain& terrain,
                                     const std::vector<ClipmapChart>& poles);
 

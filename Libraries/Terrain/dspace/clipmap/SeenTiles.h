@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include <dspace/layers/ColorGrid.h>
 #include <dspace/clipmap/ClipmapBlocks.h>
+#include <dspace/layers/ColorGrid.h>
 
 namespace dspace {
 

@@ -10,8 +10,8 @@
 
 #include <Eigen/Geometry>
 
-#include <dspace/raster/ElevationSource.h>
 #include <dspace/posts/PostSource.h>
+#include <dspace/raster/ElevationSource.h>
 
 namespace dspace {
 

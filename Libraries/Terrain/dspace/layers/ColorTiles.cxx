@@ -11,8 +11,8 @@
 #include <dspace/Error.h>
 #include <dspace/posts/PostLattice.h>
 
-#include <dspace/pyramid/TileQueue.h>
 #include <dspace/layers/LayerTiles.h>
+#include <dspace/pyramid/TileQueue.h>
 
 namespace dspace {
 namespace {

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include <dspace/surface/GridTerrain.h>
 #include <dspace/mesh/MeshQuadtree.h>
 #include <dspace/mesh/TerrainTile.h>
+#include <dspace/surface/GridTerrain.h>
 
 namespace dspace {
 

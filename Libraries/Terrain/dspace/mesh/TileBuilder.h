@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <dspace/surface/GridTerrain.h>
 #include <dspace/mesh/MeshQuadtree.h>
 #include <dspace/mesh/TerrainTile.h>
+#include <dspace/surface/GridTerrain.h>
 
 namespace dspace {
 

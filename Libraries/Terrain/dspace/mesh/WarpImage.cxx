@@ -11,8 +11,8 @@
 #include <ogr_spatialref.h>
 
 #include <dspace/Error.h>
-#include <dspace/gdal/GdalErrors.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/gdal/GdalErrors.h>
 #include <dspace/raster/DatasetFiles.h>
 #include <dspace/raster/DatasetGate.h>
 

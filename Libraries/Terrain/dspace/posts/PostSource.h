@@ -36,8 +36,12 @@ inline PostRectangle PostsTouched(const PostRectangle& base, int level) {
   const std::int64_t step = std::int64_t(1) << level;
   const std::int64_t column = FloorDiv(base.column, step) - 1;
   const std::int64_t row = FloorDiv(base.row, step) - 1;
-  return {column, row, FloorDiv(base.column + base.width, step) + 3 - column,
-          FloorDiv(base.row + base.height, step) + 3 - row, base.levels, base.from};
+  return {column,
+          row,
+          FloorDiv(base.column + base.width, step) + 3 - column,
+          FloorDiv(base.row + base.height, step) + 3 - row,
+          base.levels,
+          base.from};
 }
 
 // Abstract. Heights are metres above the terrain's vertical datum, floats: a step of 0.5 mm below

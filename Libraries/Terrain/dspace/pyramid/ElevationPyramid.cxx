@@ -19,7 +19,6 @@
 namespace dspace {
 namespace {
 
-
 constexpr std::uint64_t StaleAfter = 1000; // later calls
 
 struct SinceRead {
@@ -149,7 +148,8 @@ struct ElevationPyramid::Implementation {
       const auto resident = this->tiles.find(key);
       const bool patch = resident != this->tiles.end();
       const std::shared_ptr<const PyramidTile> old = patch ? resident->second.tile : nullptr;
-      const TileBox box = patch ? resident->second.stale : TileBox{0, 0, PyramidTileSize, PyramidTileSize};
+      const TileBox box =
+          patch ? resident->second.stale : TileBox{0, 0, PyramidTileSize, PyramidTileSize};
       lock.unlock();
       std::shared_ptr<const PyramidTile> tile;
       std::exception_ptr error;

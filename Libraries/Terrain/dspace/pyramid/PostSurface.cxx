@@ -8,8 +8,8 @@
 
 #include <dspace/Error.h>
 
-#include <dspace/raster/LatestKept.h>
 #include <dspace/pyramid/PyramidTiles.h>
+#include <dspace/raster/LatestKept.h>
 
 namespace dspace {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include <dspace/pyramid/ElevationPyramid.h>
 #include <dspace/posts/HeightGrid.h>
+#include <dspace/pyramid/ElevationPyramid.h>
 
 #include <dspace/posts/PostFacets.h>
 

@@ -79,9 +79,9 @@ std::shared_ptr<const PyramidTile> ReadPyramidTile(const PostSource& source, con
   const std::size_t posts = std::size_t(PyramidTileSize) * PyramidTileSize;
   std::vector<float> heights(std::size_t(width) * height);
   std::vector<float> tracks(heights.size());
-  const bool tracked = source.ReadWithTracks(
-      {int(key[0]), key[1] * PyramidTileSize + box.left, key[2] * PyramidTileSize + box.top, width, height},
-      heights.data(), tracks.data());
+  const bool tracked = source.ReadWithTracks({int(key[0]), key[1] * PyramidTileSize + box.left,
+                                              key[2] * PyramidTileSize + box.top, width, height},
+                                             heights.data(), tracks.data());
   auto tile = old ? std::make_shared<PyramidTile>(*old) : std::make_shared<PyramidTile>();
   tile->heights.resize(posts);
   if (!tracked) {

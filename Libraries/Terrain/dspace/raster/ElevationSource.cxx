@@ -10,9 +10,9 @@
 #include <dspace/FilesRead.h>
 #include <dspace/raster/ElevationCache.h>
 
+#include <dspace/gdal/GdalErrors.h>
 #include <dspace/raster/DeflateCheck.h>
 #include <dspace/raster/ElevationMetadata.h>
-#include <dspace/gdal/GdalErrors.h>
 #include <dspace/raster/NetworkScope.h>
 #include <dspace/raster/OpenRaster.h>
 #include <dspace/raster/OverviewFile.h>
@@ -32,9 +32,9 @@ struct ElevationSource::Implementation {
   int bandNumber = 1;
   NetworkLimits network;
   FilesGuard::Look look; // of the guard under which it was opened
-  bool remote = false;  // itself, or what it is a mosaic of
-  bool suspect = false; // a read failed
-  bool gaps = false;    // there may be some, see GivesZerosForGaps
+  bool remote = false;   // itself, or what it is a mosaic of
+  bool suspect = false;  // a read failed
+  bool gaps = false;     // there may be some, see GivesZerosForGaps
   FileState file;
   std::unique_ptr<DeflateCheck> checksums; // of a file on a disk
   std::shared_ptr<const OverviewFile> overviews;

@@ -71,7 +71,7 @@ struct ElevationInfo {
   std::string unit;            // as the file states it; may be empty
   int overviews = 0;           // the file's, or the cache's
   bool overviewsAreCached = false;
-  bool remote = false; // it, or what it is a mosaic of, is on a server
+  bool remote = false;               // it, or what it is a mosaic of, is on a server
   std::vector<std::string> warnings; // each names what was assumed and how to state it
 };
 
@@ -99,8 +99,8 @@ public:
   std::vector<double> ReadReduced(const RasterWindow& window, int factor) const;
 
   // Reads the overviews that ElevationOptions::overviewCache has by now, from the next ReadReduced
-  // on; Info() stays as it was. Their number of levels; 0 where there are none that fit, or the file
-  // has some of its own.
+  // on; Info() stays as it was. Their number of levels; 0 where there are none that fit, or the
+  // file has some of its own.
   int TakeOverviews();
 
   // The band and the files that the raster consists of, with their sizes and times of change.

@@ -77,12 +77,11 @@ OverviewBuild::OverviewBuild(std::string folder, std::string path, const Elevati
     : Impl_(std::make_unique<Implementation>()) {
   Implementation* impl = this->Impl_.get();
   try {
-    impl->thread =
-        std::thread([impl, folder = std::move(folder), path = std::move(path), options,
-                     built = std::move(built), look = FilesGuard::Current()] {
-          const FilesGuard guard(look);
-          impl->Run(folder, path, options, built);
-        });
+    impl->thread = std::thread([impl, folder = std::move(folder), path = std::move(path), options,
+                                built = std::move(built), look = FilesGuard::Current()] {
+      const FilesGuard guard(look);
+      impl->Run(folder, path, options, built);
+    });
   } catch (const std::exception& error) {
     impl->End(State::Failed, std::string("a thread for it could not be started: ") + error.what());
   }

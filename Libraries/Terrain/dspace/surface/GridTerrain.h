@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include <dspace/crs/SceneFrame.h>
+#include <dspace/posts/HeightGrid.h>
 #include <dspace/raster/ElevationSource.h>
 #include <dspace/rays/GridRay.h>
-#include <dspace/posts/HeightGrid.h>
-#include <dspace/crs/SceneFrame.h>
 #include <dspace/surface/TerrainSurface.h>
 
 namespace dspace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <dspace/raster/ElevationSource.h>
 #include <dspace/posts/HeightGrid.h>
+#include <dspace/raster/ElevationSource.h>
 
 namespace dspace {
 

@@ -15,9 +15,9 @@
 
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/model/MeshRepair.h>
+#include <dspace/import/model/Polygon.h>
 #include <dspace/import/obj/ObjMaterials.h>
 #include <dspace/import/obj/ObjText.h>
-#include <dspace/import/model/Polygon.h>
 
 namespace dspace {
 

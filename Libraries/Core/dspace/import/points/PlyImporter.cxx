@@ -2,8 +2,8 @@
 // normals and texture coordinates of their vertices.
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/files/Importers.h>
-#include <dspace/import/points/PlyFile.h>
 #include <dspace/import/model/Polygon.h>
+#include <dspace/import/points/PlyFile.h>
 
 #include <dspace/Error.h>
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <dspace/Pose.h>
-#include <dspace/import/model/Model.h>
 #include <dspace/import/files/ModelReader.h>
+#include <dspace/import/model/Model.h>
 
 namespace dspace {
 

@@ -1,9 +1,9 @@
 #include <dspace/import/vrml/Vrml2Geometry.h>
 
 #include <dspace/import/vrml/Vrml2Shape.h>
+#include <dspace/import/vrml/VrmlExtrusion.h>
 #include <dspace/import/vrml/VrmlFields.h>
 #include <dspace/import/vrml/VrmlSolids.h>
-#include <dspace/import/vrml/VrmlExtrusion.h>
 
 #include <Inventor/VRMLnodes/SoVRMLBox.h>
 #include <Inventor/VRMLnodes/SoVRMLColor.h>

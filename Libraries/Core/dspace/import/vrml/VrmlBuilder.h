@@ -5,8 +5,8 @@
 #include <dspace/import/vrml/VrmlCoin.h>
 #include <dspace/import/vrml/VrmlFaces.h>
 
-#include <dspace/import/model/Model.h>
 #include <dspace/import/files/ModelReader.h>
+#include <dspace/import/model/Model.h>
 
 #include <cstdint>
 #include <map>

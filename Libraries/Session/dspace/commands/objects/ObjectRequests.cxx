@@ -1,7 +1,7 @@
 // What objects there are, and what they are like.
-#include <dspace/scene/CustomGeometry.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/objects/ObjectTools.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/CustomGeometry.h>
 
 namespace dspace::session {
 namespace {

@@ -1,7 +1,7 @@
 #include <dspace/commands/objects/ObjectTools.h>
 
-#include <dspace/scene/Checks.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 

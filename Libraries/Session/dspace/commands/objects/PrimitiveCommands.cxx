@@ -1,9 +1,9 @@
 // Objects made of primitives.
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/Markers.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/objects/PrimitiveParts.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
+#include <dspace/scene/Markers.h>
 
 namespace dspace::session {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <memory>
 
+#include <dspace/messages/Convert.h>
 #include <dspace/scene/Checks.h>
 #include <dspace/scene/Markers.h>
 #include <dspace/scene/Primitives.h>
-#include <dspace/messages/Convert.h>
 
 namespace dspace::session {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <dspace/scene/GraphicsObject.h>
 #include <dspace/proto/objects.pb.h>
+#include <dspace/scene/GraphicsObject.h>
 
 namespace dspace::session {
 

@@ -2,10 +2,10 @@
 #include <filesystem>
 
 #include <dspace/FrameRules.h>
-#include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/objects/UrdfVisuals.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

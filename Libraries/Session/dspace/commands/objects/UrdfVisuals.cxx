@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include <dspace/Error.h>
+#include <dspace/commands/objects/PrimitiveParts.h>
 #include <dspace/import/gltf/StatedBounds.h>
 #include <dspace/scene/Primitives.h>
-#include <dspace/commands/objects/PrimitiveParts.h>
 
 namespace dspace::session {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include <dspace/scene/Scene.h>
 #include <dspace/proto/cameras.pb.h>
+#include <dspace/scene/Scene.h>
 
 namespace dspace::session {
 

@@ -1,7 +1,7 @@
 // Fragments and lights.
-#include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/interpreter/Registry.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

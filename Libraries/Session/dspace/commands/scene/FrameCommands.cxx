@@ -1,7 +1,7 @@
 // The frame tree.
-#include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/interpreter/Registry.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

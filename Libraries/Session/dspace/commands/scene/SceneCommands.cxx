@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <dspace/scene/Checks.h>
 #include <dspace/commands/scene/CameraTools.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/interpreter/Registry.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <utility>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/clipmap/ColorGridsOf.h>
 #include <dspace/clipmap/PoleCharts.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include <dspace/commands/terrain/TerrainLayers.h>
-#include <dspace/state/TerrainObject.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/commands/terrain/TerrainLayers.h>
 #include <dspace/raster/OverviewBuild.h>
+#include <dspace/state/TerrainObject.h>
 #include <dspace/surface/StreamedTerrain.h>
 
 namespace dspace::session {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <dspace/state/TerrainObject.h>
 #include <dspace/mesh/TerrainMesh.h>
+#include <dspace/state/TerrainObject.h>
 
 namespace dspace::session {
 

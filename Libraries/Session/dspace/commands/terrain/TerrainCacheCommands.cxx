@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <tuple>
 
-#include <dspace/state/ModelCache.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
 #include <dspace/raster/ElevationCache.h>
+#include <dspace/state/ModelCache.h>
 
 namespace dspace::session {
 namespace {

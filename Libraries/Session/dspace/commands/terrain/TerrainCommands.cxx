@@ -2,15 +2,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/commands/terrain/ClipmapTerrainObject.h>
-#include <dspace/messages/Convert.h>
-#include <dspace/commands/terrain/MeshTerrain.h>
 #include <dspace/commands/objects/ObjectTools.h>
+#include <dspace/commands/terrain/ClipmapTerrainObject.h>
+#include <dspace/commands/terrain/MeshTerrain.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
 #include <dspace/mesh/DrapeImage.h>
+#include <dspace/messages/Convert.h>
 #include <dspace/raster/ElevationCache.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 
@@ -120,7 +120,7 @@ void WarnOfOverviews(const Context& context, const std::string& label, const Ele
 
 // Overviews that prove damaged are removed by the read that finds it: the next does without.
 std::shared_ptr<StreamedTerrain> OpenStreamed(const Context& context, const std::string& path,
-                                                    const StreamedTerrainOptions& options) {
+                                              const StreamedTerrainOptions& options) {
   std::vector<std::string> damaged; // at most one a raster
   for (;;) {
     try {

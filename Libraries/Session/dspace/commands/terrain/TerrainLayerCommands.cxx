@@ -2,16 +2,16 @@
 #include <algorithm>
 #include <utility>
 
-#include <dspace/layers/raster/FilledLayer.h>
-#include <dspace/layers/raster/FalseColorLayer.h>
-#include <dspace/layers/raster/ImageLayer.h>
-#include <dspace/layers/NoiseLayer.h>
-#include <dspace/layers/vector/VectorLayer.h>
-#include <dspace/scene/Checks.h>
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
+#include <dspace/layers/NoiseLayer.h>
+#include <dspace/layers/raster/FalseColorLayer.h>
+#include <dspace/layers/raster/FilledLayer.h>
+#include <dspace/layers/raster/ImageLayer.h>
+#include <dspace/layers/vector/VectorLayer.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

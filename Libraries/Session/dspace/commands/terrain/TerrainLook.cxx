@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/mesh/DrapeImage.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 

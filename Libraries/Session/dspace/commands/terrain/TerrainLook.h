@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include <dspace/interpreter/Registry.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/interpreter/Registry.h>
 #include <dspace/mesh/DrapeImage.h>
 #include <dspace/surface/StreamedTerrain.h>
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/terrain/TerrainTools.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 #include <dspace/surface/StreamedTerrain.h>
 
 namespace dspace::session {

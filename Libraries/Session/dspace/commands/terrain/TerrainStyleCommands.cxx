@@ -1,13 +1,13 @@
 // What is laid over a terrain's own colour.
 #include <algorithm>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/commands/terrain/ClipmapTerrainObject.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/objects/ObjectTools.h>
+#include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
 #include <dspace/mesh/DrapeImage.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -23,8 +23,8 @@ void DescribeTo(const Context& context, const TerrainObject& terrain, v1::Terrai
 // not finite.
 void RequireFinitePoints(const std::string& label, const double* values, int size, std::size_t n);
 
-// The layer "drape", at the bottom. Its path is made absolute, warnings go to the reply. Throws what
-// OpenImageLayer throws.
+// The layer "drape", at the bottom. Its path is made absolute, warnings go to the reply. Throws
+// what OpenImageLayer throws.
 void AddDrape(const Context& context, ClipmapTerrainObject& terrain, v1::OpenTerrain::Drape& drape);
 
 // The layer "filled", on top: where the raster has no data. Throws what OpenFilledLayer throws.

@@ -1,12 +1,12 @@
 // Wheel tracks: made, cleared, saved, loaded.
 #include <cmath>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/commands/terrain/ClipmapTerrainObject.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/objects/ObjectTools.h>
+#include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/commands/terrain/TerrainTools.h>
+#include <dspace/messages/Convert.h>
 #include <dspace/messages/TrackMessages.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

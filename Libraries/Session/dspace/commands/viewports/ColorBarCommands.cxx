@@ -1,9 +1,9 @@
 // Colour bars over a viewport's picture.
 #include <algorithm>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 #include "vtkDspaceViewport.h"
 

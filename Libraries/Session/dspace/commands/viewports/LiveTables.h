@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include <dspace/state/Telemetry.h>
 #include <dspace/proto/viewports.pb.h>
+#include <dspace/state/Telemetry.h>
 
 class vtkDspaceViewport;
 

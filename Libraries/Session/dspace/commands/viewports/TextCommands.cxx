@@ -1,10 +1,10 @@
 // Letters and labels in the scene.
 #include <algorithm>
 
+#include <dspace/commands/objects/ObjectTools.h>
+#include <dspace/messages/Convert.h>
 #include <dspace/render/text/TextShapes.h>
 #include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
-#include <dspace/commands/objects/ObjectTools.h>
 
 namespace dspace::session {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include <dspace/scene/Checks.h>
 #include <dspace/clipmap/gl/ClipmapDrawer.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/scene/Checks.h>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"

@@ -8,10 +8,10 @@
 
 #include <vtkSmartPointer.h>
 
-#include <dspace/render/Capture.h>
-#include <dspace/scene/OrbitController.h>
 #include <dspace/commands/viewports/LiveTables.h>
 #include <dspace/interpreter/Registry.h>
+#include <dspace/render/Capture.h>
+#include <dspace/scene/OrbitController.h>
 
 class vtkDspaceRenderContext;
 class vtkDspaceViewport;
@@ -39,7 +39,7 @@ public:
 
 private:
   vtkDspaceViewport& Get(const std::string& name) const; // throws Error(NotFound)
-  void AddWarnings(v1::Reply& reply); // what VTK warned of while it drew
+  void AddWarnings(v1::Reply& reply);                    // what VTK warned of while it drew
 
   void Create(const Context& context, v1::CreateViewport& command);
   void Remove(const Context& context, v1::RemoveViewport& command);

@@ -1,10 +1,10 @@
 // What a person does in a viewport moves its camera.
 #include <Eigen/Eigenvalues> // operatorNorm
 
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/CustomGeometry.h>
 #include <dspace/commands/scene/CameraTools.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
+#include <dspace/scene/Checks.h>
+#include <dspace/scene/CustomGeometry.h>
 
 #include "vtkDspaceViewport.h"
 

@@ -1,11 +1,11 @@
 // Pictures and picks.
 #include <algorithm>
 
+#include <dspace/commands/viewports/ViewportCommands.h>
+#include <dspace/messages/Convert.h>
 #include <dspace/render/ImageWriter.h>
 #include <dspace/render/VtkMessages.h>
 #include <dspace/scene/Checks.h>
-#include <dspace/messages/Convert.h>
-#include <dspace/commands/viewports/ViewportCommands.h>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"

@@ -8,9 +8,9 @@
 #include <grpcpp/impl/codegen/sync_stream.h>
 
 #include <dspace/Error.h>
-#include <dspace/scene/Checks.h>
 #include <dspace/link/ProcessName.h>
 #include <dspace/messages/ErrorReply.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

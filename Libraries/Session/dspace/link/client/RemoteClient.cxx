@@ -5,10 +5,10 @@
 #include <utility>
 
 #include <dspace/Error.h>
-#include <dspace/link/client/ClientLink.h>
-#include <dspace/messages/Confinement.h>
 #include <dspace/link/LinkDiagnosis.h>
+#include <dspace/link/client/ClientLink.h>
 #include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/Confinement.h>
 #include <dspace/state/State.h>
 
 namespace dspace::session {

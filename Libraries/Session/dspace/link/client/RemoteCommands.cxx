@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <utility>
 
-#include <dspace/scene/Checks.h>
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/link/client/ClientLink.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/messages/TextFields.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

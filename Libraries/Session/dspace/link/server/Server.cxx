@@ -14,8 +14,8 @@
 #include <grpcpp/resource_quota.h>
 
 #include <dspace/Error.h>
-#include <dspace/scene/Checks.h>
 #include <dspace/link/server/ServerHub.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

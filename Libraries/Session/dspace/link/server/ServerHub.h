@@ -11,9 +11,9 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <dspace/link/SnapshotMessages.h>
 #include <dspace/link/server/Server.h>
 #include <dspace/link/server/ServerListener.h>
-#include <dspace/link/SnapshotMessages.h>
 #include <dspace/proto/service.grpc.pb.h>
 
 namespace dspace::session {

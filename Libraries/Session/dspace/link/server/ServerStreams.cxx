@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <thread>
 
-#include <dspace/scene/Checks.h>
 #include <dspace/link/server/ServerHub.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/ErrorReply.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
-#include <dspace/scene/Checks.h>
 #include <dspace/interpreter/Telling.h>
 #include <dspace/link/LinkDiagnosis.h>
 #include <dspace/link/SnapshotMessages.h>
 #include <dspace/link/client/ClientLink.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/messages/TextFields.h>
+#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -10,12 +10,12 @@
 #include "vtkOpenGLState.h"
 #include "vtkShaderProgram.h"
 
+#include <dspace/clipmap/ClipmapBlocks.h>
+#include <dspace/clipmap/ClipmapFocus.h>
 #include <dspace/render/Capture.h>
 #include <dspace/render/CustomDrawers.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/SurfaceShaders.h>
-#include <dspace/clipmap/ClipmapBlocks.h>
-#include <dspace/clipmap/ClipmapFocus.h>
 
 #include <dspace/clipmap/gl/ClipmapShaders.h>
 #include <dspace/clipmap/gl/ClipmapUniforms.h>

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include <dspace/render/CustomDrawer.h>
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/render/CustomDrawer.h>
 
 class vtkShaderProgram;
 

@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include <dspace/render/Captions.h>
-#include <dspace/render/CustomDrawer.h>
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/render/Captions.h>
+#include <dspace/render/CustomDrawer.h>
 
 namespace dspace {
 

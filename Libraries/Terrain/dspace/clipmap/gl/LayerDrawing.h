@@ -5,11 +5,11 @@
 #include <array>
 #include <memory>
 
-#include <dspace/clipmap/gl/LayerAtlas.h>
-#include <dspace/clipmap/SeenTiles.h>
-#include <dspace/render/CustomDrawer.h>
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/clipmap/SeenTiles.h>
+#include <dspace/clipmap/gl/LayerAtlas.h>
+#include <dspace/render/CustomDrawer.h>
 
 namespace dspace {
 

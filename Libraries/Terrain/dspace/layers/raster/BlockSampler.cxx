@@ -6,8 +6,8 @@
 
 #include <dspace/posts/PostLattice.h>
 
-#include <dspace/layers/raster/SquareReader.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/layers/raster/SquareReader.h>
 
 namespace dspace {
 namespace {

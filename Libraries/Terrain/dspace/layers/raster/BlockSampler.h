@@ -10,8 +10,8 @@
 
 #include <dspace/layers/ColorLayer.h>
 
-#include <dspace/layers/raster/RasterLevels.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/layers/raster/RasterLevels.h>
 
 namespace dspace {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <dspace/layers/ColorLayer.h>
-#include <dspace/raster/RasterPlace.h>
 #include <dspace/raster/ElevationSource.h>
+#include <dspace/raster/RasterPlace.h>
 
 namespace dspace {
 

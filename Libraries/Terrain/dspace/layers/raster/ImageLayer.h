@@ -10,8 +10,8 @@
 
 #include <dspace/layers/ColorLayer.h>
 #include <dspace/layers/ColorRamp.h>
-#include <dspace/raster/RasterPlace.h>
 #include <dspace/raster/ElevationSource.h>
+#include <dspace/raster/RasterPlace.h>
 
 namespace dspace {
 

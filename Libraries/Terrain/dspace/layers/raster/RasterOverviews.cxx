@@ -20,7 +20,7 @@ namespace {
 
 constexpr int FirstLevel = 2; // a sixteenth of the pixels; finer ones are read from the raster
 constexpr int Smallest = 512; // cells a side of the coarsest
-constexpr int NeedsOverviews = 4096;   // pixels a side, of a raster that needs them
+constexpr int NeedsOverviews = 4096; // pixels a side, of a raster that needs them
 constexpr std::size_t PartCells = std::size_t(1) << 20; // that are written at once
 const char* const IdentityItem = "DSPACE_SOURCE";
 

@@ -7,8 +7,8 @@
 #include <dspace/Error.h>
 #include <dspace/layers/raster/ImageLayer.h>
 
-#include <dspace/crs/MapTurn.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/crs/MapTurn.h>
 
 namespace dspace {
 namespace {
