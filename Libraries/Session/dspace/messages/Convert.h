@@ -2,7 +2,9 @@
 #ifndef DSPACE_SESSION_CONVERT_H
 #define DSPACE_SESSION_CONVERT_H
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -42,6 +44,11 @@ v1::Error::Kind FromKind(Error::Kind kind);
 
 // `values` as rows of `size`; throws Error(InvalidArgument) when their number is no multiple.
 std::size_t RowsOf(int values, int size, const std::string& object, const char* what);
+
+// The value as an int; the greatest int where it is greater. Checks of ranges then reject it.
+inline int ToInt(std::uint32_t value) {
+  return int(std::min<std::uint32_t>(value, 0x7fffffffu));
+}
 
 } // namespace dspace::session
 

@@ -10,11 +10,6 @@
 namespace dspace::session {
 namespace {
 
-// What is beyond int's range is refused as the largest int.
-int ToInt(std::uint32_t value) {
-  return int(std::min<std::uint32_t>(value, 0x7fffffffu));
-}
-
 ColorBar ToColorBar(const v1::SetColorBar& command) {
   const std::string label = "colour bar '" + command.name() + "'";
   ColorBar bar;

@@ -20,11 +20,6 @@ constexpr std::size_t MostShown = 200; // bytes of a text of telemetry that does
 
 using Cell = std::function<std::string(const v1::SetTextTable::Row&)>;
 
-// Sizes beyond int's range are refused by the table as the largest int.
-int ToSize(std::uint32_t value) {
-  return int(std::min<std::uint32_t>(value, 0x7fffffffu));
-}
-
 TextTable ToTable(const v1::SetTextTable& command, const Cell& live) {
   const std::string label = "text table '" + command.name() + "'";
   TextTable table;
@@ -43,10 +38,10 @@ TextTable ToTable(const v1::SetTextTable& command, const Cell& live) {
   }
   table.anchor = static_cast<TextTable::Anchor>(command.anchor());
   if (command.has_margin()) {
-    table.margin = ToSize(command.margin());
+    table.margin = ToInt(command.margin());
   }
   if (command.has_font_size()) {
-    table.fontSize = ToSize(command.font_size());
+    table.fontSize = ToInt(command.font_size());
   }
   if (command.has_color()) {
     const auto color = ToColor(command.color(), label);

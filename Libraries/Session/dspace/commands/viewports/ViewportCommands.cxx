@@ -24,11 +24,6 @@ std::string FreeName(const std::map<std::string, ViewportPlace>& viewports) {
   return name;
 }
 
-// Sizes beyond int's range are refused by the viewport as the largest int.
-int ToSize(std::uint32_t value) {
-  return int(std::min<std::uint32_t>(value, 0x7fffffffu));
-}
-
 void RequireCamera(const Scene& scene, const std::string& vantage, const std::string& camera) {
   const SceneVantage& found = scene.Vantage(vantage);
   if (!camera.empty()) {
@@ -89,9 +84,9 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
   }
   RequireCamera(context.TheScene(), vantage, command.camera());
   auto viewport = vtkSmartPointer<vtkDspaceViewport>::New();
-  const int samples = command.has_samples() ? ToSize(command.samples()) : viewport->GetSamples();
+  const int samples = command.has_samples() ? ToInt(command.samples()) : viewport->GetSamples();
   viewport->Initialize(this->GetRenderContext(), context.scene->scene, name, vantage,
-                       ToSize(command.width()), ToSize(command.height()), samples);
+                       ToInt(command.width()), ToInt(command.height()), samples);
   if (!command.camera().empty()) {
     viewport->SetCamera(command.camera());
   }
@@ -122,7 +117,7 @@ void ViewportCommands::Remove(const Context& context, v1::RemoveViewport& comman
 }
 
 void ViewportCommands::Resize(const Context&, v1::ResizeViewport& command) {
-  this->Get(command.viewport()).Resize(ToSize(command.width()), ToSize(command.height()));
+  this->Get(command.viewport()).Resize(ToInt(command.width()), ToInt(command.height()));
 }
 
 void ViewportCommands::Move(const Context& context, v1::MoveViewport& command) {
@@ -145,7 +140,7 @@ void ViewportCommands::Set(const Context& context, v1::SetViewport& command) {
   const Scene& scene = *viewport.GetScene();
   RequireCamera(scene, vantage, camera);
   if (command.has_samples()) {
-    viewport.RequireSamples(ToSize(command.samples()));
+    viewport.RequireSamples(ToInt(command.samples()));
   }
   std::array<double, 3> bottom = place.background;
   std::array<double, 3> top = place.backgroundTop;

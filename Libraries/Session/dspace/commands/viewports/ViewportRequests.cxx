@@ -13,11 +13,6 @@
 namespace dspace::session {
 namespace {
 
-// What is beyond int's range is refused as the largest int.
-int ToInt(std::uint32_t value) {
-  return int(std::min<std::uint32_t>(value, 0x7fffffffu));
-}
-
 // Takes the same members from a capture and from a save command.
 template<class Command> CaptureRequest ToRequest(const Command& command, const Scene& scene) {
   CaptureRequest request;

@@ -13,7 +13,7 @@
 namespace dspace {
 namespace {
 
-constexpr double Degrees = 180.0 / M_PI;
+constexpr double RadianInDegrees = 180.0 / M_PI;
 constexpr std::size_t MostOfFamily = 20;
 
 // A pixel in which the ground is seen.
@@ -80,7 +80,7 @@ private:
     const double samples = this->Drawing_.samples;
     seen.pixel = (Eigen::Vector2d(column, row).array() + 0.5) / samples - 0.5;
     seen.value = this->Placement_.OnBody()
-                     ? Eigen::Vector2d(this->Placement_.Angles(post.head<2>()) * Degrees)
+                     ? Eigen::Vector2d(this->Placement_.Angles(post.head<2>()) * RadianInDegrees)
                      : Eigen::Vector2d(this->Terrain_.Options().postToMap * post.head<2>());
     return seen;
   }
