@@ -1,5 +1,7 @@
 #include <dspace/messages/CommandLimits.h>
 
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <vector>
@@ -97,14 +99,20 @@ std::string About(const v1::Command& command) {
   }
 }
 
+// Whole numbers in full: %g would write the large ones with an exponent.
+std::string InFull(double value) {
+  const bool isWhole = std::abs(value) < 1e15 && value == std::floor(value);
+  return isWhole ? std::to_string(std::int64_t(value)) : NumberText(value);
+}
+
 std::string RangeText(const v1::LimitOptions& limits) {
   if (!limits.has_maximum()) {
-    return NumberText(limits.minimum()) + " on";
+    return InFull(limits.minimum()) + " on";
   }
   if (!limits.has_minimum()) {
-    return "up to " + NumberText(limits.maximum());
+    return "up to " + InFull(limits.maximum());
   }
-  return NumberText(limits.minimum()) + " to " + NumberText(limits.maximum());
+  return InFull(limits.minimum()) + " to " + InFull(limits.maximum());
 }
 
 void RequireNumbers(const v1::Command& command, const Message& message) {
@@ -123,8 +131,7 @@ void RequireNumbers(const v1::Command& command, const Message& message) {
                           !(limits.has_maximum() && !(number <= limits.maximum()));
       if (!within) {
         throw Error(Error::Kind::InvalidArgument, About(command),
-                    field->name() + " is " + NumberText(number) +
-                        "; accepted: " + RangeText(limits));
+                    field->name() + " is " + InFull(number) + "; accepted: " + RangeText(limits));
       }
     } else if (field->is_repeated()) {
       for (int i = 0; i < reflection->FieldSize(message, field); ++i) {
