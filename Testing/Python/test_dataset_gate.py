@@ -15,10 +15,9 @@ import numpy
 import pytest
 
 import dspace
-from dspace.recording_assets import Asset, Content
-from dspace.recording_file import Row, put_rows, write_recording
 from dspace.serving import ServerProcess
-from dspace.session import commands_pb2 as pb
+from dspace.proto import commands_pb2 as pb
+from recording_support import Asset, Content, Row, put_assets, put_contents, put_rows, write_recording
 from terrain_support import gdal
 
 GRID = "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + "1 2 3 4\n" * 4
@@ -176,9 +175,8 @@ def packed(path, folder, commands):
         for number, file in enumerate(sorted(folder.iterdir()), 1):
             data = file.read_bytes()
             asset = Asset(number, str(file), "read", len(data), hashlib.sha256(data).digest(), True)
-            database.execute("INSERT INTO asset VALUES(?,?,?,?,?,?,?)", (*asset, asset.checksum))
-            part = Content(number, number, 0, len(data), data)
-            database.execute("INSERT INTO content VALUES(?,?,?,?,?,?)", (*part, part.checksum))
+            put_assets(database, [asset])
+            put_contents(database, [Content(number, number, 0, len(data), data)])
 
 
 def commands_for(name, inside, path):

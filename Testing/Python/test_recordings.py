@@ -11,9 +11,9 @@ import pytest
 
 import dspace
 from dspace.command_line import main
-from dspace.command_line.log_salvage import gaps, rows_in
-from dspace.recording_file import RecordingFile, Row, checksum, write_recording
+from dspace.recording_file import RecordingFile
 from dspace.proto import commands_pb2 as pb
+from recording_support import Row, checksum, gaps, salvaged_rows, write_recording
 from served_support import socket_folder
 
 
@@ -79,13 +79,13 @@ def damaged(path):
 def test_every_row_is_what_was_written(tmp_path):
     rows = made(tmp_path / "a.dspace")
     assert damaged(tmp_path / "a.dspace") == rows
-    found, snapshots = rows_in(str(tmp_path / "a.dspace"))
+    found, snapshots = salvaged_rows(str(tmp_path / "a.dspace"))
     assert found == rows and set(snapshots) == {0, 60}
 
 
 def survivors(path, rows):
     """Salvages; what comes back must be what was written. Returns the numbers."""
-    commands, snapshots = rows_in(str(path))
+    commands, snapshots = salvaged_rows(str(path))
     for seq, row in commands.items():
         assert rows[seq] == row
     assert set(snapshots) <= {0, 60}
@@ -232,7 +232,7 @@ def test_bad_recordings_are_refused(tmp_path):
     with pytest.raises(dspace.NotFound):
         dspace.Playback(tmp_path / "none.dspace")
     (tmp_path / "text.dspace").write_text("not a database" * 100)
-    with pytest.raises(dspace.Unsupported, match="no recording"):
+    with pytest.raises(dspace.Unsupported, match="not a recording"):
         dspace.Playback(tmp_path / "text.dspace")
 
 

@@ -1,4 +1,4 @@
-"""Damaged recordings: what salvage brings back against SQLite's own account of which page holds what, and what
+"""Damaged recordings: what salvage recovers against SQLite's own account of which page holds what, and what
 playback does with the gaps."""
 import contextlib
 import random
@@ -12,10 +12,10 @@ import pytest
 
 import dspace
 from dspace.command_line import main
-from dspace.command_line.log_salvage import rows_in
-from dspace.playback_steps import Gap, Step, index_at, runs_of, steps_of
-from dspace.recording_file import RecordingFile, Row, new_recording, put_rows, write_recording
+from dspace.playback_steps import Gap, Step, StepTimes, steps_of
+from dspace.recording_file import RecordingFile
 from dspace.proto import commands_pb2 as pb
+from recording_support import Row, create_recording, put_rows, salvaged_rows, write_recording
 
 PAGE = 65536
 
@@ -63,7 +63,7 @@ def pages_of_rows(path):
 
 
 def salvaged(path):
-    commands, snapshots = rows_in(str(path))
+    commands, snapshots = salvaged_rows(str(path))
     return {("command", seq): row for seq, row in commands.items()} | {
         ("snapshot", seq): row for seq, row in snapshots.items()}
 
@@ -146,7 +146,7 @@ def logged(tmp_path_factory):
     folder = tmp_path_factory.mktemp("logged")
     path = folder / "a.dspace"
     rows = {}
-    with new_recording(str(path)) as database:
+    with contextlib.closing(create_recording(str(path))) as database:
         database.execute("PRAGMA journal_mode=WAL")
         database.execute("PRAGMA wal_autocheckpoint=0")
         for begin in range(1, 121, 10):
@@ -258,13 +258,11 @@ def test_which_steps_are_whole(tmp_path):
 
 def test_times_that_go_back_and_come_again():
     times = [0, 1, 2, 3, 0, 1, 2, 5, 6]
-    runs = runs_of(times)
-    assert runs == [(0, 4), (4, 9)]
-    assert [index_at(times, runs, at) for at in (0, 0.5, 2.5, 3, 4.9, 5, 100, -1)] == [4, 4, 6, 6, 6, 7, 8, None]
-    times = [0, 5, 10, 0, 3]  # the second run ends early
-    runs = runs_of(times)
-    assert [index_at(times, runs, at) for at in (2, 3, 5, 7, 10, 11)] == [3, 4, 1, 1, 2, 4]
-    assert [index_at([1, 1, 1], runs_of([1, 1, 1]), at) for at in (1, 2)] == [2, 2]
+    steps = StepTimes(times)
+    assert [steps.index_at(at) for at in (0, 0.5, 2.5, 3, 4.9, 5, 100, -1)] == [4, 4, 6, 6, 6, 7, 8, None]
+    steps = StepTimes([0, 5, 10, 0, 3])  # the second run ends early
+    assert [steps.index_at(at) for at in (2, 3, 5, 7, 10, 11)] == [3, 4, 1, 1, 2, 4]
+    assert [StepTimes([1, 1, 1]).index_at(at) for at in (1, 2)] == [2, 2]
 
 
 def drive(session, begin, end, live):

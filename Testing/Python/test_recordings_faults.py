@@ -12,9 +12,10 @@ import pytest
 
 import dspace
 from dspace import playback
-from dspace.command_line import log_salvage, main
-from dspace.recording_assets import Asset, Content
-from dspace.recording_file import RecordingFile, Row, write_recording
+from dspace.command_line import main
+from dspace.recording_file import RecordingFile
+from recording_support import (Asset, Content, Row, create_recording, put_assets, put_contents, put_rows,
+                               write_recording)
 
 
 def record(path, steps=100, step=0.01, **options):
@@ -272,10 +273,8 @@ def salvage_of_files(tmp_path, name, assets, contents=()):
     path, out = str(tmp_path / f"{name}.dspace"), str(tmp_path / f"{name}-out.dspace")
     write_recording(path, [Row(1, 0.0, 1e9, 13, b"j\x00")], [Row(0, 0.0, 1e9, 0, b"")])
     with contextlib.closing(sqlite3.connect(path)) as database:
-        for each in assets:
-            database.execute("INSERT INTO asset VALUES(?,?,?,?,?,?,?)", (*each, each.checksum))
-        for each in contents:
-            database.execute("INSERT INTO content VALUES(?,?,?,?,?,?)", (*each, each.checksum))
+        put_assets(database, assets)
+        put_contents(database, contents)
         database.commit()
     return main(["log", "salvage", path, "--out", out]), out
 
@@ -295,13 +294,29 @@ def test_files_of_which_nothing_is_known_are_told(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("newer_first", (True, False))
-def test_of_two_versions_of_a_file_the_packed_one_is_brought_back(tmp_path, monkeypatch, newer_first):
+def test_of_two_versions_of_a_file_the_packed_one_is_recovered(tmp_path, newer_first):
+    """The older version of its row is in the file or in the log, as a process that was killed leaves both."""
     data = b"0123"
     old = Asset(1, "/f", "read", 4, hashlib.sha256(data).digest(), False)
     new = old._replace(packed=True)
-    found = [("asset", new), ("asset", old)] if newer_first else [("asset", old), ("asset", new)]
-    found += [("content", Content(1, 1, 0, 4, data)), ("command", Row(1, 0.0, 1e9, 13, b"j\x00"))]
-    monkeypatch.setattr(log_salvage, "found_rows", lambda path: found)
-    _, out = salvage_of_files(tmp_path, "two", [])
+    path, bad, out = (str(tmp_path / name) for name in ("a.dspace", "bad.dspace", "new.dspace"))
+    with contextlib.closing(create_recording(path)) as database:
+        database.execute("PRAGMA journal_mode=WAL")
+        database.execute("PRAGMA wal_autocheckpoint=0")
+        with database:
+            put_rows(database, "command", [Row(1, 0.0, 1e9, 13, b"j\x00")])
+            put_rows(database, "snapshot", [Row(0, 0.0, 1e9, 0, b"")])
+            put_contents(database, [Content(1, 1, 0, 4, data)])
+            put_assets(database, [old])
+        if not newer_first:
+            database.execute("PRAGMA wal_checkpoint(FULL)")
+        with database:
+            database.execute("DELETE FROM asset")
+            put_assets(database, [new])
+        if newer_first:
+            database.execute("PRAGMA wal_checkpoint(FULL)")
+        for end in ("", "-wal"):
+            shutil.copy(path + end, bad + end)
+    assert main(["log", "salvage", bad, "--out", out]) == 0
     with RecordingFile(out) as file:
         assert file.assets == [new]

@@ -5,8 +5,8 @@ import sqlite3
 import pytest
 
 from dspace.command_line import main
-from dspace.recording_file import Row, write_recording
 from dspace.proto import commands_pb2 as pb
+from recording_support import Row, write_recording
 
 
 def recorded(path, commands, start=()):

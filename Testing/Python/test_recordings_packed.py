@@ -18,10 +18,10 @@ import pytest
 import dspace
 from dspace.command_line import main
 from dspace.recorded_files import RecordedFiles
-from dspace.recording_assets import Asset, Content
-from dspace.recording_file import RecordingFile, Row, new_recording, put_rows, write_recording
+from dspace.recording_file import RecordingFile
 from dspace.proto import commands_pb2 as pb
 from needs import lacks, needs_module
+from recording_support import Asset, Content, Row, create_recording, put_assets, put_contents, put_rows, write_recording
 from terrain_support import gdal
 
 ogr = needs_module("osgeo.ogr", "python3-gdal")
@@ -161,7 +161,7 @@ def test_packed_later_it_is_the_same(packed, tmp_path, capsys):
     with dspace.Session() as session, session.record(path) as recording:
         build(session, tmp_path / "here")
         recording.flush()
-        assert main(["log", "pack", path]) == 1 and "nobody" in capsys.readouterr().err  # somebody writes it
+        assert main(["log", "pack", path]) == 1 and "in use" in capsys.readouterr().err  # somebody writes it
     assert not any(asset.packed for asset in RecordingFile(path).assets)
     assert main(["log", "pack", path, "--out", str(tmp_path / "new.dspace")]) == 0
     assert main(["log", "pack", path]) == 0 and main(["log", "info", path]) == 0
@@ -234,9 +234,8 @@ def forged(path, assets, commands=()):
                                            command.SerializeToString()) for i, command in enumerate(commands)])
         for number, (name, content) in enumerate(assets, 1):
             asset = Asset(number, name, "read", len(content), hashlib.sha256(content).digest(), True)
-            database.execute("INSERT INTO asset VALUES(?,?,?,?,?,?,?)", (*asset, asset.checksum))
-            part = Content(number, number, 0, len(content), content)
-            database.execute("INSERT INTO content VALUES(?,?,?,?,?,?)", (*part, part.checksum))
+            put_assets(database, [asset])
+            put_contents(database, [Content(number, number, 0, len(content), content)])
 
 
 def everything(root):
@@ -283,8 +282,7 @@ def test_no_more_is_unpacked_than_is_said(tmp_path, monkeypatch):
     with sqlite3.connect(tmp_path / "a.dspace") as database:
         size = 1 << 20
         for number in range(8):
-            part = Content(number + 2, 1, 1 + number * size, size, zlib.compress(bytes(size)))
-            database.execute("INSERT INTO content VALUES(?,?,?,?,?,?)", (*part, part.checksum))
+            put_contents(database, [Content(number + 2, 1, 1 + number * size, size, zlib.compress(bytes(size)))])
     with pytest.raises(dspace.Corrupt, match="'/a' is damaged at byte 1"), RecordingFile(tmp_path / "a.dspace") as file:
         RecordedFiles(file)
 
@@ -329,11 +327,10 @@ def test_damaged_content_is_refused(packed, tmp_path):
         with pytest.raises(dspace.Corrupt, match="damaged at byte 0"):
             dspace.Playback(tmp_path / "bad.dspace")
     # A part that unpacks into more than it says, with a checksum that holds.
-    bomb = Content(1, 1, 0, 100, zlib.compress(bytes(10 ** 8)))
     shutil.copy(path, tmp_path / "bomb.dspace")
     with sqlite3.connect(tmp_path / "bomb.dspace") as database:
         database.execute("DELETE FROM content WHERE asset = 1")
-        database.execute("INSERT INTO content VALUES(?,?,?,?,?,?)", (*bomb, bomb.checksum))
+        put_contents(database, [Content(1, 1, 0, 100, zlib.compress(bytes(10 ** 8)))])
     with pytest.raises(dspace.Corrupt, match="damaged at byte 0"):
         dspace.Playback(tmp_path / "bomb.dspace")
 
@@ -345,17 +342,18 @@ def test_large_files_are_packed_in_parts(tmp_path):
     for name, data in content.items():
         (tmp_path / name).write_bytes(data)
     path = tmp_path / "a.dspace"
-    with new_recording(str(path)) as database, database:
+    with contextlib.closing(create_recording(str(path))) as database, database:
         put_rows(database, "snapshot", [Row(0, 0.0, 0.0, 0, b"")])
         for number, (name, data) in enumerate(content.items(), 1):
             asset = Asset(number, str(tmp_path / name), "read", len(data), hashlib.sha256(data).digest(), False)
-            database.execute("INSERT INTO asset VALUES(?,?,?,?,?,?,?)", (*asset, asset.checksum))
+            put_assets(database, [asset])
     main_pack(path, tmp_path / "b.dspace")
     assert path.stat().st_size < 2 ** 20 and 9 * 2 ** 20 < (tmp_path / "b.dspace").stat().st_size < 11 * 2 ** 20
     for name in content:
         (tmp_path / name).unlink()
     with RecordingFile(tmp_path / "b.dspace") as file:
-        assert file.ask("SELECT count(*) FROM content WHERE asset = 1") == [(3,)]
+        with contextlib.closing(sqlite3.connect(file.path)) as database:
+            assert database.execute("SELECT count(*) FROM content WHERE asset = 1").fetchall() == [(3,)]
         with contextlib.closing(RecordedFiles(file)) as unpacked:
             for name, data in content.items():
                 with open(unpacked.place(str(tmp_path / name)), "rb") as whole:

@@ -17,9 +17,9 @@ from dspace import playback
 from dspace.command_line import main
 from dspace.recorded_files import RecordedFiles
 from dspace.recorded_views import spans_of, when
-from dspace.recording_assets import Asset
 from dspace.recording_file import RecordingFile
 from movies_support import pixels
+from recording_support import Asset, put_assets
 
 
 def record(path, steps=6):
@@ -174,7 +174,7 @@ def test_a_pack_lacks_no_file_that_was_read(tmp_path, capsys):
             each.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
             session.scene().load(str(each))
     before, content = path.read_bytes(), names[1].read_bytes()
-    for gone, more in ((names[1:2], ""), (names[1:], ", nor 1 more")):
+    for gone, more in ((names[1:2], ""), (names[1:], ", nor is 1 other")):
         for each in gone:
             each.unlink()
         for words in (["--out", str(out)], []):
@@ -186,8 +186,7 @@ def test_a_pack_lacks_no_file_that_was_read(tmp_path, capsys):
             each.write_bytes(content)
     # One that could not be read when it was recorded is needed by nothing.
     with contextlib.closing(sqlite3.connect(path)) as database, database:
-        never = Asset(100, "/some/folder", "unreadable", 0, b"", False)
-        database.execute("INSERT INTO asset VALUES(?,?,?,?,?,?,?)", (*never, never.checksum))
+        put_assets(database, [Asset(100, "/some/folder", "unreadable", 0, b"", False)])
     assert main(["log", "pack", str(path), "--out", str(out)]) == 1
     assert capsys.readouterr().out.splitlines()[-1] == "not packed: /some/folder"
     for each in names:
@@ -218,12 +217,12 @@ def test_what_is_no_damage_is_told_as_what_it_is(tmp_path):
     thread.join()
     assert "accepted: the one that opened it" in said[0]
     file.close()
-    for call in (lambda: file.last, lambda: list(file.rows()), lambda: file.copy_to(sqlite3.connect(":memory:"))):
+    for call in (lambda: file.last, lambda: list(file.rows()), file.check):
         assert "it is closed" in raised(dspace.Closed, call)
     with contextlib.closing(sqlite3.connect(path)) as other, RecordingFile(path) as file:
         other.execute("PRAGMA journal_mode=DELETE")
         other.execute("BEGIN EXCLUSIVE")
-        file._database.execute("PRAGMA busy_timeout=10")
+        file._vtk.SetTimeout(0.01)
         said = raised(dspace.Io, lambda: file.last)
         assert "locked" in said and "salvage" not in said
 
@@ -234,11 +233,11 @@ def test_what_is_no_recording_is_told_so(tmp_path):
     text.write_text("time_s,name,value\n" * 100)
     with contextlib.closing(sqlite3.connect(database)) as made, made:
         made.execute("CREATE TABLE other(a)")
-    for path, says in ((empty, "it is empty"), (text, "begins with b'time_s,name,valu'"),
-                       (database, "without the tables")):
+    for path, says in ((empty, "it is empty"), (text, "its first bytes are 'time_s,name,valu'"),
+                       (database, "without a recording's tables")):
         for call in (lambda: dspace.Playback(path), lambda: RecordingFile(path)):
             said = raised(dspace.Unsupported, call)
-            assert "it is no recording" in said and says in said and "accepted: a .dspace file" in said
+            assert "it is not a recording" in said and says in said and "accepted: a .dspace file" in said
     # One that is damaged is still told to be.
     path = record(tmp_path / "a.dspace")
     data = bytearray(open(path, "rb").read())

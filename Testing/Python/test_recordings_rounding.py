@@ -9,9 +9,10 @@ import pytest
 import dspace
 from dspace.command_line import main
 from dspace.movies_draw import open_run
-from dspace.playback_steps import index_at, is_at, runs_of
-from dspace.recording_file import RecordingFile, Row, write_recording
+from dspace.playback_steps import StepTimes
+from dspace.recording_file import RecordingFile
 from dspace.proto import commands_pb2 as pb
+from recording_support import Row, write_recording
 
 COUNT, STEP = 2000, 0.001
 SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER
@@ -61,7 +62,7 @@ def test_each_time_finds_its_step(path):
         times, series = run.times[1:], run.telemetry("n")
         assert times == added_up(COUNT)
         for n in range(COUNT):
-            assert index_at(run.times, run._runs, n / 1000) == n + 1
+            assert run._steps.index_at(n / 1000) == n + 1
             assert series.at(n / 1000) == n
             if n:
                 assert series.at((n - 0.01) / 1000) == n - 1  # what is before it is before it
@@ -174,15 +175,15 @@ def test_times_as_large_as_ephemeris_seconds():
     """A double's spacing is 1.2e-7 s there."""
     for step in (1e-3, 1e-4, 1e-5):
         times = [8e8 + n * step for n in range(500)]
-        runs = runs_of(times)
+        steps = StepTimes(times)
         for n, time in enumerate(times):
             for asked in (time, math.nextafter(time, 0.0), math.nextafter(time, 1e9)):
-                assert index_at(times, runs, asked) == n
-            assert index_at(times, runs, time + 0.9 * step) == n
+                assert steps.index_at(asked) == n
+            assert steps.index_at(time + 0.9 * step) == n
     times = [8e8]  # as close as can be
     while len(times) < 20:
         times.append(math.nextafter(times[-1], 1e9))
-    assert [index_at(times, runs_of(times), time) for time in times] == list(range(20))
+    assert [StepTimes(times).index_at(time) for time in times] == list(range(20))
 
 
 LATE = 1.0000000000000007
@@ -203,19 +204,19 @@ LATE = 1.0000000000000007
 ])
 def test_ends_of_runs_and_close_steps(times, asked, index):
     """The same cases as for the C++ reader (TestPlayback)."""
-    assert index_at(times, runs_of(times), asked) == index
+    assert StepTimes(times).index_at(asked) == index
 
 
 def test_going_back_the_exact_step_wins():
     times = [0.0, 10.0, 10.0 + 1e-5, 20.0]
-    assert not is_at(times, 1, 10.0 + 1e-5) and is_at(times, 2, 10.0 + 1e-5)
+    assert not StepTimes(times).is_at(1, 10.0 + 1e-5) and StepTimes(times).is_at(2, 10.0 + 1e-5)
 
 
 @pytest.mark.parametrize("step", (0.001, 0.01, 0.1, 1.0 / 3.0))
 def test_sums_of_other_steps(step):
     times = added_up(2001, 0.0, step)
-    runs = runs_of(times)
+    steps = StepTimes(times)
     for n in range(1, 2001):
-        assert index_at(times, runs, n * step) == n
-        assert index_at(times, runs, (n - 0.01) * step) == n - 1
+        assert steps.index_at(n * step) == n
+        assert steps.index_at((n - 0.01) * step) == n - 1
         assert bisect.bisect_right(times, times[n]) == n + 1

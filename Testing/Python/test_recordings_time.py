@@ -120,8 +120,9 @@ def test_while_it_is_written(tmp_path):
 
 
 def test_what_comes_while_the_steps_are_read_is_of_no_step_before_it(tmp_path, monkeypatch):
-    """Each question to the file sees one more step than the one before."""
-    path, ask = tmp_path / "a.dspace", RecordingFile.ask
+    """Each question to the file sees one more step than the one before. That each question has one answer, whoever
+    writes, TestPlayback proves."""
+    path, ask = tmp_path / "a.dspace", RecordingFile._ask
     with dspace.Session() as session:
         frame = session.scene().add_frame("f")
         with session.record(path, commit_every=0.001) as recording:
@@ -130,22 +131,22 @@ def test_what_comes_while_the_steps_are_read_is_of_no_step_before_it(tmp_path, m
                 frame.pose = dspace.Pose((session.scene().time, 0, 0))
                 recording.flush()
 
-            def asked(file, sql, *values):
-                found = ask(file, sql, *values)
+            def asked(file, name, *values):
+                found = ask(file, name, *values)
                 go_on()
                 return found
 
             go_on()
             go_on()
             with monkeypatch.context() as patched, RecordingFile(path) as file:
-                patched.setattr(RecordingFile, "ask", asked)
+                patched.setattr(RecordingFile, "_ask", asked)
                 for scene in (None, "scene"):
                     steps, gaps = steps_of(file, scene)
-                    patched.setattr(RecordingFile, "ask", ask)
+                    patched.setattr(RecordingFile, "_ask", ask)
                     for step in steps:
                         assert step.time == max((row.time for row in file.rows(1, step.end)), default=0.0)
                     assert len(steps) > 2 and not gaps
-                    patched.setattr(RecordingFile, "ask", asked)
+                    patched.setattr(RecordingFile, "_ask", asked)
                 end = session.scene().time
                 assert main(["log", "cut", str(path), "--to", str(end + 1), "--out", str(tmp_path / "cut.dspace")]) == 0
     with RecordingFile(tmp_path / "cut.dspace") as cut:

@@ -155,7 +155,7 @@ def test_overlays_of_what_has_no_value(scene):
 
 def test_no_value_is_taken_across_lost_commands(tmp_path):
     """A salvaged recording: two of ten seconds are lost, and a snapshot goes on."""
-    from dspace.recording_file import write_recording
+    from recording_support import write_recording
     with dspace.Session() as session:
         scene = session.scene()
         power, still = scene.telemetry.add("power", unit="W"), scene.telemetry.add("still", value=5.0)
@@ -194,7 +194,7 @@ def test_no_value_is_taken_across_lost_commands(tmp_path):
 
 
 def salvaged(path, rows, snapshots, lost):
-    from dspace.recording_file import write_recording
+    from recording_support import write_recording
     write_recording(str(path), rows, snapshots)
     database = sqlite3.connect(path)
     with database:

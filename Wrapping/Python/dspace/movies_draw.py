@@ -14,7 +14,7 @@ from dspace._fields import shown
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 from dspace.movies_keys import CameraPath
 from dspace.movies_views import FIELD
-from dspace.playback_steps import runs_of, step_at
+from dspace.playback_steps import StepTimes
 from dspace.poses import Pose
 from dspace.recorded_views import spans_of, when
 from dspace.telemetry import overlay_value
@@ -80,12 +80,11 @@ def require_run(run):
 def _of_playback(playback):
     # A recording's telemetry is in its scenes.
     telemetry = None if hasattr(playback, "file") else getattr(playback, "telemetry", None)
-    times = playback.times
-    runs = runs_of(times)  # a simulation that was reset has several
+    times = StepTimes(playback.times)
     # What was there before the simulation first set a time has the time 0 that nobody set.
     steps = [time for _, time in playback.file.steps()] if hasattr(playback, "file") else []
-    steps = steps or times
-    return Source(playback.session, lambda time: playback.seek(step_at(times, time, runs)),
+    steps = steps or times.times
+    return Source(playback.session, lambda time: playback.seek(times.step_at(time)),
                   telemetry if callable(telemetry) else None, beginning=steps[0] if steps else 0.0,
                   extent=(min(steps), max(steps)) if steps else None,
                   playback=playback if hasattr(playback, "file") else None)

@@ -1,4 +1,5 @@
 """Recordings played back, with no simulation."""
+import bisect
 import math
 import time
 
@@ -7,7 +8,7 @@ from dspace._wire import command_of
 from dspace._fields import flag, integer, number, real, refuse, text
 from dspace._traits import scene_name
 from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
-from dspace.playback_steps import index_at, is_after, is_at, rounding, runs_of, set_times, steps_of
+from dspace.playback_steps import StepTimes, rounding, steps_of
 from dspace.playback_telemetry import TelemetryReading
 from dspace.recorded_files import RecordedFiles
 from dspace.recorded_views import spans_of
@@ -69,10 +70,10 @@ class Playback(TelemetryReading):
         self.gaps = gaps
         self._ends = [step.end for step in steps]
         self.times = [step.time for step in steps]  # [s], of each step
-        self._runs = runs_of(self.times)
+        self._steps = StepTimes(self.times)
 
     def _require_scene(self):
-        if self._scene is None or set_times(self.file, self._scene):
+        if self._scene is None or self.file.steps(self._scene):
             return
         there = [key[1] for key in spans_of(self) if key[0] == "scene"]
         if self._scene not in there:
@@ -124,7 +125,7 @@ class Playback(TelemetryReading):
         `at`, else in the latest that begins before it. An error before the first step (dspace.InvalidArgument) and in a
         gap (dspace.Corrupt)."""
         at = number(at, "the time", self.file.label)
-        index = index_at(self.times, self._runs, at)
+        index = self._steps.index_at(at)
         if index is None:
             raise InvalidArgument(f"{self.file.label}: the time is {at!r} s; accepted: {min(self.times)!r} on",
                                   self.file.label)
@@ -186,8 +187,8 @@ class Playback(TelemetryReading):
         if until is None:
             return False
         if direction > 0:
-            return is_after(self.times, index, until)
-        return self.times[index] < until and not is_at(self.times, index, until)
+            return self._steps.is_after(index, until)
+        return self.times[index] < until and not self._steps.is_at(index, until)
 
     def _go(self, index):
         target = self._ends[index]
@@ -195,8 +196,9 @@ class Playback(TelemetryReading):
         if self._at is None or target < self._at:
             snapshot = self.file.snapshot(target)
         elif target > self._at:
-            nearest = self.file.ask("SELECT max(seq) FROM snapshot WHERE seq <= ?", target)[0][0]
-            if nearest is not None and nearest > self._at:
+            snapshots = self.file.snapshots
+            nearest = bisect.bisect_right(snapshots, target)
+            if nearest and snapshots[nearest - 1] > self._at:
                 snapshot = self.file.snapshot(target)
         if snapshot is not None:
             self._at = None  # unknown, if one of these fails

@@ -6,7 +6,7 @@ from dspace._traits import DEFAULT_SCENE, scene_name
 from dspace._wire import command_of, get_array
 from dspace.errors import InvalidArgument, NotFound, Unsupported
 from dspace.messages import Event
-from dspace.playback_steps import blocks_of, runs_of, step_at
+from dspace.playback_steps import StepTimes
 from dspace.recording_file import commands_of
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import telemetry_pb2
@@ -27,13 +27,13 @@ class Series:
     floats, NaN where there is no value: also where the channel was removed, and where commands are lost.
     Choices are their numbers (labels: {number: label}), texts str, None where there is none."""
 
-    def __init__(self, channel, times, values, clock=(), runs=()):
+    def __init__(self, channel, times, values, clock=()):
         self.name, self.unit, self.description = channel.name, channel.unit, channel.description
         self.kind = ("number", "text", "choice")[channel.kind]
         self.labels = {label.value: label.label for label in channel.label}
         self.times, self.values = times, values
-        # Times [s] that the simulation set, the steps of a Playback of this scene, and their runs; all series' own.
-        self._clock, self._runs = clock, runs
+        # StepTimes that the simulation set, the steps of a Playback of this scene; all series' own.
+        self._clock = clock if isinstance(clock, StepTimes) else StepTimes(clock)
 
     def __iter__(self):
         return iter((self.times, self.values))
@@ -42,7 +42,7 @@ class Series:
         """The value that holds at a time [s]: the last one that was set at or before it, or NaN (of a text
         None). At it is a step, too, that is later by no more than a rounding, as seek() of a Playback of its scene
         has it. Where time went back in the recording, the last that was set at such a time."""
-        before = np.flatnonzero(self.times <= step_at(self._clock, time, self._runs))
+        before = np.flatnonzero(self.times <= self._clock.step_at(time))
         if not len(before):
             return None if self.kind == "text" else float("nan")
         value = self.values[before[-1]]
@@ -133,14 +133,13 @@ class _Scene:
 
     def series(self):
         self.sort()
-        made, clock = {}, list(self.clock)
-        runs = runs_of(clock)
+        made, clock = {}, StepTimes(self.clock)
         for name in sorted(self.found):
             channel, parts = self.channels[name], self.found[name]
             times = np.concatenate([np.asarray(each, dtype=float) for each, _ in parts]) if parts else np.zeros(0)
             kind = object if channel.kind == TEXT else float
             values = np.concatenate([np.array(each, dtype=kind) for _, each in parts]) if parts else np.zeros(0, kind)
-            made[name] = Series(channel, times, values, clock, runs)
+            made[name] = Series(channel, times, values, clock)
         return Named("telemetry channel", made)
 
     def apply(self, command, seq, from_now=False):
@@ -174,14 +173,13 @@ class History:
 
     def __init__(self, file):
         self.file, self.scenes = file, {}
-        for number, (first, last) in enumerate(blocks_of(file)):
-            snapshot = file.ask("SELECT min(seq) FROM snapshot WHERE seq BETWEEN ? AND ?", first - 1, max(last, first - 1))
-            if snapshot[0][0] is None:  # no state to begin with: it cannot be shown either
+        for number, (_, last, snapshot) in enumerate(file.blocks()):
+            if snapshot is None:  # no state to begin with: it cannot be shown either
                 for scene in self.scenes.values():
                     scene.lose()
                 continue
-            self._begin(file.snapshot(snapshot[0][0]), number > 0)
-            for row in file.rows_of(KINDS, snapshot[0][0] + 1, last):
+            self._begin(file.snapshot(snapshot), number > 0)
+            for row in file.rows_of(KINDS, snapshot + 1, last):
                 command = command_of(row.payload)
                 self._scene(command).apply(command, row.seq)
 

@@ -1,8 +1,8 @@
-// What playback does with recordings from anywhere: every row is read, files are unpacked, steps
-// are gone to. A fuzz target: input is a .dspace file's bytes. Nothing in it may crash, hang, throw
-// anything but Error, or end in an error of Dspace's own (INTERNAL); and no command and no file of
-// a row is accepted whose checksum, worked out here anew from Documentation/Recording.md, does not
-// hold.
+// What playback and salvage do with recordings from anywhere: every row is read, files are
+// unpacked, steps are gone to, and what survives is put into a new recording, which must be sound.
+// A fuzz target: input is a .dspace file's bytes. Nothing in it may crash, hang, throw anything but
+// Error, or end in an error of Dspace's own (INTERNAL); and no command and no file of a row is
+// accepted whose checksum, worked out here anew from Documentation/Recording.md, does not hold.
 //
 // With clang and -DDSPACE_LIBFUZZER=ON it is libFuzzer's program; else it has a driver of its own
 // (FuzzDriver.h). That changes bytes of a recording, and values of its rows, to which it gives the
@@ -15,6 +15,8 @@
 #include <dspace/FilesRead.h>
 #include <dspace/messages/Confinement.h>
 #include <dspace/recording/Playback.h>
+#include <dspace/recording/RecordingCheck.h>
+#include <dspace/recording/RecordingSalvage.h>
 #include <dspace/recording/RecordingWriter.h>
 
 #include "FuzzDriver.h"
@@ -134,6 +136,33 @@ void Play(session::RecordingReader& reader) {
   }
 }
 
+// What comes back is sound, whatever the input was.
+void Salvage() {
+  const std::string out = TheRoot().Path + "/salvaged.dspace";
+  std::filesystem::remove(out);
+  if (!Try([&] { session::SalvageRecording(PathOfInput(), out, [] {}); })) {
+    if (std::filesystem::exists(out)) {
+      Fail("a salvage that failed left a file");
+    }
+    return;
+  }
+  const Database file(out, SQLITE_OPEN_READONLY);
+  for (const auto& [table, letter] : {std::pair("command", 'C'), std::pair("snapshot", 'S')}) {
+    std::size_t count = 0;
+    file.Ask(std::string("SELECT count(*) FROM ") + table, {},
+             [&](sqlite3_stmt* row) { count = std::size_t(sqlite3_column_int64(row, 0)); });
+    if (Sound(file, table, letter, "", {}).size() != count) {
+      Fail(std::string("a ") + table + " was salvaged without its checksum");
+    }
+  }
+  try {
+    session::RecordingReader reader(out);
+    session::CheckRecording(reader, [] {});
+  } catch (const Error& error) {
+    Fail(std::string("what was salvaged is not sound: ") + error.what());
+  }
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -146,6 +175,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     ReadAll(reader, file);
     Try([&] { Play(reader); });
   });
+  Salvage();
   return 0;
 }
 

@@ -1,8 +1,10 @@
 // Recordings read and carried out again: against what was given to the writer, and against an
 // interpreter that was given the same commands from the start.
+#include <atomic>
 #include <cmath>
 #include <random>
 #include <sstream>
+#include <thread>
 
 #include <sqlite3.h>
 
@@ -21,6 +23,7 @@ using session::PlaybackGap;
 using session::PlaybackStep;
 using session::RecordedCommand;
 using session::RecordingReader;
+using session::StepTimes;
 
 v1::Command Time(double time_s) {
   v1::Command command;
@@ -213,7 +216,71 @@ TEST_F(PlaybackOf, RefusesDamage) {
   says("format is 2", Error::Kind::Unsupported, [&] { RecordingReader reader(this->Path_); });
   says("no such file", Error::Kind::NotFound, [&] { RecordingReader reader("/none.dspace"); });
   const TemporaryFile text("text.dspace", std::string(5000, 'x'));
-  says("not a database", Error::Kind::Corrupt, [&] { RecordingReader reader(text.Path()); });
+  says("not a recording: its first bytes are 'xxxxxxxxxxxxxxxx'", Error::Kind::Unsupported,
+       [&] { RecordingReader reader(text.Path()); });
+  const TemporaryFile empty("empty.dspace", "");
+  says("not a recording: it is empty", Error::Kind::Unsupported,
+       [&] { RecordingReader reader(empty.Path()); });
+  this->Change("DROP TABLE meta; DROP TABLE command");
+  says("without a recording's tables", Error::Kind::Unsupported,
+       [&] { RecordingReader reader(this->Path_); });
+}
+
+// Nor is a file damaged that another process holds.
+TEST_F(PlaybackOf, ALockIsNoDamage) {
+  this->Drive(3, 1000);
+  RecordingReader reader(this->Path_);
+  reader.SetTimeout(0.01);
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(this->Path_.c_str(), &other), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(other, "BEGIN EXCLUSIVE", nullptr, nullptr, nullptr), SQLITE_OK);
+  try {
+    reader.Last();
+    ADD_FAILURE() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.GetKind(), Error::Kind::Io);
+    EXPECT_NE(std::string(error.what()).find("locked"), std::string::npos) << error.what();
+  }
+  sqlite3_close(other);
+  EXPECT_EQ(reader.Last(), 7u);
+}
+
+// Steps are of one moment: what comes while they are read belongs to no step before it.
+TEST_F(PlaybackOf, StepsAreOfOneMoment) {
+  std::atomic<bool> stop{false};
+  session::RecordingOptions options;
+  options.commitEvery_s = 0.001;
+  options.snapshotCommands = 50;
+  session::RecordingWriter writer(this->Path_, Ledger(), 0.0, options);
+  std::thread simulation([&] {
+    for (int i = 1; !stop; ++i) {
+      writer.Add(Time(i), {}, Ledger());
+      writer.Add(v1::Command(), {}, Ledger());
+      writer.Flush();
+    }
+  });
+  std::size_t most = 0;
+  for (int round = 0; round < 200 || most < 20; ++round) {
+    RecordingReader reader(this->Path_);
+    const session::PlaybackSteps found = session::StepsOf(reader);
+    EXPECT_TRUE(found.gaps.empty());
+    most = std::max(most, found.steps.size());
+    for (std::size_t i = 1; i < found.steps.size(); ++i) {
+      ASSERT_EQ(found.steps[i].time_s, found.steps[i - 1].time_s + 1.0);
+      ASSERT_LE(found.steps[i].end, found.steps[i - 1].end + 2);
+    }
+    if (found.steps.back().end == 0) { // no command yet
+      continue;
+    }
+    // The last command of the last step is of its time.
+    const std::uint64_t end = found.steps.back().end;
+    reader.ReadRows(end, end, [&](session::RecordingRow&& row) {
+      EXPECT_EQ(row.time_s, found.steps.back().time_s);
+      return true;
+    });
+  }
+  stop = true;
+  simulation.join();
 }
 
 // A recording of nothing but times, one a command, with states after some and without others.
@@ -287,50 +354,42 @@ TEST_F(WholeSteps, AfterLostCommandsTheNextStateGoesOn) {
   EXPECT_EQ(this->Of({}, {0}, ""), "0:0 ");
 }
 
-std::vector<PlaybackStep> StepsAt(const std::vector<double>& times) {
-  std::vector<PlaybackStep> steps;
-  for (const double time : times) {
-    steps.push_back({time, 0});
-  }
-  return steps;
-}
-
-TEST(StepAt, IsOfTheLatestRunThatReachesTheTime) {
-  const std::vector<PlaybackStep> steps = StepsAt({0.0, 5.0, 10.0, 0.0, 3.0});
+TEST(StepTimes, IsOfTheLatestRunThatReachesTheTime) {
+  const StepTimes steps({0.0, 5.0, 10.0, 0.0, 3.0});
   const std::vector<std::pair<double, int>> expected = {{2, 3}, {3, 4},  {5, 1},
                                                         {7, 1}, {10, 2}, {11, 4}};
   for (const auto& [time, index] : expected) {
-    EXPECT_EQ(session::StepAt(steps, time), std::size_t(index)) << time;
+    EXPECT_EQ(steps.IndexAt(time), std::size_t(index)) << time;
   }
-  EXPECT_FALSE(session::StepAt(steps, -0.5));
-  EXPECT_FALSE(session::StepAt(steps, std::nan("")));
-  EXPECT_EQ(session::StepAt({{1.0, 0}, {1.0, 1}, {1.0, 2}}, 1.0), std::size_t(2));
+  EXPECT_FALSE(steps.IndexAt(-0.5));
+  EXPECT_FALSE(steps.IndexAt(std::nan("")));
+  EXPECT_EQ(StepTimes({1.0, 1.0, 1.0}).IndexAt(1.0), std::size_t(2));
 }
 
 // The same cases as for the Python reader (test_recordings_rounding.py).
-TEST(StepAt, AStepThatIsLateByARoundingIsNotAfterItsTime) {
+TEST(StepTimes, AStepThatIsLateByARoundingIsNotAfterItsTime) {
   for (const double step_s : {0.001, 0.01, 0.1, 1.0 / 3.0}) {
-    const std::vector<PlaybackStep> steps = StepsAt(AddedUp(2001, 0.0, step_s));
+    const StepTimes steps(AddedUp(2001, 0.0, step_s));
     for (int i = 1; i <= 2000; ++i) {
-      EXPECT_EQ(session::StepAt(steps, i * step_s), std::size_t(i)) << i << " of " << step_s;
-      EXPECT_EQ(session::StepAt(steps, (i - 0.01) * step_s), std::size_t(i) - 1) << i;
+      EXPECT_EQ(steps.IndexAt(i * step_s), std::size_t(i)) << i << " of " << step_s;
+      EXPECT_EQ(steps.IndexAt((i - 0.01) * step_s), std::size_t(i) - 1) << i;
     }
   }
 }
 
-TEST(StepAt, TimesAsLargeAsEphemerisSecondsAreMet) {
+TEST(StepTimes, TimesAsLargeAsEphemerisSecondsAreMet) {
   for (const double step_s : {1e-3, 1e-4, 1e-5}) { // a double's spacing is 1.2e-7 there
     std::vector<double> times;
     for (int i = 0; i < 500; ++i) {
       times.push_back(8e8 + i * step_s);
     }
-    const std::vector<PlaybackStep> steps = StepsAt(times);
+    const StepTimes steps(times);
     for (std::size_t i = 0; i < times.size(); ++i) {
       for (const double asked :
            {times[i], std::nextafter(times[i], 0.0), std::nextafter(times[i], 1e9)}) {
-        EXPECT_EQ(session::StepAt(steps, asked), i) << step_s;
+        EXPECT_EQ(steps.IndexAt(asked), i) << step_s;
       }
-      EXPECT_EQ(session::StepAt(steps, times[i] + 0.9 * step_s), i) << step_s;
+      EXPECT_EQ(steps.IndexAt(times[i] + 0.9 * step_s), i) << step_s;
     }
   }
   std::vector<double> times = {8e8}; // as close as can be
@@ -338,14 +397,14 @@ TEST(StepAt, TimesAsLargeAsEphemerisSecondsAreMet) {
     times.push_back(std::nextafter(times.back(), 1e9));
   }
   for (std::size_t i = 0; i < times.size(); ++i) {
-    EXPECT_EQ(session::StepAt(StepsAt(times), times[i]), i);
+    EXPECT_EQ(StepTimes(times).IndexAt(times[i]), i);
   }
 }
 
-TEST(StepAt, RoundingsAtTheEndsOfRunsAndBetweenCloseSteps) {
+TEST(StepTimes, RoundingsAtTheEndsOfRunsAndBetweenCloseSteps) {
   const double late = 1.0000000000000007;
   const auto at = [](const std::vector<double>& times, double asked) {
-    const auto found = session::StepAt(StepsAt(times), asked);
+    const auto found = StepTimes(times).IndexAt(asked);
     return found ? int(*found) : -1;
   };
   EXPECT_EQ(at({0.0, 0.9, late, late, 1.1}, 1.0), 3);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include <dspace/Error.h>
+#include <dspace/recording/RecordingDatabase.h>
 
 namespace dspace::session {
 namespace {
@@ -16,37 +17,43 @@ std::string Seconds(double time_s) {
   return text.str();
 }
 
-std::string Object(const RecordingReader& reader) {
-  return "recording '" + reader.Path() + "'";
-}
-
 } // namespace
 
 Playback::Playback(RecordingReader& reader, Interpreter& interpreter, bool checkFiles)
     : Reader_(reader), Interpreter_(interpreter), Steps_(StepsOf(reader)),
       Files_(reader, checkFiles) {
   if (this->Steps_.steps.empty()) {
-    throw Error(Error::Kind::Corrupt, Object(reader), "no step of it is whole");
+    throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()), "no step of it is whole");
   }
+  this->SetSteps();
   this->Go(0);
+}
+
+void Playback::SetSteps() {
+  std::vector<double> times_s;
+  for (const PlaybackStep& step : this->Steps_.steps) {
+    times_s.push_back(step.time_s);
+  }
+  this->Times_ = StepTimes(std::move(times_s));
 }
 
 double Playback::Seek(double time_s) {
   const std::vector<PlaybackStep>& steps = this->Steps_.steps;
-  const std::optional<std::size_t> index = StepAt(steps, time_s);
+  const std::optional<std::size_t> index = this->Times_.IndexAt(time_s);
   if (!index) {
     double first = steps.front().time_s;
     for (const PlaybackStep& step : steps) {
       first = std::min(first, step.time_s);
     }
-    throw Error(Error::Kind::InvalidArgument, Object(this->Reader_),
+    throw Error(Error::Kind::InvalidArgument, RecordingName(this->Reader_.Path()),
                 "the time is " + Seconds(time_s) + "; accepted: " + Seconds(first) + " on");
   }
   for (const PlaybackGap& gap : this->Steps_.gaps) {
     if (gap.before == *index + 1 && gap.begin_s &&
         time_s >= *gap.begin_s -
-                      Rounding(*gap.begin_s, std::max(*gap.begin_s - steps[*index].time_s, 0.0))) {
-      throw Error(Error::Kind::Corrupt, Object(this->Reader_),
+                      StepTimes::Rounding(*gap.begin_s,
+                                          std::max(*gap.begin_s - steps[*index].time_s, 0.0))) {
+      throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),
                   "at " + Seconds(time_s) + " its commands are lost: " + Seconds(*gap.begin_s) +
                       " to " + (gap.end_s ? Seconds(*gap.end_s) : "the end"));
     }
@@ -66,6 +73,7 @@ std::int64_t Playback::Step(std::int64_t n) {
 std::size_t Playback::Update() {
   const std::size_t before = this->Steps_.steps.size();
   this->Steps_ = StepsOf(this->Reader_);
+  this->SetSteps();
   this->Files_.Update();
   return this->Steps_.steps.size() - before;
 }
@@ -113,7 +121,7 @@ void Playback::CheckStep(std::size_t index, std::optional<double> reached_s) {
     });
   }
   if (!good) {
-    throw Error(Error::Kind::Corrupt, Object(this->Reader_),
+    throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),
                 "its index of times is damaged near command " + std::to_string(following));
   }
 }
@@ -156,7 +164,7 @@ void Playback::CarryOut(v1::Command command, const char* table, std::uint64_t se
     refused = this->Interpreter_.Execute(command).error().message();
   }
   if (!refused.empty()) {
-    throw Error(Error::Kind::Corrupt, Object(this->Reader_),
+    throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),
                 table + std::to_string(seq) + " is refused: " + refused);
   }
   if (command.has_open_terrain() && !this->Files_.Folder().empty()) {

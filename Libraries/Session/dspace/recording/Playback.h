@@ -8,49 +8,12 @@
 #include <vector>
 
 #include <dspace/interpreter/Interpreter.h>
+#include <dspace/recording/PlaybackSteps.h>
 #include <dspace/recording/RecordedFiles.h>
 #include <dspace/recording/RecordingReader.h>
+#include <dspace/recording/StepTimes.h>
 
 namespace dspace::session {
-
-// The state after command `end`: a time that the simulation set, and all that came until the next.
-struct PlaybackStep {
-  double time_s = 0.0;
-  std::uint64_t end = 0;
-};
-
-// A span of which nothing can be shown, since commands first..last are lost or of no use.
-struct PlaybackGap {
-  std::uint64_t first = 0;
-  std::uint64_t last = 0;
-  std::optional<double> begin_s; // of the first step that may lack a command; none: from the start
-  std::optional<double> end_s;   // of the next step that is whole; none: to the end
-  std::size_t before = 0;        // whole steps before it
-};
-
-struct PlaybackSteps {
-  std::vector<PlaybackStep> steps;
-  std::vector<PlaybackGap> gaps;
-};
-
-// Which steps are whole. After lost commands the next snapshot goes on.
-PlaybackSteps StepsOf(RecordingReader& reader);
-
-// How far from its recorded time [s] a step may be asked for and still be meant: a simulation that
-// adds up its steps is the later, or the earlier, the longer it runs. step_s: its distance from the
-// nearest step on the side of what is asked. A thousandth of that, at most 0.1 ms; at least two
-// spacings of doubles at that time, up to half of the distance. As rounding() in Python.
-double Rounding(double time_s, double step_s);
-
-// Whether a step counts as at a time [s]: it is late or early by no more than a rounding. At the
-// ends of a run its only neighbour counts; a step that is alone may be off by two spacings.
-bool IsAt(const std::vector<PlaybackStep>& steps, std::size_t index, double time_s);
-
-// The step that is shown at a time: the last one not after it by more than a rounding, of the
-// latest run of steps that reaches the time, where time went back in the recording, else of the
-// latest that begins before it. None before all of them. A step at the very time is before all
-// others.
-std::optional<std::size_t> StepAt(const std::vector<PlaybackStep>& steps, double time_s);
 
 // Its commands are carried out under a FilesGuard (RecordedFiles::Look): rasters and shapes are
 // opened in formats that read a file by itself only, and with packed files nothing else is read.
@@ -73,8 +36,8 @@ public:
   std::size_t Index() const { return this->Index_; }
   double Time() const { return this->Steps_.steps[this->Index_].time_s; }
 
-  // To a time [s], as StepAt says; InvalidArgument before the first step. Returns the step's own
-  // recorded time.
+  // To a time [s], as StepTimes::IndexAt says; InvalidArgument before the first step. Returns the
+  // step's own recorded time.
   double Seek(double time_s);
   // So many steps on, or back; stops at the ends. Returns how many were made.
   std::int64_t Step(std::int64_t n);
@@ -84,6 +47,7 @@ public:
   std::size_t Update();
 
 private:
+  void SetSteps();
   void Go(std::size_t index);
   void Begin(const RecordedSnapshot& snapshot);
   void CheckStep(std::size_t index, std::optional<double> reached_s);
@@ -93,6 +57,7 @@ private:
   RecordingReader& Reader_;
   Interpreter& Interpreter_;
   PlaybackSteps Steps_; // before the files: a command's are noted before it
+  StepTimes Times_;
   RecordedFiles Files_;
   std::size_t Index_ = 0;
   std::optional<std::uint64_t> At_; // the command after which the state is; none: unknown

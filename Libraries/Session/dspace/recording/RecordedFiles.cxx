@@ -17,16 +17,13 @@
 #include <dspace/messages/CommandFiles.h>
 #include <dspace/messages/Confinement.h>
 #include <dspace/recording/RecordedNames.h>
+#include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingFile.h>
 
 namespace dspace::session {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string LabelOf(const RecordingReader& reader) {
-  return "recording '" + reader.Path() + "'";
-}
 
 // Whether the files that there were are in the recording, all of them.
 bool IsPacked(const std::vector<RecordingAsset>& assets) {
@@ -42,7 +39,7 @@ bool IsPacked(const std::vector<RecordingAsset>& assets) {
 
 [[noreturn]] void HadChanged(const RecordingReader& reader, const RecordingAsset& asset,
                              const std::string& accepted) {
-  throw Error(Error::Kind::Corrupt, LabelOf(reader),
+  throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()),
               "file '" + asset.path + "' had changed between its reading and its recording" +
                   accepted);
 }
@@ -50,7 +47,7 @@ bool IsPacked(const std::vector<RecordingAsset>& assets) {
 void RequireAbsent(const RecordingReader& reader, const RecordingAsset& asset) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(asset.path, error))) {
-    throw Error(Error::Kind::Corrupt, LabelOf(reader),
+    throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()),
                 "file '" + asset.path + "' was not there when it was recorded, and now is");
   }
 }
@@ -71,16 +68,6 @@ std::string HashOf(const std::string& path, std::int64_t size, const std::string
     throw Error(Error::Kind::Io, object, "file '" + path + "', which it needs, cannot be read");
   }
   return sum.Finish();
-}
-
-std::string Hexadecimal(const std::string& bytes) {
-  std::string text;
-  for (const char c : bytes) {
-    const auto byte = static_cast<unsigned char>(c);
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
 }
 
 // An absolute path without "." and "..", of any text.
@@ -151,7 +138,7 @@ void RecordedFiles::Update() {
   if (this->Owned_) {
     this->Unpack(assets);
   } else if (const auto all = this->Reader_.Assets(); IsPacked(all)) {
-    this->Owned_ = std::make_unique<OwnFolder>(LabelOf(this->Reader_));
+    this->Owned_ = std::make_unique<OwnFolder>(RecordingName(this->Reader_.Path()));
     this->Folder_ = this->Owned_->Path;
     this->Confinement_ = std::make_shared<const Confinement>(
         std::vector<std::string>{this->Folder_}, "the recording, whose files are packed,");
@@ -166,7 +153,7 @@ void RecordedFiles::Update() {
 
 void RecordedFiles::Check(const std::vector<RecordingAsset>& assets) const {
   for (const RecordingAsset& asset : assets) {
-    const std::string object = LabelOf(this->Reader_);
+    const std::string object = RecordingName(this->Reader_.Path());
     const std::string named = "file '" + asset.path + "'";
     std::error_code error;
     if (asset.state == "changed") {
@@ -211,7 +198,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
   std::error_code error;
   const std::uintmax_t free = fs::space(this->Folder_, error).available;
   if (!error && needed > free) {
-    throw Error(Error::Kind::Resource, LabelOf(this->Reader_),
+    throw Error(Error::Kind::Resource, RecordingName(this->Reader_.Path()),
                 "its files need " + std::to_string(needed) + " bytes in '" + this->Folder_ +
                     "', where " + std::to_string(free) + " are free; accepted: TMPDIR with more");
   }
@@ -240,7 +227,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
     const fs::path place(entry.second);
     if ((place.filename() == "proj.db" || place.filename() == "proj.ini") &&
         folders.count(place.parent_path().string()) != 0) {
-      throw Error(Error::Kind::Corrupt, LabelOf(this->Reader_),
+      throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),
                   "'" + entry.first + "', packed beside a grid, would stand in for PROJ's own; " +
                       "accepted: grids without it");
     }
@@ -256,7 +243,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
 }
 
 void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std::int64_t>& parts) {
-  const std::string object = LabelOf(this->Reader_);
+  const std::string object = RecordingName(this->Reader_.Path());
   const std::string named = "'" + asset.path + "'";
   if (asset.path.empty() || asset.path[0] != '/' || asset.path.find('\0') != std::string::npos) {
     throw Error(Error::Kind::Corrupt, object, named + " is no path of a file");
@@ -295,7 +282,7 @@ void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std
   if (sum.Finish() != asset.sha256) {
     throw Error(Error::Kind::Corrupt, object,
                 "the content of " + named +
-                    " is not what it was; `dspace log salvage` brings back "
+                    " is not what it was; `dspace log salvage` recovers "
                     "what survives");
   }
 }

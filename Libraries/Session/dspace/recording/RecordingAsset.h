@@ -21,6 +21,9 @@ struct RecordingAsset {
 // Of a packed file's content a row has so many bytes at most.
 constexpr std::int64_t RecordingPartBytes = 4 << 20;
 
+// A hash in messages.
+std::string Hexadecimal(const std::string& bytes);
+
 } // namespace dspace::session
 
 #endif

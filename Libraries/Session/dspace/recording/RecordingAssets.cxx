@@ -11,7 +11,6 @@ namespace dspace::session {
 namespace {
 
 constexpr auto PartBytes = std::size_t(RecordingPartBytes);
-constexpr std::size_t TransactionBytes = 64u << 20;
 
 // Empty where zlib saves less than a tenth.
 std::string Compress(const std::string& part) {
@@ -83,12 +82,29 @@ void RecordingAssets::PutOne(const std::string& path, const FileStamp& stamp) {
   this->File_.Put(asset);
 }
 
-bool RecordingAssets::Read(RecordingAsset& asset) {
+bool RecordingAssets::Pack(const RecordingAsset& noted, const KeepGoing& keepGoing) {
+  this->File_.RemoveContent(noted.id); // of a run that was broken off
+  this->Parts_ = this->File_.LastContent();
+  RecordingAsset found = noted;
+  found.size = 0;
+  found.packed = true;
+  if (!this->Read(found, keepGoing) || found.size != noted.size || found.sha256 != noted.sha256) {
+    this->File_.RemoveContent(noted.id);
+    return false;
+  }
+  this->File_.Replace(found);
+  return true;
+}
+
+bool RecordingAssets::Read(RecordingAsset& asset, const KeepGoing& keepGoing) {
   std::ifstream file(asset.path, std::ios::binary);
   std::string part(PartBytes, '\0');
   Sha256 sum;
   this->Incompressible_ = 0;
   while (file.read(part.data(), std::streamsize(PartBytes)), file.gcount() > 0) {
+    if (keepGoing) {
+      keepGoing();
+    }
     part.resize(std::size_t(file.gcount()));
     sum.Add(part.data(), part.size());
     if (this->Pack_) {
@@ -116,12 +132,7 @@ void RecordingAssets::PutPart(RecordingAsset& asset, const std::string& part) {
     content.data = part;
   }
   this->File_.Put(content);
-  this->Uncommitted_ += content.data.size();
-  if (this->Uncommitted_ >= TransactionBytes) {
-    this->Uncommitted_ = 0;
-    this->File_.Commit();
-    this->File_.Begin();
-  }
+  this->File_.CommitEach(content.data.size());
 }
 
 } // namespace dspace::session

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
+#include <dspace/recording/KeepGoing.h>
 #include <dspace/recording/RecordingFile.h>
 
 namespace dspace::session {
@@ -23,6 +24,10 @@ public:
   // Throws Error(Io) where the recording cannot be written; what cannot be read is noted as such.
   void Put(const std::string& path, const FileStamp& stamp);
 
+  // Takes the content of a file into a recording that has noted the file. Within a transaction, as
+  // above. False, and nothing of it stays, where it is not what it was.
+  bool Pack(const RecordingAsset& noted, const KeepGoing& keepGoing);
+
   // Files that were to be packed and could not be read.
   const std::vector<std::string>& Missing() const { return this->Missing_; }
 
@@ -30,7 +35,7 @@ private:
   void PutOne(const std::string& path, const FileStamp& stamp);
   void PutRow(const std::string& path, const char* state);
   // False where it cannot be read to its end.
-  bool Read(RecordingAsset& asset);
+  bool Read(RecordingAsset& asset, const KeepGoing& keepGoing = {});
   void PutPart(RecordingAsset& asset, const std::string& part);
 
   RecordingFile& File_;
@@ -39,8 +44,7 @@ private:
   std::vector<std::string> Missing_;
   std::int64_t Assets_ = 0;
   std::int64_t Parts_ = 0;
-  std::size_t Uncommitted_ = 0; // bytes
-  int Incompressible_ = 0;      // parts that need not be tried
+  int Incompressible_ = 0; // parts that need not be tried
 };
 
 } // namespace dspace::session

@@ -8,12 +8,18 @@
 #include <sqlite3.h>
 
 #include <dspace/Error.h>
+#include <dspace/recording/NewRecording.h>
+#include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingWriter.h>
 
 namespace dspace::session {
 namespace {
 
 constexpr std::size_t ChecksumBytes = 16;
+constexpr int CheckpointPages = 2048; // of the log, of a recording that is made from another one
+constexpr std::size_t CommitBytes = 64u << 20;
+constexpr const char* Accepted =
+    "; accepted: a file in a folder that may be written and has room, that no process has locked";
 constexpr const char* Schema = R"(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value) WITHOUT ROWID;
 CREATE TABLE command(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT NULL,
@@ -99,51 +105,109 @@ std::string RecordingChecksum(const RecordingContent& content) {
   return sum.Finish().substr(0, ChecksumBytes);
 }
 
+std::string Hexadecimal(const std::string& bytes) {
+  std::string text;
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    text += "0123456789abcdef"[byte >> 4];
+    text += "0123456789abcdef"[byte & 15];
+  }
+  return text;
+}
+
 RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages,
                              int checkpointPages)
-    : Path_(path) {
+    : Path_(path), Name_(RecordingName(path)) {
   if (std::ifstream(path).good()) {
-    throw Error(Error::Kind::AlreadyExists, "recording '" + path + "'",
+    throw Error(Error::Kind::AlreadyExists, this->Name_,
                 "there is a file of this name; accepted: a new one");
   }
-  if (sqlite3_open_v2(path.c_str(), &this->Database_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE,
-                      nullptr) != SQLITE_OK) {
-    const std::string why = this->Database_ ? sqlite3_errmsg(this->Database_) : "out of memory";
-    this->Close();
-    throw Error(Error::Kind::Io, "recording '" + path + "'", why);
-  }
+  this->Open(SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   try {
-    sqlite3_busy_timeout(this->Database_, 10000); // a reader that checkpoints
-    this->Run("PRAGMA page_size=65536");          // a step of a thousand poses in few pages
-    this->Run("PRAGMA journal_mode=WAL");
-    this->Run("PRAGMA synchronous=NORMAL");
-    this->Run("PRAGMA cache_size=-16384");    // KiB: a transaction is written once, at its end
-    this->Run("PRAGMA wal_autocheckpoint=0"); // RecordingCheckpoints does it
-    if (maximumPages > 0) {
-      this->Run(("PRAGMA max_page_count=" + std::to_string(maximumPages)).c_str());
-    }
-    this->Begin();
-    this->Run(Schema);
-    this->Run(
-        ("INSERT INTO meta VALUES('format', " + std::to_string(RecordingFormat) + ")").c_str());
-    this->Commit();
-    this->Command_ = this->Prepare("INSERT INTO command VALUES(?,?,?,?,?,?)");
-    this->Snapshot_ = this->Prepare("INSERT INTO snapshot VALUES(?,?,?,?,?,?)");
-    this->Asset_ = this->Prepare("INSERT INTO asset VALUES(?,?,?,?,?,?,?)");
-    this->Content_ = this->Prepare("INSERT INTO content VALUES(?,?,?,?,?,?)");
-    this->Lost_ = this->Prepare("INSERT OR REPLACE INTO meta VALUES('lost', ?)");
-    sqlite3_wal_hook(
-        this->Database_,
-        [](void* self, sqlite3*, const char*, int pages) {
-          static_cast<RecordingFile*>(self)->PagesInLog_ = pages;
-          return SQLITE_OK;
-        },
-        this);
-    this->Checkpoints_ = std::make_unique<RecordingCheckpoints>(path, checkpointPages);
+    this->Make(maximumPages, checkpointPages, false);
   } catch (...) {
     this->Close();
     throw;
   }
+}
+
+RecordingFile::RecordingFile(const NewRecording& made) : Path_(made.Path()), Name_(made.Name()) {
+  this->Open(SQLITE_OPEN_READWRITE);
+  try {
+    this->Make(0, CheckpointPages, true);
+  } catch (...) {
+    this->Close();
+    throw;
+  }
+}
+
+RecordingFile::RecordingFile(const std::string& path, const std::string& name, Existing)
+    : Path_(path), Name_(name) {
+  this->Open(SQLITE_OPEN_READWRITE);
+  try {
+    sqlite3_busy_timeout(this->Database_, 1000);
+    this->Run("PRAGMA locking_mode=EXCLUSIVE"); // a writer would number its own rows alike
+    if (sqlite3_exec(this->Database_, "BEGIN IMMEDIATE; COMMIT", nullptr, nullptr, nullptr) !=
+        SQLITE_OK) {
+      throw Error(Error::Kind::Io, this->Name_,
+                  std::string("it is in use: ") + sqlite3_errmsg(this->Database_) +
+                      "; accepted: a recording that may be written and that no process is writing "
+                      "or reading, or a new file for a copy");
+    }
+    this->PrepareAll(false);
+  } catch (...) {
+    this->Close();
+    throw;
+  }
+}
+
+void RecordingFile::Open(int flags) {
+  if (sqlite3_open_v2(this->Path_.c_str(), &this->Database_, flags, nullptr) != SQLITE_OK) {
+    const std::string why = this->Database_ ? sqlite3_errmsg(this->Database_) : "out of memory";
+    this->Close();
+    throw Error(Error::Kind::Io, this->Name_, why + Accepted);
+  }
+}
+
+void RecordingFile::Make(std::int64_t maximumPages, int checkpointPages, bool repeated) {
+  sqlite3_busy_timeout(this->Database_, 10000); // a reader that checkpoints
+  this->Run("PRAGMA page_size=65536");          // a step of a thousand poses in few pages
+  this->Run("PRAGMA journal_mode=WAL");
+  this->Run("PRAGMA synchronous=NORMAL");
+  this->Run("PRAGMA cache_size=-16384");    // KiB: a transaction is written once, at its end
+  this->Run("PRAGMA wal_autocheckpoint=0"); // RecordingCheckpoints does it
+  if (maximumPages > 0) {
+    this->Run(("PRAGMA max_page_count=" + std::to_string(maximumPages)).c_str());
+  }
+  this->Begin();
+  this->Run(Schema);
+  this->Run(("INSERT INTO meta VALUES('format', " + std::to_string(RecordingFormat) + ")").c_str());
+  this->Commit();
+  this->PrepareAll(repeated);
+  sqlite3_wal_hook(
+      this->Database_,
+      [](void* self, sqlite3*, const char*, int pages) {
+        static_cast<RecordingFile*>(self)->PagesInLog_ = pages;
+        return SQLITE_OK;
+      },
+      this);
+  this->Checkpoints_ = std::make_unique<RecordingCheckpoints>(this->Path_, checkpointPages);
+}
+
+void RecordingFile::PrepareAll(bool repeated) {
+  const std::string insert = repeated ? "INSERT OR IGNORE INTO " : "INSERT INTO ";
+  this->Command_ = this->Prepare((insert + "command VALUES(?,?,?,?,?,?)").c_str());
+  this->Snapshot_ = this->Prepare((insert + "snapshot VALUES(?,?,?,?,?,?)").c_str());
+  this->Content_ = this->Prepare((insert + "content VALUES(?,?,?,?,?,?)").c_str());
+  // Packing changes a row that is there; its page from before may be found, too.
+  const std::string newer =
+      repeated ? " ON CONFLICT(id) DO UPDATE SET path = excluded.path, state = excluded.state, "
+                 "size = excluded.size, sha256 = excluded.sha256, packed = excluded.packed, "
+                 "checksum = excluded.checksum WHERE excluded.packed"
+               : "";
+  this->Asset_ = this->Prepare(("INSERT INTO asset VALUES(?,?,?,?,?,?,?)" + newer).c_str());
+  this->NewAsset_ = this->Prepare("INSERT OR REPLACE INTO asset VALUES(?,?,?,?,?,?,?)");
+  this->Meta_ = this->Prepare("INSERT OR REPLACE INTO meta VALUES(?,?)");
 }
 
 RecordingFile::~RecordingFile() {
@@ -152,8 +216,8 @@ RecordingFile::~RecordingFile() {
 
 void RecordingFile::Close() noexcept {
   this->Checkpoints_.reset();
-  for (sqlite3_stmt* statement :
-       {this->Command_, this->Snapshot_, this->Asset_, this->Content_, this->Lost_}) {
+  for (sqlite3_stmt* statement : {this->Command_, this->Snapshot_, this->Asset_, this->NewAsset_,
+                                  this->Content_, this->Meta_}) {
     sqlite3_finalize(statement);
   }
   if (this->Database_) {
@@ -170,8 +234,8 @@ void RecordingFile::Close() noexcept {
 }
 
 void RecordingFile::Fail(const char* what) {
-  throw Error(Error::Kind::Io, "recording '" + this->Path_ + "'",
-              std::string(what) + ": " + sqlite3_errmsg(this->Database_));
+  throw Error(Error::Kind::Io, this->Name_,
+              std::string(what) + ": " + sqlite3_errmsg(this->Database_) + Accepted);
 }
 
 void RecordingFile::Run(const char* sql) {
@@ -207,6 +271,15 @@ void RecordingFile::Commit() {
   }
 }
 
+void RecordingFile::CommitEach(std::size_t bytes) {
+  this->Uncommitted_ += bytes;
+  if (this->Uncommitted_ >= CommitBytes) {
+    this->Uncommitted_ = 0;
+    this->Commit();
+    this->Begin();
+  }
+}
+
 void RecordingFile::Rollback() noexcept {
   sqlite3_exec(this->Database_, "ROLLBACK", nullptr, nullptr, nullptr);
 }
@@ -223,13 +296,27 @@ void RecordingFile::Put(const RecordingRow& row, const std::string& checksum) {
 }
 
 void RecordingFile::PutLost(const std::string& ranges) {
-  sqlite3_bind_text(this->Lost_, 1, ranges.data(), int(ranges.size()), SQLITE_STATIC);
-  this->Step(this->Lost_);
+  sqlite3_bind_text(this->Meta_, 1, "lost", -1, SQLITE_STATIC);
+  sqlite3_bind_text(this->Meta_, 2, ranges.data(), int(ranges.size()), SQLITE_STATIC);
+  this->Step(this->Meta_);
+}
+
+void RecordingFile::PutBegin(std::uint64_t seq) {
+  sqlite3_bind_text(this->Meta_, 1, "begin", -1, SQLITE_STATIC);
+  sqlite3_bind_int64(this->Meta_, 2, sqlite3_int64(seq));
+  this->Step(this->Meta_);
 }
 
 void RecordingFile::Put(const RecordingAsset& asset) {
+  this->Put(this->Asset_, asset);
+}
+
+void RecordingFile::Replace(const RecordingAsset& asset) {
+  this->Put(this->NewAsset_, asset);
+}
+
+void RecordingFile::Put(sqlite3_stmt* statement, const RecordingAsset& asset) {
   const std::string checksum = RecordingChecksum(asset);
-  sqlite3_stmt* statement = this->Asset_;
   sqlite3_bind_int64(statement, 1, asset.id);
   sqlite3_bind_text(statement, 2, asset.path.data(), int(asset.path.size()), SQLITE_STATIC);
   sqlite3_bind_text(statement, 3, asset.state.data(), int(asset.state.size()), SQLITE_STATIC);
@@ -238,6 +325,19 @@ void RecordingFile::Put(const RecordingAsset& asset) {
   sqlite3_bind_int(statement, 6, asset.packed ? 1 : 0);
   sqlite3_bind_blob64(statement, 7, checksum.data(), checksum.size(), SQLITE_STATIC);
   this->Step(statement);
+}
+
+void RecordingFile::RemoveContent(std::int64_t asset) {
+  this->Run(("DELETE FROM content WHERE asset = " + std::to_string(asset)).c_str());
+}
+
+std::int64_t RecordingFile::LastContent() {
+  const std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> found(
+      this->Prepare("SELECT max(id) FROM content"), sqlite3_finalize);
+  if (sqlite3_step(found.get()) != SQLITE_ROW) {
+    this->Fail("it cannot be read");
+  }
+  return sqlite3_column_int64(found.get(), 0); // 0 for none
 }
 
 void RecordingFile::Put(const RecordingContent& content) {

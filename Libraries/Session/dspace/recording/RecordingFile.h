@@ -57,10 +57,21 @@ struct RecordingContent {
 std::string RecordingChecksum(const RecordingAsset& asset);
 std::string RecordingChecksum(const RecordingContent& content);
 
+class NewRecording;
+
 // Throws Error(Io) with SQLite's words.
 class RecordingFile {
 public:
+  // Makes a recording that a session writes into. Throws Error(AlreadyExists) where there is a file
+  // of this name. maximumPages: 0: as the disk has.
   RecordingFile(const std::string& path, std::int64_t maximumPages, int checkpointPages);
+  // Makes a recording from the rows of another one. Of several rows of one number the first one is
+  // kept; of several rows of a file the one that is packed.
+  explicit RecordingFile(const NewRecording& made);
+  // Opens a recording, to change the rows of its files. Throws Error(Io) where any process has it
+  // open. `name`: what messages call it.
+  struct Existing {};
+  RecordingFile(const std::string& path, const std::string& name, Existing);
   ~RecordingFile();
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
@@ -68,14 +79,26 @@ public:
   void Begin();
   // `checksum`: RecordingChecksum(row).
   void Put(const RecordingRow& row, const std::string& checksum);
-  // Commands that nobody has: "3-5 9-9".
+  // Commands that are lost: "3-5 9-9".
   void PutLost(const std::string& ranges);
+  // The snapshot that the recording begins with, where it is not that before any command.
+  void PutBegin(std::uint64_t seq);
   void Put(const RecordingAsset& asset);
+  // In the place of a row of this id.
+  void Replace(const RecordingAsset& asset);
   void Put(const RecordingContent& content);
+  void RemoveContent(std::int64_t asset);
+  std::int64_t LastContent(); // the highest id; 0 without any
   void Commit();
+  // So many bytes were put. Commits and begins anew after each 64 MiB.
+  void CommitEach(std::size_t bytes);
   void Rollback() noexcept;
 
 private:
+  void Open(int flags);
+  void Make(std::int64_t maximumPages, int checkpointPages, bool repeated);
+  void PrepareAll(bool repeated);
+  void Put(sqlite3_stmt* statement, const RecordingAsset& asset);
   void Run(const char* sql);
   sqlite3_stmt* Prepare(const char* sql);
   void Step(sqlite3_stmt* statement);
@@ -83,12 +106,15 @@ private:
   void Close() noexcept;
 
   std::string Path_;
+  std::string Name_; // in messages
   sqlite3* Database_ = nullptr;
   sqlite3_stmt* Command_ = nullptr;
   sqlite3_stmt* Snapshot_ = nullptr;
   sqlite3_stmt* Asset_ = nullptr;
+  sqlite3_stmt* NewAsset_ = nullptr; // in the place of another row
   sqlite3_stmt* Content_ = nullptr;
-  sqlite3_stmt* Lost_ = nullptr;
+  sqlite3_stmt* Meta_ = nullptr;
+  std::size_t Uncommitted_ = 0; // bytes
   int PagesInLog_ = 0;
   std::unique_ptr<RecordingCheckpoints> Checkpoints_;
 };

@@ -3,41 +3,27 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <sstream>
 
-#include <fcntl.h>
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <google/protobuf/util/delimited_message_util.h>
-#include <sqlite3.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <dspace/Error.h>
+#include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingFile.h>
 #include <dspace/recording/RecordingWriter.h>
 
 namespace dspace::session {
 namespace {
 
-constexpr int BusyMilliseconds = 10000; // a writer that checkpoints
+using Statement = RecordingDatabase::Statement;
 
-// SQLite takes the name as a URI, since only then it opens nothing for writing. It would make files
-// beside one that was not closed well; where it cannot, and nothing is in its log, it is told that
-// nobody writes.
-std::string UriOf(const std::string& path) {
-  std::string uri = "file:";
-  for (const char c : path) {
-    uri += c == '%' ? "%25" : c == '?' ? "%3f" : c == '#' ? "%23" : std::string(1, c);
-  }
-  std::error_code none;
-  const auto log = std::filesystem::file_size(path + "-wal", none);
-  const bool finished = none || log == 0;
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  return uri + (finished && faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0
-                    ? "?immutable=1"
-                    : "?mode=ro");
-}
+constexpr char Magic[] = "SQLite format 3"; // with its zero byte what SQLite's files begin with
+constexpr int SetTime = v1::Command::kSetTime;
 
 // A part as it was, of `size` bytes; of other size where it is not that.
 std::string Decompress(const std::string& data, std::int64_t size) {
@@ -51,155 +37,229 @@ std::string Decompress(const std::string& data, std::int64_t size) {
   return out;
 }
 
+// Columns seq, time, wall, kind, payload, checksum.
+RecordingRow RowOf(const RecordingDatabase& database, const Statement& from, bool snapshot,
+                   Sha256& sum) {
+  RecordingRow row;
+  row.snapshot = snapshot;
+  row.seq = std::uint64_t(from.Integer(0));
+  row.time_s = from.Real(1);
+  row.wall_s = from.Real(2);
+  const std::int64_t kind = from.Integer(3);
+  row.kind = std::int32_t(kind);
+  row.payload = from.Bytes(4);
+  if (row.kind != kind || from.Bytes(5) != RecordingChecksum(sum, row)) {
+    database.Damaged((snapshot ? "snapshot " : "command ") + std::to_string(row.seq) +
+                     " is damaged");
+  }
+  return row;
+}
+
+// Columns id, asset, place, size, data.
+RecordingContent PartOf(const Statement& row) {
+  RecordingContent part;
+  part.id = row.Integer(0);
+  part.asset = row.Integer(1);
+  part.place = row.Integer(2);
+  part.size = row.Integer(3);
+  part.data = row.Bytes(4);
+  return part;
+}
+
+[[noreturn]] void Missing(const RecordingDatabase& database, std::uint64_t first,
+                          std::uint64_t last) {
+  database.Damaged("commands " + std::to_string(first) + " to " + std::to_string(last) +
+                   " are missing");
+}
+
+// A row's number as SQLite compares it.
+std::int64_t Bound(std::uint64_t seq) {
+  return std::int64_t(std::min<std::uint64_t>(seq, std::numeric_limits<std::int64_t>::max()));
+}
+
+[[noreturn]] void NotARecording(const std::string& path, const std::string& why) {
+  throw Error(Error::Kind::Unsupported, RecordingName(path),
+              "it is not a recording: " + why +
+                  "; accepted: a .dspace file (`dspace log salvage` recovers what survives of a "
+                  "damaged one)");
+}
+
+// A file's first bytes, those that are not printable as "\x.." .
+std::string FirstBytes(const std::string& path) {
+  // SQLite must not have taken the file for one of its own: closing it here would release this
+  // process's locks on it.
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(sizeof Magic, '\0');
+  file.read(begin.data(), std::streamsize(begin.size()));
+  begin.resize(std::size_t(file.gcount()));
+  return begin;
+}
+
+std::string Printable(const std::string& bytes) {
+  std::string text;
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte < 0x7f) {
+      text += c;
+    } else {
+      text += std::string("\\x") + "0123456789abcdef"[byte >> 4] + "0123456789abcdef"[byte & 15];
+    }
+  }
+  return text;
+}
+
 } // namespace
 
-struct RecordingReader::Impl {
-  std::string path;
-  sqlite3* database = nullptr;
-  Sha256 sum;
-
-  [[noreturn]] void Fail(const std::string& what) const {
-    throw Error(Error::Kind::Corrupt, "recording '" + this->path + "'",
-                what + "; `dspace log salvage` brings back what survives");
-  }
-
-  // A statement that ends with its scope.
-  using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
-  Statement Ask(const char* sql) const {
-    sqlite3_stmt* statement = nullptr;
-    if (sqlite3_prepare_v2(this->database, sql, -1, &statement, nullptr) != SQLITE_OK) {
-      this->Fail(sqlite3_errmsg(this->database));
-    }
-    return {statement, sqlite3_finalize};
-  }
-
-  bool Step(const Statement& statement) const {
-    const int result = sqlite3_step(statement.get());
-    if (result != SQLITE_ROW && result != SQLITE_DONE) {
-      this->Fail(sqlite3_errmsg(this->database));
-    }
-    return result == SQLITE_ROW;
-  }
-
-  std::uint64_t Number(const char* sql, std::uint64_t otherwise) const {
-    const Statement found = this->Ask(sql);
-    return this->Step(found) && sqlite3_column_type(found.get(), 0) != SQLITE_NULL
-               ? std::uint64_t(sqlite3_column_int64(found.get(), 0))
-               : otherwise;
-  }
-
-  static std::string Blob(const Statement& row, int column) {
-    const void* data = sqlite3_column_blob(row.get(), column);
-    const int size = sqlite3_column_bytes(row.get(), column);
-    return data ? std::string(static_cast<const char*>(data), std::size_t(size)) : std::string();
-  }
-
-  // Columns seq, time, wall, kind, payload, checksum.
-  RecordingRow Row(const Statement& from, bool snapshot) {
-    RecordingRow row;
-    row.snapshot = snapshot;
-    row.seq = std::uint64_t(sqlite3_column_int64(from.get(), 0));
-    row.time_s = sqlite3_column_double(from.get(), 1);
-    row.wall_s = sqlite3_column_double(from.get(), 2);
-    row.kind = std::int32_t(sqlite3_column_int64(from.get(), 3));
-    row.payload = Blob(from, 4);
-    if (Blob(from, 5) != RecordingChecksum(this->sum, row)) {
-      this->Fail((snapshot ? "snapshot " : "command ") + std::to_string(row.seq) + " is damaged");
-    }
-    return row;
-  }
-
-  [[noreturn]] void Missing(std::uint64_t first, std::uint64_t last) const {
-    this->Fail("commands " + std::to_string(first) + " to " + std::to_string(last) +
-               " are missing");
-  }
-};
-
-RecordingReader::RecordingReader(const std::string& path) : Impl_(std::make_unique<Impl>()) {
-  Impl& impl = *this->Impl_;
-  impl.path = std::filesystem::absolute(path).string();
-  const std::string object = "recording '" + impl.path + "'";
+RecordingReader::RecordingReader(const std::string& path) {
+  const std::string whole = std::filesystem::absolute(path).string();
   std::error_code error;
-  if (!std::filesystem::is_regular_file(impl.path, error)) {
-    throw Error(Error::Kind::NotFound, object, "there is no such file");
+  if (!std::filesystem::is_regular_file(whole, error)) {
+    throw Error(Error::Kind::NotFound, RecordingName(whole),
+                "there is no such file; accepted: a recording, a .dspace file");
   }
-  if (sqlite3_open_v2(UriOf(impl.path).c_str(), &impl.database,
-                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr) != SQLITE_OK) {
-    const std::string why = impl.database ? sqlite3_errmsg(impl.database) : "out of memory";
-    sqlite3_close(impl.database);
-    throw Error(Error::Kind::Io, object, why);
+  if (std::filesystem::file_size(whole, error) == 0) {
+    NotARecording(whole, "it is empty");
   }
+  this->Database_ = std::make_unique<RecordingDatabase>(whole);
+  this->RequireFormat();
+}
+
+RecordingReader::~RecordingReader() = default;
+
+void RecordingReader::RequireFormat() {
+  const RecordingDatabase& database = *this->Database_;
+  bool ours = false;
   try {
-    sqlite3_busy_timeout(impl.database, BusyMilliseconds);
-    // Tables only: a view could be made to go on without end.
-    sqlite3_db_config(impl.database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-    const std::uint64_t format = impl.Number("SELECT value FROM meta WHERE key = 'format'", 0);
-    if (format != RecordingFormat) {
-      throw Error(Error::Kind::Unsupported, object,
-                  "its format is " + std::to_string(format) +
-                      (format > RecordingFormat ? ", a newer Dspace wrote it" : "") +
-                      "; accepted: " + std::to_string(RecordingFormat));
+    ours = database.Number("SELECT count(*) FROM sqlite_master WHERE name IN ('meta', 'command')",
+                           0) > 0;
+  } catch (const Error& failure) {
+    if (failure.GetKind() != Error::Kind::Corrupt) {
+      throw;
     }
-  } catch (...) {
-    sqlite3_close(impl.database);
+    const std::string begin = database.IsNoDatabase() ? FirstBytes(database.Path()) : "";
+    if (!begin.empty() && begin != std::string(Magic, sizeof Magic)) {
+      NotARecording(database.Path(), "its first bytes are '" + Printable(begin) + "'");
+    }
     throw;
+  }
+  if (!ours) {
+    NotARecording(database.Path(), "it is an SQLite file without a recording's tables");
+  }
+  Statement found(database, "SELECT value FROM meta WHERE key = 'format'");
+  const bool any = found.Step();
+  const bool number = any && found.IsInteger(0);
+  if (!number || found.Integer(0) != RecordingFormat) {
+    throw Error(
+        Error::Kind::Unsupported, RecordingName(database.Path()),
+        "its format is " +
+            (number ? std::to_string(found.Integer(0))
+             : any  ? "'" + Printable(found.Bytes(0)) + "'"
+                    : std::string("not stated")) +
+            (number && found.Integer(0) > RecordingFormat ? ", a newer Dspace wrote it" : "") +
+            "; accepted: " + std::to_string(RecordingFormat));
   }
 }
 
-RecordingReader::~RecordingReader() {
-  sqlite3_close(this->Impl_->database);
+bool RecordingReader::IsNewer(const std::string& path) {
+  try {
+    const RecordingDatabase database(path);
+    Statement found(database, "SELECT value FROM meta WHERE key = 'format'");
+    return found.Step() && found.IsInteger(0) && found.Integer(0) > RecordingFormat;
+  } catch (const Error&) { // damaged, or no recording
+    return false;
+  }
 }
 
 const std::string& RecordingReader::Path() const {
-  return this->Impl_->path;
+  return this->Database_->Path();
+}
+
+void RecordingReader::SetTimeout(double seconds) {
+  this->Database_->SetTimeout(seconds);
 }
 
 std::uint64_t RecordingReader::First() {
-  return this->Impl_->Number("SELECT min(seq) FROM command", 1);
+  return std::uint64_t(this->Database_->Number("SELECT min(seq) FROM command", 1));
 }
 
 std::uint64_t RecordingReader::Last() {
-  return this->Impl_->Number("SELECT max(seq) FROM command", 0);
+  return std::uint64_t(this->Database_->Number("SELECT max(seq) FROM command", 0));
 }
 
-void RecordingReader::Read(std::uint64_t first, std::uint64_t last,
-                           const std::function<bool(RecordedCommand&&)>& take) {
-  Impl& impl = *this->Impl_;
-  const Impl::Statement rows =
-      impl.Ask("SELECT seq, time, wall, kind, payload, checksum FROM command "
-               "WHERE seq BETWEEN ? AND ? ORDER BY seq");
-  sqlite3_bind_int64(rows.get(), 1, sqlite3_int64(first));
-  sqlite3_bind_int64(rows.get(), 2, sqlite3_int64(last));
+std::uint64_t RecordingReader::Begin() {
+  Statement found(*this->Database_, "SELECT value FROM meta WHERE key = 'begin'");
+  if (!found.Step()) {
+    return 0;
+  }
+  if (!found.IsInteger(0) || found.Integer(0) < 0) {
+    this->Database_->Damaged("the number of the snapshot that it begins with is damaged");
+  }
+  return std::uint64_t(found.Integer(0));
+}
+
+void RecordingReader::ReadRows(std::uint64_t first, std::uint64_t last,
+                               const std::function<bool(RecordingRow&&)>& take) {
+  Statement rows(*this->Database_, "SELECT seq, time, wall, kind, payload, checksum FROM command "
+                                   "WHERE seq BETWEEN ? AND ? ORDER BY seq");
+  rows.Bind(1, Bound(first)).Bind(2, Bound(last));
+  Sha256 sum;
   std::uint64_t expected = first;
-  while (impl.Step(rows)) {
-    const RecordingRow row = impl.Row(rows, false);
+  while (rows.Step()) {
+    RecordingRow row = RowOf(*this->Database_, rows, false, sum);
     if (row.seq != expected) {
-      impl.Missing(expected, row.seq - 1);
+      Missing(*this->Database_, expected, row.seq - 1);
     }
     ++expected;
-    RecordedCommand command{row.seq, row.time_s, row.wall_s, {}};
-    if (!command.command.ParseFromString(row.payload)) {
-      impl.Fail("command " + std::to_string(row.seq) + " is no Command message");
-    }
-    if (!take(std::move(command))) {
+    if (!take(std::move(row))) {
       return;
     }
   }
   if (expected <= last) {
-    impl.Missing(expected, last);
+    Missing(*this->Database_, expected, last);
   }
 }
 
-RecordedSnapshot RecordingReader::SnapshotAt(std::uint64_t seq) {
-  Impl& impl = *this->Impl_;
-  const Impl::Statement found =
-      impl.Ask("SELECT seq, time, wall, kind, payload, checksum FROM snapshot "
-               "WHERE seq <= ? ORDER BY seq DESC LIMIT 1");
-  sqlite3_bind_int64(found.get(), 1, sqlite3_int64(seq));
-  if (!impl.Step(found)) {
-    impl.Fail("the state before command " + std::to_string(seq) + " is not there");
+void RecordingReader::Read(std::uint64_t first, std::uint64_t last,
+                           const std::function<bool(RecordedCommand&&)>& take) {
+  this->ReadRows(first, last, [&](RecordingRow&& row) {
+    RecordedCommand command{row.seq, row.time_s, row.wall_s, {}};
+    if (!command.command.ParseFromString(row.payload)) {
+      this->Database_->Damaged("command " + std::to_string(row.seq) + " is not a Command message");
+    }
+    return take(std::move(command));
+  });
+}
+
+void RecordingReader::ReadOnly(const std::vector<int>& kinds, std::uint64_t first,
+                               std::uint64_t last,
+                               const std::function<bool(RecordingRow&&)>& take) {
+  std::string sql = "SELECT seq, time, wall, kind, payload, checksum FROM command "
+                    "WHERE seq BETWEEN ? AND ? AND kind IN (";
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    sql += (i ? "," : "") + std::to_string(kinds[i]);
   }
-  const RecordingRow row = impl.Row(found, true);
+  Statement rows(*this->Database_, (sql + ") ORDER BY seq").c_str());
+  rows.Bind(1, Bound(first)).Bind(2, Bound(last));
+  Sha256 sum;
+  while (rows.Step()) {
+    if (!take(RowOf(*this->Database_, rows, false, sum))) {
+      return;
+    }
+  }
+}
+
+RecordingRow RecordingReader::SnapshotRow(std::uint64_t seq) {
+  Statement found(*this->Database_, "SELECT seq, time, wall, kind, payload, checksum FROM snapshot "
+                                    "WHERE seq <= ? ORDER BY seq DESC LIMIT 1");
+  if (!found.Bind(1, Bound(seq)).Step()) {
+    this->Database_->Damaged("the state before command " + std::to_string(seq) + " is missing");
+  }
+  Sha256 sum;
+  return RowOf(*this->Database_, found, true, sum);
+}
+
+RecordedSnapshot RecordingReader::SnapshotAt(std::uint64_t seq) {
+  const RecordingRow row = this->SnapshotRow(seq);
   RecordedSnapshot snapshot{row.seq, row.time_s, row.wall_s, {}};
   google::protobuf::io::ArrayInputStream bytes(row.payload.data(), int(row.payload.size()));
   google::protobuf::io::CodedInputStream in(&bytes);
@@ -212,67 +272,113 @@ RecordedSnapshot RecordingReader::SnapshotAt(std::uint64_t seq) {
     snapshot.commands.push_back(std::move(command));
   }
   if (!end || snapshot.commands.size() != std::size_t(row.kind)) {
-    impl.Fail("snapshot " + std::to_string(row.seq) + " is no list of commands");
+    this->Database_->Damaged("snapshot " + std::to_string(row.seq) + " is not a list of commands");
   }
   return snapshot;
 }
 
+void RecordingReader::ReadSnapshots(std::uint64_t first, std::uint64_t last,
+                                    const std::function<bool(RecordingRow&&)>& take) {
+  Statement rows(*this->Database_, "SELECT seq, time, wall, kind, payload, checksum FROM snapshot "
+                                   "WHERE seq BETWEEN ? AND ? ORDER BY seq");
+  rows.Bind(1, Bound(first)).Bind(2, Bound(last));
+  Sha256 sum;
+  while (rows.Step() && take(RowOf(*this->Database_, rows, true, sum))) {
+  }
+}
+
 std::vector<std::uint64_t> RecordingReader::Snapshots() {
-  const Impl::Statement found = this->Impl_->Ask("SELECT seq FROM snapshot ORDER BY seq");
+  Statement found(*this->Database_, "SELECT seq FROM snapshot ORDER BY seq");
   std::vector<std::uint64_t> seqs;
-  while (this->Impl_->Step(found)) {
-    seqs.push_back(std::uint64_t(sqlite3_column_int64(found.get(), 0)));
+  while (found.Step()) {
+    seqs.push_back(std::uint64_t(found.Integer(0)));
   }
   return seqs;
 }
 
-std::vector<std::pair<std::uint64_t, double>> RecordingReader::Steps() {
-  const Impl::Statement found =
-      this->Impl_->Ask("SELECT seq, time FROM command INDEXED BY step WHERE kind = 13");
+std::vector<std::pair<std::uint64_t, double>>
+RecordingReader::Steps(const std::optional<std::string>& scene) {
+  static_assert(SetTime == 13, "the index `step` is of commands of this kind");
+  Statement found(*this->Database_,
+                  scene ? "SELECT seq, time, payload FROM command INDEXED BY step WHERE kind = 13"
+                        : "SELECT seq, time FROM command INDEXED BY step WHERE kind = 13");
   std::vector<std::pair<std::uint64_t, double>> steps;
-  while (this->Impl_->Step(found)) {
-    steps.emplace_back(std::uint64_t(sqlite3_column_int64(found.get(), 0)),
-                       sqlite3_column_double(found.get(), 1));
+  v1::Command command;
+  while (found.Step()) {
+    const auto seq = std::uint64_t(found.Integer(0));
+    if (scene) {
+      if (!command.ParseFromString(found.Bytes(2))) {
+        this->Database_->Damaged("command " + std::to_string(seq) + " is not a Command message");
+      }
+      if ((command.scene().empty() ? "scene" : command.scene()) != *scene) {
+        continue;
+      }
+    }
+    steps.emplace_back(seq, found.Real(1));
   }
   std::sort(steps.begin(), steps.end());
   return steps;
 }
 
 std::vector<std::pair<std::uint64_t, std::uint64_t>> RecordingReader::Lost() {
-  const Impl::Statement found = this->Impl_->Ask("SELECT value FROM meta WHERE key = 'lost'");
+  Statement found(*this->Database_, "SELECT value FROM meta WHERE key = 'lost'");
   std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
-  std::istringstream words(this->Impl_->Step(found) ? Impl::Blob(found, 0) : std::string());
+  std::istringstream words(found.Step() ? found.Bytes(0) : std::string());
   for (std::string word; words >> word;) {
     char* end = nullptr;
     const std::uint64_t first = std::strtoull(word.c_str(), &end, 10);
     const std::uint64_t last = *end == '-' ? std::strtoull(end + 1, &end, 10) : 0;
     if (first == 0 || last < first || *end != '\0') {
-      this->Impl_->Fail("what it says of lost commands is damaged");
+      this->Database_->Damaged("the list of its lost commands is damaged");
     }
     ranges.emplace_back(first, last);
   }
   return ranges;
 }
 
-std::vector<RecordingAsset> RecordingReader::Assets(std::int64_t after) {
-  const Impl::Statement rows =
-      this->Impl_->Ask("SELECT id, path, state, size, sha256, packed, checksum FROM asset "
-                       "WHERE id > ? ORDER BY id");
-  sqlite3_bind_int64(rows.get(), 1, after);
-  std::map<std::string, RecordingAsset> found;
-  while (this->Impl_->Step(rows)) {
-    RecordingAsset asset;
-    asset.id = sqlite3_column_int64(rows.get(), 0);
-    asset.path = Impl::Blob(rows, 1);
-    asset.state = Impl::Blob(rows, 2);
-    asset.size = sqlite3_column_int64(rows.get(), 3);
-    asset.sha256 = Impl::Blob(rows, 4);
-    asset.packed = sqlite3_column_int64(rows.get(), 5) != 0;
-    if (Impl::Blob(rows, 6) != RecordingChecksum(asset)) {
-      this->Impl_->Fail("asset " + std::to_string(asset.id) + " is damaged");
-    }
-    found[asset.path] = std::move(asset);
+RecordingReader::Counts RecordingReader::Count() {
+  Counts counts;
+  counts.snapshots = std::uint64_t(this->Database_->Number("SELECT count(*) FROM snapshot", 0));
+  Statement ends(*this->Database_,
+                 "SELECT min(time), max(time), min(wall), max(wall) FROM command");
+  if (ends.Step()) {
+    counts.firstTime_s = ends.Real(0);
+    counts.lastTime_s = ends.Real(1);
+    counts.firstWall_s = ends.Real(2);
+    counts.lastWall_s = ends.Real(3);
   }
+  Statement kinds(*this->Database_, "SELECT kind, count(*), sum(length(payload)) FROM command "
+                                    "GROUP BY kind ORDER BY 2 DESC");
+  while (kinds.Step()) {
+    counts.kinds.push_back(
+        {int(kinds.Integer(0)), std::uint64_t(kinds.Integer(1)), std::uint64_t(kinds.Integer(2))});
+  }
+  return counts;
+}
+
+void RecordingReader::ReadAssets(std::int64_t after,
+                                 const std::function<void(RecordingAsset&&)>& take) {
+  Statement rows(*this->Database_, "SELECT id, path, state, size, sha256, packed, checksum "
+                                   "FROM asset WHERE id > ? ORDER BY id");
+  rows.Bind(1, after);
+  while (rows.Step()) {
+    RecordingAsset asset;
+    asset.id = rows.Integer(0);
+    asset.path = rows.Bytes(1);
+    asset.state = rows.Bytes(2);
+    asset.size = rows.Integer(3);
+    asset.sha256 = rows.Bytes(4);
+    asset.packed = rows.Integer(5) != 0;
+    if (rows.Bytes(6) != RecordingChecksum(asset)) {
+      this->Database_->Damaged("asset " + std::to_string(asset.id) + " is damaged");
+    }
+    take(std::move(asset));
+  }
+}
+
+std::vector<RecordingAsset> RecordingReader::Assets(std::int64_t after) {
+  std::map<std::string, RecordingAsset> found;
+  this->ReadAssets(after, [&](RecordingAsset&& asset) { found[asset.path] = std::move(asset); });
   std::vector<RecordingAsset> assets;
   for (auto& entry : found) {
     assets.push_back(std::move(entry.second));
@@ -280,11 +386,23 @@ std::vector<RecordingAsset> RecordingReader::Assets(std::int64_t after) {
   return assets;
 }
 
+void RecordingReader::ReadParts(const std::function<void(RecordingContent&&)>& take) {
+  Statement rows(*this->Database_,
+                 "SELECT id, asset, place, size, data, checksum FROM content ORDER BY id");
+  while (rows.Step()) {
+    RecordingContent part = PartOf(rows);
+    if (rows.Bytes(5) != RecordingChecksum(part)) {
+      this->Database_->Damaged("content " + std::to_string(part.id) + " is damaged");
+    }
+    take(std::move(part));
+  }
+}
+
 RecordingReader::PartNumbers RecordingReader::Parts() {
-  const Impl::Statement rows = this->Impl_->Ask("SELECT asset, id FROM content ORDER BY place");
+  Statement rows(*this->Database_, "SELECT asset, id FROM content ORDER BY place");
   PartNumbers numbers;
-  while (this->Impl_->Step(rows)) {
-    numbers[sqlite3_column_int64(rows.get(), 0)].push_back(sqlite3_column_int64(rows.get(), 1));
+  while (rows.Step()) {
+    numbers[rows.Integer(0)].push_back(rows.Integer(1));
   }
   return numbers;
 }
@@ -295,18 +413,13 @@ void RecordingReader::ReadContent(const RecordingAsset& asset,
   const std::string named = "the content of '" + asset.path + "'";
   std::int64_t place = 0;
   for (const std::int64_t number : parts) {
-    const Impl::Statement row =
-        this->Impl_->Ask("SELECT id, asset, place, size, data, checksum FROM content WHERE id = ?");
-    sqlite3_bind_int64(row.get(), 1, number);
+    Statement row(*this->Database_,
+                  "SELECT id, asset, place, size, data, checksum FROM content WHERE id = ?");
     RecordingContent part;
-    bool good = this->Impl_->Step(row);
+    bool good = row.Bind(1, number).Step();
     if (good) {
-      part.id = sqlite3_column_int64(row.get(), 0);
-      part.asset = sqlite3_column_int64(row.get(), 1);
-      part.place = sqlite3_column_int64(row.get(), 2);
-      part.size = sqlite3_column_int64(row.get(), 3);
-      part.data = Impl::Blob(row, 4);
-      good = Impl::Blob(row, 5) == RecordingChecksum(part) && part.asset == asset.id &&
+      part = PartOf(row);
+      good = row.Bytes(5) == RecordingChecksum(part) && part.asset == asset.id &&
              part.place == place && part.size > 0 && part.size <= RecordingPartBytes &&
              part.size <= asset.size - place; // no more is made than is said
     }
@@ -315,14 +428,14 @@ void RecordingReader::ReadContent(const RecordingAsset& asset,
       good = std::int64_t(part.data.size()) == part.size;
     }
     if (!good) {
-      this->Impl_->Fail(named + " is damaged at byte " + std::to_string(place));
+      this->Database_->Damaged(named + " is damaged at byte " + std::to_string(place));
     }
     take(part.data);
     place += part.size;
   }
   if (place != asset.size) {
-    this->Impl_->Fail(named + " ends at byte " + std::to_string(place) + " of " +
-                      std::to_string(asset.size));
+    this->Database_->Damaged(named + " ends at byte " + std::to_string(place) + " of " +
+                             std::to_string(asset.size));
   }
 }
 

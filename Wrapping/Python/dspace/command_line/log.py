@@ -9,8 +9,8 @@ from dspace.command_line.log_diff import compare, name_of
 from dspace.command_line.log_pack import pack
 from dspace.command_line.log_salvage import salvage
 from dspace.command_line.log_telemetry import add_arguments as add_telemetry
-from dspace.playback_steps import is_after, is_at, led_in
-from dspace.recording_file import RecordingFile, write_recording
+from dspace.playback_steps import StepTimes
+from dspace.recording_file import RecordingFile, carry_out, path_of
 
 
 def add_arguments(parser):
@@ -37,11 +37,11 @@ def add_arguments(parser):
     cut.add_argument("--out", required=True, metavar="FILE")
     cut.set_defaults(run=cut_out)
     packing = what.add_parser("pack", help="takes the files that it needs into it, so that it replays anywhere; "
-                                           "files that are gone or have changed are refused; those that could not be "
-                                           "read when it was recorded are told, exit code 1")
+                                           "files that are gone or have changed are rejected; those that could not be "
+                                           "read when it was recorded are listed, exit code 1")
     packing.add_argument("file", metavar="FILE")
-    packing.add_argument("--out", metavar="FILE", help="the packed recording; absent: FILE itself, which nobody may "
-                                                       "be writing or reading")
+    packing.add_argument("--out", metavar="FILE", help="the packed recording; absent: FILE itself, which no process "
+                                                       "may be writing or reading")
     packing.set_defaults(run=pack)
     rescue = what.add_parser("salvage", help="every command of a damaged one that its own checksum vouches for; "
                                              "exit code 1 where some are lost")
@@ -55,16 +55,15 @@ def show(options):
     with RecordingFile(options.file) as file:
         file.check()
         last, first = file.last, file.first
-        counts = file.ask("SELECT kind, count(*), sum(length(payload)) FROM command GROUP BY kind ORDER BY 2 DESC")
-        ends = file.ask("SELECT min(time), max(time), min(wall), max(wall) FROM command")[0]
-        print(f"{options.file}: format 1, commands {first} to {last}, "
-              f"{file.ask('SELECT count(*) FROM snapshot')[0][0]} snapshots; every checksum holds")
-        if counts:
-            when = datetime.datetime.fromtimestamp(ends[2], datetime.timezone.utc)
-            print(f"simulation time {ends[0]:g} to {ends[1]:g} s; recorded in {ends[3] - ends[2]:.1f} s "
-                  f"from {when:%Y-%m-%d %H:%M:%S} UTC")
-        for kind, count, size in counts:
-            print(f"{count:10} {name_of(kind):24} {size:12} bytes")
+        summary = file.summary
+        print(f"{options.file}: format 1, commands {first} to {last}, {summary.snapshots} snapshots; "
+              "every checksum holds")
+        if summary.kind:
+            when = datetime.datetime.fromtimestamp(summary.first_wall_s, datetime.timezone.utc)
+            print(f"simulation time {summary.first_time_s:g} to {summary.last_time_s:g} s; recorded in "
+                  f"{summary.last_wall_s - summary.first_wall_s:.1f} s from {when:%Y-%m-%d %H:%M:%S} UTC")
+        for each in summary.kind:
+            print(f"{each.count:10} {name_of(each.kind):24} {each.bytes:12} bytes")
         for asset in file.assets:
             said = f"{asset.size} bytes, SHA-256 {asset.sha256.hex()}" if asset.state == "read" else asset.state
             print(f"file {asset.path}: {said}{', packed' if asset.packed else ''}")
@@ -108,21 +107,19 @@ def cut_out(options):
         raise Failed(f"--to {options.end!r}; accepted: {options.begin!r} and later, --from")
     with RecordingFile(options.file) as file:
         first, last = file.first, file.last
-        steps = [step for step in file.steps() if step[0] <= last]  # it may be being written
-        for base in file.ask("SELECT seq, time, length(payload) FROM snapshot ORDER BY seq LIMIT 1"):
-            steps = led_in(steps, *base)
-        times = [at for _, at in steps]
+        steps = [step for step in file.step_begins() if step[0] <= last]  # it may be being written
+        times = StepTimes(at for _, at in steps)
         for name, at, end, side in (("--from", options.begin, max, 1), ("--to", options.end, min, -1)):
-            if at is not None and times and (at - end(times)) * side > 0 and not is_at(times, times.index(end(times)), at):
-                raise Failed(f"{name} {at!r}; accepted: within {file.label}, {min(times)!r} to {max(times)!r} s")
-        after = lambda at: [seq for index, (seq, _) in enumerate(steps) if is_after(times, index, at)]
+            if at is None or not steps or (at - end(times.times)) * side <= 0:
+                continue
+            if not times.is_at(times.times.index(end(times.times)), at):
+                raise Failed(f"{name} {at!r}; accepted: within {file.label}, {min(times.times)!r} to "
+                             f"{max(times.times)!r} s")
+        after = lambda at: [seq for index, (seq, _) in enumerate(steps) if times.is_after(index, at)]
         if options.begin is not None:
             first = max({seq for seq, _ in steps}.difference(after(options.begin)), default=first)
         if options.end is not None:
             last = min([seq - 1 for seq in after(options.end) if seq > first], default=last)
-        snapshot = file.snapshot(first - 1)
-        rows = list(file.rows(snapshot.seq + 1, last)) if last > snapshot.seq else []
-        later = [row for row in file.rows(snapshot.seq + 1, last, "snapshot")]
-        write_recording(os.path.abspath(options.out), rows, [snapshot, *later], file.path, snapshot.seq)
-        print(f"{options.out}: commands {snapshot.seq + 1} to {last}")
+        begin = carry_out("Cut", os.fsencode(file.path), os.fsencode(path_of(options.out)), first, last).number
+        print(f"{options.out}: commands {begin + 1} to {last}")
     return 0

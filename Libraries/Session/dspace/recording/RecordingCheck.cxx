@@ -1,0 +1,38 @@
+#include <dspace/recording/RecordingCheck.h>
+
+#include <limits>
+
+#include <dspace/recording/RecordingDatabase.h>
+#include <dspace/recording/RecordingFile.h>
+
+namespace dspace::session {
+
+void CheckRecording(RecordingReader& reader, const KeepGoing& keepGoing) {
+  const RecordingDatabase::View view(reader.Database());
+  const auto seen = [&](const RecordingRow&) {
+    keepGoing();
+    return true;
+  };
+  std::uint64_t first = reader.First();
+  for (const auto& [lost, end] : reader.Lost()) {
+    reader.ReadRows(first, lost - 1, seen);
+    first = end + 1;
+  }
+  reader.ReadRows(first, reader.Last(), seen);
+  reader.ReadSnapshots(0, std::numeric_limits<std::uint64_t>::max(), seen);
+  const RecordingReader::PartNumbers numbers = reader.Parts();
+  for (const RecordingAsset& asset : reader.Assets()) {
+    if (asset.packed) {
+      const auto parts = numbers.find(asset.id);
+      reader.ReadContent(asset,
+                         parts == numbers.end() ? std::vector<std::int64_t>() : parts->second,
+                         [&](const std::string&) { keepGoing(); });
+    }
+  }
+  RecordingDatabase::Statement sound(reader.Database(), "PRAGMA integrity_check(1)");
+  if (!sound.Step() || sound.Bytes(0) != "ok") {
+    reader.Database().Damaged(sound.Bytes(0));
+  }
+}
+
+} // namespace dspace::session
