@@ -252,6 +252,7 @@ TEST_F(PlaybackOf, StepsAreOfOneMoment) {
   options.commitEvery_s = 0.001;
   options.snapshotCommands = 50;
   session::RecordingWriter writer(this->Path_, Ledger(), 0.0, options);
+  ASSERT_EQ(writer.Flush(), ""); // the first state is there
   std::thread simulation([&] {
     for (int i = 1; !stop; ++i) {
       writer.Add(Time(i), {}, Ledger());
@@ -264,10 +265,14 @@ TEST_F(PlaybackOf, StepsAreOfOneMoment) {
     RecordingReader reader(this->Path_);
     const session::PlaybackSteps found = session::StepsOf(reader);
     EXPECT_TRUE(found.gaps.empty());
+    if (found.steps.empty()) {
+      ADD_FAILURE() << "no step";
+      break;
+    }
     most = std::max(most, found.steps.size());
     for (std::size_t i = 1; i < found.steps.size(); ++i) {
-      ASSERT_EQ(found.steps[i].time_s, found.steps[i - 1].time_s + 1.0);
-      ASSERT_LE(found.steps[i].end, found.steps[i - 1].end + 2);
+      EXPECT_EQ(found.steps[i].time_s, found.steps[i - 1].time_s + 1.0);
+      EXPECT_LE(found.steps[i].end, found.steps[i - 1].end + 2);
     }
     if (found.steps.back().end == 0) { // no command yet
       continue;
