@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.movies_draw import Source, Stage, open_run, step_at
+from dspace.movies_draw import Source, Stage, open_run
+from dspace.playback_steps import StepTimes
 from dspace.movies_folder import FRAME
 from dspace.movies_views import Overlay, View
 from movies_support import SIZE, pixels
@@ -121,21 +122,22 @@ def test_steps_that_are_added_up_are_met(step):
         times.append(times[-1] + step)
     late = max(abs(times[n] - n * step) for n in range(0, count, 97))
     assert late > 1e-9 or step == 0.001
+    steps = StepTimes(times)
     for n in range(1, count, 97):
         asked = n * step
-        assert bisect.bisect_right(times, step_at(times, asked)) - 1 == n
-        assert step_at(times, asked - 0.01 * step) == asked - 0.01 * step  # before it is before it
+        assert bisect.bisect_right(times, steps.step_at(asked)) - 1 == n
+        assert steps.step_at(asked - 0.01 * step) == asked - 0.01 * step  # before it is before it
 
 
 def test_no_step_is_shown_before_its_time():
-    assert step_at([0.0, 1000.0], 999.9) == 999.9 and step_at([0.0, 1000.0], 1000 - 1e-5) == 1000
-    assert step_at([5.0, 6.0], 4.9998) == 4.9998 and step_at([5.0, 6.0], 7.0) == 7.0
-    assert step_at([5.0, 6.0], 4.9999999) == 5.0  # the first of all may be late, too
-    assert step_at([1.0, 1.0, 2.0], 1.0) == 1.0 and step_at([], 1.0) == 1.0
+    assert StepTimes([0.0, 1000.0]).step_at(999.9) == 999.9 and StepTimes([0.0, 1000.0]).step_at(1000 - 1e-5) == 1000
+    assert StepTimes([5.0, 6.0]).step_at(4.9998) == 4.9998 and StepTimes([5.0, 6.0]).step_at(7.0) == 7.0
+    assert StepTimes([5.0, 6.0]).step_at(4.9999999) == 5.0  # the first of all may be late, too
+    assert StepTimes([1.0, 1.0, 2.0]).step_at(1.0) == 1.0 and StepTimes([]).step_at(1.0) == 1.0
     # Of a simulation that was reset the later run counts, whose steps are not the earlier one's.
-    times, runs = [0.0, 1.0, 2.0, 0.0, 1.00005, 2.0, 3.0], [(0, 3), (3, 7)]
-    assert step_at(times, 1.0, runs) == 1.00005 and step_at(times, 1.99, runs) == 1.99
-    assert step_at(times, 2.0, runs) == 2.0 and step_at(times, -1.0, runs) == -1.0
+    times = [0.0, 1.0, 2.0, 0.0, 1.00005, 2.0, 3.0]
+    assert StepTimes(times).step_at(1.0) == 1.00005 and StepTimes(times).step_at(1.99) == 1.99
+    assert StepTimes(times).step_at(2.0) == 2.0 and StepTimes(times).step_at(-1.0) == -1.0
 
 
 # --- What is refused at once -----------------------------------------------------------------------

@@ -13,6 +13,7 @@
 #include <zlib.h>
 
 #include <dspace/Error.h>
+#include <dspace/messages/CommandLimits.h>
 #include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingFile.h>
 #include <dspace/recording/RecordingWriter.h>
@@ -310,7 +311,7 @@ RecordingReader::Steps(const std::optional<std::string>& scene) {
       if (!command.ParseFromString(found.Bytes(2))) {
         this->Database_->Damaged("command " + std::to_string(seq) + " is not a Command message");
       }
-      if ((command.scene().empty() ? "scene" : command.scene()) != *scene) {
+      if (SceneName(command) != *scene) {
         continue;
       }
     }
