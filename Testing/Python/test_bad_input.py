@@ -152,7 +152,7 @@ def test_numbers_and_words(scene, view, refused):
             ("quality is 1000000000; accepted: 1 to 100", lambda: view.save("a.jpg", quality=10**9)),
             ("viewport 'view': radius is -1; accepted: an integer from 0 to 256",
              lambda: view.pick(1, 1, radius=-1)),
-            ("radius 1000000000", lambda: view.pick(1, 1, radius=10**9)),
+            ("radius is 1000000000", lambda: view.pick(1, 1, radius=10**9)),
             ("viewport 'view': samples is True", lambda: setattr(view, "samples", True)),
             ("viewport 'view': x is 'left'; accepted: a number", lambda: view.pick("left", 1)),
             ("viewport 'view': type is 'jump'; accepted: 'move', 'press'", lambda: view.event("jump")),

@@ -109,7 +109,7 @@ def test_a_legend_is_of_what_has_a_ramp(view, field):
 
 @pytest.mark.parametrize("change, told", [
     (dict(low=3.0), "3 to 3"), (dict(high=float("nan")), "nan"), (dict(colors=[]), "0 colours"),
-    (dict(colors=["nocolour"]), "CSS"), (dict(colors="red"), "colours"), (dict(ticks=101), "101 ticks"),
+    (dict(colors=["nocolour"]), "CSS"), (dict(colors="red"), "colours"), (dict(ticks=101), "ticks is 101"),
     (dict(values=[5.0]), "a tick is at 5"), (dict(anchor="middle"), "'top left'"),
     (dict(length=9000), "8192"), (dict(font_size=2), "4 to 200"), (dict(title="a\nb"), "U\\+000A"),
     (dict(title="x" * 5000), "4096"), (dict(horizontal=1), "True or False"), (dict(opacity=2), "0 to 1"),

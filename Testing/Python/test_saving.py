@@ -15,6 +15,7 @@ import pytest
 
 import dspace
 from dspace._files import AtomicFile, atomic_write
+from needs import needs_module
 from served_support import Served
 
 ROOM = 400  # bytes, fewer than any of the files has
@@ -96,7 +97,7 @@ def test_a_full_disk_in_a_served_session(tmp_path):
 
 @pytest.mark.parametrize("name", ("a.png", "a.tif", "a.jpg"))
 def test_what_was_saved_can_be_read(scene, tmp_path, name):
-    gdal = pytest.importorskip("osgeo.gdal")
+    gdal = needs_module("osgeo.gdal", "python3-gdal")
     gdal.UseExceptions()
     scene.add_box((1, 2, 3), color=(0.8, 0.3, 0.1))
     view = scene.add_viewport((200, 150), scene.add_camera(eye=(5, 4, 3), target=(0, 0, 0)))

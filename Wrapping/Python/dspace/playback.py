@@ -14,7 +14,7 @@ from dspace.recorded_files import RecordedFiles
 from dspace.recorded_views import spans_of
 from dspace.recording_file import RecordingFile, commands_of
 from dspace.proto import commands_pb2 as pb, terrain_pb2
-from dspace.protos import Session
+from dspace.sessions import Session
 
 BUILDING = terrain_pb2.TerrainReply.BUILDING
 AT_ONCE = 3600.0  # [s] of sleep; the operating system takes no number of any size

@@ -13,7 +13,7 @@ from dspace.errors import Closed, DeadlineExceeded, Internal, Unsupported
 from dspace.served_recordings import ServedRecording
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
-from dspace.protos import Session
+from dspace.sessions import Session
 
 
 class RemoteClient(LocalClient):

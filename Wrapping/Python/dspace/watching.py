@@ -8,7 +8,7 @@ from dspace._links import SLICE, hear_signals, make_connection, prepare
 from dspace._wire import encode
 from dspace.errors import Closed, WrongType
 from dspace.scenes import Scene
-from dspace.protos import Session
+from dspace.sessions import Session
 
 
 OWN = "viewer:"  # begins the names of what is a watcher's own

@@ -140,6 +140,7 @@ TEST_F(ObjectCommands, TiltMarkersTurnRed) {
   EXPECT_GT(this->Describe(id).material().color().r(), this->Describe(id).material().color().g());
   tilt.mutable_set_tilt()->set_tilt_deg(-1);
   this->Refuse(tilt, v1::Error::INVALID_ARGUMENT, "-1");
+  tilt.mutable_set_tilt()->set_tilt_deg(40);
   tilt.mutable_set_tilt()->set_object(this->AddBox());
   this->Refuse(tilt, v1::Error::INVALID_ARGUMENT, "no tilt marker");
 }

@@ -84,6 +84,9 @@ double NumberOf(const Message& message, const FieldDescriptor& field) {
 
 std::string About(const v1::Command& command) {
   const CommandTraits& traits = *CommandTraits::Find(command.command_case());
+  if (std::string part = traits.PartName(command); !part.empty()) {
+    return part;
+  }
   const std::string name = traits.OwnerName(command);
   switch (traits.GetOwner()) {
   case CommandTraits::Owner::Object:

@@ -161,6 +161,17 @@ std::string CommandTraits::OwnerName(const v1::Command& command) const {
   return message.GetReflection()->GetString(message, this->Key_);
 }
 
+std::string CommandTraits::PartName(const v1::Command& command) const {
+  const auto& message = command.GetReflection()->GetMessage(command, this->Field_);
+  const auto* descriptor = message.GetDescriptor();
+  const std::string& part = descriptor->options().GetExtension(v1::command).part();
+  if (part.empty()) {
+    return {};
+  }
+  const auto* name = descriptor->FindFieldByName("name");
+  return part + " '" + message.GetReflection()->GetString(message, name) + "'";
+}
+
 std::uint32_t CommandTraits::OwnerId(const v1::Command& command) const {
   if (this->Owner_ != Owner::Object) {
     return 0;

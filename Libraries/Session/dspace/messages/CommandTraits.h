@@ -52,6 +52,9 @@ public:
   // The owner's name in a command of this kind, for a vantage, viewport or terrain; empty for other
   // owners.
   std::string OwnerName(const v1::Command& command) const;
+  // The part of the owner that a command of this kind changes, for messages: "colour bar 'height'".
+  // Empty: the command's options name no part.
+  std::string PartName(const v1::Command& command) const;
   // The owner's id, for an object; 0 for other owners.
   std::uint32_t OwnerId(const v1::Command& command) const;
 

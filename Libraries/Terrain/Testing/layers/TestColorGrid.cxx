@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <dspace/clipmap/ColorGridsOf.h>
 #include <dspace/clipmap/PoleCharts.h>
 #include <dspace/crs/CrsTransform.h>
 #include <dspace/layers/ColorGrid.h>

@@ -1,4 +1,6 @@
 // Fragments and lights.
+#include <set>
+
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/scene/Checks.h>
@@ -28,7 +30,10 @@ void ListFragments(const Context& context, v1::ListFragments&) {
     info->set_name(name);
     info->set_nature(FromNature(fragment.nature));
     info->set_visible(fragment.visible);
-    for (const ObjectId id : fragment.objects) {
+    // A fragment is a set: the order of its objects says nothing, and a snapshot need not restore
+    // it.
+    std::set<ObjectId> objects(fragment.objects.begin(), fragment.objects.end());
+    for (const ObjectId id : objects) {
       info->add_object(id);
     }
   }
