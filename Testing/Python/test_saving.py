@@ -47,7 +47,7 @@ def check_full_disk(session, folder, pid):
     terrain = scene.add_terrain(folder / "field.asc", subdivisions=3)
     terrain.track({"left": [(-0.5, 0.0), (0.5, 0.0)]}, width=0.1, sinkage=0.01)
     places = np.random.default_rng(1).uniform(-1, 1, (500, 3))
-    scene.add_points(places, size=4, color=(0.8, 0.6, 0.1))
+    scene.add_points(places, point_size=4, color=(0.8, 0.6, 0.1))
     view = scene.add_viewport((200, 150), scene.add_camera(eye=(4, 1, 2), target=(0, 0, 0)))
     saves = {name: view.save for name in ("a.png", "a.jpg", "a.tif", "a.exr")}
     saves.update({"depth.exr": lambda path: view.save(path, plane="depth"),
@@ -58,7 +58,7 @@ def check_full_disk(session, folder, pid):
     before = content(out)
     assert list(saves) == sorted(before, key=list(saves).index) and min(map(len, before.values())) > ROOM
     # What is saved from here on differs from what is there.
-    scene.add_points(places + 0.3, size=3, color=(0.1, 0.6, 0.9))
+    scene.add_points(places + 0.3, point_size=3, color=(0.1, 0.6, 0.9))
     terrain.track({"right": [(-0.5, 0.4), (0.5, 0.4)]}, width=0.1, sinkage=0.01)
     saves.update({"new.jpg": view.save, "new.png": view.save})
     with full_disk(pid):

@@ -147,7 +147,7 @@ def test_recorded_and_played_back(tmp_path, make, pack):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         with dspace.Playback(tmp_path / "a.dspace") as run:
-            assert run.times == [1.0, 2.0]
+            assert run.times == [0.0, 1.0, 2.0]
             run.seek(2.0)
             played = run.session.scenes["scene"]
             assert sorted(played.objects) == objects and "after" in played.frames

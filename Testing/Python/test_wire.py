@@ -27,7 +27,7 @@ def make_stubs(folder, language):
     folder.mkdir()
     subprocess.run([protoc, f"-I{PROTOS}", f"--{language}_out={folder}", f"--grpc_out={folder}",
                     f"--plugin=protoc-gen-grpc={plugin}",
-                    *sorted(str(path) for path in (PROTOS / "dspace" / "session").glob("*.proto"))], check=True)
+                    *sorted(str(path) for path in (PROTOS / "dspace" / "proto").glob("*.proto"))], check=True)
     return folder
 
 

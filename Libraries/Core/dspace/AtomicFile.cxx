@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* Ending = ".part";
 constexpr std::size_t EndingLength = 5;
-constexpr std::size_t RandomLength = 16; // hexadecimal digits
+constexpr std::size_t RandomLength = 16; // hexadecimal digits: of the process id, then random
 constexpr std::size_t NameLength = 64; // bytes of the target's name, so that long ones fit as well
 constexpr mode_t Permissions = 0777;
 
@@ -102,7 +102,7 @@ std::string TemporaryOf(const Target& target) {
   }
   std::random_device random;
   char digits[RandomLength + 1];
-  std::snprintf(digits, sizeof(digits), "%08x%08x", random(), random());
+  std::snprintf(digits, sizeof(digits), "%08x%08x", unsigned(::getpid()), random());
   return target.folder + "." + target.name.substr(0, length) + "." + digits + Ending;
 }
 

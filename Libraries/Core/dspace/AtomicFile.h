@@ -21,7 +21,8 @@ namespace dspace {
 // devices, pipes and sockets.
 //
 // After a power failure the target is the earlier file or the new one, never a part of one. A
-// process that is killed leaves its temporary file, ".NAME.RANDOM.part".
+// process that is killed leaves its temporary file, ".NAME.DIGITS.part": the digits are its process
+// id and a random number, 8 hexadecimal each.
 //
 // Every method throws Error: Io with the file and the system's reason, for all that the system
 // reports (full disk, missing folder, missing permission, name too long); InvalidArgument for a

@@ -262,13 +262,17 @@ void Put(Message& message, const FieldDescriptor& field, double value) {
   }
 }
 
-void PutText(Message& message, const FieldDescriptor& field, const std::string& text) {
+// False: the message has no such text.
+bool PutText(Message& message, const FieldDescriptor& field, const std::string& text) {
   const auto* reflection = message.GetReflection();
   if (!field.is_repeated()) {
     reflection->SetString(&message, &field, text);
   } else if (reflection->FieldSize(message, &field) > 0) {
     reflection->SetRepeatedString(&message, &field, 0, text);
+  } else {
+    return false;
   }
+  return true;
 }
 
 // The commands of the table with one of their limited fields changed; the field's name goes with
@@ -303,8 +307,7 @@ TEST_F(EveryCommandTest, NumbersBeyondTheirLimitsAreRejectedAndTheLimitsAccepted
     const auto beyond = Changed(command, [](Message& message, const FieldDescriptor& field) {
       const v1::LimitOptions& limits = field.options().GetExtension(v1::accepts);
       if (limits.has_most_bytes()) {
-        PutText(message, field, std::string(limits.most_bytes() + 1, 'x'));
-        return true;
+        return PutText(message, field, std::string(limits.most_bytes() + 1, 'x'));
       }
       const bool high = limits.has_maximum();
       if (!high && limits.minimum() < 2) {
@@ -316,8 +319,7 @@ TEST_F(EveryCommandTest, NumbersBeyondTheirLimitsAreRejectedAndTheLimitsAccepted
     const auto within = Changed(command, [](Message& message, const FieldDescriptor& field) {
       const v1::LimitOptions& limits = field.options().GetExtension(v1::accepts);
       if (limits.has_most_bytes()) {
-        PutText(message, field, std::string(limits.most_bytes(), 'x'));
-        return true;
+        return PutText(message, field, std::string(limits.most_bytes(), 'x'));
       }
       if (!limits.has_maximum()) {
         return false;
@@ -357,11 +359,15 @@ TEST_F(EveryCommandTest, AnAbsentNumberIsTheDefaultThatItsOptionStates) {
       return field.options().GetExtension(v1::accepts).has_standard();
     };
     const auto absent = Changed(command, [&](Message& message, const FieldDescriptor& field) {
-      message.GetReflection()->ClearField(&message, &field);
+      if (stated(field)) {
+        message.GetReflection()->ClearField(&message, &field);
+      }
       return stated(field);
     });
     const auto given = Changed(command, [&](Message& message, const FieldDescriptor& field) {
-      Put(message, field, field.options().GetExtension(v1::accepts).standard());
+      if (stated(field)) {
+        Put(message, field, field.options().GetExtension(v1::accepts).standard());
+      }
       return stated(field);
     });
     for (std::size_t i = 0; i < absent.size(); ++i) {

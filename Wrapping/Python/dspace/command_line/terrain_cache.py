@@ -140,8 +140,8 @@ def wait(answer, each_tick):
 
 
 def parts(folder, child):
-    """Files that a process has not finished."""
-    return glob.glob(os.path.join(glob.escape(folder), f"*-{child}-*.overviews-part"))
+    """Files that a process has not finished: AtomicFile puts its process id into their names."""
+    return glob.glob(os.path.join(glob.escape(folder), f".*.overviews.{child:08x}*.part"))
 
 
 def written(folder, child):
