@@ -43,6 +43,11 @@ struct vtkDspaceViewport::Internals {
   bool stale = true;               // something of the viewport's own changed
   std::uint64_t drawnRevision = 0; // of the scene, in the picture that is there
 
+  // Colour bars over text tables, each kind by name, whatever came first.
+  void RaiseOverlays() {
+    this->tables.Raise(this->picture.Overlay());
+    this->bars.Raise(this->picture.Overlay());
+  }
   std::string Object() const { return "viewport '" + this->name + "'"; }
 
   // The view of the camera, `factor` samples a pixel across and down.
@@ -196,6 +201,7 @@ void vtkDspaceViewport::Resize(int width, int height) {
   self.ViewChanged();
   self.tables.Resize(self.picture.Overlay(), width, height);
   self.bars.Resize(self.picture.Overlay(), width, height);
+  self.RaiseOverlays();
 }
 
 void vtkDspaceViewport::SetVisible(bool visible) {
@@ -239,6 +245,7 @@ void vtkDspaceViewport::SetFragmentVisible(const std::string& fragment, bool vis
 void vtkDspaceViewport::SetTextTable(const dspace::TextTable& table) {
   Internals& self = *this->Impl;
   if (self.tables.Set(table, self.picture.Overlay(), self.width, self.height)) {
+    self.RaiseOverlays();
     self.stale = true;
   }
 }
@@ -254,6 +261,7 @@ void vtkDspaceViewport::RemoveTextTable(const std::string& name) {
 void vtkDspaceViewport::SetColorBar(const dspace::ColorBar& bar) {
   Internals& self = *this->Impl;
   if (self.bars.Set(bar, self.picture.Overlay(), self.width, self.height)) {
+    self.RaiseOverlays();
     self.stale = true;
   }
 }

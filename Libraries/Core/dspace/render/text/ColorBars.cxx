@@ -8,6 +8,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper2D.h"
+#include "vtkPropCollection.h"
 #include "vtkRenderer.h"
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
@@ -143,6 +144,17 @@ void ColorBars::Resize(vtkRenderer* overlay, int width, int height) {
       overlay->RemoveViewProp(prop);
     }
     this->Set(entry.second.bar, overlay, width, height);
+  }
+}
+
+void ColorBars::Raise(vtkRenderer* overlay) const {
+  vtkPropCollection* all = overlay->GetViewProps(); // RemoveViewProp would release their textures
+  for (const auto& entry : this->Placed_) {
+    for (const auto& prop : entry.second.props) {
+      const vtkSmartPointer<vtkProp> held = prop.Get();
+      all->RemoveItem(held);
+      all->AddItem(held);
+    }
   }
 }
 

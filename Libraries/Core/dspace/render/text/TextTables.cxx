@@ -1,5 +1,6 @@
 #include <dspace/render/text/TextTables.h>
 
+#include "vtkPropCollection.h"
 #include "vtkRenderer.h"
 #include "vtkTextActor.h"
 
@@ -56,6 +57,17 @@ void TextTables::Resize(vtkRenderer* overlay, int width, int height) {
   for (auto& entry : this->Placed_) {
     TakeAway(entry.second, overlay);
     Place(entry.second, overlay, width, height);
+  }
+}
+
+void TextTables::Raise(vtkRenderer* overlay) const {
+  vtkPropCollection* all = overlay->GetViewProps(); // RemoveViewProp would release their textures
+  for (const auto& entry : this->Placed_) {
+    for (const auto& prop : entry.second.actors) {
+      const vtkSmartPointer<vtkProp> held = prop.Get();
+      all->RemoveItem(held);
+      all->AddItem(held);
+    }
   }
 }
 

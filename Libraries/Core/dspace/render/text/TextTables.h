@@ -24,6 +24,9 @@ public:
   bool Remove(const std::string& name, vtkRenderer* overlay); // false where there is none
   // All of them anew, in the corners of a picture of another size.
   void Resize(vtkRenderer* overlay, int width, int height);
+  // Draws all of them over everything else in the overlay, in the order of their names, so that a
+  // picture does not depend on the order in which they were set.
+  void Raise(vtkRenderer* overlay) const;
 
 private:
   struct Placed {
