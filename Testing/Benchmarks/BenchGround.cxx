@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <dspace/clipmap/ClipmapTerrain.h>
+#include <dspace/clipmap/ColorGridsOf.h>
 #include <dspace/layers/raster/ImageLayer.h>
 
 namespace dspace::bench {
