@@ -33,7 +33,7 @@ Eigen::Vector2d AxisSigns(const OGRSpatialReference& srs) {
 std::string ExportedWkt(const OGRSpatialReference& srs) {
   char* text = nullptr;
   const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  const std::string wkt = srs.exportToWkt(&text, options) == OGRERR_NONE ? text : "";
+  std::string wkt = srs.exportToWkt(&text, options) == OGRERR_NONE ? text : "";
   CPLFree(text);
   return wkt;
 }
