@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include <dspace/import/files/ModelReader.h>
 #include <vtkDspaceRenderContext.h>
 #include <vtkDspaceViewport.h>
 #include <vtkNew.h>
