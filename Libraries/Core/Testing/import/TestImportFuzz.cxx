@@ -5,6 +5,7 @@
 #include "BinaryBytes.h"
 #include "FuzzMutator.h"
 #include "ImportTestSupport.h"
+#include "Sanitized.h"
 #include "TestData.h"
 
 #include <dspace/import/urdf/Urdf.h>
@@ -27,12 +28,6 @@ using testing::AppendBinary;
 
 constexpr int SecondsWithoutProgress = 60;
 constexpr rlim_t MaximumMemory = rlim_t(4) << 30;
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool Sanitized = true; // its shadow memory needs the address space
-#else
-constexpr bool Sanitized = false;
-#endif
 
 std::string Seed(const std::string& name) {
   return testing::ReadBytes(std::string(DSPACE_SEEDS) + "/" + name);
@@ -158,7 +153,7 @@ std::string WriteMutant(const Format& format, int number, const testing::TempFol
 // The child: reads mutants [first, last), then exits.
 [[noreturn]] void RunChild(const Format& format, int first, int last, Progress& progress,
                            const testing::TempFolder& folder) {
-  if (!Sanitized) {
+  if (!testing::Sanitized()) { // the shadow memory of the address sanitizer needs the address space
     const rlimit memory = {MaximumMemory, MaximumMemory};
     setrlimit(RLIMIT_AS, &memory);
   }
@@ -167,7 +162,7 @@ std::string WriteMutant(const Format& format, int number, const testing::TempFol
   const rlimit cpu = {600, 600};
   setrlimit(RLIMIT_CPU, &cpu);
   const int null = open("/dev/null", O_WRONLY);
-  dup2(null, Sanitized ? STDOUT_FILENO : STDERR_FILENO); // a sanitizer's report stays visible
+  dup2(null, testing::Sanitized() ? STDOUT_FILENO : STDERR_FILENO); // a sanitizer's report stays visible
   for (int number = first; number < last; ++number) {
     progress.current = number;
     const std::string path = WriteMutant(format, number, folder);

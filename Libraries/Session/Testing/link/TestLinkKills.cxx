@@ -1,6 +1,7 @@
 // Each side of the link is killed at a hundred random moments (DSPACE_LONG: a thousand; with the
 // address sanitizer twenty, since its processes are slow to begin).
 #include "LinkTestSupport.h"
+#include "Sanitized.h"
 
 #include <chrono>
 #include <cmath>
@@ -27,11 +28,7 @@ int Kills() {
   if (given && *given) {
     return 1000;
   }
-#ifdef __SANITIZE_ADDRESS__
-  return 20;
-#else
-  return 100;
-#endif
+  return testing::Sanitized() ? 20 : 100;
 }
 
 // LinkProcess, which makes the processes that are to be killed.

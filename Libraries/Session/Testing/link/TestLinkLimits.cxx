@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 
 #include "RawDrive.h"
+#include "Sanitized.h"
 
 namespace dspace::testing {
 namespace {
@@ -185,9 +186,9 @@ TEST_F(LinkLimits, ASnapshotThatFailsIsToldAndEndsNothing) {
 }
 
 TEST_F(LinkLimits, AChildProcessIsToldAndMayCloseWhatItsParentOpened) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
-#endif
+  if (testing::Sanitized()) {
+    GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
+  }
   this->StartServer();
   auto client = std::make_unique<RemoteClient>(this->ClientOptions());
   auto watcher = std::make_unique<Watcher>(this->ToWatch());

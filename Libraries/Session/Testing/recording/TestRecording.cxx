@@ -16,6 +16,7 @@
 #include <dspace/recording/RecordingWriter.h>
 
 #include "CommandTestSupport.h"
+#include "Sanitized.h"
 
 namespace dspace::testing {
 namespace {
@@ -312,9 +313,9 @@ TEST_F(Recording, KilledAtAnyMomentItIsAPrefix) {
 
 // A child of the process that records says so, and may end as it likes.
 TEST_F(Recording, AChildProcessLeavesItAlone) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
-#endif
+  if (testing::Sanitized()) {
+    GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
+  }
   auto writer = std::make_unique<RecordingWriter>(this->Path_, Ledger(), 0.0, RecordingOptions());
   EXPECT_EQ(writer->Add(Numbered(1), {}, Ledger()), "");
   const pid_t child = fork();
