@@ -11,7 +11,7 @@ import tempfile
 import numpy as np
 
 import dspace
-from dspace.serving import ServerProcess
+from dspace.links.serving import ServerProcess
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "Documentation" / "images"
@@ -47,7 +47,7 @@ def demo(name, seconds, *arguments):
 def movie():
     """A picture of the reference simulation's movie, 1.6 s after its start."""
     sys.path.insert(0, str(ROOT / "Examples" / "rover_mobility"))
-    from dspace.movies_draw import Stage, open_run, png
+    from dspace.movies.draw import Stage, open_run, png
     import rover_mobility
     flight = dspace.Movie.load(ROOT / "Examples" / "rover_mobility" / "flight.toml", size=(960, 540), samples=3)
     simulation = rover_mobility.run()

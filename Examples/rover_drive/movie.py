@@ -1,8 +1,8 @@
 """Pictures of the demo: several in one, and to files."""
 import numpy as np
 
-from dspace._files import atomic_write
-from dspace.movies_draw import png
+from dspace._core.files import atomic_write
+from dspace.movies.draw import png
 
 
 def save_image(path, picture):

@@ -13,10 +13,10 @@ import warnings
 import numpy as np
 
 import dspace
-from dspace._files import atomic_write
-from dspace.movies_encode import Encoder
+from dspace._core.files import atomic_write
+from dspace.movies.encode import Encoder
 from dspace.rover import Path, load_vehicle
-from dspace.serving import ServerProcess
+from dspace.links.serving import ServerProcess
 
 from movie import save_image, tile
 from vehicle import Ground, PlacedVehicle

@@ -1,7 +1,7 @@
 """The model's bodies as frames and shapes of a scene; knows nothing of this rover but its description."""
 import numpy as np
 
-from dspace.poses import quaternion_of_axis
+from dspace.frames.poses import quaternion_of_axis
 
 
 def build(scene, model):

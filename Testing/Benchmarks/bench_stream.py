@@ -13,7 +13,7 @@ import tempfile
 import time
 
 import dspace
-from dspace.serving import ServerProcess
+from dspace.links.serving import ServerProcess
 
 TURNS, DRAWN, RATE = 9, 45, 30.0
 

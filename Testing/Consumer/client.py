@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import dspace
-from dspace.serving import ServerProcess
+from dspace.links.serving import ServerProcess
 
 drive = sys.argv[1]
 with ServerProcess([]) as server:

@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.movies_folder import FRAME
+from dspace.movies.folder import FRAME
 
 SIZE = (96, 64)
 
 # A run that any process can do again: a cube goes 1 m a second along X, and turns.
 RUN = '''
 import dspace
-from dspace.poses import quaternion_of_axis
+from dspace.frames.poses import quaternion_of_axis
 
 def run():
     session = dspace.Session()

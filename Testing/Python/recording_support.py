@@ -10,7 +10,7 @@ import tempfile
 from typing import NamedTuple
 
 import dspace
-from dspace.recording_file import Asset, Row
+from dspace.recording.file import Asset, Row
 
 PART = 4 << 20  # bytes of a file in one row
 
@@ -99,7 +99,7 @@ def rows_in(path):
 
 def salvaged_rows(path):
     """Commands and snapshots that `dspace log salvage` recovers, by number; none where nothing survives."""
-    from dspace.recording_file import carry_out
+    from dspace.recording.file import carry_out
     out = f"{path}.salvaged"
     try:
         carry_out("Salvage", os.fsencode(path), os.fsencode(out))

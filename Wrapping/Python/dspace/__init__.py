@@ -21,27 +21,25 @@ on the wrapped VTK objects (`frame.vtk`, `dspace.vtk`) are not.
 import importlib
 
 _HOMES = {
-    "Assembly": "assemblies",
-    "Camera": "cameras", "Vantage": "cameras",
+    "Assembly": "objects.assemblies",
+    "Camera": "cameras.camera", "Vantage": "cameras.camera",
     "Error": "errors", "InvalidArgument": "errors", "WrongType": "errors", "NotFound": "errors",
     "AlreadyExists": "errors", "Unsupported": "errors", "Unimplemented": "errors", "Corrupt": "errors", "Io": "errors",
     "Resource": "errors", "DeadlineExceeded": "errors", "Internal": "errors",
     "Closed": "errors", "WrongThread": "errors", "DspaceWarning": "errors",
-    "FrameEvent": "events",
-    "Event": "messages", "Question": "messages", "Channel": "telemetry", "Telemetry": "telemetry",
-    "Fragment": "fragments", "Light": "fragments",
-    "Frame": "frames",
-    "GraphicsObject": "objects", "Primitive": "objects", "Text": "objects", "TiltMarker": "objects",
-    "Trail": "objects",
-    "Movie": "movies",
-    "Pose": "poses",
-    "Joint": "robots", "Robot": "robots",
-    "Playback": "playback", "Recording": "recordings", "RecordingFile": "recording_file",
-    "Scene": "scenes",
-    "Session": "sessions", "RemoteSession": "remote", "connect": "remote",
-    "Watcher": "watching", "watch": "watching",
-    "Terrain": "terrain", "TerrainLayer": "layers",
-    "Pick": "viewports", "Viewport": "viewports",
+    "Event": "telemetry.messages", "Question": "telemetry.messages",
+    "Channel": "telemetry.telemetry", "Telemetry": "telemetry.telemetry",
+    "Fragment": "objects.fragments", "Light": "objects.fragments",
+    "Frame": "frames.frame", "FrameEvent": "frames.events", "Pose": "frames.poses",
+    "GraphicsObject": "objects.graphics", "Primitive": "objects.graphics", "Text": "objects.graphics",
+    "TiltMarker": "objects.graphics", "Trail": "objects.graphics",
+    "Joint": "objects.robots", "Robot": "objects.robots",
+    "Movie": "movies.movie",
+    "Playback": "playback.playback", "Recording": "recording.recording", "RecordingFile": "recording.file",
+    "Scene": "scene.scene", "Pick": "scene.viewport", "Viewport": "scene.viewport",
+    "Session": "clients.session", "RemoteSession": "links.remote", "connect": "links.remote",
+    "Terrain": "terrain.terrain", "TerrainLayer": "terrain.layers",
+    "Watcher": "links.watching", "watch": "links.watching",
 }
 
 __all__ = sorted(_HOMES)
@@ -52,10 +50,10 @@ def __getattr__(name):
     # On demand, so that what is plain Python (dspace.rover) works without the compiled part.
     if name in _HOMES:
         return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
-    if name in ("rover", "session", "vtk"):
+    if name in ("errors", "proto", "rover", "vtk"):
         return importlib.import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__():
-    return __all__ + ["rover", "session", "vtk"]
+    return __all__ + ["errors", "proto", "rover", "vtk"]

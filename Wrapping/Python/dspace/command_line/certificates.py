@@ -5,7 +5,7 @@ import shutil
 import subprocess
 import tempfile
 
-from dspace._files import atomic_write
+from dspace._core.files import atomic_write
 from dspace.command_line import Failed
 
 DAYS = "30"

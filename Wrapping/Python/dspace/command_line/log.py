@@ -3,14 +3,14 @@ import datetime
 import math
 import os
 
-from dspace._wire import command_of
+from dspace._core.wire import command_of
 from dspace.command_line import Failed
 from dspace.command_line.log_diff import compare, name_of
 from dspace.command_line.log_pack import pack
 from dspace.command_line.log_salvage import salvage
 from dspace.command_line.log_telemetry import add_arguments as add_telemetry
-from dspace.playback_steps import StepTimes
-from dspace.recording_file import RecordingFile, carry_out, path_of
+from dspace.playback.steps import StepTimes
+from dspace.recording.file import RecordingFile, carry_out, path_of
 
 
 def add_arguments(parser):

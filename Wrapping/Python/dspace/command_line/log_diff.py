@@ -2,9 +2,9 @@
 import itertools
 import math
 
-from dspace._wire import command_of
+from dspace._core.wire import command_of
 from dspace.command_line import Failed
-from dspace.recording_file import RecordingFile, commands_of
+from dspace.recording.file import RecordingFile, commands_of
 from dspace.proto import commands_pb2 as pb
 
 NAMES = pb.Command.DESCRIPTOR.fields_by_number

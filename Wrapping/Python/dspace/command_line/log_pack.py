@@ -1,7 +1,7 @@
 """`dspace log pack`: a recording takes the files that it needs into itself (RecordingPack.h)."""
 import os
 
-from dspace.recording_file import carry_out, path_of
+from dspace.recording.file import carry_out, path_of
 
 
 def pack(options):

@@ -1,7 +1,7 @@
 """`dspace log salvage`: what survives of a damaged recording (RecordingSalvage.h)."""
 import os
 
-from dspace.recording_file import carry_out, path_of
+from dspace.recording.file import carry_out, path_of
 
 
 def salvage(options):

@@ -4,10 +4,10 @@ import io
 import math
 import sys
 
-from dspace._files import atomic_write
+from dspace._core.files import atomic_write
 from dspace.errors import InvalidArgument
-from dspace.playback_telemetry import History
-from dspace.recording_file import RecordingFile
+from dspace.playback.telemetry import History
+from dspace.recording.file import RecordingFile
 
 
 def add_arguments(what):

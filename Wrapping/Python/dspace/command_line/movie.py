@@ -3,7 +3,7 @@ import argparse
 import os
 import sys
 
-from dspace._traits import SAMPLES
+from dspace._core.traits import SAMPLES
 from dspace.command_line import terrain as values
 
 
@@ -31,7 +31,7 @@ def jobs(text):
 
 
 def run(options):
-    from dspace.movies import Movie
+    from dspace.movies.movie import Movie
     given = {name: getattr(options, name) for name in ("size", "rate", "samples") if getattr(options, name) is not None}
     movie = Movie.load(options.file, **given)
     bar = Bar(sys.stderr)

@@ -41,7 +41,7 @@ def check(options):
 
 def run(options):
     from dspace import vtk  # needs the compiled part
-    from dspace.playback import Playback
+    from dspace.playback.playback import Playback
 
     check(options)
     vtk.vtkDspaceSession().ConfineProcess()  # it opens nothing but the recording's files
@@ -72,12 +72,12 @@ def seen(playback, options):
 
 def viewports_of(playback):
     """{name: [(begin, end)]}, ranges of steps."""
-    from dspace.recorded_views import spans_of
+    from dspace.playback.spans import spans_of
     return {key[1]: ranges for key, ranges in spans_of(playback).items() if key[0] == "viewport" and ranges}
 
 
 def listed(playback, viewports):
-    from dspace.recorded_views import when
+    from dspace.playback.spans import when
     everywhere = [(0, len(playback.times))]
     return ", ".join(repr(name) + ("" if ranges == everywhere else f" ({when(playback, ranges)})")
                      for name, ranges in viewports.items()) or "none"
@@ -85,7 +85,7 @@ def listed(playback, viewports):
 
 def chosen(playback, options):
     """The viewport, and the steps to draw it at, in their order. Those without it are passed over, and counted."""
-    from dspace.recorded_views import when
+    from dspace.playback.spans import when
     viewports = viewports_of(playback)
     if not viewports:
         raise Failed(f"{playback.file.label}: it has no viewport at any step; accepted: one that has")

@@ -2,7 +2,7 @@
 import argparse
 import math
 
-from dspace._traits import SIDE
+from dspace._core.traits import SIDE
 from dspace.command_line import terrain_cache, terrain_info, terrain_layers, terrain_render
 
 # What a patch's keys hold.

@@ -59,7 +59,7 @@ def run(options):
 def ask(name, options, **values):
     """A request's entries and folder."""
     import dspace
-    from dspace._fields import put, put_given
+    from dspace._core.fields import put, put_given
     from dspace.proto import commands_pb2
     command = commands_pb2.Command()
     message = getattr(command, name)

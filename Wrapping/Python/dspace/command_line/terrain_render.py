@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 
-from dspace._files import atomic_write
+from dspace._core.files import atomic_write
 from dspace.command_line import Failed, terrain_layers
 from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, open_raster
 from dspace.command_line.terrain_map import draw_disc, draw_map

@@ -126,7 +126,7 @@ class Pictures:
 
 def run(options):
     check(options)
-    from dspace.watching import watch  # needs the compiled part
+    from dspace.links.watching import watch  # needs the compiled part
 
     stop, connected = [], []
 

@@ -1,0 +1,245 @@
+"""Vantages and the cameras that they are seen through."""
+from dspace._core.fields import Named, about, number, numbers, put, put_given, put_vector, refuse, word
+from dspace._core.strict import Strict
+from dspace.errors import NotFound
+from dspace.frames.frame import put_pose
+from dspace.frames.poses import Pose, to_pose
+
+AXES = {"heading": 0, "followed": 1, "parent": 2}
+CHASE = ("offset", "target", "axes", "up", "smoothing_s")
+
+
+class Camera(Strict):
+    """A camera of a vantage. Its axes C are X right, Y down, Z forward."""
+
+    def __init__(self, scene, vantage, name):
+        self._scene = scene
+        self._vantage = vantage
+        self._name = name
+
+    def _info(self):
+        return self._scene._ask("describe_camera", vantage=self._vantage, name=self._name).camera
+
+    def _label(self):
+        return f"camera {self._name!r}"
+
+    def _command(self):
+        command = self._scene._command()
+        command.set_camera.vantage = self._vantage
+        command.set_camera.name = self._name
+        return command
+
+    @property
+    def name(self):
+        return self._name
+
+    @property
+    def vantage(self):
+        """The name of its vantage."""
+        return self._vantage
+
+    # --- Where it stands -----------------------------------------------------------------------
+
+    def look_at(self, eye, target, up=(0, 0, 1), frame=None):
+        """Stands at `eye` and looks at `target`, both in `frame` (default: root) [m]."""
+        command = self._command()
+        mount = command.set_camera.mount
+        mount.frame = self._scene._frame_id(frame)
+        put_vector(mount.look_at.eye, eye, "the eye", self._label)
+        put_vector(mount.look_at.target, target, "the target", self._label)
+        put_vector(mount.look_at.up, up, "up", self._label)
+        self._scene._execute(command)
+
+    def attach(self, frame, pose=None, position=None, quaternion=None):
+        """Stands on `frame` at X_FC, by default at its origin, Z forward and Y down."""
+        command = self._command()
+        command.set_camera.mount.frame = self._scene._frame_id(frame)
+        with about(self._label):
+            put_pose(command.set_camera.mount.pose, to_pose(position, quaternion, None, pose))
+        self._scene._execute(command)
+
+    def chase(self, frame, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=(0, 0, 1),
+              smoothing_s=0.0):
+        """Follows `frame` from `offset` and looks at `target` [m].
+
+        Both are in axes that turn with the frame's "heading" only, with the "followed" frame, or
+        not at all ("parent"). smoothing_s: time constant of the lag, in simulation time; when that
+        goes back (a playback that jumps), the camera is in place at once."""
+        command = self._command()
+        command.set_camera.mount.frame = self._scene._frame_id(frame)
+        put_chase(command.set_camera.mount.chase, offset, target, axes, up, smoothing_s, self._label)
+        self._scene._execute(command)
+
+    @property
+    def frame(self):
+        """The frame that it stands on or follows."""
+        return self._scene._frame_of(self._info().mount.frame)
+
+    @property
+    def pose(self):
+        """X_FC on its frame; None for a chase camera, of which pose_in() tells where it is. May be set."""
+        mount = self._info().mount
+        if not mount.HasField("pose"):
+            return None
+        p, q = mount.pose.position, mount.pose.rotation
+        return Pose._computed((p.x, p.y, p.z), (q.w, q.x, q.y, q.z), 1.0)
+
+    @pose.setter
+    def pose(self, pose):
+        self.attach(self.frame, pose)
+
+    def pose_in(self, frame=None):
+        """X_GC now, in `frame` G (default: the root), also of a camera that chases: with the lag that it has at
+        the scene's time. Its scale is 1."""
+        reply = self._scene._ask("get_camera_pose", vantage=self._vantage, name=self._name,
+                                 relative_to=self._scene._frame_id(frame))
+        p, q = reply.camera_pose.pose.position, reply.camera_pose.pose.rotation
+        return Pose._computed((p.x, p.y, p.z), (q.w, q.x, q.y, q.z), 1.0)
+
+    # --- What it sees --------------------------------------------------------------------------
+
+    def set_projection(self, fov_deg=None, height=None, tangents=None, near=None, far=None):
+        """One of: fov_deg, the vertical full angle (perspective); height, metres from top to bottom
+        (orthographic); tangents X / Z and Y / Z of the edges (left, right, top, bottom), left and
+        top negative about the axis since Y is down (off-axis frustum).
+        near and far: metres along Z (default: 0.05 and infinity; 1e4 for orthographic,
+        whose depth is resolved to a ten-millionth of far)."""
+        command = self._command()
+        put_projection(command.set_camera.projection, fov_deg, height, tangents, near, far, self._label)
+        self._scene._execute(command)
+
+    @property
+    def projection(self):
+        """A dict of what set_projection takes."""
+        p = self._info().projection
+        out = {"near": p.near, "far": p.far}
+        kind = p.WhichOneof("kind")
+        if kind == "orthographic":
+            out["height"] = p.orthographic.height
+        elif kind == "frustum":
+            out["tangents"] = (p.frustum.left, p.frustum.right, p.frustum.top, p.frustum.bottom)
+        else:
+            out["fov_deg"] = p.perspective.vertical_fov_deg
+        return out
+
+    def _change_projection(self, **change):
+        self.set_projection(**{**self.projection, **change})
+
+    @property
+    def fov_deg(self):
+        """Vertical full angle [degrees]; None when it is not perspective. Setting it makes it so."""
+        return self.projection.get("fov_deg")
+
+    @fov_deg.setter
+    def fov_deg(self, fov_deg):
+        self._change_projection(fov_deg=fov_deg, height=None, tangents=None)
+
+    @property
+    def near(self):
+        """Metres along Z."""
+        return self.projection["near"]
+
+    @near.setter
+    def near(self, near):
+        self._change_projection(near=near)
+
+    @property
+    def far(self):
+        """Metres along Z; may be infinite."""
+        return self.projection["far"]
+
+    @far.setter
+    def far(self, far):
+        self._change_projection(far=far)
+
+    def activate(self):
+        """Makes it the one that its vantage is seen through."""
+        self._scene._do("set_active_camera", vantage=self._vantage, name=self._name)
+
+    @property
+    def active(self):
+        return self._info().active
+
+    def remove(self):
+        self._scene._do("remove_camera", vantage=self._vantage, name=self._name)
+
+    def __eq__(self, other):
+        return (isinstance(other, Camera) and (self._scene, self._vantage, self._name)
+                == (other._scene, other._vantage, other._name))
+
+    def __hash__(self):
+        return hash((self._scene, self._vantage, self._name))
+
+    def __repr__(self):
+        try:
+            p = self.projection
+            kind = (f"{p['fov_deg']:g} deg" if "fov_deg" in p else
+                    f"orthographic, {p['height']:g} m" if "height" in p else "frustum")
+            return f"<dspace.Camera {self._name!r}, {kind}, on {self.frame.path!r}>"
+        except Exception:  # a repr never raises
+            return f"<dspace.Camera {self._name!r}, not in the scene any more>"
+
+
+def put_chase(message, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=(0, 0, 1),
+              smoothing_s=0.0, about=None):
+    """Writes what Camera.chase takes into a Chase message."""
+    message.axes = word(axes, AXES, "axes", about)
+    put_vector(message.offset, offset, "the offset", about)
+    put_vector(message.target, target, "the target", about)
+    put_vector(message.up, up, "up", about)
+    put(message, about, smoothing_s=smoothing_s)
+
+
+def put_projection(message, fov_deg=None, height=None, tangents=None, near=None, far=None, about=None):
+    """Writes what Camera.set_projection takes into a Projection message."""
+    given = {name: value for name, value in
+             (("fov_deg", fov_deg), ("height", height), ("tangents", tangents)) if value is not None}
+    if len(given) > 1:
+        refuse(about, "the projection", given, "one of fov_deg, height and tangents")
+    if height is not None:
+        put(message.orthographic, about, height=height)
+    elif tangents is not None:
+        f = message.frustum
+        f.left, f.right, f.top, f.bottom = numbers(tangents, 4, "tangents", about,
+                                                   "left, right, top, bottom")
+    else:
+        message.perspective.vertical_fov_deg = (45.0 if fov_deg is None
+                                                else number(fov_deg, "fov_deg", about))
+    put_given(message, about, near=near, far=far)
+
+
+class Vantage(Strict):
+    """The scene seen through one of its cameras; one is active."""
+
+    def __init__(self, scene, name):
+        self._scene = scene
+        self._name = name
+
+    @property
+    def name(self):
+        return self._name
+
+    def _info(self):
+        for vantage in self._scene._ask("list_vantages").vantages.vantage:
+            if vantage.name == self._name:
+                return vantage
+        raise NotFound(f"vantage {self._name!r}: it is in scene {self._scene.name!r} no more",
+                       f"vantage {self._name!r}")
+
+    @property
+    def cameras(self):
+        """By name."""
+        return Named("camera", {name: Camera(self._scene, self._name, name)
+                                for name in self._info().camera})
+
+    @property
+    def active(self):
+        """The active camera, or None."""
+        name = self._info().active
+        return Camera(self._scene, self._name, name) if name else None
+
+    def remove(self):
+        self._scene._do("remove_vantage", name=self._name)
+
+    def __repr__(self):
+        return f"<dspace.Vantage {self._name!r}>"

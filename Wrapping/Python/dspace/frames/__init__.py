@@ -1,0 +1,1 @@
+"""Frames, their poses and their events."""

@@ -1,0 +1,1 @@
+"""Connections to a server: drivers, viewers, and the server's own process."""

@@ -1,0 +1,198 @@
+"""A session in a server process that is being recorded here."""
+import atexit
+import os
+import sys
+import threading
+import time
+import weakref
+
+from dspace import vtk as _vtk
+from dspace.clients.local import warn
+from dspace._core.fields import flag
+from dspace.links.connection import SLICE, hear_signals, make_connection
+from dspace.errors import AlreadyExists, Error, Unsupported
+from dspace.recording.file import path_of
+from dspace.recording.recording import COUNTS, Recording, checked_time, new_file
+
+SOON = 5.0  # [s]: what the end of a program, or of a block that Ctrl-C left, waits for at most
+
+_active = weakref.WeakSet()  # those that the end of the program has to end
+
+
+class ServedRecording(Recording):
+    """What RemoteSession.record() returns: a watcher of the same server, in a thread of its own, writes what
+    comes. What goes wrong is told as a warning by the session's next command."""
+
+    def __init__(self, client, path, commit_every, pack=False):
+        if client.recording is not None and client.recording.active:
+            raise AlreadyExists(f"recording {path_of(path)!r}: the session records into {client.recording.path!r}; "
+                                "accepted: one recording at a time", "recording")
+        self.path = path = new_file(path)
+        every, pack = checked_time(commit_every, path), flag(pack, "pack", "recording")
+        self._client = client
+        self._process = os.getpid()
+        self._last = None
+        self._failure, self._told, self._missing = "", False, []
+        client.flush()  # so that it begins with all that the session has been given
+        self._recorder = client.prepared(_vtk.vtkDspaceRecorder())
+        try:
+            make_connection(self._recorder, client.address, client.name)
+            self._recorder.RecordLater(path, every, pack)
+            while (begun := self._recorder.WaitToRecord(SLICE)) == 0:
+                hear_signals()
+        except BaseException:
+            self._recorder = None  # which ends it
+            raise
+        if begun < 0:
+            problem = self._recorder.GetRecordingFailure()
+            self._recorder = None
+            self._raise(problem)
+        client.recording = self
+        _active.add(self)
+
+    def _open(self):
+        if os.getpid() != self._process:
+            raise Unsupported(f"recording {self.path!r}: process {self._process} records it, and this one is its "
+                              "child; accepted: a session of its own", "recording")
+        self._client.require_thread()
+        return self._recorder
+
+    @property
+    def active(self):
+        """Whether commands are still recorded: not after stop() or a failure, and not in a child process."""
+        return self._last is None and os.getpid() == self._process and not self.failure
+
+    @property
+    def counts(self):
+        """Commands recorded (accepted) and written (safe from then on when this process dies), bytes of these,
+        snapshots; a tenth of a second old at most."""
+        return dict(self._last) if self._last is not None else self._counts(self._open())
+
+    @property
+    def failure(self):
+        """What ended it, or an empty string."""
+        return self._failure if self._last is not None else self._open().GetRecordingFailure()
+
+    def take_news(self):
+        """What has gone wrong since the last call: texts of warnings."""
+        news = []
+        while self._last is None and (text := self._recorder.TakeNews()):
+            news.append(text)
+        self._told = self._told or bool(news and self._recorder.GetRecordingFailure())
+        return news
+
+    def flush(self):
+        """Waits until all that the session has been told to be done is written."""
+        if self._last is not None:
+            return
+        recorder = self._open()
+        refused = self._settle(None)
+        problem = self._catch_up(recorder, None)
+        recorder.FlushLater()
+        while not recorder.WaitToFlush(SLICE):
+            hear_signals()
+        self._raise(recorder.GetRecordingFailure() or problem)
+        if refused is not None:
+            raise refused
+
+    def stop(self):
+        """Waits until all that the session has been told to be done has come (each time that nothing comes up to
+        the session's timeout), writes it and closes the file; raises dspace.Io where something of it is missing.
+        Twice is no error."""
+        if self._last is None:
+            self._open()
+            self._stop(None)
+
+    def __exit__(self, kind, *exception):
+        if kind is None:
+            self.stop()
+        else:  # which is not to be hidden; and who has pressed Ctrl-C does not want to wait long
+            self.finish(None if issubclass(kind, Exception) else SOON)
+
+    def finish(self, limit=None):
+        """As stop(), in `limit` seconds at the latest; what goes wrong is a warning. Nothing in a child process."""
+        if self._last is not None or os.getpid() != self._process:
+            return
+        for news in self.take_news():
+            warn(news)
+        try:
+            self._stop(limit)
+        except Error as error:
+            if not (self._failure and self._told):
+                warn(str(error))
+
+    def _stop(self, limit):
+        recorder, problem, refused = self._recorder, "", None
+        end = None if limit is None else time.monotonic() + limit
+        try:
+            refused = self._settle(end)
+            problem = self._catch_up(recorder, end)
+        finally:
+            self._close(recorder)
+        if self._client.sequence == 0 < recorder.GetSequence():
+            warn(f"recording {self.path!r}: the server does not number what it has done (Reply.sequence), so that its "
+                 "last commands may be missing")
+        if self._missing:
+            warn(f"recording {self.path!r}: files that could not be packed: " + ", ".join(self._missing))
+        self._raise(self._failure or problem)
+        if refused is not None:
+            raise refused
+
+    def _settle(self, end):
+        """So that the number of the last command is known; returns what earlier commands were refused with."""
+        try:
+            self._client.settle(end)
+        except Error as error:
+            return None if self._client.broken() else error  # the session's commands say that
+        return None
+
+    def _catch_up(self, recorder, end):
+        """Waits for the last command; what is missing, or ""."""
+        wanted, have = self._client.sequence, -1
+        while (state := recorder.WaitFor(wanted, SLICE)) == 0:
+            hear_signals()
+            now = time.monotonic()
+            if recorder.GetSequence() != have:
+                have, patience = recorder.GetSequence(), now + self._client.timeout
+            if now > patience or (end is not None and now > end):
+                break
+        if state == 1:
+            return ""
+        return (f"recording {self.path!r}: {wanted - recorder.GetSequence()} commands that the server had done have "
+                "not come from it; what was recorded stays")
+
+    def _close(self, recorder):
+        recorder.StopLater()
+        try:
+            while not recorder.WaitToStop(SLICE):
+                hear_signals()
+        finally:
+            _active.discard(self)
+            self._failure = recorder.GetRecordingFailure()
+            self._missing = recorder.GetRecordingMissing().splitlines()
+            self._last = self._counts(recorder)
+
+    @staticmethod
+    def _counts(recorder):
+        return {name: recorder.GetRecordingCount(name) for name in COUNTS}
+
+    def _end_with_program(self):
+        if self._last is not None or os.getpid() != self._process:
+            return
+        end = time.monotonic() + SOON
+        try:
+            if threading.get_ident() == self._client.thread:
+                self._settle(end)
+            problem = self._catch_up(self._recorder, end)
+            self._close(self._recorder)
+            problem = self._failure or problem
+        except KeyboardInterrupt:
+            problem = f"recording {self.path!r}: interrupted; what was recorded stays"
+        if problem:
+            print(f"dspace: {problem}", file=sys.stderr)
+
+
+@atexit.register
+def _end_all():
+    for recording in list(_active):
+        recording._end_with_program()

@@ -1,0 +1,227 @@
+"""Sessions in a server process: the same script as with dspace.Session(), one line changed."""
+import os
+import threading
+import time
+
+from dspace import vtk as _vtk
+from dspace.clients.local import LocalClient, make_error, to_bytes, to_reply, warn
+from dspace._core.fields import flag, number, refuse, text
+from dspace.links.connection import SLICE, hear_signals, make_connection, prepare
+from dspace._core.traits import UNAWAITED
+from dspace._core.wire import decode, encode
+from dspace.errors import Closed, DeadlineExceeded, Internal, Unsupported
+from dspace.links.recordings import ServedRecording
+from dspace.proto import commands_pb2 as pb
+from dspace.proto import service_pb2
+from dspace.clients.session import Session
+
+
+class RemoteClient(LocalClient):
+    """Hands commands to a server."""
+
+    def __init__(self, link, address, name, timeout, prepared):
+        super().__init__()
+        self._background()
+        self.vtk = None
+        self.link = link
+        self.address = address
+        self.name = name
+        self.timeout = timeout
+        self.prepared = prepared  # sets on another link what this one has
+        self.process = os.getpid()
+        self.wait = True
+        self.pace = None
+        self.sequence = 0  # of the last command that is known to be done
+        self.later = False  # whether others may have been done since
+
+    def local(self):
+        raise Unsupported(f"the session is in the server at {self.address}: its VTK objects are there; "
+                          "accepted: commands, or a local dspace.Session()", "session")
+
+    def _open(self):
+        if self.link is None:
+            raise Closed("the session is closed; accepted: a new dspace.connect()", "session")
+        if os.getpid() != self.process:
+            raise Unsupported(f"process {self.process} connected it, and this one is its child; accepted: "
+                              "a dspace.connect() of its own", "session")
+        self._require_thread()
+        return self.link
+
+    @property
+    def thread(self):
+        """The only one that may use it."""
+        return self._thread
+
+    def require_thread(self):
+        self._require_thread()
+
+    def _carry(self, command):
+        link = self._open()
+        asks = self.wait or command.WhichOneof("command") not in UNAWAITED
+        self.later = self.later or not asks
+        link.Begin(encode(command), asks)
+        reply = self._take(link, asks)
+        for news in self.recording.take_news() if self.recording is not None else ():
+            warn(news) if reply.HasField("error") else reply.warning.append(news)
+        return reply
+
+    def _take(self, link, asks=False, end=None):
+        """The reply to what was begun (`asks`: a command that has one), at the time `end` at the latest."""
+        try:
+            while not link.Wait(SLICE):
+                hear_signals()
+                if end is not None and time.monotonic() > end:
+                    raise DeadlineExceeded(f"server {self.address!r}: no answer in time", "server")
+        except BaseException:
+            self.later = True  # it may yet be done
+            link.Abandon()
+            raise
+        reply = to_reply(link.TakeReply())
+        self.sequence = max(self.sequence, reply.sequence)
+        if asks and not reply.HasField("error"):  # else it may be that of an earlier command
+            self.later = False
+        return reply
+
+    def settle(self, end):
+        """Waits, until that time if one is given, until it is known what has been done; raises what was refused."""
+        if self.later:
+            link = self._open()
+            link.BeginFlush()
+            sent = self._take(link, end=end)
+            command = pb.Command()
+            command.list_scenes.SetInParent()
+            link.Begin(encode(command), True)
+            last = self._take(link, True, end)
+            self._finish(pb.Command(), sent)
+            self._finish(command, last)
+
+    def broken(self):
+        """Whether the link is, for good."""
+        return to_reply(self._open().GetBroken()).HasField("error")
+
+    def tell(self, event):
+        self._open()
+        self.events.put(event)
+
+    def take_event(self, wait):
+        link = self._open()
+        event = self.events.take()
+        if event is None:
+            end = time.monotonic() + wait
+            data = to_bytes(link.TakeEvent(min(wait, SLICE)))
+            while not data and time.monotonic() < end:
+                broken = to_reply(link.GetBroken())  # then nothing comes any more
+                if broken.HasField("error"):
+                    raise make_error(broken.error)
+                hear_signals()
+                data = to_bytes(link.TakeEvent(min(SLICE, max(0.0, end - time.monotonic()))))
+            event = decode(service_pb2.ViewerEvent, data, "event", Internal) if data else None
+        return event
+
+    def flush(self):
+        link = self._open()
+        link.BeginFlush()
+        self._finish(pb.Command(), self._take(link))
+
+    def close(self):
+        if self.link is not None:
+            self._require_thread()
+            try:
+                if self.recording is not None:
+                    self.recording.finish()
+            finally:
+                self.link.Close()
+                self.link = None
+        self.frame_listeners.clear()
+        self.events.clear()
+
+
+class RemoteSession(Session):
+    """What connect() returns: a Session whose scenes are in a server process.
+
+    Closing it leaves the scenes there. Paths of files that are relative are those of this process's
+    working folder; the server must allow and have them.
+    """
+
+    def __init__(self, client):
+        self._client = client
+
+    @property
+    def wait(self):
+        """Whether every command waits for its reply: then, with a capture or render() each step, picture
+        and simulation are in lockstep. False: poses, time, joints, trails, texts and the like are sent
+        without waiting; when one of them is refused, the next command that waits raises what it says,
+        and is not carried out itself."""
+        return self._client.wait
+
+    @wait.setter
+    def wait(self, wait):
+        self._client.wait = flag(wait, "wait", "session")
+
+    def flush(self):
+        """Waits until everything that was sent is done; raises what of it was refused first."""
+        self._client.flush()
+
+    def record(self, path, commit_every=0.1, pack=False):
+        """As Session.record(), into a file of this process's machine: the state that the server has, and then every
+        command that it accepts, whoever gives it. They come back over a connection of their own, one of a viewer,
+        and are written by a thread of its own.
+
+        recording.stop(), the end of its `with` block and session.close() wait until all that this session has been
+        told to be done is in the file. What goes wrong (a full disk, a server that is gone) is told once, as a
+        warning by the session's next command, and what was written stays; where the recording was cut off, and came
+        back, it has a gap (Playback.gaps). Every command is carried out here as well, without drawing: files that
+        commands name are read by the paths that the server has. One that cannot be is recorded all the same, with a
+        warning; where the present state already needs one that is not here, dspace.Io is raised. `dspace serve
+        --record` records in the server, and outlives this process.
+        """
+        return ServedRecording(self._client, path, commit_every, pack)
+
+    @property
+    def pace(self):
+        """Simulation seconds a wall second: setting a scene's time then waits until it is due, counted
+        from the first time that is set after this, and anew from one that goes back. It never goes on
+        early; a simulation that was late catches up. None (the default): as fast as it goes."""
+        return self._client.pace
+
+    @pace.setter
+    def pace(self, rate):
+        if rate is not None:
+            rate = number(rate, "the pace", "session")
+            if not 0 < rate < float("inf"):
+                refuse("session", "the pace", rate, "None, or a finite number above 0")
+        self._client._open().SetPace(0.0 if rate is None else rate)
+        self._client.pace = rate
+
+    @property
+    def poses_left_out(self):
+        """How many poses were not sent because the server had them already."""
+        return self._client._open().GetPosesLeftOut()
+
+    @property
+    def vtk(self):
+        """The vtkDspaceRemoteSession behind it."""
+        return self._client.link
+
+    def __repr__(self):
+        state = "closed" if self._client.link is None else f"served at {self._client.address}"
+        return f"<dspace.RemoteSession, {state}>"
+
+
+def connect(address, certificate=None, key=None, authority=None, insecure=False, timeout=30.0,
+            name="simulation", take_over=False, only_changes=True):
+    """Drives the session of a `dspace serve` process at "host:port" or "unix:PATH".
+
+    certificate, key, authority: PEM files for mutual TLS, all three; without them only an address of
+    this machine is accepted, unless `insecure` is spelled out. timeout: seconds of every wait. One
+    simulation drives a server: a second is refused, unless it says take_over=True. only_changes: poses
+    that the server has already are not sent again.
+    """
+    label = f"server {address!r}"
+    link = _vtk.vtkDspaceRemoteSession()
+    prepared = prepare(link, address, certificate, key, authority, insecure, timeout, label)
+    text(name, "the name", label)
+    link.SetTakeOver(flag(take_over, "take_over", label))
+    link.SetOnlyChanges(flag(only_changes, "only_changes", label))
+    make_connection(link, address, name)
+    return RemoteSession(RemoteClient(link, address, name, float(timeout), prepared))

@@ -1,0 +1,171 @@
+"""Watching a simulation that another process drives, through a server."""
+import time
+
+from dspace import vtk as _vtk
+from dspace.clients.local import LocalClient, make_error, to_reply
+from dspace._core.fields import real, refuse, text
+from dspace.links.connection import SLICE, hear_signals, make_connection, prepare
+from dspace._core.wire import encode
+from dspace.errors import Closed, WrongType
+from dspace.scene.scene import Scene
+from dspace.clients.session import Session
+
+
+OWN = "viewer:"  # begins the names of what is a watcher's own
+
+
+class WatchClient(LocalClient):
+    """Hands requests to a session that follows a server's."""
+
+    def __init__(self, watcher):
+        super().__init__()
+        self._watcher = watcher
+        self.vtk = watcher.GetSession()
+        self._end_background_work_by(lambda: watcher.GetSession().EndBackgroundWork())
+
+    def watcher(self):
+        if self._watcher is None:
+            raise Closed("the watcher is closed; accepted: a new dspace.watch()", "watcher")
+        self._require_thread()
+        return self._watcher
+
+    def local(self):
+        self.vtk = self.watcher().GetSession()  # another one after a snapshot
+        return self.vtk
+
+    def _carry(self, command):
+        self.local()  # whose planes a capture is read from
+        return to_reply(self.watcher().Execute(encode(command)))
+
+    def update(self, wait):
+        """How many messages came; then calls who follows frames."""
+        watcher = self.watcher()
+        end = time.monotonic() + wait
+        hear_signals()
+        count = watcher.Update(min(wait, SLICE))
+        while count == 0 and time.monotonic() < end:
+            hear_signals()
+            count = watcher.Update(min(SLICE, max(0.0, end - time.monotonic())))
+        listeners = self.frame_listeners
+        if listeners:
+            listeners.put(to_reply(watcher.TakeFrameEvents()).frame_event)
+            listeners.deliver()
+        return count
+
+    def tell(self, event):
+        watcher = self.watcher()
+        reply = to_reply(watcher.TellLater(encode(event, "event")))
+        state = -1 if reply.HasField("error") else 0
+        try:
+            while state == 0:
+                state = watcher.WaitToTell(SLICE)
+                hear_signals()
+                if state < 0:
+                    reply = to_reply(watcher.TakeReply())
+        except BaseException:
+            watcher.DropTell()
+            raise
+        if reply.HasField("error"):
+            raise make_error(reply.error)
+
+    def take_event(self, wait):
+        self.watcher()
+        return None  # they are the simulation's
+
+    def close(self):
+        super().close()
+        if self._watcher is not None:
+            self._watcher.Close()
+        self._watcher = None
+
+
+class Watcher(Session):
+    """What watch() returns: a read-only Session that is what the server's was at the last update().
+
+    It draws for itself. Nothing changes between two calls of update(). Views of one's own may be made:
+    add_view(), or viewports, vantages and cameras whose names begin with "viewer:". They are nobody
+    else's, and outlast snapshots: a camera whose frame is removed stays where it was; views of a scene
+    that is removed, or lost with its server, are there again when the scene is. Everything else that
+    would change the scene raises dspace.Unsupported.
+
+    What a person does goes to whoever drives: tell(), answer(), edited(), select(), dragged(),
+    Viewport.pick(tell=True), and clicks in viewports of one's own (Viewport.event).
+    """
+
+    def __init__(self, client):
+        self._client = client
+
+    def update(self, wait=0.0):
+        """Applies all that the server has accepted since; waits up to `wait` seconds for something.
+        Returns how many messages came. Scene.on_frame_change is told of what has changed, but of a new
+        snapshot as a whole. Where the simulation or the server is gone the state stays,
+        viewports say so, and the link is made again by itself."""
+        return self._client.update(real(wait, "the wait", "watcher", "seconds"))
+
+    @property
+    def sequence(self):
+        """The number of the last command that is in the state; a server counts from 0."""
+        return self._client.watcher().GetSequence()
+
+    @property
+    def connected(self):
+        """Whether the server is there."""
+        return bool(self._client.watcher().GetConnected())
+
+    @property
+    def simulation(self):
+        """The name of who drives, None when nobody does (any more)."""
+        watcher = self._client.watcher()
+        return watcher.GetWriterName() if watcher.GetWriterConnected() else None
+
+    @property
+    def trouble(self):
+        """Why the server refuses to go on (a state that is too large to be sent, too many viewers), or what could
+        not be applied since the last snapshot; empty: nothing."""
+        return self._client.watcher().GetTrouble()
+
+    def record(self, path, commit_every=0.1, pack=False):
+        """As Session.record(): what each update() applies, views of one's own with it. Where the watcher begins
+        anew with a snapshot (the link broke, or it was too slow) the recording has a gap (Playback.gaps)."""
+        return super().record(path, commit_every, pack)
+
+    def add_view(self, name, scene=None, size=(1280, 720), samples=None, **camera):
+        """A viewport "viewer:NAME" of one's own. With what Scene.add_camera takes (eye and target, pose,
+        chase, frame, fov_deg, ...) it has a camera of its own; without, it looks through the scene's
+        active one until Viewport.event moves it. scene: default the server's only one."""
+        label = f"view {text(name, 'the name', 'watcher')!r}"
+        if not name:
+            refuse("watcher", "the view's name", name, "any that is not empty")
+        if scene is None:
+            scenes = self.scenes
+            if len(scenes) != 1:
+                refuse(label, "the scene", None, "one of " + (", ".join(map(repr, scenes)) or "none yet"))
+            scene = next(iter(scenes.values()))
+        elif not isinstance(scene, Scene) or scene._client is not self._client:
+            refuse(label, "the scene", scene, "a scene of this watcher", WrongType)
+        name = OWN + name
+        if not camera:
+            return scene.add_viewport(size, name=name, samples=samples)
+        vantage = scene.add_vantage(name)
+        try:
+            own = scene.add_camera(vantage=vantage, **camera)
+            return scene.add_viewport(size, own, name=name, samples=samples)
+        except Exception:
+            vantage.remove()
+            raise
+
+    def __repr__(self):
+        return "<dspace.Watcher>"
+
+
+def watch(address, certificate=None, key=None, authority=None, insecure=False, timeout=30.0,
+          name="viewer"):
+    """Watches the session of a server; the arguments are those of dspace.connect. Returns a Watcher,
+    with the state of now in it."""
+    label = f"server {address!r}"
+    watcher = _vtk.vtkDspaceWatcher()
+    prepare(watcher, address, certificate, key, authority, insecure, timeout, label)
+    make_connection(watcher, address, text(name, "the name", label))
+    client = WatchClient(watcher)
+    client.update(float(timeout))
+    return Watcher(client)

@@ -1,0 +1,1 @@
+"""Movies of a run along camera key frames."""

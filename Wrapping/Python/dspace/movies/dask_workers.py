@@ -1,0 +1,157 @@
+"""Pictures of a movie drawn by the workers of a Dask scheduler (Debian: python3-distributed)."""
+import contextlib
+import functools
+import hashlib
+import os
+import socket
+import subprocess
+import tempfile
+import time as clock
+
+from dspace import __version__
+from dspace._core.files import atomic_write
+from dspace.errors import Error, Internal, InvalidArgument, Io, NotFound
+from dspace.movies.draw import is_whole
+from dspace.movies.folder import FRAME, SCRIPT, files_of, states_of
+from dspace.movies.make import finish, worker
+
+_AT_ONCE = 24  # pictures that a worker draws of one request
+_TO_CONNECT = 30.0  # seconds
+_PATIENCE = 30.0  # seconds without a scheduler or a worker
+
+
+def share(scheduler, words, run, missing, folder, tell):
+    """Has the pictures `missing` drawn by the workers of the scheduler at that address. dspace.Io where there is no
+    scheduler or no worker for 30 s."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise NotFound("Dask is not installed; accepted: Debian's package python3-distributed",
+                       "python3-distributed") from None
+    _require_listener(scheduler)
+    try:
+        client = Client(scheduler, timeout=_TO_CONNECT, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise Io(f"scheduler {scheduler!r}: {error}; accepted: the address of a Dask scheduler, tcp://HOST:PORT",
+                 scheduler) from None
+    with client:
+        end = clock.monotonic() + _PATIENCE
+        while not _workers(client):
+            if clock.monotonic() > end:
+                raise _deserted(scheduler)
+            clock.sleep(0.1)
+        size = max(1, min(_AT_ONCE, -(-len(missing) // max(1, _workers(client)))))
+        parts = [missing[k:k + size] for k in range(0, len(missing), size)]
+        expected = fingerprint(run)
+        waiting = [client.submit(pictures, words, run, part, expected, pure=False) for part in parts]
+        try:
+            left = len(missing)
+            for drawn in _finished(client, scheduler, waiting):
+                for number, data in drawn:
+                    path = folder.path(FRAME % number)
+                    atomic_write(path, data)
+                    if not is_whole(path):
+                        raise Internal(f"picture {number} came damaged from the scheduler {scheduler!r}")
+                left -= len(drawn)
+                tell(left)
+        finally:
+            with contextlib.suppress(OSError, RuntimeError):  # the scheduler is gone
+                client.cancel(waiting)
+
+
+def _require_listener(scheduler):
+    """Of a client that has met nobody Dask says more than one line at its end."""
+    host, _, port = scheduler.partition("://")[2].rpartition(":")
+    end = clock.monotonic() + _TO_CONNECT
+    while True:
+        try:
+            socket.create_connection((host.strip("[]"), int(port)), timeout=_TO_CONNECT).close()
+            return
+        except OSError as error:
+            if clock.monotonic() > end or isinstance(error, socket.gaierror):
+                raise Io(f"scheduler {scheduler!r}: {error}; accepted: the address of a Dask scheduler, "
+                         "tcp://HOST:PORT", scheduler) from None
+            clock.sleep(0.1)
+
+
+def _workers(client):
+    try:
+        return len(client.scheduler_info()["workers"]) if client.status == "running" else 0
+    except (OSError, RuntimeError):  # the scheduler is gone
+        return 0
+
+
+def _deserted(scheduler):
+    return Io(f"scheduler {scheduler!r}: it has had no worker for {_PATIENCE:g} s, or is gone; accepted: one with a "
+              "worker (dask worker ADDRESS)", scheduler)
+
+
+def _finished(client, scheduler, waiting):
+    """Results in the order in which they come; each is taken out of `waiting`, so that no worker keeps it."""
+    from distributed import CancelledError
+    seen = clock.monotonic()  # when there was a worker, last
+    while waiting:
+        done = [future for future in waiting if future.done()]
+        for future in done:
+            try:
+                drawn = future.result(timeout=4 * _PATIENCE)
+            except TimeoutError:  # its worker has died with it: another one draws it again
+                continue
+            except Error:
+                raise
+            except CancelledError:  # with the scheduler
+                raise _deserted(scheduler) from None
+            except Exception as error:  # of Dask's own
+                raise Io(f"scheduler {scheduler!r}: {type(error).__name__}: {error}", scheduler) from None
+            waiting.remove(future)
+            future.release()
+            del future
+            yield drawn
+            del drawn
+        if not done:
+            clock.sleep(0.1)
+        if _workers(client):
+            seen = clock.monotonic()
+        elif clock.monotonic() - seen > _PATIENCE:
+            raise _deserted(scheduler)
+
+
+def fingerprint(run):
+    """What tells a run from another one of its path: Dspace's version, and a hash of the run's files. (Files that a
+    recording names are compared by whoever plays it.)"""
+    return __version__, _content(tuple(map(tuple, states_of(files_of(run)))))
+
+
+@functools.lru_cache(maxsize=16)
+def _content(states):
+    """A hash of files, which are read again when their states have changed."""
+    hashed = hashlib.sha256()
+    for path, size, _ in states:
+        hashed.update(f"{os.path.basename(path)} {size} ".encode(errors="replace"))
+        with open(path, "rb") as file:
+            for block in iter(lambda: file.read(1 << 20), b""):
+                hashed.update(block)
+    return hashed.hexdigest()
+
+
+def pictures(words, run, numbers, expected):
+    """[(number, the bytes of its PNG)], on a worker; in a process of its own, since a graphics context
+    serves one thread."""
+    if fingerprint(run) != expected:
+        raise InvalidArgument(f"run {run!r}: on the worker {socket.gethostname()!r} it is another file, or Dspace "
+                              f"another version than {expected[0]}; accepted: the same on each machine, and no "
+                              "recording that is still written", run)
+    with tempfile.TemporaryDirectory(prefix="dspace-movie-") as folder:
+        script = os.path.join(folder, SCRIPT)
+        atomic_write(script, words.encode())
+        process = worker(script, run, folder, numbers)
+        try:
+            finish(process)
+        except subprocess.SubprocessError:
+            process.kill()
+            raise
+        out = []
+        for number in numbers:
+            with open(os.path.join(folder, FRAME % number), "rb") as file:
+                out.append((number, file.read()))
+        return out

@@ -1,0 +1,332 @@
+"""Single pictures of a movie: the run is taken to its time, cameras to their places, views put together."""
+import contextlib
+import importlib.util
+import os
+import re
+import secrets
+import struct
+import warnings
+import zlib
+
+import numpy as np
+
+from dspace._core.fields import shown
+from dspace.errors import Error, InvalidArgument, NotFound, WrongType
+from dspace.movies.keys import CameraPath
+from dspace.movies.views import FIELD
+from dspace.playback.steps import StepTimes
+from dspace.frames.poses import Pose
+from dspace.playback.spans import spans_of, when
+from dspace.telemetry.telemetry import overlay_value
+
+
+INNER = re.compile("movie .* [0-9a-f]{8}", re.DOTALL)  # a movie's own viewports and cameras; see Stage
+
+
+class Source:
+    """What a movie is drawn of: a session, and how its run is taken to a time.
+
+    session: a dspace.Session. advance(time): takes the run to a time [s]; called with the times of the
+    pictures, in their order. telemetry(): a dict of names to numbers or texts for overlays, now. close():
+    called at the end. beginning: the run's first time [s]. extent: the first and last times that there are
+    [s]; beyond them the run stands. playback: of what is played back."""
+
+    def __init__(self, session, advance=None, telemetry=None, close=None, beginning=0.0, extent=None, playback=None):
+        self.session, self.beginning, self.playback = session, beginning, playback
+        self.extent = extent or (-np.inf, np.inf)
+        self.advance = advance or (lambda time: None)
+        self.telemetry = telemetry or dict
+        self.close = close or (lambda: None)
+        self.closes = close is not None
+
+
+def open_run(run):
+    """A Source of what was given as a run: a recording's path; "FILE.py:NAME", a function that returns one of
+    the following or a tuple of what Source takes; a Source; a Playback (has a session and seek(time)); what
+    has a session and advance(time); or a Session, which stands still."""
+    if isinstance(run, Source):
+        return run
+    if isinstance(run, (str, os.PathLike)):
+        script, _, name = os.fspath(run).rpartition(":")
+        if script.endswith(".py") and name.isidentifier():
+            return _made_by(script, name)
+        try:
+            from dspace.playback.playback import Playback
+        except ImportError:
+            raise NotFound(f"run {shown(run)}: recordings are not played back here; accepted: FILE.py:NAME, a "
+                           "function that returns a Source", shown(run)) from None
+        playback = Playback(os.fspath(run))
+        source = _of_playback(playback)
+        source.close = getattr(playback, "close", source.close)
+        return source
+    require_run(run)
+    if hasattr(run, "session") and hasattr(run, "seek"):
+        return _of_playback(run)
+    if hasattr(run, "session"):
+        return Source(run.session, run.advance, getattr(run, "telemetry", None))
+    return Source(run)
+
+
+def require_run(run):
+    """Refuses what open_run() can make nothing of."""
+    if isinstance(run, (str, os.PathLike, Source)) or all(hasattr(run, name) for name in ("execute", "scene")):
+        return
+    if hasattr(run, "session") and (hasattr(run, "seek") or hasattr(run, "advance")):
+        return
+    raise WrongType(f"the run is {shown(run)}; accepted: a recording's path, FILE.py:NAME, a Source, a Playback "
+                    "or a Session")
+
+
+def _of_playback(playback):
+    # A recording's telemetry is in its scenes.
+    telemetry = None if hasattr(playback, "file") else getattr(playback, "telemetry", None)
+    times = StepTimes(playback.times)
+    # What was there before the simulation first set a time has the time 0 that nobody set.
+    steps = [time for _, time in playback.file.steps()] if hasattr(playback, "file") else []
+    steps = steps or times.times
+    return Source(playback.session, lambda time: playback.seek(times.step_at(time)),
+                  telemetry if callable(telemetry) else None, beginning=steps[0] if steps else 0.0,
+                  extent=(min(steps), max(steps)) if steps else None,
+                  playback=playback if hasattr(playback, "file") else None)
+
+
+def _made_by(path, name):
+    if not os.path.exists(path):
+        raise NotFound(f"run {path!r}: there is no such file", path)
+    spec = importlib.util.spec_from_file_location("dspace_movie_run", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    if not callable(getattr(module, name, None)):
+        raise NotFound(f"run {path!r}: it has no function {name!r}", path)
+    source = getattr(module, name)()
+    source = Source(*source) if isinstance(source, tuple) else open_run(source)
+    if not source.closes:
+        source.close = source.session.close
+    return source
+
+
+@contextlib.contextmanager
+def naming(part):
+    """In a `with` statement: errors say which part of the movie they are about."""
+    try:
+        yield
+    except Error as error:
+        if str(error).startswith(part):
+            raise
+        raise type(error)(f"{part}: {error}", part) from None
+
+
+class Stage:
+    """A movie and a run, ready to be drawn."""
+
+    def __init__(self, movie, source):
+        movie.check()
+        self.movie, self.source = movie, source
+        self.runs = movie.run_time(source.beginning)
+        self.paths = {name: CameraPath(view.keys, f"view {name!r}")
+                      for name, view in movie.views.items() if view.keys}
+        self.shown = {name: [] for name in movie.views}
+        # Of viewports and cameras. Another movie's may be there, even recorded, and come while this one is drawn.
+        mark = secrets.token_hex(4)
+        self.names = {name: f"movie {name} {mark}" for name in movie.views}
+        self.hidden, self.unseen = set(), True  # fragments that there were; no picture was drawn yet
+
+    def close(self):
+        """Takes its viewports and cameras out of the session."""
+        for view in self.movie.views.values():
+            try:
+                session, name = self.source.session, self.names[view.name]
+                if name in session.viewports:
+                    session.viewports[name].remove()
+                cameras = session.scenes[view.scene].vantages[view.vantage].cameras
+                if name in cameras:
+                    cameras[name].remove()
+            except Error:  # the session is closed, or has no such scene any more
+                pass
+            unknown = [fragment for fragment in view.hide if fragment not in self.hidden]
+            if unknown and not self.unseen:
+                warnings.warn(f"view {view.name!r}: hide names {unknown[0]!r}, and no picture that was drawn now has "
+                              "such a fragment", stacklevel=2)
+
+    def _advance(self, run):
+        """A recording may remove what a view shows, which is refused while it shows it."""
+        try:
+            self.source.advance(run)
+        except Error:
+            ours = [name for name in self.names.values() if name in self.source.session.viewports]
+            if self.source.playback is None or not ours:
+                raise
+            for name in ours:
+                self.source.session.viewports[name].remove()
+            self.source.advance(run)
+
+    def _find(self, view, run, things, kind, name, *within):
+        """A scene, vantage or camera that a view names."""
+        if name in things:
+            return things[name]
+        about = f"view {view.name!r}, {kind}"
+        what = f"{about}: at {run:g} s of the run there is no {kind} {name!r}"
+        if self.source.playback is not None and kind != "vantage":
+            ranges = spans_of(self.source.playback).get((kind, *within, name))
+            if ranges:
+                raise NotFound(f"{what}, which is there {when(self.source.playback, ranges)}; accepted: times of the "
+                               "run (start, or run of a key) when it is there", about)
+            what += ", nor at any other time"
+        named = [each for each in things if kind != "camera" or not INNER.fullmatch(each)]
+        raise NotFound(f"{what}; there are: {', '.join(map(repr, named[:50])) or 'none'}", about)
+
+    def _viewport(self, view, run):
+        """Its viewport, made where there is none (any more: a playback that seeks may begin anew)."""
+        session, name = self.source.session, self.names[view.name]
+        viewport = session.viewports.get(name)
+        if viewport is not None:
+            return viewport
+        scene = self._find(view, run, session.scenes, "scene", view.scene)
+        vantage = self._find(view, run, scene.vantages, "vantage", view.vantage)
+        left, top, right, bottom = view.pixels(self.movie.size)
+        camera = name
+        if view.keys:
+            scene.add_camera(name, vantage=view.vantage)
+        else:
+            camera = self._find(view, run, vantage.cameras, "camera", view.camera, view.scene, view.vantage).name
+        viewport = scene.add_viewport((right - left, bottom - top), camera, name=name, vantage=view.vantage,
+                                      samples=self.movie.samples)
+        viewport.ornaments = view.ornaments
+        viewport.corner_axes = view.corner_axes
+        if view.background is not None:
+            viewport.set_background(view.background, top=view.background_top)
+        self.shown[view.name] = []
+        return viewport
+
+    def picture(self, number):
+        """Picture `number`, from 0: (h, w, 3) uint8, sRGB."""
+        time = number / self.movie.rate
+        first, last = self.source.extent
+        run = min(max(self.runs.at(time), first), last)
+        self._advance(run)
+        width, height = self.movie.size
+        out = np.zeros((height, width, 3), np.uint8)
+        for number_, (name, view) in enumerate(self.movie.views.items()):
+            with naming(f"view {name!r}"):
+                viewport = self._viewport(view, run)
+                scene = viewport.scene
+                if view.keys:
+                    self._aim(view, scene, time, run)
+            self._write(viewport, scene, view, number_ == 0, time, run)
+            left, top, right, bottom = view.pixels(self.movie.size)
+            out[top:bottom, left:right] = viewport.image(hide=self._hide(view, scene))
+        self.unseen = False
+        return out
+
+    def _hide(self, view, scene):
+        """Those of the fragments that a view leaves out that there are now: some come later in a run."""
+        there = scene.fragments if view.hide else ()
+        hide = [fragment for fragment in view.hide if fragment in there]
+        self.hidden.update(hide)
+        return hide
+
+    def _aim(self, view, scene, time, run):
+        def find(path):
+            try:
+                return scene.frame(path) if path else scene.root
+            except NotFound as error:
+                number, field = next((number, "frame" if key.frame == path else "target_frame")
+                                     for number, key in enumerate(view.keys, 1)
+                                     if path in (key.frame, key.target_frame))
+                raise NotFound(f"view {view.name!r}, key {number}, {field}: at {run:g} s of the run: {error}; "
+                               "accepted: a frame that is there then", path) from None
+
+        def relative(path, base):
+            return find(path).pose_in(find(base))
+
+        path, position, quaternion, fov_deg = self.paths[view.name].at(time, relative)
+        scene.add_camera(self.names[view.name], frame=find(path), pose=Pose(position, quaternion),
+                         fov_deg=fov_deg, near=view.near, far=view.far, vantage=view.vantage)
+
+    def _write(self, viewport, scene, view, first, time, run):
+        """Tables of the overlays that this view has now."""
+        now = []
+        for number, overlay in enumerate(self.movie.overlays):
+            if overlay.view not in ((view.name, "") if first else (view.name,)) or not overlay.shows(time):
+                continue
+            name = f"movie {number}"
+            values = lambda key: self._value(key, scene, time, run)
+            with naming(f"overlay {number + 1}" + (f" {overlay.title!r}" if overlay.title else "")):
+                rows = [(label, fill(value, values)) for label, value in overlay.rows]
+                viewport.set_table(name, rows, title=overlay.title, anchor=overlay.anchor,
+                                   font_size=overlay.pixels(self.movie.size))
+            now.append(name)
+        for name in set(self.shown[view.name]) - set(now):
+            viewport.remove_table(name)
+        self.shown[view.name] = now
+
+    def _value(self, key, scene, time, run):
+        if key in ("movie", "run"):
+            return time if key == "movie" else run
+        telemetry = self.source.telemetry()
+        if key in telemetry:
+            return telemetry[key]
+        value = overlay_value(scene, key)
+        if value is not None:
+            return value
+        path, _, axis = key.rpartition(".")
+        if path and axis in ("x", "y", "z"):
+            return float(scene.frame(path).world_pose.position["xyz".index(axis)])
+        raise InvalidArgument(f"there is no value {key!r}; accepted: movie, run, FRAME.x of y and z, "
+                              + (", ".join(map(repr, [*telemetry, *scene.telemetry][:50])) or "telemetry"), key)
+
+
+def fill(text, values):
+    """A text whose {name:format} are replaced by what values(name) gives, and {{ and }} by one brace."""
+    def put(match):
+        if match[0] in ("{{", "}}"):
+            return match[0][0]
+        value = values(match[1])
+        try:
+            return format(value, match[2] or "")
+        except (ValueError, TypeError):
+            raise InvalidArgument(f"{match[0]} cannot be written of {shown(value)}; accepted: a format "
+                                  "such as {run:.2f}", match[1]) from None
+
+    return FIELD.sub(put, text)
+
+
+# --- PNG -------------------------------------------------------------------------------------------
+
+_MAGIC = b"\x89PNG\r\n\x1a\n"
+_END = b"\x00\x00\x00\x00IEND\xaeB`\x82"
+
+
+def png(picture):
+    """The bytes of a PNG file of an array (h, w, 3) of sRGB bytes; equal pictures have equal bytes."""
+    height, width = picture.shape[:2]
+    rows = np.ascontiguousarray(picture[..., :3]).reshape(height, width * 3)
+    filtered = np.empty((height, width * 3 + 1), np.uint8)
+    filtered[:, 0] = 2  # each row less the one above
+    filtered[0, 1:] = rows[0]
+    filtered[1:, 1:] = rows[1:] - rows[:-1]
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    return (_MAGIC + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+            + chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(filtered.tobytes(), 1)) + _END)
+
+
+def is_whole(path):
+    """Whether a file is a PNG whose parts all have their checksums."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read()
+    except OSError:
+        return False
+    if not data.startswith(_MAGIC) or not data.endswith(_END):
+        return False
+    at = len(_MAGIC)
+    while at + 12 <= len(data):
+        length, = struct.unpack(">I", data[at:at + 4])
+        end = at + 12 + length
+        if end > len(data) or struct.unpack(">I", data[end - 4:end])[0] != zlib.crc32(data[at + 4:end - 4]):
+            return False
+        at = end
+    return at == len(data)

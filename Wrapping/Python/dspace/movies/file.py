@@ -1,0 +1,84 @@
+"""A movie's text file: TOML, which a person may edit; written in one order, without what is as usual."""
+import json
+import tomllib
+from dataclasses import fields
+
+from dspace._core.fields import text
+from dspace.errors import Corrupt, InvalidArgument, Io
+
+
+def _value(value):
+    """A value as TOML."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        # JSON's escapes are TOML's, but for DEL.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
+    if isinstance(value, (tuple, list)):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    if isinstance(value, int):
+        return str(value)
+    return repr(float(value))
+
+
+def table_of(thing, skip=()):
+    """Names and values of a dataclass that are not the default ones."""
+    return {each.name: getattr(thing, each.name) for each in fields(thing)
+            if each.name not in skip and getattr(thing, each.name) != each.default}
+
+
+def _lines(values):
+    return [f"{name} = {_value(value)}" for name, value in values.items()]
+
+
+def write(movie):
+    """The text of a Movie; equal movies have equal texts."""
+    parts = [["# A movie of Dspace: see Documentation/Movies.md. Seconds, metres, degrees."]
+             + _lines(movie.settings())]
+    for view in movie.views.values():
+        parts.append(["[[view]]"] + _lines(table_of(view, ("keys",))))
+        parts += [["[[view.key]]"] + _lines(table_of(key)) for key in view.keys]
+    parts += [["[[overlay]]"] + _lines(table_of(overlay)) for overlay in movie.overlays]
+    return "\n\n".join("\n".join(part) for part in parts) + "\n"
+
+
+def load(path):
+    """What a file holds, as dicts."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read()
+    except OSError as error:
+        raise Io(f"movie {str(path)!r}: {error.strerror}; accepted: a file that can be read",
+                 str(path)) from None
+    try:
+        return parse(data.decode())
+    except (UnicodeDecodeError, Corrupt) as error:
+        raise Corrupt(f"movie {str(path)!r}: {error}; accepted: TOML", str(path)) from None
+
+
+def parse(words):
+    """Dicts of a text."""
+    try:
+        return tomllib.loads(text(words, "the text of a movie"))
+    except tomllib.TOMLDecodeError as error:
+        raise Corrupt(str(error)) from None
+
+
+def take(kind, values, about, also=()):
+    """A dataclass of a dict; what it does not have is refused by name."""
+    if not isinstance(values, dict):
+        raise InvalidArgument(f"{about}: it is {values!r}; accepted: a table", about)
+    accepted = [each.name for each in fields(kind) if each.name != "keys"]
+    unknown = sorted(set(values) - set(accepted) - set(also))
+    if unknown:
+        raise InvalidArgument(f"{about}: unknown {', '.join(map(repr, unknown))}; accepted: "
+                              f"{', '.join([*accepted, *also])}", about)
+    from dataclasses import MISSING
+    missing = [each.name for each in fields(kind) if each.name in accepted and each.name not in values
+               and each.default is MISSING]
+    if missing:
+        raise InvalidArgument(f"{about}: {missing[0]!r} is missing; accepted: {', '.join(accepted)}", about)
+    try:
+        return kind(**{name: values[name] for name in values if name in accepted})
+    except InvalidArgument as error:
+        raise InvalidArgument(str(error) if str(error).startswith(about) else f"{about}: {error}", about) from None

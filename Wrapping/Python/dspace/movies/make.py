@@ -1,0 +1,200 @@
+"""Making a movie: which pictures are still missing, who draws them, and the file of all.
+
+Every picture is a PNG in a work folder, under its final name only when it is whole, so that what was
+drawn before an end of any kind is not drawn again; the folder knows by a hash which movie of which run it
+is of. All ways of sharing the work give the same pictures.
+"""
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time as clock
+
+from dspace._core.fields import integer, path as path_of, refuse, text
+from dspace._core.files import AtomicFile, atomic_write
+from dspace.errors import Error, Io
+from dspace.movies.draw import Stage, open_run, png, require_run
+from dspace.movies.encode import codec_of, encode, programs
+from dspace.movies.folder import FRAME, SCRIPT, Folder, absolute
+
+
+def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progress=None, encoding=None, anew=False):
+    """Draws a Movie of a run into `out`: .mp4 (H.264), .webm (VP9), or a folder of PNGs (a name without a dot, one
+    with a slash at its end, or a folder that is there).
+
+    run: a recording's path, "FILE.py:NAME", or what dspace.movies.draw.open_run takes else (then jobs is 1).
+    jobs: processes that share the pictures; scheduler: a Dask scheduler's address (tcp://HOST:PORT, tls://...), whose
+    workers do, where `run` has the same path on their machines. work: the folder for pictures (default: `out`
+    with ".work", removed at the end unless `keep`; of a folder of PNGs `out` itself). An earlier make() of
+    the same movie that was ended is gone on with, but for `anew`. progress: called with (done, all, seconds so
+    far, drawn in them); encoding: when all are drawn, with (pictures in the file, all, seconds so far). Returns the
+    number of pictures drawn now."""
+    total = movie.check()
+    codec = codec_of(out, movie.size)
+    jobs = integer(jobs, "jobs", "movie", "an integer from 1 to 64")
+    if not 1 <= jobs <= 64:
+        refuse("movie", "jobs", jobs, "an integer from 1 to 64")
+    require_run(run)
+    if scheduler is not None:
+        require_address(scheduler)
+    out = os.fspath(out)
+    work = path_of(work, "the work folder", "movie") if work is not None else (out if codec is None else out + ".work")
+    if isinstance(run, (str, os.PathLike)):
+        path_of(run, "the run", "movie", "a recording's path or FILE.py:NAME")
+        run = absolute(run)  # workers may stand in another folder
+    elif jobs > 1 or scheduler:
+        refuse("movie", "the run", run, "a recording's path or FILE.py:NAME, where several processes share it")
+    if codec is not None:  # what is missing at the end is told at the beginning
+        programs()
+        _check_place(out)
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(Folder(work, movie, run, anew))
+        shown = folder
+        if codec is None and os.path.realpath(work) != os.path.realpath(out):
+            shown = stack.enter_context(Folder(out, movie, run, anew))
+        missing = folder.missing(total)
+        began = clock.monotonic()
+
+        def tell(left):
+            if progress:
+                progress(total - left, total, clock.monotonic() - began, len(missing) - left)
+
+        tell(len(missing))
+        with _in_file(movie.label):
+            if missing and scheduler:
+                from dspace.movies.dask_workers import share
+                share(scheduler, movie.text, run, missing, folder, tell)
+            elif missing and jobs > 1:
+                _share(run, missing, min(jobs, len(missing)), folder, tell)
+            elif missing:
+                draw(movie, run, missing, folder.path, tell)
+        if codec is not None:
+            began = clock.monotonic()
+            encode(folder.path(FRAME), out, movie.size, movie.rate, total,
+                   lambda done: encoding and encoding(done, total, clock.monotonic() - began))
+        elif shown is not folder:
+            for number in range(total):
+                with open(folder.path(FRAME % number), "rb") as file:
+                    atomic_write(shown.path(FRAME % number), file.read())
+    if codec is not None and not keep:
+        folder.remove()
+    return len(missing)
+
+
+def require_address(scheduler):
+    """Refuses what is no address of a Dask scheduler, for which Dask would wait."""
+    address = re.fullmatch(r"(tcp|tls)://(\[[0-9A-Fa-f:.]+\]|[^\s:/\[\]]+):([0-9]{1,5})",
+                           text(scheduler, "the scheduler", "movie"))
+    if not address or not 1 <= int(address[3]) <= 65535:
+        refuse("movie", "the scheduler", scheduler, "tcp://HOST:PORT or tls://HOST:PORT, of a Dask scheduler")
+
+
+@contextlib.contextmanager
+def _in_file(label):
+    """In a `with` statement: what is wrong with a view or an overlay is told with the movie's file."""
+    try:
+        yield
+    except Error as error:
+        if not label or not re.search(r"(^|: )(view|overlay) ", str(error)):
+            raise
+        raise type(error)(f"{label}: {error}", label) from None
+
+
+def _check_place(out):
+    """Whether a file can be written there."""
+    try:
+        os.makedirs(os.path.dirname(os.path.abspath(out)), exist_ok=True)
+    except OSError as error:
+        raise Io(f"movie {out!r}: {error.strerror}; accepted: a folder that may be written", out) from None
+    AtomicFile(out, f"movie {out!r}").close()
+
+
+def draw(movie, run, numbers, path, tell=lambda left: None):
+    """Draws the pictures `numbers`, rising, into files path(name), in this process."""
+    source = open_run(run)
+    try:
+        stage = Stage(movie, source)
+        try:
+            for count, number in enumerate(numbers, 1):
+                atomic_write(path(FRAME % number), png(stage.picture(number)))
+                tell(len(numbers) - count)
+        finally:
+            stage.close()
+    finally:
+        if source is not run:  # who hands in a Source closes it
+            source.close()
+
+
+# --- Processes -------------------------------------------------------------------------------------
+
+def worker(script, run, folder, numbers):
+    """A process that draws pictures of a movie's file into a folder; see main()."""
+    said = tempfile.TemporaryFile()  # a pipe that nobody reads would stop it
+    process = subprocess.Popen(
+        [sys.executable, "-c", "from dspace.movies.make import main; main()", script, run, folder,
+         str(os.getpid())],
+        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
+    process.said = said
+    try:  # however many they are
+        process.stdin.write(json.dumps(numbers).encode())
+        process.stdin.close()
+    except BrokenPipeError:  # it has ended; finish() says why
+        pass
+    return process
+
+
+def main():
+    """python -c "..." SCRIPT RUN FOLDER PARENT, and the pictures' numbers on the input stream."""
+    from dspace.movies.movie import Movie
+    script, run, folder, parent = sys.argv[1:]
+    numbers = json.load(sys.stdin)
+
+    def tell(left):
+        if os.getppid() != int(parent):  # nobody waits for the rest
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    try:
+        draw(Movie.load(script), run, numbers, lambda name: os.path.join(folder, name),
+             tell)
+    except (Error, OSError) as error:
+        sys.exit(f"{error}")
+
+
+def finish(process):
+    """Waits for a worker; raises what it said."""
+    process.wait()
+    process.said.seek(0)
+    message = process.said.read().decode(errors="replace").strip()
+    process.said.close()
+    if process.returncode != 0:
+        words = message.splitlines()[-1] if message else "it said nothing"
+        raise Io(f"a process that drew pictures ended with {process.returncode}: {words}")
+
+
+def _share(run, missing, jobs, folder, tell):
+    """Each process draws pictures that follow each other, for a run goes forward."""
+    edges = [len(missing) * k // jobs for k in range(jobs + 1)]
+    processes = []
+    try:
+        for a, b in zip(edges, edges[1:]):
+            processes.append(worker(folder.path(SCRIPT), run, folder.folder, missing[a:b]))
+        left = set(missing)
+        while any(process.poll() is None for process in processes):
+            if any(process.poll() for process in processes):
+                break  # one has failed
+            left = {number for number in left if not os.path.exists(folder.path(FRAME % number))}
+            tell(len(left))
+            clock.sleep(0.2)
+        for process in sorted(processes, key=lambda each: not each.poll()):  # those that failed first
+            finish(process)
+    finally:
+        for process in processes:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+    tell(0)

@@ -1,0 +1,1 @@
+"""What frames carry: graphics objects, robots, assemblies, fragments and lights."""

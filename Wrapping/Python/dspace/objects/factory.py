@@ -1,0 +1,244 @@
+"""How a scene makes objects: from files, from numbers, from text."""
+import numpy as np
+
+from dspace._core import wire
+from dspace.clients.local import warn
+from dspace._core.fields import (about, array_of, flag, integers, keywords, number, numbers, put,
+                            put_color, put_given, put_vector, refuse, shown, word)
+from dspace.objects.assemblies import is_assembly, load_assembly
+from dspace.cameras.camera import put_projection
+from dspace.errors import InvalidArgument, WrongType
+from dspace.frames.frame import put_pose
+from dspace.objects.graphics import (UP, GraphicsObject, Primitive, Text, TiltMarker, Trail, file_path,
+                            put_rotation, put_settings)
+from dspace.frames.poses import Pose, quaternion_of_axis, to_pose
+from dspace.objects.robots import Robot
+
+# What takes a file's axis to Z.
+_TURNS = {"z": (1, 0, 0, 0), "y": tuple(quaternion_of_axis("x", 90)),
+          "x": tuple(quaternion_of_axis("y", -90)), "-z": (0, 1, 0, 0)}
+
+
+# What a URDF takes of what objects take.
+_ROBOT = ("name", "fragment", "position", "quaternion", "pose")
+
+
+def _points(points, about):
+    array = array_of(points, "points", "an array (n, 3)", about)
+    if array.size and (array.ndim != 2 or array.shape[1] != 3):
+        raise InvalidArgument(f"{about}: the points have shape {array.shape}; accepted: (n, 3)")
+    return array
+
+
+class ObjectMaking:
+    """The part of Scene that makes objects; Scene says what all of its functions take."""
+
+    def load(self, path, frame=None, ornamental=False, scale=1.0, up=None, rotation=None,
+             levels=(), strict=False, point_cloud=False, **settings):
+        """A model file (glTF, GLB, VRML, OBJ, STL, PLY) as a GraphicsObject; a URDF as a Robot; the
+        folder of a frames.json, or that file, as an Assembly.
+
+        scale: metres a unit of the file. up: the file's axis that becomes Z ("z", "y", "x", "-z");
+        without it the file is taken as it is ("z"), which glTF seldom means: its Y is up. rotation: a
+        quaternion that turns it further. levels: coarser files as (path, pixels) pairs, each drawn
+        while the object is seen larger than `pixels`; the last one should have 0, and `path` then
+        needs its own number: (path, pixels) too.
+        strict: a missing texture or mesh raises; else it is a warning, and what stands in for a
+        URDF's mesh is an orange cube, or the edges of a box as large as its glTF says it is.
+        point_cloud: a file of points is shown, `point_size` pixels large; else no faces, no object.
+        A URDF (links to frames, joints as `robot.joints[name].position` in degrees or metres, meshes
+        from beside it) and a frames.json take frame, scale, up, rotation, ornamental, strict, name,
+        fragment, and position, quaternion or `pose` of their base frame."""
+        first, pixels = path if isinstance(path, tuple) and len(path) == 2 else (path, 0.0)
+        first = file_path(first, "the path", "model")
+        label = f"file {first!r}"
+        turn = word("z" if up is None else up, UP, "up", label)
+        if not isinstance(levels, (list, tuple)):
+            refuse(label, "levels", levels, "a list of (path, pixels)", WrongType)
+        kind = ("URDF" if first.lower().endswith(".urdf")
+                else "frames.json" if is_assembly(first) else None)
+        if kind:
+            pixels, scale = (number(value, name, label)
+                             for name, value in (("pixels", pixels), ("the scale", scale)))
+            if len(levels) or pixels or flag(point_cloud, "point_cloud", label):
+                raise InvalidArgument(f"{label}: levels {levels!r}, {pixels:g} pixels and "
+                                      f"point_cloud={point_cloud!r}; accepted for a {kind}: none of these")
+            keywords(settings, _ROBOT, f"{label}, a {kind}")
+            load = self._load_robot if kind == "URDF" else self._load_assembly
+            base = self._base_pose(label, scale, up or "z", rotation, settings)
+            return load(first, base, frame, ornamental, strict, **settings)
+        command = self._command()
+        message = command.import_object
+        put_settings(self, message.object, label, frame=frame, ornamental=ornamental, **settings)
+        put(message.level.add(), label, path=first, minimum_pixels=pixels)
+        for level in levels:
+            if not isinstance(level, (tuple, list)) or len(level) != 2:
+                raise WrongType(f"{label}: a level is {shown(level)}; accepted: (path, pixels)")
+            put(message.level.add(), label, path=file_path(level[0], "a level's path", label),
+                minimum_pixels=level[1])
+        put(message, label, scale=scale, up=turn, strict=strict, point_cloud=point_cloud)
+        if rotation is not None:
+            put_rotation(message.rotation, rotation, "the rotation", label)
+        made = GraphicsObject(self, self._execute(command).object.object)
+        if up is None and first.lower().endswith((".gltf", ".glb")):
+            warn(f"{label}: in glTF Y is up, and nothing is turned unasked; if it lies on its side give "
+                 "up='y', else up='z'")
+        return made
+
+    @staticmethod
+    def _base_pose(label, scale, up, rotation, settings):
+        """Takes what places a base frame out of the settings."""
+        with about(label):
+            base = to_pose(settings.pop("position", None), settings.pop("quaternion", None), None,
+                           settings.pop("pose", None))
+            if up != "z" or rotation is not None or scale != 1.0:
+                turn = Pose(quaternion=_TURNS[up], scale=scale)
+                base = base @ (turn if rotation is None else Pose(quaternion=rotation) @ turn)
+        return base
+
+    def _load_assembly(self, path, base, frame, ornamental, strict, **settings):
+        return load_assembly(self, path, base, frame, ornamental=ornamental, strict=strict, **settings)
+
+    def _load_robot(self, path, base, frame, ornamental, strict, name=None, fragment=None):
+        label = f"file {path!r}"
+        command = self._command()
+        message = command.load_robot
+        put(message, label, path=path, name="" if name is None else name, frame=self._frame_id(frame),
+            fragment=self._fragment_name(fragment), strict=strict)
+        put_pose(message.pose, base)
+        message.nature = 1 if flag(ornamental, "ornamental", label) else 0
+        return Robot(self, self._execute(command).robot)
+
+    def _primitive(self, settings, shape, **fields):
+        command = self._command()
+        label = put_settings(self, command.create_primitive.object, shape, **settings)
+        message = getattr(command.create_primitive, shape)
+        message.SetInParent()
+        put_given(message, label, **fields)
+        return command
+
+    def _make(self, command, kind=Primitive):
+        return kind(self, self._execute(command).object.object)
+
+    def add_box(self, size, **settings):
+        """size: three edges [m]; centred."""
+        command = self._primitive(settings, "box")
+        put_vector(command.create_primitive.box.size, size, "the size", "box")
+        return self._make(command)
+
+    def add_sphere(self, radius, resolution=None, **settings):
+        """Centred, poles on Z [m]."""
+        return self._make(self._primitive(settings, "sphere", radius=radius, resolution=resolution))
+
+    def add_cylinder(self, radius, height, resolution=None, **settings):
+        """Centred, along Z [m]."""
+        return self._make(self._primitive(settings, "cylinder", radius=radius, height=height,
+                                          resolution=resolution))
+
+    def add_cone(self, radius, height, resolution=None, **settings):
+        """Along Z, the apex at +height / 2 [m]."""
+        return self._make(self._primitive(settings, "cone", radius=radius, height=height,
+                                          resolution=resolution))
+
+    def add_plane(self, width, height, **settings):
+        """Centred, in XY, facing +Z [m]."""
+        return self._make(self._primitive(settings, "plane", width=width, height=height))
+
+    def add_disc(self, radius, resolution=None, **settings):
+        """Centred, in XY, facing +Z [m]."""
+        return self._make(self._primitive(settings, "disc", radius=radius, resolution=resolution))
+
+    def add_torus(self, radius, tube, resolution=None, **settings):
+        """About Z; radius to the middle of the tube [m]."""
+        return self._make(self._primitive(settings, "torus", radius=radius, tube=tube,
+                                          resolution=resolution))
+
+    def add_arrow(self, length, ornamental=True, **settings):
+        """From the origin along +X [m]."""
+        return self._make(self._primitive({**settings, "ornamental": ornamental}, "arrow",
+                                          length=length))
+
+    def add_axes(self, length, ornamental=True, **settings):
+        """X red, Y green, Z blue, from the origin [m]."""
+        return self._make(self._primitive({**settings, "ornamental": ornamental}, "axes",
+                                          length=length))
+
+    def add_lines(self, points, closed=False, ornamental=True, **settings):
+        """One polyline through an array (n, 3), or a list of several such [m]."""
+        several = (isinstance(points, (list, tuple)) and len(points)
+                   and isinstance(points[0], (list, tuple, np.ndarray)) and len(points[0])
+                   and hasattr(points[0][0], "__len__"))
+        lines = [_points(line, "lines") for line in (points if several else [points])]
+        command = self._primitive({**settings, "ornamental": ornamental}, "lines", closed=closed)
+        message = command.create_primitive.lines
+        wire.put_array(message, "point", np.concatenate([line.ravel() for line in lines]))
+        if several:
+            message.count.extend(len(line) for line in lines)
+        return self._make(command)
+
+    def add_points(self, points, ornamental=True, **settings):
+        """Points of an array (n, 3) [m], `point_size` pixels large."""
+        command = self._primitive({**settings, "ornamental": ornamental}, "points")
+        wire.put_array(command.create_primitive.points, "point", _points(points, "points"))
+        return self._make(command)
+
+    def add_frustum(self, length, size, fov_deg=None, height=None, tangents=None, near=None,
+                    ornamental=True, **settings):
+        """What a camera (X right, Y down, Z forward) with an image of `size` (width, height) pixels
+        sees up to `length` along Z [m]; the projection as in Camera.set_projection."""
+        width, rows = integers(size, 2, "the size", "frustum", "(width, height), two integers")
+        command = self._primitive({**settings, "ornamental": ornamental}, "frustum", length=length,
+                                  width=width, height=rows)
+        put_projection(command.create_primitive.frustum.projection, fov_deg, height, tangents, near,
+                       about="frustum")
+        return self._make(command)
+
+    def add_goal(self, height, ornamental=True, **settings):
+        """A pole along Z with a flag and a ring on the ground [m]."""
+        return self._make(self._primitive({**settings, "ornamental": ornamental}, "goal",
+                                          height=height))
+
+    def add_tilt_marker(self, radius, tilt_deg=0.0, warn_deg=None, limit_deg=None, ornamental=True,
+                        **settings):
+        """A ring with a needle: green upright, yellow at warn_deg (15), red from limit_deg (30)."""
+        command = self._primitive({**settings, "ornamental": ornamental}, "tilt", radius=radius,
+                                  tilt_deg=tilt_deg, warn_deg=warn_deg, limit_deg=limit_deg)
+        return self._make(command, TiltMarker)
+
+    def add_text(self, text, height, ornamental=True, **settings):
+        """Flat letters in XY, readable from +Z; a capital letter is `height` metres high.
+
+        Letters of any alphabet that DejaVu Sans has and that is written from left to right."""
+        command = self._command()
+        put_settings(self, command.create_text.object, "text", ornamental=ornamental, **settings)
+        put(command.create_text, "text", text=text)
+        put(command.create_text.solid, "text", height=height)
+        return self._make(command, Text)
+
+    def add_label(self, text, font_size=None, color=None, background=None, background_opacity=None,
+                  offset=None, ornamental=True, **settings):
+        """A label that faces the camera; font_size and offset (right, up) in pixels.
+
+        Letters as for add_text."""
+        command = self._command()
+        put_settings(self, command.create_text.object, "label", ornamental=ornamental, **settings)
+        put(command.create_text, "label", text=text)
+        label = command.create_text.label
+        label.SetInParent()
+        for field, value in (("color", color), ("background", background)):
+            if value is not None:
+                put_color(getattr(label, field), value, field, "label")
+        put_given(label, "label", font_size=font_size, background_opacity=background_opacity)
+        if offset is not None:
+            label.offset_x, label.offset_y = numbers(offset, 2, "the offset", "label")
+        return self._make(command, Text)
+
+    def add_trail(self, capacity=10000, minimum_spacing=0.0, fade=False, ornamental=True,
+                  **settings):
+        """A line through the last `capacity` points that Trail.append was given, each at least
+        `minimum_spacing` [m] from the one before; fade: older points are fainter."""
+        command = self._command()
+        message = command.create_trail
+        label = put_settings(self, message.object, "trail", ornamental=ornamental, **settings)
+        put(message, label, capacity=capacity, minimum_spacing=minimum_spacing, fade=fade)
+        return self._make(command, Trail)

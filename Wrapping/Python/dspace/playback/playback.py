@@ -1,0 +1,254 @@
+"""Recordings played back, with no simulation."""
+import bisect
+import math
+import time
+
+from dspace.clients.local import to_reply, warn
+from dspace._core.wire import command_of
+from dspace._core.fields import flag, integer, number, real, refuse, text
+from dspace._core.traits import scene_name
+from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
+from dspace.playback.steps import StepTimes, rounding, steps_of
+from dspace.playback.telemetry import TelemetryReading
+from dspace.recording.assets import RecordedFiles
+from dspace.playback.spans import spans_of
+from dspace.recording.file import RecordingFile, commands_of
+from dspace.proto import commands_pb2 as pb, terrain_pb2
+from dspace.clients.session import Session
+
+BUILDING = terrain_pb2.TerrainReply.BUILDING
+AT_ONCE = 3600.0  # [s] of sleep; the operating system takes no number of any size
+SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER
+
+
+def scene_of(payload):
+    return scene_name(command_of(payload))
+
+
+class Playback(TelemetryReading):
+    """A recording in a session of its own, at a time that may go either way.
+
+        with dspace.Playback("run.dspace") as run:
+            run.seek(12.5)
+            run.session.viewports["main"].save("at_12_5.png")
+
+    Its steps are the times that the simulation set, in whatever scene or in the one named (dspace.NotFound where there
+    never is one of that name), each with all that came until the next one. The session shows what the recorded one
+    did, to the byte. What is added to it is gone with the next seek back.
+
+    Files that were packed into it are unpacked into a folder of their own, removed by close(). check_assets: files
+    that were not must be what they were, else dspace.Corrupt or dspace.NotFound names the one that is not.
+
+    A salvaged recording lacks commands: `gaps` has the spans of which nothing can be shown, up to the next snapshot;
+    steps that may lack a command are among them. A dspace.DspaceWarning tells of them.
+    """
+
+    def __init__(self, path, check_assets=True, scene=None):
+        self.file = RecordingFile(path)
+        self.session = self._files = None
+        try:
+            self._checks = flag(check_assets, "check_assets", self.file.label)
+            self._scene = None if scene is None else text(scene, "the scene", self.file.label)
+            self._read_steps()
+            self._require_scene()
+            if self.gaps:
+                warn(f"{self.file.label}: commands are lost, and nothing is shown from "
+                     + ", nor from ".join(str(gap) for gap in self.gaps))
+            self.session = Session()
+            self._at = None  # the command after which the session is
+            self.index = 0
+            self._go(0)
+        except BaseException:
+            self.close()
+            raise
+
+    def _read_steps(self):
+        steps, gaps = steps_of(self.file, self._scene)
+        if not steps:
+            raise self.file.corrupt("no step of it is whole")
+        self._take_files()  # after the steps: a command's files are noted before it
+        self.gaps = gaps
+        self._ends = [step.end for step in steps]
+        self.times = [step.time for step in steps]  # [s], of each step
+        self._steps = StepTimes(self.times)
+
+    def _require_scene(self):
+        if self._scene is None or self.file.steps(self._scene):
+            return
+        there = [key[1] for key in spans_of(self) if key[0] == "scene"]
+        if self._scene not in there:
+            raise NotFound(f"{self.file.label}: there is no scene {self._scene!r}; there are: "
+                           + (", ".join(map(repr, there)) or "none"), self.file.label)
+
+    def _take_files(self):
+        """Unpacks or checks the files that were noted since."""
+        if self._files is None:
+            self._files = RecordedFiles(self.file, self._checks)
+        else:
+            self._files.update()
+
+    def update(self):
+        """Takes in what has been recorded since, of a recording that is being written; returns how many steps came.
+        The last one may have grown: seek to it again to see all of it. Files that were noted since are unpacked or
+        checked, with the errors of the constructor."""
+        before = len(self.times)
+        self._read_steps()
+        return len(self.times) - before
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.close()
+
+    def close(self):
+        if self.session is not None:
+            self.session.close()
+        if self._files is not None:
+            self._files.close()
+        self.file.close()
+
+    @property
+    def duration(self):
+        """Seconds from the first step's time to the last one's."""
+        return self.times[-1] - self.times[0]
+
+    @property
+    def time(self):
+        """The present step's [s]."""
+        return self.times[self.index]
+
+    def seek(self, at):
+        """To the last step that is not after `at` [s]; returns its own recorded time. A step that is later by no more
+        than a rounding is not after it: a thousandth of the step before it, at most 0.1 ms (Documentation/Recording.md).
+        Where time went back in the recording (a simulation that was reset), in the latest run of steps that reaches
+        `at`, else in the latest that begins before it. An error before the first step (dspace.InvalidArgument) and in a
+        gap (dspace.Corrupt)."""
+        at = number(at, "the time", self.file.label)
+        index = self._steps.index_at(at)
+        if index is None:
+            raise InvalidArgument(f"{self.file.label}: the time is {at!r} s; accepted: {min(self.times)!r} on",
+                                  self.file.label)
+        for gap in self.gaps:
+            if gap.before == index + 1 and gap.begin is not None and (
+                    at >= gap.begin - rounding(gap.begin, max(gap.begin - self.times[index], 0.0))):
+                raise Corrupt(f"{self.file.label}: at {at!r} s its commands are lost: {gap}", self.file.label)
+        self._go(index)
+        return self.time
+
+    def step(self, n=1):
+        """n steps on, or back; stops at the ends. Returns how many were made."""
+        n = integer(n, "the number of steps", self.file.label, "a whole number")
+        before = self.index
+        self._go(min(max(before + n, 0), len(self.times) - 1))
+        return self.index - before
+
+    def play(self, speed=1.0, on_step=None, until=None):
+        """Steps on, or with a negative speed back, in `speed` times real time, to the end, to the time `until` [s]
+        (with a step that passes it by no more than a rounding, as seek() has it), or until on_step(playback), called
+        after each step, returns False. Of steps that are due by then only the last one is gone to, so that it keeps
+        its pace; with a speed of 0, or back with -inf, every step is, as fast as it goes."""
+        speed = real(speed, "the speed", self.file.label)
+        until = None if until is None else real(until, "until", self.file.label, "a time [s]")
+        if on_step is not None and not callable(on_step):
+            refuse(self.file.label, "on_step", on_step, "a function of the Playback", WrongType)
+        paced = speed != 0 and math.isfinite(speed)
+        direction = -1 if speed < 0 else 1
+        began, from_time = time.monotonic(), self.time
+        while True:
+            following = self.index + direction
+            if not 0 <= following < len(self.times):
+                return
+            if self._passes(following, direction, until):
+                return
+            if paced:
+                if (self.times[following] - self.time) * direction < 0:  # a simulation that was reset: from there on
+                    began, from_time = time.monotonic(), self.times[following]
+                due = began + (self.times[following] - from_time) / speed
+                while (wait := due - time.monotonic()) > 0:
+                    time.sleep(min(wait, AT_ONCE))
+                following = self._due(following, direction, from_time + speed * (time.monotonic() - began), until)
+            self._go(following)
+            if on_step is not None and on_step(self) is False:
+                return
+
+    def _due(self, index, direction, now, until):
+        """The last step from `index` on, or back, that is not after `now`, nor after `until`, before time turns."""
+        while 0 <= index + direction < len(self.times):
+            following = self.times[index + direction]
+            if ((following - self.times[index]) * direction < 0 or (following - now) * direction > 0
+                    or self._passes(index + direction, direction, until)):
+                break
+            index += direction
+        return index
+
+    def _passes(self, index, direction, until):
+        """Whether a step lies beyond the time to play to."""
+        if until is None:
+            return False
+        if direction > 0:
+            return self._steps.is_after(index, until)
+        return self.times[index] < until and not self._steps.is_at(index, until)
+
+    def _go(self, index):
+        target = self._ends[index]
+        snapshot = reached = None
+        if self._at is None or target < self._at:
+            snapshot = self.file.snapshot(target)
+        elif target > self._at:
+            snapshots = self.file.snapshots
+            nearest = bisect.bisect_right(snapshots, target)
+            if nearest and snapshots[nearest - 1] > self._at:
+                snapshot = self.file.snapshot(target)
+        if snapshot is not None:
+            self._at = None  # unknown, if one of these fails
+            self._clear()
+            for command in commands_of(snapshot):
+                self._carry_out(command, f"snapshot {snapshot.seq}")
+            self._at = snapshot.seq
+            reached = snapshot.time if self._scene is None else None
+        for row in self.file.rows(self._at + 1, target) if target > self._at else ():
+            self._carry_out(row.payload, f"command {row.seq}")
+            self._at = row.seq
+            if self._scene is None or row.kind == SET_TIME and scene_of(row.payload) == self._scene:
+                reached = row.time
+        self._check_step(index, reached)
+        self.index = index
+
+    def _check_step(self, index, reached):
+        """Steps are found by an index that has no checksums; the rows that it leads to have."""
+        good = reached in (None, self.times[index])
+        following = self._ends[index] + 1
+        if good and index + 1 < len(self.times):
+            row = next(self.file.rows(following, following))
+            good = row.kind == SET_TIME and (row.time == self.times[index + 1]
+                                             or any(gap.before == index + 1 for gap in self.gaps))
+        if not good:
+            raise self.file.corrupt(f"its index of times is damaged near command {following}")
+
+    def _clear(self):
+        for name in list(self.session.viewports):
+            command = pb.Command()
+            command.remove_viewport.viewport = name
+            self.session.execute(command)
+        for name in list(self.session.scenes):
+            command = pb.Command(scene=name)
+            command.remove_scene.SetInParent()
+            self.session.execute(command)
+
+    def _carry_out(self, payload, what):
+        payload = self._files.map(payload)
+        reply = to_reply(self.session.vtk.Replay(payload, self._files.vtk))
+        if reply.HasField("error"):
+            raise Corrupt(f"{self.file.label}: {what} is refused: {reply.error.message}", self.file.label)
+        if self._files.folder and b"/overviews" in payload:
+            self._wait_for_overviews(command_of(payload))
+
+    def _wait_for_overviews(self, opened):
+        """What was drawn of a large raster was its overviews, which are built anew beside the unpacked file."""
+        while opened.HasField("open_terrain"):
+            asked = pb.Command(scene=opened.scene)
+            asked.describe_terrain.terrain = opened.open_terrain.name
+            if self.session.execute(asked).terrain.overview_build != BUILDING:
+                return
+            time.sleep(0.01)

@@ -1,0 +1,219 @@
+"""What a recording holds: Documentation/Recording.md describes the file. The reader is C++'s (RecordingReader.h);
+nothing is executed or drawn here."""
+import os
+import threading
+from typing import NamedTuple
+
+from dspace import vtk as _vtk
+from dspace.clients.local import make_error, to_bytes
+from dspace._core.fields import refuse, text
+from dspace.links.connection import SLICE, hear_signals
+from dspace.errors import Closed, Corrupt, WrongThread
+from dspace.proto import recordings_pb2 as pb
+
+LAST = 2 ** 62  # more commands than any recording has
+
+
+def path_of(path):
+    """An absolute path, of a str or a path object."""
+    path = text(os.fspath(path) if isinstance(path, os.PathLike) else path, "the path", "recording",
+                "a str or a path")
+    if not path or "\0" in path:
+        refuse("recording", "the path", path, "one that is not empty and holds no zero bytes")
+    return os.path.abspath(path)
+
+
+class Row(NamedTuple):
+    """A command, or a snapshot: the commands that make the state after command `seq`."""
+
+    seq: int
+    time: float  # of the simulation [s]
+    wall: float  # seconds past 1970 UTC
+    kind: int    # field number in Command; of a snapshot: the number of its commands
+    payload: bytes
+
+
+class Asset(NamedTuple):
+    """A file that commands need. state: "read"; "absent", "unreadable" or "changed", these without size and hash."""
+
+    id: int
+    path: str
+    state: str
+    size: int
+    sha256: bytes
+    packed: bool  # its content is in the recording
+
+
+def commands_of(snapshot):
+    """The serialized commands of a snapshot's payload: each after its length as a varint."""
+    data, at, found = snapshot.payload, 0, []
+    while at < len(data):
+        length = shift = 0
+        byte = 128
+        while byte >= 128 and at < len(data):
+            byte = data[at]
+            length |= (byte & 127) << shift
+            shift += 7
+            at += 1
+        if byte >= 128 or length > len(data) - at:
+            raise Corrupt(f"snapshot {snapshot.seq}: it is not a list of commands", f"snapshot {snapshot.seq}")
+        found.append(data[at:at + length])
+        at += length
+    return found
+
+
+def reply_of(answer):
+    """The RecordingReply of a method of the wrapped classes; raises the exception that its error stands for."""
+    reply = pb.RecordingReply.FromString(to_bytes(answer))
+    if reply.HasField("error"):
+        raise make_error(reply.error)
+    return reply
+
+
+def carry_out(name, *arguments):
+    """The RecordingReply of long work on recordings, such as "Salvage" (vtkDspaceRecordingTask). Ctrl-C ends it, and
+    leaves no new file behind."""
+    task = _vtk.vtkDspaceRecordingTask()
+    getattr(task, name + "Later")(*arguments)
+    try:
+        while not task.Wait(SLICE):
+            hear_signals()
+    except BaseException:
+        task.Cancel()
+        raise
+    return reply_of(task.TakeReply())
+
+
+def _row(row):
+    return Row(row.seq, row.time_s, row.wall_s, row.kind, row.payload)
+
+
+def _number(seq):
+    """A command's number that can be asked for: those that no command has are cut to the nearest that one may have."""
+    return min(max(int(seq), 0), LAST)
+
+
+class RecordingFile:
+    """A recording, to be read, also while it is written. Every row is checked against its checksum when it is read: a
+    damaged one raises dspace.Corrupt, which names the file and the command. A file that is not a recording, or that a
+    newer Dspace wrote, raises dspace.Unsupported; one that the operating system rejects, or that a process has locked,
+    dspace.Io."""
+
+    def __init__(self, path):
+        self.path = path_of(path)
+        self.label = f"recording {self.path!r}"
+        self._vtk = _vtk.vtkDspaceRecordingReader()
+        self._thread = threading.get_ident()
+        reply_of(self._vtk.Open(os.fsencode(self.path)))
+
+    def close(self):
+        if self._vtk is not None:
+            self._vtk.Close()
+        self._vtk = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.close()
+
+    def _ask(self, name, *values):
+        """The RecordingReply of a method of the reader."""
+        if self._vtk is None:
+            raise Closed(f"{self.label}: it is closed; accepted: to open it again", self.label)
+        if threading.get_ident() != self._thread:
+            raise WrongThread(f"{self.label}: it is read in another thread; accepted: the one that opened it",
+                              self.label)
+        return reply_of(getattr(self._vtk, name)(*values))
+
+    def corrupt(self, what):
+        return Corrupt(f"{self.label}: {what}; `dspace log salvage` recovers what survives", self.label)
+
+    def _rows(self, method, first, last, kinds):
+        # Part by part: a recording may be larger than memory.
+        following, last = _number(first), _number(last)
+        while following <= last:
+            reply = self._ask(method, following, last, kinds)
+            yield from map(_row, reply.row)
+            if not reply.next:
+                return
+            following = reply.next
+
+    def rows(self, first=1, last=None):
+        """The commands first..last in their order, with none missing between; last: absent: the present last one."""
+        return self._rows("ReadRows", first, self.last if last is None else last, "")
+
+    def rows_of(self, kinds, first, last):
+        """The commands first..last of some kinds (field numbers) in their order; none of any kind is missing.
+        All are read and checked: a kind that is damaged must not hide one."""
+        return self._rows("ReadRows", first, last, ",".join(map(str, kinds)))
+
+    def only(self, kinds, first, last):
+        """The same, and no others are read: where one whose kind is damaged may be passed over."""
+        return self._rows("ReadOnly", first, last, ",".join(map(str, kinds)))
+
+    @property
+    def first(self):
+        """The first command's number: 1, unless it was cut."""
+        return self._ask("First").number
+
+    @property
+    def last(self):
+        """The last command's number; 0 without any."""
+        return self._ask("Last").number
+
+    @property
+    def begin(self):
+        """The number of the snapshot that it begins with: 0, unless it was cut."""
+        return self._ask("Begin").number
+
+    def steps(self, scene=None):
+        """(seq, time) of every command that set the time, in one scene or in any, in order."""
+        reply = self._ask("Steps", scene is not None, scene or "")
+        return list(zip(reply.seq, reply.time_s))
+
+    def step_begins(self):
+        """(first command, time) of every step after the first snapshot, in order: first what was there and done before
+        time was first set."""
+        reply = self._ask("StepBegins")
+        return list(zip(reply.seq, reply.time_s))
+
+    def playback_steps(self, scene=None):
+        """A RecordingReply with the steps that can be shown, of one scene or of all, and the gaps between."""
+        return self._ask("PlaybackSteps", scene is not None, scene or "")
+
+    def blocks(self):
+        """Ranges of commands with none missing between: (first, last, snapshot), where snapshot is the number of the
+        first state from which they can be played, or None."""
+        return [(each.first, each.last, each.snapshot if each.HasField("snapshot") else None)
+                for each in self._ask("Blocks").range]
+
+    def snapshot(self, seq):
+        """The last snapshot at or before a command."""
+        return _row(self._ask("ReadSnapshot", _number(seq)).row[0])
+
+    @property
+    def snapshots(self):
+        """The numbers of all snapshots."""
+        return list(self._ask("Snapshots").seq)
+
+    @property
+    def assets(self):
+        """The files that its commands need, by path."""
+        return [Asset(each.id, os.fsdecode(each.path), each.state.decode(errors="replace"), each.size, each.sha256,
+                      each.packed) for each in self._ask("Assets").asset]
+
+    @property
+    def lost(self):
+        """Ranges (first, last) of commands that salvaging it did not recover."""
+        return [(each.first, each.last) for each in self._ask("Lost").range]
+
+    @property
+    def summary(self):
+        """A RecordingSummary (recordings.proto): its size, its times, its commands by kind."""
+        return self._ask("Summary").summary
+
+    def check(self):
+        """Reads all of it; raises at the first damage."""
+        self._ask("First")  # of an open one, in its thread
+        carry_out("Check", os.fsencode(self.path))

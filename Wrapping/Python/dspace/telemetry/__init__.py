@@ -1,0 +1,1 @@
+"""Values, events and questions of a simulation, and events of its viewers."""

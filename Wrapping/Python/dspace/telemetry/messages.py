@@ -1,0 +1,259 @@
+"""What a simulation says: events that happened, and questions to the operator."""
+import math
+import time as _time
+
+import numpy as np
+
+from dspace._core.fields import items, number, put, put_vector, real, refuse, shown, text, word
+from dspace._core.strict import Strict
+from dspace.errors import DeadlineExceeded, NotFound, WrongType
+from dspace.frames.frame import Frame
+from dspace.proto import service_pb2
+from dspace.telemetry.viewer_events import ViewerEvents
+
+SEVERITIES = {"info": 0, "caution": 1, "warning": 2, "alarm": 3}
+WORDS = tuple(SEVERITIES)
+_text = text  # also the name of arguments
+
+# Kinds that programs know; any other word is as good. messages.proto says the same.
+WELL_KNOWN = ("staging", "separation", "deployment", "parachute", "ignition", "cutoff", "contact", "touchdown",
+              "collision", "mode", "fault", "command", "message", "goal", "note")
+
+
+class Event(Strict):
+    """Something that happened, as the scene keeps it: scene.events(), playback.events().
+
+    number: counts a scene's events from 1. time: of the simulation [s]. kind: a word. text: for people.
+    severity: "info", "caution", "warning" or "alarm". frame_path: of the frame where it happened, as it was
+    called then; "" for none. position: in that frame [m], or None. data: {name: number or str}; units:
+    {name: unit} of those that have one."""
+
+    def __init__(self, message, scene=None):
+        self._message, self._scene = message, scene
+
+    @property
+    def number(self):
+        return self._message.number
+
+    @property
+    def time(self):
+        return self._message.time_s
+
+    @property
+    def kind(self):
+        return self._message.kind
+
+    @property
+    def text(self):
+        return self._message.text
+
+    @property
+    def severity(self):
+        return WORDS[self._message.severity] if self._message.severity < len(WORDS) else "alarm"
+
+    @property
+    def frame(self):
+        """The Frame, while it is in the scene; else None."""
+        return Frame(self._scene, self._message.frame) if self._scene and self._message.frame else None
+
+    @property
+    def frame_path(self):
+        return self._message.frame_path
+
+    @property
+    def position(self):
+        if not self._message.HasField("position"):
+            return None
+        p = self._message.position
+        return np.array([p.x, p.y, p.z])
+
+    @property
+    def data(self):
+        return {datum.name: datum.text if datum.WhichOneof("value") == "text" else datum.number
+                for datum in self._message.datum}
+
+    @property
+    def units(self):
+        return {datum.name: datum.unit for datum in self._message.datum if datum.unit}
+
+    def __repr__(self):
+        return f"<dspace.Event {self.number}, {self.time!r} s, {self.severity}, {self.kind!r}: {shown(self.text)}>"
+
+
+class Question(Strict):
+    """A question to the operator, which scene.ask() has put or scene.questions lists.
+
+    Who has put it: wait(), or session.process_events() until `answer` is not None; the first answer that is
+    among the choices counts, and closes the question. Who watches: reply(). Others' questions have no answer
+    here: scene.questions is of those that are open."""
+
+    def __init__(self, scene, message):
+        self._scene, self._message = scene, message
+        self._answer = self._who = None
+        self._open, self._hears = True, False
+
+    @property
+    def name(self):
+        return self._message.name
+
+    @property
+    def text(self):
+        return self._message.text
+
+    @property
+    def choices(self):
+        """The answers that are accepted; none: any text."""
+        return list(self._message.choice)
+
+    @property
+    def severity(self):
+        return WORDS[self._message.severity] if self._message.severity < len(WORDS) else "alarm"
+
+    @property
+    def time(self):
+        """Simulation time when it was asked [s]."""
+        return self._message.time_s
+
+    @property
+    def answer(self):
+        """What was answered, or None."""
+        return self._answer
+
+    @property
+    def who(self):
+        """The name of who answered, or None."""
+        return self._who
+
+    def _listen(self):
+        # Only who has put it, so that two objects of one question do not close it twice.
+        self._hears = True
+        self._scene._client.events.callbacks.append(("answer", self._hear))
+
+    def _hear(self, event):
+        answer = event.answer
+        if not self._open or answer.question != self.name or (self.choices and answer.answer not in self.choices):
+            return
+        self._answer, self._who = answer.answer, getattr(event, "from")  # a word of Python's
+        self._close(self._answer, self._who)
+
+    def _close(self, answer=None, who=""):
+        self._open = False
+        if self._hears:
+            callbacks = self._scene._client.events.callbacks
+            callbacks[:] = [each for each in callbacks if each[1] != self._hear]
+        command = self._scene._command()
+        put(command.close_question, f"question {self.name!r}", name=self.name)
+        if answer is not None:
+            command.close_question.answer = answer
+        setattr(command.close_question, "from", who)
+        try:
+            self._scene._execute(command)
+        except NotFound:  # somebody else has closed it
+            pass
+
+    def wait(self, timeout):
+        """The answer; waits up to `timeout` seconds of wall time for it, and hands other events of viewers to
+        their callbacks meanwhile. dspace.DeadlineExceeded when none has come: it stays open."""
+        timeout = real(timeout, "the timeout", f"question {self.name!r}", "seconds")
+        end = _time.monotonic() + timeout
+        while self._open and self._answer is None:
+            left = end - _time.monotonic()
+            if left <= 0:
+                raise DeadlineExceeded(f"question {self.name!r}: no answer in {timeout!r} s", f"question {self.name!r}")
+            if not ViewerEvents.process_events(self._scene, min(left, 1.0)):
+                _time.sleep(min(left, 0.01))  # a session of one's own does not wait
+        return self._answer
+
+    def withdraw(self):
+        """Takes it back. One that is closed already is no error."""
+        if self._open:
+            self._close()
+
+    def reply(self, answer):
+        """Of a Watcher, or in a session of one's own: answers it."""
+        label = f"question {self.name!r}"
+        text(answer, "the answer", label)
+        if self.choices and answer not in self.choices:
+            refuse(label, "the answer", answer, ", ".join(map(repr, self.choices)))
+        event = service_pb2.ViewerEvent()
+        event.answer.question, event.answer.answer = self.name, answer
+        self._scene._client.tell(event)
+
+    def __repr__(self):
+        return f"<dspace.Question {self.name!r}: {shown(self.text)}, answer {self._answer!r}>"
+
+
+class Messages:
+    """The part of Scene that logs events and asks questions."""
+
+    def log_event(self, kind, text="", severity="info", frame=None, position=None, time=None, data=None):
+        """Something has happened; returns the Event.
+
+        kind: a word for programs, such as "staging", "parachute", "ignition", "contact", "touchdown", "mode",
+        "fault", "message"; dspace.telemetry.messages.WELL_KNOWN lists them, and any other word is as good. text: for
+        people. severity: "info", "caution", "warning" or "alarm". frame: where it happened, and position [m]
+        in it. time: of the simulation [s]; default: the scene's. data: a dict of names to numbers, texts, or
+        (number, unit) pairs. The scene keeps the newest 10,000."""
+        label = f"event {shown(kind)}"
+        command = self._command()
+        message = command.log_event
+        put(message, label, kind=kind, text=text)
+        message.severity = word(severity, SEVERITIES, "the severity", label)
+        if frame is not None:
+            message.frame = self._frame_id(frame)
+        if position is not None:
+            put_vector(message.position, position, "the position", label)
+        if time is not None:
+            message.time_s = number(time, "the time", label)
+        if data is not None and not hasattr(data, "items"):
+            refuse(label, "the data", data, "a dict of names to numbers, texts, or (number, unit) pairs", WrongType)
+        for name, value in (data or {}).items():
+            datum = message.datum.add()
+            put(datum, label, name=name)
+            if isinstance(value, tuple) and len(value) == 2:
+                value, unit = value
+                put(datum, label, unit=unit)
+            if isinstance(value, str):
+                put(datum, label, text=value)
+            else:
+                datum.number = number(value, f"datum {name!r}", label)
+        return Event(self._execute(command).event, self)
+
+    def events(self, after=0, since=-math.inf, until=math.inf, kind=None, severity="info", most=0):
+        """The scene's kept Events, in the order of their numbers.
+
+        after: of numbers above this one. since, until: times [s], these included. kind: a word, or several.
+        severity: this one or above. most: the newest so many; 0: all."""
+        label = f"events of scene {self._name_!r}"
+        command = self._command()
+        message = command.list_events
+        put(message, label, after=after, most=most)
+        message.since_s, message.until_s = real(since, "since", label), real(until, "until", label)
+        kinds = [] if kind is None else [kind] if isinstance(kind, str) else items(kind, "the kinds", label,
+                                                                                  "a word, or several")
+        message.kind.extend(text(each, "a kind", label, "a word") for each in kinds)
+        message.severity = word(severity, SEVERITIES, "the severity", label)
+        return [Event(event, self) for event in self._execute(command).events.event]
+
+    def ask(self, name, text, choices=(), severity="info"):
+        """Asks whoever watches; returns the Question, whose answer comes later: see Question.wait.
+
+        name: unlike all open questions of the session. choices: the answers that are accepted; none: any
+        text."""
+        label = f"question {shown(name)}"
+        command = self._command()
+        message = command.ask_operator
+        put(message, label, name=name, text=text)
+        for choice in items(choices, "the choices", label, "a list of answers"):
+            message.choice.append(_text(choice, "a choice", label))
+        message.severity = word(severity, SEVERITIES, "the severity", label)
+        message.time_s = self.time
+        self._execute(command)
+        question = Question(self, message)
+        question._listen()
+        return question
+
+    @property
+    def questions(self):
+        """The open Questions, in the order in which they were asked."""
+        return [Question(self, message) for message in self._ask("list_questions").questions.question]

@@ -1,0 +1,162 @@
+"""What people do at viewers, on its way to the simulation: how it is said, and how it is heard."""
+import math
+import warnings
+
+from dspace._core.fields import items, number, put, real, refuse, text, word
+from dspace._core.traits import DEFAULT_SCENE
+from dspace.errors import DspaceWarning, WrongType
+from dspace.frames.frame import Frame, put_pose
+from dspace.objects.graphics import GraphicsObject
+from dspace.frames.poses import Pose, to_pose
+from dspace.proto import service_pb2
+
+KINDS = {kind: kind for kind in ("picked", "selection", "answer", "edited", "dragged")}
+
+
+def _value(name, about):
+    """What is said of a value that people enter; its name is not empty."""
+    if not text(name, "the name", about):
+        refuse(about, "the name of a value", name, "one that is not empty")
+    return f"value {name!r}"
+
+
+class ViewerEvents:
+    """The part of Session and Watcher that says and hears what people do.
+
+    A Watcher says it to whoever drives the server; a Session (or RemoteSession) to itself, so that a
+    program with a window of its own works in the same way.
+    """
+
+    # --- Hearing -------------------------------------------------------------------------------
+
+    def on_event(self, callback, kind=None):
+        """Calls `callback` with a ViewerEvent (dspace.proto.service_pb2) for everything that viewers
+        say, or of one kind only: "picked", "selection", "answer", "edited" or "dragged". Called by
+        process_events(). Callbacks stay until the session is closed."""
+        if not callable(callback):
+            refuse("session", "the callback", callback, "a function of one ViewerEvent", WrongType)
+        if kind is not None:
+            word(kind, KINDS, "the kind", "session")
+        self._client.events.callbacks.append((kind, callback))
+
+    def on_edited(self, name, callback, low=-math.inf, high=math.inf, unit=""):
+        """Calls `callback` with a number for everything that people enter for the value `name`.
+
+        low, high: bounds, which are accepted themselves; unit: what the number must be in ("m", "deg",
+        ...). What is out of bounds or in another unit does not reach the callback: a
+        dspace.DspaceWarning tells of it, and nothing is converted or clipped."""
+        label = _value(name, "session")
+        low, high = number(low, "low", label), number(high, "high", label)
+        text(unit, "the unit", label)
+        if not low <= high:
+            refuse(label, "low, high", (low, high), "low <= high")
+        if not callable(callback):
+            refuse(label, "the callback", callback, "a function of one number", WrongType)
+
+        def hear(event):
+            edited = event.edited
+            if edited.name != name:
+                return
+            if edited.unit != unit or not low <= edited.value <= high:
+                who = getattr(event, "from") or "a person"  # a word of Python's
+                warnings.warn(f"{label}: {who} has entered {edited.value!r} "
+                              f"{edited.unit!r}; accepted: {low!r} to {high!r} {unit!r}; it is left as it was",
+                              DspaceWarning, stacklevel=3)
+                return
+            callback(edited.value)
+
+        self.on_event(hear, "edited")
+
+    def process_events(self, wait=0.0):
+        """Hands what viewers have said to the callbacks of on_event; waits up to `wait` seconds for the
+        first. Returns the events. A callback that raises leaves the rest for the next call. A wait on a
+        server raises the error of a link that is broken for good."""
+        wait = real(wait, "the wait", "session", "seconds")
+        events = []
+        while True:
+            event = self._client.take_event(0.0 if events else wait)
+            if event is None:
+                return events
+            events.append(event)
+            for kind, callback in list(self._client.events.callbacks):
+                if kind is None or event.WhichOneof("kind") == kind:
+                    callback(event)
+
+    # --- Saying --------------------------------------------------------------------------------
+
+    def tell(self, event):
+        """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:
+        dspace.NotFound when nobody drives; up to 1 MiB."""
+        if not isinstance(event, service_pb2.ViewerEvent):
+            refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
+        self._client.tell(event)
+
+    def answer(self, question, answer):
+        """Answers a question of the simulation."""
+        event = service_pb2.ViewerEvent()
+        event.answer.question = text(question, "the question", "event")
+        event.answer.answer = text(answer, "the answer", "event")
+        self.tell(event)
+
+    def edited(self, name, value, unit=None):
+        """Says a value that a person has entered; finite. Where a scene has a telemetry channel of that
+        name, it is one of its numbers or choices, and in its unit, which is the default."""
+        label = _value(name, "event")
+        value = number(value, "the value", label)
+        if not math.isfinite(value):
+            refuse(label, "it", value, "a finite number")
+        channel = next((scene.telemetry[name] for scene in self.scenes.values() if name in scene.telemetry), None)
+        if channel is not None:
+            if channel.kind == "text" or (channel.kind == "choice" and value not in channel.labels):
+                refuse(label, "it", value, "a channel of numbers or choices" if channel.kind == "text"
+                       else ", ".join(f"{number} ({label})" for number, label in channel.labels.items()))
+            if unit is not None and unit != channel.unit:
+                refuse(label, "the unit", unit, repr(channel.unit))
+            unit = channel.unit
+        unit = "" if unit is None else unit
+        event = service_pb2.ViewerEvent()
+        put(event.edited, label, name=name, value=value, unit=text(unit, "the unit", label))
+        self.tell(event)
+
+    def select(self, objects):
+        """Says which objects of one scene are selected; none: nothing is."""
+        event = service_pb2.ViewerEvent()
+        objects = items(objects, "the objects", "event", "a list of objects")
+        for each in objects:
+            if not isinstance(each, GraphicsObject):
+                refuse("event", "an object", each, "a GraphicsObject", WrongType)
+        scenes = {each.scene.name for each in objects}
+        if len(scenes) > 1:
+            refuse("event", "the selection's scenes", sorted(scenes), "objects of one scene")
+        event.selection.scene = scenes.pop() if scenes else ""
+        event.selection.object.extend(each.id for each in objects)
+        self.tell(event)
+
+    def dragged(self, goal, position=None, quaternion=None, pose=None, relative_to=None, scene=DEFAULT_SCENE,
+                done=True):
+        """Says where a person wants a goal to be: of an end effector, a wheel, a drive.
+
+        goal: a Frame, or the name that the simulation knows the goal by. position [m], quaternion or
+        pose: X_GF, in the frame `relative_to` (a Frame; default: the root). done: False while the
+        person has not let go. Nothing moves by it; the simulation decides."""
+        label = f"goal {goal.path if isinstance(goal, Frame) else text(goal, 'the goal', 'event')!r}"
+        event = service_pb2.ViewerEvent()
+        message = event.dragged
+        message.scene = text(scene, "the scene", label)
+        for frame, field in ((goal, "frame"), (relative_to, "relative_to")):
+            if isinstance(frame, Frame):
+                message.scene = frame.scene.name
+                setattr(message, field, frame.id)
+        if not isinstance(relative_to, (Frame, type(None))):
+            refuse(label, "relative_to", relative_to, "a Frame, or None for the root", WrongType)
+        message.goal = goal.path if isinstance(goal, Frame) else goal
+        put_pose(message.pose, to_pose(position, quaternion, None, pose))
+        put(message, label, done=done)
+        self.tell(event)
+
+
+def pose_of(message):
+    """The dspace.Pose of a Pose message, such as ViewerEvent.Dragged.pose: what is absent is identity."""
+    p, q = message.position, message.rotation
+    return Pose((p.x, p.y, p.z), (q.w, q.x, q.y, q.z) if message.HasField("rotation") else (1, 0, 0, 0),
+                message.scale if message.HasField("scale") else 1.0)

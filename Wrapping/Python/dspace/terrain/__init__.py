@@ -1,0 +1,1 @@
+"""Terrain: queries, style, colour layers and wheel tracks."""

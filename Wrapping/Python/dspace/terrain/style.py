@@ -1,0 +1,119 @@
+"""What is laid over a clipmap's own colour."""
+from dspace._core.fields import items, keywords, numbers, put, put_color, put_given, refuse, word
+from dspace.errors import InvalidArgument, WrongType
+from dspace.scene.legends import put_grid_labels
+from dspace.objects.graphics import file_path
+
+COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.Ramp.By
+
+
+class StyleMaking:
+    """The style of a terrain."""
+
+    def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
+                  contours=None, grid=None, details=(), tracks=None, noise=None, grid_labels=False):
+        """What is laid over a clipmap's own colour; replaces the style before, set_style() removes it.
+
+        color_by: "height", "slope" (degrees from level) or "aspect" (azimuth of steepest descent,
+        degrees clockwise from north; level ground keeps its colour), over `range` (low, high; the
+        heights' own, 0 to 45, 0 to 360), in `colors` evenly spaced (green over ochre to white; of an
+        aspect a circle: end with the first), with `opacity` 0 to 1; or "normal": the colour is
+        0.5 + 0.5 n, n the normal in the place's east, north, up.
+        levels: opacity of a colour for each clipmap level. contours: metres of height between lines,
+        or a dict of interval, width (pixels), color, opacity. grid: the same for lines along the
+        map's axes, in map units; on a body meridians and parallels, in degrees. grid_labels: their
+        values over the picture ("12°E"; of projected maps "4,500 E", "-200 N"), True or a dict of
+        font_size (13), color, background, background_opacity (0.5). details: up to two
+        tiling images that add structure closer than the posts, on a plane: dicts of image (a file),
+        size (metres a tile), slope (low, high; degrees), height (low, high; metres), opacity
+        (0.5). tracks: the ground's colour where wheels have rolled (see track()), or a dict of color
+        and opacity (black, 0.35).
+
+        noise: decoration of the ground's drawn shape where posts are closer than the data's pixels
+        (on a plane: `subdivisions` of add_terrain): a dict of wavelength (metres, of the longest
+        octave; at most two of the data's pixels leave those as they are), amplitude (metres that it
+        adds at most), octaves of halved wavelength (4), gain of each over the one before it (0.5),
+        seed (0). Pictures, their depth images, contours and ramps have it, height() and every other
+        query and analysis, ruts and robots do not: leave it off where something is measured."""
+        label = self._label()
+        command = self._scene._command()
+        style = command.style_terrain
+        put(style, label, terrain=self._name)
+        if color_by is not None:
+            style.ramp.by = word(color_by, COLOR_BY, "color_by", label)
+            put(style.ramp, label, opacity=opacity)
+            if range is not None:
+                low, high = numbers(range, 2, "the range", label, "low, high")
+                put(style.ramp, label, low=low, high=high)
+            for value in items(() if colors is None else colors, "the colours", label, "colours"):
+                put_color(style.ramp.color.add(), value, "a colour of the ramp", label)
+        elif range is not None or colors is not None:
+            raise InvalidArgument(f"{label}: a range and colours are of color_by, which is not given; "
+                                  f"accepted: color_by {', '.join(map(repr, COLOR_BY))}", label)
+        for detail in items(details, "details", label, "a list of dicts"):
+            _put_detail(style.detail.add(), detail, f"{label}, a detail")
+        if tracks is not None:
+            look = tracks if isinstance(tracks, dict) else {"color": tracks, "opacity": 1.0}
+            keywords(look, ("color", "opacity"), f"{label}, tracks")
+            put_color(style.tracks.color, look.get("color", (0, 0, 0)), "the colour of its tracks", label)
+            put(style.tracks, f"{label}, tracks", opacity=look.get("opacity", 0.35))
+        put_given(style, label, levels=levels)
+        _put_lines(style.contours, contours, "contours", label)
+        _put_lines(style.grid, grid, "grid", label)
+        put_grid_labels(style.grid_labels, grid_labels, label)
+        if noise is not None:
+            _put_noise(style.noise, noise, f"{label}, noise")
+        self._scene._execute(command)
+
+    @property
+    def style(self):
+        """The false colour of a clipmap as it is drawn, a dict of color_by, range, colors (r, g, b) and
+        opacity; by normal range is None; {} without any."""
+        reply = self._scene._ask("describe_terrain_style", terrain=self._name).terrain_style
+        if not reply.HasField("ramp"):
+            return {}
+        ramp = reply.ramp
+        return {"color_by": list(COLOR_BY)[ramp.by],
+                "range": (ramp.low, ramp.high) if ramp.HasField("low") else None,
+                "colors": [(color.r, color.g, color.b) for color in ramp.color], "opacity": ramp.opacity}
+
+
+def _put_detail(message, detail, label):
+    """A dict into a Detail."""
+    if not isinstance(detail, dict):
+        refuse(label, "it", detail, "a dict of image, size, slope, height, opacity", WrongType)
+    keywords(detail, ("image", "size", "slope", "height", "opacity"), label)
+    for needed in ("image", "size"):
+        if needed not in detail:
+            refuse(label, "it", detail, f"a dict with {needed!r}", WrongType)
+    low, high = numbers(detail.get("slope", (0, 90)), 2, "its slope", label, "low, high")
+    put(message, label, path=file_path(detail["image"], "its image", label), size=detail["size"],
+        slope_low=low, slope_high=high, opacity=detail.get("opacity", 0.5))
+    if "height" in detail:
+        low, high = numbers(detail["height"], 2, "its height", label, "low, high")
+        put(message, label, height_low=low, height_high=high)
+
+
+def _put_noise(message, noise, label):
+    """A dict into a Noise."""
+    accepted = ("wavelength", "amplitude", "octaves", "gain", "seed")
+    if not isinstance(noise, dict):
+        refuse(label, "it", noise, f"a dict of {', '.join(accepted)}", WrongType)
+    keywords(noise, accepted, label)
+    for needed in accepted[:2]:
+        if needed not in noise:
+            refuse(label, "it", noise, f"a dict with {needed!r}", WrongType)
+    put(message, label, **{"octaves": 4, "gain": 0.5, "seed": 0, **noise})
+
+
+def _put_lines(message, lines, what, label):
+    """A number or a dict into Lines; nothing for None."""
+    if lines is None:
+        return
+    lines = lines if isinstance(lines, dict) else {"interval": lines}
+    keywords(lines, ("interval", "width", "color", "opacity"), f"{label}, {what}")
+    if "interval" not in lines:
+        refuse(label, what, lines, "an interval, or a dict with one", WrongType)
+    put(message, f"{label}, {what}", interval=lines["interval"], width=lines.get("width", 1.0),
+        opacity=lines.get("opacity", 1.0))
+    put_color(message.color, lines.get("color", (0, 0, 0)), f"the colour of its {what}", label)
