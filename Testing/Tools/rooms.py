@@ -1,9 +1,11 @@
-"""Checks that includes between the rooms of Libraries/ go the allowed way.
+"""Checks that includes between the rooms of Libraries/, and imports between those of the Python package, go the
+allowed way.
 
-A room is a folder of sources. `rooms.txt` has a line for each: `room: the rooms that it may include`. A room may
-also include every room that those may include. `rooms.py` prints each include that the table does not allow, and
-exits with 1 if there is one.
+A room is a folder of sources, in Python also a module beside the folders. `rooms.txt` has a line for each:
+`room: the rooms that it may include`. A room may also include every room that those may include. `rooms.py` prints each
+include and each import that the table does not allow, and exits with 1 if there is one.
 """
+import ast
 import pathlib
 import re
 import sys
@@ -67,12 +69,60 @@ def wrong_includes(libraries, table):
                 yield path, room, header, other
 
 
+def room_of_module(module):
+    """The room of a Python module: `dspace.movies.draw` is in `dspace.movies`. `dspace` itself names everything public."""
+    return ".".join(module.split(".")[:2])
+
+
+def module_of(path):
+    """The Python module of a source: `dspace/movies/draw.py` is `dspace.movies.draw`."""
+    return path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+
+def modules(packages):
+    """Each source of the Python package, as a path relative to the folder of packages."""
+    return sorted(file.relative_to(packages).as_posix() for file in (packages / "dspace").rglob("*.py"))
+
+
+def imported(path, text, table):
+    """Each module of the package that a source imports, anywhere in it."""
+    package = module_of(path) if path.endswith("/__init__.py") else module_of(path).rpartition(".")[0]
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            names = [name.name for name in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = package.split(".")[:len(package.split(".")) - node.level + 1] if node.level else []
+            module = ".".join([*base, *filter(None, [node.module])])
+            # `from dspace import vtk` imports a room, `from dspace import Scene` what names everything.
+            names = [f"dspace.{name.name}" if f"dspace.{name.name}" in table else module
+                     for name in node.names if name.name != "__version__"] if module == "dspace" else [module]
+        else:
+            continue
+        yield from (name for name in names if name.split(".")[0] == "dspace")
+
+
+def wrong_imports(packages, table):
+    """(source, its room, module, the module's room) of each import that the table does not allow."""
+    for path in modules(packages):
+        room = room_of_module(module_of(path))
+        if room not in table:
+            yield path, room, "", "rooms.txt does not name it"
+            continue
+        for module in imported(path, (packages / path).read_text(), table):
+            other = room_of_module(module)
+            if other != room and other not in table[room]:
+                yield path, room, module, other
+
+
 def main():
     table = read_table((pathlib.Path(__file__).parent / "rooms.txt").read_text())
     wrong = list(wrong_includes(ROOT / "Libraries", table))
     for path, room, header, other in wrong:
         print(f"Libraries/{path}: room '{room}' may not include <{header}> of room '{other}'")
-    return 1 if wrong else 0
+    packages = list(wrong_imports(ROOT / "Wrapping" / "Python", table))
+    for path, room, module, other in packages:
+        print(f"Wrapping/Python/{path}: room '{room}' may not import {module} of room '{other}'")
+    return 1 if wrong or packages else 0
 
 
 if __name__ == "__main__":

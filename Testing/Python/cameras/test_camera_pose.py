@@ -44,7 +44,7 @@ def test_an_attached_camera_is_where_its_frame_takes_it(anywhere):
     scene = anywhere
     rover = scene.add_frame("rover", position=(5, 2, 1), quaternion=quaternion_of_axis("z", 90))
     mast = rover.add_frame("mast", position=(0, 0, 2), quaternion=quaternion_of_axis("y", 30))
-    camera = scene.add_camera("eye", frame=mast, position=(1, 0, 0), quaternion=quaternion_of_axis("z", 20))
+    camera = scene.add_camera("eye", frame=mast, pose=dspace.Pose((1, 0, 0), quaternion_of_axis("z", 20)))
     rotation = turn("z", 90) @ turn("y", 30) @ turn("z", 20)
     position = np.array((5, 2, 1)) + turn("z", 90) @ (np.array((0, 0, 2)) + turn("y", 30) @ (1, 0, 0))
     check(camera.pose_in(), position, rotation)

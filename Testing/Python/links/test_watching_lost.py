@@ -56,8 +56,8 @@ def test_a_click_does_not_wait_for_a_server_that_stands_still(tmp_path):
 
 
 OUTLASTS = """
+from dspace._core.replies import to_reply
 from dspace import vtk
-from dspace.clients.local import to_reply
 from dspace.proto import commands_pb2 as pb
 
 server = vtk.vtkDspaceServer()

@@ -184,7 +184,7 @@ def test_a_callback_that_moves_its_own_frame_is_stopped(scene):
 
 
 def test_callbacks_that_double_their_events_are_stopped(scene, monkeypatch):
-    monkeypatch.setattr("dspace.frames.events.MAXIMUM_CAUSED", 500)
+    monkeypatch.setattr("dspace.clients.listeners.MAXIMUM_CAUSED", 500)
     frame = scene.add_frame("f")
     calls = []
 

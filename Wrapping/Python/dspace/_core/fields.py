@@ -91,6 +91,17 @@ def path(value, what, about=None, accepted="a path"):
     return value
 
 
+def file_path(value, what, about=None):
+    """The path of a file as a str."""
+    try:
+        path = os.fspath(value)
+    except TypeError:
+        path = None
+    if not isinstance(path, str):
+        refuse(about, what, value, "a path", WrongType)
+    return text(path, what, about, "a path")
+
+
 def numbers(value, count, what, about=None, accepted=None):
     """`count` numbers as an array of floats, finite or not."""
     try:

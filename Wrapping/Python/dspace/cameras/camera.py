@@ -1,7 +1,6 @@
 """Vantages and the cameras that they are seen through."""
-from dspace._core.fields import Named, about, number, numbers, put, put_given, put_vector, refuse, word
+from dspace._core.fields import about, number, numbers, put, put_given, put_vector, refuse, word
 from dspace._core.strict import Strict
-from dspace.errors import NotFound
 from dspace.frames.frame import put_pose
 from dspace.frames.poses import Pose, to_pose
 
@@ -206,40 +205,3 @@ def put_projection(message, fov_deg=None, height=None, tangents=None, near=None,
         message.perspective.vertical_fov_deg = (45.0 if fov_deg is None
                                                 else number(fov_deg, "fov_deg", about))
     put_given(message, about, near=near, far=far)
-
-
-class Vantage(Strict):
-    """The scene seen through one of its cameras; one is active."""
-
-    def __init__(self, scene, name):
-        self._scene = scene
-        self._name = name
-
-    @property
-    def name(self):
-        return self._name
-
-    def _info(self):
-        for vantage in self._scene._ask("list_vantages").vantages.vantage:
-            if vantage.name == self._name:
-                return vantage
-        raise NotFound(f"vantage {self._name!r}: it is in scene {self._scene.name!r} no more",
-                       f"vantage {self._name!r}")
-
-    @property
-    def cameras(self):
-        """By name."""
-        return Named("camera", {name: Camera(self._scene, self._name, name)
-                                for name in self._info().camera})
-
-    @property
-    def active(self):
-        """The active camera, or None."""
-        name = self._info().active
-        return Camera(self._scene, self._name, name) if name else None
-
-    def remove(self):
-        self._scene._do("remove_vantage", name=self._name)
-
-    def __repr__(self):
-        return f"<dspace.Vantage {self._name!r}>"

@@ -1,39 +1,13 @@
-"""Where commands go, and what comes back: replies, warnings, exceptions."""
-import sys
+"""The client of a session in this process: it passes commands on, and gives what comes back."""
 import threading
-import warnings
 import weakref
 
 from dspace import vtk as _vtk
+from dspace._core.replies import make_error, to_reply, warn
 from dspace._core.traits import scene_name
-from dspace._core.wire import decode, encode
-from dspace.errors import KINDS, Closed, DspaceWarning, Internal, WrongThread
-from dspace.frames.events import EventQueue, FrameListeners
-from dspace.proto import commands_pb2 as pb
-
-
-def make_error(error):
-    """The exception of an Error message."""
-    return KINDS.get(error.kind, Internal)(error.message, error.object)
-
-
-def warn(message):
-    # Points at the first caller outside this package, however deep it was called.
-    level = 1
-    frame = sys._getframe()
-    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "dspace":
-        frame = frame.f_back
-        level += 1
-    warnings.warn(message, DspaceWarning, stacklevel=level)
-
-
-def to_bytes(answer):
-    """VTK makes a str of bytes that happen to be UTF-8."""
-    return answer.encode() if isinstance(answer, str) else answer
-
-
-def to_reply(answer):
-    return decode(pb.Reply, to_bytes(answer), "reply", Internal)
+from dspace._core.wire import encode
+from dspace.clients.listeners import EventQueue, FrameListeners
+from dspace.errors import Closed, WrongThread
 
 
 class LocalClient:

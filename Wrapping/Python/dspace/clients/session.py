@@ -1,13 +1,13 @@
 """Sessions own scenes and viewports."""
-from dspace.clients.local import LocalClient
 from dspace._core.fields import Named, flag, refuse, text
 from dspace._core.traits import DEFAULT_SCENE
+from dspace.clients.local import LocalClient
 from dspace.errors import AlreadyExists, WrongType
+from dspace.proto import commands_pb2 as pb
 from dspace.recording.recording import Recording
 from dspace.scene.scene import Scene
-from dspace.proto import commands_pb2 as pb
-from dspace.telemetry.viewer_events import ViewerEvents
 from dspace.scene.viewport import Viewport
+from dspace.telemetry.viewer_events import ViewerEvents
 
 
 class Session(ViewerEvents):

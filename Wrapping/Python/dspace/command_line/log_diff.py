@@ -4,8 +4,8 @@ import math
 
 from dspace._core.wire import command_of
 from dspace.command_line import Failed
-from dspace.recording.file import RecordingFile, commands_of
 from dspace.proto import commands_pb2 as pb
+from dspace.recording.file import RecordingFile, commands_of
 
 NAMES = pb.Command.DESCRIPTOR.fields_by_number
 

@@ -6,8 +6,7 @@ import sys
 import numpy as np
 
 from dspace.command_line import Failed, tell
-from dspace.command_line.terrain_rasters import (add, check, degrees, gdal_modules, lines, mebibytes,
-                                                  open_raster)
+from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, lines, mebibytes, open_raster
 
 MESH_PIXELS = 4_000_000  # what mode "auto" draws as triangles
 STATISTICS_PIXELS = 4_000_000  # more are not read for statistics

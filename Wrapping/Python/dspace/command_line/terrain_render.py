@@ -7,8 +7,8 @@ import numpy as np
 
 from dspace._core.files import atomic_write
 from dspace.command_line import Failed, terrain_layers
-from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, open_raster
 from dspace.command_line.terrain_map import draw_disc, draw_map
+from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, open_raster
 
 LONGER_SIDE = 1024
 GROUND = (0.72, 0.69, 0.65)

@@ -1,18 +1,10 @@
-"""What the links to a server share: their settings, and waits that hear Ctrl-C."""
+"""What the links to a server share: their settings, and how they connect."""
 import os
-import time
 
-from dspace.clients.local import make_error, to_reply, warn
 from dspace._core.fields import flag, number, refuse, text
+from dspace._core.replies import make_error, to_reply, warn
+from dspace._core.signals import SLICE, hear_signals
 from dspace.errors import WrongType
-
-SLICE = 0.1  # [s] of a wait without hearing signals
-
-
-def hear_signals():
-    """Between two slices of a wait. CPython 3.11 does not notice a signal that another thread than the main one has
-    caught, such as gRPC's, until its lock has been let go, which this does."""
-    time.sleep(0)
 
 
 def prepare(link, address, certificate, key, authority, insecure, timeout, label):

@@ -7,10 +7,11 @@ import time
 import weakref
 
 from dspace import vtk as _vtk
-from dspace.clients.local import warn
 from dspace._core.fields import flag
-from dspace.links.connection import SLICE, hear_signals, make_connection
+from dspace._core.replies import warn
+from dspace._core.signals import SLICE, hear_signals
 from dspace.errors import AlreadyExists, Error, Unsupported
+from dspace.links.connection import make_connection
 from dspace.recording.file import path_of
 from dspace.recording.recording import COUNTS, Recording, checked_time, new_file
 

@@ -1,19 +1,20 @@
 """Sessions in a server process: the same script as with dspace.Session(), one line changed."""
 import os
-import threading
 import time
 
 from dspace import vtk as _vtk
-from dspace.clients.local import LocalClient, make_error, to_bytes, to_reply, warn
 from dspace._core.fields import flag, number, refuse, text
-from dspace.links.connection import SLICE, hear_signals, make_connection, prepare
+from dspace._core.replies import make_error, to_bytes, to_reply, warn
+from dspace._core.signals import SLICE, hear_signals
 from dspace._core.traits import UNAWAITED
 from dspace._core.wire import decode, encode
+from dspace.clients.local import LocalClient
+from dspace.clients.session import Session
 from dspace.errors import Closed, DeadlineExceeded, Internal, Unsupported
+from dspace.links.connection import make_connection, prepare
 from dspace.links.recordings import ServedRecording
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
-from dspace.clients.session import Session
 
 
 class RemoteClient(LocalClient):

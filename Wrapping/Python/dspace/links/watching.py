@@ -2,13 +2,15 @@
 import time
 
 from dspace import vtk as _vtk
-from dspace.clients.local import LocalClient, make_error, to_reply
 from dspace._core.fields import real, refuse, text
-from dspace.links.connection import SLICE, hear_signals, make_connection, prepare
+from dspace._core.replies import make_error, to_reply
+from dspace._core.signals import SLICE, hear_signals
 from dspace._core.wire import encode
-from dspace.errors import Closed, WrongType
-from dspace.scene.scene import Scene
+from dspace.clients.local import LocalClient
 from dspace.clients.session import Session
+from dspace.errors import Closed, WrongType
+from dspace.links.connection import make_connection, prepare
+from dspace.scene.scene import Scene
 
 
 OWN = "viewer:"  # begins the names of what is a watcher's own

@@ -12,11 +12,11 @@ import numpy as np
 
 from dspace._core.fields import shown
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
+from dspace.frames.poses import Pose
 from dspace.movies.keys import CameraPath
 from dspace.movies.views import FIELD
-from dspace.playback.steps import StepTimes
-from dspace.frames.poses import Pose
 from dspace.playback.spans import spans_of, when
+from dspace.playback.steps import StepTimes
 from dspace.telemetry.telemetry import overlay_value
 
 

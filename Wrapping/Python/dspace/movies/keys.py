@@ -5,8 +5,8 @@ import numpy as np
 
 from dspace._core.fields import flag, number, numbers, refuse, text
 from dspace.errors import InvalidArgument
-from dspace.movies.path import FovPath, PlacePath, TurnPath, looking
 from dspace.frames.poses import Pose
+from dspace.movies.path import FovPath, PlacePath, TurnPath, looking
 
 EASINGS = ("through", "rest")
 

@@ -1,12 +1,12 @@
 """Movies: cameras through key frames, several views in one picture, texts over it."""
 import math
 
-from dspace.movies import file as movie_file
 from dspace._core.fields import Named, integer, integers, number, path as path_of, refuse
 from dspace._core.files import atomic_write
 from dspace._core.traits import DEFAULT_SAMPLES, SAMPLES, SIDE
 from dspace.cameras.camera import Camera
 from dspace.errors import AlreadyExists, Error, InvalidArgument, NotFound, WrongType
+from dspace.movies import file as movie_file
 from dspace.movies.keys import CameraPath, Key, RunTime, in_order
 from dspace.movies.views import Overlay, View
 from dspace.scene.viewport import Viewport

@@ -2,16 +2,15 @@
 import numpy as np
 
 from dspace._core import wire
-from dspace.clients.local import warn
-from dspace._core.fields import (about, array_of, flag, integers, keywords, number, numbers, put,
-                            put_color, put_given, put_vector, refuse, shown, word)
-from dspace.objects.assemblies import is_assembly, load_assembly
+from dspace._core.fields import (about, array_of, file_path, flag, integers, keywords, number, numbers, put,
+                                 put_color, put_given, put_vector, refuse, shown, word)
+from dspace._core.replies import warn
 from dspace.cameras.camera import put_projection
 from dspace.errors import InvalidArgument, WrongType
 from dspace.frames.frame import put_pose
-from dspace.objects.graphics import (UP, GraphicsObject, Primitive, Text, TiltMarker, Trail, file_path,
-                            put_rotation, put_settings)
 from dspace.frames.poses import Pose, quaternion_of_axis, to_pose
+from dspace.objects.assemblies import is_assembly, load_assembly
+from dspace.objects.graphics import UP, GraphicsObject, Primitive, Text, TiltMarker, Trail, put_rotation, put_settings
 from dspace.objects.robots import Robot
 
 # What takes a file's axis to Z.

@@ -1,13 +1,10 @@
 """Graphics objects: what hangs on frames and is drawn."""
-import os
-
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import (array_of, flag, keywords, numbers, put, put_color, put_given, put_vector,
-                            refuse, text)
+from dspace._core.fields import array_of, file_path, flag, keywords, numbers, put, put_color, put_given, put_vector
 from dspace._core.strict import Strict
-from dspace.errors import Error, InvalidArgument, WrongType
+from dspace.errors import Error, InvalidArgument
 
 UP = {"z": 0, "y": 1, "x": 2, "-z": 3}
 MATERIAL = ("color", "opacity", "metallic", "roughness", "texture", "lit", "wireframe")
@@ -25,17 +22,6 @@ def put_material(message, values, about=None):
             message.texture = "" if none else file_path(value, "texture", about)
         else:
             put(message, about, **{key: value})
-
-
-def file_path(value, what, about=None):
-    """The path of a file as a str."""
-    try:
-        path = os.fspath(value)
-    except TypeError:
-        path = None
-    if not isinstance(path, str):
-        refuse(about, what, value, "a path", WrongType)
-    return text(path, what, about, "a path")
 
 
 def put_rotation(message, quaternion, what="the quaternion", about=None):

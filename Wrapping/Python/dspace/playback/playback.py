@@ -3,18 +3,18 @@ import bisect
 import math
 import time
 
-from dspace.clients.local import to_reply, warn
-from dspace._core.wire import command_of
 from dspace._core.fields import flag, integer, number, real, refuse, text
+from dspace._core.replies import to_reply, warn
 from dspace._core.traits import scene_name
+from dspace._core.wire import command_of
+from dspace.clients.session import Session
 from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
+from dspace.playback.spans import spans_of
 from dspace.playback.steps import StepTimes, rounding, steps_of
 from dspace.playback.telemetry import TelemetryReading
-from dspace.recording.assets import RecordedFiles
-from dspace.playback.spans import spans_of
-from dspace.recording.file import RecordingFile, commands_of
 from dspace.proto import commands_pb2 as pb, terrain_pb2
-from dspace.clients.session import Session
+from dspace.recording.assets import RecordedFiles
+from dspace.recording.file import RecordingFile, commands_of
 
 BUILDING = terrain_pb2.TerrainReply.BUILDING
 AT_ONCE = 3600.0  # [s] of sleep; the operating system takes no number of any size

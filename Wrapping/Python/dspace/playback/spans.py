@@ -3,8 +3,8 @@ import bisect
 
 from dspace._core.traits import scene_name
 from dspace._core.wire import command_of
-from dspace.recording.file import commands_of
 from dspace.proto import commands_pb2 as pb
+from dspace.recording.file import commands_of
 
 KINDS = sorted(pb.Command.DESCRIPTOR.fields_by_name[name].number for name in (
     "create_scene", "remove_scene", "remove_vantage", "set_camera", "remove_camera", "create_viewport",

@@ -5,11 +5,11 @@ from dspace._core.fields import Named, shown, text
 from dspace._core.traits import DEFAULT_SCENE, scene_name
 from dspace._core.wire import command_of, get_array
 from dspace.errors import InvalidArgument, NotFound, Unsupported
-from dspace.telemetry.messages import Event
 from dspace.playback.steps import StepTimes
-from dspace.recording.file import commands_of
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import telemetry_pb2
+from dspace.recording.file import commands_of
+from dspace.telemetry.messages import Event
 
 TEXT = telemetry_pb2.CreateTelemetry.TEXT
 FIELDS = pb.Command.DESCRIPTOR.fields_by_name

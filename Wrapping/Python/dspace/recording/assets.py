@@ -3,7 +3,7 @@ import os
 import weakref
 
 from dspace import vtk as _vtk
-from dspace.clients.local import make_error, to_bytes, to_reply
+from dspace._core.replies import make_error, to_bytes, to_reply
 
 
 class RecordedFiles:

@@ -5,9 +5,9 @@ import threading
 from typing import NamedTuple
 
 from dspace import vtk as _vtk
-from dspace.clients.local import make_error, to_bytes
 from dspace._core.fields import refuse, text
-from dspace.links.connection import SLICE, hear_signals
+from dspace._core.replies import make_error, to_bytes
+from dspace._core.signals import SLICE, hear_signals
 from dspace.errors import Closed, Corrupt, WrongThread
 from dspace.proto import recordings_pb2 as pb
 

@@ -1,8 +1,8 @@
 """A session that is being recorded."""
 import os
 
-from dspace.clients.local import warn
 from dspace._core.fields import flag, number
+from dspace._core.replies import warn
 from dspace.errors import AlreadyExists, InvalidArgument, Io, NotFound
 from dspace.recording.file import path_of
 

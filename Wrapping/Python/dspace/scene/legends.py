@@ -1,26 +1,12 @@
 """What is written over a viewport's picture: colour bars, labels of grids."""
-from dspace._core.fields import flag, items, keywords, number, put, put_color, put_given, refuse, word
+from dspace._core.fields import flag, items, number, put, put_color, put_given, refuse, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.proto import commands_pb2 as pb
 from dspace.telemetry.telemetry import Channel
+from dspace.terrain.terrain import Terrain
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 UNITS = {"height": "m", "slope": "deg", "aspect": "deg"}
-
-
-def put_grid_labels(message, look, label):
-    """True or a dict into StyleTerrain.GridLabels; nothing for False."""
-    label = f"{label}, grid_labels"
-    look = look if isinstance(look, dict) else {} if flag(look, "grid_labels", label) else None
-    if look is None:
-        return
-    keywords(look, ("font_size", "color", "background", "background_opacity"), label)
-    message.SetInParent()
-    put_given(message, label, font_size=look.get("font_size"),
-              background_opacity=look.get("background_opacity"))
-    for field in ("color", "background"):
-        if look.get(field) is not None:
-            put_color(getattr(message, field), look[field], field, label)
 
 
 def put_value(row, value, viewport, table):
@@ -75,7 +61,6 @@ class LegendMaking:
         It is a copy: after another style call it again. name: its name (the terrain's or the
         layer's); `look`: keywords of set_color_bar(), title, unit, low, high and colors among them.
         Returns the bar's name."""
-        from dspace.terrain.terrain import Terrain
         if isinstance(shown, Terrain):
             ramp = shown.style
             if not ramp or ramp["color_by"] == "normal":

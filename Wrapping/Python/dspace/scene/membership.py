@@ -2,11 +2,11 @@
 import numpy as np
 
 from dspace._core.fields import named, refuse, text
-from dspace.objects.assemblies import Assembly
-from dspace.cameras.camera import Vantage
+from dspace.cameras.vantage import Vantage
 from dspace.errors import InvalidArgument, WrongType
-from dspace.objects.fragments import Fragment
 from dspace.frames.frame import Frame
+from dspace.objects.assemblies import Assembly
+from dspace.objects.fragments import Fragment
 from dspace.objects.robots import Robot
 
 

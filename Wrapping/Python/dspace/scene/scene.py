@@ -2,23 +2,24 @@
 import numpy as np
 
 from dspace._core import wire
-from dspace.scene.membership import Belonging
-from dspace._core.fields import (Named, about, array_of, flag, integers, keywords, put, put_given, put_vector,
-                            refuse, shown)
-from dspace.objects.factory import ObjectMaking
+from dspace._core.fields import (Named, about, array_of, flag, integers, keywords, put, put_given, put_vector, refuse,
+                                 shown)
 from dspace._core.strict import Strict
-from dspace.cameras.camera import CHASE, Camera, Vantage, put_chase, put_projection
+from dspace.cameras.camera import CHASE, Camera, put_chase, put_projection
+from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
-from dspace.objects.fragments import Fragment, Light, put_light
 from dspace.frames.frame import Frame, put_ids, put_pose
-from dspace.telemetry.messages import Messages
-from dspace.objects.graphics import GraphicsObject
 from dspace.frames.poses import to_pose
+from dspace.objects.factory import ObjectMaking
+from dspace.objects.fragments import Fragment, Light, put_light
+from dspace.objects.graphics import GraphicsObject
 from dspace.objects.robots import Robot
 from dspace.proto import commands_pb2 as pb
+from dspace.scene.membership import Belonging
+from dspace.scene.viewport import SIZE, Viewport
+from dspace.telemetry.messages import Messages
 from dspace.telemetry.telemetry import Telemetry
 from dspace.terrain.terrain import TerrainMaking
-from dspace.scene.viewport import SIZE, Viewport
 
 MAIN = "main"  # the vantage that always exists
 

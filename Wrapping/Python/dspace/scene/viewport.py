@@ -3,15 +3,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dspace._core.fields import flag, integers, items, put, put_color, put_given, refuse, word
+from dspace._core.fields import file_path, flag, integers, items, put, put_color, put_given, refuse, word
 from dspace._core.strict import Strict
 from dspace._core.traits import SIDE
+from dspace.cameras.camera import Camera
 from dspace.errors import Internal, WrongType
 from dspace.objects.fragments import Fragment
-from dspace.scene.legends import LegendMaking, put_value
-from dspace.objects.graphics import file_path
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
+from dspace.scene.legends import LegendMaking, put_value
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 PLANES = {"color": 0, "depth": 1, "label": 2}
@@ -189,13 +189,11 @@ class Viewport(LegendMaking, Strict):
         """The camera that it looks through, of its scene; set to None for its vantage's active one.
 
         A Camera brings its vantage with it; a name means one of the present vantage."""
-        from dspace.cameras.camera import Camera
         info = self._info()
         return Camera(self.scene, info.vantage, info.camera) if info.camera else None
 
     @camera.setter
     def camera(self, camera):
-        from dspace.cameras.camera import Camera
         name = self.scene._name_of(camera, Camera, "camera", self._label)
         if isinstance(camera, Camera):
             self._do("set_viewport", camera=name, vantage=camera.vantage)

@@ -10,7 +10,6 @@ from dspace._core.fields import about, array_of, items, number, put, refuse, sho
 from dspace._core.strict import Strict
 from dspace._core.traits import limits
 from dspace.errors import InvalidArgument, NotFound, WrongType
-from dspace.proto import commands_pb2 as pb
 from dspace.proto import telemetry_pb2
 
 KINDS = {"number": telemetry_pb2.CreateTelemetry.NUMBER, "text": telemetry_pb2.CreateTelemetry.TEXT,

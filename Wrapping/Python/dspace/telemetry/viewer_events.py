@@ -6,8 +6,8 @@ from dspace._core.fields import items, number, put, real, refuse, text, word
 from dspace._core.traits import DEFAULT_SCENE
 from dspace.errors import DspaceWarning, WrongType
 from dspace.frames.frame import Frame, put_pose
-from dspace.objects.graphics import GraphicsObject
 from dspace.frames.poses import Pose, to_pose
+from dspace.objects.graphics import GraphicsObject
 from dspace.proto import service_pb2
 
 KINDS = {kind: kind for kind in ("picked", "selection", "answer", "edited", "dragged")}

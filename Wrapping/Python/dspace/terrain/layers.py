@@ -1,8 +1,7 @@
 """Colour layers of terrain: images, false colour, shapes and noise painted on it."""
-from dspace._core.fields import (color, flag, items, numbers, put, put_color, put_given, refuse, shown)
+from dspace._core.fields import color, file_path, flag, items, numbers, put, put_color, put_given, refuse, shown
 from dspace._core.strict import Strict
 from dspace.errors import NotFound, WrongType
-from dspace.objects.graphics import file_path
 
 KINDS = ("image", "false_color", "shapes", "noise", "filled")  # in the order of TerrainLayerReply.Kind
 _SHADE = "a colour, or red, green, blue and opacity from 0 to 1, or None"

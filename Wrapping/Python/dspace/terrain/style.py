@@ -1,8 +1,6 @@
 """What is laid over a clipmap's own colour."""
-from dspace._core.fields import items, keywords, numbers, put, put_color, put_given, refuse, word
+from dspace._core.fields import file_path, flag, items, keywords, numbers, put, put_color, put_given, refuse, word
 from dspace.errors import InvalidArgument, WrongType
-from dspace.scene.legends import put_grid_labels
-from dspace.objects.graphics import file_path
 
 COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.Ramp.By
 
@@ -60,7 +58,7 @@ class StyleMaking:
         put_given(style, label, levels=levels)
         _put_lines(style.contours, contours, "contours", label)
         _put_lines(style.grid, grid, "grid", label)
-        put_grid_labels(style.grid_labels, grid_labels, label)
+        _put_grid_labels(style.grid_labels, grid_labels, label)
         if noise is not None:
             _put_noise(style.noise, noise, f"{label}, noise")
         self._scene._execute(command)
@@ -117,3 +115,18 @@ def _put_lines(message, lines, what, label):
     put(message, f"{label}, {what}", interval=lines["interval"], width=lines.get("width", 1.0),
         opacity=lines.get("opacity", 1.0))
     put_color(message.color, lines.get("color", (0, 0, 0)), f"the colour of its {what}", label)
+
+
+def _put_grid_labels(message, look, label):
+    """True or a dict into StyleTerrain.GridLabels; nothing for False."""
+    label = f"{label}, grid_labels"
+    look = look if isinstance(look, dict) else {} if flag(look, "grid_labels", label) else None
+    if look is None:
+        return
+    keywords(look, ("font_size", "color", "background", "background_opacity"), label)
+    message.SetInParent()
+    put_given(message, label, font_size=look.get("font_size"),
+              background_opacity=look.get("background_opacity"))
+    for field in ("color", "background"):
+        if look.get(field) is not None:
+            put_color(getattr(message, field), look[field], field, label)

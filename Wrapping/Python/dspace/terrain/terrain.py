@@ -2,12 +2,11 @@
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import (Named, array_of, flag, items, keywords, numbers, put, put_color, put_given,
-                            put_vector, refuse, shown, word)
+from dspace._core.fields import (Named, array_of, file_path, flag, items, keywords, numbers, put, put_color,
+                                 put_given, put_vector, refuse, shown, word)
 from dspace._core.strict import Strict
 from dspace.errors import InvalidArgument, WrongType
 from dspace.terrain.layers import LayerMaking
-from dspace.objects.graphics import file_path
 from dspace.terrain.style import StyleMaking
 from dspace.terrain.tracks import TrackMaking
 

@@ -2,9 +2,8 @@
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, flag, put, put_given, refuse
+from dspace._core.fields import array_of, file_path, flag, put, put_given, refuse
 from dspace.errors import InvalidArgument, WrongType
-from dspace.objects.graphics import file_path
 
 _CONTACTS = "a dict of wheels' names to contacts (x, y) or (n, 2), or what a vehicle's solve() returns"
 

@@ -1,0 +1,118 @@
+"""How the events of frames reach their callbacks, and what waits of viewers' events."""
+from collections import deque
+
+from dspace.errors import Resource
+from dspace.frames.events import FrameEvent
+
+# As FrameEvents.h has them.
+MAXIMUM_ROUNDS = 100
+MAXIMUM_CAUSED = 100000
+
+
+class FrameListeners:
+    """The callbacks of one client, and the events that wait for them."""
+
+    def __init__(self):
+        self._entries = {}  # token: (scene, callback), in the order they came
+        # (message, the last token when it came, round, the token of who caused it or 0)
+        self._waiting = deque()
+        self._last_token = 0
+        self._delivering = False
+        self._round = 0  # of the event that is delivered; 0: from outside
+        self._calling = 0  # the token of the callback that hears it
+        self._caused = 0  # events of callbacks' commands in this delivery
+
+    def __bool__(self):
+        return bool(self._entries)
+
+    def add(self, scene, callback):
+        """A token, never 0 and never reused. Events that wait already are not for this callback."""
+        self._last_token += 1
+        self._entries[self._last_token] = (scene, callback)
+        return self._last_token
+
+    def remove(self, scene, token):
+        """False when the scene has no such listener."""
+        if token not in self._entries or self._entries[token][0] != scene:
+            return False
+        del self._entries[token]
+        return True
+
+    def follows(self, scene):
+        return any(each == scene for each, _ in self._entries.values())
+
+    def forget_scene(self, name):
+        self._entries = {token: entry for token, entry in self._entries.items()
+                         if entry[0].name != name}
+
+    def clear(self):
+        self._entries.clear()
+        self._waiting.clear()
+
+    def put(self, messages):
+        round, cause = (self._round + 1, self._calling) if self._delivering else (0, 0)
+        self._waiting.extend((message, self._last_token, round, cause) for message in messages)
+        if self._delivering:
+            self._caused += len(messages)
+
+    def deliver(self):
+        """Hands every event that waits to the callbacks of its scene, in order.
+
+        A callback may give commands: their events follow when the present one has reached everybody.
+        One that raises stops neither the others nor the events that wait; the first exception is
+        raised at the end. One whose commands cause further ones without end hears nothing more until
+        then."""
+        if self._delivering:
+            return  # the delivery that is under way comes to them
+        self._delivering = True
+        self._caused = 0
+        first = None
+        silent = set()
+        try:
+            while self._waiting:
+                message, last_token, self._round, cause = self._waiting.popleft()
+                endless = self._round > MAXIMUM_ROUNDS or self._caused > MAXIMUM_CAUSED
+                if endless and cause and cause not in silent:
+                    silent.add(cause)
+                    if first is None:
+                        first = self._endless(cause)
+                for token, (scene, callback) in list(self._entries.items()):
+                    if (token > last_token or token not in self._entries or token in silent
+                            or scene.name != message.scene):
+                        continue
+                    self._calling = token
+                    try:
+                        callback(FrameEvent(scene, message))
+                    except Exception as error:
+                        if first is None:
+                            first = error
+        finally:
+            self._delivering = False
+        if first is not None:
+            raise first
+
+    def _endless(self, token):
+        _, callback = self._entries.get(token, (None, "a callback that was removed"))
+        return Resource(f"on_frame_change: the commands of {callback!r} cause further ones without end "
+                        f"(round {self._round}, {self._caused} changes); accepted: up to "
+                        f"{MAXIMUM_ROUNDS} rounds and {MAXIMUM_CAUSED} changes", "on_frame_change")
+
+
+class EventQueue:
+    """The ViewerEvents that a session itself was told, and the callbacks of whoever hears any."""
+
+    def __init__(self):
+        self._told = deque()
+        self.callbacks = []  # (kind or None, callback), in the order they came
+
+    def put(self, event):
+        copy = type(event)()
+        copy.CopyFrom(event)
+        self._told.append(copy)
+
+    def take(self):
+        return self._told.popleft() if self._told else None
+
+    def clear(self):
+        self._told.clear()
+        self.callbacks.clear()
