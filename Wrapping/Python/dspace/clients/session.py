@@ -1,4 +1,5 @@
 """Sessions own scenes and viewports."""
+from dspace._core.delegates import delegate
 from dspace._core.fields import Named, flag, refuse, text
 from dspace._core.traits import DEFAULT_SCENE
 from dspace.clients.local import LocalClient
@@ -10,7 +11,7 @@ from dspace.scene.viewport import Viewport
 from dspace.telemetry.viewer_events import ViewerEvents
 
 
-class Session(ViewerEvents):
+class Session:
     """Scenes and viewports in this process. Use it in a `with` statement, or close() it.
 
         with dspace.Session() as session:
@@ -98,6 +99,19 @@ class Session(ViewerEvents):
         """The Recording that is under way, or None."""
         recording = self._client.recording
         return recording if recording is not None and recording.active else None
+
+    # --- Events of viewers ---------------------------------------------------------------------
+
+    on_event = delegate(ViewerEvents, "on_event")
+    on_edited = delegate(ViewerEvents, "on_edited")
+    process_events = delegate(ViewerEvents, "process_events")
+    tell = delegate(ViewerEvents, "tell")
+    answer = delegate(ViewerEvents, "answer")
+    edited = delegate(ViewerEvents, "edited")
+    select = delegate(ViewerEvents, "select")
+    dragged = delegate(ViewerEvents, "dragged")
+
+    # --- The rest ------------------------------------------------------------------------------
 
     @property
     def statistics(self):

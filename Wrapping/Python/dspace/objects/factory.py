@@ -29,8 +29,11 @@ def _points(points, about):
     return array
 
 
-class ObjectMaking:
-    """The part of Scene that makes objects; Scene says what all of its functions take."""
+class ObjectFactory:
+    """Makes the objects of a Scene, which delegates to it and documents what all of its functions accept."""
+
+    def __init__(self, scene):
+        self._scene = scene
 
     def load(self, path, frame=None, ornamental=False, scale=1.0, up=None, rotation=None,
              levels=(), strict=False, point_cloud=False, **settings):
@@ -66,9 +69,9 @@ class ObjectMaking:
             load = self._load_robot if kind == "URDF" else self._load_assembly
             base = self._base_pose(label, scale, up or "z", rotation, settings)
             return load(first, base, frame, ornamental, strict, **settings)
-        command = self._command()
+        command = self._scene._command()
         message = command.import_object
-        put_settings(self, message.object, label, frame=frame, ornamental=ornamental, **settings)
+        put_settings(self._scene, message.object, label, frame=frame, ornamental=ornamental, **settings)
         put(message.level.add(), label, path=first, minimum_pixels=pixels)
         for level in levels:
             if not isinstance(level, (tuple, list)) or len(level) != 2:
@@ -78,7 +81,7 @@ class ObjectMaking:
         put(message, label, scale=scale, up=turn, strict=strict, point_cloud=point_cloud)
         if rotation is not None:
             put_rotation(message.rotation, rotation, "the rotation", label)
-        made = GraphicsObject(self, self._execute(command).object.object)
+        made = GraphicsObject(self._scene, self._scene._execute(command).object.object)
         if up is None and first.lower().endswith((".gltf", ".glb")):
             warn(f"{label}: in glTF Y is up, and nothing is turned unasked; if it lies on its side give "
                  "up='y', else up='z'")
@@ -96,28 +99,28 @@ class ObjectMaking:
         return base
 
     def _load_assembly(self, path, base, frame, ornamental, strict, **settings):
-        return load_assembly(self, path, base, frame, ornamental=ornamental, strict=strict, **settings)
+        return load_assembly(self._scene, path, base, frame, ornamental=ornamental, strict=strict, **settings)
 
     def _load_robot(self, path, base, frame, ornamental, strict, name=None, fragment=None):
         label = f"file {path!r}"
-        command = self._command()
+        command = self._scene._command()
         message = command.load_robot
-        put(message, label, path=path, name="" if name is None else name, frame=self._frame_id(frame),
-            fragment=self._fragment_name(fragment), strict=strict)
+        put(message, label, path=path, name="" if name is None else name, frame=self._scene._frame_id(frame),
+            fragment=self._scene._fragment_name(fragment), strict=strict)
         put_pose(message.pose, base)
         message.nature = 1 if flag(ornamental, "ornamental", label) else 0
-        return Robot(self, self._execute(command).robot)
+        return Robot(self._scene, self._scene._execute(command).robot)
 
     def _primitive(self, settings, shape, **fields):
-        command = self._command()
-        label = put_settings(self, command.create_primitive.object, shape, **settings)
+        command = self._scene._command()
+        label = put_settings(self._scene, command.create_primitive.object, shape, **settings)
         message = getattr(command.create_primitive, shape)
         message.SetInParent()
         put_given(message, label, **fields)
         return command
 
     def _make(self, command, kind=Primitive):
-        return kind(self, self._execute(command).object.object)
+        return kind(self._scene, self._scene._execute(command).object.object)
 
     def add_box(self, size, **settings):
         """size: three edges [m]; centred."""
@@ -208,8 +211,8 @@ class ObjectMaking:
         """Flat letters in XY, readable from +Z; a capital letter is `height` metres high.
 
         Letters of any alphabet that DejaVu Sans has and that is written from left to right."""
-        command = self._command()
-        put_settings(self, command.create_text.object, "text", ornamental=ornamental, **settings)
+        command = self._scene._command()
+        put_settings(self._scene, command.create_text.object, "text", ornamental=ornamental, **settings)
         put(command.create_text, "text", text=text)
         put(command.create_text.solid, "text", height=height)
         return self._make(command, Text)
@@ -219,8 +222,8 @@ class ObjectMaking:
         """A label that faces the camera; font_size and offset (right, up) in pixels.
 
         Letters as for add_text."""
-        command = self._command()
-        put_settings(self, command.create_text.object, "label", ornamental=ornamental, **settings)
+        command = self._scene._command()
+        put_settings(self._scene, command.create_text.object, "label", ornamental=ornamental, **settings)
         put(command.create_text, "label", text=text)
         label = command.create_text.label
         label.SetInParent()
@@ -236,8 +239,8 @@ class ObjectMaking:
                   **settings):
         """A line through the last `capacity` points that Trail.append was given, each at least
         `minimum_spacing` [m] from the one before; fade: older points are fainter."""
-        command = self._command()
+        command = self._scene._command()
         message = command.create_trail
-        label = put_settings(self, message.object, "trail", ornamental=ornamental, **settings)
+        label = put_settings(self._scene, message.object, "trail", ornamental=ornamental, **settings)
         put(message, label, capacity=capacity, minimum_spacing=minimum_spacing, fade=fade)
         return self._make(command, Trail)

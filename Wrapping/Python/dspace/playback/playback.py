@@ -11,7 +11,7 @@ from dspace.clients.session import Session
 from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
 from dspace.playback.spans import spans_of
 from dspace.playback.steps import StepTimes, rounding, steps_of
-from dspace.playback.telemetry import TelemetryReading
+from dspace.playback.telemetry import RecordedTelemetry
 from dspace.proto import commands_pb2 as pb, terrain_pb2
 from dspace.recording.assets import RecordedFiles
 from dspace.recording.file import RecordingFile, commands_of
@@ -25,7 +25,7 @@ def scene_of(payload):
     return scene_name(command_of(payload))
 
 
-class Playback(TelemetryReading):
+class Playback:
     """A recording in a session of its own, at a time that may go either way.
 
         with dspace.Playback("run.dspace") as run:
@@ -49,6 +49,7 @@ class Playback(TelemetryReading):
         try:
             self._checks = flag(check_assets, "check_assets", self.file.label)
             self._scene = None if scene is None else text(scene, "the scene", self.file.label)
+            self._telemetry = RecordedTelemetry(self.file, self._scene)
             self._read_steps()
             self._require_scene()
             if self.gaps:
@@ -171,6 +172,20 @@ class Playback(TelemetryReading):
             self._go(following)
             if on_step is not None and on_step(self) is False:
                 return
+
+    def telemetry(self, name=None, scene=None):
+        """The dspace.playback.telemetry.Series of a channel over the whole recording, which unpacks into times and
+        values; without a name a dict of all. All of the file is read once.
+
+            times, values = run.telemetry("rover/power")
+
+        scene: by name; default: the playback's, or the only one that has telemetry or events. A name that was
+        removed and defined again with another unit or kind is refused (dspace.Unsupported)."""
+        return self._telemetry.series(name, scene)
+
+    def events(self, scene=None):
+        """All Events of a scene in their order, also those that the scene itself has forgotten."""
+        return self._telemetry.events(scene)
 
     def _due(self, index, direction, now, until):
         """The last step from `index` on, or back, that is not after `now`, nor after `until`, before time turns."""

@@ -221,29 +221,27 @@ class History:
         return telling[0] if telling else _Scene(self.file, DEFAULT_SCENE)
 
 
-class TelemetryReading:
-    """The part of Playback that reads telemetry and events."""
+class RecordedTelemetry:
+    """The telemetry and events of a recording over its whole time, for a Playback."""
 
-    _history = None  # (last command then, History)
+    def __init__(self, file, scene):
+        """scene: the name of the default one; None for the only one that has telemetry or events."""
+        self._file = file
+        self._scene = scene
+        self._history = None  # (the file's last command when it was read, History)
 
-    def _read_history(self, scene):
-        scene = self._scene if scene is None else text(scene, "the scene", self.file.label)
-        last = self.file.last
-        if self._history is None or self._history[0] != last:  # it may be written on
-            self._history = (last, History(self.file))
+    def _read(self, scene):
+        scene = self._scene if scene is None else text(scene, "the scene", self._file.label)
+        last = self._file.last
+        if self._history is None or self._history[0] != last:  # the file may have grown
+            self._history = (last, History(self._file))
         return self._history[1].scene(scene)
 
-    def telemetry(self, name=None, scene=None):
-        """The dspace.playback.telemetry.Series of a channel over the whole recording, which unpacks into times and
-        values; without a name a dict of all. All of the file is read once.
+    def series(self, name, scene):
+        """The Series of a channel; without a name a dict of all."""
+        series = self._read(scene).series()
+        return series if name is None else series[text(name, "the name", self._file.label)]
 
-            times, values = run.telemetry("rover/power")
-
-        scene: by name; default: the playback's, or the only one that has telemetry or events. A name that was
-        removed and defined again with another unit or kind is refused (dspace.Unsupported)."""
-        series = self._read_history(scene).series()
-        return series if name is None else series[text(name, "the name", self.file.label)]
-
-    def events(self, scene=None):
-        """All Events of a scene in their order, also those that the scene itself has forgotten."""
-        return list(self._read_history(scene).events)
+    def events(self, scene):
+        """All Events of a scene in their order."""
+        return list(self._read(scene).events)

@@ -21,8 +21,11 @@ def put_value(row, value, viewport, table):
     put_given(row, table, digits=digits)
 
 
-class LegendMaking:
-    """The part of Viewport that has legends."""
+class ViewportLegends:
+    """The legends of a Viewport, which delegates to it."""
+
+    def __init__(self, viewport):
+        self._viewport = viewport
 
     def set_color_bar(self, name, colors, low, high, title="", unit="", ticks=None, values=(),
                       horizontal=False, anchor="bottom right", margin=None, length=None, thickness=None,
@@ -37,7 +40,7 @@ class LegendMaking:
         label = f"colour bar {name!r}"
         command = pb.Command()
         message = command.set_color_bar
-        put(message, label, viewport=self._name, name=name, title=title, unit=unit, low=low, high=high,
+        put(message, label, viewport=self._viewport.name, name=name, title=title, unit=unit, low=low, high=high,
             horizontal=flag(horizontal, "horizontal", label))
         message.anchor = word(anchor, ANCHORS, "anchor", label)
         for each in items(colors, "the colours", label, "colours"):
@@ -49,10 +52,10 @@ class LegendMaking:
         for field, value in (("text_color", color), ("background", background)):
             if value is not None:
                 put_color(getattr(message, field), value, field, label)
-        self._client.execute(command)
+        self._viewport._client.execute(command)
 
     def remove_color_bar(self, name):
-        self._do("remove_color_bar", name=name)
+        self._viewport._do("remove_color_bar", name=name)
 
     def legend_of(self, shown, name=None, **look):
         """A colour bar of what false colour shows: a terrain whose style has a ramp (color_by "height",
@@ -64,19 +67,19 @@ class LegendMaking:
         if isinstance(shown, Terrain):
             ramp = shown.style
             if not ramp or ramp["color_by"] == "normal":
-                raise InvalidArgument(f"{self._label()}: {shown!r} shows no ramp of colours; accepted: one "
+                raise InvalidArgument(f"{self._viewport._label()}: {shown!r} shows no ramp of colours; accepted: one "
                                       "with set_style(color_by='height', 'slope' or 'aspect')",
-                                      self._label())
+                                      self._viewport._label())
             by = ramp["color_by"]
             given = {"title": by.capitalize(), "unit": UNITS[by]}
         elif all(hasattr(shown, each) for each in ("colors", "range", "unit", "name")):
             ramp = {"range": shown.range, "colors": shown.colors}
             if ramp["range"] is None or not ramp["colors"]:
-                raise InvalidArgument(f"{self._label()}: {shown!r} has no range of colours; accepted: a "
-                                      "layer of false colour", self._label())
+                raise InvalidArgument(f"{self._viewport._label()}: {shown!r} has no range of colours; accepted: a "
+                                      "layer of false colour", self._viewport._label())
             given = {"title": shown.name, "unit": shown.unit or ""}
         else:
-            refuse(self._label, "a legend", shown, "one of a Terrain or of a layer of false colour",
+            refuse(self._viewport._label, "a legend", shown, "one of a Terrain or of a layer of false colour",
                    WrongType)
         (low, high), colors = ramp["range"], list(ramp["colors"])
         if low > high:  # a ramp may run downwards

@@ -10,56 +10,59 @@ from dspace.objects.fragments import Fragment
 from dspace.objects.robots import Robot
 
 
-class Belonging:
-    """The part of Scene that tells its own things from those of other scenes and sessions."""
+class SceneMembership:
+    """Checks that what is handed to a Scene, which delegates to it, is its own and not of another scene or session."""
 
-    def _require_own(self, thing, what, about=None):
+    def __init__(self, scene):
+        self._scene = scene
+
+    def require_own(self, thing, what, about=None):
         """Refuses what belongs to another scene, or to one of this name in another session."""
         other = thing._scene
-        if other != self:
-            where = "" if other._client is self._client else " of another session"
+        if other != self._scene:
+            where = "" if other._client is self._scene._client else " of another session"
             raise InvalidArgument(named(about, f"{what} is in another scene, {other.name!r}{where}; "
-                                               f"accepted: one of scene {self._name_!r}"),
-                                  f"scene {self._name_!r}")
+                                               f"accepted: one of scene {self._scene.name!r}"),
+                                  f"scene {self._scene.name!r}")
 
-    def _frame_id(self, frame):
+    def frame_id(self, frame):
         if frame is None:
             return 1
         if isinstance(frame, Frame):
-            if frame._scene is not self:
-                self._require_own(frame, frame._label())
+            if frame._scene is not self._scene:
+                self.require_own(frame, frame._label())
             return frame.id
         if isinstance(frame, Robot):
-            self._require_own(frame, f"robot {frame.name!r}")
+            self.require_own(frame, f"robot {frame.name!r}")
             return frame._base
         if isinstance(frame, Assembly):
-            return self._frame_id(frame.frame)
+            return self.frame_id(frame.frame)
         if isinstance(frame, str):
-            return self._ask("find_frame", path=frame).frame.frame
+            return self._scene._ask("find_frame", path=frame).frame.frame
         if isinstance(frame, (int, np.integer)) and not isinstance(frame, bool):
             if 0 < frame < 2**63:
                 return int(frame)
-            refuse(f"scene {self._name_!r}", "the frame's id", frame, "an id, from 1 to 2^63 - 1")
-        refuse(f"scene {self._name_!r}", "the frame", frame, "a Frame, a Robot, an Assembly, a path or an id",
+            refuse(f"scene {self._scene.name!r}", "the frame's id", frame, "an id, from 1 to 2^63 - 1")
+        refuse(f"scene {self._scene.name!r}", "the frame", frame, "a Frame, a Robot, an Assembly, a path or an id",
                WrongType)
 
-    def _name_of(self, thing, kind, what, about=None):
+    def name_of(self, thing, kind, what, about=None):
         """The name of a thing of this scene, given itself or by its name; "" for None."""
         if thing is None:
             return ""
         if isinstance(thing, str):
-            return text(thing, f"the {what}", about or f"scene {self._name_!r}", "a name")
+            return text(thing, f"the {what}", about or f"scene {self._scene.name!r}", "a name")
         if not isinstance(thing, kind):
-            refuse(about or f"scene {self._name_!r}", f"the {what}", thing,
-                   f"a dspace.{kind.__name__} of scene {self._name_!r} or its name", WrongType)
-        self._require_own(thing, f"{what} {thing.name!r}", about)
+            refuse(about or f"scene {self._scene.name!r}", f"the {what}", thing,
+                   f"a dspace.{kind.__name__} of scene {self._scene.name!r} or its name", WrongType)
+        self.require_own(thing, f"{what} {thing.name!r}", about)
         return thing.name
 
-    def _fragment_name(self, fragment, default=""):
+    def fragment_name(self, fragment, default=""):
         if fragment is None and default is None:
-            refuse(f"scene {self._name_!r}", "the fragment", None, "a dspace.Fragment or its name",
+            refuse(f"scene {self._scene.name!r}", "the fragment", None, "a dspace.Fragment or its name",
                    WrongType)
-        return self._name_of(fragment, Fragment, "fragment")
+        return self.name_of(fragment, Fragment, "fragment")
 
-    def _vantage_name(self, vantage, about=None):
-        return self._name_of(vantage, Vantage, "vantage", about)
+    def vantage_name(self, vantage, about=None):
+        return self.name_of(vantage, Vantage, "vantage", about)

@@ -2,6 +2,7 @@
 import numpy as np
 
 from dspace._core import wire
+from dspace._core.delegates import delegate
 from dspace._core.fields import (Named, about, array_of, flag, integers, keywords, put, put_given, put_vector, refuse,
                                  shown)
 from dspace._core.strict import Strict
@@ -10,21 +11,21 @@ from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
-from dspace.objects.factory import ObjectMaking
+from dspace.objects.factory import ObjectFactory
 from dspace.objects.fragments import Fragment, Light, put_light
 from dspace.objects.graphics import GraphicsObject
 from dspace.objects.robots import Robot
 from dspace.proto import commands_pb2 as pb
-from dspace.scene.membership import Belonging
+from dspace.scene.membership import SceneMembership
 from dspace.scene.viewport import SIZE, Viewport
-from dspace.telemetry.messages import Messages
+from dspace.telemetry.messages import SceneMessages
 from dspace.telemetry.telemetry import Telemetry
-from dspace.terrain.terrain import TerrainMaking
+from dspace.terrain.factory import TerrainFactory
 
 MAIN = "main"  # the vantage that always exists
 
 
-class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
+class Scene(Strict):
     """One scene of a session.
 
     Functions that make an object take, besides their own arguments: frame (a Frame, a path; default
@@ -53,6 +54,12 @@ class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
         return self._client.execute(command)
 
     _ask = _do
+
+    _require_own = delegate(SceneMembership, "require_own")
+    _frame_id = delegate(SceneMembership, "frame_id")
+    _name_of = delegate(SceneMembership, "name_of")
+    _fragment_name = delegate(SceneMembership, "fragment_name")
+    _vantage_name = delegate(SceneMembership, "vantage_name")
 
     def _frame_of(self, id):
         return Frame(self, id)
@@ -174,7 +181,31 @@ class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
         """Named values, for tables, plots and overlays: see dspace.Telemetry."""
         return Telemetry(self)
 
+    log_event = delegate(SceneMessages, "log_event")
+    events = delegate(SceneMessages, "events")
+    ask = delegate(SceneMessages, "ask")
+    questions = delegate(SceneMessages, "questions")
+
     # --- Objects -------------------------------------------------------------------------------
+
+    load = delegate(ObjectFactory, "load")
+    add_box = delegate(ObjectFactory, "add_box")
+    add_sphere = delegate(ObjectFactory, "add_sphere")
+    add_cylinder = delegate(ObjectFactory, "add_cylinder")
+    add_cone = delegate(ObjectFactory, "add_cone")
+    add_plane = delegate(ObjectFactory, "add_plane")
+    add_disc = delegate(ObjectFactory, "add_disc")
+    add_torus = delegate(ObjectFactory, "add_torus")
+    add_arrow = delegate(ObjectFactory, "add_arrow")
+    add_axes = delegate(ObjectFactory, "add_axes")
+    add_lines = delegate(ObjectFactory, "add_lines")
+    add_points = delegate(ObjectFactory, "add_points")
+    add_frustum = delegate(ObjectFactory, "add_frustum")
+    add_goal = delegate(ObjectFactory, "add_goal")
+    add_tilt_marker = delegate(ObjectFactory, "add_tilt_marker")
+    add_text = delegate(ObjectFactory, "add_text")
+    add_label = delegate(ObjectFactory, "add_label")
+    add_trail = delegate(ObjectFactory, "add_trail")
 
     def object(self, name):
         """The object of that name."""
@@ -191,6 +222,11 @@ class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
         """All robots, by name."""
         return Named("robot", {name: Robot(self, self._ask("describe_robot", robot=name).robot)
                                for name in self._ask("list_robots").robots.name})
+
+    # --- Terrain -------------------------------------------------------------------------------
+
+    add_terrain = delegate(TerrainFactory, "add_terrain")
+    terrains = delegate(TerrainFactory, "terrains")
 
     # --- Fragments and lights ------------------------------------------------------------------
 

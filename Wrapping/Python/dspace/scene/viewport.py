@@ -3,6 +3,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dspace._core.delegates import delegate
 from dspace._core.fields import file_path, flag, integers, items, put, put_color, put_given, refuse, word
 from dspace._core.strict import Strict
 from dspace._core.traits import SIDE
@@ -11,7 +12,7 @@ from dspace.errors import Internal, WrongType
 from dspace.objects.fragments import Fragment
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
-from dspace.scene.legends import LegendMaking, put_value
+from dspace.scene.legends import ViewportLegends, put_value
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 PLANES = {"color": 0, "depth": 1, "label": 2}
@@ -39,7 +40,7 @@ class Pick:
     map: object = None  # its map x, y and height
 
 
-class Viewport(LegendMaking, Strict):
+class Viewport(Strict):
     """A picture of a scene. Pixel (0, 0) is the centre of the top-left pixel."""
 
     def __init__(self, client, name):
@@ -296,6 +297,10 @@ class Viewport(LegendMaking, Strict):
 
     def remove_table(self, name):
         self._do("remove_text_table", name=name)
+
+    set_color_bar = delegate(ViewportLegends, "set_color_bar")
+    remove_color_bar = delegate(ViewportLegends, "remove_color_bar")
+    legend_of = delegate(ViewportLegends, "legend_of")
 
     def event(self, type, x=0.0, y=0.0, button=None, wheel=0.0, key="", shift=False, control=False,
               alt=False):

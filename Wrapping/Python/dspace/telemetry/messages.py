@@ -9,7 +9,7 @@ from dspace._core.strict import Strict
 from dspace.errors import DeadlineExceeded, NotFound, WrongType
 from dspace.frames.frame import Frame
 from dspace.proto import service_pb2
-from dspace.telemetry.viewer_events import ViewerEvents
+from dspace.telemetry.viewer_events import process_events
 
 SEVERITIES = {"info": 0, "caution": 1, "warning": 2, "alarm": 3}
 WORDS = tuple(SEVERITIES)
@@ -160,7 +160,7 @@ class Question(Strict):
             left = end - _time.monotonic()
             if left <= 0:
                 raise DeadlineExceeded(f"question {self.name!r}: no answer in {timeout!r} s", f"question {self.name!r}")
-            if not ViewerEvents.process_events(self._scene, min(left, 1.0)):
+            if not process_events(self._scene._client, min(left, 1.0)):
                 _time.sleep(min(left, 0.01))  # a session of one's own does not wait
         return self._answer
 
@@ -183,8 +183,11 @@ class Question(Strict):
         return f"<dspace.Question {self.name!r}: {shown(self.text)}, answer {self._answer!r}>"
 
 
-class Messages:
-    """The part of Scene that logs events and asks questions."""
+class SceneMessages:
+    """The events and questions of a Scene, which delegates to it."""
+
+    def __init__(self, scene):
+        self._scene = scene
 
     def log_event(self, kind, text="", severity="info", frame=None, position=None, time=None, data=None):
         """Something has happened; returns the Event.
@@ -195,12 +198,12 @@ class Messages:
         in it. time: of the simulation [s]; default: the scene's. data: a dict of names to numbers, texts, or
         (number, unit) pairs. The scene keeps the newest 10,000."""
         label = f"event {shown(kind)}"
-        command = self._command()
+        command = self._scene._command()
         message = command.log_event
         put(message, label, kind=kind, text=text)
         message.severity = word(severity, SEVERITIES, "the severity", label)
         if frame is not None:
-            message.frame = self._frame_id(frame)
+            message.frame = self._scene._frame_id(frame)
         if position is not None:
             put_vector(message.position, position, "the position", label)
         if time is not None:
@@ -217,15 +220,15 @@ class Messages:
                 put(datum, label, text=value)
             else:
                 datum.number = number(value, f"datum {name!r}", label)
-        return Event(self._execute(command).event, self)
+        return Event(self._scene._execute(command).event, self._scene)
 
     def events(self, after=0, since=-math.inf, until=math.inf, kind=None, severity="info", most=0):
         """The scene's kept Events, in the order of their numbers.
 
         after: of numbers above this one. since, until: times [s], these included. kind: a word, or several.
         severity: this one or above. most: the newest so many; 0: all."""
-        label = f"events of scene {self._name_!r}"
-        command = self._command()
+        label = f"events of scene {self._scene.name!r}"
+        command = self._scene._command()
         message = command.list_events
         put(message, label, after=after, most=most)
         message.since_s, message.until_s = real(since, "since", label), real(until, "until", label)
@@ -233,7 +236,7 @@ class Messages:
                                                                                   "a word, or several")
         message.kind.extend(text(each, "a kind", label, "a word") for each in kinds)
         message.severity = word(severity, SEVERITIES, "the severity", label)
-        return [Event(event, self) for event in self._execute(command).events.event]
+        return [Event(event, self._scene) for event in self._scene._execute(command).events.event]
 
     def ask(self, name, text, choices=(), severity="info"):
         """Asks whoever watches; returns the Question, whose answer comes later: see Question.wait.
@@ -241,19 +244,19 @@ class Messages:
         name: unlike all open questions of the session. choices: the answers that are accepted; none: any
         text."""
         label = f"question {shown(name)}"
-        command = self._command()
+        command = self._scene._command()
         message = command.ask_operator
         put(message, label, name=name, text=text)
         for choice in items(choices, "the choices", label, "a list of answers"):
             message.choice.append(_text(choice, "a choice", label))
         message.severity = word(severity, SEVERITIES, "the severity", label)
-        message.time_s = self.time
-        self._execute(command)
-        question = Question(self, message)
+        message.time_s = self._scene.time
+        self._scene._execute(command)
+        question = Question(self._scene, message)
         question._listen()
         return question
 
     @property
     def questions(self):
         """The open Questions, in the order in which they were asked."""
-        return [Question(self, message) for message in self._ask("list_questions").questions.question]
+        return [Question(self._scene, message) for message in self._scene._ask("list_questions").questions.question]

@@ -20,12 +20,29 @@ def _value(name, about):
     return f"value {name!r}"
 
 
+def process_events(client, wait):
+    """ViewerEvents.process_events() of a client."""
+    wait = real(wait, "the wait", "session", "seconds")
+    events = []
+    while True:
+        event = client.take_event(0.0 if events else wait)
+        if event is None:
+            return events
+        events.append(event)
+        for kind, callback in list(client.events.callbacks):
+            if kind is None or event.WhichOneof("kind") == kind:
+                callback(event)
+
+
 class ViewerEvents:
-    """The part of Session and Watcher that says and hears what people do.
+    """Says and hears what people do at viewers, for a Session or Watcher, which delegates to it.
 
     A Watcher says it to whoever drives the server; a Session (or RemoteSession) to itself, so that a
     program with a window of its own works in the same way.
     """
+
+    def __init__(self, session):
+        self._session = session
 
     # --- Hearing -------------------------------------------------------------------------------
 
@@ -37,7 +54,7 @@ class ViewerEvents:
             refuse("session", "the callback", callback, "a function of one ViewerEvent", WrongType)
         if kind is not None:
             word(kind, KINDS, "the kind", "session")
-        self._client.events.callbacks.append((kind, callback))
+        self._session._client.events.callbacks.append((kind, callback))
 
     def on_edited(self, name, callback, low=-math.inf, high=math.inf, unit=""):
         """Calls `callback` with a number for everything that people enter for the value `name`.
@@ -71,16 +88,7 @@ class ViewerEvents:
         """Hands what viewers have said to the callbacks of on_event; waits up to `wait` seconds for the
         first. Returns the events. A callback that raises leaves the rest for the next call. A wait on a
         server raises the error of a link that is broken for good."""
-        wait = real(wait, "the wait", "session", "seconds")
-        events = []
-        while True:
-            event = self._client.take_event(0.0 if events else wait)
-            if event is None:
-                return events
-            events.append(event)
-            for kind, callback in list(self._client.events.callbacks):
-                if kind is None or event.WhichOneof("kind") == kind:
-                    callback(event)
+        return process_events(self._session._client, wait)
 
     # --- Saying --------------------------------------------------------------------------------
 
@@ -89,7 +97,7 @@ class ViewerEvents:
         dspace.NotFound when nobody drives; up to 1 MiB."""
         if not isinstance(event, service_pb2.ViewerEvent):
             refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
-        self._client.tell(event)
+        self._session._client.tell(event)
 
     def answer(self, question, answer):
         """Answers a question of the simulation."""
@@ -105,7 +113,7 @@ class ViewerEvents:
         value = number(value, "the value", label)
         if not math.isfinite(value):
             refuse(label, "it", value, "a finite number")
-        channel = next((scene.telemetry[name] for scene in self.scenes.values() if name in scene.telemetry), None)
+        channel = next((scene.telemetry[name] for scene in self._session.scenes.values() if name in scene.telemetry), None)
         if channel is not None:
             if channel.kind == "text" or (channel.kind == "choice" and value not in channel.labels):
                 refuse(label, "it", value, "a channel of numbers or choices" if channel.kind == "text"

@@ -19,7 +19,7 @@ class TerrainLayer(Strict):
         return f"layer {self._name!r} of {self._terrain._label()}"
 
     def _info(self):
-        for layer in self._terrain._layers_info().layer:
+        for layer in TerrainLayers(self._terrain).info().layer:
             if layer.name == self._name:
                 return layer
         raise NotFound(f"{self._label()}: it is there no more", self._label())
@@ -108,12 +108,15 @@ class TerrainLayer(Strict):
             return f"<dspace.TerrainLayer {self._name!r}, removed>"
 
 
-class LayerMaking:
-    """The part of Terrain that is painted on: of clipmaps, up to 64 layers. They lie over the terrain's
+class TerrainLayers:
+    """The colour layers of a Terrain, which delegates to it: of clipmaps, up to 64 layers. They lie over the terrain's
     own colour and under set_style()'s. A file is opened at once and read as pictures need it;
     what it leaves unsaid is a warning, what cannot be used is refused: a file that is absent
     (NotFound), damaged (Corrupt), of another body or kind (Unsupported), beside the terrain, or any
     value out of range (InvalidArgument)."""
+
+    def __init__(self, terrain):
+        self._terrain, self._scene, self._name = terrain, terrain._scene, terrain.name
 
     def add_image(self, path, name=None, crs=None, extent=None, opacity=1.0, visible=True, position=None):
         """An image file of any size and in any CRS as a TerrainLayer; no data and its own opacity let
@@ -123,7 +126,7 @@ class LayerMaking:
         crs, extent (left, top, right, bottom in map coordinates of that CRS): what the file does not
         say, or says wrongly; without either it is stretched over the terrain. opacity: 0 to 1.
         visible: whether it is drawn. position: from the bottom, 0 (on top)."""
-        label = self._label()
+        label = self._terrain._label()
         command = self._adding(label, name, opacity, visible, position)
         _put_raster(command.add_terrain_layer.image, label, path, crs, extent)
         return self._added(command)
@@ -136,7 +139,7 @@ class LayerMaking:
         low, high: values of the first and the last, in the band's unit after the file's own scale and
         offset (its least and greatest); what is beyond has their colours. The layer's range, colors
         and unit are what a legend needs. The rest as for add_image()."""
-        label = self._label()
+        label = self._terrain._label()
         command = self._adding(label, name, opacity, visible, position)
         message = command.add_terrain_layer.false_color
         _put_raster(message, label, path, crs, extent)
@@ -160,7 +163,7 @@ class LayerMaking:
         points in pixels, or with `width` that many times it (6; above 0 to 256), in the lines' colour.
         layer: of a file with several (all). crs: replaces the file's; GeoJSON without one is in longitude
         and latitude of the terrain's body (of the Earth WGS 84's). The rest as for add_image()."""
-        label = self._label()
+        label = self._terrain._label()
         command = self._adding(label, name, opacity, visible, position)
         message = command.add_terrain_layer.shapes
         put(message, label, path=file_path(path, "the path", label))
@@ -180,7 +183,7 @@ class LayerMaking:
         1 to 16; gain: amplitude of an octave over that of the one before, above 0 to 1; seed: an integer
         from 0 to 2**32 - 1, the same noise for the same one; contrast: how much it darkens and brightens
         at most, 0 to 1. The rest as for add_image()."""
-        label = self._label()
+        label = self._terrain._label()
         command = self._adding(label, name, opacity, visible, position)
         put(command.add_terrain_layer.noise, label, wavelength=wavelength, octaves=octaves, gain=gain,
             seed=seed, contrast=contrast)
@@ -189,9 +192,9 @@ class LayerMaking:
     @property
     def layers(self):
         """Its colour layers, bottom first; "drape" is that of add_terrain's `image`."""
-        if self.mode != "clipmap":
+        if self._terrain.mode != "clipmap":
             return []
-        return [TerrainLayer(self, layer.name) for layer in self._layers_info().layer]
+        return [TerrainLayer(self._terrain, layer.name) for layer in self.info().layer]
 
     def layer(self, name):
         """The TerrainLayer of that name. Raises NotFound naming those there are."""
@@ -200,20 +203,21 @@ class LayerMaking:
             return layers[name]
         except (KeyError, TypeError):
             known = ", ".join(map(repr, layers)) or "none"
-            raise NotFound(f"{self._label()}: it has no layer {shown(name)}; there are: {known}",
-                           self._label()) from None
+            raise NotFound(f"{self._terrain._label()}: it has no layer {shown(name)}; there are: {known}",
+                           self._terrain._label()) from None
 
     @property
     def layer_tiles(self):
         """Of the colour layers, a dict of bytes (in memory), kept_bytes (of JPEG, PNG and other files that
         are decoded as a whole), reads (of one tile of one layer), compositions (of tiles of all layers),
         failures and last_failure (a message, or "")."""
-        info = self._layers_info()
+        info = self.info()
         return {"bytes": info.bytes, "kept_bytes": info.kept_bytes, "reads": info.reads,
                 "compositions": info.compositions, "failures": info.failures,
                 "last_failure": info.last_failure}
 
-    def _layers_info(self):
+    def info(self):
+        """The TerrainLayersReply."""
         return self._scene._ask("list_terrain_layers", terrain=self._name).terrain_layers
 
     def _adding(self, label, name, opacity, visible, position):
@@ -226,7 +230,7 @@ class LayerMaking:
         return command
 
     def _added(self, command):
-        return TerrainLayer(self, self._scene._execute(command).terrain_layer.name)
+        return TerrainLayer(self._terrain, self._scene._execute(command).terrain_layer.name)
 
 
 def _put_raster(message, label, path, crs, extent):

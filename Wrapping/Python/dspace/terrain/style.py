@@ -5,8 +5,11 @@ from dspace.errors import InvalidArgument, WrongType
 COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.Ramp.By
 
 
-class StyleMaking:
-    """The style of a terrain."""
+class TerrainStyle:
+    """The style of a Terrain, which delegates to it."""
+
+    def __init__(self, terrain):
+        self._terrain, self._scene, self._name = terrain, terrain._scene, terrain.name
 
     def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
                   contours=None, grid=None, details=(), tracks=None, noise=None, grid_labels=False):
@@ -33,7 +36,7 @@ class StyleMaking:
         adds at most), octaves of halved wavelength (4), gain of each over the one before it (0.5),
         seed (0). Pictures, their depth images, contours and ramps have it, height() and every other
         query and analysis, ruts and robots do not: leave it off where something is measured."""
-        label = self._label()
+        label = self._terrain._label()
         command = self._scene._command()
         style = command.style_terrain
         put(style, label, terrain=self._name)

@@ -8,8 +8,11 @@ from dspace.errors import InvalidArgument, WrongType
 _CONTACTS = "a dict of wheels' names to contacts (x, y) or (n, 2), or what a vehicle's solve() returns"
 
 
-class TrackMaking:
-    """The part of Terrain that wheels roll over: of clipmaps on a plane."""
+class TerrainTracks:
+    """The wheel tracks of a Terrain, which delegates to it: of clipmaps on a plane."""
+
+    def __init__(self, terrain):
+        self._terrain, self._scene, self._name = terrain, terrain._scene, terrain.name
 
     def track(self, wheels, width, sinkage=0.0, heading_deg=None, rolled=None, wall=None,
               rim_width=None, rim_height=None, tread_pitch=None, tread_depth=None, begin=False):
@@ -27,7 +30,7 @@ class TrackMaking:
         rim_width, rim_height: of a rim thrown up beside it (none). tread_pitch, tread_depth: bars
         across the floor, deeper by up to tread_depth (none). All metres. Where ruts overlap the
         deepest counts."""
-        label = self._label()
+        label = self._terrain._label()
         # Of a vehicle's state the wheels' middles: a wide wheel may rest on either edge.
         contacts = getattr(wheels, "wheel_centers", wheels)
         if not isinstance(contacts, dict):
@@ -73,22 +76,17 @@ class TrackMaking:
     def save_tracks(self, path):
         """All tracks as GeoJSON: a LineString a track, in map coordinates, with its sizes."""
         self._scene._do("save_tracks", terrain=self._name,
-                        path=file_path(path, "the path", self._label()))
+                        path=file_path(path, "the path", self._terrain._label()))
 
     def load_tracks(self, path):
         """Adds tracks that save_tracks() wrote, or lines of other programs with a "sinkage"."""
         self._scene._do("load_tracks", terrain=self._name,
-                        path=file_path(path, "the path", self._label()))
+                        path=file_path(path, "the path", self._terrain._label()))
 
     @property
     def tracks(self):
         """A dict of length (metres of all wheels), contacts (that are kept: those on a line between
         others are left out) and bytes (of the budget, add_terrain's track_budget)."""
-        info = self._info()
+        info = self._terrain._info()
         return {"length": info.track_length, "contacts": info.track_contacts,
                 "bytes": info.track_bytes}
-
-    @property
-    def undisturbed(self):
-        """The same terrain, whose height(), normal(), ... answer for the ground before all wheels."""
-        return type(self)(self._scene, self._name, undisturbed=True)

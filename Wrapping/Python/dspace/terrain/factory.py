@@ -1,0 +1,120 @@
+"""How a scene opens terrain."""
+from dspace._core.fields import (Named, array_of, file_path, flag, items, keywords, numbers, put, put_color, put_given,
+                                 put_vector, refuse, shown, word)
+from dspace.errors import InvalidArgument, WrongType
+from dspace.terrain.terrain import MODES, Terrain
+
+
+def _put_patches(message, label, patches):
+    """The dicts of add_terrain's `patches` into its command."""
+    accepted = "a list of dicts of path and options"
+    for index, patch in enumerate(items(patches, "patches", label, accepted)):
+        what = f"patch {index}"
+        if not isinstance(patch, dict):
+            refuse(label, what, patch, "a dict of path and options", WrongType)
+        sent = message.patch.add()
+        known = [field.name for field in sent.DESCRIPTOR.fields]
+        keywords(patch, known, f"{label}, {what}")
+        if "path" not in patch:
+            refuse(label, what, patch, "a dict that has a path")
+        given = dict(patch, path=file_path(patch["path"], "the path", f"{label}, {what}"))
+        put_given(sent, f"{label}, {what}", **given)
+
+
+def _folder(value, label):
+    folder = "" if isinstance(value, bool) else file_path(value, "the cache", label)
+    return folder or refuse(label, "the cache", value, "a folder, False or None", WrongType)
+
+
+class TerrainFactory:
+    """Opens the terrain of a Scene, which delegates to it."""
+
+    def __init__(self, scene):
+        self._scene = scene
+
+    def add_terrain(self, path, name=None, frame=None, image=None, color=None, relief=None,
+                    origin=None, triangles=None, fragment=None, lit=True, image_crs=None,
+                    image_extent=None, band=None, crs=None, vertical_datum=None,
+                    vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
+                    on_body=False, level_size=None, byte_budget=None, deadline=None, patches=(),
+                    subdivisions=None, track_budget=None, cache=None, build_overviews=True, fill_holes=False):
+        """A raster of heights (anything that GDAL opens) as a physical object.
+
+        image: a file to drape over it (of a clipmap the layer "drape", see add_image(): in full
+        resolution), with image_crs and image_extent (left, top, right, bottom in map coordinates)
+        where the file does not say; color: one colour; relief: shaded relief (the
+        default), a dict of sun_azimuth_deg, sun_elevation_deg, color_by_height. lit: whether the
+        scene's lights shade it as well. origin: map x, y[, height] that become the frame's origin,
+        by default the raster's middle at height 0. triangles: the budget (200000).
+        mode: "triangles" (all of it in memory, within the budget), "clipmap" (any size: tiles are
+        read as they are needed and triangles follow each camera) or "auto": triangles for up to
+        four million pixels on a plane. on_body: its frame is the body-fixed one (Z to the north
+        pole, X to longitude 0; centre at the frame's origin) instead of a plane, for degree grids of
+        a sphere. level_size: cells a side of a clipmap's levels (124; 252 is finer and slower);
+        byte_budget: of its tiles (256 MiB); deadline: seconds that images and queries wait for them
+        (60).
+        cache: the folder of averaged overviews that a clipmap reads where a raster has none (the user's
+        cache folder, which `dspace terrain cache FILE` fills); False: none are read.
+        build_overviews: a local raster of over four million pixels that has none gets them there, in
+        the background; far ground changes once when they are there (Terrain.overviews tells).
+        fill_holes: True fills what has no data smoothly from the ground around it, a number only
+        within so many pixels of data (clipmaps only): drawn and answered alike, Terrain.filled tells,
+        and the layer "filled" marks it in pictures.
+        subdivisions: on a plane, how often a clipmap's cells between pixels are halved: wheel tracks
+        (track()) need posts some centimetres apart. track_budget: bytes for them (64 MiB).
+        band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and
+        vertical_offset [m], pixel_size (map units): what the file does not say, or says wrongly.
+        patches: rasters of higher resolution on this one, each in its own CRS, later ones on top
+        (clipmaps only): dicts of path and, as above, name, band, crs, vertical_datum, vertical_scale,
+        vertical_offset, pixel_size; margin [m] is what each is blended over into what lies under it
+        (a tenth of its shorter side). Terrain.patches tells what became of them."""
+        path = file_path(path, "the path", "terrain")
+        label = f"terrain {shown(path if name is None else name)}"
+        if sum(value is not None for value in (image, color, relief)) > 1:
+            raise InvalidArgument(f"{label}: several of image, color and relief are given; accepted: one "
+                                  "of them", label)
+        command = self._scene._command()
+        message = command.open_terrain
+        put(message, label, path=path, name="" if name is None else name, frame=self._scene._frame_id(frame))
+        if image is not None:
+            put(message.drape, label, path=file_path(image, "the image", label))
+            put_given(message.drape, label, crs=image_crs)
+            if image_extent is not None:
+                message.drape.extent.extend(numbers(image_extent, 4, "image_extent", label,
+                                                    "left, top, right, bottom"))
+        elif color is not None:
+            put_color(message.color, color, "the colour", label)
+        elif relief is not None:
+            message.relief.SetInParent()
+            known = [field.name for field in message.relief.DESCRIPTOR.fields]
+            if not isinstance(relief, dict):
+                refuse(label, "relief", relief, f"a dict of {', '.join(known)}", WrongType)
+            keywords(relief, known, f"{label}, relief")
+            put(message.relief, label, **relief)
+        if origin is not None:
+            values = array_of(origin, "the origin", "map x, y[, height]", label).ravel()
+            if len(values) not in (2, 3):
+                refuse(label, "the origin", origin, "map x, y[, height]", WrongType)
+            put_vector(message.map_origin, [*values, 0.0][:3], "the origin", label)
+        message.fragment = self._scene._fragment_name(fragment)
+        message.unlit = not flag(lit, "lit", label)
+        message.mode = word(mode, {known: i for i, known in enumerate(MODES)}, "the mode", label)
+        message.on_body = flag(on_body, "on_body", label)
+        put_given(message, label, triangle_budget=triangles, band=band, crs=crs,
+                  vertical_datum=vertical_datum, vertical_scale=vertical_scale,
+                  vertical_offset=vertical_offset, pixel_size=pixel_size,
+                  level_size=level_size, byte_budget=byte_budget, deadline=deadline,
+                  subdivisions=subdivisions, track_byte_budget=track_budget)
+        if cache is not None:
+            message.overview_cache = "" if cache is False else _folder(cache, label)
+        if fill_holes is not False:
+            put(message, label, fill_holes=float("inf") if fill_holes is True else fill_holes)
+        message.build_overviews = flag(build_overviews, "build_overviews", label)
+        _put_patches(message, label, patches)
+        return Terrain(self._scene, self._scene._execute(command).terrain.name)
+
+    @property
+    def terrains(self):
+        """All terrains, by name."""
+        return Named("terrain", {name: Terrain(self._scene, name)
+                                 for name in self._scene._ask("list_terrains").terrains.name})
