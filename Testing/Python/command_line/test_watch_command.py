@@ -190,14 +190,14 @@ class Changing:
 def test_whatever_goes_between_two_looks_is_told():
     # At first, then who drives and whether there is a server, in turns.
     presence = Presence(Changing("drive", "drive", "drive", "drive", None))
-    assert presence.gone() is None
-    assert presence.gone() == "the server has gone"  # between the two
-    assert [presence.gone() for _ in range(3)] == [None] * 3  # told once
+    assert presence.disconnected() is None
+    assert presence.disconnected() == "the server has gone"  # between the two
+    assert [presence.disconnected() for _ in range(3)] == [None] * 3  # told once
     for first in ("drive", ""):
         presence = Presence(Changing(first, first, first, None))
-        assert [presence.gone() for _ in range(3)] == [None, "the server has gone", None]
+        assert [presence.disconnected() for _ in range(3)] == [None, "the server has gone", None]
     presence = Presence(Changing("drive", "", "", "", "", "next", "next", ""))
-    assert [presence.gone() for _ in range(5)] == [
+    assert [presence.disconnected() for _ in range(5)] == [
         "simulation 'drive' has gone", None, None, "simulation 'next' has gone", None]
 
 

@@ -153,24 +153,24 @@ def run(options):
                 told = watcher.trouble
                 if told:
                     print(f"dspace: note: the pictures lack what could not be done here: {told}", file=sys.stderr)
-            gone = presence.gone()
+            why = presence.disconnected()
             # Not at once: its link may be about to be made again.
-            if not (gone or options.stay) and time.monotonic() - began > PATIENCE and presence.gone_before():
-                gone = "the simulation had gone before"
-            if gone:
+            if not (why or options.stay) and time.monotonic() - began > PATIENCE and presence.disconnected_before():
+                why = "the simulation had gone before"
+            if why:
                 watcher.update()  # its picture says so
-            if gone or time.monotonic() >= due:
+            if why or time.monotonic() >= due:
                 pictures.save()
                 due = max(due + options.every, time.monotonic())
-            if not gone or options.stay:
+            if not why or options.stay:
                 waiting.tell(pictures, presence)
-            if gone:
+            if why:
                 if not options.stay:
                     if pictures.count == 0:
                         raise Failed("{}; there was no {}; there are: {}".format(
-                            gone, *(word.removeprefix("a ") for word in pictures.lack())))
-                    return end(pictures.count, options, gone)
-                print(f"dspace watch: {gone}; waiting", flush=True)
+                            why, *(word.removeprefix("a ") for word in pictures.lack())))
+                    return end(pictures.count, options, why)
+                print(f"dspace watch: {why}; waiting", flush=True)
         if pictures.count != options.count:
             pictures.save()
         return end(pictures.count, options, "ended")
@@ -202,24 +202,24 @@ class Waiting:
 
 
 class Presence:
-    """Who was there when one looked last: the server, and a simulation."""
+    """Whether the server and a simulation were connected at the last look."""
 
     def __init__(self, watcher):
         self._watcher, self._driver, self._served = watcher, watcher.simulation, True
 
-    def gone_before(self):
-        """Whether a simulation was there before one looked first, and nobody is now: its commands are in the state."""
+    def disconnected_before(self):
+        """Whether a simulation drove the server before the first look, and none does now: the state has its commands."""
         return self._driver is None and self._watcher.sequence > 0
 
     def words(self):
-        """Begins what is said of waiting."""
+        """The first words of a note about waiting."""
         if self._driver is not None:
             return ""
         return "the simulation has gone; " if self._watcher.sequence > 0 else "no simulation has begun; "
 
-    def gone(self):
-        """What has gone since, in words; None when all that was there is there."""
-        # Each is read once, for the link may break at any time; a link that breaks between the two is the server's.
+    def disconnected(self):
+        """Says what disconnected since the last look; None if nothing did."""
+        # Each value is read once, because the link may break at any time. A break between the two reads is the server's.
         driver, served = self._watcher.simulation, self._watcher.connected
         was_driver, was_served = self._driver, self._served
         self._driver, self._served = driver or was_driver, served

@@ -3,7 +3,7 @@ import os
 
 from dspace._core.fields import flag, number, refuse, text
 from dspace._core.replies import make_error, to_reply, warn
-from dspace._core.signals import SLICE, hear_signals
+from dspace._core.signals import SLICE, check_signals
 from dspace.errors import WrongType
 
 
@@ -40,7 +40,7 @@ def make_connection(link, address, name):
     state = -1 if reply.HasField("error") else 0
     while state == 0:
         state = link.WaitToConnect(SLICE)
-        hear_signals()
+        check_signals()
         if state < 0:
             reply = to_reply(link.TakeReply())
     if reply.HasField("error"):

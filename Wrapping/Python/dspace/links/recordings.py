@@ -9,7 +9,7 @@ import weakref
 from dspace import vtk as _vtk
 from dspace._core.fields import flag
 from dspace._core.replies import warn
-from dspace._core.signals import SLICE, hear_signals
+from dspace._core.signals import SLICE, check_signals
 from dspace.errors import AlreadyExists, Error, Unsupported
 from dspace.links.connection import make_connection
 from dspace.recording.file import path_of
@@ -40,7 +40,7 @@ class ServedRecording(Recording):
             make_connection(self._recorder, client.address, client.name)
             self._recorder.RecordLater(path, every, pack)
             while (begun := self._recorder.WaitToRecord(SLICE)) == 0:
-                hear_signals()
+                check_signals()
         except BaseException:
             self._recorder = None  # which ends it
             raise
@@ -91,7 +91,7 @@ class ServedRecording(Recording):
         problem = self._catch_up(recorder, None)
         recorder.FlushLater()
         while not recorder.WaitToFlush(SLICE):
-            hear_signals()
+            check_signals()
         self._raise(recorder.GetRecordingFailure() or problem)
         if refused is not None:
             raise refused
@@ -151,7 +151,7 @@ class ServedRecording(Recording):
         """Waits for the last command; what is missing, or ""."""
         wanted, have = self._client.sequence, -1
         while (state := recorder.WaitFor(wanted, SLICE)) == 0:
-            hear_signals()
+            check_signals()
             now = time.monotonic()
             if recorder.GetSequence() != have:
                 have, patience = recorder.GetSequence(), now + self._client.timeout
@@ -166,7 +166,7 @@ class ServedRecording(Recording):
         recorder.StopLater()
         try:
             while not recorder.WaitToStop(SLICE):
-                hear_signals()
+                check_signals()
         finally:
             _active.discard(self)
             self._failure = recorder.GetRecordingFailure()

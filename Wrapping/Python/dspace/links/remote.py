@@ -5,7 +5,7 @@ import time
 from dspace import vtk as _vtk
 from dspace._core.fields import flag, number, refuse, text
 from dspace._core.replies import make_error, to_bytes, to_reply, warn
-from dspace._core.signals import SLICE, hear_signals
+from dspace._core.signals import SLICE, check_signals
 from dspace._core.traits import UNAWAITED
 from dspace._core.wire import decode, encode
 from dspace.clients.local import LocalClient
@@ -70,7 +70,7 @@ class RemoteClient(LocalClient):
         """The reply to what was begun (`asks`: a command that has one), at the time `end` at the latest."""
         try:
             while not link.Wait(SLICE):
-                hear_signals()
+                check_signals()
                 if end is not None and time.monotonic() > end:
                     raise DeadlineExceeded(f"server {self.address!r}: no answer in time", "server")
         except BaseException:
@@ -114,7 +114,7 @@ class RemoteClient(LocalClient):
                 broken = to_reply(link.GetBroken())  # then nothing comes any more
                 if broken.HasField("error"):
                     raise make_error(broken.error)
-                hear_signals()
+                check_signals()
                 data = to_bytes(link.TakeEvent(min(SLICE, max(0.0, end - time.monotonic()))))
             event = decode(service_pb2.ViewerEvent, data, "event", Internal) if data else None
         return event

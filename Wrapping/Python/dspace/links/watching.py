@@ -4,7 +4,7 @@ import time
 from dspace import vtk as _vtk
 from dspace._core.fields import real, refuse, text
 from dspace._core.replies import make_error, to_reply
-from dspace._core.signals import SLICE, hear_signals
+from dspace._core.signals import SLICE, check_signals
 from dspace._core.wire import encode
 from dspace.clients.local import LocalClient
 from dspace.clients.session import Session
@@ -43,10 +43,10 @@ class WatchClient(LocalClient):
         """How many messages came; then calls who follows frames."""
         watcher = self.watcher()
         end = time.monotonic() + wait
-        hear_signals()
+        check_signals()
         count = watcher.Update(min(wait, SLICE))
         while count == 0 and time.monotonic() < end:
-            hear_signals()
+            check_signals()
             count = watcher.Update(min(SLICE, max(0.0, end - time.monotonic())))
         listeners = self.frame_listeners
         if listeners:
@@ -61,7 +61,7 @@ class WatchClient(LocalClient):
         try:
             while state == 0:
                 state = watcher.WaitToTell(SLICE)
-                hear_signals()
+                check_signals()
                 if state < 0:
                     reply = to_reply(watcher.TakeReply())
         except BaseException:

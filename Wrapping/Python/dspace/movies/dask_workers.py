@@ -38,7 +38,7 @@ def share(scheduler, words, run, missing, folder, tell):
         end = clock.monotonic() + _PATIENCE
         while not _workers(client):
             if clock.monotonic() > end:
-                raise _deserted(scheduler)
+                raise _without_workers(scheduler)
             clock.sleep(0.1)
         size = max(1, min(_AT_ONCE, -(-len(missing) // max(1, _workers(client)))))
         parts = [missing[k:k + size] for k in range(0, len(missing), size)]
@@ -81,7 +81,7 @@ def _workers(client):
         return 0
 
 
-def _deserted(scheduler):
+def _without_workers(scheduler):
     return Io(f"scheduler {scheduler!r}: it has had no worker for {_PATIENCE:g} s, or is gone; accepted: one with a "
               "worker (dask worker ADDRESS)", scheduler)
 
@@ -100,7 +100,7 @@ def _finished(client, scheduler, waiting):
             except Error:
                 raise
             except CancelledError:  # with the scheduler
-                raise _deserted(scheduler) from None
+                raise _without_workers(scheduler) from None
             except Exception as error:  # of Dask's own
                 raise Io(f"scheduler {scheduler!r}: {type(error).__name__}: {error}", scheduler) from None
             waiting.remove(future)
@@ -113,7 +113,7 @@ def _finished(client, scheduler, waiting):
         if _workers(client):
             seen = clock.monotonic()
         elif clock.monotonic() - seen > _PATIENCE:
-            raise _deserted(scheduler)
+            raise _without_workers(scheduler)
 
 
 def fingerprint(run):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from dspace import vtk as _vtk
 from dspace._core.fields import refuse, text
 from dspace._core.replies import make_error, to_bytes
-from dspace._core.signals import SLICE, hear_signals
+from dspace._core.signals import SLICE, check_signals
 from dspace.errors import Closed, Corrupt, WrongThread
 from dspace.proto import recordings_pb2 as pb
 
@@ -77,7 +77,7 @@ def carry_out(name, *arguments):
     getattr(task, name + "Later")(*arguments)
     try:
         while not task.Wait(SLICE):
-            hear_signals()
+            check_signals()
     except BaseException:
         task.Cancel()
         raise
