@@ -10,10 +10,10 @@
 Metres, seconds, degrees. Quaternions are unit, scalar first (w, x, y, z). A camera's axes are X
 right, Y down, Z forward; row 0 of an image is its top row.
 
-What is refused raises a dspace.Error that names the object, the value and what would be accepted, and
-changes nothing. Each is also what Python itself would raise: dspace.InvalidArgument a ValueError (for
-a wrong type, dspace.WrongType, a TypeError as well), dspace.NotFound a KeyError, dspace.Io an OSError;
-see dspace.errors. A session serves the thread that made it; another one gets dspace.WrongThread.
+Invalid input raises a dspace.Error that names the object, the value and what is accepted, and leaves the scene
+unchanged. Each error is also the built-in exception for its case: dspace.InvalidArgument is a ValueError
+(dspace.WrongType also a TypeError), dspace.NotFound a KeyError, dspace.Io an OSError; see dspace.errors. A session may
+be used only in the thread that made it; calls from another thread raise dspace.WrongThread.
 
 Every change through these classes is a command, which a session can record and send; changes made
 on the wrapped VTK objects (`frame.vtk`, `dspace.vtk`) are not.
@@ -47,7 +47,7 @@ __version__ = "0.1.0"
 
 
 def __getattr__(name):
-    # On demand, so that what is plain Python (dspace.rover) works without the compiled part.
+    # Modules are loaded on demand, so that plain Python (dspace.rover) works without the compiled part.
     if name in _HOMES:
         return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
     if name in ("errors", "proto", "rover", "vtk"):

@@ -1,15 +1,14 @@
-"""What is raised when a command is refused; nothing of it was done.
+"""The exceptions of Dspace. A command that raises one has changed nothing.
 
-`except dspace.Error` catches all of them, but not what Python itself refuses: a keyword or argument that a function's
-fixed parameters do not take (TypeError), an attribute that cannot be set (AttributeError). Each is also the built-in
-exception that Python would raise for such a thing: a value that is refused is a ValueError, one of a wrong type a
-TypeError as well, a name that there is not a KeyError, what the operating system refuses an OSError. dspace.rover,
-which works without the compiled part, raises these themselves.
+`except dspace.Error` catches all of them. It does not catch errors that Python itself raises: for an argument that a
+function does not have (TypeError), or an attribute that cannot be set (AttributeError). Each error is also the built-in
+exception for its case: an invalid value is a ValueError, a wrong type also a TypeError, an unknown name a KeyError, and
+a failure of the operating system an OSError. dspace.rover works without the compiled part and raises the built-in ones.
 """
 
 
 def _cut(text):
-    # Whoever passes a book for a name need not read it twice; what is accepted stands at the end.
+    # A very long name is not repeated as a whole; the end of the message says what is accepted.
     return text if len(text) <= 2000 else f"{text[:1200]} ... {text[-600:]}"
 
 
@@ -41,11 +40,11 @@ class AlreadyExists(Error, ValueError):
 
 
 class Unsupported(Error, NotImplementedError):
-    """A format, command or feature that is not known."""
+    """A format, command or feature that Dspace does not support."""
 
 
 class Unimplemented(Unsupported):
-    """A command that is typed, and that this version does not carry out yet."""
+    """A command of the protocol that this version does not implement."""
 
 
 class Corrupt(Error, ValueError):
@@ -53,15 +52,15 @@ class Corrupt(Error, ValueError):
 
 
 class Io(Error, OSError):
-    """The operating system refused a file."""
+    """The operating system could not read or write a file."""
 
 
 class Resource(Error, RuntimeError):
-    """Memory, size or graphics limits."""
+    """A limit of memory, size or graphics was exceeded."""
 
 
 class DeadlineExceeded(Error, TimeoutError):
-    """A wait ran out."""
+    """A timeout expired."""
 
 
 class Closed(Error, RuntimeError):
@@ -69,7 +68,7 @@ class Closed(Error, RuntimeError):
 
 
 class WrongThread(Error, RuntimeError):
-    """A session serves the thread that made it, as its graphics context does."""
+    """The session was made in another thread, which its graphics context belongs to."""
 
 
 class Internal(Error, RuntimeError):
@@ -77,7 +76,7 @@ class Internal(Error, RuntimeError):
 
 
 class DspaceWarning(UserWarning):
-    """What a command left out or took for granted."""
+    """A command succeeded, but left something out or had to assume something."""
 
 
 # By the number of Error.Kind in common.proto.

@@ -1,1 +1,1 @@
-"""What the rooms of the package share: checks of arguments, messages, files. Not public."""
+"""Helpers that all rooms use: checks of arguments, messages, files. Not public."""

@@ -1,10 +1,10 @@
-"""Methods of a class that a collaborator of it has."""
+"""Delegation of a class's methods to a collaborator."""
 import functools
 
 
 def delegate(collaborator, name):
-    """The method or property `name` of the class `collaborator`, as one of a class whose instance `collaborator(instance)`
-    takes; with its signature and docstring."""
+    """Returns a method or property for the body of a class. It makes `collaborator(self)` and calls its member `name`.
+    Signature and docstring are those of the member."""
     member = getattr(collaborator, name)
     if isinstance(member, property):
         return property(lambda self: member.fget(collaborator(self)), doc=member.__doc__)

@@ -1,4 +1,4 @@
-"""Values into messages, refused with the object, the value and what would be accepted."""
+"""Checks of arguments. A rejected value raises an error that names the object, the value and what is accepted."""
 import os
 
 import numpy as np
@@ -26,7 +26,7 @@ def named(about, message):
 
 
 def refuse(about, what, value, accepted, kind=InvalidArgument):
-    """Raises that `what` is `value`."""
+    """Raises an error: `what` is `value`, which is not `accepted`."""
     about = about() if callable(about) else about
     raise kind(named(about, f"{what} is {shown(value)}; accepted: {accepted}"), about or "")
 
@@ -48,7 +48,7 @@ class about:
 
 
 def text(value, what, about=None, accepted="a str"):
-    """A str that can be sent: of whole characters."""
+    """A str that UTF-8 can encode, that is, without lone surrogates."""
     try:
         if isinstance(value, str):
             value.encode()
@@ -59,7 +59,7 @@ def text(value, what, about=None, accepted="a str"):
 
 
 def flag(value, what, about=None):
-    """A bool; "no" and None are true or false by accident only."""
+    """A bool. Other values, such as "no" or None, are rejected although Python gives them a truth value."""
     if not isinstance(value, (bool, np.bool_)):
         refuse(about, what, value, "True or False", WrongType)
     return bool(value)
@@ -76,7 +76,7 @@ def number(value, what, about=None):
 
 
 def real(value, what, about=None, accepted="a number"):
-    """A float, finite or not, and no NaN."""
+    """A float, finite or infinite, but not NaN."""
     value = number(value, what, about)
     if value != value:
         refuse(about, what, value, accepted)
@@ -141,7 +141,7 @@ def integer(value, what, about=None, accepted="an integer"):
 
 
 def items(value, what, about, accepted):
-    """What it holds, as a list; letters of a str are no items."""
+    """The items of an iterable as a list. A str is rejected."""
     try:
         if hasattr(value, "__iter__") and not isinstance(value, (str, bytes)):
             return list(value)
@@ -151,15 +151,15 @@ def items(value, what, about, accepted):
 
 
 def word(value, words, what, about=None):
-    """What one of the words, keys of a dict, stands for."""
-    try:  # a value that cannot be a key is no word either
+    """The value that `words`, a dict, has for the word."""
+    try:  # an unhashable value is not a word
         return words[value]
     except (KeyError, TypeError):
         refuse(about, what, value, ", ".join(map(repr, words)))
 
 
 def keywords(values, accepted, about=None):
-    """Refuses keywords that there are not; their names are the public ones."""
+    """Rejects unknown keywords. `accepted` has the public names."""
     unknown = sorted(set(values) - set(accepted))
     if unknown:
         raise WrongType(named(about, f"unknown keyword {', '.join(map(repr, unknown))}; accepted: "
@@ -211,7 +211,7 @@ def put(message, about=None, **values):
 
 
 def put_given(message, about=None, **values):
-    """The same, leaving out what is None."""
+    """Sets the fields whose values are not None."""
     put(message, about, **{name: value for name, value in values.items() if value is not None})
 
 
@@ -226,7 +226,7 @@ def put_color(message, value, what="the colour", about=None):
 
 
 class Named(dict):
-    """Things of one kind by name: a dict that says what there is when asked for what there is not."""
+    """A dict of things of one kind by name. A missing name raises dspace.NotFound, which lists the existing names."""
 
     def __init__(self, kind, things):
         super().__init__(things)

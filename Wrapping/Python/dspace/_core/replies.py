@@ -1,4 +1,4 @@
-"""What comes back from a client: replies, warnings, exceptions."""
+"""Replies of commands, and the warnings and exceptions that they stand for."""
 import sys
 import warnings
 
@@ -13,7 +13,7 @@ def make_error(error):
 
 
 def warn(message):
-    # Points at the first caller outside this package, however deep it was called.
+    # The warning names the line of the first caller outside this package.
     level = 1
     frame = sys._getframe()
     while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "dspace":
@@ -23,7 +23,7 @@ def warn(message):
 
 
 def to_bytes(answer):
-    """VTK makes a str of bytes that happen to be UTF-8."""
+    """The bytes that a wrapped method returned. VTK returns a str if the bytes are valid UTF-8."""
     return answer.encode() if isinstance(answer, str) else answer
 
 

@@ -1,10 +1,10 @@
-"""Waits that hear Ctrl-C."""
+"""Waits that Ctrl-C can interrupt."""
 import time
 
-SLICE = 0.1  # [s] of a wait without hearing signals
+SLICE = 0.1  # [s], the longest wait without a check of signals
 
 
 def check_signals():
-    """Between two slices of a wait. CPython 3.11 does not notice a signal that another thread than the main one has
-    caught, such as gRPC's, until its lock has been let go, which this does."""
+    """Lets Python handle a pending signal; called between two slices of a wait. If another thread caught the signal,
+    for example one of gRPC, CPython 3.11 notices it only after the main thread released the interpreter's lock."""
     time.sleep(0)

@@ -1,10 +1,10 @@
-"""Objects whose attributes are those that their class has."""
+"""A base class whose objects accept only attributes that their class declares."""
 
 
 class Strict:
-    """Refuses to set an attribute that does not exist: a mistyped name must not pass unnoticed.
+    """Rejects setting an attribute that does not exist, so that a mistyped name raises an error.
 
-    Set are properties, names that begin with an underscore, and what `_own` lists.
+    Properties, names that begin with an underscore, and names in `_own` can be set.
     """
     _own = ()
 

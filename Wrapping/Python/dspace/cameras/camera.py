@@ -1,4 +1,4 @@
-"""Vantages and the cameras that they are seen through."""
+"""Cameras: their mounts, chases and projections."""
 from dspace._core.fields import about, number, numbers, put, put_given, put_vector, refuse, word
 from dspace._core.strict import Strict
 from dspace.frames.frame import put_pose

@@ -1,1 +1,1 @@
-"""A session in this process, and the client that passes its commands on."""
+"""A session in this process, and the client that executes its commands."""

@@ -1,4 +1,4 @@
-"""How the events of frames reach their callbacks, and what waits of viewers' events."""
+"""Delivery of frame events to callbacks, and the queue of viewers' events."""
 from collections import deque
 
 from dspace.errors import Resource
@@ -10,7 +10,7 @@ MAXIMUM_CAUSED = 100000
 
 
 class FrameListeners:
-    """The callbacks of one client, and the events that wait for them."""
+    """The callbacks of one client, and the events that are not delivered yet."""
 
     def __init__(self):
         self._entries = {}  # token: (scene, callback), in the order they came
@@ -26,7 +26,7 @@ class FrameListeners:
         return bool(self._entries)
 
     def add(self, scene, callback):
-        """A token, never 0 and never reused. Events that wait already are not for this callback."""
+        """Returns a token, never 0 and never reused. The callback gets no events that are already queued."""
         self._last_token += 1
         self._entries[self._last_token] = (scene, callback)
         return self._last_token
@@ -56,14 +56,14 @@ class FrameListeners:
             self._caused += len(messages)
 
     def deliver(self):
-        """Hands every event that waits to the callbacks of its scene, in order.
+        """Passes every queued event to the callbacks of its scene, in order.
 
-        A callback may give commands: their events follow when the present one has reached everybody.
-        One that raises stops neither the others nor the events that wait; the first exception is
-        raised at the end. One whose commands cause further ones without end hears nothing more until
-        then."""
+        A callback may execute commands; their events follow after all callbacks have got the present one.
+        If a callback raises, the others and the queued events are still processed, and the first exception
+        is raised at the end. A callback whose commands cause events without end gets no more events
+        in this delivery."""
         if self._delivering:
-            return  # the delivery that is under way comes to them
+            return  # the delivery in progress includes them
         self._delivering = True
         self._caused = 0
         first = None
@@ -99,11 +99,11 @@ class FrameListeners:
 
 
 class EventQueue:
-    """The ViewerEvents that a session itself was told, and the callbacks of whoever hears any."""
+    """The queued ViewerEvents that a session sent to itself, and the callbacks for viewers' events."""
 
     def __init__(self):
         self._told = deque()
-        self.callbacks = []  # (kind or None, callback), in the order they came
+        self.callbacks = []  # (kind or None, callback), in the order of registration
 
     def put(self, event):
         copy = type(event)()

@@ -1,4 +1,4 @@
-"""The client of a session in this process: it passes commands on, and gives what comes back."""
+"""The client that executes the commands of a session in this process."""
 import threading
 import weakref
 
@@ -11,7 +11,7 @@ from dspace.errors import Closed, WrongThread
 
 
 class LocalClient:
-    """Hands commands to an interpreter in this process."""
+    """Executes commands with an interpreter in this process."""
 
     def __init__(self):
         self._thread = threading.get_ident()
@@ -19,12 +19,12 @@ class LocalClient:
         self._background = weakref.finalize(self, self.vtk.EndBackgroundWork)
         self.frame_listeners = FrameListeners()
         self.events = EventQueue()
-        self.recording = None  # the last one that was begun
-        self.telemetry = {}  # by scene: {name: (id, kind)} of the channels that are known
+        self.recording = None  # the latest one
+        self.telemetry = {}  # by scene: {name: (id, kind)} of the known channels
 
     def _end_background_work_by(self, end):
-        """Called when the client is closed or gone, and at the latest as the program ends: GDAL, which
-        the session may read with in the background, is taken down then."""
+        """Calls `end` when the client is closed or collected, and at the latest when the program ends: GDAL is
+        shut down then, and the session may still read with it in the background."""
         self._background.detach()
         self._background = weakref.finalize(self, end)
 
@@ -36,14 +36,14 @@ class LocalClient:
         return self.vtk
 
     def _require_thread(self):
-        # Its graphics context is current in one thread; elsewhere drawing would crash or go nowhere.
+        # Its graphics context is current in one thread only; drawing in another one would fail or crash.
         if threading.get_ident() != self._thread:
             raise WrongThread(f"the session is used in thread {threading.current_thread().name!r}; "
                               "accepted: the thread that made it", "session")
 
     def execute(self, command):
-        """The Reply to a Command; raises what its error says, or, with the change made, what a
-        callback raised that heard of it."""
+        """Returns the Reply to a Command. Raises the error of the reply. If a callback raises, its exception is
+        raised, and the change stays made."""
         return self._finish(command, self._carry(command))
 
     def _carry(self, command):

@@ -1,4 +1,4 @@
-"""Sessions own scenes and viewports."""
+"""Sessions, which own scenes and viewports."""
 from dspace._core.delegates import delegate
 from dspace._core.fields import Named, flag, refuse, text
 from dspace._core.traits import DEFAULT_SCENE
@@ -17,8 +17,8 @@ class Session:
         with dspace.Session() as session:
             scene = session.scene()
 
-    It serves the thread that made it, as its graphics context does: from another one, everything raises
-    dspace.WrongThread. Several sessions may be used side by side, each in its thread.
+    A session belongs to the thread that made it, because of its graphics context; calls from another thread raise
+    dspace.WrongThread. Several sessions may be used at the same time, each in its own thread.
     """
 
     def __init__(self):
@@ -31,19 +31,19 @@ class Session:
         self.close()
 
     def close(self):
-        """Releases all scenes, viewports and the graphics context. Twice is no error."""
+        """Releases all scenes, viewports and the graphics context. A second call does nothing."""
         self._client.close()
 
     def execute(self, command):
-        """Carries out a message of dspace.proto.commands_pb2.Command; returns the Reply."""
+        """Executes a dspace.proto.commands_pb2.Command and returns its Reply."""
         if not isinstance(command, pb.Command):
             refuse("session", "the command", command, "a dspace.proto.commands_pb2.Command", WrongType)
         return self._client.execute(command)
 
     def scene(self, name=DEFAULT_SCENE, lights=True):
-        """The scene of that name, made now if there is none.
+        """Returns the scene of that name. It is made if it does not exist.
 
-        lights: whether a new one begins with the lights "sun" and "sky".
+        lights: whether a new scene has the lights "sun" and "sky".
         """
         text(name, "the scene's name", "session")
         if not name:
@@ -54,7 +54,7 @@ class Session:
             self._client.execute(command)
         except AlreadyExists as error:
             if not error.object.startswith("scene"):
-                raise  # that somebody else has taken a server over
+                raise  # another client has taken the server over
         return Scene(self._client, name)
 
     @property
@@ -74,20 +74,20 @@ class Session:
         return Named("viewport", {name: Viewport(self._client, name) for name in names})
 
     def render(self):
-        """Draws every visible viewport in which something changed; returns how many."""
+        """Draws every visible viewport whose picture changed. Returns their number."""
         command = pb.Command()
         command.render.SetInParent()
         return self._client.execute(command).render.drawn
 
     def record(self, path, commit_every=0.1, pack=False):
-        """Records from the present state on into a new file; returns the Recording, which ends with its
-        `with` statement, with stop(), or with the session.
+        """Records into a new file, beginning with the present state. Returns the Recording. It ends with its `with`
+        statement, with stop(), or with the session.
 
             with session.record("run.dspace"):
                 ...
 
-        commit_every: seconds, 0.001 to 60. A process that dies loses at most what it did in the last so many,
-        and what the disk was behind.
+        commit_every: seconds between commits, 0.001 to 60. A process that dies loses at most the commands since the
+        last commit, and data that the operating system had not written yet.
 
         pack: the files that its commands need (models with their textures, rasters with their side files, ...)
         become part of it, so that it replays anywhere. `dspace log pack` does the same later.
@@ -96,7 +96,7 @@ class Session:
 
     @property
     def recording(self):
-        """The Recording that is under way, or None."""
+        """The Recording in progress, or None."""
         recording = self._client.recording
         return recording if recording is not None and recording.active else None
 

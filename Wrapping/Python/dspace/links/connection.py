@@ -1,4 +1,4 @@
-"""What the links to a server share: their settings, and how they connect."""
+"""Settings and connecting, for all kinds of connections to a server."""
 import os
 
 from dspace._core.fields import flag, number, refuse, text
@@ -8,8 +8,8 @@ from dspace.errors import WrongType
 
 
 def prepare(link, address, certificate, key, authority, insecure, timeout, label):
-    """What connect() and watch() share: checks, and sets what all kinds of links take. Returns a function that sets
-    the same on another link, and returns that."""
+    """Checks the settings that all kinds of links have, and sets them. Returns a function that sets the same on another
+    link and returns that link."""
     if "\0" in text(address, "the address", label):
         refuse(label, "the address", address, "one without a character of code 0")
     files = []

@@ -1,4 +1,4 @@
-"""How a scene makes objects: from files, from numbers, from text."""
+"""Makes the objects of a scene: from files, shapes, points and text."""
 import numpy as np
 
 from dspace._core import wire
@@ -13,12 +13,12 @@ from dspace.objects.assemblies import is_assembly, load_assembly
 from dspace.objects.graphics import UP, GraphicsObject, Primitive, Text, TiltMarker, Trail, put_rotation, put_settings
 from dspace.objects.robots import Robot
 
-# What takes a file's axis to Z.
+# The rotation that turns a file's axis to Z.
 _TURNS = {"z": (1, 0, 0, 0), "y": tuple(quaternion_of_axis("x", 90)),
           "x": tuple(quaternion_of_axis("y", -90)), "-z": (0, 1, 0, 0)}
 
 
-# What a URDF takes of what objects take.
+# The settings of objects that a URDF accepts.
 _ROBOT = ("name", "fragment", "position", "quaternion", "pose")
 
 

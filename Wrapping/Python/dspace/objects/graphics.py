@@ -1,4 +1,4 @@
-"""Graphics objects: what hangs on frames and is drawn."""
+"""Graphics objects: drawn geometry on frames."""
 import numpy as np
 
 from dspace._core import wire
@@ -45,7 +45,7 @@ def put_offset(message, position=None, quaternion=None, stretch=None, about=None
 def put_settings(scene, message, about=None, frame=None, name=None, ornamental=False, fragment=None,
                  position=None, quaternion=None, stretch=None, visible=True, pickable=True,
                  line_width=None, point_size=None, **material):
-    """Writes what every object has into an ObjectSettings message; about: what is made."""
+    """Writes the settings that every object has into an ObjectSettings message. about: the kind of the new object."""
     if isinstance(name, str) and name:
         about = f"{about or 'object'} {name!r}"
     if set(material) - set(MATERIAL):
@@ -73,11 +73,11 @@ def _material_property(key, text):
     def set(self, value):
         self.set_material(**{key: value})
 
-    return property(get, set, doc=text + " None: as the object came with it.")
+    return property(get, set, doc=text + " None: the value of the object's own material.")
 
 
 class GraphicsObject(Strict):
-    """Geometry on a frame. Physical: what a real camera would see; else ornamental."""
+    """Geometry on a frame. Physical objects are those that a real camera would see; the others are ornamental."""
 
     def __init__(self, scene, id):
         self._scene = scene

@@ -1,4 +1,4 @@
-"""Recordings played back, with no simulation."""
+"""Playback of recordings, without a simulation."""
 import bisect
 import math
 import time
@@ -32,15 +32,15 @@ class Playback:
             run.seek(12.5)
             run.session.viewports["main"].save("at_12_5.png")
 
-    Its steps are the times that the simulation set, in whatever scene or in the one named (dspace.NotFound where there
-    never is one of that name), each with all that came until the next one. The session shows what the recorded one
-    did, to the byte. What is added to it is gone with the next seek back.
+    A step is a time that the simulation set, with all commands until the next one. The times are those of all scenes,
+    or of the scene `scene` (dspace.NotFound if the recording has none of that name). The session draws the same
+    pictures as the recorded one, byte for byte. Additions to the session are lost at the next seek back.
 
-    Files that were packed into it are unpacked into a folder of their own, removed by close(). check_assets: files
-    that were not must be what they were, else dspace.Corrupt or dspace.NotFound names the one that is not.
+    Packed files are unpacked into a temporary folder, which close() removes. check_assets: the other files must be
+    unchanged, else dspace.Corrupt or dspace.NotFound names the one that differs or is absent.
 
-    A salvaged recording lacks commands: `gaps` has the spans of which nothing can be shown, up to the next snapshot;
-    steps that may lack a command are among them. A dspace.DspaceWarning tells of them.
+    A salvaged recording lacks commands. `gaps` lists the spans that cannot be shown, each up to the next snapshot,
+    including steps that may lack a command. A dspace.DspaceWarning lists them.
     """
 
     def __init__(self, path, check_assets=True, scene=None):

@@ -1,4 +1,4 @@
-"""When a recording's scenes, cameras and viewports are there: what can be drawn at which of its steps."""
+"""The steps of a recording at which its scenes, cameras and viewports exist."""
 import bisect
 
 from dspace._core.traits import scene_name
@@ -12,7 +12,7 @@ KINDS = sorted(pb.Command.DESCRIPTOR.fields_by_name[name].number for name in (
 
 
 class _Present:
-    """What is there after the commands so far, each by its key; see spans_of()."""
+    """The keys of what exists after the commands so far; see spans_of()."""
 
     def __init__(self):
         self.now = {}  # keys only, in the order in which they came
@@ -39,7 +39,7 @@ class _Present:
         self.now = {key: None for key in self.now if not gone(key)}
 
     def _free_name(self):
-        """As the interpreter chooses it."""
+        """The name that the interpreter would choose."""
         name, number = "viewport", 1
         while ("viewport", name) in self.now:
             number += 1

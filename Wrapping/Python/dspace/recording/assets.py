@@ -1,4 +1,4 @@
-"""The files that a recording's commands need, where it is played."""
+"""The files that a recording's commands need, on the machine that plays it."""
 import os
 import weakref
 

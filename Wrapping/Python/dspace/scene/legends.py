@@ -1,4 +1,4 @@
-"""What is written over a viewport's picture: colour bars, labels of grids."""
+"""Colour bars over a viewport's picture."""
 from dspace._core.fields import flag, items, number, put, put_color, put_given, refuse, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.proto import commands_pb2 as pb
@@ -10,7 +10,7 @@ UNITS = {"height": "m", "slope": "deg", "aspect": "deg"}
 
 
 def put_value(row, value, viewport, table):
-    """A value of a text table's row: anything, or a channel of telemetry with or without digits."""
+    """Writes the value of a text table's row: anything with a str, or a telemetry channel with or without digits."""
     channel, digits = value if isinstance(value, tuple) and len(value) == 2 else (value, None)
     if not isinstance(channel, Channel):
         row.value = str(value)

@@ -1,4 +1,4 @@
-"""What may be handed to a scene: things of its own, or their names."""
+"""Checks that arguments of a scene's methods belong to the scene."""
 import numpy as np
 
 from dspace._core.fields import named, refuse, text
@@ -11,13 +11,13 @@ from dspace.objects.robots import Robot
 
 
 class SceneMembership:
-    """Checks that what is handed to a Scene, which delegates to it, is its own and not of another scene or session."""
+    """Checks for a Scene, which delegates to it, that an argument belongs to it and not to another scene or session."""
 
     def __init__(self, scene):
         self._scene = scene
 
     def require_own(self, thing, what, about=None):
-        """Refuses what belongs to another scene, or to one of this name in another session."""
+        """Rejects a thing of another scene, also of a scene of the same name in another session."""
         other = thing._scene
         if other != self._scene:
             where = "" if other._client is self._scene._client else " of another session"
@@ -47,7 +47,7 @@ class SceneMembership:
                WrongType)
 
     def name_of(self, thing, kind, what, about=None):
-        """The name of a thing of this scene, given itself or by its name; "" for None."""
+        """The name of a thing of this scene. `thing` is the thing, its name, or None, which gives ""."""
         if thing is None:
             return ""
         if isinstance(thing, str):

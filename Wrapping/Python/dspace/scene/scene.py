@@ -1,4 +1,4 @@
-"""Scenes: frames and all that hangs on them."""
+"""Scenes: frames, and everything on them."""
 import numpy as np
 
 from dspace._core import wire
@@ -72,15 +72,15 @@ class Scene(Strict):
         return self._name_
 
     def remove(self):
-        """Refused while a viewport shows it."""
+        """Removes the scene. Raises an error while a viewport shows it."""
         self._do("remove_scene")
 
     @property
     def time(self):
-        """Simulation time [s]; what is smoothed depends on it. Set it before the poses of a step.
+        """Simulation time [s]. Smoothed cameras depend on it. Set it before the poses of a step.
 
-        It may be set back, as a playback does that jumps: chase cameras with smoothing_s are then in
-        place at once, as if they had just been set; trails keep their points (see Trail.clear)."""
+        It may be set back, as a playback does when it jumps. Chase cameras with smoothing_s then restart
+        without lag; trails keep their points (see Trail.clear)."""
         return self._ask("get_time").time.time_s
 
     @time.setter
@@ -144,20 +144,19 @@ class Scene(Strict):
         """Calls `callback` with a FrameEvent for every later change of the frames; returns a token
         for remove_listener.
 
-        The tree itself tells of its changes, whatever causes them: frames made, moved and removed,
-        robots loaded, joints set. Callbacks run in the thread that gave the command, when it has
-        succeeded, in the order in which they were added. They may give commands: those take effect
-        at once, and their events follow when the present one has reached everybody. When a callback
-        raises, the change stays made and the others are called; the first exception is then raised
-        to whoever gave the command. What C++ code changes on the scene itself comes with the next
-        command, and commands given to `session.vtk` keep their events in their own replies. A scene
-        that is removed and a session that is closed forget their listeners; without any, nothing is
-        noted.
+        Every change of the frame tree causes an event: frames made, moved and removed, robots loaded,
+        joints set. Callbacks run in the thread that executed the command, after the command succeeded,
+        in the order of registration. A callback may execute commands: they take effect at once, and
+        their events follow after all callbacks have got the present one. If a callback raises, the
+        change stays made, the other callbacks run, and the command's caller gets the first exception.
+        Changes that C++ code makes on the scene itself are reported with the next command. Commands
+        executed through `session.vtk` keep their events in their own replies. Removing the scene or
+        closing the session removes the callbacks. Without callbacks no events are collected.
 
-        A callback whose commands cause it to be called again without end is stopped after 100 rounds
-        (or 100,000 changes): it hears no more of them, and dspace.Resource is raised that names it. Of
-        what C++ code has changed on the scene itself up to a thousand events wait for the next command;
-        poses that change beyond these come as one event, with each frame once."""
+        A callback whose commands call it again without end is stopped after 100 rounds (or 100,000
+        changes): it gets no more events, and dspace.Resource names it. Up to a thousand events of
+        changes by C++ code wait for the next command; further changes of poses are merged into one
+        event, which lists each frame once."""
         if not callable(callback):
             refuse(f"scene {self._name_!r}", "the callback", callback, "a function of one FrameEvent",
                    WrongType)
@@ -165,7 +164,7 @@ class Scene(Strict):
         return self._client.frame_listeners.add(self, callback)
 
     def remove_listener(self, token):
-        """Ends what on_frame_change began. False when there is no such listener (any more)."""
+        """Removes a callback of on_frame_change. Returns False if there is none of that token."""
         if not isinstance(token, int):
             refuse(f"scene {self._name_!r}", "the token", token, "what on_frame_change returned",
                    WrongType)
@@ -244,7 +243,7 @@ class Scene(Strict):
     def add_light(self, name, kind="directional", **values):
         """A new light. kind: "directional", "point", "spot", "head" or "ambient"; values: see Light.set.
 
-        One that there is, "sun" and "sky" too, is changed by scene.lights[name].set(...)."""
+        To change an existing light, also "sun" and "sky", use scene.lights[name].set(...)."""
         command = self._command()
         put(command.set_light, "new light", name=name)
         put_light(self, command.set_light, {"kind": kind, **values})
@@ -315,7 +314,7 @@ class Scene(Strict):
 
     @property
     def cameras(self):
-        """Those of the main vantage, by name."""
+        """The cameras of the main vantage, by name."""
         return Vantage(self, MAIN).cameras
 
     def add_viewport(self, size=(1280, 720), camera=None, name=None, vantage=None, samples=None,
@@ -340,7 +339,7 @@ class Scene(Strict):
 
     @property
     def vtk(self):
-        """The vtkDspaceScene that mirrors it."""
+        """The vtkDspaceScene of this scene."""
         return self._client.local().GetScene(self._name_)
 
     def __eq__(self, other):

@@ -1,4 +1,4 @@
-"""What a simulation says: events that happened, and questions to the operator."""
+"""Events that a simulation logs, and questions that it asks the operator."""
 import math
 import time as _time
 
@@ -15,13 +15,13 @@ SEVERITIES = {"info": 0, "caution": 1, "warning": 2, "alarm": 3}
 WORDS = tuple(SEVERITIES)
 _text = text  # also the name of arguments
 
-# Kinds that programs know; any other word is as good. messages.proto says the same.
+# Kinds with a common meaning; other words are accepted. The list is that of messages.proto.
 WELL_KNOWN = ("staging", "separation", "deployment", "parachute", "ignition", "cutoff", "contact", "touchdown",
               "collision", "mode", "fault", "command", "message", "goal", "note")
 
 
 class Event(Strict):
-    """Something that happened, as the scene keeps it: scene.events(), playback.events().
+    """An event in a scene's log: see scene.events() and playback.events().
 
     number: counts a scene's events from 1. time: of the simulation [s]. kind: a word. text: for people.
     severity: "info", "caution", "warning" or "alarm". frame_path: of the frame where it happened, as it was
@@ -81,11 +81,11 @@ class Event(Strict):
 
 
 class Question(Strict):
-    """A question to the operator, which scene.ask() has put or scene.questions lists.
+    """A question to the operator, returned by scene.ask() or listed by scene.questions.
 
-    Who has put it: wait(), or session.process_events() until `answer` is not None; the first answer that is
-    among the choices counts, and closes the question. Who watches: reply(). Others' questions have no answer
-    here: scene.questions is of those that are open."""
+    The simulation that asked calls wait(), or session.process_events() until `answer` is not None. The first
+    answer among the choices counts and closes the question. A viewer calls reply(). `answer` is set only on the
+    object that scene.ask() returned; scene.questions lists open questions."""
 
     def __init__(self, scene, message):
         self._scene, self._message = scene, message
@@ -116,16 +116,16 @@ class Question(Strict):
 
     @property
     def answer(self):
-        """What was answered, or None."""
+        """The answer, or None."""
         return self._answer
 
     @property
     def who(self):
-        """The name of who answered, or None."""
+        """The name of the viewer that answered, or None."""
         return self._who
 
     def _listen(self):
-        # Only who has put it, so that two objects of one question do not close it twice.
+        # Only the object that scene.ask() returned listens, so that the question is closed once.
         self._hears = True
         self._scene._client.events.callbacks.append(("answer", self._hear))
 
@@ -148,12 +148,12 @@ class Question(Strict):
         setattr(command.close_question, "from", who)
         try:
             self._scene._execute(command)
-        except NotFound:  # somebody else has closed it
+        except NotFound:  # another client has closed it
             pass
 
     def wait(self, timeout):
-        """The answer; waits up to `timeout` seconds of wall time for it, and hands other events of viewers to
-        their callbacks meanwhile. dspace.DeadlineExceeded when none has come: it stays open."""
+        """Waits up to `timeout` seconds of wall time and returns the answer. Other events of viewers go to their
+        callbacks during the wait. Raises dspace.DeadlineExceeded if no answer arrived; the question stays open."""
         timeout = real(timeout, "the timeout", f"question {self.name!r}", "seconds")
         end = _time.monotonic() + timeout
         while self._open and self._answer is None:
@@ -161,16 +161,16 @@ class Question(Strict):
             if left <= 0:
                 raise DeadlineExceeded(f"question {self.name!r}: no answer in {timeout!r} s", f"question {self.name!r}")
             if not process_events(self._scene._client, min(left, 1.0)):
-                _time.sleep(min(left, 0.01))  # a session of one's own does not wait
+                _time.sleep(min(left, 0.01))  # a local session does not wait
         return self._answer
 
     def withdraw(self):
-        """Takes it back. One that is closed already is no error."""
+        """Closes the question without an answer. Does nothing if it is closed."""
         if self._open:
             self._close()
 
     def reply(self, answer):
-        """Of a Watcher, or in a session of one's own: answers it."""
+        """Answers the question, from a Watcher or in a local session."""
         label = f"question {self.name!r}"
         text(answer, "the answer", label)
         if self.choices and answer not in self.choices:
@@ -190,11 +190,11 @@ class SceneMessages:
         self._scene = scene
 
     def log_event(self, kind, text="", severity="info", frame=None, position=None, time=None, data=None):
-        """Something has happened; returns the Event.
+        """Logs an event and returns it.
 
         kind: a word for programs, such as "staging", "parachute", "ignition", "contact", "touchdown", "mode",
-        "fault", "message"; dspace.telemetry.messages.WELL_KNOWN lists them, and any other word is as good. text: for
-        people. severity: "info", "caution", "warning" or "alarm". frame: where it happened, and position [m]
+        "fault", "message"; dspace.telemetry.messages.WELL_KNOWN lists them, and other words are accepted.
+        text: for people. severity: "info", "caution", "warning" or "alarm". frame: where it happened, and position [m]
         in it. time: of the simulation [s]; default: the scene's. data: a dict of names to numbers, texts, or
         (number, unit) pairs. The scene keeps the newest 10,000."""
         label = f"event {shown(kind)}"
@@ -239,10 +239,9 @@ class SceneMessages:
         return [Event(event, self._scene) for event in self._scene._execute(command).events.event]
 
     def ask(self, name, text, choices=(), severity="info"):
-        """Asks whoever watches; returns the Question, whose answer comes later: see Question.wait.
+        """Asks the viewers and returns the Question. Question.wait waits for the answer.
 
-        name: unlike all open questions of the session. choices: the answers that are accepted; none: any
-        text."""
+        name: unique among the open questions of the session. choices: the accepted answers; none: any text."""
         label = f"question {shown(name)}"
         command = self._scene._command()
         message = command.ask_operator

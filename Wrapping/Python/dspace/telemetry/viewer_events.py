@@ -1,4 +1,4 @@
-"""What people do at viewers, on its way to the simulation: how it is said, and how it is heard."""
+"""Events of viewers: a viewer sends them, the simulation receives them."""
 import math
 import warnings
 
@@ -14,7 +14,7 @@ KINDS = {kind: kind for kind in ("picked", "selection", "answer", "edited", "dra
 
 
 def _value(name, about):
-    """What is said of a value that people enter; its name is not empty."""
+    """The label of an edited value in messages. Rejects an empty name."""
     if not text(name, "the name", about):
         refuse(about, "the name of a value", name, "one that is not empty")
     return f"value {name!r}"
@@ -35,7 +35,7 @@ def process_events(client, wait):
 
 
 class ViewerEvents:
-    """Says and hears what people do at viewers, for a Session or Watcher, which delegates to it.
+    """Sends and receives events of viewers, for a Session or Watcher, which delegates to it.
 
     A Watcher says it to whoever drives the server; a Session (or RemoteSession) to itself, so that a
     program with a window of its own works in the same way.
@@ -44,7 +44,7 @@ class ViewerEvents:
     def __init__(self, session):
         self._session = session
 
-    # --- Hearing -------------------------------------------------------------------------------
+    # --- Receiving -----------------------------------------------------------------------------
 
     def on_event(self, callback, kind=None):
         """Calls `callback` with a ViewerEvent (dspace.proto.service_pb2) for everything that viewers
@@ -85,12 +85,12 @@ class ViewerEvents:
         self.on_event(hear, "edited")
 
     def process_events(self, wait=0.0):
-        """Hands what viewers have said to the callbacks of on_event; waits up to `wait` seconds for the
-        first. Returns the events. A callback that raises leaves the rest for the next call. A wait on a
-        server raises the error of a link that is broken for good."""
+        """Passes viewers' events to the callbacks of on_event and returns the events. Waits up to `wait` seconds
+        for the first one. If a callback raises, the remaining events stay for the next call. If the
+        connection to the server cannot be restored, a wait raises its error."""
         return process_events(self._session._client, wait)
 
-    # --- Saying --------------------------------------------------------------------------------
+    # --- Sending -------------------------------------------------------------------------------
 
     def tell(self, event):
         """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:

@@ -1,4 +1,4 @@
-"""How a scene opens terrain."""
+"""Opens the terrain of a scene."""
 from dspace._core.fields import (Named, array_of, file_path, flag, items, keywords, numbers, put, put_color, put_given,
                                  put_vector, refuse, shown, word)
 from dspace.errors import InvalidArgument, WrongType

@@ -1,4 +1,4 @@
-"""What is laid over a clipmap's own colour."""
+"""The style of a clipmap: false colour, lines, details and noise over its own colour."""
 from dspace._core.fields import file_path, flag, items, keywords, numbers, put, put_color, put_given, refuse, word
 from dspace.errors import InvalidArgument, WrongType
 

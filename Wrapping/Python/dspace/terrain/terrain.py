@@ -1,4 +1,4 @@
-"""Terrain: what is drawn of a raster, and what it answers."""
+"""Terrain: a raster of heights, and queries of it."""
 import numpy as np
 
 from dspace._core import wire
@@ -56,7 +56,7 @@ class Terrain(Strict):
 
     @property
     def vertical_datum(self):
-        """What heights are above."""
+        """The vertical datum of the heights."""
         return self._info().vertical_datum
 
     @property
@@ -73,7 +73,7 @@ class Terrain(Strict):
 
     @property
     def triangles(self):
-        """Drawn now, of mode "triangles"; 0 of a clipmap, whose triangles differ from view to view
+        """The number of triangles of mode "triangles". 0 of a clipmap, whose triangles depend on the view
         (session.statistics counts them)."""
         return self._info().triangles
 
@@ -130,7 +130,7 @@ class Terrain(Strict):
 
     @property
     def undisturbed(self):
-        """The same terrain, whose height(), normal(), ... answer for the ground before all wheels."""
+        """The same terrain without wheel tracks: its height(), normal(), ... ignore ruts."""
         return type(self)(self._scene, self._name, undisturbed=True)
 
     # --- Layers, style and tracks --------------------------------------------------------------
@@ -273,7 +273,7 @@ class Terrain(Strict):
         return self._convert(points, True)
 
     def from_map(self, points):
-        """The other way."""
+        """Points (..., 3) in the terrain's frame of map x, y and height above the datum."""
         return self._convert(points, False)
 
     def focus(self, points, radius=20.0):

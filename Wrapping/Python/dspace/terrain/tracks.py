@@ -70,7 +70,7 @@ class TerrainTracks:
         self._scene._execute(command)
 
     def clear_tracks(self):
-        """The ground is what it was before all wheels."""
+        """Removes all tracks and their ruts."""
         self._scene._do("clear_tracks", terrain=self._name)
 
     def save_tracks(self, path):
