@@ -1,4 +1,4 @@
-"""Sessions in a server process: the same script as with dspace.Session(), one line changed."""
+"""Sessions in a server process, with the methods of dspace.Session."""
 import os
 import time
 
@@ -18,7 +18,7 @@ from dspace.proto import service_pb2
 
 
 class RemoteClient(LocalClient):
-    """Hands commands to a server."""
+    """Sends commands to a server."""
 
     def __init__(self, link, address, name, timeout, prepared):
         super().__init__()
@@ -84,7 +84,7 @@ class RemoteClient(LocalClient):
         return reply
 
     def settle(self, end):
-        """Waits, until that time if one is given, until it is known what has been done; raises what was refused."""
+        """Waits until the results of all commands are known, at most until the time `end`. Raises the first error."""
         if self.later:
             link = self._open()
             link.BeginFlush()
@@ -97,7 +97,7 @@ class RemoteClient(LocalClient):
             self._finish(command, last)
 
     def broken(self):
-        """Whether the link is, for good."""
+        """Whether the connection is broken and cannot be restored."""
         return to_reply(self._open().GetBroken()).HasField("error")
 
     def tell(self, event):
@@ -140,8 +140,8 @@ class RemoteClient(LocalClient):
 class RemoteSession(Session):
     """What connect() returns: a Session whose scenes are in a server process.
 
-    Closing it leaves the scenes there. Paths of files that are relative are those of this process's
-    working folder; the server must allow and have them.
+    Closing it leaves the scenes in the server. Relative paths of files are relative to this process's working
+    folder; the server must be able to read them and allow them.
     """
 
     def __init__(self, client):
@@ -160,7 +160,7 @@ class RemoteSession(Session):
         self._client.wait = flag(wait, "wait", "session")
 
     def flush(self):
-        """Waits until everything that was sent is done; raises what of it was refused first."""
+        """Waits until the server has executed everything that was sent. Raises the first error."""
         self._client.flush()
 
     def record(self, path, commit_every=0.1, pack=False):
@@ -180,9 +180,9 @@ class RemoteSession(Session):
 
     @property
     def pace(self):
-        """Simulation seconds a wall second: setting a scene's time then waits until it is due, counted
-        from the first time that is set after this, and anew from one that goes back. It never goes on
-        early; a simulation that was late catches up. None (the default): as fast as it goes."""
+        """Simulation seconds per second of wall time. Setting a scene's time then waits until that time is due,
+        counted from the first time set after this, and again from a time that goes back. A late simulation
+        catches up. None (the default): no waits."""
         return self._client.pace
 
     @pace.setter
@@ -196,7 +196,7 @@ class RemoteSession(Session):
 
     @property
     def poses_left_out(self):
-        """How many poses were not sent because the server had them already."""
+        """The number of poses that were not sent because the server already had them."""
         return self._client._open().GetPosesLeftOut()
 
     @property

@@ -1,4 +1,4 @@
-"""A server process of one's own."""
+"""Starting a server process."""
 import os
 import select
 import signal
@@ -20,14 +20,14 @@ def _above():
 
 
 class ServerProcess:
-    """A `dspace serve` process on a Unix socket in a folder of its own (below TMPDIR, or below /tmp where that one's
-    path is too long for a socket's), in a `with` statement.
+    """A `dspace serve` process on a Unix socket in a temporary folder, for a `with` statement. The folder is below
+    TMPDIR, or below /tmp if the path would be too long for a socket.
 
         with ServerProcess(["data"]) as server, dspace.connect(server.address) as session: ...
 
-    roots: folders whose files commands may name. record: a new file that the session is recorded into; pack: with
-    the files that its commands need. timeout: seconds, above 0, that it may take to start. Leaving the block ends
-    it, and so does the end of this process, however it comes.
+    roots: folders whose files commands may name. record: a new file for a recording of the session; pack: the
+    recording includes the files that its commands need. timeout: seconds, above 0, for the start. The server ends
+    with the block, and when this process ends for any reason.
     """
 
     def __init__(self, roots, record=None, pack=False, timeout=60.0):

@@ -1,4 +1,4 @@
-"""Watching a simulation that another process drives, through a server."""
+"""Viewers: they follow a simulation in another process through a server."""
 import time
 
 from dspace import vtk as _vtk
@@ -13,11 +13,11 @@ from dspace.links.connection import make_connection, prepare
 from dspace.scene.scene import Scene
 
 
-OWN = "viewer:"  # begins the names of what is a watcher's own
+OWN = "viewer:"  # the prefix of names of a watcher's own views
 
 
 class WatchClient(LocalClient):
-    """Hands requests to a session that follows a server's."""
+    """Executes requests on a copy of the server's session, which follows it."""
 
     def __init__(self, watcher):
         super().__init__()
@@ -106,24 +106,24 @@ class Watcher(Session):
 
     @property
     def sequence(self):
-        """The number of the last command that is in the state; a server counts from 0."""
+        """The number of the latest command in the state; a server counts from 0."""
         return self._client.watcher().GetSequence()
 
     @property
     def connected(self):
-        """Whether the server is there."""
+        """Whether the server is connected."""
         return bool(self._client.watcher().GetConnected())
 
     @property
     def simulation(self):
-        """The name of who drives, None when nobody does (any more)."""
+        """The name of the driver, or None if there is none."""
         watcher = self._client.watcher()
         return watcher.GetWriterName() if watcher.GetWriterConnected() else None
 
     @property
     def trouble(self):
-        """Why the server refuses to go on (a state that is too large to be sent, too many viewers), or what could
-        not be applied since the last snapshot; empty: nothing."""
+        """Why the server rejects this viewer (a state too large to send, too many viewers), or which commands could
+        not be applied since the last snapshot; empty: no trouble."""
         return self._client.watcher().GetTrouble()
 
     def record(self, path, commit_every=0.1, pack=False):

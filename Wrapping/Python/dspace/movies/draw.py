@@ -1,4 +1,4 @@
-"""Single pictures of a movie: the run is taken to its time, cameras to their places, views put together."""
+"""Draws single pictures of a movie: moves the run to its time and the cameras to their poses, combines the views."""
 import contextlib
 import importlib.util
 import os
@@ -24,12 +24,12 @@ INNER = re.compile("movie .* [0-9a-f]{8}", re.DOTALL)  # a movie's own viewports
 
 
 class Source:
-    """What a movie is drawn of: a session, and how its run is taken to a time.
+    """The source of a movie's pictures: a session, and how its run moves to a time.
 
-    session: a dspace.Session. advance(time): takes the run to a time [s]; called with the times of the
-    pictures, in their order. telemetry(): a dict of names to numbers or texts for overlays, now. close():
-    called at the end. beginning: the run's first time [s]. extent: the first and last times that there are
-    [s]; beyond them the run stands. playback: of what is played back."""
+    session: a dspace.Session. advance(time): moves the run to a time [s]; called with the times of the pictures,
+    in their order. telemetry(): returns the present values for overlays, a dict of names to numbers or texts.
+    close(): called at the end. beginning: the run's first time [s]. extent: the first and the last time of the run
+    [s]; the run stands still outside. playback: the Playback, if the run is a recording."""
 
     def __init__(self, session, advance=None, telemetry=None, close=None, beginning=0.0, extent=None, playback=None):
         self.session, self.beginning, self.playback = session, beginning, playback
@@ -41,9 +41,9 @@ class Source:
 
 
 def open_run(run):
-    """A Source of what was given as a run: a recording's path; "FILE.py:NAME", a function that returns one of
-    the following or a tuple of what Source takes; a Source; a Playback (has a session and seek(time)); what
-    has a session and advance(time); or a Session, which stands still."""
+    """Returns the Source of a run. A run is a recording's path; "FILE.py:NAME", a function that returns one of the
+    following or a tuple of Source's arguments; a Source; a Playback (it has a session and seek(time)); an object with
+    a session and advance(time); or a Session, which stands still."""
     if isinstance(run, Source):
         return run
     if isinstance(run, (str, os.PathLike)):

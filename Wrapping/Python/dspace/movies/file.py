@@ -1,4 +1,4 @@
-"""A movie's text file: TOML, which a person may edit; written in one order, without what is as usual."""
+"""A movie's text file: TOML, which a person may edit. It is written in a fixed order, without default values."""
 import json
 import tomllib
 from dataclasses import fields

@@ -1,4 +1,4 @@
-"""The folder that a movie's pictures are kept in, and which movie of which run it is of."""
+"""The folder of a movie's pictures, which identifies the movie and the run."""
 import fcntl
 import hashlib
 import json

@@ -1,8 +1,8 @@
-"""Making a movie: which pictures are still missing, who draws them, and the file of all.
+"""Makes a movie: finds the missing pictures, shares their drawing, and encodes the file.
 
-Every picture is a PNG in a work folder, under its final name only when it is whole, so that what was
-drawn before an end of any kind is not drawn again; the folder knows by a hash which movie of which run it
-is of. All ways of sharing the work give the same pictures.
+Every picture is a PNG in a work folder. It gets its final name when it is complete, so an interrupted movie
+continues without drawing a picture twice. A hash in the folder identifies the movie and the run. All ways of
+sharing the work give the same pictures.
 """
 import contextlib
 import json
@@ -26,11 +26,11 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
     """Draws a Movie of a run into `out`: .mp4 (H.264), .webm (VP9), or a folder of PNGs (a name without a dot, one
     with a slash at its end, or a folder that is there).
 
-    run: a recording's path, "FILE.py:NAME", or what dspace.movies.draw.open_run takes else (then jobs is 1).
+    run: a recording's path, "FILE.py:NAME", or another run that dspace.movies.draw.open_run accepts (then jobs is 1).
     jobs: processes that share the pictures; scheduler: a Dask scheduler's address (tcp://HOST:PORT, tls://...), whose
-    workers do, where `run` has the same path on their machines. work: the folder for pictures (default: `out`
-    with ".work", removed at the end unless `keep`; of a folder of PNGs `out` itself). An earlier make() of
-    the same movie that was ended is gone on with, but for `anew`. progress: called with (done, all, seconds so
+    workers draw them; `run` must have the same path on their machines. work: the folder for pictures (default: `out`
+    with ".work", removed at the end unless `keep`; of a folder of PNGs `out` itself). An interrupted make()
+    of the same movie is continued, unless `anew`. progress: called with (done, all, seconds so
     far, drawn in them); encoding: when all are drawn, with (pictures in the file, all, seconds so far). Returns the
     number of pictures drawn now."""
     total = movie.check()

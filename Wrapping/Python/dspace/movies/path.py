@@ -1,11 +1,10 @@
-"""The way of a camera through key frames, a function of movie time. Plain numpy.
+"""The path of a camera through key frames, as a function of movie time. Plain numpy.
 
-Places lie on a centripetal Catmull-Rom spline (Yuksel, Schaefer and Keyser 2011); how fast it is gone
-along is a matter of its own: the arc length is a monotone cubic of time (Fritsch and Butland 1984), so
-that the speed has no jump and even speed stays even, whatever the keys' distances. Turns are cubic curves
-of rotations (Kim, Kim and Shin 1995) whose angular rates at keys are those of both sides, weighted by
-time. Fields of view are a monotone cubic in the logarithm of tan(fov / 2). Keys are met exactly. Before
-the first key all is as at it, after the last as at that.
+Positions lie on a centripetal Catmull-Rom spline (Yuksel, Schaefer and Keyser 2011). The speed along it is
+separate: the arc length is a monotone cubic of time (Fritsch and Butland 1984), so the speed has no jumps, and an
+even speed stays even whatever the distances of the keys. Rotations are cubic curves (Kim, Kim and Shin 1995) whose
+angular rate at a key is the mean of both sides, weighted by time. Fields of view are a monotone cubic in the
+logarithm of tan(fov / 2). Keys are met exactly. The camera stands still before the first key and after the last.
 """
 import numpy as np
 

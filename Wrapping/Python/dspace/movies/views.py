@@ -1,4 +1,4 @@
-"""What a movie's picture is put together of: views, and the texts over them."""
+"""The parts of a movie's picture: views, and overlays of text."""
 import math
 import re
 from dataclasses import dataclass, field

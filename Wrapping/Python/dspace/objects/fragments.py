@@ -1,4 +1,4 @@
-"""Fragments, which are shown or hidden as one, and lights, which light all of them."""
+"""Fragments, whose objects are shown or hidden together, and lights, which light all fragments."""
 from dspace._core.fields import flag, keywords, put_color, put_given, put_vector, word
 from dspace._core.strict import Strict
 from dspace.errors import NotFound

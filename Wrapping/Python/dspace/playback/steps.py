@@ -1,4 +1,4 @@
-"""Which steps of a recording can be shown, what is lost between them, and which step is at a time. The rules are C++'s
+"""The steps of a recording that can be shown, the gaps between them, and the step at a time. C++ has the rules
 (PlaybackSteps.h, StepTimes.h)."""
 import array
 from typing import NamedTuple, Optional

@@ -1,4 +1,4 @@
-"""A session that is being recorded."""
+"""The control of a recording of a session."""
 import os
 
 from dspace._core.fields import flag, number
@@ -10,7 +10,7 @@ COUNTS = ("accepted", "written", "bytes", "snapshots")
 
 
 def new_file(path):
-    """The absolute path of a recording that may be made there."""
+    """The absolute path of a new recording. Raises an error if the file exists or its folder does not."""
     path = path_of(path)
     if os.path.lexists(path):
         raise AlreadyExists(f"recording {path!r}: there is such a file; accepted: a new one", "recording")
@@ -27,7 +27,7 @@ def checked_time(commit_every, path):
 
 
 class Recording:
-    """What Session.record() returns. `counts` says how far it is."""
+    """A recording in progress, returned by Session.record(). `counts` has its size."""
 
     def __init__(self, client, path, commit_every, pack=False):
         self._client = client
@@ -59,23 +59,23 @@ class Recording:
 
     @property
     def counts(self):
-        """Commands accepted and written (safe from then on when this process dies), bytes of these, snapshots."""
+        """A dict: accepted commands, written commands (they survive the death of this process), their bytes, snapshots."""
         if self._last is not None:
             return dict(self._last)
         return {name: self._client.local().GetRecordingCount(name) for name in COUNTS}
 
     @property
     def failure(self):
-        """What ended it, or an empty string."""
+        """Why the recording failed; empty if it did not."""
         return self._client.vtk.GetRecordingFailure() if self._last is None and self._client.vtk else ""
 
     def flush(self):
-        """Waits until all that was accepted is written."""
+        """Waits until all accepted commands are written."""
         if self._last is None:
             self._raise(self._client.local().FlushRecording())
 
     def stop(self):
-        """Writes what is left and closes the file. Twice is no error."""
+        """Writes the remaining commands and closes the file. A second call does nothing."""
         if self._last is not None or self._client.vtk is None:
             return
         problem = self._client.local().StopRecording()
