@@ -9,7 +9,7 @@
 
 namespace dspace {
 
-// Thrown by every plain class when input is refused or a resource fails. The message names the
+// Thrown by every plain class when input is rejected or a resource fails. The message names the
 // object, the value and what would be accepted; whoever catches it finds everything as it was.
 class Error : public std::runtime_error {
 public:
@@ -20,7 +20,7 @@ public:
     AlreadyExists,    // a name or id that is taken
     Unsupported,      // a format or feature that is not read or built
     Corrupt,          // a file that is damaged or not of its type
-    Io,               // the operating system refused a file
+    Io,               // the operating system rejected a file
     Resource,         // memory, size or graphics limits
     DeadlineExceeded, // a wait ran out
     Internal          // a defect of Dspace

@@ -26,7 +26,7 @@ constexpr std::size_t MaximumFrameName = 255;
 bool IsValidFrameName(const std::string& name);
 
 // Throws Error(InvalidArgument) naming `object` and the name.
-[[noreturn]] void RefuseFrameName(const std::string& object, const std::string& name);
+[[noreturn]] void RejectFrameName(const std::string& object, const std::string& name);
 
 // Within MaximumCoordinate on each axis; false for NaN.
 bool IsValidPosition(const Eigen::Vector3d& p);
@@ -36,7 +36,7 @@ bool IsValidPosition(const Eigen::Vector3d& p);
 bool IsValidPose(const Pose& X);
 
 // Throws Error(InvalidArgument) naming `object` and the value that makes X invalid.
-[[noreturn]] void RefusePose(const std::string& object, const Pose& X);
+[[noreturn]] void RejectPose(const std::string& object, const Pose& X);
 
 // A valid pose with its quaternion normalised. One that is already unit to the rounding of a
 // normalisation is left as it is, so that doing it twice is doing it once.

@@ -141,8 +141,8 @@ private:
   SlotIndex FindSlot(FrameId id) const;
   std::string PathOfSlot(SlotIndex slot) const;
   std::string Label(FrameId id) const; // "frame 'rover/mast'", for messages
-  void RefuseRoot(FrameId id, const char* what) const;
-  void RefuseTakenName(FrameId parent, const std::string& name) const;
+  void RejectRoot(FrameId id, const char* what) const;
+  void RejectTakenName(FrameId parent, const std::string& name) const;
   void DetachFromParent(SlotIndex slot);
   std::vector<char> SubtreeFrom(SlotIndex slot) const;
   void Reorder(SlotIndex first, SlotIndex last, const std::vector<SlotIndex>& order);

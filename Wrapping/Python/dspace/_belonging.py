@@ -1,7 +1,7 @@
 """What may be handed to a scene: things of its own, or their names."""
 import numpy as np
 
-from dspace._fields import named, refuse, text
+from dspace._fields import named, reject, text
 from dspace.assemblies import Assembly
 from dspace.cameras import Vantage
 from dspace.errors import InvalidArgument, WrongType
@@ -39,8 +39,8 @@ class Belonging:
         if isinstance(frame, (int, np.integer)) and not isinstance(frame, bool):
             if 0 < frame < 2**63:
                 return int(frame)
-            refuse(f"scene {self._name_!r}", "the frame's id", frame, "an id, from 1 to 2^63 - 1")
-        refuse(f"scene {self._name_!r}", "the frame", frame, "a Frame, a Robot, an Assembly, a path or an id",
+            reject(f"scene {self._name_!r}", "the frame's id", frame, "an id, from 1 to 2^63 - 1")
+        reject(f"scene {self._name_!r}", "the frame", frame, "a Frame, a Robot, an Assembly, a path or an id",
                WrongType)
 
     def _name_of(self, thing, kind, what, about=None):
@@ -50,14 +50,14 @@ class Belonging:
         if isinstance(thing, str):
             return text(thing, f"the {what}", about or f"scene {self._name_!r}", "a name")
         if not isinstance(thing, kind):
-            refuse(about or f"scene {self._name_!r}", f"the {what}", thing,
+            reject(about or f"scene {self._name_!r}", f"the {what}", thing,
                    f"a dspace.{kind.__name__} of scene {self._name_!r} or its name", WrongType)
         self._require_own(thing, f"{what} {thing.name!r}", about)
         return thing.name
 
     def _fragment_name(self, fragment, default=""):
         if fragment is None and default is None:
-            refuse(f"scene {self._name_!r}", "the fragment", None, "a dspace.Fragment or its name",
+            reject(f"scene {self._name_!r}", "the fragment", None, "a dspace.Fragment or its name",
                    WrongType)
         return self._name_of(fragment, Fragment, "fragment")
 

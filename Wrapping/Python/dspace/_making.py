@@ -4,7 +4,7 @@ import numpy as np
 from dspace import _wire
 from dspace._client import warn
 from dspace._fields import (about, array_of, flag, integers, keywords, number, numbers, put,
-                            put_color, put_given, put_vector, refuse, shown, word)
+                            put_color, put_given, put_vector, reject, shown, word)
 from dspace.assemblies import is_assembly, load_assembly
 from dspace.cameras import put_projection
 from dspace.errors import InvalidArgument, WrongType
@@ -54,7 +54,7 @@ class ObjectMaking:
         label = f"file {first!r}"
         turn = word("z" if up is None else up, UP, "up", label)
         if not isinstance(levels, (list, tuple)):
-            refuse(label, "levels", levels, "a list of (path, pixels)", WrongType)
+            reject(label, "levels", levels, "a list of (path, pixels)", WrongType)
         kind = ("URDF" if first.lower().endswith(".urdf")
                 else "frames.json" if is_assembly(first) else None)
         if kind:

@@ -1,5 +1,5 @@
 """Vantages and the cameras that they are seen through."""
-from dspace._fields import Named, about, number, numbers, put, put_given, put_vector, refuse, word
+from dspace._fields import Named, about, number, numbers, put, put_given, put_vector, reject, word
 from dspace._strict import Strict
 from dspace.errors import NotFound
 from dspace.frames import put_pose
@@ -195,7 +195,7 @@ def put_projection(message, fov_deg=None, height=None, tangents=None, near=None,
     given = {name: value for name, value in
              (("fov_deg", fov_deg), ("height", height), ("tangents", tangents)) if value is not None}
     if len(given) > 1:
-        refuse(about, "the projection", given, "one of fov_deg, height and tangents")
+        reject(about, "the projection", given, "one of fov_deg, height and tangents")
     if height is not None:
         put(message.orthographic, about, height=height)
     elif tangents is not None:

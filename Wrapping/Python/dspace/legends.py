@@ -1,5 +1,5 @@
 """What is written over a viewport's picture: colour bars, labels of grids."""
-from dspace._fields import flag, items, keywords, number, put, put_color, put_given, refuse, word
+from dspace._fields import flag, items, keywords, number, put, put_color, put_given, reject, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.proto import commands_pb2 as pb
 from dspace.telemetry import Channel
@@ -30,7 +30,7 @@ def put_value(row, value, viewport, table):
         row.value = str(value)
         return
     if channel.scene != viewport.scene:
-        refuse(table, "the scene of " + repr(channel.name), channel.scene.name, "the viewport's")
+        reject(table, "the scene of " + repr(channel.name), channel.scene.name, "the viewport's")
     row.telemetry = channel.name
     put_given(row, table, digits=digits)
 
@@ -91,7 +91,7 @@ class LegendMaking:
                                       "layer of false colour", self._label())
             given = {"title": shown.name, "unit": shown.unit or ""}
         else:
-            refuse(self._label, "a legend", shown, "one of a Terrain or of a layer of false colour",
+            reject(self._label, "a legend", shown, "one of a Terrain or of a layer of false colour",
                    WrongType)
         (low, high), colors = ramp["range"], list(ramp["colors"])
         if low > high:  # a ramp may run downwards

@@ -5,7 +5,7 @@ import numpy as np
 
 from dspace import _wire
 from dspace._fields import (array_of, flag, keywords, numbers, put, put_color, put_given, put_vector,
-                            refuse, text)
+                            reject, text)
 from dspace._strict import Strict
 from dspace.errors import Error, InvalidArgument, WrongType
 
@@ -34,7 +34,7 @@ def file_path(value, what, about=None):
     except TypeError:
         path = None
     if not isinstance(path, str):
-        refuse(about, what, value, "a path", WrongType)
+        reject(about, what, value, "a path", WrongType)
     return text(path, what, about, "a path")
 
 

@@ -5,7 +5,7 @@ import time
 
 from dspace._client import to_reply, warn
 from dspace._wire import command_of
-from dspace._fields import flag, integer, number, real, refuse, text
+from dspace._fields import flag, integer, number, real, reject, text
 from dspace._traits import scene_name
 from dspace.errors import Corrupt, InvalidArgument, NotFound, WrongType
 from dspace.playback_steps import StepTimes, rounding, steps_of
@@ -151,7 +151,7 @@ class Playback(TelemetryReading):
         speed = real(speed, "the speed", self.file.label)
         until = None if until is None else real(until, "until", self.file.label, "a time [s]")
         if on_step is not None and not callable(on_step):
-            refuse(self.file.label, "on_step", on_step, "a function of the Playback", WrongType)
+            reject(self.file.label, "on_step", on_step, "a function of the Playback", WrongType)
         paced = speed != 0 and math.isfinite(speed)
         direction = -1 if speed < 0 else 1
         began, from_time = time.monotonic(), self.time

@@ -5,7 +5,7 @@ import time
 
 from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_bytes, to_reply, warn
-from dspace._fields import flag, number, refuse, text
+from dspace._fields import flag, number, reject, text
 from dspace._links import SLICE, hear_signals, make_connection, prepare
 from dspace._traits import UNAWAITED
 from dspace._wire import decode, encode
@@ -189,7 +189,7 @@ class RemoteSession(Session):
         if rate is not None:
             rate = number(rate, "the pace", "session")
             if not 0 < rate < float("inf"):
-                refuse("session", "the pace", rate, "None, or a finite number above 0")
+                reject("session", "the pace", rate, "None, or a finite number above 0")
         self._client._open().SetPace(0.0 if rate is None else rate)
         self._client.pace = rate
 

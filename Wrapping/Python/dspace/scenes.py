@@ -4,7 +4,7 @@ import numpy as np
 from dspace import _wire
 from dspace._belonging import Belonging
 from dspace._fields import (Named, about, array_of, flag, integers, keywords, put, put_given, put_vector,
-                            refuse, shown)
+                            reject, shown)
 from dspace._making import ObjectMaking
 from dspace._strict import Strict
 from dspace.cameras import CHASE, Camera, Vantage, put_chase, put_projection
@@ -151,7 +151,7 @@ class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
         what C++ code has changed on the scene itself up to a thousand events wait for the next command;
         poses that change beyond these come as one event, with each frame once."""
         if not callable(callback):
-            refuse(f"scene {self._name_!r}", "the callback", callback, "a function of one FrameEvent",
+            reject(f"scene {self._name_!r}", "the callback", callback, "a function of one FrameEvent",
                    WrongType)
         self._do("follow_frames")
         return self._client.frame_listeners.add(self, callback)
@@ -159,7 +159,7 @@ class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
     def remove_listener(self, token):
         """Ends what on_frame_change began. False when there is no such listener (any more)."""
         if not isinstance(token, int):
-            refuse(f"scene {self._name_!r}", "the token", token, "what on_frame_change returned",
+            reject(f"scene {self._name_!r}", "the token", token, "what on_frame_change returned",
                    WrongType)
         listeners = self._client.frame_listeners
         if not listeners.remove(self, token):
@@ -267,7 +267,7 @@ class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
             put_vector(look.up, up, "up", label)
         elif chase is not None:
             if not isinstance(chase, dict):
-                refuse(label, "chase", chase, f"a dict of {', '.join(CHASE)}", WrongType)
+                reject(label, "chase", chase, f"a dict of {', '.join(CHASE)}", WrongType)
             keywords(chase, CHASE, f"{label}, chase")
             put_chase(mount.chase, **chase, about=label)
         else:

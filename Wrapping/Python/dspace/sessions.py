@@ -1,6 +1,6 @@
 """Sessions own scenes and viewports."""
 from dspace._client import LocalClient
-from dspace._fields import Named, flag, refuse, text
+from dspace._fields import Named, flag, reject, text
 from dspace._traits import DEFAULT_SCENE
 from dspace.errors import AlreadyExists, WrongType
 from dspace.recordings import Recording
@@ -36,7 +36,7 @@ class Session(ViewerEvents):
     def execute(self, command):
         """Carries out a message of dspace.proto.commands_pb2.Command; returns the Reply."""
         if not isinstance(command, pb.Command):
-            refuse("session", "the command", command, "a dspace.proto.commands_pb2.Command", WrongType)
+            reject("session", "the command", command, "a dspace.proto.commands_pb2.Command", WrongType)
         return self._client.execute(command)
 
     def scene(self, name=DEFAULT_SCENE, lights=True):
@@ -46,7 +46,7 @@ class Session(ViewerEvents):
         """
         text(name, "the scene's name", "session")
         if not name:
-            refuse("session", "the scene's name", name, "any that is not empty")
+            reject("session", "the scene's name", name, "any that is not empty")
         command = pb.Command(scene=name)
         command.create_scene.no_lights = not flag(lights, "lights", f"scene {name!r}")
         try:

@@ -3,7 +3,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dspace._fields import flag, integers, items, put, put_color, put_given, refuse, word
+from dspace._fields import flag, integers, items, put, put_color, put_given, reject, word
 from dspace._strict import Strict
 from dspace._traits import SIDE
 from dspace.errors import Internal, WrongType
@@ -210,7 +210,7 @@ class Viewport(LegendMaking, Strict):
     @vantage.setter
     def vantage(self, vantage):
         if vantage is None:
-            refuse(self._label, "the vantage", None, "a dspace.Vantage or its name", WrongType)
+            reject(self._label, "the vantage", None, "a dspace.Vantage or its name", WrongType)
         self._do("set_viewport", vantage=self.scene._vantage_name(vantage, self._label))
 
     @property
@@ -287,7 +287,7 @@ class Viewport(LegendMaking, Strict):
         rows = rows.items() if hasattr(rows, "items") else rows
         for row in items(rows, "rows", table, "a dict or pairs of a label and a value"):
             if not isinstance(row, (tuple, list)) or len(row) != 2:
-                refuse(table, "a row", row, "a label and a value", WrongType)
+                reject(table, "a row", row, "a label and a value", WrongType)
             put_value(message.row.add(label=str(row[0])), row[1], self, table)
         put_given(message, table, font_size=font_size, margin=margin,
                   background_opacity=background_opacity)

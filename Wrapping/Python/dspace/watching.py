@@ -3,7 +3,7 @@ import time
 
 from dspace import vtk as _vtk
 from dspace._client import LocalClient, make_error, to_reply
-from dspace._fields import real, refuse, text
+from dspace._fields import real, reject, text
 from dspace._links import SLICE, hear_signals, make_connection, prepare
 from dspace._wire import encode
 from dspace.errors import Closed, WrongType
@@ -135,14 +135,14 @@ class Watcher(Session):
         active one until Viewport.event moves it. scene: default the server's only one."""
         label = f"view {text(name, 'the name', 'watcher')!r}"
         if not name:
-            refuse("watcher", "the view's name", name, "any that is not empty")
+            reject("watcher", "the view's name", name, "any that is not empty")
         if scene is None:
             scenes = self.scenes
             if len(scenes) != 1:
-                refuse(label, "the scene", None, "one of " + (", ".join(map(repr, scenes)) or "none yet"))
+                reject(label, "the scene", None, "one of " + (", ".join(map(repr, scenes)) or "none yet"))
             scene = next(iter(scenes.values()))
         elif not isinstance(scene, Scene) or scene._client is not self._client:
-            refuse(label, "the scene", scene, "a scene of this watcher", WrongType)
+            reject(label, "the scene", scene, "a scene of this watcher", WrongType)
         name = OWN + name
         if not camera:
             return scene.add_viewport(size, name=name, samples=samples)

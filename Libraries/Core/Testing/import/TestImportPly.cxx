@@ -243,7 +243,7 @@ TEST(ImportPly, BadInput) {
   bad("face 0: the file ends here", Square(SquareRows, "3 0 1\n"));
   bad("does not fit in the file", Square(SquareRows, "200 0 1 2\n"));
   bad("element vertex: 1000000000 rows",
-      Square(SquareRows, "3 0 1 2\n", 1000000000)); // refused before anything is allocated
+      Square(SquareRows, "3 0 1 2\n", 1000000000)); // rejected before anything is allocated
   std::string cut = BinaryPyramid(false);
   bad("face 4: ", cut.substr(0, cut.size() - 1));
   std::string rows = BinaryPyramid(true);

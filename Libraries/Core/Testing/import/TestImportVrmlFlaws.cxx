@@ -1,4 +1,4 @@
-// ReadModel on VRML: files that are refused, and what is left out with a warning.
+// ReadModel on VRML: files that are rejected, and what is left out with a warning.
 #include "VrmlTestSupport.h"
 
 namespace dspace::testing {
@@ -97,7 +97,7 @@ TEST(ImportVrml, FieldsOfNodesThatAreGivenTwice) {
   }
 }
 
-TEST(ImportVrml, CirclesAndBombsAreRefusedBeforeParsing) {
+TEST(ImportVrml, CirclesAndBombsAreRejectedBeforeParsing) {
   const TempFolder folder;
   const auto bad = [&folder](Error::Kind kind, const std::string& part, const std::string& text) {
     ExpectReadError(kind, part, folder.Write("bad.wrl", text));

@@ -28,7 +28,7 @@ public:
 
   FrameTree& Frames() { return this->Frames_; }
   const FrameTree& Frames() const { return this->Frames_; }
-  // Removes a frame with its subtree, the objects and the lights on it. Refused while a camera
+  // Removes a frame with its subtree, the objects and the lights on it. Rejected while a camera
   // stands on it or follows it. (Frames().Remove() is for frames on which nothing of the scene
   // hangs.)
   void RemoveFrame(FrameId frame);

@@ -29,7 +29,7 @@ public:
   CameraPose Place(const std::string& vantage, const std::string& camera) const;
   // Throws Error(InvalidArgument) where a camera stands on a frame of `subtree` or follows it,
   // whose top is `removed`.
-  void RefuseWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const;
+  void RejectWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const;
 
   bool SetTime(double time_s); // whether it changed
   double Time() const { return this->Time_; }

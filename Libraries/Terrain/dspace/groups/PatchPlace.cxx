@@ -25,7 +25,7 @@ std::string NameOf(const Crs& crs) {
                    std::to_string(std::llround(crs.GetAxes().semiMajor)) + " m)";
 }
 
-void RefuseOthers(const std::string& object, const Crs& base, const Crs& patch) {
+void RejectOthers(const std::string& object, const Crs& base, const Crs& patch) {
   const bool baseHas = base.Ogr() != nullptr;
   const bool patchHas = patch.Ogr() != nullptr;
   if (baseHas != patchHas) {
@@ -59,7 +59,7 @@ Eigen::Vector2d Applied(const CrsTransform* transform, const Eigen::Vector2d& p,
 PatchPlace::PatchPlace(const std::string& object, const ElevationInfo& base,
                        const ElevationInfo& patch)
     : Base_(base), Patch_(patch), MapToPixel_(patch.pixelToMap.inverse()) {
-  RefuseOthers(object, base.crs, patch.crs);
+  RejectOthers(object, base.crs, patch.crs);
   if (base.crs.Ogr() && base.crs.GetWkt() != patch.crs.GetWkt()) {
     this->Transform_ = std::make_shared<const CrsTransform>(base.crs, patch.crs);
   }

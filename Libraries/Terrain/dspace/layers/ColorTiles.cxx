@@ -242,22 +242,22 @@ struct ColorTiles::Implementation {
 
 ColorTiles::ColorTiles(std::shared_ptr<const LayerStack> stack, std::vector<ColorGrid> grids,
                        const ColorTilesOptions& options) {
-  const auto refuse = [](const std::string& message) {
+  const auto reject = [](const std::string& message) {
     throw Error(Error::Kind::InvalidArgument, "colour tiles", message);
   };
   if (!stack || grids.empty()) {
-    refuse("a stack and at least one grid are needed");
+    reject("a stack and at least one grid are needed");
   }
   if (options.byteBudget < (std::size_t(16) << 20)) {
-    refuse("a budget of " + std::to_string(options.byteBudget) +
-           " bytes is refused; accepted is 16 MiB (16777216) or more");
+    reject("a budget of " + std::to_string(options.byteBudget) +
+           " bytes is rejected; accepted is 16 MiB (16777216) or more");
   }
   if (options.threads < 1 || options.threads > 64) {
-    refuse(std::to_string(options.threads) + " threads are refused; accepted is 1 to 64");
+    reject(std::to_string(options.threads) + " threads are rejected; accepted is 1 to 64");
   }
   if (!(options.retryDelay > 0.0 && options.retryDelay <= Queue::LongestDelay) ||
       options.attempts < 1) {
-    refuse("a retry delay in (0, 30] s and at least 1 attempt are accepted");
+    reject("a retry delay in (0, 30] s and at least 1 attempt are accepted");
   }
   this->Impl_ = std::make_unique<Implementation>(std::move(stack), std::move(grids), options);
 }

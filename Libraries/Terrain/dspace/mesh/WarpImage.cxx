@@ -168,7 +168,7 @@ DatasetPointer ToDataset(Picture& p, const std::string& object) {
 }
 
 // How many of the picture's pixels lie along the side of a terrain's cell; the least of some
-// places, since pixels crowd at a pole. Refuses a picture of another body, naming both.
+// places, since pixels crowd at a pole. Rejects a picture of another body, naming both.
 double PixelsAPost(const RasterPlace& place, const Picture& picture) {
   std::unique_ptr<CrsTransform> toPicture;
   if (picture.crs.Ogr() && place.crs.Ogr())
@@ -240,7 +240,7 @@ DrapeImage WarpImage(const RasterPlace& place, const DrapeSource& source,
   const double fineness = PixelsAPost(place, picture);
   const double longer = std::max(place.columns, place.rows);
   const auto most =
-      DrapeSize(place.columns, place.rows, options.maximumSize); // refuses a size out of range
+      DrapeSize(place.columns, place.rows, options.maximumSize); // rejects a size out of range
   const double factor =
       std::clamp(options.maximumSize / longer, 0.0, std::max(1.0, std::ceil(fineness)));
   image.width = std::max(most[0], static_cast<int>(std::round(place.columns * factor)));

@@ -210,11 +210,11 @@ ElevationPyramid::ElevationPyramid(std::shared_ptr<const PostSource> source,
   if (options.byteBudget < (std::size_t(4) << 20)) {
     throw Error(Error::Kind::InvalidArgument, object,
                 "a budget of " + std::to_string(options.byteBudget) +
-                    " bytes is refused; accepted is 4 MiB (4194304) or more");
+                    " bytes is rejected; accepted is 4 MiB (4194304) or more");
   }
   if (options.threads < 1 || options.threads > 64) {
     throw Error(Error::Kind::InvalidArgument, object,
-                std::to_string(options.threads) + " threads are refused; accepted is 1 to 64");
+                std::to_string(options.threads) + " threads are rejected; accepted is 1 to 64");
   }
   if (!(options.retryDelay > 0.0 && options.retryDelay <= Queue::LongestDelay) ||
       options.attempts < 1) {

@@ -50,7 +50,7 @@ FilledPosts::FilledPosts(std::shared_ptr<const RasterPosts> posts, double reach)
   if (!(reach > 0.0)) {
     throw Error(Error::Kind::InvalidArgument, this->GetName(),
                 "holes filled within " + std::to_string(reach) +
-                    " pixels of data are refused; accepted is a positive number");
+                    " pixels of data are rejected; accepted is a positive number");
   }
 }
 

@@ -49,7 +49,7 @@ bool DeflateCheck::Holds(GDALRasterBand& band, int column, int row) {
     return false;
   }
   if ((stream[0] & 15) != 8 || (stream[0] * 256 + stream[1]) % 31 != 0) {
-    return true; // not zlib's, as where bits are stored in reverse: libtiff knows, or refuses it
+    return true; // not zlib's, as where bits are stored in reverse: libtiff knows, or rejects it
   }
   // Some programs store more rows than a last block has, none half as much again.
   std::vector<unsigned char> block(2 * this->Bytes_ + 64);

@@ -139,7 +139,7 @@ std::vector<double> ElevationSource::ReadReduced(const RasterWindow& w, int fact
     throw Error(Error::Kind::InvalidArgument, object, "the window to read does not lie within it");
   if (factor < 1)
     throw Error(Error::Kind::InvalidArgument, object,
-                "factor " + std::to_string(factor) + " is refused; accepted is 1 or more");
+                "factor " + std::to_string(factor) + " is rejected; accepted is 1 or more");
   const int width = 1 + (w.width - 1) / factor, height = 1 + (w.height - 1) / factor;
   const std::size_t count = static_cast<std::size_t>(width) * height;
   std::vector<double> heights;

@@ -46,7 +46,7 @@ void CheckLimits(const NetworkLimits& limits, const std::string& object) {
     if (!(seconds > 0.0 && seconds <= 3600.0))
       throw Error(Error::Kind::InvalidArgument, object,
                   "network limit '" + std::string(name) + "' of " + std::to_string(seconds) +
-                      " s is refused; accepted is more than 0, up to 3600");
+                      " s is rejected; accepted is more than 0, up to 3600");
   };
   check("connect", limits.connect);
   check("stall", limits.stall);
@@ -54,7 +54,7 @@ void CheckLimits(const NetworkLimits& limits, const std::string& object) {
   check("retryDelay", limits.retryDelay);
   if (limits.retries < 0 || limits.retries > 10)
     throw Error(Error::Kind::InvalidArgument, object,
-                std::to_string(limits.retries) + " network retries are refused; accepted is 0 "
+                std::to_string(limits.retries) + " network retries are rejected; accepted is 0 "
                                                  "to 10");
 }
 

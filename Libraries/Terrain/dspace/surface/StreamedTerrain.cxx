@@ -69,10 +69,10 @@ std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
   }
   if (options.subdivisions < 0 || options.subdivisions > (options.onBody ? 0 : 12)) {
     throw Error(Error::Kind::InvalidArgument, name,
-                std::to_string(options.subdivisions) + " subdivisions are refused; accepted is " +
+                std::to_string(options.subdivisions) + " subdivisions are rejected; accepted is " +
                     (options.onBody ? "0: on a body they follow from its size" : "0 to 12"));
   }
-  ClipmapGeometry geometry(options.cells); // refuses what is out of range
+  ClipmapGeometry geometry(options.cells); // rejects what is out of range
   auto source = std::make_shared<ElevationSource>(path, options.elevation);
   if (options.onBody && DegreeGridOf(source->Info()).repeats) {
     ElevationOptions once = options.elevation;

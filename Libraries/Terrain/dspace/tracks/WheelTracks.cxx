@@ -49,12 +49,12 @@ WheelTracks::WheelTracks(std::string name, const WheelTracksOptions& options)
   if (options.byteBudget < (std::size_t(64) << 10)) {
     throw Error(Error::Kind::InvalidArgument, this->Name_,
                 "a budget of " + std::to_string(options.byteBudget) +
-                    " bytes for wheel tracks is refused; accepted is 64 KiB (65536) or more");
+                    " bytes for wheel tracks is rejected; accepted is 64 KiB (65536) or more");
   }
   if (!(options.tolerance >= 0.0 && options.tolerance <= 0.1)) {
     throw Error(Error::Kind::InvalidArgument, this->Name_,
                 "a tolerance of " + std::to_string(options.tolerance) +
-                    " m for wheel tracks is refused; accepted is 0 to 0.1");
+                    " m for wheel tracks is rejected; accepted is 0 to 0.1");
   }
 }
 
@@ -401,24 +401,24 @@ std::vector<TrackStroke> WheelTracks::Strokes(std::size_t first) const {
 }
 
 std::vector<TrackReach> WheelTracks::Restore(const std::vector<TrackStroke>& strokes, bool goesOn) {
-  const auto refuse = [this](const TrackStroke& stroke, const std::string& what) {
+  const auto reject = [this](const TrackStroke& stroke, const std::string& what) {
     throw Error(Error::Kind::InvalidArgument, "track '" + stroke.name + "' on " + this->Name_,
                 what);
   };
   for (const TrackStroke& stroke : strokes) {
     CheckStroke(stroke, this->Name_);
     if (stroke.contacts.empty()) {
-      refuse(stroke, "it has no contact; accepted to be restored: one or more");
+      reject(stroke, "it has no contact; accepted to be restored: one or more");
     }
     if (stroke.skipped.size() > TrackDraft::MostSkipped) {
-      refuse(stroke, "it has " + std::to_string(stroke.skipped.size()) +
+      reject(stroke, "it has " + std::to_string(stroke.skipped.size()) +
                          " contacts on its last line; accepted: up to " +
                          std::to_string(TrackDraft::MostSkipped));
     }
     for (const auto* list : {&stroke.contacts, &stroke.skipped}) {
       for (const TrackContact& contact : *list) {
         if (std::isnan(contact.rolled)) {
-          refuse(stroke, "the distance rolled is nan; accepted to be restored: finite numbers");
+          reject(stroke, "the distance rolled is nan; accepted to be restored: finite numbers");
         }
       }
     }

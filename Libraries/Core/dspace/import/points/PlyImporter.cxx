@@ -304,7 +304,7 @@ private:
       model.nodes[0].local.translate(origin);
     }
     // A file with faces and edges shows both; one with neither is a cloud of points, which
-    // ReadModel refuses unless it is asked for.
+    // ReadModel rejects unless it is asked for.
     if (!this->Primitives_.triangles.empty()) {
       this->AddMesh(model, Mesh::Primitive::Triangles, this->Primitives_.triangles, origin);
     }

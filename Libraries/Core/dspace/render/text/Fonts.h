@@ -23,7 +23,7 @@ const char* FontFile(Font font);
 void RequireGlyphs(const std::string& object, const char* what, const std::string& text, Font font);
 
 // Throws Error(Resource): the font's file cannot be read.
-[[noreturn]] void RefuseFont(Font font);
+[[noreturn]] void RejectFont(Font font);
 
 // Text of this property is drawn in the font.
 void UseFont(vtkTextProperty* look, Font font);

@@ -22,7 +22,7 @@ std::string NameOf(const Crs& crs) {
          std::to_string(std::llround(crs.GetAxes().semiMajor)) + " m)";
 }
 
-void RefuseAnotherBody(const std::string& object, const Crs& raster, const RasterPlace& terrain) {
+void RejectAnotherBody(const std::string& object, const Crs& raster, const RasterPlace& terrain) {
   const double a = raster.GetAxes().semiMajor;
   const double b = terrain.crs.GetAxes().semiMajor;
   if (a > 0.0 && b > 0.0 && std::abs(a - b) > OneBody * b) {
@@ -190,7 +190,7 @@ PlacedRaster PlaceRasterAt(RasterLevels& levels, const RasterPlace& terrain, con
   position.width = levels.Width();
   position.height = levels.Height();
   position.crs = crs;
-  RefuseAnotherBody(levels.Object(), position.crs, terrain);
+  RejectAnotherBody(levels.Object(), position.crs, terrain);
   CloseAround(position, pixelToMap);
   position.mapToPixel = pixelToMap.inverse();
   std::unique_ptr<CrsTransform> toRaster;

@@ -107,7 +107,7 @@ public:
       }
     }
     if (!met) {
-      Refuse(this->Name_, "none of its features overlaps " + terrain.name);
+      Reject(this->Name_, "none of its features overlaps " + terrain.name);
     }
   }
 

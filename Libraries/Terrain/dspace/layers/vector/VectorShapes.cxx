@@ -224,7 +224,7 @@ private:
       }
       const bool inside = place.y() >= low - beyond && place.y() <= high + beyond;
       if (this->Degrees_ && (!inside || std::abs(place.x()) > 2.0 * this->Turn_)) {
-        Refuse(this->Object_, "a vertex is (" + NumberText(place.x()) + ", " +
+        Reject(this->Object_, "a vertex is (" + NumberText(place.x()) + ", " +
                                   NumberText(place.y()) +
                                   "), which is no longitude and latitude; accepted: a CRS "
                                   "stated for the layer in which it is a place");
@@ -312,7 +312,7 @@ VectorFile ReadVectorFile(const std::string& path, const RasterPlace& terrain,
   }
   if (std::all_of(result.groups.begin(), result.groups.end(),
                   [](const VectorGroup& group) { return group.shapes.empty(); })) {
-    Refuse(object, "it has no features with a geometry");
+    Reject(object, "it has no features with a geometry");
   }
   return result;
 }
