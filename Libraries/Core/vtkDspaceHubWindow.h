@@ -2,8 +2,8 @@
  * @class vtkDspaceHubWindow
  * @brief The one render window of a render context, into whose slots the viewports draw.
  *
- * VTK uploads an actor's mesh again for each window that shows it; so there is one window, and a
- * viewport is a set of framebuffer, renderers and size that is swapped in while it draws.
+ * VTK uploads an actor's mesh again for each window. Therefore there is one window; a viewport is a
+ * set of framebuffer, renderers and size that is swapped in while it draws.
  * Internal: use vtkDspaceViewport::Run().
  */
 #ifndef vtkDspaceHubWindow_h

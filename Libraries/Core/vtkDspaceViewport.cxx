@@ -97,7 +97,7 @@ struct vtkDspaceViewport::Internals {
 
   void DrawLabels(const dspace::DrawFilter& filter) {
     this->context->GetHub()->MakeCurrent();
-    if (!this->labels.Holds(*this->scene, filter)) {
+    if (!this->labels.IsCurrent(*this->scene, filter)) {
       dspace::DrawView view = this->View(1);
       view.complete = true;
       this->labels.Draw(this->context, *this->scene, view, filter);
@@ -107,7 +107,7 @@ struct vtkDspaceViewport::Internals {
   // The camera or the size is another.
   void ViewChanged() {
     this->stale = true;
-    this->labels.Forget();
+    this->labels.Invalidate();
   }
 };
 

@@ -180,7 +180,7 @@ void AtomicFile::Commit() {
   if (::fstat(this->File_, &own) != 0 || ::lstat(this->Temporary_.c_str(), &named) != 0) {
     this->Fail(errno);
   }
-  if (own.st_ino != named.st_ino || own.st_dev != named.st_dev) { // a library made it anew
+  if (own.st_ino != named.st_ino || own.st_dev != named.st_dev) { // a library replaced it
     this->CloseFile();
     this->File_ = ::open(this->Temporary_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
     if (this->File_ < 0 || ::fchmod(this->File_, this->Mode_) != 0) {

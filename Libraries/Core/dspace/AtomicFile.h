@@ -1,4 +1,4 @@
-// The one writer of files: a file is replaced as a whole or not at all.
+// Writes a file atomically: the target is replaced as a whole or not at all.
 #ifndef DSPACE_ATOMIC_FILE_H
 #define DSPACE_ATOMIC_FILE_H
 

@@ -329,9 +329,9 @@ void FrameTree::SetLocalPoses(const FrameId* ids, const double* poses, std::size
   this->BatchSlots_.resize(std::max(n, this->BatchSlots_.size()), 0);
   this->BatchRows_.resize(this->Size(), 0);
   const std::uint64_t start = this->BatchStart_;
-  this->BatchStart_ += n; // also when this call is rejected
+  this->BatchStart_ += n; // also if this call is rejected
   for (std::size_t i = 0; i < n; ++i) {
-    // A simulation sends the same frames again and again: most often it is the last call's slot.
+    // A simulation usually sends the same frames each time: try the slot of the last call first.
     SlotIndex& slot = this->BatchSlots_[i];
     if (slot >= this->Ids_.size() || this->Ids_[slot] != ids[i]) {
       slot = this->FindSlot(ids[i]);
@@ -390,7 +390,7 @@ Pose FrameTree::RelativePose(FrameId W, FrameId G) const {
     any = true;
   };
   std::vector<SlotIndex> down; // from G up to below the common ancestor
-  while (w != g) {             // whoever has the larger slot cannot be the other's ancestor
+  while (w != g) {             // the larger slot cannot be the other's ancestor
     if (w > g) {
       append(this->Local_[w].Inverse());
       w = this->Parents_[w];

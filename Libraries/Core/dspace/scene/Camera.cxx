@@ -49,9 +49,9 @@ Eigen::Matrix3d OffsetAxes(CameraMount::ChaseAxes axes, const Eigen::Matrix3d& R
 // Advances the lag to `time_s`, when the camera should be at `wanted`.
 void Advance(ChaseState& state, double time_s, double smoothing_s, FrameId frame, FrameId parent,
              const Eigen::Vector3d& wanted) {
-  const bool goesOn = state.started && state.frame == frame && state.parent == parent &&
-                      time_s >= state.time_s && smoothing_s > 0.0;
-  if (goesOn) {
+  const bool continues = state.started && state.frame == frame && state.parent == parent &&
+                         time_s >= state.time_s && smoothing_s > 0.0;
+  if (continues) {
     const double left = std::exp(-(time_s - state.time_s) / smoothing_s);
     state.p_PC = wanted + left * (state.p_PC - wanted);
   } else {

@@ -1,4 +1,4 @@
-// How the scene's classes reject values: one wording for all of them.
+// Checks of values, and the wording of their errors.
 #ifndef DSPACE_SCENE_CHECKS_H
 #define DSPACE_SCENE_CHECKS_H
 

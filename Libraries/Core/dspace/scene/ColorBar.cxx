@@ -10,8 +10,8 @@
 namespace dspace {
 namespace {
 
-constexpr std::size_t MostColors = 1024;
-constexpr std::size_t MostTicks = 100;
+constexpr std::size_t MaximumColors = 1024;
+constexpr std::size_t MaximumTicks = 100;
 constexpr double CharacterWidth = 0.61; // of the font size: the font is monospaced
 
 void RequirePixels(const std::string& object, const char* what, int value, int low, int high) {
@@ -54,19 +54,20 @@ void ColorBar::Check() const {
                        " are too close, too small or too large for ticks; accepted: up to 1e100, "
                        "at least 1e-100 and a billionth of the greater one apart");
   }
-  if (this->colors.empty() || this->colors.size() > MostColors) {
+  if (this->colors.empty() || this->colors.size() > MaximumColors) {
     Reject(object, "it has " + std::to_string(this->colors.size()) + " colours; accepted: 1 to " +
-                       std::to_string(MostColors));
+                       std::to_string(MaximumColors));
   }
   for (const auto& color : this->colors) {
     for (const double c : color) {
       RequireFraction(object, "a component of its colours", c);
     }
   }
-  if (this->ticks < 0 || std::size_t(this->ticks) > MostTicks || this->values.size() > MostTicks) {
+  if (this->ticks < 0 || std::size_t(this->ticks) > MaximumTicks ||
+      this->values.size() > MaximumTicks) {
     const long count = this->values.empty() ? this->ticks : long(this->values.size());
     Reject(object, "it has " + std::to_string(count) + " ticks; accepted: 0 to " +
-                       std::to_string(MostTicks));
+                       std::to_string(MaximumTicks));
   }
   for (const double value : this->values) {
     if (!(value >= this->low && value <= this->high)) {

@@ -166,7 +166,7 @@ void OrbitController::Move(const InputEvent& event, const OrbitView& view, Orbit
   if (this->Drag_ == Drag::None) {
     return;
   }
-  if (view.pose.frame != this->Frame_) { // another camera meanwhile: its points mean nothing here
+  if (view.pose.frame != this->Frame_) { // another camera since: its points do not apply here
     this->Drag_ = Drag::None;
     this->Button_ = Button::None;
     return;

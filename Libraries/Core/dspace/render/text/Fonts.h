@@ -8,7 +8,7 @@ class vtkTextProperty;
 
 namespace dspace {
 
-// Not VTK's built-in fonts, which end with Latin-1 and leave out other letters without a word.
+// Not VTK's built-in fonts, which silently omit letters beyond Latin-1.
 enum class Font {
   Sans, // DejaVu Sans: labels and letters in the scene
   Mono  // DejaVu Sans Mono, bold: tables; all characters are equally wide

@@ -116,7 +116,7 @@ void ClipmapTerrainObject::BuildOverviews(const std::string& folder,
     for (std::size_t i = 1; i < this->Clipmap_->Charts().size(); ++i) {
       poles.push_back(this->Clipmap_->Charts()[i].pyramid);
     }
-    this->Overviews_ = this->Surface_->TakeOverviews(poles);
+    this->Overviews_ = this->Surface_->LoadOverviews(poles);
   };
   this->Build_ =
       std::make_unique<OverviewBuild>(folder, this->Surface_->Info().path, options, built);

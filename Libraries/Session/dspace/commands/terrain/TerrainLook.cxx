@@ -5,6 +5,8 @@
 
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/mesh/DrapeImage.h>
+#include <dspace/mesh/ShadedRelief.h>
+#include <dspace/mesh/WarpImage.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/scene/Checks.h>
 
