@@ -187,12 +187,12 @@ TEST(TrackRestore, WhatIsNotAcceptedIsRejected) {
   TrackStroke fine;
   fine.name = "fine";
   fine.contacts = {{{0.0, 0.0}, 0.1, 0.0, 0.0}};
-  const auto rejected = [&](TrackStroke stroke, bool goesOn, const std::string& part) {
+  const auto rejected = [&](TrackStroke stroke, bool continues, const std::string& part) {
     const std::size_t before = tracks.StrokeCount();
     try {
-      tracks.Restore(goesOn ? std::vector<TrackStroke>{stroke, fine}
-                            : std::vector<TrackStroke>{fine, stroke},
-                     goesOn);
+      tracks.Restore(continues ? std::vector<TrackStroke>{stroke, fine}
+                               : std::vector<TrackStroke>{fine, stroke},
+                     continues);
       ADD_FAILURE() << part << " was accepted";
     } catch (const Error& error) {
       EXPECT_EQ(error.GetKind(), Error::Kind::InvalidArgument);

@@ -7,6 +7,8 @@
 
 #include <dspace/Error.h>
 #include <dspace/mesh/DrapeImage.h>
+#include <dspace/mesh/ShadedRelief.h>
+#include <dspace/mesh/WarpImage.h>
 
 #include "Grids.h"
 #include "RasterFile.h"

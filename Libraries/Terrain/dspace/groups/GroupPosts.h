@@ -97,9 +97,10 @@ public:
   std::array<double, 2> PatchHeights(const Eigen::AlignedBox2d& posts) const;
 
   // The same patches over other posts of the same body, of another map; `data` as above.
-  std::shared_ptr<const GroupPosts> On(std::shared_ptr<const PostSource> posts, const Crs& crs,
-                                       const Eigen::Affine2d& postToMap,
-                                       std::shared_ptr<const PostSource> data = nullptr) const;
+  std::shared_ptr<const GroupPosts>
+  WithBase(std::shared_ptr<const PostSource> posts, const Crs& crs,
+           const Eigen::Affine2d& postToMap,
+           std::shared_ptr<const PostSource> data = nullptr) const;
   const std::shared_ptr<const PostSource>& Base() const { return this->Base_; }
   const std::shared_ptr<const PostSource>& Data() const { return this->Data_; } // may be null
 

@@ -138,8 +138,8 @@ void PatchPlace::FindSizes() {
   this->Widening_ = 2.0 * this->BasePixel_ * least.cwiseMax(tiny).cwiseInverse();
 }
 
-void PatchPlace::Settle(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap,
-                        bool poles) {
+void PatchPlace::SetLattice(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap,
+                            bool poles) {
   this->Lattice_ = lattice;
   this->PostToBaseMap_ = postToBaseMap;
   this->Poles_ = poles;

@@ -32,7 +32,7 @@ public:
 
   // Chooses the lattice; before it nothing below may be called. With `poles` its first and last row
   // are one point each.
-  void Settle(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap, bool poles);
+  void SetLattice(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap, bool poles);
   // Whether any of it lies in the lattice.
   bool Inside() const { return this->Inside_; }
   Eigen::Vector2d PostOf(const Eigen::Vector2d& pixel) const; // level 0, towards the lattice

@@ -28,7 +28,7 @@ private:
 
 struct ColorGrid {
   static constexpr int TileTexels = 256;
-  static constexpr int MostZoom = 30;
+  static constexpr int MaximumZoom = 30;
 
   PostPlacement placement;
   Crs crs; // of map coordinates; None: the raster's own units
@@ -50,7 +50,7 @@ struct ColorGrid {
   Eigen::Affine2d TexelToMap(int zoom) const { return this->postToMap * this->TexelToPost(zoom); }
   // The greater side of a texel of zoom 0 [m] on the ground in the middle of the extent.
   double RootTexelSize() const;
-  // The least zoom whose texels are no larger than `pixel` [m]; at most MostZoom.
+  // The least zoom whose texels are no larger than `pixel` [m]; at most MaximumZoom.
   int ZoomFor(double pixel) const;
 };
 

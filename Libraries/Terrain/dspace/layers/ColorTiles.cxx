@@ -81,12 +81,12 @@ struct ColorTiles::Implementation {
     std::vector<ColorTile> tiles = asked;
     for (ColorTile& tile : tiles) {
       if (tile.chart < 0 || std::size_t(tile.chart) >= this->grids.size() || tile.zoom < 0 ||
-          tile.zoom > ColorGrid::MostZoom) {
+          tile.zoom > ColorGrid::MaximumZoom) {
         throw Error(Error::Kind::InvalidArgument, "colour tiles",
                     "chart " + std::to_string(tile.chart) + ", zoom " + std::to_string(tile.zoom) +
                         " asked for; accepted are charts 0 to " +
                         std::to_string(this->grids.size() - 1) + ", zooms 0 to " +
-                        std::to_string(ColorGrid::MostZoom));
+                        std::to_string(ColorGrid::MaximumZoom));
       }
       const ColorGrid& grid = this->grids[std::size_t(tile.chart)];
       if (grid.periodic) {
@@ -280,7 +280,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::TryGet(const std::vector<ColorT
     const std::lock_guard<std::mutex> lock(impl.mutex);
     impl.queue.BeginCall();
     if (impl.Serve(asked, impl.stack->Revision(), true, held)) {
-      impl.queue.ForgetCall();
+      impl.queue.CancelCall();
       return held;
     }
   }
@@ -300,7 +300,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::Get(const std::vector<ColorTile
   const std::uint64_t revision = impl.stack->Revision();
   impl.queue.BeginCall();
   if (impl.Serve(asked, revision, false, held)) {
-    impl.queue.ForgetCall();
+    impl.queue.CancelCall();
     return held;
   }
   Queue::Waiting waiting(impl.queue, asked);

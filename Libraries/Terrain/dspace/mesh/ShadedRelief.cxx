@@ -1,4 +1,4 @@
-#include <dspace/mesh/DrapeImage.h>
+#include <dspace/mesh/ShadedRelief.h>
 
 #include <algorithm>
 #include <cmath>

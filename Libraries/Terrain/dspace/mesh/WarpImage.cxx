@@ -1,4 +1,4 @@
-#include <dspace/mesh/DrapeImage.h>
+#include <dspace/mesh/WarpImage.h>
 
 #include <algorithm>
 #include <cmath>

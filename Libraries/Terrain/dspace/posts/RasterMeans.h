@@ -30,7 +30,7 @@ public:
   // Levels from here on are read from overviews, where the source has some.
   int FirstReducedLevel() const;
   // The source reads other overviews from now on.
-  void ForgetReduced();
+  void InvalidateReduced();
 
 private:
   std::vector<double> MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows, int factor,

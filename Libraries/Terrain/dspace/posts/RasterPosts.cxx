@@ -106,8 +106,8 @@ int RasterPosts::FirstReducedLevel() const {
   return this->Means_->FirstReducedLevel();
 }
 
-void RasterPosts::ForgetReduced() {
-  this->Means_->ForgetReduced();
+void RasterPosts::InvalidateReduced() {
+  this->Means_->InvalidateReduced();
 }
 
 void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {

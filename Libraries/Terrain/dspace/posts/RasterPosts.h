@@ -64,7 +64,7 @@ public:
   // Levels from here on are read from overviews, where the source has some.
   int FirstReducedLevel() const;
   // The source reads other overviews from now on.
-  void ForgetReduced();
+  void InvalidateReduced();
   // The level whose posts say all: those of finer levels lie on its triangles.
   int FullLevel() const { return this->Full_; }
   // Pixels along a row from a post of level `subdivisions` to the next; 1 unless columns are given.

@@ -239,7 +239,7 @@ bool ElevationPyramid::TryRead(const PostBlock& block, float* heights, float* tr
     this->Impl_->queue.BeginCall();
     complete = this->Impl_->Serve(pieces, block, {heights, tracks}, held);
     if (complete) {
-      this->Impl_->queue.ForgetCall();
+      this->Impl_->queue.CancelCall();
     }
   }
   if (!complete) {
@@ -269,7 +269,7 @@ void ElevationPyramid::Read(const PostBlock& block, float* heights, float* track
   std::unique_lock<std::mutex> lock(impl.mutex);
   impl.queue.BeginCall();
   if (impl.Serve(pieces, block, {heights, tracks}, held)) {
-    impl.queue.ForgetCall();
+    impl.queue.CancelCall();
     return;
   }
   std::vector<TileKey> keys;

@@ -50,13 +50,13 @@ public:
   double Deadline() const { return this->Deadline_; }
 
 private:
-  struct Singles;
-  bool TakeSingles(std::size_t count, std::int64_t tileColumn, std::int64_t tileRow) const;
+  struct SinglePostCounts;
+  bool PrefersSinglePosts(std::size_t count, std::int64_t tileColumn, std::int64_t tileRow) const;
   std::shared_ptr<ElevationPyramid> Pyramid_;
   int Level_;
   bool Poles_;
   double Deadline_;
-  std::unique_ptr<Singles> Singles_; // null: tiles are read
+  std::unique_ptr<SinglePostCounts> SinglePostCounts_; // null: tiles are read
 };
 
 template<typename Posts>

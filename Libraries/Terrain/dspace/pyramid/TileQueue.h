@@ -43,7 +43,7 @@ public:
 
   void BeginCall() { ++this->Call_; }
   // It asked for nothing: older requests are no older for it.
-  void ForgetCall() { --this->Call_; }
+  void CancelCall() { --this->Call_; }
 
   void Ask(const Key& key, std::int64_t rank) {
     Request& request = this->Requests_[key];

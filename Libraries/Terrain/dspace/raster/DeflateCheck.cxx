@@ -31,7 +31,7 @@ DeflateCheck::DeflateCheck(GDALDataset& dataset, GDALRasterBand& band) {
 
 DeflateCheck::~DeflateCheck() = default;
 
-bool DeflateCheck::Holds(GDALRasterBand& band, int column, int row) {
+bool DeflateCheck::IsIntact(GDALRasterBand& band, int column, int row) {
   const auto item = [&](const char* what) -> vsi_l_offset {
     const char* text =
         band.GetMetadataItem(CPLSPrintf("BLOCK_%s_%d_%d", what, column, row), "TIFF");
@@ -68,7 +68,7 @@ std::string DeflateCheck::Check(GDALRasterBand& band, const RasterWindow& w) {
       if (this->Checked_.count(key) != 0) {
         continue;
       }
-      if (!this->Holds(band, column, row)) {
+      if (!this->IsIntact(band, column, row)) {
         return "block " + std::to_string(column) + ", " + std::to_string(row) +
                " is damaged: what is compressed there does not match its checksum (Adler-32)";
       }

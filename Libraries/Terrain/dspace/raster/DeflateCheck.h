@@ -29,7 +29,7 @@ public:
   std::string Check(GDALRasterBand& band, const RasterWindow& window);
 
 private:
-  bool Holds(GDALRasterBand& band, int column, int row);
+  bool IsIntact(GDALRasterBand& band, int column, int row);
   struct Closed {
     void operator()(void* file) const;
   };

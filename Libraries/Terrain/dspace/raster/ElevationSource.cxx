@@ -31,10 +31,10 @@ struct ElevationSource::Implementation {
   GDALRasterBand* band = nullptr;
   int bandNumber = 1;
   NetworkLimits network;
-  FilesGuard::Look look; // of the guard under which it was opened
-  bool remote = false;   // itself, or what it is a mosaic of
-  bool suspect = false;  // a read failed
-  bool gaps = false;     // there may be some, see GivesZerosForGaps
+  FilesGuard::Check look; // of the guard under which it was opened
+  bool remote = false;    // itself, or what it is a mosaic of
+  bool suspect = false;   // a read failed
+  bool gaps = false;      // there may be some, see GivesZerosForGaps
   FileState file;
   std::unique_ptr<DeflateCheck> checksums; // of a file on a disk
   std::shared_ptr<const OverviewFile> overviews;
@@ -110,7 +110,7 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   if (!options.overviewCache.empty() && this->Info_.overviews == 0) {
     this->Impl_->cached = ElevationCache::FileFor(options.overviewCache, path, options.band);
     try {
-      this->Info_.overviews = this->TakeOverviews();
+      this->Info_.overviews = this->LoadOverviews();
       this->Info_.overviewsAreCached = this->Info_.overviews > 0;
     } catch (const Error& error) {
       this->Info_.warnings.push_back(std::string(error.what()) +
@@ -218,7 +218,7 @@ bool ElevationSource::ReadCached(const RasterWindow& w, int factor, double* valu
   return true;
 }
 
-int ElevationSource::TakeOverviews() {
+int ElevationSource::LoadOverviews() {
   if (this->Impl_->cached.empty()) {
     return 0;
   }
@@ -289,10 +289,10 @@ void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, 
   if (!impl.suspect)
     return;
   if (impl.remote)
-    ForgetAnswers(this->Info_.path);
+    ClearNetworkCache(this->Info_.path);
   const std::string message = errors.Message("GDAL gave no reason");
-  if (impl.remote && IsUnanswered(message))
-    throw Error(Error::Kind::Io, object, "cannot be read: " + InWords(message));
+  if (impl.remote && IsNetworkFailure(message))
+    throw Error(Error::Kind::Io, object, "cannot be read: " + ExplainHttpStatus(message));
   throw Error(Error::Kind::Corrupt, object, "cannot be read: " + message);
 }
 

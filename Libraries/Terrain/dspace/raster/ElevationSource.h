@@ -101,7 +101,7 @@ public:
   // Reads the overviews that ElevationOptions::overviewCache has by now, from the next ReadReduced
   // on; Info() stays as it was. Their number of levels; 0 where there are none that fit, or the
   // file has some of its own.
-  int TakeOverviews();
+  int LoadOverviews();
 
   // The band and the files that the raster consists of, with their sizes and times of change.
   std::string Identity() const;

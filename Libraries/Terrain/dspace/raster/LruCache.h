@@ -1,6 +1,6 @@
 // The things that were used latest, by their keys.
-#ifndef DSPACE_TERRAIN_LATESTKEPT_H
-#define DSPACE_TERRAIN_LATESTKEPT_H
+#ifndef DSPACE_TERRAIN_LRUCACHE_H
+#define DSPACE_TERRAIN_LRUCACHE_H
 
 #include <cstddef>
 #include <iterator>
@@ -11,9 +11,9 @@
 namespace dspace {
 
 // Not for several threads at once: whoever has it locks.
-template<typename Key, typename Value> class LatestKept {
+template<typename Key, typename Value> class LruCache {
 public:
-  explicit LatestKept(std::size_t most) : Most_(most) {}
+  explicit LruCache(std::size_t most) : Most_(most) {}
 
   // Null where it is not kept; used with this. Valid until the next call that is not const.
   const Value* Find(const Key& key) {
@@ -26,7 +26,7 @@ public:
   }
 
   // What is kept of that key stays.
-  void Keep(const Key& key, Value value) {
+  void Insert(const Key& key, Value value) {
     if (this->Find(key)) {
       return;
     }
@@ -38,7 +38,7 @@ public:
     }
   }
 
-  template<typename Predicate> void DropIf(const Predicate& drop) {
+  template<typename Predicate> void EraseIf(const Predicate& drop) {
     for (auto it = this->Entries_.begin(); it != this->Entries_.end();) {
       if (drop(it->first)) {
         this->Uses_.erase(it->second.use);

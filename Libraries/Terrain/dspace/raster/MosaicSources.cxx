@@ -71,7 +71,7 @@ private:
     const bool relative = std::atoi(CPLGetXMLValue(&node, "relativetoVRT", "0")) != 0;
     const bool whole = name.empty() || name[0] == '/' || !relative;
     const std::string source = whole ? name : this->Folder_ + "/" + name;
-    FilesGuard::Show(source);
+    FilesGuard::CheckFile(source);
     std::error_code error;
     if (name.find('<') != std::string::npos ||
         (!IsRemote(source) && !fs::is_regular_file(source, error))) {

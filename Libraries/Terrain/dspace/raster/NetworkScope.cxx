@@ -71,7 +71,7 @@ bool IsRemote(const std::string& path) {
   return false;
 }
 
-void ForgetAnswers(const std::string& path) {
+void ClearNetworkCache(const std::string& path) {
   const std::string gdal = GdalPath(path);
   const std::size_t at = gdal.find("/vsicurl/");
   if (at != std::string::npos)
@@ -80,7 +80,7 @@ void ForgetAnswers(const std::string& path) {
     VSICurlClearCache();
 }
 
-bool IsUnanswered(const std::string& message) {
+bool IsNetworkFailure(const std::string& message) {
   for (const char* words : {"response_code=", "response code", "CURL error", "IO error",
                             "Read error", "does not exist"})
     if (message.find(words) != std::string::npos)
@@ -88,7 +88,7 @@ bool IsUnanswered(const std::string& message) {
   return false;
 }
 
-std::string InWords(const std::string& message) {
+std::string ExplainHttpStatus(const std::string& message) {
   // Of a read that was tried in several ways the first message says most.
   const std::string first = message.substr(0, message.find("; "));
   if (first.find("response_code=0") != std::string::npos)

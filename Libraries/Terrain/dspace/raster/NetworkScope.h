@@ -34,13 +34,13 @@ std::string GdalPath(const std::string& path);
 bool IsRemote(const std::string& path);
 
 // GDAL keeps failures and parts of answers as if they were the file. What it kept is dropped.
-void ForgetAnswers(const std::string& path);
+void ClearNetworkCache(const std::string& path);
 
 // Whether GDAL's message is of bytes that did not come, rather than of such that are no raster's.
-bool IsUnanswered(const std::string& message);
+bool IsNetworkFailure(const std::string& message);
 
 // GDAL's message with what its response code means.
-std::string InWords(const std::string& message);
+std::string ExplainHttpStatus(const std::string& message);
 
 } // namespace dspace
 

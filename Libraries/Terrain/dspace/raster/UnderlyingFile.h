@@ -1,6 +1,6 @@
 // The file on a disk behind GDAL's name of one. Not for public headers.
-#ifndef DSPACE_RASTER_FILEBEHIND_H
-#define DSPACE_RASTER_FILEBEHIND_H
+#ifndef DSPACE_RASTER_UNDERLYINGFILE_H
+#define DSPACE_RASTER_UNDERLYINGFILE_H
 
 #include <string>
 
@@ -8,7 +8,7 @@ namespace dspace {
 
 // "/vsizip//a/b.zip/c.tif" lies in "/a/b.zip", "/vsisubfile/0_100,/a/b" in "/a/b". A name on a
 // server, and one behind which there is no file, is returned as it is.
-std::string FileBehind(const std::string& name);
+std::string UnderlyingFile(const std::string& name);
 
 } // namespace dspace
 

@@ -85,17 +85,17 @@ std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
       new StreamedTerrain(name, std::move(source), std::move(warnings)));
   terrain->Deadline_ = options.deadline;
   if (options.onBody) {
-    terrain->StandOnBody(options);
+    terrain->InitOnBody(options);
   } else {
-    terrain->StandOnPlane(options);
+    terrain->InitOnPlane(options);
   }
-  terrain->TakeHeightRange();
-  terrain->TakePatches();
+  terrain->FindHeightBounds();
+  terrain->AddPatchReports();
   terrain->MakeRays();
   return terrain;
 }
 
-void StreamedTerrain::StandOnPlane(const StreamedTerrainOptions& options) {
+void StreamedTerrain::InitOnPlane(const StreamedTerrainOptions& options) {
   const ElevationInfo& info = this->Info();
   this->Frame_.emplace(info.crs, options.origin.value_or(MiddleOf(info)), options.originHeight);
   this->Subdivisions_ = options.subdivisions;
@@ -103,7 +103,7 @@ void StreamedTerrain::StandOnPlane(const StreamedTerrainOptions& options) {
   this->Placement_ = PostPlacement::OnPlane(this->PlanePosts(), options.originHeight);
 }
 
-void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
+void StreamedTerrain::InitOnBody(const StreamedTerrainOptions& options) {
   const DegreeGrid grid = DegreeGridOf(this->Info());
   this->Subdivisions_ = SubdivisionsFor(grid);
   const RasterWindow& window = this->Info().window;
@@ -196,7 +196,7 @@ void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool pe
     small.byteBudget = std::max(options.pyramid.byteBudget / 16, std::size_t(4) << 20);
     const std::shared_ptr<const PostSource> holed =
         this->Group_ ? std::shared_ptr<const PostSource>(
-                           this->Group_->On(raster, info.crs, this->MapToPost_.inverse()))
+                           this->Group_->WithBase(raster, info.crs, this->MapToPost_.inverse()))
                      : std::shared_ptr<const PostSource>(raster);
     this->Holed_ = std::make_shared<const PostSurface>(
         std::make_shared<ElevationPyramid>(holed, small), level, poles, options.deadline);
@@ -236,7 +236,7 @@ Eigen::Affine2d StreamedTerrain::PlanePosts() const {
   return this->Frame_->PostToScene(postToMap);
 }
 
-void StreamedTerrain::TakeHeightRange() {
+void StreamedTerrain::FindHeightBounds() {
   const dspace::HeightRange range = FindHeightRange(
       this->GetName(), *this->Source_, this->Placement_, this->PixelToPost_, *this->Pyramid_);
   this->HeightRange_ = range.heights;
@@ -247,7 +247,7 @@ void StreamedTerrain::TakeHeightRange() {
 }
 
 // Their warnings and heights.
-void StreamedTerrain::TakePatches() {
+void StreamedTerrain::AddPatchReports() {
   if (!this->Group_) {
     return;
   }
@@ -590,9 +590,9 @@ void StreamedTerrain::AddTracks(const std::vector<TrackAddition>& additions) {
   this->Pyramid_->Invalidate(this->Tracks_->Add(additions));
 }
 
-void StreamedTerrain::RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn) {
+void StreamedTerrain::RestoreTracks(const std::vector<TrackStroke>& strokes, bool continues) {
   this->RequireTracks();
-  this->Pyramid_->Invalidate(this->Tracks_->Restore(strokes, goesOn));
+  this->Pyramid_->Invalidate(this->Tracks_->Restore(strokes, continues));
 }
 
 void StreamedTerrain::ClearTracks() {
@@ -612,8 +612,8 @@ std::array<double, 2> StreamedTerrain::DrawnHeights() const {
   if (!this->Tracks_) {
     return this->HeightRange_;
   }
-  return {this->HeightRange_[0] - TrackProfile::MostSinkage - TrackProfile::MostTread,
-          this->HeightRange_[1] + TrackProfile::MostRim};
+  return {this->HeightRange_[0] - TrackProfile::MaximumSinkage - TrackProfile::MaximumTread,
+          this->HeightRange_[1] + TrackProfile::MaximumRim};
 }
 
 const StreamedTerrain& StreamedTerrain::Undisturbed() const {
@@ -654,13 +654,13 @@ const StreamedTerrain& StreamedTerrain::Undisturbed() const {
   return *this->Undisturbed_;
 }
 
-int StreamedTerrain::TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others) {
+int StreamedTerrain::LoadOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others) {
   if (this->Filled_) { // fills follow from coarse levels, also where finer tiles were made already
     return 0;
   }
-  const int levels = this->Source_->TakeOverviews();
+  const int levels = this->Source_->LoadOverviews();
   if (levels > 0) {
-    this->Posts_->ForgetReduced();
+    this->Posts_->InvalidateReduced();
     std::vector<std::shared_ptr<ElevationPyramid>> pyramids = others;
     pyramids.push_back(this->Pyramid_);
     for (const std::shared_ptr<ElevationPyramid>& pyramid : pyramids) {

@@ -104,8 +104,8 @@ public:
   // Reads the overviews that its cache folder has by now, here and in `others` (its pole charts),
   // where coarse levels are read anew; finer ones and queries stay as they are. Their number of
   // levels; 0 where there are none, and where holes are filled: fills are made from what the raster
-  // had when it was opened. Throws what ElevationSource::TakeOverviews throws.
-  int TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {});
+  // had when it was opened. Throws what ElevationSource::LoadOverviews throws.
+  int LoadOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {});
   // The level whose posts say all of the raster; those of a group's patches stand closer.
   int FullLevel() const { return this->FullLevel_; }
 
@@ -114,7 +114,7 @@ public:
   void AddTracks(const std::vector<TrackAddition>& additions);
   void ClearTracks();
   // Throws what WheelTracks::Restore throws, and Error(Unsupported) on a body.
-  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn = false);
+  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool continues = false);
   // See TrackFile.h. What is loaded is added; a wheel of its name goes on with it.
   void SaveTracks(const std::string& path) const;
   // Throws Error(Resource) for a file of more contacts than `most`.
@@ -161,8 +161,8 @@ protected:
 private:
   StreamedTerrain(const std::string& name, std::shared_ptr<ElevationSource> source,
                   std::vector<std::string> warnings);
-  void StandOnPlane(const StreamedTerrainOptions& options);
-  void StandOnBody(const StreamedTerrainOptions& options);
+  void InitOnPlane(const StreamedTerrainOptions& options);
+  void InitOnBody(const StreamedTerrainOptions& options);
   void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
   void Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options);
   Eigen::Affine2d PlanePosts() const;        // level-0 posts to the scene
@@ -177,8 +177,8 @@ private:
                  Eigen::Ref<Eigen::VectorXd> heights) const;
   const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
   void ReadPixels(const PostBlock& block, float* heights) const;
-  void TakeHeightRange();
-  void TakePatches();
+  void FindHeightBounds();
+  void AddPatchReports();
   void MakeRays();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
   Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;

@@ -29,7 +29,7 @@ public:
 
   // Throw what WheelTracks throws.
   std::vector<PostRectangle> Add(const std::vector<TrackAddition>& additions);
-  std::vector<PostRectangle> Restore(const std::vector<TrackStroke>& strokes, bool goesOn);
+  std::vector<PostRectangle> Restore(const std::vector<TrackStroke>& strokes, bool continues);
   std::vector<PostRectangle> Clear();
   // In `crs`; see TrackFile.h.
   void Save(const std::string& path) const;

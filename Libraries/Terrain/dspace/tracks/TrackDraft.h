@@ -20,7 +20,7 @@ struct KeptContact {
 };
 
 struct TrackDraft {
-  static constexpr std::size_t MostSkipped = 64;
+  static constexpr std::size_t MaximumSkipped = 64;
 
   std::string name;
   TrackProfile profile;

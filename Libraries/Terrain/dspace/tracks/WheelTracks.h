@@ -62,9 +62,9 @@ public:
   std::vector<TrackReach> Clear();
   // Strokes as Strokes() gives them, of these or of other tracks: to the bit, and what is added
   // later is kept as it would be there, if the tolerance is the same. They come after those that
-  // there are; `goesOn`: the first goes on with the last of these, of the same name and profile.
+  // there are; `continues`: the first goes on with the last of these, of the same name and profile.
   // They need what they need there and no more. Throws as Add.
-  std::vector<TrackReach> Restore(const std::vector<TrackStroke>& strokes, bool goesOn = false);
+  std::vector<TrackReach> Restore(const std::vector<TrackStroke>& strokes, bool continues = false);
 
   bool Empty() const;
   TrackStatistics Statistics() const;
@@ -92,11 +92,11 @@ private:
   TrackDraft Begin(const TrackAddition& addition) const;
   TrackSegment SegmentOf(const Stroke& stroke, std::size_t index) const;
   std::size_t CostOf(const TrackDraft& draft, std::unordered_set<Cell>& taken) const;
-  void RequireRoom(std::size_t cost) const;
+  void RequireBudget(std::size_t cost) const;
   void Commit(TrackDraft& draft, std::vector<TrackReach>& changed);
   void Forget(std::uint64_t entry, const Eigen::AlignedBox2d& box);
-  void TakeSquares(Cell cell);
-  void GiveSquares(Cell cell);
+  void AllocateSquares(Cell cell);
+  void ReleaseSquares(Cell cell);
 
   std::string Name_;
   WheelTracksOptions Options_;

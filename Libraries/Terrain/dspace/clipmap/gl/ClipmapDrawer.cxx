@@ -43,10 +43,10 @@ public:
 };
 
 // The camera's place and the view volume, in the terrain's frame.
-ClipmapSight SightOf(const ClipmapCamera& camera, const DrawView& view) {
+ClipmapViewVolume SightOf(const ClipmapCamera& camera, const DrawView& view) {
   const Eigen::Matrix4d clip =
       view.projection.ClipFromView(view.width, view.height) * camera.X_VS.matrix();
-  ClipmapSight sight;
+  ClipmapViewVolume sight;
   sight.camera = camera.position;
   for (const int axis : {0, 1}) {
     for (const double sign : {1.0, -1.0}) {
@@ -340,7 +340,7 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     state->vtkglCullFace(camera.mirrored > 0.0f ? GL_BACK : GL_FRONT);
   }
   const ClipmapBlocks blocks(chart.levels, chart.placement, chart.heights);
-  const ClipmapSight sight = SightOf(camera, drawing.view);
+  const ClipmapViewVolume sight = SightOf(camera, drawing.view);
   std::vector<GLsizei> counts;
   std::vector<const void*> firsts;
   glBindVertexArray(this->VertexArray_);

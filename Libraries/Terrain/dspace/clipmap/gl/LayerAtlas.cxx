@@ -22,7 +22,7 @@ constexpr int TilesUnit = 16;
 constexpr int PagesUnit = 17;
 
 constexpr int Side = ColorTiles::Side;
-constexpr int Zooms = ColorGrid::MostZoom + 1;
+constexpr int Zooms = ColorGrid::MaximumZoom + 1;
 constexpr int UploadsAPicture = 24; // of an interactive one: 6 MB
 
 constexpr std::int32_t Nowhere = std::numeric_limits<std::int32_t>::min();

@@ -33,8 +33,8 @@ public:
 
   int Slots() const { return this->Slots_; }
 
-  // Uploads what is new of `wanted` (SeenTiles, at most Slots() of one chart). Without `wait` some
-  // of what is in memory, else all of it, waiting so many seconds for what is not; throws what
+  // Uploads what is new of `wanted` (VisibleTiles, at most Slots() of one chart). Without `wait`
+  // some of what is in memory, else all of it, waiting so many seconds for what is not; throws what
   // ColorTiles::Get throws. False where some of it is not there or not of the stack's revision.
   bool Show(ColorTiles& tiles, const std::vector<ColorTile>& wanted,
             const std::optional<double>& wait, RenderStatistics& statistics);

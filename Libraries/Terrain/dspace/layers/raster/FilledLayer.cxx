@@ -82,8 +82,8 @@ std::shared_ptr<const ColorLayer> OpenFilledLayer(const std::string& path, int b
   RasterLayerOptions raster;
   raster.network = options.network;
   raster.cacheFolder = options.cacheFolder;
-  auto levels = std::make_shared<RasterLevels>(object, path, std::max(1, band), raster,
-                                               RasterLevels::Shown::Holes);
+  auto levels =
+      std::make_shared<RasterLevels>(object, path, std::max(1, band), raster, RasterShown::Holes);
   const PlacedRaster placed = PlaceRasterAt(
       *levels, terrain, terrain.crs,
       terrain.pixelToMap * Eigen::Translation2d(-double(window.column), -double(window.row)));

@@ -36,7 +36,7 @@ void RejectAnotherBody(const std::string& object, const Crs& raster, const Raste
 Eigen::Affine2d PixelToMap(RasterLevels& levels, const RasterPlace& terrain,
                            const RasterLayerOptions& options, Crs& crs) {
   const std::string& object = levels.Object();
-  const RasterLevels::Georeference& own = levels.Place();
+  const RasterContent::Georeference& own = levels.Place();
   crs = options.crs ? Crs::FromText(*options.crs) : own.crs;
   Eigen::Affine2d map = own.pixelToMap;
   const Eigen::Vector2d size(levels.Width(), levels.Height());

@@ -99,8 +99,8 @@ private:
     }
     return number;
   }
-  VectorLook LookOf(const OGRFeature& feature) {
-    VectorLook look{this->Options_.line, this->Options_.fill, this->Options_.line, std::nullopt};
+  VectorStyle LookOf(const OGRFeature& feature) {
+    VectorStyle look{this->Options_.line, this->Options_.fill, this->Options_.line, std::nullopt};
     this->Color(feature, "stroke", look.line);
     this->Color(feature, "fill", look.fill);
     this->Color(feature, "marker-color", look.point);
