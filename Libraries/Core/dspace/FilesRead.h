@@ -59,7 +59,7 @@ public:
 
   // Whether this thread has a guard.
   static bool IsActive();
-  // The checks of all guards of this thread as one; empty where no guard lives.
+  // The checks of all guards of this thread as one function; empty without a guard.
   static Check Current();
   // Checks a file without noting it. Throws what the check throws.
   static void CheckFile(const std::string& path);

@@ -1,4 +1,4 @@
-// Local files asked of no server. Not for public headers.
+// Prevents network access while a local file is read. Not for public headers.
 #ifndef DSPACE_TERRAIN_OFFLINESCOPE_H
 #define DSPACE_TERRAIN_OFFLINESCOPE_H
 

@@ -18,7 +18,7 @@ namespace dspace {
 
 class Patch {
 public:
-  // Throws what OpenPatches throws. Adds what is in doubt to `warnings`.
+  // Throws what OpenPatches throws. Appends doubts to `warnings`.
   Patch(const ElevationInfo& base, const TerrainPatch& options, std::vector<std::string>& warnings);
 
   // One that was settled, on another base of the same body.
@@ -30,14 +30,14 @@ public:
   const PatchWeight& Weight() const { return *this->Weight_; }
   PatchReport& Report() { return this->Report_; }
 
-  // Chooses the lattice, and reads the patch for its weights where it lies within. False, with a
-  // warning, where the patch adds nothing.
+  // Sets the lattice and, if the patch lies within, reads it for its weights. Returns false, with a
+  // warning, if the patch adds nothing.
   bool Attach(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
               std::vector<std::string>& warnings);
   // What its heights lie between in a box of places of level 0; least above greatest where it does
   // not reach, infinite where nothing is known.
   std::array<double, 2> HeightsIn(const Eigen::AlignedBox2d& posts) const;
-  // Which posts of a block are made up so far; asked for by the first patch that reaches it.
+  // Returns which posts of a block are filled; called by the first patch that reaches the block.
   using FilledMask = std::function<std::vector<char>&()>;
   // Over the heights of a block of that lattice, alone where they are none or made up. `filledMask`
   // may be empty: nothing is.

@@ -1,4 +1,4 @@
-// Where a patch lies in the lattice of the terrain that it is part of.
+// The position of a patch in the lattice of its terrain.
 #ifndef DSPACE_TERRAIN_PATCHPLACE_H
 #define DSPACE_TERRAIN_PATCHPLACE_H
 
@@ -30,7 +30,7 @@ public:
   // over the patch; 0 where it has none in the base's CRS.
   double BasePixel() const { return this->BasePixel_; }
 
-  // Chooses the lattice; before it nothing below may be called. With `poles` its first and last row
+  // Sets the lattice. Call it before any function below. With `poles` its first and last row
   // are one point each.
   void SetLattice(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap, bool poles);
   // Whether any of it lies in the lattice.

@@ -1,4 +1,4 @@
-// The tiles that a terrain's colour layers are cut into: a quadtree over each chart.
+// The tiles of a terrain's colour layers: a quadtree over each chart.
 #ifndef DSPACE_LAYERS_COLORGRID_H
 #define DSPACE_LAYERS_COLORGRID_H
 
@@ -39,7 +39,7 @@ struct ColorGrid {
   int rootColumns = 1;   // side by side: 2 around a body, else 1; one row of them
   bool periodic = false; // along columns: the last tile's neighbour is the first
   Eigen::Affine2d postToMap = Eigen::Affine2d::Identity(); // posts to map (x, y) of `crs`
-  // Where there is ground, in posts: nothing is asked for outside.
+  // Where there is ground, in posts. No tile outside is requested.
   Eigen::AlignedBox2d extent;
 
   std::int64_t ColumnsAt(int zoom) const { return std::int64_t(this->rootColumns) << zoom; }

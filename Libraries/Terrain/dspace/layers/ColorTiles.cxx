@@ -186,7 +186,7 @@ struct ColorTiles::Implementation {
         Unlocked(lock, [&] { read->texels = ReadLayerTile(*layer.layer, grid, at); });
         ++this->statistics.reads;
         own = std::move(read);
-        if (this->IsInLatest(layer.layer)) { // it may have been taken away meanwhile
+        if (this->IsInLatest(layer.layer)) { // it may have been removed since
           this->Store(layer.layer, at, own);
         }
       }
@@ -330,7 +330,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::Get(const std::vector<ColorTile
 
 std::uint64_t ColorTiles::Arrivals() const {
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
-  this->Impl_->TakeStack(); // once the last layer is gone nobody else asks
+  this->Impl_->TakeStack(); // required after removal of the last layer
   return this->Impl_->arrivals + this->Impl_->stack->Revision();
 }
 

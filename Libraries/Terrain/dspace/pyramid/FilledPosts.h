@@ -1,4 +1,4 @@
-// A raster's posts, and where it has none ones that are made up from the ground around.
+// The posts of a raster with holes filled from the surrounding ground.
 #ifndef DSPACE_TERRAIN_FILLEDPOSTS_H
 #define DSPACE_TERRAIN_FILLEDPOSTS_H
 

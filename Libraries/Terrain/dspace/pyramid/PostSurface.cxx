@@ -14,7 +14,7 @@
 namespace dspace {
 namespace {
 
-constexpr std::size_t MaximumSinglePosts = 16; // of a tile: then it is read
+constexpr std::size_t MaximumSinglePosts = 16; // of a tile; for more, the tile is read
 
 // Posts with one of margin, so that the rims of holes can look around.
 struct Block {
@@ -38,7 +38,7 @@ CellRange CellsOf(const PostLattice& lattice, int level) {
 
 } // namespace
 
-// How many places were asked for one by one in tiles, the latest of them.
+// Number of single posts that were read from each of the most recent tiles.
 struct PostSurface::SinglePostCounts {
   std::mutex mutex;
   LruCache<std::pair<std::int64_t, std::int64_t>, std::shared_ptr<std::size_t>> tiles{4096};
@@ -51,7 +51,7 @@ PostSurface::PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, b
 
 PostSurface::~PostSurface() = default;
 
-// Whether so many more places of a tile are to be read one by one: not where many were before.
+// Whether `count` more places of a tile should be read as single posts: not after many others.
 bool PostSurface::PrefersSinglePosts(std::size_t count, std::int64_t tileColumn,
                                      std::int64_t tileRow) const {
   if (!this->SinglePostCounts_ || count > MaximumSinglePosts) {
@@ -151,7 +151,7 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
         facets.clear();
         from = to;
         continue;
-      } catch (const Error&) { // the pyramid makes its own attempts, and tells of them
+      } catch (const Error&) { // the pyramid tries again and reports errors
         facets.clear();
       }
     }

@@ -21,7 +21,7 @@ namespace dspace {
 
 namespace {
 
-const char* const Changed = "the file has changed since it was opened; open it anew";
+const char* const Changed = "the file has changed since it was opened; open it again";
 
 } // namespace
 
@@ -51,7 +51,7 @@ struct ElevationSource::Implementation {
         fresh->GetRasterBand(this->bandNumber)->GetRasterDataType() !=
             this->band->GetRasterDataType())
       throw Error(Error::Kind::Io, "raster '" + path + "'",
-                  "it is another raster than when it was opened; open it anew");
+                  "it is another raster than when it was opened; open it again");
     this->dataset = std::move(fresh);
     this->band = this->dataset->GetRasterBand(this->bandNumber);
     if (this->checksums)
@@ -114,7 +114,7 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
       this->Info_.overviewsAreCached = this->Info_.overviews > 0;
     } catch (const Error& error) {
       this->Info_.warnings.push_back(std::string(error.what()) +
-                                     "; far ground is read without it until it is built anew");
+                                     "; distant ground is read without it until it is rebuilt");
     }
   }
   this->Info_.warnings.insert(this->Info_.warnings.end(), errors.Warnings().begin(),
@@ -213,7 +213,7 @@ bool ElevationSource::ReadCached(const RasterWindow& w, int factor, double* valu
     overviews->Remove();
     throw Error(error.GetKind(), "raster '" + this->Info_.path + "'",
                 std::string(error.what()) +
-                    "; it is removed, and far ground read without it until it is built anew");
+                    "; it is removed, and distant ground is read without it until it is rebuilt");
   }
   return true;
 }

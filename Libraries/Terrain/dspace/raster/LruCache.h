@@ -1,4 +1,4 @@
-// The things that were used latest, by their keys.
+// A cache of values by key that evicts the least recently used one.
 #ifndef DSPACE_TERRAIN_LRUCACHE_H
 #define DSPACE_TERRAIN_LRUCACHE_H
 
@@ -10,12 +10,13 @@
 
 namespace dspace {
 
-// Not for several threads at once: whoever has it locks.
+// Not synchronised: the owner locks.
 template<typename Key, typename Value> class LruCache {
 public:
   explicit LruCache(std::size_t most) : Most_(most) {}
 
-  // Null where it is not kept; used with this. Valid until the next call that is not const.
+  // The value, which becomes the most recently used; null if absent. Valid until the next call of
+  // another function.
   const Value* Find(const Key& key) {
     const auto found = this->Entries_.find(key);
     if (found == this->Entries_.end()) {
@@ -25,7 +26,7 @@ public:
     return &found->second.value;
   }
 
-  // What is kept of that key stays.
+  // Inserts a value and may evict another. An existing value of the key stays.
   void Insert(const Key& key, Value value) {
     if (this->Find(key)) {
       return;
@@ -56,7 +57,7 @@ private:
   };
   std::size_t Most_;
   std::map<Key, Entry> Entries_;
-  std::list<Key> Uses_; // latest first
+  std::list<Key> Uses_; // most recent first
 };
 
 } // namespace dspace

@@ -1,4 +1,4 @@
-// Pixels of a raster about places that are asked for one by one.
+// A cache for reading single pixels of a raster.
 #ifndef DSPACE_TERRAIN_PIXELTILES_H
 #define DSPACE_TERRAIN_PIXELTILES_H
 

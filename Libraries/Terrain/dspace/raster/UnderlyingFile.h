@@ -1,4 +1,4 @@
-// The file on a disk behind GDAL's name of one. Not for public headers.
+// The file on disk that a GDAL name refers to. Not for public headers.
 #ifndef DSPACE_RASTER_UNDERLYINGFILE_H
 #define DSPACE_RASTER_UNDERLYINGFILE_H
 
@@ -7,7 +7,7 @@
 namespace dspace {
 
 // "/vsizip//a/b.zip/c.tif" lies in "/a/b.zip", "/vsisubfile/0_100,/a/b" in "/a/b". A name on a
-// server, and one behind which there is no file, is returned as it is.
+// server, and one without a file on disk, is returned unchanged.
 std::string UnderlyingFile(const std::string& name);
 
 } // namespace dspace

@@ -63,7 +63,7 @@ RayTile::Range RayCover::Over(int bits, std::int64_t c, std::int64_t r,
   if (plain.least > plain.greatest) {
     return plain; // holes stay holes
   }
-  // Level 0 of a divided raster is rounded anew.
+  // Level 0 of a subdivided raster is rounded again.
   plain.least = std::nextafter(plain.least, -HUGE_VALF);
   plain.greatest = std::nextafter(plain.greatest, HUGE_VALF);
   if (this->Tracks_ && this->Tracks_->Reaches(this->InScene(bits, c, r))) {

@@ -10,7 +10,7 @@
 
 namespace dspace {
 
-// What is kept of a contact: half of TrackContact's size.
+// A stored contact, half the size of TrackContact.
 struct KeptContact {
   double x;
   double y;

@@ -36,7 +36,7 @@ struct TrackContact {
   double rolled = Unknown;  // [m] by the wheel's rim; unknown: as far as it moved
 };
 
-// What is done to the ground at a place.
+// The effect on the ground at a place.
 struct TrackDepth {
   float depth = 0.0f;  // [m] of the ground's surface, negative on a rim
   float weight = 0.0f; // 1 where it is rolled over, down to 0 at the top of the walls

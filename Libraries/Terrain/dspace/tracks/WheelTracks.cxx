@@ -243,7 +243,7 @@ std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& addit
     CheckStroke(addition, this->Name_);
     if (!names.insert(addition.name).second && !addition.begin) {
       throw Error(Error::Kind::InvalidArgument, this->Name_,
-                  "track '" + addition.name + "' is given twice; accepted: once, or begun anew");
+                  "track '" + addition.name + "' is given twice; accepted: once, or with `begin`");
     }
   }
   const std::lock_guard<std::mutex> lock(this->Mutex_);

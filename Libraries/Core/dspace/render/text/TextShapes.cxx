@@ -71,7 +71,8 @@ Part MakeLabel(const std::string& text, const LabelStyle& style) {
   RequireText(object, text);
   RequireGlyphs(object, "it", text, Font::Sans);
   if (style.fontSize < 4 || style.fontSize > 200) {
-    Reject(object, "font size " + std::to_string(style.fontSize) + " is rejected; 4 to 200 pixels");
+    Reject(object, "font size " + std::to_string(style.fontSize) +
+                       " is rejected; accepted: 4 to 200 pixels");
   }
   vtkNew<vtkTextProperty> look;
   UseFont(look, Font::Sans);

@@ -33,7 +33,7 @@ void RegisterClipmapDrawer(CustomDrawers& drawers) {
 
 namespace {
 
-// Lines or filled while it lives, whatever is thrown.
+// Sets line or fill mode during its lifetime, also if an exception is thrown.
 class PolygonMode {
 public:
   explicit PolygonMode(GLenum mode) { glPolygonMode(GL_FRONT_AND_BACK, mode); }

@@ -53,7 +53,7 @@ private:
             RenderStatistics& statistics);
   void Upload(int slot, const ColorTiles::Tile& tile, RenderStatistics& statistics) const;
   void SetPage(const ColorTile& tile, int slot);
-  void ClearPage(const ColorTile& tile); // nor is it told to be the parent of another
+  void ClearPage(const ColorTile& tile); // also as the parent of other tiles
   int SlotOfParent(const ColorTile& tile) const;
   void ClearPages();
   // Column, row, slot (-1: transparent), slot of the tile that it is a part of (-2: not there).

@@ -97,7 +97,7 @@ std::shared_ptr<const ColorLayer> OpenFilledLayer(const std::string& path, int b
       const PlacedRaster place = PlaceRaster(*cover, terrain, own);
       covers.push_back(std::make_unique<BlockSampler>(std::move(cover), place.position));
     } catch (const Error&) {
-      // It adds nothing to the ground either, and whoever opened the terrain was told so.
+      // It adds nothing to the ground either; opening the terrain has reported a warning.
     }
   }
   return std::make_shared<HoleLayer>(std::move(levels), placed, options.color, std::move(covers));
