@@ -22,11 +22,8 @@
 namespace dspace {
 
 struct DegreeGrid;
-struct RayGround;
-class FilledPosts;
 class GroundTracks;
-class PostSurface;
-class RasterPosts;
+class TerrainPosts;
 class TerrainRays;
 
 struct StreamedTerrainOptions {
@@ -80,7 +77,7 @@ public:
   ~StreamedTerrain() override;
 
   const ElevationInfo& Info() const;
-  const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
+  const std::shared_ptr<ElevationPyramid>& Pyramid() const;
   const PostPlacement& Placement() const { return this->Placement_; }
   // Least and greatest height [m]: exact where the raster has at most 4 million pixels, else that
   // of up to 512 x 512 of them widened by half to either side, a guess that only culling uses.
@@ -89,16 +86,16 @@ public:
   // Map coordinates to level-0 posts; without meaning outside a plane's map or the body.
   Eigen::Vector2d MapToPost(const Eigen::Vector2d& map) const;
   // Level-0 posts from pixels of the raster's corners: the place of an image that lies on it.
-  const Eigen::Affine2d& PixelToPost() const { return this->PixelToPost_; }
+  const Eigen::Affine2d& PixelToPost() const;
   // On a plane only.
   const SceneFrame& Frame() const;
-  std::uint64_t GetVersion() const override { return this->Pyramid_->Arrivals(); }
+  std::uint64_t GetVersion() const override;
   // How often cells between pixels are halved: 2^n posts of level 0 a pixel.
-  int Subdivisions() const { return this->Subdivisions_; }
+  int Subdivisions() const;
   // Whether it goes from pole to pole of its body.
-  bool ReachesPoles() const { return this->Poles_; }
+  bool ReachesPoles() const;
   // The result for each patch; null without patches.
-  const GroupReport* Group() const { return this->Group_ ? &this->Group_->Report() : nullptr; }
+  const GroupReport* Group() const;
 
   // The error of resampling; absent if every pixel is a post.
   const std::optional<ResamplingReport>& Resampling() const { return this->Resampling_; }
@@ -108,7 +105,7 @@ public:
   // opening. Throws what ElevationSource::LoadOverviews throws.
   int LoadOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {});
   // The finest level with information of the raster; patches of a group have finer posts.
-  int FullLevel() const { return this->FullLevel_; }
+  int FullLevel() const;
 
   // Adds ruts of wheels, which change drawing and queries from now on. Places are in the scene's
   // frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
@@ -132,7 +129,7 @@ public:
   // it is between posts with data, NaN where there is none.
   void Filled(const Eigen::Ref<const Rows3>& points_S, Eigen::Ref<Eigen::VectorXd> filled) const;
   void FilledMap(const Eigen::Ref<const Rows2>& map, Eigen::Ref<Eigen::VectorXd> filled) const;
-  bool FillsHoles() const { return this->Filled_ != nullptr; }
+  bool FillsHoles() const;
 
   // Root mean square [m] of the heights of the raster's pixels within `radius` [m] of each point
   // about the plane that fits them best (least squares, of heights above the vertical datum): the
@@ -165,54 +162,28 @@ private:
                   std::vector<std::string> warnings);
   void InitOnPlane(const StreamedTerrainOptions& options);
   void InitOnBody(const StreamedTerrainOptions& options);
-  void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
   void Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options);
-  Eigen::Affine2d PlanePosts() const;        // level-0 posts to the scene
-  const GroundTracks& RequireTracks() const; // throws Error(Unsupported) on a body
-  bool Tracked() const;
-  // The surface that answers at a post.
-  const PostSurface& SurfaceAt(const Eigen::Vector2d& post) const;
-  void FilledAt(const std::vector<Eigen::Vector2d>& posts,
-                Eigen::Ref<Eigen::VectorXd> filled) const;
+  GroundTracks& RequireTracks() const; // throws Error(Unsupported) on a body
   std::vector<Eigen::Vector2d> PostsOf(const Eigen::Ref<const Rows3>& points_S) const;
-  void HeightsAt(const std::vector<Eigen::Vector2d>& posts,
-                 Eigen::Ref<Eigen::VectorXd> heights) const;
-  const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
-  void ReadPixels(const PostBlock& block, float* heights) const;
   void FindHeightBounds();
   void AddPatchReports();
-  void MakeRays();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
   Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;
   bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
 
   std::shared_ptr<ElevationSource> Source_;
-  std::shared_ptr<RasterPosts> Posts_;
-  std::shared_ptr<const FilledPosts> Filled_;
-  std::shared_ptr<const PostSurface> Holed_; // the surface as it is without what is filled
-  std::shared_ptr<const GroupPosts> Group_;
-  std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
-  std::shared_ptr<ElevationPyramid> Pyramid_;
-  std::unique_ptr<PostSurface> Surface_;
-  std::unique_ptr<GroundTracks> Tracks_; // on a plane; and what follows
-  std::unique_ptr<PostSurface> Tracked_; // of level 0: ruts are between the raster's posts
-  std::unique_ptr<RayGround> RayGround_;
+  std::shared_ptr<TerrainPosts> Posts_;
   std::unique_ptr<TerrainRays> Rays_;
-  mutable std::mutex Mutex_; // of what follows, which is created on demand
-  mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
   PostPlacement Placement_;
-  std::optional<SceneFrame> Frame_;
-  Eigen::Affine2d PixelToPost_ = Eigen::Affine2d::Identity();
-  Eigen::Affine2d MapToPost_ = Eigen::Affine2d::Identity();
-  bool Poles_ = false;
-  int Subdivisions_ = 0;
-  int FullLevel_ = 0;
+  std::optional<SceneFrame> Frame_; // on a plane
   std::optional<ResamplingReport> Resampling_;
   std::shared_ptr<ElevationPyramid> Pixels_; // the raster's own where it is resampled, and their
   PostPlacement PixelPlacement_;             // places
   double Deadline_ = 60.0;
   std::array<double, 2> HeightRange_ = {0.0, 0.0};
   bool HeightRangeIsExact_ = false;
+  mutable std::mutex Mutex_; // of Undisturbed_
+  mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
 };
 
 } // namespace dspace
