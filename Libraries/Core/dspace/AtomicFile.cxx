@@ -44,8 +44,7 @@ struct Target {
 Target TargetOf(const std::string& path, const std::string& object) {
   if (path.find('\0') != std::string::npos) {
     // In a message the rest of the path would be lost, and the reason with it.
-    throw Error(Error::Kind::InvalidArgument, Label(path.c_str()),
-                "its path holds a zero byte, after which it goes on");
+    throw Error(Error::Kind::InvalidArgument, Label(path.c_str()), "its path contains a zero byte");
   }
   Target target;
   target.path = path;

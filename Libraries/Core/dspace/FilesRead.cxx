@@ -80,7 +80,7 @@ void FilesGuard::CheckFile(const std::string& path) {
 void RequireUtf8Path(const std::string& path) {
   if (!IsUtf8(path)) {
     throw Error(Error::Kind::Unsupported, "file '" + path + "'",
-                "its name, or that of a folder above it, is not UTF-8; accepted: names of UTF-8, "
+                "its name, or that of a folder above it, is not UTF-8; accepted: names in UTF-8, "
                 "which commands and recordings can hold");
   }
 }

@@ -117,7 +117,7 @@ void FrameTree::Reparent(FrameId id, FrameId newParent, bool keepWorldPose) {
   }
   if (above == slot) {
     throw Error(Error::Kind::InvalidArgument, this->Label(id),
-                "cannot be hung under " + this->Label(newParent) +
+                "cannot be moved under " + this->Label(newParent) +
                     ", which is itself or one of its descendants");
   }
   this->RejectTakenName(newParent, this->Nodes_[slot].name);
@@ -218,7 +218,7 @@ FrameId FrameTree::IdAt(std::size_t slot) const {
 
 FrameNotifier::Token FrameTree::AddListener(FrameNotifier::Listener listener) {
   if (!listener) {
-    throw Error(Error::Kind::InvalidArgument, "frame listener", "an empty function cannot listen");
+    throw Error(Error::Kind::InvalidArgument, "frame listener", "the function is empty");
   }
   return this->Notifier_.Add(std::move(listener));
 }
@@ -340,7 +340,7 @@ void FrameTree::SetLocalPoses(const FrameId* ids, const double* poses, std::size
     std::uint64_t& row = this->BatchRows_[slot];
     if (row >= start) {
       throw Error(Error::Kind::InvalidArgument, this->Label(ids[i]),
-                  "it comes twice, in rows " + std::to_string(row - start) + " and " +
+                  "it is given twice, in rows " + std::to_string(row - start) + " and " +
                       std::to_string(i) + "; accepted: each frame once");
     }
     row = start + i;

@@ -137,7 +137,7 @@ int LevelFor(const std::vector<DetailLevel>& levels, double pixels) {
 std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scale,
                           const Eigen::Quaterniond& rotation) {
   if (!model) {
-    Reject("model", "there is none; accepted: what ReadModel returns");
+    Reject("model", "no model is given; accepted: the result of ReadModel");
   }
   const std::string object = "file '" + model->path + "'";
   Require(std::abs(scale) >= MinimumScale && std::abs(scale) <= MaximumScale, object, "scale",

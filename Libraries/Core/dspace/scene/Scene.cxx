@@ -178,7 +178,7 @@ ObjectId Scene::AddObject(GraphicsObject object) {
   object.material.Check(label);
   this->CheckLevels(label, object.levels);
   if (object.custom && (!object.levels.empty() || object.billboard)) {
-    Reject(label, "geometry that draws itself has no levels and is no billboard");
+    Reject(label, "custom geometry has no levels of detail and cannot be a billboard");
   }
 
   const ObjectId id = object.id;

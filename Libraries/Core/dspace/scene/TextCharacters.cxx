@@ -22,7 +22,7 @@ std::vector<char32_t> Characters(const std::string& object, const char* what,
       char byte[8];
       std::snprintf(byte, sizeof(byte), "0x%02X", unsigned(static_cast<unsigned char>(text[at])));
       Reject(object, std::string(what) + " holds the byte " + byte + " at place " +
-                         std::to_string(at) + ", which is no UTF-8; accepted: UTF-8");
+                         std::to_string(at) + ", which is not UTF-8; accepted: UTF-8");
     }
     characters.push_back(character);
   }

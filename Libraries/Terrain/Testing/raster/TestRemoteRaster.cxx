@@ -236,9 +236,9 @@ TEST_F(Remote, AReadSaysWhatTheServerAnswered) {
   for (const auto& [mode, words] : {std::pair(Mode::NotFound, "=404"),
                                     {Mode::Broken, "=500"},
                                     {Mode::Busy, "=503"},
-                                    {Mode::Silent, "no answer: the server stalled"},
-                                    {Mode::Stall, "the answer broke off: the server stalled"},
-                                    {Mode::Cut, "the answer broke off"},
+                                    {Mode::Silent, "no response: the server stalled"},
+                                    {Mode::Stall, "incomplete response: the server stalled"},
+                                    {Mode::Cut, "incomplete response"},
                                     {Mode::Garbage, "Decoding error"}}) {
     const std::string url = server.Url("words" + std::to_string(int(mode)) + ".tif");
     server.mode = Mode::Good;
@@ -247,7 +247,7 @@ TEST_F(Remote, AReadSaysWhatTheServerAnswered) {
     const auto read = [&] { return Rejection([&] { source->Read({400, 300, 300, 400}); }, url); };
     Error error = read();
     // Unless no byte of it came in time.
-    for (int n = 1; n < 3 && mode == Mode::Stall && Says(error, "no answer"); ++n) {
+    for (int n = 1; n < 3 && mode == Mode::Stall && Says(error, "no response"); ++n) {
       error = read();
     }
     EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();

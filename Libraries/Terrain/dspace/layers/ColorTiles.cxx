@@ -308,7 +308,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::Get(const std::vector<ColorTile
   do {
     if (late) {
       throw Error(Error::Kind::DeadlineExceeded, "colour tiles",
-                  "they were not there within " + std::to_string(seconds) + " s" +
+                  "they were not loaded within " + std::to_string(seconds) + " s" +
                       (impl.statistics.lastFailure.empty()
                            ? std::string()
                            : "; the last failure: " + impl.statistics.lastFailure));

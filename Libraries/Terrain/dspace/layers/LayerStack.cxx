@@ -40,13 +40,13 @@ void LayerStack::Add(StackedLayer layer, std::optional<std::size_t> position) {
   const std::size_t count = this->Layers_.size();
   if (layer.name.empty()) {
     throw Error(Error::Kind::InvalidArgument, Object(this->Terrain_),
-                "a layer without a name is rejected; accepted is one that the others do not have");
+                "a layer has no name; accepted: a name that no other layer has");
   }
   for (const StackedLayer& other : this->Layers_) {
     if (other.name == layer.name) {
       throw Error(Error::Kind::InvalidArgument, Object(this->Terrain_),
                   "the name '" + layer.name +
-                      "' is taken; accepted is one that the others do not "
+                      "' is taken; accepted: one that other layers do not "
                       "have");
     }
   }

@@ -65,7 +65,7 @@ Picture ReadPicture(const DrapeSource& source, const std::string& object,
   GDALColorTable* table = count == 1 ? file->GetRasterBand(1)->GetColorTable() : nullptr;
   if (count < 1 || count > 4)
     throw Error(Error::Kind::Unsupported, object,
-                "it has " + std::to_string(count) + " bands; accepted are 1 (grey) to 4 (RGBA)");
+                "it has " + std::to_string(count) + " bands; accepted: 1 (grey) to 4 (RGBA)");
   if (file->GetRasterBand(1)->GetRasterDataType() != GDT_Byte)
     throw Error(Error::Kind::Unsupported, object,
                 std::string("its values are ") +
@@ -161,7 +161,7 @@ DatasetPointer ToDataset(Picture& p, const std::string& object) {
     const std::size_t size = static_cast<std::size_t>(p.width) * p.height;
     if (band->RasterIO(GF_Write, 0, 0, p.width, p.height, p.bands.data() + size * k, p.width,
                        p.height, GDT_Byte, 0, 0, nullptr) != CE_None)
-      throw Error(Error::Kind::Resource, object, errors.Message("its image cannot be kept"));
+      throw Error(Error::Kind::Resource, object, errors.Message("its image cannot be stored"));
   }
   dataset->GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
   return dataset;
@@ -226,7 +226,7 @@ DrapeImage WarpImage(const RasterPlace& place, const DrapeSource& source,
             .asDiagonal();
     picture.crs = place.crs;
   } else if (picture.crs.GetKind() == Crs::Kind::None && place.crs.GetKind() != Crs::Kind::None) {
-    image.warnings.push_back(object + " has no CRS: the terrain's is taken");
+    image.warnings.push_back(object + " has no CRS: the terrain's is used");
     picture.crs = place.crs;
   }
   if (GoesAround(picture)) {

@@ -29,11 +29,11 @@ using Queue = TileQueue<TileKey, SinceRead>;
 // A caller that has used up its time elsewhere has none left to name.
 std::string WithinSeconds(double seconds) {
   if (!(seconds > 0.0)) {
-    return "its tiles were not there when the deadline was up";
+    return "its tiles were not loaded before the deadline";
   }
   char number[32];
   std::snprintf(number, sizeof number, "%g", seconds);
-  return "its tiles were not there within " + std::string(number) + " s";
+  return "its tiles were not loaded within " + std::string(number) + " s";
 }
 
 } // namespace

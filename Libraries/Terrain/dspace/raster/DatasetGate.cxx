@@ -86,7 +86,8 @@ std::string RequireName(const std::string& name) {
   const bool archive = begins("/vsizip/") || begins("/vsitar/") || begins("/vsigzip/");
   if (begins("/vsi") && !archive) {
     FilesGuard::CheckFile(name);
-    Reject(name, "it is no plain file; accepted here: plain files, /vsizip/, /vsitar/, /vsigzip/");
+    Reject(name,
+           "it is not a plain file; accepted here: plain files, /vsizip/, /vsitar/, /vsigzip/");
   }
   std::error_code error;
   const fs::path whole = archive ? fs::path(UnderlyingFile(name)) : fs::absolute(name, error);
@@ -174,10 +175,12 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
                            const char* const* options) {
   Opening opening;
   if (opening.Depth() > Nesting) {
-    Reject(name, "files that name files lead to it, " + std::to_string(Nesting) + " deep");
+    Reject(name,
+           "a chain of " + std::to_string(Nesting) + " files that refer to each other leads to it");
   }
   if (flags & GDAL_OF_UPDATE) {
-    Reject(name, "a file that names it would have it written; accepted here: files that are read");
+    Reject(name,
+           "another file requests write access to it; accepted here: files that are only read");
   }
   const std::string path = RequireName(name);
   const char* const mosaic[] = {"VRT", nullptr};

@@ -70,7 +70,7 @@ std::string DeflateCheck::Check(GDALRasterBand& band, const RasterWindow& w) {
       }
       if (!this->IsIntact(band, column, row)) {
         return "block " + std::to_string(column) + ", " + std::to_string(row) +
-               " is damaged: what is compressed there does not match its checksum (Adler-32)";
+               " is damaged: its content does not match its checksum (Adler-32)";
       }
       this->Checked_.insert(key);
     }

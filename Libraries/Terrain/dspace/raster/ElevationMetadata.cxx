@@ -117,8 +117,9 @@ void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, Ele
           "its ground control points are not used: warp it first (gdalwarp), or "
           "it has no place on the map");
     if (!options.pixelSize)
-      info.warnings.push_back("no georeference: pixels are taken as 1 m squares, the top row to "
-                              "the north; give a pixel size");
+      info.warnings.push_back(
+          "no georeference: pixels are assumed to be 1 m squares, the top row to "
+          "the north; give a pixel size");
     if (info.crs.GetKind() != Crs::Kind::None && !options.crs) {
       info.warnings.push_back("its CRS '" + info.crs.GetName() +
                               "' is not used, since it has no geotransform");
@@ -128,7 +129,7 @@ void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, Ele
       Reject(info, "a geographic CRS was given for a raster without georeference; give a "
                    "projected one, or georeference the file");
   } else if (info.crs.GetKind() == Crs::Kind::None) {
-    info.warnings.push_back("no CRS: map coordinates are taken as metres in a plane, without "
+    info.warnings.push_back("no CRS: map coordinates are assumed to be metres in a plane, without "
                             "longitude and latitude; give a CRS");
   }
   for (double v : g)
@@ -175,8 +176,9 @@ void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, Elevati
       Reject(info, "its scale " + std::to_string(scale) + " or offset " + std::to_string(offset) +
                        " is not usable; give them by hand");
     if (info.unit.empty())
-      info.warnings.push_back("the unit of height is not stated: metres are taken; if it is not "
-                              "so, give the vertical scale");
+      info.warnings.push_back(
+          "the unit of height is not stated: metres are assumed; if that is not "
+          "so, give the vertical scale");
   }
 
   const double a = info.crs.GetAxes().semiMajor;

@@ -89,10 +89,10 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   this->Info_.dataType = GDALGetDataTypeName(band.GetRasterDataType());
   if (GDALDataTypeIsComplex(band.GetRasterDataType()))
     throw Error(Error::Kind::Unsupported, object,
-                "complex values (" + this->Info_.dataType + ") are no heights");
+                "complex values (" + this->Info_.dataType + ") are not heights");
   if (band.GetColorTable())
     this->Info_.warnings.push_back("band " + std::to_string(options.band) +
-                                   " has a colour table: its indices are taken as heights");
+                                   " has a colour table: its indices are used as heights");
   if (!this->Impl_->remote)
     this->Impl_->checksums = std::make_unique<DeflateCheck>(dataset, band);
   this->Impl_->gaps = GivesZerosForGaps(band);

@@ -75,7 +75,7 @@ private:
     std::error_code error;
     if (name.find('<') != std::string::npos ||
         (!IsRemote(source) && !fs::is_regular_file(source, error))) {
-      this->Reject("names '" + name.substr(0, 200) + "', which is no plain file");
+      this->Reject("names '" + name.substr(0, 200) + "', which is not a plain file");
     }
     if (this->Known_.insert(source).second) {
       this->Sources.push_back(source);

@@ -92,9 +92,9 @@ std::string ExplainHttpStatus(const std::string& message) {
   // Of a read that was tried in several ways the first message says most.
   const std::string first = message.substr(0, message.find("; "));
   if (first.find("response_code=0") != std::string::npos)
-    return first + " (no answer: the server stalled or the line was cut)";
+    return first + " (no response: the server stalled or the connection was lost)";
   if (first.find("response_code=206") != std::string::npos)
-    return first + " (the answer broke off: the server stalled or the line was cut)";
+    return first + " (incomplete response: the server stalled or the connection was lost)";
   if (first.find("response_code=") != std::string::npos)
     return first + " (HTTP status)";
   return first + " (the server did not send all of it)";

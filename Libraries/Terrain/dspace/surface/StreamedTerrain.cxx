@@ -38,7 +38,7 @@ int SubdivisionsFor(const DegreeGrid& grid) {
 void RequireResults(const std::string& name, bool finite, Eigen::Index n, Eigen::Index results) {
   if (!finite || n != results) {
     throw Error(Error::Kind::InvalidArgument, name,
-                "finite points and as many results are accepted");
+                "accepted: finite points and one result per point");
   }
 }
 
@@ -179,10 +179,11 @@ void StreamedTerrain::Resample(const DegreeGrid& grid, const ElevationPyramidOpt
   std::ostringstream text;
   text.precision(3);
   text << "its " << this->Info().window.width << " columns around the body are resampled to "
-       << this->Resampling_->columns << ", which halve often enough: what is drawn and answered "
-       << "departs from its pixels by " << this->Resampling_->rmsError << " m rms, at most "
+       << this->Resampling_->columns
+       << ", which can be halved often enough: the drawn and queried surface "
+       << "differs from its pixels by " << this->Resampling_->rmsError << " m rms, at most "
        << this->Resampling_->greatestError << " m, at " << this->Resampling_->posts
-       << " of them taken at random";
+       << " random pixels";
   this->AddWarning(text.str());
 }
 
@@ -238,7 +239,7 @@ const ElevationInfo& StreamedTerrain::Info() const {
 const SceneFrame& StreamedTerrain::Frame() const {
   if (!this->Frame_) {
     throw Error(Error::Kind::Unsupported, this->GetName(),
-                "it stands on a body; only one on a plane has such a frame");
+                "it stands on a body; only a terrain on a plane has a scene frame");
   }
   return *this->Frame_;
 }
@@ -429,7 +430,7 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
   }
   if (points_S.rows() != roughness.size() || !points_S.allFinite()) {
     throw Error(Error::Kind::InvalidArgument, this->GetName(),
-                "finite points and as many results are accepted");
+                "accepted: finite points and one result per point");
   }
   PixelRoughness::Pixels pixels;
   if (this->Pixels_) {

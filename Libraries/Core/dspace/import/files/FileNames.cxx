@@ -56,7 +56,7 @@ std::string ResolveReference(const std::string& fromFile, const std::string& ref
   std::replace(name.begin(), name.end(), '\\', '/');
   const std::size_t colon = name.find(':');
   if (name.empty() || name.find('\0') != std::string::npos) {
-    reject("which is no file name");
+    reject("which is not a file name");
   }
   if (name[0] == '/' || (colon != std::string::npos && colon < name.find('/'))) {
     reject("which is not a relative file name; only files beside the model are read");

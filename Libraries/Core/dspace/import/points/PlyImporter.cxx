@@ -105,7 +105,7 @@ private:
 
   void ReadVertices(const PlyElement& element) {
     if (this->HasVertices_) {
-      this->Fail("element vertex stands there twice");
+      this->Fail("element vertex is given twice");
     }
     this->HasVertices_ = true;
     const int p[3] = {FindAny(element, {"x"}), FindAny(element, {"y"}), FindAny(element, {"z"})};

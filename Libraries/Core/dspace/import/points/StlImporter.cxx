@@ -272,7 +272,7 @@ Model ReadStl(const std::string& path, const ImportOptions& options) {
     ReadBinary(bytes, model, options);
   } else {
     throw Error(Error::Kind::Corrupt, FileObject(path),
-                "is no STL: neither a text that begins with 'solid' nor " +
+                "is not an STL file: neither a text that begins with 'solid' nor " +
                     std::to_string(BinaryHeader) + " bytes long");
   }
   if (model.meshes.empty()) {

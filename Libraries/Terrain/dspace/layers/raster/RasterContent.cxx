@@ -64,7 +64,7 @@ void RasterContent::InspectBand(GDALRasterBand& first, const std::string& object
   if (GDALDataTypeIsComplex(this->type)) {
     throw Error(Error::Kind::Unsupported, object,
                 std::string("complex values (") + GDALGetDataTypeName(this->type) +
-                    ") have no order to be coloured by");
+                    ") cannot be mapped to a colour ramp");
   }
   this->channels = 1;
   int stated = 0;
@@ -75,7 +75,7 @@ void RasterContent::InspectBand(GDALRasterBand& first, const std::string& object
   if (!std::isfinite(this->scale) || this->scale == 0.0 || !std::isfinite(this->offset)) {
     throw Error(Error::Kind::Corrupt, object,
                 "its scale of " + std::to_string(this->scale) + " and offset of " +
-                    std::to_string(this->offset) + " are no numbers to be used");
+                    std::to_string(this->offset) + " are not usable");
   }
   this->alphaScale = 1.0 / 255.0;
   this->unit = ToUtf8(first.GetUnitType() ? first.GetUnitType() : "");
@@ -107,7 +107,7 @@ void RasterContent::InspectImage(GDALDataset& file, const std::string& object,
     this->alphaScale = 1.0 / GreatestColor(last);
     if (last.GetColorInterpretation() != GCI_AlphaBand) {
       warnings.push_back(object + " has " + std::to_string(this->bands) +
-                         " bands: the last is taken as opacity");
+                         " bands: the last is used as opacity");
     }
   }
   const GDALColorTable* table = this->bands == 1 ? first.GetColorTable() : nullptr;

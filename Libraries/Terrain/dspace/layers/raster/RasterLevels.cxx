@@ -59,8 +59,8 @@ RasterLevels::RasterLevels(std::string object, std::string path, int band,
   const bool alone = this->FileLevels_ == 1;
   if (this->Remote_ && alone && std::max(this->Width(), this->Height()) > Large) {
     this->Warnings_.push_back(this->Object_ +
-                              " has no overviews and lies on a server: far away single pixels of "
-                              "it are shown, no means; build overviews (gdaladdo -r average)");
+                              " has no overviews and is on a server: distant views show single "
+                              "pixels instead of means; build overviews (gdaladdo -r average)");
   }
   this->Overviews_ = std::make_unique<RasterOverviews>(this->Object_, this->Path_, this->File_,
                                                        this->Content_, shown);
@@ -257,7 +257,7 @@ std::array<double, 2> RasterLevels::FindRange(bool& exact) const {
     }
   }
   if (!(low <= high)) {
-    throw Error(Error::Kind::Corrupt, this->Object_, "it holds no value that is not no-data");
+    throw Error(Error::Kind::Corrupt, this->Object_, "all of its values are no-data");
   }
   return {low, high};
 }

@@ -45,7 +45,7 @@ void RasterPixels::PlanCaching(GDALDataset& file, std::size_t levels,
   if (!this->Caches_) {
     warnings.push_back(this->Object_ + " has " + std::to_string(this->Content_.width) + " x " +
                        std::to_string(this->Content_.height) + " pixels in a format (" + format +
-                       ") whose parts cannot be read by themselves: each of its tiles " +
+                       ") that cannot be read in parts: each of its tiles " +
                        "takes long; convert it to a tiled TIFF (gdal_translate -co "
                        "TILED=YES)");
   }

@@ -65,11 +65,11 @@ Eigen::Affine2d PixelToMap(RasterLevels& levels, const RasterPlace& terrain,
                 "its geotransform is degenerate; give its extent");
   }
   if (crs.GetKind() == Crs::Kind::None && terrain.crs.GetKind() != Crs::Kind::None) {
-    levels.Warnings().push_back(object + " has no CRS: the terrain's is taken; give its CRS");
+    levels.Warnings().push_back(object + " has no CRS: the terrain's is used; give its CRS");
     crs = terrain.crs;
   } else if (crs.GetKind() != Crs::Kind::None && terrain.crs.GetKind() == Crs::Kind::None) {
     levels.Warnings().push_back(terrain.name + " has no CRS: that of " + object +
-                                " is taken to be the same; give the terrain's CRS");
+                                " is used for both; give the terrain's CRS");
   }
   return map;
 }

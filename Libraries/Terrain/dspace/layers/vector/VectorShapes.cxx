@@ -226,7 +226,7 @@ private:
       if (this->Degrees_ && (!inside || std::abs(place.x()) > 2.0 * this->Turn_)) {
         Reject(this->Object_, "a vertex is (" + NumberText(place.x()) + ", " +
                                   NumberText(place.y()) +
-                                  "), which is no longitude and latitude; accepted: a CRS "
+                                  "), which is not a longitude and latitude; accepted: a CRS "
                                   "stated for the layer in which it is a place");
       }
       if (this->Turn_ > 0.0 && inside) {
