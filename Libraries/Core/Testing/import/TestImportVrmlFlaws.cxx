@@ -133,7 +133,7 @@ TEST(ImportVrml, CirclesAndBombsAreRejectedBeforeParsing) {
                                            "Box { } appearance Appearance { texture PixelTexture { "
                                            "image IS i } } } } P { }");
   EXPECT_TRUE(HasWarning(image.warnings, "9 x 9 x 3 that has 1 pixels"));
-  bad(Error::Kind::Corrupt, "no type of a field", Head2 + "PROTO P [ field SFEnum e A ] { }");
+  bad(Error::Kind::Corrupt, "not a type of a field", Head2 + "PROTO P [ field SFEnum e A ] { }");
   // A PROTO inside its own body is no node at that place.
   const Model own =
       Read(folder, Head2 + "PROTO P [ ] { Group { children [ P { } ] } } P { }" + Shape("Box { }"));

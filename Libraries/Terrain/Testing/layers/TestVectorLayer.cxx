@@ -337,7 +337,7 @@ TEST(VectorLayer, WhatCannotBePaintedIsRejected) {
   Rejected(Kind::Unsupported, "no CRS", Write(folder / "e2.json", Feature("Point", "[30,60]")),
            plain.place, options);
   // Metres that are taken for degrees.
-  Rejected(Kind::InvalidArgument, "no longitude and latitude", path, mars.place);
+  Rejected(Kind::InvalidArgument, "not a longitude and latitude", path, mars.place);
   const auto bad = [&](auto change, const std::string& told) {
     VectorLayerOptions changed;
     change(changed);
