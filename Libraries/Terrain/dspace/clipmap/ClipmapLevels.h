@@ -91,8 +91,8 @@ private:
   enum class Filled { Not, Before, Wholly }; // Before: with posts as they were before a change
   void NoteChanges();
   std::vector<ClipmapUpdate> ChangesIn(int level, const ClipmapWindow& window) const;
-  bool Bring(int level, const std::vector<ClipmapUpdate>& updates,
-             const std::optional<double>& wait, const Upload& upload);
+  bool Fill(int level, const std::vector<ClipmapUpdate>& updates, const std::optional<double>& wait,
+            const Upload& upload);
   Filled Fill(int level, const ClipmapWindow& window, const std::optional<double>& wait,
               const Upload& upload);
   // Whether a post of the lattice has no data.

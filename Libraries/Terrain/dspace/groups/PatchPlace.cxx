@@ -217,7 +217,7 @@ void PatchPlace::FindReach() {
   this->Columns_ = {box.min().x() - more.x(), box.max().x() + more.x(), false};
   this->Rows_ = {box.min().y() - more.y(), box.max().y() + more.y(), false};
   this->Columns_.all = this->Turn_ > 0.0 && box.sizes().x() > 0.4 * this->Turn_;
-  this->TakePoles();
+  this->InitPoles();
   const auto& lattice = this->Lattice_;
   this->Inside_ = this->Rows_.to >= 0.0 && this->Rows_.from <= double(lattice.rows - 1);
   if (!lattice.periodic && !this->Columns_.all) { // the first post was nearest to the middle
@@ -226,7 +226,7 @@ void PatchPlace::FindReach() {
 }
 
 // About a pole a patch reaches all longitudes, and all rows as far as the pole.
-void PatchPlace::TakePoles() {
+void PatchPlace::InitPoles() {
   const Crs& crs = this->Base_.crs;
   if (!(this->Turn_ > 0.0) || !crs.HasGeographic()) {
     return;

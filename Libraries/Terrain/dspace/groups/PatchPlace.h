@@ -64,7 +64,7 @@ private:
   };
   void FindSizes();
   void FindReach();
-  void TakePoles();
+  void InitPoles();
   double Unwrapped(double column) const;
   Eigen::Vector2d PixelOfPost(const Eigen::Vector2d& post) const {
     return this->PixelOf(this->PostToBaseMap_ * post);

@@ -107,7 +107,7 @@ struct ColorTiles::Implementation {
     return found->second.tile;
   }
 
-  std::map<Key, Resident>::iterator Forget(std::map<Key, Resident>::iterator found) {
+  std::map<Key, Resident>::iterator Evict(std::map<Key, Resident>::iterator found) {
     this->statistics.bytes -= found->second.Bytes();
     this->uses.erase(found->second.use);
     return this->tiles.erase(found);
@@ -118,14 +118,14 @@ struct ColorTiles::Implementation {
     const Key key(layer.get(), at);
     const auto old = this->tiles.find(key);
     if (old != this->tiles.end()) {
-      this->Forget(old);
+      this->Evict(old);
     }
     this->uses.push_front(key);
     const Resident& resident = this->tiles[key] =
         Resident{layer, std::move(tile), this->uses.begin()};
     this->statistics.bytes += resident.Bytes();
     while (this->statistics.bytes > this->options.byteBudget) {
-      this->Forget(this->tiles.find(this->uses.back()));
+      this->Evict(this->tiles.find(this->uses.back()));
     }
   }
 
@@ -142,7 +142,7 @@ struct ColorTiles::Implementation {
     this->latest.layers = this->stack->Layers(&this->latest.revision);
     for (auto it = this->tiles.begin(); it != this->tiles.end();) {
       const bool gone = it->second.layer && !this->IsInLatest(it->second.layer);
-      it = gone ? this->Forget(it) : std::next(it);
+      it = gone ? this->Evict(it) : std::next(it);
     }
   }
 
@@ -232,7 +232,7 @@ struct ColorTiles::Implementation {
         held[i] = std::move(tile);
       }
       if (!current) {
-        this->queue.Ask(asked[i], std::int64_t(i));
+        this->queue.Add(asked[i], std::int64_t(i));
         complete = false;
       }
     }

@@ -89,9 +89,9 @@ struct ElevationPyramid::Implementation {
   }
 
   // Of one view the coarse levels come first.
-  void Ask(const TileKey& key) { this->queue.Ask(key, -key[0]); }
+  void RequestTile(const TileKey& key) { this->queue.Add(key, -key[0]); }
 
-  void Forget(std::map<TileKey, Resident>::iterator found) {
+  void Evict(std::map<TileKey, Resident>::iterator found) {
     this->statistics.bytes -= found->second.tile->Bytes();
     this->uses.erase(found->second.use);
     this->tiles.erase(found);
@@ -100,14 +100,14 @@ struct ElevationPyramid::Implementation {
   void Store(const TileKey& key, std::shared_ptr<const PyramidTile> tile, const TileBox& stale) {
     const auto old = this->tiles.find(key);
     if (old != this->tiles.end()) {
-      this->Forget(old);
+      this->Evict(old);
     }
     this->statistics.bytes += tile->Bytes();
     this->uses.push_front(key);
     this->tiles[key] = {std::move(tile), this->uses.begin(), stale};
     ++this->arrivals;
     while (this->statistics.bytes > this->options.byteBudget) {
-      this->Forget(this->tiles.find(this->uses.back()));
+      this->Evict(this->tiles.find(this->uses.back()));
       ++this->statistics.evictions;
     }
   }
@@ -183,7 +183,7 @@ struct ElevationPyramid::Implementation {
       }
       if (!held[i]) {
         if (ask) {
-          this->Ask(pieces[i].key);
+          this->RequestTile(pieces[i].key);
         }
         complete = false;
       }

@@ -44,7 +44,7 @@ public:
   // The call requested nothing: earlier requests do not age.
   void CancelCall() { --this->Call_; }
 
-  void Ask(const Key& key, std::int64_t rank) {
+  void Add(const Key& key, std::int64_t rank) {
     Request& request = this->Requests_[key];
     request.call = this->Call_;
     request.rank = rank;

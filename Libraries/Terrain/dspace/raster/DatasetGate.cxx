@@ -223,7 +223,7 @@ GDALDataset* OpenForGdal(GDALOpenInfo* info) {
   return nullptr;
 }
 
-void PutFirst(GDALDriver* gate) {
+void MoveToFront(GDALDriver* gate) {
   GDALDriverManager& manager = *GetGDALDriverManager();
   std::vector<GDALDriver*> others;
   for (int i = 0; i < manager.GetDriverCount(); ++i) {
@@ -255,7 +255,7 @@ void Register() {
   gate->SetMetadataItem(GDAL_DCAP_GNM, "YES");
   gate->SetMetadataItem(GDAL_DCAP_MULTIDIM_RASTER, "YES");
   gate->pfnOpen = OpenForGdal;
-  PutFirst(gate);
+  MoveToFront(gate);
 }
 
 // Once a process.

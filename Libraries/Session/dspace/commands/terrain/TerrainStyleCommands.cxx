@@ -5,7 +5,7 @@
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
-#include <dspace/mesh/DrapeImage.h>
+#include <dspace/layers/ColorRamp.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/scene/Checks.h>
 

@@ -48,9 +48,9 @@ private:
     std::weak_ptr<const ColorTiles::Tile> shown;
     std::uint64_t used = 0; // by the latest call of Show()
   };
-  int TakeSlot();
-  void Keep(const ColorTile& tile, const ColorTiles::TilePointer& shown,
-            RenderStatistics& statistics);
+  int AllocateSlot();
+  void Store(const ColorTile& tile, const ColorTiles::TilePointer& shown,
+             RenderStatistics& statistics);
   void Upload(int slot, const ColorTiles::Tile& tile, RenderStatistics& statistics) const;
   void SetPage(const ColorTile& tile, int slot);
   void ClearPage(const ColorTile& tile); // also as the parent of other tiles
