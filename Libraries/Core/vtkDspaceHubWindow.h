@@ -29,7 +29,7 @@ public:
   void SetContext(std::unique_ptr<dspace::GraphicsContext> context);
   dspace::GraphicsContext* GetContext() const { return this->Context.get(); }
 
-  /// What a viewport swaps in; framebuffer and renderers stay owned by the viewport.
+  /// The state that a viewport swaps in; framebuffer and renderers stay owned by the viewport.
   struct Slot {
     vtkOpenGLFramebufferObject* framebuffer;
     vtkRendererCollection* renderers;

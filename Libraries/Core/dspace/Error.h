@@ -13,7 +13,7 @@ namespace dspace {
 // object, the value and what is accepted. State is then unchanged.
 class Error : public std::runtime_error {
 public:
-  // What went wrong, as gRPC's status codes and Python's exceptions distinguish it.
+  // The kind of failure, as distinguished by gRPC's status codes and Python's exceptions.
   enum class Kind {
     InvalidArgument,  // a value outside what is accepted
     NotFound,         // no such frame, object, file, ...

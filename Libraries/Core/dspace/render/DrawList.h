@@ -62,7 +62,7 @@ struct DrawCustom {
   Eigen::Affine3d X_VO = Eigen::Affine3d::Identity(); // OpenGL's view axes from the object's frame
 };
 
-// Which part of a scene is drawn.
+// Selects the part of a scene that is drawn.
 struct DrawFilter {
   bool physicalOnly = false;
   bool pickableOnly = false;

@@ -24,7 +24,7 @@ struct ImageFileOptions {
 // All throw Error naming the file: InvalidArgument (extension, options, sizes that do not fit), Io
 // (folder absent, not writable, disk full).
 
-// What can be said before there is a picture: extension, options, folder.
+// The checks that need no picture: extension, options, folder.
 void CheckImageFile(const std::string& path, ImagePlane plane,
                     const ImageFileOptions& options = {});
 

@@ -47,7 +47,7 @@ public:
 
   explicit SurfaceShaders(vtkDspaceHubWindow* window) : Window_(window) {}
 
-  // What the list's lights ask of a lit surface's program.
+  // The features that the list's lights require of a lit surface's program.
   static unsigned LightFeatures(const DrawList& list);
 
   // Ready to draw with. Throws Error(Internal) when the driver rejects it.

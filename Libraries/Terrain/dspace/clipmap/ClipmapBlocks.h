@@ -1,4 +1,4 @@
-// Which blocks of a clipmap's levels a view may see. No OpenGL.
+// Selects the blocks of a clipmap's levels that a view may see. No OpenGL.
 #ifndef DSPACE_TERRAIN_CLIPMAPBLOCKS_H
 #define DSPACE_TERRAIN_CLIPMAPBLOCKS_H
 

@@ -1,4 +1,4 @@
-// Which tiles of a terrain's colour layers a view needs. No OpenGL.
+// Selects the tiles of a terrain's colour layers that a view needs. No OpenGL.
 #ifndef DSPACE_LAYERS_VISIBLETILES_H
 #define DSPACE_LAYERS_VISIBLETILES_H
 

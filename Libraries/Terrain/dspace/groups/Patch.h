@@ -34,7 +34,7 @@ public:
   // warning, if the patch adds nothing.
   bool Attach(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
               std::vector<std::string>& warnings);
-  // What its heights lie between in a box of places of level 0; least above greatest where it does
+  // The range of its heights in a box of places of level 0; least above greatest where it does
   // not reach, infinite where nothing is known.
   std::array<double, 2> HeightsIn(const Eigen::AlignedBox2d& posts) const;
   // Returns which posts of a block are filled; called by the first patch that reaches the block.

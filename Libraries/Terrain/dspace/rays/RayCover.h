@@ -28,8 +28,7 @@ public:
 
   // False: the block's posts are those of the plain surface, but for their rounding.
   bool Reaches(int bits, std::int64_t c, std::int64_t r) const;
-  // What heights lie between where those of the plain surface lie within `plain`. Infinite where
-  // nothing is known.
+  // The range of heights if the plain surface lies within `plain`. Infinite if it is unknown.
   RayTile::Range Over(int bits, std::int64_t c, std::int64_t r, RayTile::Range plain) const;
 
 private:

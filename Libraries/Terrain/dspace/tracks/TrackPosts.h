@@ -36,7 +36,7 @@ public:
   // 0: no means are taken.
   void Lower(const PostBlock& block, float* heights) const;
 
-  // What to invalidate in a pyramid.
+  // The rectangles to invalidate in a pyramid.
   std::vector<PostRectangle> RectanglesOf(const std::vector<TrackReach>& changed) const;
 
 private:

@@ -15,7 +15,7 @@
 
 namespace dspace {
 
-// What is shown of a band: values, opaque where there is data; or 0, opaque where there is none.
+// How a band is shown: its values, opaque where there is data; or 0, opaque where there is none.
 enum class RasterShown : std::uint8_t { Data, Holes };
 
 // Cells of a raster whose columns are reduced by 2^levelX and rows by 2^levelY: there are
