@@ -2,8 +2,8 @@
  * @class vtkDspaceHubWindow
  * @brief The one render window of a render context, into whose slots the viewports draw.
  *
- * VTK uploads an actor's mesh again for each window that shows it; so there is one window, and a
- * viewport is a set of framebuffer, renderers and size that is swapped in while it draws.
+ * VTK uploads an actor's mesh again for each window. Therefore there is one window; a viewport is a
+ * set of framebuffer, renderers and size that is swapped in while it draws.
  * Internal: use vtkDspaceViewport::Run().
  */
 #ifndef vtkDspaceHubWindow_h
@@ -29,7 +29,7 @@ public:
   void SetContext(std::unique_ptr<dspace::GraphicsContext> context);
   dspace::GraphicsContext* GetContext() const { return this->Context.get(); }
 
-  /// What a viewport swaps in; framebuffer and renderers stay owned by the viewport.
+  /// The state that a viewport swaps in; framebuffer and renderers stay owned by the viewport.
   struct Slot {
     vtkOpenGLFramebufferObject* framebuffer;
     vtkRendererCollection* renderers;

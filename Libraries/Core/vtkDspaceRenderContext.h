@@ -2,8 +2,8 @@
  * @class vtkDspaceRenderContext
  * @brief The one OpenGL context and render window (the hub) that draws every viewport.
  *
- * One a process as a rule, shared by all scenes. Meshes and textures are uploaded once, however
- * many objects, scenes and viewports show them, and are released when the last one lets go.
+ * Usually one per process, shared by all scenes. Meshes and textures are uploaded once for all
+ * objects, scenes and viewports that show them, and are released with the last of these.
  */
 #ifndef vtkDspaceRenderContext_h
 #define vtkDspaceRenderContext_h
@@ -34,22 +34,23 @@ public:
   vtkTypeMacro(vtkDspaceRenderContext, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// "llvmpipe (LLVM 15.0.6, 256 bits)", a GPU's name, ...; empty, with a VTK error, where no
-  /// context can be had.
+  /// "llvmpipe (LLVM 15.0.6, 256 bits)", a GPU's name, ...; empty, with a VTK error, if no
+  /// context can be created.
   std::string GetRendererName();
   std::string GetVersion();
   vtkRenderWindow* GetRenderWindow();
 
 #ifndef __VTK_WRAP__
-  /// Takes the context (default: MakeEglContext()). Called by the first viewport where it was not.
+  /// Sets the context (default: MakeEglContext()). The first viewport calls it if it was not
+  /// called.
   void Initialize(std::unique_ptr<dspace::GraphicsContext> context = nullptr);
   const dspace::RenderStatistics& GetStatistics() const;
-  dspace::RenderStatistics& CountStatistics(); // for those who draw
+  dspace::RenderStatistics& CountStatistics(); // for drawing code
   vtkDspaceHubWindow* GetHub();
   dspace::GpuStore& GetStore();
   /// The drawers of geometry that is not made of meshes; libraries with such geometry add theirs.
   dspace::CustomDrawers& GetDrawers();
-  /// What VTK reports while this context draws; its warnings are for the user.
+  /// Messages of VTK while this context draws; its warnings are for the user.
   dspace::VtkMessages& GetMessages();
 #endif
 

@@ -68,7 +68,7 @@ struct vtkDspaceViewport::Internals {
     filter.physicalOnly = request.physicalOnly || !this->ornaments;
     filter.hiddenFragments = this->hidden;
     for (const std::string& fragment : request.hiddenFragments) {
-      this->scene->Fragments().Get(fragment); // refuses names that do not exist
+      this->scene->Fragments().Get(fragment); // rejects names that do not exist
       filter.hiddenFragments.insert(fragment);
     }
     return filter;
@@ -76,7 +76,7 @@ struct vtkDspaceViewport::Internals {
 
   void Draw(const dspace::DrawFilter& filter, bool overlays, bool complete) {
     dspace::ColorPicture::Request request;
-    request.view = this->View(this->samples); // refuses a vantage without camera
+    request.view = this->View(this->samples); // rejects a vantage without camera
     request.view.complete = complete;
     request.samples = this->samples;
     request.filter = filter;
@@ -97,7 +97,7 @@ struct vtkDspaceViewport::Internals {
 
   void DrawLabels(const dspace::DrawFilter& filter) {
     this->context->GetHub()->MakeCurrent();
-    if (!this->labels.Holds(*this->scene, filter)) {
+    if (!this->labels.IsCurrent(*this->scene, filter)) {
       dspace::DrawView view = this->View(1);
       view.complete = true;
       this->labels.Draw(this->context, *this->scene, view, filter);
@@ -107,7 +107,7 @@ struct vtkDspaceViewport::Internals {
   // The camera or the size is another.
   void ViewChanged() {
     this->stale = true;
-    this->labels.Forget();
+    this->labels.Invalidate();
   }
 };
 
@@ -127,7 +127,7 @@ void vtkDspaceViewport::Initialize(vtkDspaceRenderContext* context,
   Internals& self = *this->Impl;
   const std::string object = "viewport '" + name + "'";
   dspace::CheckSize(object, width, height);
-  scene->Vantage(vantage); // refuses one that does not exist
+  scene->Vantage(vantage); // rejects one that does not exist
   context->Initialize();
   dspace::CheckSamples(*context->GetHub(), object, width, height, samples);
   self.context = context;

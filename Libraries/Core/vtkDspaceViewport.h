@@ -1,10 +1,10 @@
 /**
  * @class vtkDspaceViewport
- * @brief Where a SceneVantage is drawn: a slot of the render context's one window.
+ * @brief Draws a SceneVantage in a slot of the render context's one window.
  *
  * Any number of viewports may show one scene; its meshes are on the GPU once. Sizes are pixels,
  * pixel (0, 0) is the centre of the top-left pixel, row 0 the top row. An unchanged viewport is
- * not drawn again; a hidden one costs nothing. What OpenGL or VTK reports while drawing becomes a
+ * not drawn again; a hidden one costs nothing. Errors of OpenGL and VTK while drawing become
  * dspace::Error.
  */
 #ifndef vtkDspaceViewport_h
@@ -44,11 +44,11 @@ public:
   vtkRenderer* GetRenderer();
   /// The overlay renderer (standard depth, drawn after the scene): 2D actors belong here.
   vtkRenderer* GetOverlayRenderer();
-  /// Marks the picture as old, after changes made with VTK itself.
+  /// Marks the picture as outdated. Needed after changes made with VTK directly.
   void Invalidate();
 
 #ifndef __VTK_WRAP__
-  /// Connects the viewport; to be called once, before anything else. Size 1 to 16384 a side; size
+  /// Connects the viewport. Call it once, before anything else. Size 1 to 16384 a side; size
   /// times samples as far as OpenGL draws (GL_MAX_TEXTURE_SIZE a side) and up to 2^28 in all.
   /// Throws Error(InvalidArgument) naming the viewport and the size.
   void Initialize(vtkDspaceRenderContext* context, std::shared_ptr<dspace::Scene> scene,
@@ -58,7 +58,8 @@ public:
   std::shared_ptr<dspace::Scene> GetScene() const;
   const std::string& GetVantage() const;
 
-  /// All of these are checked before anything changes and mark the picture as old if it differs.
+  /// Each function checks its arguments before it changes anything, and marks the picture as
+  /// outdated if it differs.
   void SetVantage(const std::string& vantage);
   void SetCamera(const std::string& camera); // of the vantage; "" follows its active camera
   const std::string& GetCamera() const;
@@ -90,7 +91,7 @@ public:
 
   /// The picture, and other planes, of the scene as it is now (rendered if need be).
   dspace::Capture GetCapture(const dspace::CaptureRequest& request);
-  /// What lies under a pixel; the nearest object within `radius` pixels if none lies right there.
+  /// Picks the object at a pixel, or the nearest one within `radius` pixels if there is none.
   dspace::PickResult Pick(double x, double y, int radius = 0);
   /// Makes this viewport the window's current one and calls `f` with it.
   void Run(const std::function<void(vtkRenderWindow*)>& f);

@@ -171,14 +171,14 @@ void RecorderThread::LookAtLink() {
   std::string why;
   if (this->watcher->Connected(&why)) {
     this->heard = Clock::now();
-    this->refusal.clear();
+    this->rejection.clear();
     return;
   }
-  const std::string said = this->watcher->Refusal();
+  const std::string said = this->watcher->Rejection();
   if (!said.empty()) { // it may be let in again
     this->heard = Clock::now();
-    if (said != this->refusal) {
-      this->refusal = said;
+    if (said != this->rejection) {
+      this->rejection = said;
       this->Tell(this->Name() + "nothing is recorded while the server refuses it: " + said);
     }
   } else if (Clock::now() - this->heard > std::chrono::duration<double>(this->options.timeout_s)) {

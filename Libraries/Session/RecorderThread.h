@@ -67,9 +67,9 @@ private:
   std::string Name() const { return "recording '" + this->path + "': "; }
 
   vtkSmartPointer<vtkDspaceSession> session;
-  double time_s = 0.0; // of the last command that set one
-  bool unlike = false; // a command could not be carried out here
-  std::string refusal; // that was told last
+  double time_s = 0.0;   // of the last command that set one
+  bool unlike = false;   // a command could not be carried out here
+  std::string rejection; // that was told last
   Clock::time_point heard;
 };
 

@@ -59,8 +59,8 @@ std::string vtkDspaceRecordedFiles::Map(const std::string& bytes) {
   return command.SerializeAsString();
 }
 
-dspace::FilesGuard::Look vtkDspaceRecordedFiles::GetLook() const {
-  return this->Impl->files ? this->Impl->files->Look() : dspace::FilesGuard::Look();
+dspace::FilesGuard::Check vtkDspaceRecordedFiles::GetLook() const {
+  return this->Impl->files ? this->Impl->files->Look() : dspace::FilesGuard::Check();
 }
 
 void vtkDspaceRecordedFiles::Close() {

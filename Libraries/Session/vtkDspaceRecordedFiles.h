@@ -37,7 +37,7 @@ public:
   std::string Map(const std::string& command);
 #ifndef __VTK_WRAP__
   /// See RecordedFiles::Look; empty where nothing is open.
-  dspace::FilesGuard::Look GetLook() const;
+  dspace::FilesGuard::Check GetLook() const;
 #endif
   /// Removes what was unpacked. Twice is no error.
   void Close();

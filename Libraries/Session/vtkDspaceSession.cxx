@@ -237,7 +237,7 @@ std::string vtkDspaceSession::GetRecordingMissing() {
 }
 
 std::string vtkDspaceSession::Replay(const std::string& bytes, vtkDspaceRecordedFiles* files) {
-  const dspace::FilesGuard::Look look = files ? files->GetLook() : dspace::FilesGuard::Look();
+  const dspace::FilesGuard::Check look = files ? files->GetLook() : dspace::FilesGuard::Check();
   if (!look) {
     dspace::v1::Reply reply;
     reply.mutable_error()->set_kind(dspace::v1::Error::INVALID_ARGUMENT);

@@ -293,8 +293,9 @@ std::string vtkDspaceWatcher::GetWriterName() {
 }
 
 std::string vtkDspaceWatcher::GetTrouble() {
-  const std::string refusal = this->Impl->watcher ? this->Impl->watcher->Refusal() : std::string();
-  return refusal.empty() ? this->Impl->trouble : refusal;
+  const std::string rejection =
+      this->Impl->watcher ? this->Impl->watcher->Rejection() : std::string();
+  return rejection.empty() ? this->Impl->trouble : rejection;
 }
 
 std::string vtkDspaceWatcher::Execute(const std::string& bytes) {

@@ -44,8 +44,7 @@ struct Target {
 Target TargetOf(const std::string& path, const std::string& object) {
   if (path.find('\0') != std::string::npos) {
     // In a message the rest of the path would be lost, and the reason with it.
-    throw Error(Error::Kind::InvalidArgument, Label(path.c_str()),
-                "its path holds a zero byte, after which it goes on");
+    throw Error(Error::Kind::InvalidArgument, Label(path.c_str()), "its path contains a zero byte");
   }
   Target target;
   target.path = path;
@@ -180,7 +179,7 @@ void AtomicFile::Commit() {
   if (::fstat(this->File_, &own) != 0 || ::lstat(this->Temporary_.c_str(), &named) != 0) {
     this->Fail(errno);
   }
-  if (own.st_ino != named.st_ino || own.st_dev != named.st_dev) { // a library made it anew
+  if (own.st_ino != named.st_ino || own.st_dev != named.st_dev) { // a library replaced it
     this->CloseFile();
     this->File_ = ::open(this->Temporary_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
     if (this->File_ < 0 || ::fchmod(this->File_, this->Mode_) != 0) {

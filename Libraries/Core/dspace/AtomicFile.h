@@ -1,4 +1,4 @@
-// The one writer of files: a file is replaced as a whole or not at all.
+// Writes a file atomically: the target is replaced as a whole or not at all.
 #ifndef DSPACE_ATOMIC_FILE_H
 #define DSPACE_ATOMIC_FILE_H
 
@@ -39,7 +39,7 @@ public:
   void Write(const void* data, std::size_t bytes);
   // Writes at an offset from the beginning, which Bytes() does not count [bytes].
   void WriteAt(std::uint64_t offset, const void* data, std::size_t bytes);
-  // What Write() has appended [bytes].
+  // The number of bytes that Write() has appended.
   std::uint64_t Bytes() const { return this->Bytes_; }
 
   // For libraries that write to a path themselves. The file exists and is empty; a library may

@@ -39,8 +39,8 @@ FilesReadScope::~FilesReadScope() {
   }
 }
 
-FilesGuard::FilesGuard(Look look) : Look_(std::move(look)), Outer_(Guard) {
-  if (this->Look_) {
+FilesGuard::FilesGuard(Check check) : Check_(std::move(check)), Outer_(Guard) {
+  if (this->Check_) {
     Guard = this;
   }
 }
@@ -49,38 +49,38 @@ FilesGuard::~FilesGuard() {
   Guard = this->Outer_;
 }
 
-bool FilesGuard::Lives() {
+bool FilesGuard::IsActive() {
   return Guard != nullptr;
 }
 
-FilesGuard::Look FilesGuard::Current() {
+FilesGuard::Check FilesGuard::Current() {
   if (!Guard) {
     return {};
   }
   if (!Guard->Outer_) {
-    return Guard->Look_;
+    return Guard->Check_;
   }
-  std::vector<Look> looks;
+  std::vector<Check> checks;
   for (const FilesGuard* guard = Guard; guard; guard = guard->Outer_) {
-    looks.push_back(guard->Look_);
+    checks.push_back(guard->Check_);
   }
-  return [looks](const std::string& path) {
-    for (const Look& look : looks) {
-      look(path);
+  return [checks](const std::string& path) {
+    for (const Check& check : checks) {
+      check(path);
     }
   };
 }
 
-void FilesGuard::Show(const std::string& path) {
+void FilesGuard::CheckFile(const std::string& path) {
   for (const FilesGuard* guard = Guard; guard; guard = guard->Outer_) {
-    guard->Look_(path);
+    guard->Check_(path);
   }
 }
 
 void RequireUtf8Path(const std::string& path) {
   if (!IsUtf8(path)) {
     throw Error(Error::Kind::Unsupported, "file '" + path + "'",
-                "its name, or that of a folder above it, is not UTF-8; accepted: names of UTF-8, "
+                "its name, or that of a folder above it, is not UTF-8; accepted: names in UTF-8, "
                 "which commands and recordings can hold");
   }
 }
@@ -89,7 +89,7 @@ void NoteFileRead(const std::string& path) {
   std::error_code error;
   const std::string whole = std::filesystem::absolute(path, error).string();
   RequireUtf8Path(error ? path : whole);
-  FilesGuard::Show(path);
+  FilesGuard::CheckFile(path);
   if (!Innermost || path.empty()) {
     return;
   }
@@ -105,7 +105,7 @@ void NoteSystemFile(const std::string& path) {
 void NoteFilesRead(const FilesRead& files) {
   if (Guard) {
     for (const auto& [path, stamp] : files) {
-      FilesGuard::Show(path);
+      FilesGuard::CheckFile(path);
     }
   }
   if (Innermost) {

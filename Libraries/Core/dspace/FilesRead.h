@@ -1,4 +1,4 @@
-// Which files are read for a command: a recording notes them, whoever names them.
+// Tracks and restricts which files a command reads.
 #ifndef DSPACE_FILES_READ_H
 #define DSPACE_FILES_READ_H
 
@@ -9,10 +9,11 @@
 
 namespace dspace {
 
-// A file when it was read: what is recorded of it later must still be that.
+// Identifies the state of a file at the time of reading. A recording stores the file only if its
+// stamp is still the same.
 struct FileStamp {
-  std::int64_t size = -1;       // bytes; -1: it could not be asked
-  std::int64_t changed_ns = -1; // time of the last change, past 1970 UTC
+  std::int64_t size = -1;       // bytes; -1: unknown
+  std::int64_t changed_ns = -1; // time of the last change since 1970 UTC; -1: unknown
 
   static FileStamp Of(const std::string& path);
   bool operator==(const FileStamp& other) const {
@@ -20,10 +21,11 @@ struct FileStamp {
   }
 };
 
-// By absolute path, as it was opened: ".." behind a link is the operating system's to resolve.
+// Keys are absolute paths as opened. ".." is not resolved, because it may follow a symbolic link.
 using FilesRead = std::map<std::string, FileStamp>;
 
-// Gathers what this thread reads while it lives. What an inner one gathers, the outer one has too.
+// Collects the files that this thread reads during the scope's lifetime. Scopes nest: at its end an
+// inner scope adds its files to the outer one.
 class FilesReadScope {
 public:
   FilesReadScope();
@@ -40,39 +42,41 @@ private:
   FilesReadScope* Outer_;
 };
 
-// While it lives, this thread's NoteFileRead shows each file to `look`, which throws for one that
-// is not to be read. Whoever opens a file does so after NoteFileRead; of a raster or a file of
-// shapes also what belongs to it is shown, before anything of it is used.
+// During the guard's lifetime, every file that this thread passes to NoteFileRead is first passed
+// to `check`, which throws to reject it. Code that opens a file must call NoteFileRead before it.
+// For rasters and vector files, side files are checked as well, before any content is used.
 //
-// A guard acts on one thread. An object that reads a file again later, perhaps in another thread,
-// keeps Current() from the time when it opened the file and holds a guard with it while it reads.
+// A guard applies to one thread. An object that reads a file again later, possibly in another
+// thread, stores Current() when it opens the file and holds a guard with that check while it reads.
 class FilesGuard {
 public:
-  using Look = std::function<void(const std::string& path)>;
-  // With an empty `look` there is no guard.
-  explicit FilesGuard(Look look);
+  using Check = std::function<void(const std::string& path)>;
+  // An empty `check` installs no guard.
+  explicit FilesGuard(Check check);
   ~FilesGuard();
   FilesGuard(const FilesGuard&) = delete;
   FilesGuard& operator=(const FilesGuard&) = delete;
 
-  static bool Lives();
-  // The looks of all guards of this thread as one; empty where no guard lives.
-  static Look Current();
-  // Shows a file that is not noted. Throws what `look` throws.
-  static void Show(const std::string& path);
+  // Whether this thread has a guard.
+  static bool IsActive();
+  // The checks of all guards of this thread as one function; empty without a guard.
+  static Check Current();
+  // Checks a file without noting it. Throws what the check throws.
+  static void CheckFile(const std::string& path);
 
 private:
-  Look Look_;
+  Check Check_;
   FilesGuard* Outer_;
 };
 
-// Throws Error(Unsupported) for a path that is not UTF-8: no command, reply or recording could hold
-// it.
+// Throws Error(Unsupported) for a path that is not UTF-8, because commands, replies and recordings
+// cannot hold it.
 void RequireUtf8Path(const std::string& path);
 
-// Told by whoever opens a file; where no scope lives nothing is noted. The first stamp of a file
-// stays. Throws what RequireUtf8Path throws of the path, made absolute. Files of a cache count too:
-// say again what was read when it was filled.
+// Call before opening a file. Checks the path against the guards and adds it to the current scope,
+// if any. The first stamp of a file is kept. Throws what RequireUtf8Path throws for the absolute
+// path, and what a guard throws. Cached results count as reads: note the files again from which a
+// cache entry was made.
 void NoteFileRead(const std::string& path);
 void NoteFilesRead(const FilesRead& files);
 

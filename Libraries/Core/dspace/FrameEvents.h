@@ -1,4 +1,4 @@
-// What a frame tree tells those who follow it, and how it is delivered.
+// Change events of a frame tree, and their delivery to listeners.
 #ifndef DSPACE_FRAME_EVENTS_H
 #define DSPACE_FRAME_EVENTS_H
 
@@ -30,15 +30,15 @@ struct FrameEvent {
   std::uint64_t revision; // FrameTree::Revision() right after the change
 };
 
-// Delivers events to listeners in the order in which the changes were made.
-// Listeners may add and remove listeners (themselves too) and change the tree: such a change takes
-// effect at once, and its event follows when the present one has reached everybody.
-// A listener that throws stops neither the others nor the events that wait; the first exception is
-// rethrown to whoever made the change, which stays made.
-// Changes that cause changes come to an end: a listener whose changes answer events for more than
-// MaximumRounds rounds, or whose change is beyond the MaximumCaused-th in one delivery, hears
-// nothing more until the delivery ends, which it then does with Error(Resource). The others hear
-// everything.
+// Delivers events to listeners in the order of the changes.
+// Listeners may add and remove listeners (including themselves) and change the tree. Such a change
+// takes effect at once; its event is delivered after the current one has reached all listeners.
+// A listener that throws stops neither the other listeners nor the queued events. The first
+// exception is rethrown to the caller that made the change; the change remains.
+// Delivery always terminates. A listener is muted until the end of the delivery if its changes
+// respond to events for more than MaximumRounds rounds, or if its change is beyond the
+// MaximumCaused-th in one delivery. The delivery then ends with Error(Resource). Other listeners
+// get every event.
 class FrameNotifier {
 public:
   using Listener = std::function<void(const FrameEvent&)>;
@@ -46,7 +46,7 @@ public:
   static constexpr int MaximumRounds = 100;
   static constexpr int MaximumCaused = 100000;
 
-  // The listener hears every event that is emitted from now on.
+  // The listener receives every event that is emitted from now on.
   Token Add(Listener listener) {
     this->Entries_.push_back({++this->LastToken_, std::move(listener), true, false});
     return this->LastToken_;
@@ -66,11 +66,11 @@ public:
     return false;
   }
 
-  // Whether an event would be heard, so that none need be built when not.
+  // False if no event needs to be built.
   bool HasListeners() const { return !this->Entries_.empty(); }
 
   void Emit(FrameEvent event) {
-    if (this->Delivering_) { // the delivery that is under way comes to it
+    if (this->Delivering_) { // the current delivery sends it
       this->Queue_.push_back(
           {std::move(event), this->LastToken_, this->Round_ + 1, this->Calling_});
       ++this->Caused_;
@@ -93,7 +93,7 @@ public:
                       " changes); accepted: up to " + std::to_string(MaximumRounds) +
                       " rounds and " + std::to_string(MaximumCaused) + " changes"));
       }
-      // By index: push_back leaves references into a deque valid, and nothing is erased meanwhile.
+      // By index: push_back leaves references into a deque valid, and nothing is erased here.
       for (std::size_t i = 0; i < this->Entries_.size(); ++i) {
         Entry& entry = this->Entries_[i];
         if (!entry.alive || entry.silent || entry.token > pending.lastToken) {
@@ -124,15 +124,15 @@ private:
     Token token;
     Listener listener;
     bool alive;
-    bool silent; // until the delivery that is under way ends
+    bool silent; // until the current delivery ends
   };
   struct Pending {
     FrameEvent event;
-    Token lastToken; // listeners that were added after the change do not hear of it
-    int round;       // 0 for the change from outside, else one more than of what it answers
+    Token lastToken; // listeners added after the change do not receive it
+    int round;       // 0 for a change from outside, else one more than of the event that caused it
     Token cause;     // the listener that made the change, or 0
   };
-  // False when it is silent already.
+  // False if it is muted already.
   bool Silence(Token token) {
     for (Entry& entry : this->Entries_) {
       if (entry.token == token && !entry.silent) {
@@ -147,7 +147,7 @@ private:
   Token LastToken_ = 0;
   bool Delivering_ = false;
   int Round_ = 0;     // of the event that is delivered
-  Token Calling_ = 0; // the listener that hears it
+  Token Calling_ = 0; // the listener that receives it
   int Caused_ = 0;    // events of listeners' changes in this delivery
 };
 

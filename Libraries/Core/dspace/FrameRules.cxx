@@ -49,7 +49,7 @@ bool IsValidFrameName(const std::string& name) {
          });
 }
 
-void RefuseFrameName(const std::string& object, const std::string& name) {
+void RejectFrameName(const std::string& object, const std::string& name) {
   throw Error(
       Error::Kind::InvalidArgument, object,
       "the name " + Quoted(name) + " is not accepted: it must have 1 to " +
@@ -66,7 +66,7 @@ bool IsValidPose(const Pose& X) {
          std::abs(X.rotation.norm() - 1.0) <= UnitQuaternionTolerance; // false for NaN
 }
 
-void RefusePose(const std::string& object, const Pose& X) {
+void RejectPose(const std::string& object, const Pose& X) {
   std::string why;
   const Eigen::Quaterniond& q = X.rotation;
   if (!IsValidPosition(X.position)) {

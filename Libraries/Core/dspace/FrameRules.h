@@ -1,4 +1,4 @@
-// What names and poses a frame accepts: used wherever one comes from outside.
+// Valid names and poses of frames, for all input from outside.
 #ifndef DSPACE_FRAME_RULES_H
 #define DSPACE_FRAME_RULES_H
 
@@ -18,7 +18,7 @@ constexpr double MaximumCoordinate = 1e18;
 constexpr double MinimumScale = 1e-12;
 constexpr double MaximumScale = 1e12;
 
-// Names are at most so many bytes of UTF-8, as those of files are.
+// Longest name [bytes of UTF-8], as for files.
 constexpr std::size_t MaximumFrameName = 255;
 
 // 1 to MaximumFrameName bytes of UTF-8, neither "." nor "..", no '/' and no control character (a
@@ -26,7 +26,7 @@ constexpr std::size_t MaximumFrameName = 255;
 bool IsValidFrameName(const std::string& name);
 
 // Throws Error(InvalidArgument) naming `object` and the name.
-[[noreturn]] void RefuseFrameName(const std::string& object, const std::string& name);
+[[noreturn]] void RejectFrameName(const std::string& object, const std::string& name);
 
 // Within MaximumCoordinate on each axis; false for NaN.
 bool IsValidPosition(const Eigen::Vector3d& p);
@@ -36,10 +36,10 @@ bool IsValidPosition(const Eigen::Vector3d& p);
 bool IsValidPose(const Pose& X);
 
 // Throws Error(InvalidArgument) naming `object` and the value that makes X invalid.
-[[noreturn]] void RefusePose(const std::string& object, const Pose& X);
+[[noreturn]] void RejectPose(const std::string& object, const Pose& X);
 
-// A valid pose with its quaternion normalised. One that is already unit to the rounding of a
-// normalisation is left as it is, so that doing it twice is doing it once.
+// Returns a valid pose with a normalised quaternion. A quaternion that is unit to rounding is
+// unchanged, so that the function is idempotent.
 Pose NormalisedPose(const Pose& X);
 
 // The pose in px py pz qw qx qy qz scale.

@@ -36,14 +36,14 @@ FrameTree::FrameTree()
 FrameId FrameTree::Create(FrameId parent, const std::string& name, const Pose& X_PF, FrameId id) {
   const SlotIndex parentSlot = this->FindSlot(parent);
   if (!IsValidFrameName(name)) {
-    RefuseFrameName("child of " + this->Label(parent), name);
+    RejectFrameName("child of " + this->Label(parent), name);
   }
-  this->RefuseTakenName(parent, name);
+  this->RejectTakenName(parent, name);
   const auto label = [&] { // only for messages: a path takes time in proportion to its depth
     return "frame '" + (parentSlot == 0 ? "" : this->PathOfSlot(parentSlot) + "/") + name + "'";
   };
   if (!IsValidPose(X_PF)) {
-    RefusePose(label(), X_PF);
+    RejectPose(label(), X_PF);
   }
   if (id == NoFrame) {
     id = this->LargestId_ + 1;
@@ -75,7 +75,7 @@ FrameId FrameTree::Create(FrameId parent, const std::string& name, const Pose& X
 
 std::vector<FrameId> FrameTree::Remove(FrameId id) {
   const SlotIndex first = this->FindSlot(id);
-  this->RefuseRoot(id, "removed");
+  this->RejectRoot(id, "removed");
   this->DetachFromParent(first);
   const std::vector<char> inSubtree = this->SubtreeFrom(first);
   std::vector<SlotIndex> staying;
@@ -107,7 +107,7 @@ std::vector<FrameId> FrameTree::Remove(FrameId id) {
 void FrameTree::Reparent(FrameId id, FrameId newParent, bool keepWorldPose) {
   const SlotIndex slot = this->FindSlot(id);
   const SlotIndex newParentSlot = this->FindSlot(newParent);
-  this->RefuseRoot(id, "reparented");
+  this->RejectRoot(id, "reparented");
   if (this->Parents_[slot] == newParentSlot) {
     return;
   }
@@ -117,15 +117,15 @@ void FrameTree::Reparent(FrameId id, FrameId newParent, bool keepWorldPose) {
   }
   if (above == slot) {
     throw Error(Error::Kind::InvalidArgument, this->Label(id),
-                "cannot be hung under " + this->Label(newParent) +
+                "cannot be moved under " + this->Label(newParent) +
                     ", which is itself or one of its descendants");
   }
-  this->RefuseTakenName(newParent, this->Nodes_[slot].name);
+  this->RejectTakenName(newParent, this->Nodes_[slot].name);
   Pose X_PF = this->Local_[slot];
   if (keepWorldPose) {
     X_PF = this->RelativePose(newParent, id);
     if (!IsValidPose(X_PF)) { // scales or positions that leave the range of doubles
-      RefusePose(this->Label(id), X_PF);
+      RejectPose(this->Label(id), X_PF);
     }
   }
 
@@ -154,15 +154,15 @@ void FrameTree::Reparent(FrameId id, FrameId newParent, bool keepWorldPose) {
 
 void FrameTree::Rename(FrameId id, const std::string& name) {
   const SlotIndex slot = this->FindSlot(id);
-  this->RefuseRoot(id, "renamed");
+  this->RejectRoot(id, "renamed");
   if (!IsValidFrameName(name)) {
-    RefuseFrameName(this->Label(id), name);
+    RejectFrameName(this->Label(id), name);
   }
   if (this->Nodes_[slot].name == name) {
     return;
   }
   const FrameId parent = this->Ids_[this->Parents_[slot]];
-  this->RefuseTakenName(parent, name);
+  this->RejectTakenName(parent, name);
   this->ChildOf_.erase({parent, this->Nodes_[slot].name});
   this->ChildOf_.emplace(ChildKey{parent, name}, id);
   this->Nodes_[slot].name = name;
@@ -218,7 +218,7 @@ FrameId FrameTree::IdAt(std::size_t slot) const {
 
 FrameNotifier::Token FrameTree::AddListener(FrameNotifier::Listener listener) {
   if (!listener) {
-    throw Error(Error::Kind::InvalidArgument, "frame listener", "an empty function cannot listen");
+    throw Error(Error::Kind::InvalidArgument, "frame listener", "the function is empty");
   }
   return this->Notifier_.Add(std::move(listener));
 }
@@ -253,14 +253,14 @@ std::string FrameTree::Label(FrameId id) const {
   return "frame '" + this->PathOfSlot(this->FindSlot(id)) + "'";
 }
 
-void FrameTree::RefuseRoot(FrameId id, const char* what) const {
+void FrameTree::RejectRoot(FrameId id, const char* what) const {
   if (id == RootFrame) {
     throw Error(Error::Kind::InvalidArgument, this->Label(id),
                 std::string("the root frame cannot be ") + what);
   }
 }
 
-void FrameTree::RefuseTakenName(FrameId parent, const std::string& name) const {
+void FrameTree::RejectTakenName(FrameId parent, const std::string& name) const {
   const auto sibling = this->ChildOf_.find({parent, name});
   if (sibling != this->ChildOf_.end()) {
     throw Error(Error::Kind::AlreadyExists, this->Label(sibling->second),
@@ -312,9 +312,9 @@ void FrameTree::Reorder(SlotIndex first, SlotIndex last, const std::vector<SlotI
 
 void FrameTree::SetLocalPose(FrameId id, const Pose& X_PF) {
   const SlotIndex slot = this->FindSlot(id);
-  this->RefuseRoot(id, "posed");
+  this->RejectRoot(id, "posed");
   if (!IsValidPose(X_PF)) {
-    RefusePose(this->Label(id), X_PF);
+    RejectPose(this->Label(id), X_PF);
   }
   if (this->StorePose(slot, NormalisedPose(X_PF))) {
     this->Emit(FrameEvent::Type::PosesChanged, {id});
@@ -329,18 +329,18 @@ void FrameTree::SetLocalPoses(const FrameId* ids, const double* poses, std::size
   this->BatchSlots_.resize(std::max(n, this->BatchSlots_.size()), 0);
   this->BatchRows_.resize(this->Size(), 0);
   const std::uint64_t start = this->BatchStart_;
-  this->BatchStart_ += n; // also when this call is refused
+  this->BatchStart_ += n; // also if this call is rejected
   for (std::size_t i = 0; i < n; ++i) {
-    // A simulation sends the same frames again and again: most often it is the last call's slot.
+    // A simulation usually sends the same frames each time: try the slot of the last call first.
     SlotIndex& slot = this->BatchSlots_[i];
     if (slot >= this->Ids_.size() || this->Ids_[slot] != ids[i]) {
       slot = this->FindSlot(ids[i]);
     }
-    this->RefuseRoot(ids[i], "posed");
+    this->RejectRoot(ids[i], "posed");
     std::uint64_t& row = this->BatchRows_[slot];
     if (row >= start) {
       throw Error(Error::Kind::InvalidArgument, this->Label(ids[i]),
-                  "it comes twice, in rows " + std::to_string(row - start) + " and " +
+                  "it is given twice, in rows " + std::to_string(row - start) + " and " +
                       std::to_string(i) + "; accepted: each frame once");
     }
     row = start + i;
@@ -348,7 +348,7 @@ void FrameTree::SetLocalPoses(const FrameId* ids, const double* poses, std::size
     if (!IsPlainlyValid(pose)) {
       const Pose X_PF = PoseFromRow(pose);
       if (!IsValidPose(X_PF)) {
-        RefusePose(this->Label(ids[i]) + " (row " + std::to_string(i) + ")", X_PF);
+        RejectPose(this->Label(ids[i]) + " (row " + std::to_string(i) + ")", X_PF);
       }
     }
   }
@@ -390,7 +390,7 @@ Pose FrameTree::RelativePose(FrameId W, FrameId G) const {
     any = true;
   };
   std::vector<SlotIndex> down; // from G up to below the common ancestor
-  while (w != g) {             // whoever has the larger slot cannot be the other's ancestor
+  while (w != g) {             // the larger slot cannot be the other's ancestor
     if (w > g) {
       append(this->Local_[w].Inverse());
       w = this->Parents_[w];

@@ -1,4 +1,4 @@
-// The tree of frames: names, parents and poses, in flat arrays with parents before children.
+// The tree of frames: names, parents and poses, in flat arrays. Parents come before children.
 #ifndef DSPACE_FRAME_TREE_H
 #define DSPACE_FRAME_TREE_H
 
@@ -53,13 +53,13 @@ public:
   // proportion to the slots from the frame's on.
   std::vector<FrameId> Remove(FrameId id);
 
-  // Hangs the frame with its subtree under `newParent`, as its last child. With `keepWorldPose` the
+  // Moves the frame with its subtree under `newParent`, as its last child. With `keepWorldPose` the
   // local pose becomes RelativePose(newParent, id), else it stays. Throws InvalidArgument when
-  // newParent is in the subtree, AlreadyExists when it has a child of that name. The present parent
-  // is no change.
+  // newParent is in the subtree, AlreadyExists when it has a child of that name. Passing the
+  // current parent is no change.
   void Reparent(FrameId id, FrameId newParent, bool keepWorldPose);
 
-  // The present name is no change.
+  // Passing the current name is no change. Throws as Create() for a bad or taken name.
   void Rename(FrameId id, const std::string& name);
 
   bool Contains(FrameId id) const { return this->SlotOf_.count(id) != 0; }
@@ -93,8 +93,8 @@ public:
   // --- Evaluation, once a step and only where something changed ----------------------------------
 
   // Evaluates the root-relative poses of changed frames and of their subtrees. Returns the frames
-  // whose root-relative pose was evaluated anew since the previous Update() (created ones among
-  // them), parents first; valid until the next Update().
+  // whose root-relative pose was evaluated since the previous Update() (including new frames),
+  // parents first. The reference is valid until the next Update().
   const std::vector<FrameId>& Update();
   // X_RootF, equal to the bit to RelativePose(RootFrame, id). Up to date without Update().
   const Pose& WorldPose(FrameId id) const;
@@ -120,7 +120,7 @@ public:
 
 private:
   using SlotIndex = std::uint32_t;
-  // What is not needed to evaluate poses.
+  // Data that evaluating poses does not need.
   struct Node {
     std::string name;
     std::vector<FrameId> children;
@@ -141,8 +141,8 @@ private:
   SlotIndex FindSlot(FrameId id) const;
   std::string PathOfSlot(SlotIndex slot) const;
   std::string Label(FrameId id) const; // "frame 'rover/mast'", for messages
-  void RefuseRoot(FrameId id, const char* what) const;
-  void RefuseTakenName(FrameId parent, const std::string& name) const;
+  void RejectRoot(FrameId id, const char* what) const;
+  void RejectTakenName(FrameId parent, const std::string& name) const;
   void DetachFromParent(SlotIndex slot);
   std::vector<char> SubtreeFrom(SlotIndex slot) const;
   void Reorder(SlotIndex first, SlotIndex last, const std::vector<SlotIndex>& order);
@@ -155,7 +155,7 @@ private:
   std::vector<SlotIndex> Parents_; // the root's is 0
   std::vector<Pose> Local_;        // X_PF
   std::vector<Node> Nodes_;
-  mutable WorldPoses World_; // X_RootF, evaluated when somebody asks
+  mutable WorldPoses World_; // X_RootF, evaluated on demand
 
   std::unordered_map<FrameId, SlotIndex> SlotOf_;
   std::unordered_map<ChildKey, FrameId, ChildKeyHash> ChildOf_;

@@ -10,7 +10,8 @@
 
 namespace dspace {
 
-// values[first, last) becomes what stood at the slots named by `order`, in that order.
+// Replaces values[first, last) by the values at the slots in `order`, in that order. Values of that
+// range that `order` omits are erased.
 template<class T>
 void Rearrange(std::vector<T>& values, std::size_t first, std::size_t last,
                const std::vector<std::uint32_t>& order) {

@@ -1,4 +1,4 @@
-// Files of libraries' own that what is shown depends on.
+// System files of libraries that affect results.
 #ifndef DSPACE_SYSTEM_FILES_H
 #define DSPACE_SYSTEM_FILES_H
 
@@ -6,8 +6,8 @@
 
 namespace dspace {
 
-// As NoteFileRead, for a file that no command can choose (a library's, of this machine): recordings
-// note it, and no FilesGuard looks at it. One that is not there is noted as absent.
+// Like NoteFileRead, for a file of a library on this machine that no command can name. Recordings
+// note it; FilesGuard does not check it. A missing file is noted as absent.
 void NoteSystemFile(const std::string& path);
 
 } // namespace dspace

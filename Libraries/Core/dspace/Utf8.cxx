@@ -36,7 +36,7 @@ void SkipAscii(const std::string& text, std::size_t& at) {
   }
 }
 
-// Where the first byte is that is no UTF-8; text.size() where there is none.
+// Where the first byte is that is not UTF-8; text.size() where there is none.
 std::size_t FirstForeign(const std::string& text, std::size_t at) {
   for (SkipAscii(text, at); at < text.size(); SkipAscii(text, at)) {
     if (NextCharacter(text, at) == NoCharacter) {

@@ -1,5 +1,5 @@
-// UTF-8, the encoding of every text that Dspace keeps, sends and records; and the way of other
-// encodings into it. The only place that reads the bytes of characters.
+// UTF-8, the encoding of every text that Dspace stores, sends and records, and conversion into it.
+// All decoding of characters is here.
 #ifndef DSPACE_UTF8_H
 #define DSPACE_UTF8_H
 

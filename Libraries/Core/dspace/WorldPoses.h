@@ -18,8 +18,8 @@ public:
   WorldPoses(); // of the root alone
 
   void Append(); // one slot more
-  // Slots [first, last) take what stood at `order`; those left out are dropped, which only the end
-  // of the arrays allows.
+  // Replaces slots [first, last) by the slots in `order`. Slots may be omitted (erased) only at the
+  // end of the arrays.
   void Reorder(SlotIndex first, SlotIndex last, const std::vector<SlotIndex>& order);
   // The slot's local pose or parent has changed.
   void Mark(SlotIndex slot);

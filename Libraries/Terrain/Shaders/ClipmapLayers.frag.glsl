@@ -1,4 +1,4 @@
-// What is painted on a terrain: tiles of its colour layers, found by a page table of each zoom.
+// Colour layers of a terrain: tiles found by a page table of each zoom.
 #ifdef DSPACE_LAYERS
 in vec2 layerAt; // texels of the finest zoom, from the corner of a tile near the camera on
 uniform sampler2DArray layerTiles; // opacity times the root of linear light, opacity

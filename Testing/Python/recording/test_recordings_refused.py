@@ -345,7 +345,7 @@ def test_playback_refuses_by_name(tmp_path, monkeypatch):
             @classmethod
             def sleep(cls, seconds):
                 cls.waits.append(seconds)
-                time.sleep(0 if seconds < 1e9 else seconds)  # which the system would refuse
+                time.sleep(0 if seconds < 1e9 else seconds)  # which the system would reject
                 if len(cls.waits) == 5:
                     raise KeyboardInterrupt
 

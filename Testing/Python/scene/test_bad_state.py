@@ -70,7 +70,7 @@ def test_poses_of_frames(scene, refused):
             ("frame 'new': the quaternion is (1, 0, 0)", lambda: scene.add_frame("new", quaternion=(1, 0, 0))),
             ("in scene 'scene': the poses have shape (2, 3)", lambda: scene.set_poses([frame], np.zeros((2, 3)))),
             ("scene 'scene': frames is 'f'", lambda: scene.set_poses("f", np.zeros((1, 8)))),
-            ("frame 'f': it comes twice, in rows 0 and 1; accepted: each frame once",
+            ("frame 'f': it is given twice, in rows 0 and 1; accepted: each frame once",
              lambda: scene.set_poses([frame, "f"], [[0, 0, 0, 1, 0, 0, 0]] * 2))):
         with refused(dspace.InvalidArgument, text):
             use()

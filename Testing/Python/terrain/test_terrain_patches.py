@@ -1,4 +1,4 @@
-"""Terrain groups through Python: patches on rasters, what they answer, draw and refuse."""
+"""Terrain groups through Python: patches on rasters, what they answer, draw and reject."""
 import os
 import pathlib
 

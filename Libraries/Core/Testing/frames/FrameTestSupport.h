@@ -73,21 +73,22 @@ inline std::string Dump(const FrameTree& tree) {
 
 // `change` throws an Error of this kind whose message holds each of `words`; the tree stays equal.
 template<class Change>
-void ExpectRefused(FrameTree& tree, Error::Kind kind, const std::vector<std::string>& words,
-                   Change change) {
+void ExpectRejected(FrameTree& tree, Error::Kind kind, const std::vector<std::string>& words,
+                    Change change) {
   const std::string before = Dump(tree);
-  bool refused = false;
+  bool rejected = false;
   try {
     change();
   } catch (const Error& error) {
-    refused = true;
+    rejected = true;
     EXPECT_EQ(error.GetKind(), kind) << error.what();
     for (const std::string& word : words) {
       EXPECT_NE(std::strstr(error.what(), word.c_str()), nullptr)
           << "'" << word << "' is not in: " << error.what();
     }
   }
-  EXPECT_TRUE(refused) << "no error; expected one with '" << (words.empty() ? "" : words[0]) << "'";
+  EXPECT_TRUE(rejected) << "no error; expected one with '" << (words.empty() ? "" : words[0])
+                        << "'";
   EXPECT_EQ(Dump(tree), before);
 }
 

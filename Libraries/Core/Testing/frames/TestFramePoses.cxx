@@ -10,7 +10,7 @@ namespace {
 using namespace dspace;
 using dspace::testing::AppendRow;
 using dspace::testing::Dump;
-using dspace::testing::ExpectRefused;
+using dspace::testing::ExpectRejected;
 using dspace::testing::RandomPose;
 using dspace::testing::Shift;
 using dspace::testing::ToAffine;
@@ -224,7 +224,7 @@ TEST(FramePoses, HoldLightYearsAndNanometres) {
   EXPECT_DOUBLE_EQ(tree.WorldPose(b).scale, 1.0);
 }
 
-TEST(FramePoses, AreRefusedWhenInvalid) {
+TEST(FramePoses, AreRejectedWhenInvalid) {
   FrameTree tree;
   const FrameId a = tree.Create(RootFrame, "a", Shift(1));
   const FrameId b = tree.Create(a, "b", Shift(2));
@@ -263,27 +263,27 @@ TEST(FramePoses, AreRefusedWhenInvalid) {
     X.position = {rows[8], rows[9], rows[10]};
     X.rotation = Eigen::Quaterniond(rows[11], rows[12], rows[13], rows[14]);
     X.scale = rows[15];
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a/b'", c.word},
-                  [&] { tree.SetLocalPose(b, X); });
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a/b/c'", c.word},
-                  [&] { tree.Create(b, "c", X); });
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a/b'", c.word},
+                   [&] { tree.SetLocalPose(b, X); });
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a/b/c'", c.word},
+                   [&] { tree.Create(b, "c", X); });
     const FrameId ids[] = {a, b}; // the first row is good and must not be applied
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a/b'", "row 1", c.word},
-                  [&] { tree.SetLocalPoses(ids, rows.data(), 2); });
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a/b'", "row 1", c.word},
+                   [&] { tree.SetLocalPoses(ids, rows.data(), 2); });
   }
   std::vector<double> rows;
   AppendRow(rows, Shift(5));
   AppendRow(rows, Shift(6));
   for (const FrameId bad : {NoFrame, FrameId(99)}) {
     const FrameId ids[] = {a, bad};
-    ExpectRefused(tree, Kind::NotFound, {"frame " + std::to_string(bad)},
-                  [&] { tree.SetLocalPoses(ids, rows.data(), 2); });
+    ExpectRejected(tree, Kind::NotFound, {"frame " + std::to_string(bad)},
+                   [&] { tree.SetLocalPoses(ids, rows.data(), 2); });
   }
   const FrameId withRoot[] = {a, RootFrame};
-  ExpectRefused(tree, Kind::InvalidArgument, {"root"},
-                [&] { tree.SetLocalPoses(withRoot, rows.data(), 2); });
-  ExpectRefused(tree, Kind::InvalidArgument, {"2 frames", "missing"},
-                [&] { tree.SetLocalPoses(withRoot, nullptr, 2); });
+  ExpectRejected(tree, Kind::InvalidArgument, {"root"},
+                 [&] { tree.SetLocalPoses(withRoot, rows.data(), 2); });
+  ExpectRejected(tree, Kind::InvalidArgument, {"2 frames", "missing"},
+                 [&] { tree.SetLocalPoses(withRoot, nullptr, 2); });
   const FrameId good[] = {a, b}; // the same rows are accepted where all is well
   tree.SetLocalPoses(good, rows.data(), 2);
   EXPECT_EQ(tree.WorldPose(b), Shift(11));
@@ -316,11 +316,11 @@ TEST(FramePoses, AFrameComesOnce) {
   AppendRow(rows, Shift(1));
   AppendRow(rows, Shift(2));
   AppendRow(rows, Shift(3));
-  for (int i = 0; i < 2; ++i) { // a refused call leaves nothing behind for the next one
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'", "twice", "rows 0 and 2"},
-                  [&] { tree.SetLocalPoses(ids, rows.data(), 3); });
+  for (int i = 0; i < 2; ++i) { // a rejected call leaves nothing behind for the next one
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a'", "twice", "rows 0 and 2"},
+                   [&] { tree.SetLocalPoses(ids, rows.data(), 3); });
   }
-  ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'", "rows 0 and 1"}, [&] {
+  ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a'", "rows 0 and 1"}, [&] {
     const FrameId same[] = {a, a};
     tree.SetLocalPoses(same, rows.data(), 2);
   });

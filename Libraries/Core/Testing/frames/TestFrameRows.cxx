@@ -69,13 +69,13 @@ TEST(FrameRows, PosesOfManyAreThoseOfEachByItself) {
 TEST(FrameRows, TheToleranceOfManyIsThatOfOne) {
   FrameTree tree;
   const FrameId a = tree.Create(RootFrame, "a");
-  int refused = 0;
+  int rejected = 0;
   for (int i = -50; i < 50; ++i) {
     for (const double edge : {1.0 + UnitQuaternionTolerance, 1.0 - UnitQuaternionTolerance,
                               1.0 + UnitQuaternionTolerance / 2}) {
       const double row[8] = {0, 0, 0, 0.6 * (edge + i * 0x1p-53), 0, 0.8 * edge, 0, 1};
       const bool valid = IsValidPose(PoseFromRow(row));
-      refused += valid ? 0 : 1;
+      rejected += valid ? 0 : 1;
       if (valid) {
         EXPECT_NO_THROW(tree.SetLocalPoses(&a, row, 1));
       } else {
@@ -83,8 +83,8 @@ TEST(FrameRows, TheToleranceOfManyIsThatOfOne) {
       }
     }
   }
-  EXPECT_GT(refused, 20);
-  EXPECT_LT(refused, 180);
+  EXPECT_GT(rejected, 20);
+  EXPECT_LT(rejected, 180);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double most = MaximumCoordinate;
   const double over = std::nextafter(most, 2 * most);

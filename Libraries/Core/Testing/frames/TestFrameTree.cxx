@@ -1,4 +1,4 @@
-// The frame tree's structure: names, paths, ids, removal, reparenting, refusals.
+// The frame tree's structure: names, paths, ids, removal, reparenting, rejections.
 #include <limits>
 
 #include "FrameTestSupport.h"
@@ -6,7 +6,7 @@
 namespace {
 
 using namespace dspace;
-using dspace::testing::ExpectRefused;
+using dspace::testing::ExpectRejected;
 using dspace::testing::RandomPose;
 using dspace::testing::Shift;
 using Kind = Error::Kind;
@@ -52,7 +52,7 @@ TEST(FrameTree, FindsByPath) {
   tree.Rename(mast, "pole");
   EXPECT_EQ(tree.Find("rover/mast/camera"), NoFrame);
   EXPECT_EQ(tree.Find("rover/pole/camera"), camera);
-  tree.Rename(mast, "pole");                        // no change, no refusal of its own name
+  tree.Rename(mast, "pole");                        // no change, no rejection of its own name
   EXPECT_EQ(tree.Create(rover, "mast"), named + 1); // the old name is free
 }
 
@@ -65,17 +65,17 @@ TEST(FrameTree, NeverReusesAnId) {
   EXPECT_EQ(tree.Create(RootFrame, "e"), 102u);
   tree.Remove(102);
   EXPECT_EQ(tree.Create(RootFrame, "f"), 103u);
-  ExpectRefused(tree, Kind::AlreadyExists, {"g", "102", "removed"},
-                [&] { tree.Create(RootFrame, "g", {}, 102); });
-  ExpectRefused(tree, Kind::AlreadyExists, {"g", "50", "'d'"},
-                [&] { tree.Create(RootFrame, "g", {}, 50); });
-  ExpectRefused(tree, Kind::AlreadyExists, {"g", "1 "},
-                [&] { tree.Create(RootFrame, "g", {}, RootFrame); });
+  ExpectRejected(tree, Kind::AlreadyExists, {"g", "102", "removed"},
+                 [&] { tree.Create(RootFrame, "g", {}, 102); });
+  ExpectRejected(tree, Kind::AlreadyExists, {"g", "50", "'d'"},
+                 [&] { tree.Create(RootFrame, "g", {}, 50); });
+  ExpectRejected(tree, Kind::AlreadyExists, {"g", "1 "},
+                 [&] { tree.Create(RootFrame, "g", {}, RootFrame); });
   const FrameId largest = std::numeric_limits<std::int64_t>::max();
-  ExpectRefused(tree, Kind::InvalidArgument, {"g", "9223372036854775808"},
-                [&] { tree.Create(RootFrame, "g", {}, largest + 1); });
+  ExpectRejected(tree, Kind::InvalidArgument, {"g", "9223372036854775808"},
+                 [&] { tree.Create(RootFrame, "g", {}, largest + 1); });
   EXPECT_EQ(tree.Create(RootFrame, "last", {}, largest), largest);
-  ExpectRefused(tree, Kind::InvalidArgument, {"g", "2^63"}, [&] { tree.Create(RootFrame, "g"); });
+  ExpectRejected(tree, Kind::InvalidArgument, {"g", "2^63"}, [&] { tree.Create(RootFrame, "g"); });
 }
 
 TEST(FrameTree, RemovesSubtreesChildrenFirst) {
@@ -141,7 +141,7 @@ TEST(FrameTree, ReparentKeepsTheWorldPoseThroughTheCommonAncestor) {
   EXPECT_LT((after.Matrix() - before.Matrix()).norm(), 1e-13);
 }
 
-TEST(FrameTree, RefusesWhatIsNotThere) {
+TEST(FrameTree, RejectsWhatIsNotThere) {
   FrameTree tree;
   const FrameId a = tree.Create(RootFrame, "a");
   const FrameId gone = tree.Create(RootFrame, "gone");
@@ -150,45 +150,45 @@ TEST(FrameTree, RefusesWhatIsNotThere) {
   const double row[8] = {0, 0, 0, 1, 0, 0, 0, 1};
   for (const FrameId bad : {NoFrame, gone, FrameId(77)}) {
     const std::vector<std::string> words = {"frame " + std::to_string(bad)};
-    const auto refused = [&](auto change) { ExpectRefused(tree, Kind::NotFound, words, change); };
-    refused([&] { tree.Create(bad, "x"); });
-    refused([&] { tree.Remove(bad); });
-    refused([&] { tree.Reparent(bad, a, true); });
-    refused([&] { tree.Reparent(a, bad, true); });
-    refused([&] { tree.Rename(bad, "x"); });
-    refused([&] { tree.Find("a", bad); });
-    refused([&] { tree.Path(bad); });
-    refused([&] { tree.Name(bad); });
-    refused([&] { tree.Parent(bad); });
-    refused([&] { tree.Children(bad); });
-    refused([&] { tree.SetLocalPose(bad, Pose()); });
-    refused([&] { tree.SetLocalPoses(&bad, row, 1); });
-    refused([&] { tree.LocalPose(bad); });
-    refused([&] { tree.RelativePose(bad, a); });
-    refused([&] { tree.RelativePose(a, bad); });
-    refused([&] { tree.RelativePoses(bad, out); });
-    refused([&] { tree.WorldPose(bad); });
-    refused([&] { tree.ChangedAt(bad); });
-    refused([&] { tree.Slot(bad); });
+    const auto rejected = [&](auto change) { ExpectRejected(tree, Kind::NotFound, words, change); };
+    rejected([&] { tree.Create(bad, "x"); });
+    rejected([&] { tree.Remove(bad); });
+    rejected([&] { tree.Reparent(bad, a, true); });
+    rejected([&] { tree.Reparent(a, bad, true); });
+    rejected([&] { tree.Rename(bad, "x"); });
+    rejected([&] { tree.Find("a", bad); });
+    rejected([&] { tree.Path(bad); });
+    rejected([&] { tree.Name(bad); });
+    rejected([&] { tree.Parent(bad); });
+    rejected([&] { tree.Children(bad); });
+    rejected([&] { tree.SetLocalPose(bad, Pose()); });
+    rejected([&] { tree.SetLocalPoses(&bad, row, 1); });
+    rejected([&] { tree.LocalPose(bad); });
+    rejected([&] { tree.RelativePose(bad, a); });
+    rejected([&] { tree.RelativePose(a, bad); });
+    rejected([&] { tree.RelativePoses(bad, out); });
+    rejected([&] { tree.WorldPose(bad); });
+    rejected([&] { tree.ChangedAt(bad); });
+    rejected([&] { tree.Slot(bad); });
   }
-  ExpectRefused(tree, Kind::NotFound, {"slot 2", "2 frames"}, [&] { tree.IdAt(2); });
+  ExpectRejected(tree, Kind::NotFound, {"slot 2", "2 frames"}, [&] { tree.IdAt(2); });
 }
 
-TEST(FrameTree, RefusesToTouchTheRoot) {
+TEST(FrameTree, RejectsToTouchTheRoot) {
   FrameTree tree;
   const FrameId a = tree.Create(RootFrame, "a");
   const double row[8] = {1, 0, 0, 1, 0, 0, 0, 1};
-  const auto refused = [&](const char* word, auto change) {
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame '/'", word}, change);
+  const auto rejected = [&](const char* word, auto change) {
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame '/'", word}, change);
   };
-  refused("removed", [&] { tree.Remove(RootFrame); });
-  refused("renamed", [&] { tree.Rename(RootFrame, "world"); });
-  refused("reparented", [&] { tree.Reparent(RootFrame, a, false); });
-  refused("posed", [&] { tree.SetLocalPose(RootFrame, Shift(1)); });
-  refused("posed", [&] { tree.SetLocalPoses(&RootFrame, row, 1); });
+  rejected("removed", [&] { tree.Remove(RootFrame); });
+  rejected("renamed", [&] { tree.Rename(RootFrame, "world"); });
+  rejected("reparented", [&] { tree.Reparent(RootFrame, a, false); });
+  rejected("posed", [&] { tree.SetLocalPose(RootFrame, Shift(1)); });
+  rejected("posed", [&] { tree.SetLocalPoses(&RootFrame, row, 1); });
 }
 
-TEST(FrameTree, RefusesBadNames) {
+TEST(FrameTree, RejectsBadNames) {
   FrameTree tree;
   const FrameId a = tree.Create(RootFrame, "a");
   const FrameId b = tree.Create(a, "b");
@@ -215,15 +215,15 @@ TEST(FrameTree, RefusesBadNames) {
            }(),
        "\u00e9...', 1000001 bytes long"}};
   for (const auto& [name, shown] : bad) {
-    ExpectRefused(tree, Kind::InvalidArgument, {"child of frame 'a'", shown},
-                  [&] { tree.Create(a, name); });
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a/b'", shown},
-                  [&] { tree.Rename(b, name); });
+    ExpectRejected(tree, Kind::InvalidArgument, {"child of frame 'a'", shown},
+                   [&] { tree.Create(a, name); });
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a/b'", shown},
+                   [&] { tree.Rename(b, name); });
   }
-  ExpectRefused(tree, Kind::AlreadyExists, {"frame 'a/b'"}, [&] { tree.Create(a, "b"); });
-  ExpectRefused(tree, Kind::AlreadyExists, {"frame 'a/c'"}, [&] { tree.Rename(b, "c"); });
-  ExpectRefused(tree, Kind::AlreadyExists, {"frame 'b'"},
-                [&] { tree.Reparent(b, RootFrame, false); });
+  ExpectRejected(tree, Kind::AlreadyExists, {"frame 'a/b'"}, [&] { tree.Create(a, "b"); });
+  ExpectRejected(tree, Kind::AlreadyExists, {"frame 'a/c'"}, [&] { tree.Rename(b, "c"); });
+  ExpectRejected(tree, Kind::AlreadyExists, {"frame 'b'"},
+                 [&] { tree.Reparent(b, RootFrame, false); });
   for (const std::string& good : std::vector<std::string>{" ", "...", ".a", "mât", "a b",
                                                           "left\\right", std::string(255, 'n')}) {
     EXPECT_EQ(tree.Find(good), NoFrame);
@@ -231,29 +231,29 @@ TEST(FrameTree, RefusesBadNames) {
   }
 }
 
-TEST(FrameTree, RefusesCycles) {
+TEST(FrameTree, RejectsCycles) {
   FrameTree tree;
   const FrameId a = tree.Create(RootFrame, "a");
   const FrameId b = tree.Create(a, "b");
   const FrameId c = tree.Create(b, "c");
   for (const bool keep : {false, true}) {
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'"}, [&] { tree.Reparent(a, a, keep); });
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'", "'a/b'"},
-                  [&] { tree.Reparent(a, b, keep); });
-    ExpectRefused(tree, Kind::InvalidArgument, {"frame 'a'", "'a/b/c'"},
-                  [&] { tree.Reparent(a, c, keep); });
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a'"}, [&] { tree.Reparent(a, a, keep); });
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a'", "'a/b'"},
+                   [&] { tree.Reparent(a, b, keep); });
+    ExpectRejected(tree, Kind::InvalidArgument, {"frame 'a'", "'a/b/c'"},
+                   [&] { tree.Reparent(a, c, keep); });
   }
 }
 
-TEST(FrameTree, RefusesToKeepAWorldPoseThatNoPoseInTheParentGives) {
+TEST(FrameTree, RejectsToKeepAWorldPoseThatNoPoseInTheParentGives) {
   FrameTree tree;
   Pose tiny, huge;
   tiny.scale = 1e-12;
   huge.scale = 1e12;
   const FrameId a = tree.Create(RootFrame, "a", tiny);
   const FrameId b = tree.Create(RootFrame, "b", huge);
-  ExpectRefused(tree, Kind::InvalidArgument, {"frame 'b'", "scale 1e+24"},
-                [&] { tree.Reparent(b, a, true); });
+  ExpectRejected(tree, Kind::InvalidArgument, {"frame 'b'", "scale 1e+24"},
+                 [&] { tree.Reparent(b, a, true); });
   tree.Reparent(b, a, false);
 }
 

@@ -83,8 +83,8 @@ TEST(ImportGltf, BadFilesAreTypedErrors) {
   expect(corrupt, "has no primitives", "\"primitives\"", "\"primitive\"");
   expect(corrupt, "nothing to draw", "\"scenes\": [{\"nodes\": [0]}]", "\"scenes\": [{}]");
   expect(corrupt, "mesh 'quad' has 8 vertices and no faces", "\"indices\": 2,", "\"mode\": 0,");
-  expect(corrupt, "no glTF", "\"asset\"", "asset");
-  ExpectReadError(corrupt, "no glTF",
+  expect(corrupt, "not glTF", "\"asset\"", "asset");
+  ExpectReadError(corrupt, "not glTF",
                   folder.Write("deep.gltf", "{\"a\":" + std::string(1000000, '[')));
   std::string deep = "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [";
   for (int i = 0; i < 20000; ++i) {

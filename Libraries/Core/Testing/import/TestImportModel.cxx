@@ -255,7 +255,7 @@ TEST(ImportReader, WrongFilesAreTypedErrors) {
   }
   ExpectReadError(Error::Kind::Unsupported, "accepted are", folder.Write("a.xyz", "hello world"));
   ExpectReadError(Error::Kind::Unsupported, "URDF", folder.Write("a.urdf", "<robot name='r'/>"));
-  ExpectReadError(Error::Kind::Corrupt, "no glTF",
+  ExpectReadError(Error::Kind::Corrupt, "not glTF",
                   folder.Write("png.gltf", DecodeBase64(FourColorsPng)));
   ExpectReadError(Error::Kind::Corrupt, "no faces",
                   folder.Write("png.obj", DecodeBase64(FourColorsPng)));

@@ -229,21 +229,21 @@ TEST(ImportPly, BadInput) {
   bad("format ascii|binary_little_endian", "ply\nformat ascii 2.0\nend_header\n");
   bad("there is no 'format' line", "ply\nend_header\n");
   bad("has no vertices", "ply\nformat ascii 1.0\nend_header\n");
-  bad("'real' is no type",
+  bad("'real' is not a type",
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\nend_header\n1\n");
-  bad("stands there twice", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
-                            "property float x\nend_header\n1 1\n");
+  bad("is given twice", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                        "property float x\nend_header\n1 1\n");
   bad("has no properties x, y and z",
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n");
   bad("vertex index 4.0", Square(SquareRows, "3 0 1 4\n"));
   bad("vertex index -1.0", Square(SquareRows, "3 0 1 -1\n"));
   bad("vertex 1 is at (nan", Square("0 0 0\nnan 0 0\n1 1 0\n0 1 0\n", "3 0 1 2\n"));
-  bad("'x' is no number", Square("0 0 0\nx 0 0\n1 1 0\n0 1 0\n", "3 0 1 2\n"));
-  bad("'1.5' is no integer", Square(SquareRows, "3 0 1 1.5\n"));
+  bad("'x' is not a number", Square("0 0 0\nx 0 0\n1 1 0\n0 1 0\n", "3 0 1 2\n"));
+  bad("'1.5' is not an integer", Square(SquareRows, "3 0 1 1.5\n"));
   bad("face 0: the file ends here", Square(SquareRows, "3 0 1\n"));
   bad("does not fit in the file", Square(SquareRows, "200 0 1 2\n"));
   bad("element vertex: 1000000000 rows",
-      Square(SquareRows, "3 0 1 2\n", 1000000000)); // refused before anything is allocated
+      Square(SquareRows, "3 0 1 2\n", 1000000000)); // rejected before anything is allocated
   std::string cut = BinaryPyramid(false);
   bad("face 4: ", cut.substr(0, cut.size() - 1));
   std::string rows = BinaryPyramid(true);

@@ -153,7 +153,7 @@ TEST(ImportStl, BadInput) {
   ExpectReadError(Error::Kind::Corrupt, "is empty", folder.Write("empty.stl", ""));
   ExpectReadError(Error::Kind::Corrupt, "says it has 12 triangles",
                   folder.Write("cut.stl", good.substr(0, good.size() - 1)));
-  ExpectReadError(Error::Kind::Corrupt, "is no STL", folder.Write("short.stl", "hello"));
+  ExpectReadError(Error::Kind::Corrupt, "is not an STL file", folder.Write("short.stl", "hello"));
   ExpectReadError(Error::Kind::Corrupt, "has no triangles", folder.Write("none.stl", Binary({})));
   ExpectReadError(Error::Kind::Corrupt, "no-facets.stl': has no triangles",
                   folder.Write("no-facets.stl", "solid a\nendsolid a\n"));

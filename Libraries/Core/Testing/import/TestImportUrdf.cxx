@@ -231,8 +231,8 @@ TEST(ImportUrdf, BadTextIsTyped) {
   ExpectError(Error::Kind::NotFound, "none.urdf", [&] { ReadUrdf(folder / "none.urdf"); });
   ExpectError(Error::Kind::Io, "not a regular file", [&] { ReadUrdf(folder / ""); });
   ExpectBad(folder, "is empty", "");
-  ExpectBad(folder, "no valid URDF", "hello");
-  ExpectBad(folder, "no valid URDF", "<sdf/>");
+  ExpectBad(folder, "not a valid URDF", "hello");
+  ExpectBad(folder, "not a valid URDF", "<sdf/>");
   ExpectBad(folder, "zero bytes", std::string("<robot name='r'>\0</robot>", 25));
   std::string deep = "<robot name='r'>";
   for (int i = 0; i < 200000; ++i) {

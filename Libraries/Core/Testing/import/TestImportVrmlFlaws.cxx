@@ -1,4 +1,4 @@
-// ReadModel on VRML: files that are refused, and what is left out with a warning.
+// ReadModel on VRML: files that are rejected, and what is left out with a warning.
 #include "VrmlTestSupport.h"
 
 namespace dspace::testing {
@@ -97,7 +97,7 @@ TEST(ImportVrml, FieldsOfNodesThatAreGivenTwice) {
   }
 }
 
-TEST(ImportVrml, CirclesAndBombsAreRefusedBeforeParsing) {
+TEST(ImportVrml, CirclesAndBombsAreRejectedBeforeParsing) {
   const TempFolder folder;
   const auto bad = [&folder](Error::Kind kind, const std::string& part, const std::string& text) {
     ExpectReadError(kind, part, folder.Write("bad.wrl", text));
@@ -133,7 +133,7 @@ TEST(ImportVrml, CirclesAndBombsAreRefusedBeforeParsing) {
                                            "Box { } appearance Appearance { texture PixelTexture { "
                                            "image IS i } } } } P { }");
   EXPECT_TRUE(HasWarning(image.warnings, "9 x 9 x 3 that has 1 pixels"));
-  bad(Error::Kind::Corrupt, "no type of a field", Head2 + "PROTO P [ field SFEnum e A ] { }");
+  bad(Error::Kind::Corrupt, "not a type of a field", Head2 + "PROTO P [ field SFEnum e A ] { }");
   // A PROTO inside its own body is no node at that place.
   const Model own =
       Read(folder, Head2 + "PROTO P [ ] { Group { children [ P { } ] } } P { }" + Shape("Box { }"));

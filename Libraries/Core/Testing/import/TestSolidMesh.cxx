@@ -139,7 +139,7 @@ TEST(SolidMesh, ShapesThatCouldShowTheirInsideAreNotTrusted) {
   EXPECT_TRUE(IsSolid(Prism({{0, 0}, {2, 0}, {2, 1}, {0, 1}})));
   // A bow tie: closed, but half of it is inside out.
   EXPECT_FALSE(IsSolid(Prism({{0, 0}, {2, 1}, {2, 0}, {0, 1}})));
-  // Embedded but not star-shaped: refused, which only costs time.
+  // Embedded but not star-shaped: rejected, which only costs time.
   EXPECT_FALSE(IsSolid(MakeTorus(2, 0.5, 24)));
 }
 

@@ -221,13 +221,13 @@ TEST_F(ColorBarTest, ItsTextsAreInkBesideTheirTicks) {
   EXPECT_LE(bar.Ticks().size(), 1u);
 }
 
-TEST_F(ColorBarTest, WhatCannotBeShownIsRefusedAndChangesNothing) {
-  const auto refused = [&](const std::vector<std::string>& parts, auto change) {
+TEST_F(ColorBarTest, WhatCannotBeShownIsRejectedAndChangesNothing) {
+  const auto rejected = [&](const std::vector<std::string>& parts, auto change) {
     ColorBar bar = Bar();
     change(bar);
     try {
       view->SetColorBar(bar);
-      ADD_FAILURE() << "accepted, not refused with " << parts[0];
+      ADD_FAILURE() << "accepted, not rejected with " << parts[0];
     } catch (const Error& error) {
       EXPECT_EQ(error.GetKind(), Error::Kind::InvalidArgument);
       for (const std::string& part : parts) {
@@ -239,28 +239,28 @@ TEST_F(ColorBarTest, WhatCannotBeShownIsRefusedAndChangesNothing) {
   view->SetColorBar(Bar());
   view->GetCapture({});
   constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
-  refused({"colour bar 'height'", "3000 to 3000"}, [](ColorBar& b) { b.low = 3000; });
-  refused({"nan"}, [](ColorBar& b) { b.high = NaN; });
-  refused({"inf"}, [](ColorBar& b) { b.high = std::numeric_limits<double>::infinity(); });
-  refused({"too close"}, [](ColorBar& b) { b.low = 1e12, b.high = 1e12 + 1; });
-  refused({"0 colours", "1 to 1024"}, [](ColorBar& b) { b.colors.clear(); });
-  refused({"1.5", "0 to 1"}, [](ColorBar& b) { b.colors[0][1] = 1.5; });
-  refused({"nan", "0 to 1"}, [](ColorBar& b) { b.colors[0][1] = NaN; });
-  refused({"a tick", "3001", "-1000 to 3000"}, [](ColorBar& b) { b.values = {3001}; });
-  refused({"a tick", "nan"}, [](ColorBar& b) { b.values = {NaN}; });
-  refused({"-3 ticks"}, [](ColorBar& b) { b.ticks = -3; });
-  refused({"101 ticks"}, [](ColorBar& b) { b.values.assign(101, 0.0); });
-  refused({"length", "8193"}, [](ColorBar& b) { b.length = 8193; });
-  refused({"thickness", "1"}, [](ColorBar& b) { b.thickness = 1; });
-  refused({"font size", "3"}, [](ColorBar& b) { b.fontSize = 3; });
-  refused({"margin", "-1"}, [](ColorBar& b) { b.margin = -1; });
-  refused({"its title", "U+000A"}, [](ColorBar& b) { b.title = "a\nb"; });
-  refused({"its unit", "U+4E2D"}, [](ColorBar& b) { b.unit = "中"; });
-  refused({"pixels large"}, [](ColorBar& b) {
+  rejected({"colour bar 'height'", "3000 to 3000"}, [](ColorBar& b) { b.low = 3000; });
+  rejected({"nan"}, [](ColorBar& b) { b.high = NaN; });
+  rejected({"inf"}, [](ColorBar& b) { b.high = std::numeric_limits<double>::infinity(); });
+  rejected({"too close"}, [](ColorBar& b) { b.low = 1e12, b.high = 1e12 + 1; });
+  rejected({"0 colours", "1 to 1024"}, [](ColorBar& b) { b.colors.clear(); });
+  rejected({"1.5", "0 to 1"}, [](ColorBar& b) { b.colors[0][1] = 1.5; });
+  rejected({"nan", "0 to 1"}, [](ColorBar& b) { b.colors[0][1] = NaN; });
+  rejected({"a tick", "3001", "-1000 to 3000"}, [](ColorBar& b) { b.values = {3001}; });
+  rejected({"a tick", "nan"}, [](ColorBar& b) { b.values = {NaN}; });
+  rejected({"-3 ticks"}, [](ColorBar& b) { b.ticks = -3; });
+  rejected({"101 ticks"}, [](ColorBar& b) { b.values.assign(101, 0.0); });
+  rejected({"length", "8193"}, [](ColorBar& b) { b.length = 8193; });
+  rejected({"thickness", "1"}, [](ColorBar& b) { b.thickness = 1; });
+  rejected({"font size", "3"}, [](ColorBar& b) { b.fontSize = 3; });
+  rejected({"margin", "-1"}, [](ColorBar& b) { b.margin = -1; });
+  rejected({"its title", "U+000A"}, [](ColorBar& b) { b.title = "a\nb"; });
+  rejected({"its unit", "U+4E2D"}, [](ColorBar& b) { b.unit = "中"; });
+  rejected({"pixels large"}, [](ColorBar& b) {
     b.title = std::string(4096, 'x');
     b.fontSize = 100;
   });
-  refused({"colour bar ''"}, [](ColorBar& b) { b.name = ""; });
+  rejected({"colour bar ''"}, [](ColorBar& b) { b.name = ""; });
 }
 
 } // namespace dspace::testing

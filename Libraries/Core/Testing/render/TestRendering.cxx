@@ -179,7 +179,7 @@ TEST_F(RenderingTest, APhysicalPictureKnowsNothingOfOrnaments) {
   EXPECT_GT(std::count(full.label.begin(), full.label.end(), arrow), 0);
 }
 
-TEST_F(RenderingTest, RefusesMoreSamplesThanCanBeDrawnBeforeAnythingChanges) {
+TEST_F(RenderingTest, RejectsMoreSamplesThanCanBeDrawnBeforeAnythingChanges) {
   Look({});
   auto viewport = View(50, 40, 1);
   int side = 0;
@@ -188,10 +188,10 @@ TEST_F(RenderingTest, RefusesMoreSamplesThanCanBeDrawnBeforeAnythingChanges) {
   });
   ASSERT_GE(side, 8192);
   const int wide = std::min(side, 16384); // at one sample a pixel, not at two
-  const auto refused = [&](const std::string& name, const std::string& size, auto&& f) {
+  const auto rejected = [&](const std::string& name, const std::string& size, auto&& f) {
     try {
       f();
-      ADD_FAILURE() << "accepted, not refused with " << size;
+      ADD_FAILURE() << "accepted, not rejected with " << size;
     } catch (const Error& error) {
       EXPECT_EQ(error.GetKind(), Error::Kind::InvalidArgument);
       for (const std::string& part :
@@ -209,14 +209,14 @@ TEST_F(RenderingTest, RefusesMoreSamplesThanCanBeDrawnBeforeAnythingChanges) {
     made->Initialize(context, scene, "fresh", "main", wide, 9, samples);
     return made;
   };
-  refused("fresh", tall, [&] { fresh(many); });
+  rejected("fresh", tall, [&] { fresh(many); });
   EXPECT_NO_THROW(fresh(1)->GetCapture({}));
   viewport->SetSamples(many);
-  refused("view", tall, [&] { viewport->Resize(wide, 9); });
+  rejected("view", tall, [&] { viewport->Resize(wide, 9); });
   EXPECT_EQ(viewport->GetWidth(), 50);
   viewport->SetSamples(1);
   viewport->Resize(wide, 9);
-  refused("view", tall, [&] { viewport->SetSamples(many); });
+  rejected("view", tall, [&] { viewport->SetSamples(many); });
   EXPECT_EQ(viewport->GetSamples(), 1);
   EXPECT_EQ(viewport->GetCapture({}).width, wide);
   // Sides that pass, and too many in all.
@@ -228,7 +228,7 @@ TEST_F(RenderingTest, RefusesMoreSamplesThanCanBeDrawnBeforeAnythingChanges) {
   }
 }
 
-TEST_F(RenderingTest, RefusesBadSizesAndRepeatsItselfToTheByte) {
+TEST_F(RenderingTest, RejectsBadSizesAndRepeatsItselfToTheByte) {
   Look({});
   scene->AddObject(Object("ball", scene->Frames().Create(RootFrame, "f", At(5, 0, 0)),
                           MakeSphere(1), std::make_shared<Material>()));

@@ -1,5 +1,5 @@
 // Letters of any alphabet the fonts have: each is drawn, in labels, tables and as triangles; the
-// others are refused by name.
+// others are rejected by name.
 #include "RenderingTestSupport.h"
 
 #include <functional>
@@ -146,10 +146,10 @@ std::string Utf8(int c) {
   return text;
 }
 
-void ExpectRefused(const std::vector<std::string>& parts, const std::function<void()>& f) {
+void ExpectRejected(const std::vector<std::string>& parts, const std::function<void()>& f) {
   try {
     f();
-    ADD_FAILURE() << "accepted, not refused with " << parts[0];
+    ADD_FAILURE() << "accepted, not rejected with " << parts[0];
   } catch (const Error& error) {
     EXPECT_EQ(error.GetKind(), Error::Kind::InvalidArgument);
     for (const std::string& part : parts) {
@@ -231,22 +231,22 @@ TEST(LabelText, WhateverIsAcceptedIsDrawn) {
   EXPECT_GT(accepted, 4000);
 }
 
-TEST(LabelText, WhatTheFontLacksIsRefusedByName) {
-  ExpectRefused({"label 'Ziel 中国'", "U+4E2D '中'", "accepted"}, [] { MakeLabel("Ziel 中国"); });
-  ExpectRefused({"U+1F680"}, [] { MakeLabel("\xF0\x9F\x9A\x80"); });
-  ExpectRefused({"U+1F600"}, [] { MakeLabel("\xF0\x9F\x98\x80"); });
-  ExpectRefused({"U+05D0", "right to left"}, [] { MakeLabel("אב"); });
-  ExpectRefused({"label 'a?b'", "U+0009", "accepted"}, [] { MakeLabel("a\tb"); });
-  ExpectRefused({"U+200B"}, [] { MakeLabel("a\xE2\x80\x8B"); });
+TEST(LabelText, WhatTheFontLacksIsRejectedByName) {
+  ExpectRejected({"label 'Ziel 中国'", "U+4E2D '中'", "accepted"}, [] { MakeLabel("Ziel 中国"); });
+  ExpectRejected({"U+1F680"}, [] { MakeLabel("\xF0\x9F\x9A\x80"); });
+  ExpectRejected({"U+1F600"}, [] { MakeLabel("\xF0\x9F\x98\x80"); });
+  ExpectRejected({"U+05D0", "right to left"}, [] { MakeLabel("אב"); });
+  ExpectRejected({"label 'a?b'", "U+0009", "accepted"}, [] { MakeLabel("a\tb"); });
+  ExpectRejected({"U+200B"}, [] { MakeLabel("a\xE2\x80\x8B"); });
   for (const char* bad : {"a\xFF", "\xC3", "a\xC0\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80"}) {
-    ExpectRefused({"label '", "0x", "accepted: UTF-8"}, [&] { MakeLabel(bad); });
+    ExpectRejected({"label '", "0x", "accepted: UTF-8"}, [&] { MakeLabel(bad); });
   }
   std::string greek; // a message keeps to whole characters, also where a text is shortened
   for (int i = 0; i < 5000; ++i) {
     greek += "λ";
   }
-  ExpectRefused({"λλλ...'", "5000"}, [&] { MakeLabel(greek); });
-  ExpectRefused({"λλλ...'", "5000"}, [&] { MakeTextMesh("a" + greek.substr(2), 1); });
+  ExpectRejected({"λλλ...'", "5000"}, [&] { MakeLabel(greek); });
+  ExpectRejected({"λλλ...'", "5000"}, [&] { MakeTextMesh("a" + greek.substr(2), 1); });
 }
 
 TEST(SolidText, LettersAreThoseOfLabels) {
@@ -305,11 +305,11 @@ TEST(SolidText, CapitalsAreAsHighAsAskedAndLinesFollow) {
   EXPECT_NEAR(bounds(MakeTextMesh("HH", 2)).max().x(), one.max().x() + 2.0 * 1540 / 1493, 1e-5);
 }
 
-TEST(SolidText, WhatTheFontLacksIsRefusedByName) {
-  ExpectRefused({"text 'Ziel 中国'", "U+4E2D '中'", "accepted"},
-                [] { MakeTextMesh("Ziel 中国", 1); });
-  ExpectRefused({"U+0009"}, [] { MakeTextMesh("a\tb", 1); });
-  ExpectRefused({"blank"}, [] { MakeTextMesh("\xC2\xA0", 1); });
+TEST(SolidText, WhatTheFontLacksIsRejectedByName) {
+  ExpectRejected({"text 'Ziel 中国'", "U+4E2D '中'", "accepted"},
+                 [] { MakeTextMesh("Ziel 中国", 1); });
+  ExpectRejected({"U+0009"}, [] { MakeTextMesh("a\tb", 1); });
+  ExpectRejected({"blank"}, [] { MakeTextMesh("\xC2\xA0", 1); });
 }
 
 TEST_F(TextTableTest, EachLetterOfAnyAlphabetIsInk) {
@@ -330,22 +330,22 @@ TEST_F(TextTableTest, ColumnsStayInLineInAnyAlphabet) {
   EXPECT_EQ(ink.Rightmost(8 + 2 * line, 8 + 3 * line), last);
 }
 
-TEST_F(TextTableTest, WhatWouldNotBeDrawnRightIsRefusedAndChangesNothing) {
+TEST_F(TextTableTest, WhatWouldNotBeDrawnRightIsRejectedAndChangesNothing) {
   const Ink before = Drawn(Table({{"a", "b"}}));
-  const auto refused = [&](const std::vector<std::string>& parts, const TextTable& table) {
-    ExpectRefused(parts, [&] { viewport->SetTextTable(table); });
+  const auto rejected = [&](const std::vector<std::string>& parts, const TextTable& table) {
+    ExpectRejected(parts, [&] { viewport->SetTextTable(table); });
     EXPECT_FALSE(viewport->IsOutdated());
   };
-  refused({"text table 'state'", "a label", "U+000A", "accepted"}, Table({{"a\nb", "c"}}));
-  refused({"text table 'state'", "the value of 'a'", "U+0009"}, Table({{"a", "b\tc"}}));
-  refused({"the value of 'a'", "U+000A"}, Table({{"a", "b\n"}}));
-  refused({"a label", "U+0085"}, Table({{"\xC2\x85", "c"}}));
-  refused({"the value of 'target'", "U+4E2D '中'", "accepted"}, Table({{"target", "中"}}));
-  refused({"a label", "U+4E2D"}, Table({{"中", "1"}}));
+  rejected({"text table 'state'", "a label", "U+000A", "accepted"}, Table({{"a\nb", "c"}}));
+  rejected({"text table 'state'", "the value of 'a'", "U+0009"}, Table({{"a", "b\tc"}}));
+  rejected({"the value of 'a'", "U+000A"}, Table({{"a", "b\n"}}));
+  rejected({"a label", "U+0085"}, Table({{"\xC2\x85", "c"}}));
+  rejected({"the value of 'target'", "U+4E2D '中'", "accepted"}, Table({{"target", "中"}}));
+  rejected({"a label", "U+4E2D"}, Table({{"中", "1"}}));
   TextTable titled = Table({{"a", "b"}});
   titled.title = "a\nb";
-  refused({"its title", "U+000A"}, titled);
+  rejected({"its title", "U+000A"}, titled);
   titled.title = "中";
-  refused({"its title", "U+4E2D"}, titled);
+  rejected({"its title", "U+4E2D"}, titled);
   EXPECT_TRUE(Drawn(Table({{"a", "b"}})) == before);
 }

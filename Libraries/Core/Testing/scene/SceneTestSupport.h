@@ -1,4 +1,4 @@
-// What the tests of scenes share: simple objects, cameras and lights, a scene, and refusals.
+// What the tests of scenes share: simple objects, cameras and lights, a scene, and rejections.
 #ifndef DSPACE_CORE_TESTING_SCENE_TEST_SUPPORT_H
 #define DSPACE_CORE_TESTING_SCENE_TEST_SUPPORT_H
 
@@ -75,8 +75,8 @@ inline std::string Describe(const Scene& scene) {
 }
 
 // `f` must throw `kind` with `word` in its message and change nothing.
-inline void ExpectRefused(Scene& scene, Error::Kind kind, const std::string& word,
-                          const std::function<void()>& f) {
+inline void ExpectRejected(Scene& scene, Error::Kind kind, const std::string& word,
+                           const std::function<void()>& f) {
   const std::string before = Describe(scene);
   try {
     f();

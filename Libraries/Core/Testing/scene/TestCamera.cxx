@@ -175,8 +175,8 @@ TEST(Projection, PixelRayMeetsItsPixel) {
   EXPECT_EQ(corner.direction, Vector3d(Vector3d::UnitZ()));
 }
 
-TEST(Projection, RefusesWhatCannotBeProjected) {
-  const auto refused = [](Projection p, const std::string& word) {
+TEST(Projection, RejectsWhatCannotBeProjected) {
+  const auto rejected = [](Projection p, const std::string& word) {
     EXPECT_REFUSED(p.Check("left eye"), word);
     EXPECT_REFUSED(p.Check("left eye"), "left eye");
   };
@@ -185,45 +185,45 @@ TEST(Projection, RefusesWhatCannotBeProjected) {
   EXPECT_NO_THROW(p.Check("left eye"));
   for (const double fov : {0.0, -1.0, 180.0, 1e-300, nan}) {
     p.verticalFov_deg = fov;
-    refused(p, "fov");
+    rejected(p, "fov");
   }
   // Finite, and beyond what a float of the GPU holds.
-  refused(Perspective(1e300, Infinity), "near distance is 1e+300; accepted: 1e-9 to 1e18 metres");
-  refused(Perspective(1e-300, 1.0), "near");
-  refused(Perspective(1.0, 1e300), "far distance is 1e+300; accepted: up to 1e18 metres");
+  rejected(Perspective(1e300, Infinity), "near distance is 1e+300; accepted: 1e-9 to 1e18 metres");
+  rejected(Perspective(1e-300, 1.0), "near");
+  rejected(Perspective(1.0, 1e300), "far distance is 1e+300; accepted: up to 1e18 metres");
   EXPECT_NO_THROW(Perspective(1e-9, 1e18).Check("left eye"));
   EXPECT_TRUE(Perspective(1e-9, 1e18).ClipFromView(4, 3).cast<float>().allFinite());
-  refused(Perspective(0.0, 1.0), "near");
-  refused(Perspective(nan, 1.0), "near");
-  refused(Perspective(2.0, 2.0), "far");
-  refused(Perspective(2.0, 1.0), "far");
-  refused(Perspective(2.0, nan), "far");
+  rejected(Perspective(0.0, 1.0), "near");
+  rejected(Perspective(nan, 1.0), "near");
+  rejected(Perspective(2.0, 2.0), "far");
+  rejected(Perspective(2.0, 1.0), "far");
+  rejected(Perspective(2.0, nan), "far");
   p = Orthographic();
   EXPECT_NO_THROW(p.Check("left eye"));
   p.farDistance = Infinity;
-  refused(p, "far");
+  rejected(p, "far");
   p = Orthographic();
   for (const double height : {0.0, -2.0, 1e300, 1e-300, Infinity, nan}) {
     p.height = height;
-    refused(p, "height");
+    rejected(p, "height");
   }
   p = Orthographic();
   p.nearDistance = -1e300;
-  refused(p, "near");
+  rejected(p, "near");
   p.nearDistance = p.farDistance - 1e-10;
-  refused(p, "far");
+  rejected(p, "far");
   p = OffAxis();
   EXPECT_NO_THROW(p.Check("left eye"));
   p.right = p.left;
-  refused(p, "left");
+  rejected(p, "left");
   p = OffAxis();
   p.top = p.bottom + 1.0;
-  refused(p, "top");
+  rejected(p, "top");
   p.top = nan;
-  refused(p, "top");
+  rejected(p, "top");
   p = OffAxis();
   p.right = 1e300;
-  refused(p, "right is 1e+300; accepted: -1e6 to 1e6");
+  rejected(p, "right is 1e+300; accepted: -1e6 to 1e6");
   EXPECT_REFUSED(OffAxis().ClipFromView(0, 10), "0 x 10");
   EXPECT_REFUSED(OffAxis().Project({0, 0, 1}, 10, -1), "10 x -1");
   EXPECT_REFUSED(Orthographic().MetresPerPixel(1.0, 0), "0");
@@ -245,7 +245,7 @@ TEST(LookAt, AxesByHand) {
   EXPECT_LT((D.col(2) - Vector3d(0, 0, -1)).norm(), 1e-15);
 }
 
-TEST(LookAt, RefusesWhatHasNoDirection) {
+TEST(LookAt, RejectsWhatHasNoDirection) {
   const Vector3d up = Vector3d::UnitZ();
   EXPECT_REFUSED(dspace::LookAt("mast", {1, 2, 3}, {1, 2, 3}, up), "mast");
   EXPECT_REFUSED(dspace::LookAt("mast", {0, 0, 0}, {0, 0, -3}, up), "line of sight");
@@ -416,7 +416,7 @@ TEST(Mount, FixedIsAsItWasGiven) {
             dspace::Error::Kind::NotFound);
 }
 
-TEST(Mount, Refusals) {
+TEST(Mount, Rejections) {
   CameraMount mount;
   EXPECT_NO_THROW(mount.Check("c"));
   mount.X_FC.scale = 2.0;

@@ -444,7 +444,7 @@ TEST(Orbit, NeedsAPointOnlyWhenADragBeginsOrAStepIsTaken) {
   EXPECT_FALSE(OrbitController::NeedsPivot(Event(Type::Release, 0, 0)));
 }
 
-TEST(Orbit, Refusals) {
+TEST(Orbit, Rejections) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(OrbitController(Vector3d(0, 0, 0)), dspace::Error);
   EXPECT_THROW(OrbitController(Vector3d(nan, 0, 0)), dspace::Error);

@@ -100,7 +100,7 @@ double Frustum(int n, double r, double s, double h) {
   return PolygonArea(n) * h * (r * r + r * s + s * s) / 3.0;
 }
 
-void ExpectRefused(const std::string& word, const std::function<void()>& f) {
+void ExpectRejected(const std::string& word, const std::function<void()>& f) {
   try {
     f();
     ADD_FAILURE() << "accepted; expected an error with '" << word << "'";
@@ -256,43 +256,43 @@ TEST(Primitives, LinesAndPoints) {
   EXPECT_EQ(At(cloud.positions, 2), points[2]);
 }
 
-TEST(Primitives, Refusals) {
+TEST(Primitives, Rejections) {
   for (const double bad : {0.0, -1.0, NaN, std::numeric_limits<double>::infinity(), 1e16, 1e-10}) {
-    ExpectRefused("box", [&] { dspace::MakeBox({1, bad, 1}); });
-    ExpectRefused("sphere", [&] { dspace::MakeSphere(bad); });
-    ExpectRefused("cylinder", [&] { dspace::MakeCylinder(bad, 1); });
-    ExpectRefused("cylinder", [&] { dspace::MakeCylinder(1, bad); });
-    ExpectRefused("cone", [&] { dspace::MakeCone(bad, 1); });
-    ExpectRefused("cone", [&] { dspace::MakeCone(1, bad); });
-    ExpectRefused("plane", [&] { dspace::MakePlane(bad, 1); });
-    ExpectRefused("plane", [&] { dspace::MakePlane(1, bad); });
-    ExpectRefused("disc", [&] { dspace::MakeDisc(bad); });
-    ExpectRefused("torus", [&] { dspace::MakeTorus(bad, 1e-9); });
-    ExpectRefused("torus", [&] { dspace::MakeTorus(1, bad); });
-    ExpectRefused("arrow", [&] { dspace::MakeArrow(bad); });
-    ExpectRefused("axes", [&] { dspace::MakeAxes(bad); });
-    ExpectRefused("goal marker", [&] { dspace::MakeGoalMarker(bad); });
-    ExpectRefused("tilt marker", [&] { dspace::MakeTiltMarker(bad); });
-    ExpectRefused("frustum pyramid",
-                  [&] { dspace::MakeFrustumPyramid(Projection(), bad, 10, 10); });
+    ExpectRejected("box", [&] { dspace::MakeBox({1, bad, 1}); });
+    ExpectRejected("sphere", [&] { dspace::MakeSphere(bad); });
+    ExpectRejected("cylinder", [&] { dspace::MakeCylinder(bad, 1); });
+    ExpectRejected("cylinder", [&] { dspace::MakeCylinder(1, bad); });
+    ExpectRejected("cone", [&] { dspace::MakeCone(bad, 1); });
+    ExpectRejected("cone", [&] { dspace::MakeCone(1, bad); });
+    ExpectRejected("plane", [&] { dspace::MakePlane(bad, 1); });
+    ExpectRejected("plane", [&] { dspace::MakePlane(1, bad); });
+    ExpectRejected("disc", [&] { dspace::MakeDisc(bad); });
+    ExpectRejected("torus", [&] { dspace::MakeTorus(bad, 1e-9); });
+    ExpectRejected("torus", [&] { dspace::MakeTorus(1, bad); });
+    ExpectRejected("arrow", [&] { dspace::MakeArrow(bad); });
+    ExpectRejected("axes", [&] { dspace::MakeAxes(bad); });
+    ExpectRejected("goal marker", [&] { dspace::MakeGoalMarker(bad); });
+    ExpectRejected("tilt marker", [&] { dspace::MakeTiltMarker(bad); });
+    ExpectRejected("frustum pyramid",
+                   [&] { dspace::MakeFrustumPyramid(Projection(), bad, 10, 10); });
   }
   for (const int bad : {2, 0, -5, 1025}) {
-    ExpectRefused("resolution", [&] { dspace::MakeSphere(1, bad); });
-    ExpectRefused("resolution", [&] { dspace::MakeCylinder(1, 1, bad); });
-    ExpectRefused("resolution", [&] { dspace::MakeCone(1, 1, bad); });
-    ExpectRefused("resolution", [&] { dspace::MakeDisc(1, bad); });
-    ExpectRefused("resolution", [&] { dspace::MakeTorus(1, 0.1, bad); });
-    ExpectRefused("resolution", [&] { dspace::MakeArrow(1, bad); });
+    ExpectRejected("resolution", [&] { dspace::MakeSphere(1, bad); });
+    ExpectRejected("resolution", [&] { dspace::MakeCylinder(1, 1, bad); });
+    ExpectRejected("resolution", [&] { dspace::MakeCone(1, 1, bad); });
+    ExpectRejected("resolution", [&] { dspace::MakeDisc(1, bad); });
+    ExpectRejected("resolution", [&] { dspace::MakeTorus(1, 0.1, bad); });
+    ExpectRejected("resolution", [&] { dspace::MakeArrow(1, bad); });
   }
-  ExpectRefused("less than radius", [] { dspace::MakeTorus(1, 1); });
-  ExpectRefused("1 points", [] { dspace::MakeLineSet({{0, 0, 0}}); });
-  ExpectRefused("2 points", [] { dspace::MakeLineSet({{0, 0, 0}, {1, 0, 0}}, true); });
-  ExpectRefused("0 points", [] { dspace::MakePointSet({}); });
-  ExpectRefused("nan", [] { dspace::MakePointSet({{0, NaN, 0}}); });
-  ExpectRefused("0 x 5", [] { dspace::MakeFrustumPyramid(Projection(), 1, 0, 5); });
+  ExpectRejected("less than radius", [] { dspace::MakeTorus(1, 1); });
+  ExpectRejected("1 points", [] { dspace::MakeLineSet({{0, 0, 0}}); });
+  ExpectRejected("2 points", [] { dspace::MakeLineSet({{0, 0, 0}, {1, 0, 0}}, true); });
+  ExpectRejected("0 points", [] { dspace::MakePointSet({}); });
+  ExpectRejected("nan", [] { dspace::MakePointSet({{0, NaN, 0}}); });
+  ExpectRejected("0 x 5", [] { dspace::MakeFrustumPyramid(Projection(), 1, 0, 5); });
   Projection bad;
   bad.nearDistance = -1;
-  ExpectRefused("near", [&] { dspace::MakeFrustumPyramid(bad, 1, 5, 5); });
+  ExpectRejected("near", [&] { dspace::MakeFrustumPyramid(bad, 1, 5, 5); });
 }
 
 TEST(Markers, AxesPointAlongTheirAxes) {
@@ -390,9 +390,9 @@ TEST(Markers, TiltReddens) {
     const Color b = dspace::TiltColor(tilt + 0.5, 15, 30);
     EXPECT_LE(b[1] - b[0], a[1] - a[0] + 1e-12);
   }
-  ExpectRefused("tilt", [] { dspace::TiltColor(-1, 15, 30); });
-  ExpectRefused("tilt", [] { dspace::TiltColor(NaN, 15, 30); });
-  ExpectRefused("limit", [] { dspace::TiltColor(1, 15, 181); });
-  ExpectRefused("warning", [] { dspace::TiltColor(1, 30, 30); });
-  ExpectRefused("warning", [] { dspace::TiltColor(1, 0, 30); });
+  ExpectRejected("tilt", [] { dspace::TiltColor(-1, 15, 30); });
+  ExpectRejected("tilt", [] { dspace::TiltColor(NaN, 15, 30); });
+  ExpectRejected("limit", [] { dspace::TiltColor(1, 15, 181); });
+  ExpectRejected("warning", [] { dspace::TiltColor(1, 30, 30); });
+  ExpectRejected("warning", [] { dspace::TiltColor(1, 0, 30); });
 }

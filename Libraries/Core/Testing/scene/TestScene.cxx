@@ -1,4 +1,4 @@
-// Objects, fragments, lights, levels of detail, text tables: what is accepted, and that a refusal
+// Objects, fragments, lights, levels of detail, text tables: what is accepted, and that a rejection
 // leaves no trace.
 #include "SceneTestSupport.h"
 
@@ -27,52 +27,53 @@ TEST_F(SceneTest, IdsAreNeverReused) {
   EXPECT_GT(this->S.AddObject(Object("a")), a);
   GraphicsObject again = Object("b");
   again.id = a;
-  ExpectRefused(this->S, Exists, "in use", [&] { this->S.AddObject(again); });
+  ExpectRejected(this->S, Exists, "in use", [&] { this->S.AddObject(again); });
   again.id = 1000;
   EXPECT_EQ(this->S.AddObject(again), 1000u);
   EXPECT_EQ(this->S.AddObject(Object("c")), 1001u);
   again.name = "d";
   again.id = 0x80000000u;
-  ExpectRefused(this->S, Invalid, "2147483648", [&] { this->S.AddObject(again); });
+  ExpectRejected(this->S, Invalid, "2147483648", [&] { this->S.AddObject(again); });
 }
 
-TEST_F(SceneTest, RefusesBadObjects) {
-  const auto refused = [&](Error::Kind kind, const std::string& word,
-                           const std::function<void(GraphicsObject&)>& spoil) {
+TEST_F(SceneTest, RejectsBadObjects) {
+  const auto rejected = [&](Error::Kind kind, const std::string& word,
+                            const std::function<void(GraphicsObject&)>& spoil) {
     GraphicsObject object = Object("new");
     spoil(object);
-    ExpectRefused(this->S, kind, word, [&] { this->S.AddObject(object); });
+    ExpectRejected(this->S, kind, word, [&] { this->S.AddObject(object); });
   };
-  refused(Exists, "body", [](GraphicsObject& o) { o.name = "body"; });
-  refused(Invalid, "name", [](GraphicsObject& o) { o.name = ""; });
-  refused(Invalid, "name", [](GraphicsObject& o) { o.name = "a\nb"; });
-  refused(NotFound, "77", [](GraphicsObject& o) { o.frame = 77; });
-  refused(NotFound, "wheels", [](GraphicsObject& o) { o.fragment = "wheels"; });
-  refused(Invalid, "ornamental", [](GraphicsObject& o) { o.fragment = "ornamental"; });
-  refused(Invalid, "offset", [](GraphicsObject& o) { o.X_FO(0, 3) = NaN; });
-  refused(Invalid, "offset", [](GraphicsObject& o) { o.X_FO.linear().row(1).setZero(); });
-  refused(Invalid, "its offset is (1e+300, 0, 0)", [](GraphicsObject& o) { o.X_FO(0, 3) = 1e300; });
-  refused(Invalid, "scale of its offset is 1e-300; accepted: 1e-12 to 1e12",
-          [](GraphicsObject& o) { o.X_FO.linear() *= 1e-300; });
-  refused(Invalid, "scale of its offset is 1e+300",
-          [](GraphicsObject& o) { o.X_FO.linear() *= 1e300; });
-  refused(Invalid, "corner of its bounds",
-          [](GraphicsObject& o) { o.levels.at(0).parts.at(0).X_OP.linear() *= 1e19; });
-  refused(Invalid, "line width", [](GraphicsObject& o) { o.lineWidth = 0; });
-  refused(Invalid, "point size", [](GraphicsObject& o) { o.pointSize = NaN; });
-  refused(Invalid, "opacity", [](GraphicsObject& o) { o.material.opacity = 1.5; });
-  refused(Invalid, "colour", [](GraphicsObject& o) { o.material.color = {{0, NaN, 0}}; });
-  refused(Invalid, "minimumPixels",
-          [](GraphicsObject& o) { o.levels.push_back(o.levels[0]); }); // both 0
-  refused(Invalid, "minimumPixels", [](GraphicsObject& o) { o.levels[0].minimumPixels = -1; });
-  refused(Invalid, "no mesh", [](GraphicsObject& o) { o.levels[0].parts[0].mesh.reset(); });
-  refused(Invalid, "not finite", [](GraphicsObject& o) { o.levels[0].parts[0].X_OP(2, 3) = NaN; });
-  refused(Invalid, "metallic", [](GraphicsObject& o) {
+  rejected(Exists, "body", [](GraphicsObject& o) { o.name = "body"; });
+  rejected(Invalid, "name", [](GraphicsObject& o) { o.name = ""; });
+  rejected(Invalid, "name", [](GraphicsObject& o) { o.name = "a\nb"; });
+  rejected(NotFound, "77", [](GraphicsObject& o) { o.frame = 77; });
+  rejected(NotFound, "wheels", [](GraphicsObject& o) { o.fragment = "wheels"; });
+  rejected(Invalid, "ornamental", [](GraphicsObject& o) { o.fragment = "ornamental"; });
+  rejected(Invalid, "offset", [](GraphicsObject& o) { o.X_FO(0, 3) = NaN; });
+  rejected(Invalid, "offset", [](GraphicsObject& o) { o.X_FO.linear().row(1).setZero(); });
+  rejected(Invalid, "its offset is (1e+300, 0, 0)",
+           [](GraphicsObject& o) { o.X_FO(0, 3) = 1e300; });
+  rejected(Invalid, "scale of its offset is 1e-300; accepted: 1e-12 to 1e12",
+           [](GraphicsObject& o) { o.X_FO.linear() *= 1e-300; });
+  rejected(Invalid, "scale of its offset is 1e+300",
+           [](GraphicsObject& o) { o.X_FO.linear() *= 1e300; });
+  rejected(Invalid, "corner of its bounds",
+           [](GraphicsObject& o) { o.levels.at(0).parts.at(0).X_OP.linear() *= 1e19; });
+  rejected(Invalid, "line width", [](GraphicsObject& o) { o.lineWidth = 0; });
+  rejected(Invalid, "point size", [](GraphicsObject& o) { o.pointSize = NaN; });
+  rejected(Invalid, "opacity", [](GraphicsObject& o) { o.material.opacity = 1.5; });
+  rejected(Invalid, "colour", [](GraphicsObject& o) { o.material.color = {{0, NaN, 0}}; });
+  rejected(Invalid, "minimumPixels",
+           [](GraphicsObject& o) { o.levels.push_back(o.levels[0]); }); // both 0
+  rejected(Invalid, "minimumPixels", [](GraphicsObject& o) { o.levels[0].minimumPixels = -1; });
+  rejected(Invalid, "no mesh", [](GraphicsObject& o) { o.levels[0].parts[0].mesh.reset(); });
+  rejected(Invalid, "not finite", [](GraphicsObject& o) { o.levels[0].parts[0].X_OP(2, 3) = NaN; });
+  rejected(Invalid, "metallic", [](GraphicsObject& o) {
     auto material = std::make_shared<Material>();
     material->metallic = -0.1;
     o.levels[0].parts[0].material = material;
   });
-  refused(Invalid, "texture", [](GraphicsObject& o) {
+  rejected(Invalid, "texture", [](GraphicsObject& o) {
     auto image = std::make_shared<Image>();
     image->width = image->height = 2;
     image->channels = 3;
@@ -80,7 +81,7 @@ TEST_F(SceneTest, RefusesBadObjects) {
     o.material.texture = image;
   });
   const auto badMesh = [&](const std::string& word, const std::function<void(Mesh&)>& spoil) {
-    refused(Invalid, word, [&](GraphicsObject& o) {
+    rejected(Invalid, word, [&](GraphicsObject& o) {
       auto mesh = Triangle();
       spoil(*mesh);
       o.levels[0].parts[0].mesh = mesh;
@@ -106,7 +107,7 @@ TEST_F(SceneTest, AMeshThatIsGoneVouchesForNone) {
   storage.indices[0] = 9;
   object = Object("bad");
   object.levels[0].parts[0].mesh = lend();
-  ExpectRefused(this->S, Invalid, "index 9", [&] { this->S.AddObject(object); });
+  ExpectRejected(this->S, Invalid, "index 9", [&] { this->S.AddObject(object); });
 }
 
 TEST_F(SceneTest, FragmentsKeepTheirNature) {
@@ -116,48 +117,48 @@ TEST_F(SceneTest, FragmentsKeepTheirNature) {
   EXPECT_EQ(this->S.Object(this->Body).fragment, "wheels");
   EXPECT_TRUE(this->S.Fragments().Get("physical").objects.empty());
   EXPECT_EQ(this->S.Fragments().Get("wheels").objects, std::vector<ObjectId>{this->Body});
-  ExpectRefused(this->S, Invalid, "ornamental",
-                [&] { this->S.MoveToFragment(this->Body, "labels"); });
-  ExpectRefused(this->S, NotFound, "nowhere",
-                [&] { this->S.MoveToFragment(this->Body, "nowhere"); });
-  ExpectRefused(this->S, Exists, "wheels",
-                [&] { this->S.CreateFragment("wheels", Nature::Physical); });
-  ExpectRefused(this->S, Invalid, "name", [&] { this->S.CreateFragment("", Nature::Physical); });
-  ExpectRefused(this->S, Invalid, "1 objects", [&] { this->S.RemoveFragment("wheels"); });
-  ExpectRefused(this->S, Invalid, "always", [&] { this->S.RemoveFragment("physical"); });
-  ExpectRefused(this->S, NotFound, "x", [&] { this->S.RemoveFragment("x"); });
+  ExpectRejected(this->S, Invalid, "ornamental",
+                 [&] { this->S.MoveToFragment(this->Body, "labels"); });
+  ExpectRejected(this->S, NotFound, "nowhere",
+                 [&] { this->S.MoveToFragment(this->Body, "nowhere"); });
+  ExpectRejected(this->S, Exists, "wheels",
+                 [&] { this->S.CreateFragment("wheels", Nature::Physical); });
+  ExpectRejected(this->S, Invalid, "name", [&] { this->S.CreateFragment("", Nature::Physical); });
+  ExpectRejected(this->S, Invalid, "1 objects", [&] { this->S.RemoveFragment("wheels"); });
+  ExpectRejected(this->S, Invalid, "always", [&] { this->S.RemoveFragment("physical"); });
+  ExpectRejected(this->S, NotFound, "x", [&] { this->S.RemoveFragment("x"); });
   this->S.SetFragmentVisible("wheels", false);
   EXPECT_FALSE(this->S.Fragments().Get("wheels").visible);
   this->S.MoveToFragment(this->Body, "physical");
   this->S.RemoveFragment("wheels");
   EXPECT_FALSE(this->S.Fragments().Contains("wheels"));
-  ExpectRefused(this->S, NotFound, "wheels", [&] { this->S.SetFragmentVisible("wheels", true); });
+  ExpectRejected(this->S, NotFound, "wheels", [&] { this->S.SetFragmentVisible("wheels", true); });
 }
 
-TEST_F(SceneTest, RefusesBadLights) {
+TEST_F(SceneTest, RejectsBadLights) {
   this->S.SetLight(Lamp("sun", this->Rover));
-  const auto refused = [&](Error::Kind kind, const std::string& word,
-                           const std::function<void(Light&)>& spoil) {
+  const auto rejected = [&](Error::Kind kind, const std::string& word,
+                            const std::function<void(Light&)>& spoil) {
     Light light = Lamp("sun", this->Rover);
     spoil(light);
-    ExpectRefused(this->S, kind, word, [&] { this->S.SetLight(light); });
+    ExpectRejected(this->S, kind, word, [&] { this->S.SetLight(light); });
   };
-  refused(Invalid, "name", [](Light& l) { l.name = ""; });
-  refused(NotFound, "frame 99", [](Light& l) { l.frame = 99; });
-  refused(Invalid, "direction", [](Light& l) { l.direction.setZero(); });
-  refused(Invalid, "direction", [](Light& l) { l.direction *= 1e300; });
-  refused(Invalid, "direction", [](Light& l) { l.direction *= 1e-300; });
-  refused(Invalid, "intensity is 1e+300; accepted: 0 to 1e12",
-          [](Light& l) { l.intensity = 1e300; });
-  refused(Invalid, "position", [](Light& l) { l.position.y() = 1e300; });
-  refused(Invalid, "direction", [](Light& l) { l.direction.x() = NaN; });
-  refused(Invalid, "position", [](Light& l) { l.position.x() = NaN; });
-  refused(Invalid, "cone", [](Light& l) { l.cone_deg = 90; });
-  refused(Invalid, "intensity", [](Light& l) { l.intensity = -1; });
-  refused(Invalid, "colour", [](Light& l) { l.color[2] = 1.01; });
-  refused(Invalid, "attenuation", [](Light& l) { l.attenuation = {0, 0, 0}; });
-  refused(Invalid, "attenuation", [](Light& l) { l.attenuation[1] = -1; });
-  ExpectRefused(this->S, NotFound, "moon", [&] { this->S.RemoveLight("moon"); });
+  rejected(Invalid, "name", [](Light& l) { l.name = ""; });
+  rejected(NotFound, "frame 99", [](Light& l) { l.frame = 99; });
+  rejected(Invalid, "direction", [](Light& l) { l.direction.setZero(); });
+  rejected(Invalid, "direction", [](Light& l) { l.direction *= 1e300; });
+  rejected(Invalid, "direction", [](Light& l) { l.direction *= 1e-300; });
+  rejected(Invalid, "intensity is 1e+300; accepted: 0 to 1e12",
+           [](Light& l) { l.intensity = 1e300; });
+  rejected(Invalid, "position", [](Light& l) { l.position.y() = 1e300; });
+  rejected(Invalid, "direction", [](Light& l) { l.direction.x() = NaN; });
+  rejected(Invalid, "position", [](Light& l) { l.position.x() = NaN; });
+  rejected(Invalid, "cone", [](Light& l) { l.cone_deg = 90; });
+  rejected(Invalid, "intensity", [](Light& l) { l.intensity = -1; });
+  rejected(Invalid, "colour", [](Light& l) { l.color[2] = 1.01; });
+  rejected(Invalid, "attenuation", [](Light& l) { l.attenuation = {0, 0, 0}; });
+  rejected(Invalid, "attenuation", [](Light& l) { l.attenuation[1] = -1; });
+  ExpectRejected(this->S, NotFound, "moon", [&] { this->S.RemoveLight("moon"); });
   Light brighter = Lamp("sun", this->Mast);
   brighter.intensity = 3;
   this->S.SetLight(brighter);
@@ -203,20 +204,22 @@ TEST_F(SceneTest, RevisionsTellWhatChanged) {
   EXPECT_EQ(changes([&] { this->S.RemoveFrame(this->Mast); }), Content);
 }
 
-TEST_F(SceneTest, RefusesBadChangesOfObjects) {
+TEST_F(SceneTest, RejectsBadChangesOfObjects) {
   MaterialOverride bad;
   bad.roughness = NaN;
-  ExpectRefused(this->S, Invalid, "roughness", [&] { this->S.SetObjectMaterial(this->Body, bad); });
+  ExpectRejected(this->S, Invalid, "roughness",
+                 [&] { this->S.SetObjectMaterial(this->Body, bad); });
   Eigen::Affine3d flat = Eigen::Affine3d::Identity();
   flat.linear().setZero();
-  ExpectRefused(this->S, Invalid, "body", [&] { this->S.SetObjectOffset(this->Body, flat); });
-  ExpectRefused(this->S, NotFound, "99", [&] { this->S.AttachObject(this->Body, 99); });
-  ExpectRefused(this->S, NotFound, "99", [&] { this->S.RemoveObject(99); });
-  ExpectRefused(this->S, NotFound, "99", [&] { this->S.SetObjectVisible(99, true); });
+  ExpectRejected(this->S, Invalid, "body", [&] { this->S.SetObjectOffset(this->Body, flat); });
+  ExpectRejected(this->S, NotFound, "99", [&] { this->S.AttachObject(this->Body, 99); });
+  ExpectRejected(this->S, NotFound, "99", [&] { this->S.RemoveObject(99); });
+  ExpectRejected(this->S, NotFound, "99", [&] { this->S.SetObjectVisible(99, true); });
   DetailLevel empty;
   empty.parts.resize(1);
-  ExpectRefused(this->S, Invalid, "no mesh", [&] { this->S.SetObjectLevels(this->Body, {empty}); });
-  ExpectRefused(this->S, Invalid, "time", [&] { this->S.SetTime(NaN); });
+  ExpectRejected(this->S, Invalid, "no mesh",
+                 [&] { this->S.SetObjectLevels(this->Body, {empty}); });
+  ExpectRejected(this->S, Invalid, "time", [&] { this->S.SetTime(NaN); });
   EXPECT_THROW(Scene(""), Error);
 }
 
@@ -281,7 +284,7 @@ TEST(Parts, OfAModelShareItsMeshes) {
   EXPECT_THROW(PartsOf(watch.lock(), 1.0, Eigen::Quaterniond(2, 0, 0, 0)), Error);
 }
 
-TEST(TextTable, Refusals) {
+TEST(TextTable, Rejections) {
   TextTable table;
   EXPECT_THROW(table.Check(), Error); // no name
   table.name = "readings";

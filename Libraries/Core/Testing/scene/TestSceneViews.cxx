@@ -14,20 +14,20 @@ TEST_F(SceneTest, OneCameraOfAVantageIsActive) {
   EXPECT_EQ(main.ActiveCamera().name, "second");
   EXPECT_EQ(this->S.PlaceCamera("main").frame, this->Mast);
   EXPECT_EQ(this->S.PlaceCamera("main", "first").frame, RootFrame);
-  ExpectRefused(this->S, Invalid, "active", [&] { this->S.RemoveCamera("main", "second"); });
-  ExpectRefused(this->S, NotFound, "third", [&] { this->S.SetActiveCamera("main", "third"); });
-  ExpectRefused(this->S, NotFound, "third", [&] { this->S.RemoveCamera("main", "third"); });
-  ExpectRefused(this->S, NotFound, "side", [&] { this->S.SetCamera("side", Fixed("c", 1)); });
-  ExpectRefused(this->S, Exists, "main", [&] { this->S.CreateVantage("main"); });
-  ExpectRefused(this->S, NotFound, "side", [&] { this->S.RemoveVantage("side"); });
-  ExpectRefused(this->S, NotFound, "frame 99",
-                [&] { this->S.SetCamera("main", Fixed("first", 99)); });
+  ExpectRejected(this->S, Invalid, "active", [&] { this->S.RemoveCamera("main", "second"); });
+  ExpectRejected(this->S, NotFound, "third", [&] { this->S.SetActiveCamera("main", "third"); });
+  ExpectRejected(this->S, NotFound, "third", [&] { this->S.RemoveCamera("main", "third"); });
+  ExpectRejected(this->S, NotFound, "side", [&] { this->S.SetCamera("side", Fixed("c", 1)); });
+  ExpectRejected(this->S, Exists, "main", [&] { this->S.CreateVantage("main"); });
+  ExpectRejected(this->S, NotFound, "side", [&] { this->S.RemoveVantage("side"); });
+  ExpectRejected(this->S, NotFound, "frame 99",
+                 [&] { this->S.SetCamera("main", Fixed("first", 99)); });
   Camera bad = Fixed("first", 1);
   bad.projection.verticalFov_deg = 200;
-  ExpectRefused(this->S, Invalid, "200", [&] { this->S.SetCamera("main", bad); });
+  ExpectRejected(this->S, Invalid, "200", [&] { this->S.SetCamera("main", bad); });
   bad = Fixed("first", 1);
   bad.mount.kind = CameraMount::Kind::Chase;
-  ExpectRefused(this->S, Invalid, "root", [&] { this->S.SetCamera("main", bad); });
+  ExpectRejected(this->S, Invalid, "root", [&] { this->S.SetCamera("main", bad); });
 
   this->S.RemoveCamera("main", "first");
   this->S.RemoveCamera("main", "second"); // the last one may go
@@ -55,19 +55,19 @@ TEST_F(SceneTest, AFrameTakesItsObjectsAndLightsAlong) {
   EXPECT_EQ(this->S.FindObject("body"), 0u);
   GraphicsObject again = Object("body");
   again.id = this->Body;
-  ExpectRefused(this->S, Exists, "in use", [&] { this->S.AddObject(again); });
+  ExpectRejected(this->S, Exists, "in use", [&] { this->S.AddObject(again); });
 }
 
 TEST_F(SceneTest, AFrameUnderACameraStays) {
   this->S.SetLight(Lamp("headlight", this->Mast));
   this->S.SetCamera("main", Fixed("mastcam", this->Mast));
-  ExpectRefused(this->S, Invalid, "mastcam", [&] { this->S.RemoveFrame(this->Rover); });
+  ExpectRejected(this->S, Invalid, "mastcam", [&] { this->S.RemoveFrame(this->Rover); });
   Camera chase = Fixed("mastcam", this->Rover);
   chase.mount.kind = CameraMount::Kind::Chase;
   this->S.SetCamera("main", chase);
-  ExpectRefused(this->S, Invalid, "follows", [&] { this->S.RemoveFrame(this->Rover); });
-  ExpectRefused(this->S, Invalid, "root", [&] { this->S.RemoveFrame(RootFrame); });
-  ExpectRefused(this->S, NotFound, "frame 99", [&] { this->S.RemoveFrame(99); });
+  ExpectRejected(this->S, Invalid, "follows", [&] { this->S.RemoveFrame(this->Rover); });
+  ExpectRejected(this->S, Invalid, "root", [&] { this->S.RemoveFrame(RootFrame); });
+  ExpectRejected(this->S, NotFound, "frame 99", [&] { this->S.RemoveFrame(99); });
   this->S.RemoveFrame(this->Mast); // the camera's frame is above it
   EXPECT_EQ(this->S.Frames().Size(), 2u);
 }

@@ -113,7 +113,7 @@ TEST(Trail, EmptyAndCleared) {
   EXPECT_EQ(trail.Position(0), Vector3d(7, 0, 0));
 }
 
-TEST(Trail, Refusals) {
+TEST(Trail, Rejections) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(Trail(1, 0.0), dspace::Error);
   EXPECT_THROW(Trail(10000001, 0.0), dspace::Error);

@@ -1,4 +1,4 @@
-// Words over a picture that follow what is drawn in it.
+// Text captions over a picture that follow its content.
 #ifndef DSPACE_RENDER_CAPTIONS_H
 #define DSPACE_RENDER_CAPTIONS_H
 
@@ -28,8 +28,8 @@ std::array<double, 2> HalfSize(const Caption& caption);
 // The captions of one viewport's picture, on its overlay renderer.
 class CaptionActors {
 public:
-  // These and no others. Texts that were there before are moved, not drawn anew. `height` is the
-  // picture's.
+  // Shows exactly these captions. Captions with the same text are moved, not rendered again.
+  // `height` is the picture's.
   void Show(const std::vector<Caption>& captions, vtkRenderer* overlay, int height);
 
 private:

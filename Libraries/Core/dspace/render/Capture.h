@@ -1,4 +1,4 @@
-// What a viewport's picture is made of, as arrays.
+// The planes of a viewport's picture as arrays.
 #ifndef DSPACE_RENDER_CAPTURE_H
 #define DSPACE_RENDER_CAPTURE_H
 
@@ -31,7 +31,7 @@ struct CaptureRequest {
   std::set<std::string> hiddenFragments; // in addition to the viewport's own
 };
 
-// What lies under a pixel.
+// Result of picking at a pixel.
 struct PickResult {
   ObjectId object = 0; // 0: nothing was hit, and nothing else below is valid
   FrameId frame = 0;   // the frame the object hangs on
@@ -42,7 +42,7 @@ struct PickResult {
   Eigen::Vector3d p_root = Eigen::Vector3d::Zero();   // in the scene's root [m]
 };
 
-// Counters of a render context since it was made: what reached the GPU.
+// Counters of a render context since its creation.
 struct RenderStatistics {
   std::uint64_t meshBytes = 0;         // vertex and index buffers now on the GPU
   std::uint64_t meshBytesUploaded = 0; // ever

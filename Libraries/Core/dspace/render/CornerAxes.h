@@ -1,4 +1,4 @@
-// The little arrows in a picture's corner that show the root frame's axes.
+// Arrows in a picture's corner that show the root frame's axes.
 #ifndef DSPACE_RENDER_CORNER_AXES_H
 #define DSPACE_RENDER_CORNER_AXES_H
 

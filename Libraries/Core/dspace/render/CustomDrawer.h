@@ -1,4 +1,4 @@
-// How geometry that is not made of meshes is drawn, beside a DrawList's batches.
+// Interface for drawing geometry that is not made of meshes, beside a DrawList's batches.
 #ifndef DSPACE_RENDER_CUSTOM_DRAWER_H
 #define DSPACE_RENDER_CUSTOM_DRAWER_H
 
@@ -34,12 +34,12 @@ struct CustomDrawing {
 class CustomDrawer {
 public:
   virtual ~CustomDrawer() = default;
-  // Uploads what the view needs, before its target is bound. False where some of it is not there
-  // yet; with view.complete it waits instead (Error(DeadlineExceeded)).
+  // Uploads the data that the view needs, before its target is bound. Returns false if some data is
+  // not loaded yet; with view.complete it waits instead (Error(DeadlineExceeded)).
   virtual bool Prepare(const CustomDrawing& drawing) = 0;
   virtual void DrawColor(const CustomDrawing& drawing) = 0;
   virtual void DrawLabels(const CustomDrawing& drawing) = 0;
-  // What is written over the picture whose colours and depth `target` has by now.
+  // Captions over the picture, whose colours and depth are in `target`.
   virtual std::vector<Caption> Captions(const CustomDrawing&, const RenderTarget& /*target*/) {
     return {};
   }

@@ -1,4 +1,4 @@
-// Which drawer draws which custom geometry.
+// Registry of the drawers of custom geometry.
 #ifndef DSPACE_RENDER_CUSTOM_DRAWERS_H
 #define DSPACE_RENDER_CUSTOM_DRAWERS_H
 
@@ -20,7 +20,7 @@ public:
   // the drawer.
   using Maker = std::function<std::unique_ptr<CustomDrawer>(std::shared_ptr<const CustomGeometry>)>;
 
-  // For objects whose geometry is of exactly this class; the latest registration counts.
+  // Registers the maker for geometry of exactly this class. A later registration replaces it.
   void Register(std::type_index geometry, Maker maker);
   // Throws Error(Unsupported) for a class without a registered drawer.
   std::unique_ptr<CustomDrawer> Make(const std::shared_ptr<const CustomGeometry>& geometry) const;

@@ -14,7 +14,7 @@
 
 namespace dspace {
 
-// One drawing of a mesh, as the vertex shader reads it (GpuStore tells OpenGL where what stands).
+// One instance of a mesh, as the vertex shader reads it (GpuStore declares the layout to OpenGL).
 // Floats are relative to the camera: rounded after the subtraction in double precision.
 struct DrawInstance {
   std::array<float, 12> viewFromMesh; // three rows of four; OpenGL's view axes
@@ -62,7 +62,7 @@ struct DrawCustom {
   Eigen::Affine3d X_VO = Eigen::Affine3d::Identity(); // OpenGL's view axes from the object's frame
 };
 
-// Which part of a scene is drawn.
+// Selects the part of a scene that is drawn.
 struct DrawFilter {
   bool physicalOnly = false;
   bool pickableOnly = false;
@@ -75,16 +75,16 @@ struct DrawView {
   Projection projection;
   int width = 0;
   int height = 0;
-  // A picture that is kept or measured: what draws itself waits for all of its data. An interactive
-  // one shows what is there.
+  // True for a picture that is saved or measured: custom geometry waits for all of its data. False
+  // for an interactive one, which shows what is loaded.
   bool complete = false;
 };
 
-// Kept from picture to picture by whoever draws one viewport; what only changes with the scene's
-// content is worked out once.
+// One instance per viewport, reused for each picture. Data that depends only on the content of the
+// scene is computed once.
 class DrawList {
 public:
-  // Makes the list anew for `view`. Objects outside the view's frustum are left out.
+  // Rebuilds the list for `view`. Objects outside the view's frustum are omitted.
   void Build(const Scene& scene, const DrawView& view, const DrawFilter& filter);
 
   const std::vector<DrawInstance>& Instances() const { return this->Instances_; }

@@ -35,7 +35,7 @@ public:
       eglDestroySurface(this->Display_, this->Surface_);
     }
     eglDestroyContext(this->Display_, this->Context_);
-    // The display is left initialised: EGL hands the same one to everybody in the process.
+    // The display is left initialised: EGL returns the same one to all code of the process.
   }
   void MakeCurrent() override {
     if (!eglMakeCurrent(this->Display_, this->Surface_, this->Surface_, this->Context_)) {

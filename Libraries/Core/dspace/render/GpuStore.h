@@ -1,4 +1,4 @@
-// Meshes and textures on the GPU, each once, for as long as somebody holds them.
+// Meshes and textures on the GPU: each once, as long as it is referenced.
 #ifndef DSPACE_RENDER_GPU_STORE_H
 #define DSPACE_RENDER_GPU_STORE_H
 
@@ -36,7 +36,7 @@ public:
   const GpuMesh& MeshOf(const std::shared_ptr<const Mesh>& mesh);
   // OpenGL name of a mip-mapped sRGB texture. Throws Error(Resource) when it is too large.
   unsigned int TextureOf(const std::shared_ptr<const Image>& image, bool repeat);
-  // Frees what nobody but the store knows any more.
+  // Frees entries that only the store references.
   void Collect();
   // Frees everything.
   void Release();

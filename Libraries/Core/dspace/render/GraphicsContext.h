@@ -1,4 +1,4 @@
-// An OpenGL context, wherever it comes from.
+// Interface to an OpenGL context.
 #ifndef DSPACE_RENDER_GRAPHICS_CONTEXT_H
 #define DSPACE_RENDER_GRAPHICS_CONTEXT_H
 

@@ -20,7 +20,7 @@ std::string Label(const std::string& path) {
   return "file '" + path + "'";
 }
 
-[[noreturn]] void Refuse(const std::string& path, const std::string& message) {
+[[noreturn]] void Reject(const std::string& path, const std::string& message) {
   throw Error(Error::Kind::InvalidArgument, Label(path), message);
 }
 
@@ -42,7 +42,7 @@ Type TypeOf(const std::string& path) {
   if (extension == ".exr") {
     return Type::Exr;
   }
-  Refuse(path, "its extension is '" + extension + "'; accepted: .png .jpg .jpeg .tif .tiff .exr");
+  Reject(path, "its extension is '" + extension + "'; accepted: .png .jpg .jpeg .tif .tiff .exr");
 }
 
 // A date of the day would make two equal pictures differ.
@@ -123,7 +123,7 @@ void Write(const std::string& path, OIIO::ImageSpec spec, const OIIO::TypeDesc& 
 void RequireSize(const std::string& path, int width, int height, int channels, std::size_t values) {
   if (width <= 0 || height <= 0 ||
       values != std::size_t(width) * std::size_t(height) * std::size_t(channels)) {
-    Refuse(path, std::to_string(values) + " values for a picture of " + std::to_string(width) +
+    Reject(path, std::to_string(values) + " values for a picture of " + std::to_string(width) +
                      " x " + std::to_string(height) + " pixels with " + std::to_string(channels) +
                      " channels");
   }
@@ -143,13 +143,13 @@ std::array<float, 256> LinearFromSrgb() {
 void CheckImageFile(const std::string& path, ImagePlane plane, const ImageFileOptions& options) {
   const Type type = TypeOf(path);
   if (plane == ImagePlane::Depth && type != Type::Tiff && type != Type::Exr) {
-    Refuse(path, "its type holds no 32-bit floats; accepted for depth: .tif .tiff .exr");
+    Reject(path, "its type holds no 32-bit floats; accepted for depth: .tif .tiff .exr");
   }
   if (plane == ImagePlane::Label && type == Type::Jpeg) {
-    Refuse(path, "its type loses values; accepted for labels: .png .tif .tiff .exr");
+    Reject(path, "its type loses values; accepted for labels: .png .tif .tiff .exr");
   }
   if (options.jpegQuality < 1 || options.jpegQuality > 100) {
-    Refuse(path, "the quality is " + std::to_string(options.jpegQuality) + "; accepted: 1 to 100");
+    Reject(path, "the quality is " + std::to_string(options.jpegQuality) + "; accepted: 1 to 100");
   }
   AtomicFile::Check(path);
 }
@@ -204,7 +204,7 @@ void WriteLabel(const std::string& path, int width, int height,
   }
   const std::uint32_t largest = *std::max_element(label.begin(), label.end());
   if (largest > 65535) {
-    Refuse(path, "object id " + std::to_string(largest) +
+    Reject(path, "object id " + std::to_string(largest) +
                      " needs more than its 16 bits; "
                      "accepted for it: .exr");
   }

@@ -19,12 +19,12 @@ struct ImageFileOptions {
 //
 // Color: PNG, JPEG, TIFF with 8 bits, sRGB; EXR with linear half floats. RGB: alpha is left out.
 // Depth: TIFF or EXR with 32-bit floats, metres, channel Z; +infinity where nothing was hit.
-// Label: EXR with 32-bit integers; PNG or TIFF with 16 bits, refused when an id is above 65535.
+// Label: EXR with 32-bit integers; PNG or TIFF with 16 bits, rejected when an id is above 65535.
 //
 // All throw Error naming the file: InvalidArgument (extension, options, sizes that do not fit), Io
 // (folder absent, not writable, disk full).
 
-// What can be said before there is a picture: extension, options, folder.
+// The checks that need no picture: extension, options, folder.
 void CheckImageFile(const std::string& path, ImagePlane plane,
                     const ImageFileOptions& options = {});
 

@@ -8,7 +8,7 @@
 
 namespace dspace {
 
-bool LabelPicture::Holds(const Scene& scene, const DrawFilter& filter) const {
+bool LabelPicture::IsCurrent(const Scene& scene, const DrawFilter& filter) const {
   return this->Revision_ == scene.Revision() && this->Filter_.physicalOnly == filter.physicalOnly &&
          this->Filter_.pickableOnly == filter.pickableOnly &&
          this->Filter_.hiddenFragments == filter.hiddenFragments;
@@ -16,7 +16,7 @@ bool LabelPicture::Holds(const Scene& scene, const DrawFilter& filter) const {
 
 void LabelPicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, const DrawView& view,
                         const DrawFilter& filter) {
-  this->Forget(); // until all of it is there
+  this->Invalidate(); // until all of it is there
   vtkDspaceHubWindow* hub = context->GetHub();
   hub->MakeCurrent();
   if (!this->Drawer_) {
@@ -27,7 +27,8 @@ void LabelPicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, con
   this->View_ = view;
   this->Filter_ = filter;
   this->Target_->Resize(view.width, view.height);
-  const std::uint64_t revision = scene.Revision(); // before: what changes meanwhile is not in it
+  const std::uint64_t revision =
+      scene.Revision(); // read first: later changes are not in the picture
   this->List_.Build(scene, view, filter);
   const bool complete = this->Drawer_->Prepare(this->List_, view, 1, true);
   this->Drawer_->DrawLabels(this->List_, view, *this->Target_);

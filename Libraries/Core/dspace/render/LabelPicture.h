@@ -14,21 +14,22 @@ class vtkDspaceRenderContext;
 
 namespace dspace {
 
-// Which object is seen at each pixel, and how far away, unsampled. Kept until the scene, the filter
-// or, by Forget(), the camera or the size is another. The context outlives it.
+// The visible object and its distance at each pixel, without supersampling. The picture is reused
+// until the scene or the filter changes, or until Invalidate() (a change of camera or size). The
+// context must outlive it.
 class LabelPicture {
 public:
-  // Whether what is there shows `scene` as it is now through `filter`.
-  bool Holds(const Scene& scene, const DrawFilter& filter) const;
+  // Whether the picture shows the current state of `scene` with `filter`.
+  bool IsCurrent(const Scene& scene, const DrawFilter& filter) const;
   void Draw(vtkDspaceRenderContext* context, const Scene& scene, const DrawView& view,
             const DrawFilter& filter);
-  void Forget() { this->Revision_ = 0; }
+  void Invalidate() { this->Revision_ = 0; }
 
   // Of the whole picture, rows from the top down; after Draw().
   std::vector<std::uint32_t> Labels() const;
   std::vector<float> Depths() const; // metres along the camera's Z; +infinity where nothing was hit
 
-  // What lies at (x, y); the nearest object within `radius` pixels if none lies right there. The
+  // The object at (x, y), or the nearest one within `radius` pixels if there is none. The
   // caller has checked that the point lies in the picture and drawn it from `scene`.
   PickResult Pick(const Scene& scene, double x, double y, int radius) const;
 

@@ -41,13 +41,13 @@ public:
     std::array<double, 3> top = {0.0, 0.0, 0.0};
   };
   void Clear(const Background& background);
-  // Uploads what objects that draw themselves need for the pictures that follow; before any target
-  // is bound. False where some of it is not there yet.
+  // Uploads the data of custom geometry for the next pictures, before any target is bound. Returns
+  // false if some data is not loaded yet.
   bool Prepare(const DrawList& list, const DrawView& view, int samples, bool labels = false);
   // `samples` is the supersampling factor: lines, points and billboards scale with it.
   void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples,
                  const Background* background = nullptr);
-  // What objects that draw themselves write over the picture that was drawn last.
+  // Captions of custom geometry over the last picture.
   std::vector<Caption> Captions(const DrawList& list, const DrawView& view,
                                 const RenderTarget& target, int samples);
   // Into `target` (Label, with depth), cleared first.

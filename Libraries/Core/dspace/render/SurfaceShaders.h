@@ -47,10 +47,10 @@ public:
 
   explicit SurfaceShaders(vtkDspaceHubWindow* window) : Window_(window) {}
 
-  // What the list's lights ask of a lit surface's program.
+  // The features that the list's lights require of a lit surface's program.
   static unsigned LightFeatures(const DrawList& list);
 
-  // Ready to draw with. Throws Error(Internal) when the driver refuses it.
+  // Ready to draw with. Throws Error(Internal) when the driver rejects it.
   vtkShaderProgram* Surface(unsigned features, const ShaderPages& pages = {});
   vtkShaderProgram* Screen(const char* fragment, const std::string& defines = "");
 

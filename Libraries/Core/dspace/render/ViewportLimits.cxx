@@ -24,7 +24,7 @@ template<class T> std::string Times(T a, T b) {
 
 void CheckSize(const std::string& viewport, int width, int height) {
   if (width < 1 || height < 1 || width > MaximumSize || height > MaximumSize) {
-    Refuse(viewport, "size " + Times(width, height) + " is refused; 1 to " +
+    Reject(viewport, "size " + Times(width, height) + " is rejected; accepted: 1 to " +
                          std::to_string(MaximumSize) + " pixels a side");
   }
 }
@@ -32,7 +32,7 @@ void CheckSize(const std::string& viewport, int width, int height) {
 void CheckSamples(vtkDspaceHubWindow& window, const std::string& viewport, int width, int height,
                   int samples) {
   if (samples < 1 || samples > MaximumSamples) {
-    Refuse(viewport, "samples " + std::to_string(samples) + " is refused; 1 to " +
+    Reject(viewport, "samples " + std::to_string(samples) + " is rejected; accepted: 1 to " +
                          std::to_string(MaximumSamples));
   }
   window.MakeCurrent();
@@ -44,9 +44,9 @@ void CheckSamples(vtkDspaceHubWindow& window, const std::string& viewport, int w
   const long long across = static_cast<long long>(width) * samples;
   const long long down = static_cast<long long>(height) * samples;
   if (across > side || down > side || across * down > MaximumPicture) {
-    Refuse(viewport,
+    Reject(viewport,
            "size " + Times(width, height) + " with " + Times(samples, samples) +
-               " samples a pixel is refused, as that makes " + Times(across, down) +
+               " samples a pixel is rejected, as that makes " + Times(across, down) +
                " samples; accepted: up to " + std::to_string(side) +
                " a side, which is what this OpenGL draws, and " + std::to_string(MaximumPicture) +
                " in all: " + (samples > 1 ? "samples=1, or a smaller size" : "a smaller size"));
@@ -56,7 +56,8 @@ void CheckSamples(vtkDspaceHubWindow& window, const std::string& viewport, int w
 void CheckColor(const std::string& viewport, const std::array<double, 3>& color) {
   for (const double c : color) {
     if (!(c >= 0.0 && c <= 1.0)) {
-      Refuse(viewport, "background component " + std::to_string(c) + " is refused; 0 to 1");
+      Reject(viewport,
+             "background component " + std::to_string(c) + " is rejected; accepted: 0 to 1");
     }
   }
 }
@@ -64,8 +65,8 @@ void CheckColor(const std::string& viewport, const std::array<double, 3>& color)
 void CheckPick(const std::string& viewport, double x, double y, int radius, int width, int height) {
   if (!std::isfinite(x) || !std::isfinite(y) || x < -0.5 || y < -0.5 || x >= width - 0.5 ||
       y >= height - 0.5 || radius < 0 || radius > 256) {
-    Refuse(viewport, "pick at (" + std::to_string(x) + ", " + std::to_string(y) + ") with radius " +
-                         std::to_string(radius) + " is refused; pixels within " +
+    Reject(viewport, "pick at (" + std::to_string(x) + ", " + std::to_string(y) + ") with radius " +
+                         std::to_string(radius) + " is rejected; accepted: pixels within " +
                          Times(width, height) + ", radius 0 to 256");
   }
 }

@@ -8,8 +8,8 @@ namespace dspace {
 
 class VtkMessages;
 
-// Takes VTK's messages of the thread that made it, while it lives. Traps of one thread nest: each
-// message goes to the innermost one.
+// Receives VTK's messages of its thread during its lifetime. Traps of one thread nest: a message
+// goes to the innermost one.
 class VtkErrorTrap {
 public:
   // `messages` must outlive the trap.

@@ -92,7 +92,7 @@ void VtkMessages::Take(bool error, const char* text) {
   warning.erase(warning.find_last_not_of(" \n\r\t") + 1);
   const bool known =
       std::find(this->Warnings_.begin(), this->Warnings_.end(), warning) != this->Warnings_.end();
-  if (!known && this->Warnings_.size() < MostWarnings) {
+  if (!known && this->Warnings_.size() < MaximumWarnings) {
     this->Warnings_.push_back(std::move(warning));
   }
 }

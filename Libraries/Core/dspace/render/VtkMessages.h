@@ -1,4 +1,4 @@
-// What VTK reports while Dspace draws.
+// Collects messages that VTK reports while Dspace draws.
 #ifndef DSPACE_RENDER_VTK_MESSAGES_H
 #define DSPACE_RENDER_VTK_MESSAGES_H
 
@@ -14,18 +14,18 @@ namespace dspace {
 class VtkErrorTrap;
 
 // Observes VTK's message window, which stays in place: VTK and the user's own window get every
-// message as before. Messages of a thread that has a VtkErrorTrap go to that trap, too; those of
-// other threads are left alone. Its functions may be called from several threads at once.
+// message as before. Messages of a thread with a VtkErrorTrap also go to that trap; messages of
+// other threads are ignored. Its functions may be called from several threads at once.
 class VtkMessages {
 public:
-  static constexpr std::size_t MostWarnings = 20; // different ones that are kept
+  static constexpr std::size_t MaximumWarnings = 20; // different ones that are kept
 
   VtkMessages();
   VtkMessages(const VtkMessages&) = delete;
   VtkMessages& operator=(const VtkMessages&) = delete;
   ~VtkMessages(); // after all its traps
 
-  // The warnings that traps have met since the last call, each text once, the oldest first.
+  // Returns the warnings that traps received since the last call, each text once, oldest first.
   std::vector<std::string> TakeWarnings();
 
 private:

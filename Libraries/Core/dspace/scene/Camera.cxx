@@ -49,9 +49,9 @@ Eigen::Matrix3d OffsetAxes(CameraMount::ChaseAxes axes, const Eigen::Matrix3d& R
 // Advances the lag to `time_s`, when the camera should be at `wanted`.
 void Advance(ChaseState& state, double time_s, double smoothing_s, FrameId frame, FrameId parent,
              const Eigen::Vector3d& wanted) {
-  const bool goesOn = state.started && state.frame == frame && state.parent == parent &&
-                      time_s >= state.time_s && smoothing_s > 0.0;
-  if (goesOn) {
+  const bool continues = state.started && state.frame == frame && state.parent == parent &&
+                         time_s >= state.time_s && smoothing_s > 0.0;
+  if (continues) {
     const double left = std::exp(-(time_s - state.time_s) / smoothing_s);
     state.p_PC = wanted + left * (state.p_PC - wanted);
   } else {
@@ -69,7 +69,7 @@ void CameraMount::Check(const std::string& camera) const {
   const std::string object = "camera '" + camera + "'";
   if (this->kind == Kind::Fixed) {
     if (!IsValidPose(this->X_FC)) {
-      RefusePose(object, this->X_FC);
+      RejectPose(object, this->X_FC);
     }
     Require(this->X_FC.scale == 1.0, object, "scale", this->X_FC.scale, "1");
     return;
@@ -80,11 +80,11 @@ void CameraMount::Check(const std::string& camera) const {
   Require(this->smoothing_s >= 0.0 && std::isfinite(this->smoothing_s), object, "smoothing",
           this->smoothing_s, "0 seconds and more");
   if (this->offset == this->target) {
-    Refuse(object, "its offset and its target are both " + VectorText(this->offset) +
+    Reject(object, "its offset and its target are both " + VectorText(this->offset) +
                        "; accepted: an offset away from the target");
   }
   if (this->up.isZero(0.0)) {
-    Refuse(object, "up is (0, 0, 0); accepted: a direction");
+    Reject(object, "up is (0, 0, 0); accepted: a direction");
   }
   // Followed axes turn against `up`, and headings against any that is not upright.
   const Eigen::Vector3d up = this->up.stableNormalized();
@@ -92,7 +92,7 @@ void CameraMount::Check(const std::string& camera) const {
                                                              std::hypot(up.x(), up.y()) < Parallel);
   Eigen::Matrix3d unused;
   if (fixedAxes && !AxesLookingAlong(this->target - this->offset, this->up, unused)) {
-    Refuse(object, "up " + VectorText(this->up) + " is along the line of sight from " +
+    Reject(object, "up " + VectorText(this->up) + " is along the line of sight from " +
                        VectorText(this->offset) + " to " + VectorText(this->target) +
                        "; accepted: any other direction");
   }
@@ -105,15 +105,15 @@ Pose LookAt(const std::string& camera, const Eigen::Vector3d& eye, const Eigen::
   RequirePosition(object, "target", target);
   RequireFinite(object, "up", up);
   if (eye == target) {
-    Refuse(object,
+    Reject(object,
            "eye and target are both " + VectorText(eye) + "; accepted: a target away from the eye");
   }
   if (up.isZero(0.0)) {
-    Refuse(object, "up is (0, 0, 0); accepted: a direction");
+    Reject(object, "up is (0, 0, 0); accepted: a direction");
   }
   Eigen::Matrix3d axes;
   if (!AxesLookingAlong(target - eye, up, axes)) {
-    Refuse(object, "up " + VectorText(up) + " is along the line of sight from " + VectorText(eye) +
+    Reject(object, "up " + VectorText(up) + " is along the line of sight from " + VectorText(eye) +
                        " to " + VectorText(target) + "; accepted: any other direction");
   }
   Pose X_FC;
@@ -133,7 +133,7 @@ CameraPose PlaceCamera(const Camera& camera, const FrameTree& frames, double tim
     return {mount.frame, mount.X_FC};
   }
   if (mount.frame == RootFrame) {
-    Refuse("camera '" + camera.name + "'",
+    Reject("camera '" + camera.name + "'",
            "it follows the root frame, which does not move; accepted: any other frame");
   }
   const Pose& X_PF = frames.LocalPose(mount.frame);

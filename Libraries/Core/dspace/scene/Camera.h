@@ -35,9 +35,9 @@ struct CameraMount {
   double smoothing_s =
       0.0; // time constant of the lag behind the offset, in simulation time; 0 none
 
-  // Throws Error(InvalidArgument) naming `camera` and the value: a pose that is no pose or has a
-  // scale, a chase whose offset is its target, an `up` that is zero or always along the line of
-  // sight, a negative smoothing. Whether `frame` exists is for the scene to say.
+  // Throws Error(InvalidArgument) naming `camera` and the value: an invalid pose or one with
+  // a scale, a chase whose offset equals its target, an `up` that is zero or always along the line
+  // of sight, a negative smoothing. The scene checks whether `frame` exists.
   void Check(const std::string& camera) const;
 };
 
@@ -53,8 +53,8 @@ struct Camera {
 Pose LookAt(const std::string& camera, const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
             const Eigen::Vector3d& up);
 
-// A camera's pose as frame and local pose, so that whoever draws goes through the nearest common
-// ancestor: X_FC in `frame`.
+// A camera's pose X_FC in `frame`. Rendering composes it through the nearest common ancestor, which
+// keeps precision.
 struct CameraPose {
   FrameId frame = 1;
   Pose X_FC;
@@ -64,15 +64,15 @@ struct CameraPose {
 struct ChaseState {
   bool started = false;
   double time_s = 0.0;
-  FrameId frame = NoFrame;  // the frame followed, and the frame in which the position is:
-  FrameId parent = NoFrame; // the lag starts anew when either is another
+  FrameId frame = NoFrame;  // the followed frame and the frame of the position;
+  FrameId parent = NoFrame; // a change of either restarts the lag
   Eigen::Vector3d p_PC = Eigen::Vector3d::Zero(); // smoothed camera position in the parent frame
 };
 
-// Where `camera` stands now. Chase cameras are given in the followed frame's parent P, whose metres
-// the offset and the target count. `state` is advanced to simulation time `time_s` (a step back in
-// time starts the lag anew): with d the distance from the place that the offset asks for,
-// d(t + dt) = d(t) exp(-dt / smoothing_s), exact for any dt while that place rests.
+// Returns the current pose of `camera`. The pose of a chase camera is in the followed frame's
+// parent P; offset and target are in metres of P. `state` is advanced to simulation time `time_s`;
+// a step back in time restarts the lag. With d the distance to the position given by the offset,
+// d(t + dt) = d(t) exp(-dt / smoothing_s), exact for any dt while that position is constant.
 //
 // The heading is the direction of the followed frame's X axis in the parent's XY plane; where X
 // stands upright, that of the axis which pitching brought there. Where `up` falls on the line of

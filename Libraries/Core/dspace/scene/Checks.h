@@ -1,4 +1,4 @@
-// How the scene's classes refuse values: one wording for all of them.
+// Checks of values, and the wording of their errors.
 #ifndef DSPACE_SCENE_CHECKS_H
 #define DSPACE_SCENE_CHECKS_H
 
@@ -24,7 +24,7 @@ inline std::string VectorText(const Eigen::Vector3d& v) {
   return "(" + NumberText(v.x()) + ", " + NumberText(v.y()) + ", " + NumberText(v.z()) + ")";
 }
 
-[[noreturn]] inline void Refuse(const std::string& object, const std::string& message) {
+[[noreturn]] inline void Reject(const std::string& object, const std::string& message) {
   throw Error(Error::Kind::InvalidArgument, object, message);
 }
 
@@ -32,7 +32,7 @@ inline std::string VectorText(const Eigen::Vector3d& v) {
 inline void Require(bool good, const std::string& object, const char* what, double value,
                     const char* accepted) {
   if (!good) {
-    Refuse(object, std::string(what) + " is " + NumberText(value) + "; accepted: " + accepted);
+    Reject(object, std::string(what) + " is " + NumberText(value) + "; accepted: " + accepted);
   }
 }
 
@@ -42,13 +42,13 @@ inline void RequireFinite(const std::string& object, const char* what, double va
 
 inline void RequireFinite(const std::string& object, const char* what, const Eigen::Vector3d& v) {
   if (!v.allFinite()) {
-    Refuse(object, std::string(what) + " is " + VectorText(v) + "; accepted: finite numbers");
+    Reject(object, std::string(what) + " is " + VectorText(v) + "; accepted: finite numbers");
   }
 }
 
 inline void RequirePosition(const std::string& object, const char* what, const Eigen::Vector3d& p) {
   if (!IsValidPosition(p)) {
-    Refuse(object, std::string(what) + " is " + VectorText(p) +
+    Reject(object, std::string(what) + " is " + VectorText(p) +
                        "; accepted: within 1e18 metres on each axis");
   }
 }
@@ -76,7 +76,7 @@ inline void RequireName(const char* kind, const std::string& name) {
     }
   }
   if (!good) {
-    Refuse(std::string(kind) + " '" + shown + "'",
+    Reject(std::string(kind) + " '" + shown + "'",
            "its name is empty, holds control characters or is not UTF-8; accepted: any other");
   }
 }

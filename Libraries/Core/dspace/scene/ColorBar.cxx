@@ -10,13 +10,13 @@
 namespace dspace {
 namespace {
 
-constexpr std::size_t MostColors = 1024;
-constexpr std::size_t MostTicks = 100;
+constexpr std::size_t MaximumColors = 1024;
+constexpr std::size_t MaximumTicks = 100;
 constexpr double CharacterWidth = 0.61; // of the font size: the font is monospaced
 
 void RequirePixels(const std::string& object, const char* what, int value, int low, int high) {
   if (value < low || value > high) {
-    Refuse(object, std::string(what) + " is " + std::to_string(value) + "; accepted: " +
+    Reject(object, std::string(what) + " is " + std::to_string(value) + "; accepted: " +
                        std::to_string(low) + " to " + std::to_string(high) + " pixels");
   }
 }
@@ -44,33 +44,34 @@ void ColorBar::Check() const {
   RequireName("colour bar", this->name);
   const std::string object = "colour bar '" + this->name + "'";
   if (!(this->low < this->high) || !std::isfinite(this->high - this->low)) {
-    Refuse(object, "it goes from " + NumberText(this->low) + " to " + NumberText(this->high) +
+    Reject(object, "it goes from " + NumberText(this->low) + " to " + NumberText(this->high) +
                        "; accepted: finite values, the first the lesser");
   }
   // Neighbouring ticks must differ as numbers.
   const double size = std::max(std::abs(this->low), std::abs(this->high));
   if (!(this->high - this->low > 1e-9 * size) || size > 1e100 || this->high - this->low < 1e-100) {
-    Refuse(object, "its values " + NumberText(this->low) + " and " + NumberText(this->high) +
+    Reject(object, "its values " + NumberText(this->low) + " and " + NumberText(this->high) +
                        " are too close, too small or too large for ticks; accepted: up to 1e100, "
                        "at least 1e-100 and a billionth of the greater one apart");
   }
-  if (this->colors.empty() || this->colors.size() > MostColors) {
-    Refuse(object, "it has " + std::to_string(this->colors.size()) + " colours; accepted: 1 to " +
-                       std::to_string(MostColors));
+  if (this->colors.empty() || this->colors.size() > MaximumColors) {
+    Reject(object, "it has " + std::to_string(this->colors.size()) + " colours; accepted: 1 to " +
+                       std::to_string(MaximumColors));
   }
   for (const auto& color : this->colors) {
     for (const double c : color) {
       RequireFraction(object, "a component of its colours", c);
     }
   }
-  if (this->ticks < 0 || std::size_t(this->ticks) > MostTicks || this->values.size() > MostTicks) {
+  if (this->ticks < 0 || std::size_t(this->ticks) > MaximumTicks ||
+      this->values.size() > MaximumTicks) {
     const long count = this->values.empty() ? this->ticks : long(this->values.size());
-    Refuse(object, "it has " + std::to_string(count) + " ticks; accepted: 0 to " +
-                       std::to_string(MostTicks));
+    Reject(object, "it has " + std::to_string(count) + " ticks; accepted: 0 to " +
+                       std::to_string(MaximumTicks));
   }
   for (const double value : this->values) {
     if (!(value >= this->low && value <= this->high)) {
-      Refuse(object, "a tick is at " + NumberText(value) + "; accepted: " + NumberText(this->low) +
+      Reject(object, "a tick is at " + NumberText(value) + "; accepted: " + NumberText(this->low) +
                          " to " + NumberText(this->high));
     }
   }

@@ -1,4 +1,4 @@
-// A legend over a viewport's picture: the colours of a ramp, and which values they stand for.
+// A colour bar over a viewport's picture: the colours of a ramp and their values.
 #ifndef DSPACE_SCENE_COLOR_BAR_H
 #define DSPACE_SCENE_COLOR_BAR_H
 
@@ -11,7 +11,7 @@
 
 namespace dspace {
 
-// An ornament, like a TextTable: no physical-only picture holds it. A vertical bar rises from `low`
+// An ornament like a TextTable: physical-only pictures omit it. A vertical bar rises from `low`
 // to `high`, with its ticks on the right; a horizontal one goes from left to right, with its ticks
 // below. Over it stands "title [unit]".
 struct ColorBar {
@@ -39,11 +39,11 @@ struct ColorBar {
 
   // Throws Error(InvalidArgument) naming the bar and the value.
   void Check() const;
-  // "title [unit]"; empty: no line for it.
+  // "title [unit]"; empty: no heading.
   std::string Heading() const;
   // Values and their texts, ascending.
   std::vector<std::pair<double, std::string>> Ticks() const;
-  // The colour of a value, that of an end beyond it.
+  // The colour of a value; values outside the range get the colour of the nearer end.
   std::array<double, 3> ColorAt(double value) const;
 };
 

@@ -10,14 +10,14 @@ namespace dspace {
 
 struct BoundingSphere;
 
-// What a scene knows of it. The render context knows a drawer for each class
-// (render/CustomDrawers.h): the scene stays free of OpenGL.
+// The interface that a scene sees. The render context has a drawer for each class
+// (render/CustomDrawers.h), so that the scene is free of OpenGL.
 class CustomGeometry {
 public:
   virtual ~CustomGeometry() = default;
-  // In the object's frame O: nothing of it is ever drawn outside.
+  // In the object's frame O. Everything that is drawn lies inside.
   virtual BoundingSphere Bounds() const = 0;
-  // Raised by every change of what would be drawn, data that arrive included.
+  // Increases with every change of the drawn geometry, including newly loaded data.
   virtual std::uint64_t Revision() const = 0;
 };
 

@@ -17,7 +17,7 @@ void CheckImage(const Image& image, const std::string& object) {
       image.pixels.size() / std::size_t(image.width) / std::size_t(image.height) !=
           std::size_t(image.channels) ||
       image.pixels.size() % (std::size_t(image.width) * std::size_t(image.height)) != 0) {
-    Refuse(object, "texture '" + image.name + "' has " + std::to_string(image.pixels.size()) +
+    Reject(object, "texture '" + image.name + "' has " + std::to_string(image.pixels.size()) +
                        " bytes for " + std::to_string(image.width) + " x " +
                        std::to_string(image.height) + " pixels of " +
                        std::to_string(image.channels) +
@@ -28,13 +28,13 @@ void CheckImage(const Image& image, const std::string& object) {
 void CheckArray(const std::vector<float>& values, std::size_t expected, const char* what,
                 const std::string& object) {
   if (values.size() != expected) {
-    Refuse(object, "it has " + std::to_string(values.size()) + " numbers of " + what +
+    Reject(object, "it has " + std::to_string(values.size()) + " numbers of " + what +
                        "; accepted: " + std::to_string(expected));
   }
   const auto bad =
       std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
   if (bad != values.end()) {
-    Refuse(object, std::string("a number of its ") + what + " is " + NumberText(*bad) +
+    Reject(object, std::string("a number of its ") + what + " is " + NumberText(*bad) +
                        " (number " + std::to_string(bad - values.begin()) +
                        "); accepted: finite numbers");
   }
@@ -81,20 +81,20 @@ void CheckMesh(const Mesh& mesh, const std::string& object) {
   CheckArray(mesh.normals, mesh.normals.empty() ? 0 : 3 * n, "normals", name);
   CheckArray(mesh.tcoords, mesh.tcoords.empty() ? 0 : 2 * n, "texture coordinates", name);
   if (!mesh.colors.empty() && mesh.colors.size() != 4 * n) {
-    Refuse(name, "it has " + std::to_string(mesh.colors.size()) +
+    Reject(name, "it has " + std::to_string(mesh.colors.size()) +
                      " bytes of colours; accepted: none or " + std::to_string(4 * n));
   }
   const std::size_t corners = mesh.primitive == Mesh::Primitive::Triangles ? 3
                               : mesh.primitive == Mesh::Primitive::Lines   ? 2
                                                                            : 1;
   if (mesh.indices.size() % corners != 0) {
-    Refuse(name, "it has " + std::to_string(mesh.indices.size()) +
+    Reject(name, "it has " + std::to_string(mesh.indices.size()) +
                      " indices; accepted: a multiple of " + std::to_string(corners));
   }
   const auto bad = std::find_if(mesh.indices.begin(), mesh.indices.end(),
                                 [n](std::uint32_t i) { return i >= n; });
   if (bad != mesh.indices.end()) {
-    Refuse(name, "index " + std::to_string(*bad) + " (number " +
+    Reject(name, "index " + std::to_string(*bad) + " (number " +
                      std::to_string(bad - mesh.indices.begin()) + "); accepted: less than " +
                      std::to_string(n) + ", the number of vertices");
   }
@@ -137,7 +137,7 @@ int LevelFor(const std::vector<DetailLevel>& levels, double pixels) {
 std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scale,
                           const Eigen::Quaterniond& rotation) {
   if (!model) {
-    Refuse("model", "there is none; accepted: what ReadModel returns");
+    Reject("model", "no model is given; accepted: the result of ReadModel");
   }
   const std::string object = "file '" + model->path + "'";
   Require(std::abs(scale) >= MinimumScale && std::abs(scale) <= MaximumScale, object, "scale",
@@ -145,7 +145,7 @@ std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scal
   Pose turn;
   turn.rotation = rotation;
   if (!IsValidPose(turn)) {
-    RefusePose(object, turn);
+    RejectPose(object, turn);
   }
   const auto plain = std::make_shared<const Material>();
   Eigen::Affine3d X_OM = Eigen::Affine3d::Identity();

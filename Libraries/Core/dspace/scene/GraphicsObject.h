@@ -1,4 +1,4 @@
-// Geometry that hangs on a frame.
+// Geometry attached to a frame.
 #ifndef DSPACE_SCENE_GRAPHICS_OBJECT_H
 #define DSPACE_SCENE_GRAPHICS_OBJECT_H
 
@@ -17,11 +17,11 @@ namespace dspace {
 
 using ObjectId = std::uint32_t; // 0 means none; never reused within a scene
 
-// Physical: what a real camera would see. Ornamental: what only helps a person.
+// Physical: visible to a real camera. Ornamental: helps only a person.
 enum class Nature { Physical, Ornamental };
 
-// One mesh with its material, placed in the object's frame O. The mesh is shared: every part that
-// names the same Mesh draws the same buffers on the GPU. A mesh is not changed once a scene has it.
+// One mesh with its material, placed in the object's frame O. The mesh is shared: all parts
+// with the same Mesh use the same GPU buffers. A mesh must not change after a scene has it.
 struct Part {
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const Material> material; // null: Material's defaults (the scene fills them in)
@@ -38,12 +38,12 @@ struct BoundingSphere {
 struct DetailLevel {
   std::vector<Part> parts;
   double minimumPixels = 0.0; // drawn while the object's projected diameter is at least this
-  // Measured by the scene when the level comes to it, in O.
+  // Computed by the scene when the level is added, in O.
   BoundingSphere sphere = {};
   Eigen::AlignedBox3d box = {};
 };
 
-// Changes laid over every part's own material; what is not set stays as imported.
+// Overrides the material of every part. Fields that are not set keep the imported value.
 struct MaterialOverride {
   std::optional<std::array<double, 3>> color;          // sRGB, 0 to 1
   std::optional<double> opacity;                       // 0 to 1
@@ -99,9 +99,8 @@ int LevelFor(const std::vector<DetailLevel>& levels, double pixels);
 std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scale = 1.0,
                           const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity());
 
-// Throw Error(InvalidArgument) naming `object` and the value: what the scene asks of whatever it is
-// given, so that nothing that is drawn can be out of range. A mesh may be empty (a trail that has
-// not begun).
+// Check that nothing that is drawn can be out of range. Throw Error(InvalidArgument) naming
+// `object` and the value. A mesh may be empty (a trail before its first line).
 void CheckMesh(const Mesh& mesh, const std::string& object);
 void CheckMaterial(const Material& material, const std::string& object);
 

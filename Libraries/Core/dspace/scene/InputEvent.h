@@ -1,4 +1,4 @@
-// Mouse and keyboard, free of any toolkit.
+// Mouse and keyboard events, independent of any toolkit.
 #ifndef DSPACE_SCENE_INPUT_EVENT_H
 #define DSPACE_SCENE_INPUT_EVENT_H
 

@@ -16,8 +16,8 @@ struct Light {
     Directional, // from infinitely far: `direction` only
     Point,       // from `position`, in all directions
     Spot,        // from `position` along `direction` within the cone
-    Head,        // from the camera that looks
-    Ambient      // from everywhere alike: what keeps shadowed sides from black
+    Head,        // from the camera that draws
+    Ambient      // from all directions equally: shadowed sides are not black
   };
   std::string name;
   Kind kind = Kind::Directional;

@@ -16,10 +16,10 @@ namespace dspace {
 // Arrows along X (red), Y (green), Z (blue), sharing one mesh.
 std::vector<Part> MakeAxes(double length);
 
-// What a camera sees of an image of width × height pixels up to `length` along Z, in the camera's
-// axes (X right, Y down, Z forward): its edges as lines, then its faces, translucent. Perspective
-// kinds begin at the origin, an orthographic one at Z = 0. The corners are the outer borders of the
-// corner pixels.
+// The view volume of a camera with an image of width × height pixels up to `length` along Z, in the
+// camera's axes (X right, Y down, Z forward): its edges as lines, then its faces, translucent.
+// Perspective kinds begin at the origin, an orthographic one at Z = 0. The corners are the outer
+// borders of the corner pixels.
 std::vector<Part> MakeFrustumPyramid(const Projection& projection, double length, int width,
                                      int height);
 

@@ -52,7 +52,7 @@ void Orbit(OrbitResult& result, const OrbitView& view, const Eigen::Vector3d& pi
 void CheckInput(const InputEvent& event, const OrbitView& view) {
   const std::string object = "camera '" + view.camera.name + "'";
   if (view.width < 1 || view.height < 1) {
-    Refuse(object, "its picture is " + std::to_string(view.width) + " x " +
+    Reject(object, "its picture is " + std::to_string(view.width) + " x " +
                        std::to_string(view.height) + " pixels; accepted: 1 x 1 and more");
   }
   RequireFinite(object, "pointer x", event.x);
@@ -67,7 +67,7 @@ void CheckInput(const InputEvent& event, const OrbitView& view) {
 
 OrbitController::OrbitController(const Eigen::Vector3d& up) : Up_(up.stableNormalized()) {
   if (!up.allFinite() || up.isZero(0.0)) {
-    Refuse("orbit controller", "up is " + VectorText(up) + "; accepted: a direction");
+    Reject("orbit controller", "up is " + VectorText(up) + "; accepted: a direction");
   }
 }
 
@@ -166,7 +166,7 @@ void OrbitController::Move(const InputEvent& event, const OrbitView& view, Orbit
   if (this->Drag_ == Drag::None) {
     return;
   }
-  if (view.pose.frame != this->Frame_) { // another camera meanwhile: its points mean nothing here
+  if (view.pose.frame != this->Frame_) { // another camera since: its points do not apply here
     this->Drag_ = Drag::None;
     this->Button_ = Button::None;
     return;

@@ -10,7 +10,7 @@
 
 namespace dspace {
 
-// What the controller has to know of a viewport when an event comes. F is pose.frame.
+// State of a viewport at the time of an event. F is pose.frame.
 struct OrbitView {
   Camera camera;   // as it is now
   CameraPose pose; // where it stands (PlaceCamera): X_FC
@@ -35,18 +35,18 @@ struct OrbitResult {
 // an orthographic camera changes its height instead. Arrow keys orbit by 5°, + and - go nearer and
 // farther by a fifth, both about the point under the pointer; Frame shows bounds_F whole, Reset
 // returns to the home camera.
-// Where there is no point under the pointer, one on its ray at the depth of the last one used is
-// taken (first: the depth of the bounds' centre, or 10 m).
+// If there is no point under the pointer, the controller uses the point on the pointer's ray at the
+// depth of the last pivot (initially the depth of the bounds' centre, or 10 m).
 class OrbitController {
 public:
   // `up` in F, any length but 0. Throws Error(InvalidArgument).
   explicit OrbitController(const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 
-  // What Reset returns to; without it, the camera that the first event found. A home in another
-  // frame than the camera's takes it there.
+  // Sets the camera that Reset returns to; default: the camera at the first event. A home camera in
+  // another frame moves the camera to that frame.
   void SetHome(const Camera& camera);
 
-  // Whether `event` makes use of OrbitView::pivot_F, so that none need be picked when not.
+  // Whether `event` uses OrbitView::pivot_F. If not, the caller need not pick.
   static bool NeedsPivot(const InputEvent& event);
 
   // Throws Error(InvalidArgument) naming the camera for a size below 1 × 1 or a value that is not

@@ -12,7 +12,7 @@ void TextTable::Check() const {
   Require(this->fontSize >= 4 && this->fontSize <= 200, object, "font size", this->fontSize,
           "4 to 200 pixels");
   if (2 * this->rows.size() > MaximumTableCells) {
-    Refuse(object, "it has " + std::to_string(2 * this->rows.size()) + " cells; accepted: up to " +
+    Reject(object, "it has " + std::to_string(2 * this->rows.size()) + " cells; accepted: up to " +
                        std::to_string(MaximumTableCells));
   }
   // A line break or a tab would push the columns out of line.
@@ -39,7 +39,7 @@ void TextTable::Check() const {
   }
   for (const auto& [row, color] : this->valueColors) {
     if (row >= this->rows.size()) {
-      Refuse(object, "a colour is for the value of row " + std::to_string(row) +
+      Reject(object, "a colour is for the value of row " + std::to_string(row) +
                          "; accepted: less than its " + std::to_string(this->rows.size()) +
                          " rows");
     }

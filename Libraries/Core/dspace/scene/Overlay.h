@@ -1,4 +1,4 @@
-// What is written over a viewport's picture.
+// Text tables over a viewport's picture.
 #ifndef DSPACE_SCENE_OVERLAY_H
 #define DSPACE_SCENE_OVERLAY_H
 
@@ -11,8 +11,8 @@
 
 namespace dspace {
 
-// A table of labels and values in a corner of a viewport. Overlays are ornaments: no physical-only
-// picture holds them.
+// A table of labels and values in a corner of a viewport. Overlays are ornaments: physical-only
+// pictures omit them.
 struct TextTable {
   enum class Anchor { TopLeft, TopRight, BottomLeft, BottomRight };
   std::string name; // unique in the viewport

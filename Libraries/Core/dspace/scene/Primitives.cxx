@@ -102,7 +102,7 @@ void CycleAxes(std::vector<float>& xyz) {
 Mesh FromPoints(const std::string& name, Mesh::Primitive primitive,
                 const std::vector<Eigen::Vector3d>& points, std::size_t least) {
   if (points.size() < least) {
-    Refuse(name, "it has " + std::to_string(points.size()) + " points; accepted: at least " +
+    Reject(name, "it has " + std::to_string(points.size()) + " points; accepted: at least " +
                      std::to_string(least));
   }
   Mesh mesh;
@@ -110,7 +110,7 @@ Mesh FromPoints(const std::string& name, Mesh::Primitive primitive,
   mesh.primitive = primitive;
   for (const Eigen::Vector3d& p : points) {
     if (!(p.array().abs() <= 1e15).all()) { // false for NaN too
-      Refuse(name, "a point is " + VectorText(p) + "; accepted: within 1e15 metres");
+      Reject(name, "a point is " + VectorText(p) + "; accepted: within 1e15 metres");
     }
     for (int i = 0; i < 3; ++i) {
       mesh.positions.push_back(static_cast<float>(p[i]));

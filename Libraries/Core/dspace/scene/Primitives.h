@@ -1,4 +1,4 @@
-// Meshes made at run time.
+// Meshes of basic shapes.
 #ifndef DSPACE_SCENE_PRIMITIVES_H
 #define DSPACE_SCENE_PRIMITIVES_H
 

@@ -16,7 +16,7 @@ constexpr double LargestTangent = 1e6;
 
 void CheckSize(int width, int height) {
   if (width < 1 || height < 1) {
-    Refuse("image", "its size is " + std::to_string(width) + " x " + std::to_string(height) +
+    Reject("image", "its size is " + std::to_string(width) + " x " + std::to_string(height) +
                         "; accepted: 1 x 1 and more");
   }
 }

@@ -30,7 +30,7 @@ void CheckOffset(const std::string& object, const Eigen::Affine3d& X_FO) {
   }
   const double det = X_FO.linear().determinant();
   if (!std::isnormal(det)) {
-    Refuse(object, "its offset is not finite or flattens it; accepted: an affine map with an "
+    Reject(object, "its offset is not finite or flattens it; accepted: an affine map with an "
                    "inverse");
   }
 }
@@ -111,10 +111,10 @@ void Scene::CheckLevels(const std::string& object, std::vector<DetailLevel>& lev
     finer = level.minimumPixels;
     for (Part& part : level.parts) {
       if (!part.mesh) {
-        Refuse(object, "a part has no mesh");
+        Reject(object, "a part has no mesh");
       }
       if (!part.X_OP.matrix().allFinite()) {
-        Refuse(object, "the place of mesh '" + part.mesh->name + "' in it is not finite");
+        Reject(object, "the place of mesh '" + part.mesh->name + "' in it is not finite");
       }
       this->Meshes_.Check(part.mesh, object);
       if (part.material) {
@@ -153,7 +153,7 @@ ObjectId Scene::AddObject(GraphicsObject object) {
     object.id = this->LargestObject_ + 1;
   }
   if (object.id > LargestAllowedObject) {
-    Refuse(label, "its id is " + std::to_string(object.id) + "; accepted: up to " +
+    Reject(label, "its id is " + std::to_string(object.id) + "; accepted: up to " +
                       std::to_string(LargestAllowedObject));
   }
   if (this->Objects_.count(object.id) != 0 || this->RetiredObjects_.count(object.id) != 0) {
@@ -166,7 +166,7 @@ ObjectId Scene::AddObject(GraphicsObject object) {
   }
   SceneFragment& fragment = this->Fragments_.Find(object.fragment);
   if (fragment.nature != object.nature) {
-    Refuse(label, std::string("it is ") + NatureText(object.nature) + " and fragment '" +
+    Reject(label, std::string("it is ") + NatureText(object.nature) + " and fragment '" +
                       fragment.name + "' " + NatureText(fragment.nature) +
                       "; accepted: a fragment of its nature");
   }
@@ -178,7 +178,7 @@ ObjectId Scene::AddObject(GraphicsObject object) {
   object.material.Check(label);
   this->CheckLevels(label, object.levels);
   if (object.custom && (!object.levels.empty() || object.billboard)) {
-    Refuse(label, "geometry that draws itself has no levels and is no billboard");
+    Reject(label, "custom geometry has no levels of detail and cannot be a billboard");
   }
 
   const ObjectId id = object.id;
@@ -246,7 +246,7 @@ void Scene::MoveToFragment(ObjectId id, const std::string& name) {
   GraphicsObject& object = this->Find(id);
   SceneFragment& fragment = this->Fragments_.Find(name);
   if (fragment.nature != object.nature) {
-    Refuse(Label(object.name), std::string("it is ") + NatureText(object.nature) +
+    Reject(Label(object.name), std::string("it is ") + NatureText(object.nature) +
                                    " and fragment '" + name + "' " + NatureText(fragment.nature) +
                                    "; accepted: a fragment of its nature");
   }
@@ -261,7 +261,7 @@ void Scene::MoveToFragment(ObjectId id, const std::string& name) {
 void Scene::SetObjectLevels(ObjectId id, std::vector<DetailLevel> levels) {
   GraphicsObject& object = this->Find(id);
   if (object.custom) {
-    Refuse(Label(object.name), "geometry that draws itself has no levels");
+    Reject(Label(object.name), "geometry that draws itself has no levels");
   }
   this->CheckLevels(Label(object.name), levels);
   object.levels = std::move(levels);
@@ -303,9 +303,10 @@ void Scene::RemoveFrame(FrameId frame) {
     return;
   }
   const std::vector<FrameId> subtree = SubtreeOf(this->Frames_, frame);
-  this->Views_.RefuseWhileCamerasOn(frame, subtree);
+  this->Views_.RejectWhileCamerasOn(frame, subtree);
 
-  // Nothing below can be refused. The tree comes last: its listeners see a scene without leftovers.
+  // Nothing below can be rejected. The tree comes last: its listeners see a scene without
+  // leftovers.
   const std::unordered_set<FrameId> gone(subtree.begin(), subtree.end());
   std::unordered_set<ObjectId> removed;
   for (auto it = this->Objects_.begin(); it != this->Objects_.end();) {

@@ -16,10 +16,10 @@
 
 namespace dspace {
 
-// Every change goes through the scene (or Frames()), is checked whole before it is made, and
-// raises Revision(); setting what an object, a fragment or the time
-// already is, is no change. Errors name the object, the value and
-// what would be accepted. Names are not empty and hold no control characters.
+// Every change goes through the scene (or Frames()), is checked completely before it is made, and
+// increases Revision(). Setting an object, a fragment or the time to its current value is no
+// change. Errors name the object, the value and what is accepted. Names are not empty and have no
+// control characters.
 // Not synchronised.
 class Scene {
 public:
@@ -28,9 +28,8 @@ public:
 
   FrameTree& Frames() { return this->Frames_; }
   const FrameTree& Frames() const { return this->Frames_; }
-  // Removes a frame with its subtree, the objects and the lights on it. Refused while a camera
-  // stands on it or follows it. (Frames().Remove() is for frames on which nothing of the scene
-  // hangs.)
+  // Removes a frame with its subtree and the objects and lights on it. Rejected while a camera is
+  // attached to it or follows it. (Use Frames().Remove() only for frames without any of these.)
   void RemoveFrame(FrameId frame);
 
   // Adds an object; id 0 takes the one after the largest ever used, another, at most 2^31 - 1, is
@@ -65,30 +64,30 @@ public:
   void RemoveCamera(const std::string& vantage, const std::string& camera);
   void SetActiveCamera(const std::string& vantage, const std::string& camera);
 
-  // Where a camera of a vantage stands now ("": the active one): a function of the commands given
-  // so far, however often and from however many viewports it is asked.
+  // Returns the current pose of a camera of a vantage ("": the active one). It depends only on the
+  // commands so far, not on how often or from how many viewports it is requested.
   CameraPose PlaceCamera(const std::string& vantage, const std::string& camera = {}) const {
     return this->Views_.Place(vantage, camera);
   }
 
-  // Simulation time [s], TDB past J2000 or any other that only grows; smoothing depends on it.
-  // Poses set after SetTime(t) are those of t. A step back starts all lags anew.
+  // Simulation time [s]: TDB since J2000 or any other monotonic time. Smoothing depends on it.
+  // Poses set after SetTime(t) belong to t. A step back restarts all lags.
   void SetTime(double time_s);
   double Time() const { return this->Views_.Time(); }
 
-  // What chase cameras with smoothing go on from, by vantage and camera, for whoever brings a scene
-  // back to a state. SetLags throws Error(NotFound) for a camera that is not there.
+  // Lag states of smoothed chase cameras, by vantage and camera, to restore a scene. SetLags throws
+  // Error(NotFound) for an unknown camera.
   using Lags = SceneViews::Lags;
   const Lags& GetLags() const { return this->Views_.GetLags(); }
   void SetLags(Lags lags);
 
-  // Raised by every change of anything above, poses included.
+  // Increases with every change of anything above, including poses.
   std::uint64_t Revision() const;
-  // Raised by changes of objects, fragments and lights only (not poses, cameras or time).
+  // Increases with changes of objects, fragments and lights only (not poses, cameras or time).
   std::uint64_t ContentRevision() const { return this->ContentRevision_; }
 
 private:
-  // Meshes that were found good and still live: an instance costs no second look.
+  // Meshes that passed the check and still exist: an instance is not checked again.
   class MeshRegister {
   public:
     void Check(const std::shared_ptr<const Mesh>& mesh, const std::string& object);

@@ -23,7 +23,7 @@ void CheckLight(const Light& light) {
   RequirePosition(object, "position", light.position);
   const bool directed = light.kind == Light::Kind::Directional || light.kind == Light::Kind::Spot;
   if (directed && light.direction.norm() < 1e-12) {
-    Refuse(object, "its direction is " + VectorText(light.direction) +
+    Reject(object, "its direction is " + VectorText(light.direction) +
                        "; accepted: any of length 1e-12 and more");
   }
   Require(light.cone_deg > 0.0 && light.cone_deg < 90.0, object, "cone", light.cone_deg,
@@ -63,10 +63,10 @@ void SceneFragmentManager::Create(const std::string& name, Nature nature) {
 void SceneFragmentManager::Remove(const std::string& name) {
   const SceneFragment& fragment = this->Find(name);
   if (name == PhysicalFragment || name == OrnamentalFragment) {
-    Refuse("fragment '" + name + "'", "it always exists and cannot be removed");
+    Reject("fragment '" + name + "'", "it always exists and cannot be removed");
   }
   if (!fragment.objects.empty()) {
-    Refuse("fragment '" + name + "'", "it holds " + std::to_string(fragment.objects.size()) +
+    Reject("fragment '" + name + "'", "it holds " + std::to_string(fragment.objects.size()) +
                                           " objects; accepted: an empty fragment");
   }
   this->Fragments_.erase(FindNamed(this->Fragments_, name));

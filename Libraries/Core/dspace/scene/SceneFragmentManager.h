@@ -14,8 +14,8 @@ namespace dspace {
 struct SceneFragment {
   std::string name;
   Nature nature = Nature::Physical;
-  bool visible = true;           // everywhere; a viewport or a request hides it for itself
-  std::vector<ObjectId> objects; // in the order they came
+  bool visible = true;           // default; a viewport or a request can hide it locally
+  std::vector<ObjectId> objects; // in order of addition
 };
 
 // The fragments of one scene, and its lights, which light all of it.

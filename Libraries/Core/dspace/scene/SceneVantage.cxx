@@ -41,7 +41,7 @@ void SceneVantage::RemoveCamera(const std::string& name) {
     NoSuchCamera(this->Name_, name);
   }
   if (name == this->Active_ && this->Cameras_.size() > 1) {
-    Refuse("camera '" + name + "'", "it is the active one of vantage '" + this->Name_ +
+    Reject("camera '" + name + "'", "it is the active one of vantage '" + this->Name_ +
                                         "'; accepted: another, or the last one");
   }
   if (name == this->Active_) {

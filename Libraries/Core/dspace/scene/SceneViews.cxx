@@ -17,12 +17,12 @@ bool FollowsTheSame(const CameraMount& a, const CameraMount& b) {
 SceneViews::SceneViews(std::string scene, const FrameTree& frames)
     : Scene_(std::move(scene)), Frames_(frames) {}
 
-void SceneViews::RefuseWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const {
+void SceneViews::RejectWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const {
   for (const SceneVantage& vantage : this->Vantages_) {
     for (const std::string& name : vantage.CameraNames()) {
       const CameraMount& mount = vantage.GetCamera(name).mount;
       if (std::find(subtree.begin(), subtree.end(), mount.frame) != subtree.end()) {
-        Refuse("frame '" + this->Frames_.Path(removed) + "'",
+        Reject("frame '" + this->Frames_.Path(removed) + "'",
                "camera '" + name + "' of vantage '" + vantage.Name() +
                    (mount.kind == CameraMount::Kind::Chase ? "' follows" : "' stands on") +
                    " frame '" + this->Frames_.Path(mount.frame) +
@@ -77,7 +77,7 @@ void SceneViews::SetCamera(const std::string& vantage, const Camera& camera) {
   SceneVantage& views = this->Find(vantage);
   const std::string label = "camera '" + camera.name + "'";
   if (camera.mount.kind == CameraMount::Kind::Chase && camera.mount.frame == RootFrame) {
-    Refuse(label, "it follows the root frame, which does not move; accepted: any other frame");
+    Reject(label, "it follows the root frame, which does not move; accepted: any other frame");
   }
   const std::vector<std::string> names = views.CameraNames();
   const bool isNew = std::find(names.begin(), names.end(), camera.name) == names.end();

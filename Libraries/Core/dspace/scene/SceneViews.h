@@ -11,7 +11,7 @@
 
 namespace dspace {
 
-// Scene documents what its functions of the same purpose do.
+// See the functions of the same purpose in Scene.
 class SceneViews {
 public:
   // `scene` names the scene in messages; `frames` must outlive this.
@@ -27,9 +27,9 @@ public:
   void RemoveCamera(const std::string& vantage, const std::string& camera);
   bool SetActiveCamera(const std::string& vantage, const std::string& camera); // whether it changed
   CameraPose Place(const std::string& vantage, const std::string& camera) const;
-  // Throws Error(InvalidArgument) where a camera stands on a frame of `subtree` or follows it,
-  // whose top is `removed`.
-  void RefuseWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const;
+  // Throws Error(InvalidArgument) if a camera is attached to a frame of `subtree` or follows one.
+  // `removed` is the top of the subtree.
+  void RejectWhileCamerasOn(FrameId removed, const std::vector<FrameId>& subtree) const;
 
   bool SetTime(double time_s); // whether it changed
   double Time() const { return this->Time_; }

@@ -21,8 +21,8 @@ std::vector<char32_t> Characters(const std::string& object, const char* what,
     if (character == NoCharacter) {
       char byte[8];
       std::snprintf(byte, sizeof(byte), "0x%02X", unsigned(static_cast<unsigned char>(text[at])));
-      Refuse(object, std::string(what) + " holds the byte " + byte + " at place " +
-                         std::to_string(at) + ", which is no UTF-8; accepted: UTF-8");
+      Reject(object, std::string(what) + " holds the byte " + byte + " at place " +
+                         std::to_string(at) + ", which is not UTF-8; accepted: UTF-8");
     }
     characters.push_back(character);
   }
@@ -45,7 +45,7 @@ void RequirePlainText(const std::string& object, const char* what, const std::st
                       bool lines) {
   for (const char32_t character : Characters(object, what, text)) {
     if (IsControlCharacter(character) && !(lines && character == U'\n')) {
-      Refuse(object, std::string(what) + " holds the control character " +
+      Reject(object, std::string(what) + " holds the control character " +
                          CharacterText(character) + "; accepted: " +
                          (lines ? "line breaks and no other" : "none (no tab, no line break)"));
     }

@@ -1,4 +1,4 @@
-// The characters of a text, and which of them no text may hold.
+// The characters of a text, and the check for characters that no text may contain.
 #ifndef DSPACE_SCENE_TEXT_CHARACTERS_H
 #define DSPACE_SCENE_TEXT_CHARACTERS_H
 
@@ -15,11 +15,11 @@ std::vector<char32_t> Characters(const std::string& object, const char* what,
 // "U+4E2D '中'"; control characters, which would spoil the message, without themselves.
 std::string CharacterText(char32_t character);
 
-// Tab, line break and other controls, and the invisible ones that steer layout and direction.
+// Tab, line break and other controls, and invisible characters that control layout and direction.
 bool IsControlCharacter(char32_t character);
 
 // Throws Error(InvalidArgument) where `text` is no UTF-8 or holds control characters; line breaks
-// ('\n') pass where `lines` says so.
+// ('\n') are accepted if `lines` is true.
 void RequirePlainText(const std::string& object, const char* what, const std::string& text,
                       bool lines);
 

@@ -27,7 +27,7 @@ inline void RequireTextLength(const std::string& object, const char* what,
   // The count of bytes too: a text that is no UTF-8 may have no characters.
   const std::size_t count = std::max(CharacterCount(text), text.size() / 4);
   if (count > MaximumTextLength) {
-    Refuse(object, std::string(what) + " has " + std::to_string(count) +
+    Reject(object, std::string(what) + " has " + std::to_string(count) +
                        " characters; accepted: up to " + std::to_string(MaximumTextLength));
   }
 }
@@ -35,7 +35,7 @@ inline void RequireTextLength(const std::string& object, const char* what,
 inline void RequireTextPicture(const std::string& object, double width, double height) {
   if (!(width <= MaximumTextSide && height <= MaximumTextSide &&
         width * height <= MaximumTextArea)) {
-    Refuse(object, "it is " + NumberText(width) + " x " + NumberText(height) +
+    Reject(object, "it is " + NumberText(width) + " x " + NumberText(height) +
                        " pixels large; accepted: up to " + NumberText(MaximumTextSide) +
                        " a side and " + NumberText(MaximumTextArea) +
                        " in all: fewer characters a line or a smaller font");

@@ -1,4 +1,4 @@
-// The path that something has come, as a line of bounded length.
+// The path of a moving object, as a line of bounded length.
 #ifndef DSPACE_SCENE_TRAIL_H
 #define DSPACE_SCENE_TRAIL_H
 
@@ -11,10 +11,9 @@
 
 namespace dspace {
 
-// Positions p_F [m] in double precision, F being the frame that the trail's object hangs on; when
-// the ring is full the oldest one goes. A position nearer than the minimum spacing to the last one
-// that was kept is not kept: it only moves the line's end, so that the line always ends where the
-// thing is.
+// Positions p_F [m] in double precision, in the frame F of the trail's object. A full ring drops
+// its oldest position. A position closer than the minimum spacing to the last stored one is not
+// stored; it only moves the end of the line, so that the line always ends at the object.
 class Trail {
 public:
   // capacity 2 to 10,000,000 positions; minimumSpacing [m] >= 0. With `fade` the line's opacity

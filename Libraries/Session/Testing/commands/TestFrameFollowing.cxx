@@ -128,7 +128,7 @@ TEST_F(FrameFollowing, RobotsAreToldByTheirFrames) {
   EXPECT_EQ(EventsOf(this->Accept(c)), (Events{{v1::FrameEvent::REMOVED, {upper, lower, base}}}));
 }
 
-TEST_F(FrameFollowing, WhatARefusedCommandTookBackIsNotTold) {
+TEST_F(FrameFollowing, WhatARejectedCommandTookBackIsNotTold) {
   const TemporaryFile file("refused.urdf", R"(<robot name="arm"><link name="base">
     <visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>)");
   this->Follow();
@@ -145,7 +145,7 @@ TEST_F(FrameFollowing, WhatARefusedCommandTookBackIsNotTold) {
 }
 
 // A listener on the tree that throws makes the command fail with its change made.
-TEST_F(FrameFollowing, WhatARefusedCommandLeftIsTold) {
+TEST_F(FrameFollowing, WhatARejectedCommandLeftIsTold) {
   this->Follow();
   const auto token =
       this->Tree().AddListener([](const FrameEvent&) { throw std::runtime_error("listener"); });
@@ -251,7 +251,7 @@ TEST_F(FrameFollowing, ScenesAreFollowedOneByOneAndLeaveNoListener) {
   this->Accept(scene); // a new one of that name begins without followers
   create.mutable_create_frame()->set_id(0);
   EXPECT_EQ(this->Accept(create).frame_event_size(), 0);
-  this->Refuse(
+  this->Reject(
       [] {
         v1::Command command;
         command.set_scene("nowhere");

@@ -51,7 +51,7 @@ TEST_F(LinkTest, LockstepLosesNothingAndRepeatsNothing) {
   }
 }
 
-TEST_F(LinkTest, ASecondWriterIsRefusedByNameOrTakesOver) {
+TEST_F(LinkTest, ASecondWriterIsRejectedByNameOrTakesOver) {
   this->StartServer();
   RemoteClient first(this->ClientOptions("first"));
   Accept(first.Execute(MakeScene()));
@@ -127,7 +127,7 @@ TEST_F(LinkTest, UnmovedFramesCostNothingAndTheStateIsTheSame) {
   EXPECT_EQ(client.Execute(ask).SerializeAsString(), local.Execute(ask).SerializeAsString());
 }
 
-TEST_F(LinkTest, AMessageBeyondTheLimitIsRefusedAndTheLinkGoesOn) {
+TEST_F(LinkTest, AMessageBeyondTheLimitIsRejectedAndTheLinkGoesOn) {
   this->Options.maximumMessage = 10000;
   this->StartServer();
   RemoteClient client(this->ClientOptions());

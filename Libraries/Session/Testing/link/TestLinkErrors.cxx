@@ -74,7 +74,7 @@ TEST_F(LinkTest, ErrorsOfWhatWasAbandonedHitNothingElse) {
 }
 
 // What is waited for is never carried out after something that was refused and not waited for.
-TEST_F(LinkTest, ACommandThatIsWaitedForIsNotCarriedOutAfterARefusal) {
+TEST_F(LinkTest, ACommandThatIsWaitedForIsNotCarriedOutAfterARejection) {
   this->StartServer();
   std::promise<void> go;
   std::vector<double> times;

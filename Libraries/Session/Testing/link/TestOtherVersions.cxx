@@ -169,11 +169,11 @@ TEST_F(WireLink, UnknownFieldsReachViewers) {
 
 class WireCommands : public CommandTest {};
 
-TEST_F(WireCommands, UnknownOnesAreRefusedByNumber) {
+TEST_F(WireCommands, UnknownOnesAreRejectedByNumber) {
   v1::Command command;
   command.GetReflection()->MutableUnknownFields(&command)->AddLengthDelimited(4321, "");
-  this->Refuse(command, Kind::UNSUPPORTED, "command number 4321");
-  this->Refuse(v1::Command(), Kind::UNSUPPORTED, "command none");
+  this->Reject(command, Kind::UNSUPPORTED, "command number 4321");
+  this->Reject(v1::Command(), Kind::UNSUPPORTED, "command none");
 }
 
 TEST_F(WireCommands, LaterOnesAreTypedAndSayThatTheyAreNotCarriedOut) {
@@ -189,7 +189,7 @@ TEST_F(WireCommands, LaterOnesAreTypedAndSayThatTheyAreNotCarriedOut) {
     }
     v1::Command command;
     command.GetReflection()->MutableMessage(&command, field);
-    this->Refuse(command, Kind::UNIMPLEMENTED, "command " + field->name() + ": it is typed");
+    this->Reject(command, Kind::UNIMPLEMENTED, "command " + field->name() + ": it is typed");
     command.set_scene("no such scene");
     const v1::Reply reply = this->Interpreter_.Execute(command);
     EXPECT_EQ(reply.error().kind(), Kind::UNIMPLEMENTED) << field->name();

@@ -84,12 +84,12 @@ void PutTracks(const WheelTracks& tracks, const std::string& scene, const std::s
                std::vector<v1::Command>& out) {
   v1::RestoreTracks* restore = nullptr;
   std::size_t room = 0;
-  const auto begin = [&](bool goesOn) {
+  const auto begin = [&](bool continues) {
     v1::Command& command = out.emplace_back();
     command.set_scene(scene);
     restore = command.mutable_restore_tracks();
     restore->set_terrain(terrain);
-    restore->set_goes_on(goesOn);
+    restore->set_goes_on(continues);
     room = MostContacts;
   };
   for (const TrackStroke& stroke : tracks.Strokes()) {

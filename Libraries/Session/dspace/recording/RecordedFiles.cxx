@@ -291,7 +291,7 @@ std::string RecordedFiles::Place(const std::string& path) const {
   return this->Folder_.empty() ? path : this->Folder_ + Below(path);
 }
 
-FilesGuard::Look RecordedFiles::Look() const {
+FilesGuard::Check RecordedFiles::Look() const {
   if (!this->Confinement_) {
     return [](const std::string&) {};
   }

@@ -52,7 +52,7 @@ public:
   // For a FilesGuard around the recording's commands, valid also after this object is gone. Of
   // packed files only those in the folder are accepted. Of others any is: they were checked, and
   // the guard restricts the formats of rasters and shapes (ConfinedDrivers.h) all the same.
-  FilesGuard::Look Look() const;
+  FilesGuard::Check Look() const;
 
   // A recorded command with its paths made those of the folder; with none it stays as it is.
   // Overviews of another machine are not to be had: terrains are told to build them in the folder.

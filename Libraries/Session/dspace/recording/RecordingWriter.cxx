@@ -34,18 +34,18 @@ double SystemTime() {
 }
 
 void Check(const RecordingOptions& options, const std::string& path) {
-  const auto refuse = [&](const std::string& what) {
+  const auto reject = [&](const std::string& what) {
     throw Error(Error::Kind::InvalidArgument, "recording '" + path + "'", what);
   };
   if (!(options.commitEvery_s >= 0.001 && options.commitEvery_s <= 60.0)) {
-    refuse("the time from commit to commit is " + NumberText(options.commitEvery_s) +
+    reject("the time from commit to commit is " + NumberText(options.commitEvery_s) +
            " s; accepted: 0.001 to 60");
   }
   if (options.queueBytes < (1u << 20)) {
-    refuse("the queue has " + std::to_string(options.queueBytes) + " bytes; accepted: 1 MiB on");
+    reject("the queue has " + std::to_string(options.queueBytes) + " bytes; accepted: 1 MiB on");
   }
   if (options.snapshotBytes == 0 || options.snapshotCommands == 0) {
-    refuse("a snapshot after nothing; accepted: 1 byte and 1 command on");
+    reject("a snapshot after nothing; accepted: 1 byte and 1 command on");
   }
 }
 

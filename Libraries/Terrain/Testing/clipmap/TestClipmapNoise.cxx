@@ -193,8 +193,8 @@ TEST(ClipmapNoise, TurnsAgreeAndHolesStay) {
   EXPECT_EQ(holes, 3 * 19);
 }
 
-TEST(ClipmapNoise, ABadStyleIsRefused) {
-  const auto refused = [](double wavelength, int octaves, double amplitude, const char* told) {
+TEST(ClipmapNoise, ABadStyleIsRejected) {
+  const auto rejected = [](double wavelength, int octaves, double amplitude, const char* told) {
     ClipmapStyle style;
     style.noise = Noise(wavelength, octaves, amplitude);
     try {
@@ -205,11 +205,11 @@ TEST(ClipmapNoise, ABadStyleIsRefused) {
       EXPECT_EQ(error.GetObjectName(), "terrain 'x'");
     }
   };
-  refused(0.0, 3, 0.1, "wavelength");
-  refused(1.0, 0, 0.1, "octaves");
-  refused(1.0, 3, 0.0, "amplitude");
-  refused(1.0, 3, 2e6, "amplitude");
-  refused(1.0, 3, std::nan(""), "amplitude");
+  rejected(0.0, 3, 0.1, "wavelength");
+  rejected(1.0, 0, 0.1, "octaves");
+  rejected(1.0, 3, 0.0, "amplitude");
+  rejected(1.0, 3, 2e6, "amplitude");
+  rejected(1.0, 3, std::nan(""), "amplitude");
   ClipmapStyle style;
   style.noise = Noise(1.0, 3, 0.1);
   style.Check("terrain 'x'");

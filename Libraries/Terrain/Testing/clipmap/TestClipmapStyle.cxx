@@ -272,7 +272,7 @@ TEST_F(StyleFixture, ATerrainThatIsRemovedIsLetGo) {
   EXPECT_TRUE(tiles.expired());
 }
 
-TEST_F(StyleFixture, AStyleStacksGoesAndIsRefusedWhole) {
+TEST_F(StyleFixture, AStyleStacksGoesAndIsRejectedWhole) {
   const Capture plain = view->GetCapture({});
   ClipmapStyle style;
   style.ramp.emplace();

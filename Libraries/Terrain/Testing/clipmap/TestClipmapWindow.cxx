@@ -135,7 +135,7 @@ TEST(ClipmapWindow, BlendingEndsWithinTheWindow) {
   }
 }
 
-TEST(ClipmapWindow, SizesThatCannotBeHalvedAreRefused) {
+TEST(ClipmapWindow, SizesThatCannotBeHalvedAreRejected) {
   for (const int cells : {0, 8, 13, 126, 2048}) {
     EXPECT_THROW(ClipmapGeometry{cells}, dspace::Error) << cells;
   }

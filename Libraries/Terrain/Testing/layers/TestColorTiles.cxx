@@ -324,19 +324,19 @@ TEST(ColorTiles, AFailingSourceIsTriedAgainAndReported) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-TEST(ColorTiles, RefusesWhatIsOutOfRange) {
+TEST(ColorTiles, RejectsWhatIsOutOfRange) {
   const auto stack = StackOf({});
-  const auto expectRefused = [&](const std::function<void(ColorTilesOptions&)>& change) {
+  const auto expectRejected = [&](const std::function<void(ColorTilesOptions&)>& change) {
     ColorTilesOptions options;
     change(options);
     EXPECT_THROW(ColorTiles(stack, {Ground()}, options), Error);
   };
-  expectRefused([](auto& o) { o.byteBudget = (16 << 20) - 1; });
-  expectRefused([](auto& o) { o.threads = 0; });
-  expectRefused([](auto& o) { o.threads = 65; });
-  expectRefused([](auto& o) { o.retryDelay = 0.0; });
-  expectRefused([](auto& o) { o.retryDelay = std::nan(""); });
-  expectRefused([](auto& o) { o.attempts = 0; });
+  expectRejected([](auto& o) { o.byteBudget = (16 << 20) - 1; });
+  expectRejected([](auto& o) { o.threads = 0; });
+  expectRejected([](auto& o) { o.threads = 65; });
+  expectRejected([](auto& o) { o.retryDelay = 0.0; });
+  expectRejected([](auto& o) { o.retryDelay = std::nan(""); });
+  expectRejected([](auto& o) { o.attempts = 0; });
   EXPECT_THROW(ColorTiles(nullptr, {Ground()}), Error);
   EXPECT_THROW(ColorTiles(stack, {}), Error);
   ColorTiles tiles(stack, {Ground()});

@@ -128,10 +128,10 @@ TEST_F(FalseColor, OneValueHasTheMiddlesColour) {
   EXPECT_EQ(layer->Warnings().size(), 1u);
 }
 
-TEST_F(FalseColor, RefusalsNameTheFile) {
+TEST_F(FalseColor, RejectionsNameTheFile) {
   const std::string path =
       this->File(GDT_Int16, [](int c, int, int) { return c; }).Write(this->Folder / "r.tif");
-  const auto refused = [&](const std::function<void(FalseColorOptions&)>& change) {
+  const auto rejected = [&](const std::function<void(FalseColorOptions&)>& change) {
     FalseColorOptions colors;
     change(colors);
     try {
@@ -142,15 +142,15 @@ TEST_F(FalseColor, RefusalsNameTheFile) {
     }
     return false;
   };
-  EXPECT_FALSE(refused([](auto&) {}));
-  EXPECT_TRUE(refused([](auto& o) { o.band = 0; }));
-  EXPECT_TRUE(refused([](auto& o) { o.band = 2; }));
-  EXPECT_TRUE(refused([](auto& o) { o.ramp.clear(); }));
-  EXPECT_TRUE(refused([](auto& o) { o.ramp = {{0, 0, 1.5}}; }));
-  EXPECT_TRUE(refused([](auto& o) { o.ramp = {{NaN, 0, 1}}; }));
-  EXPECT_TRUE(refused([](auto& o) { o.low = NaN; }));
-  EXPECT_TRUE(refused([](auto& o) { o.low = 64.0; })); // above its greatest
-  EXPECT_TRUE(refused([](auto& o) { o.low = 5.0, o.high = 5.0; }));
+  EXPECT_FALSE(rejected([](auto&) {}));
+  EXPECT_TRUE(rejected([](auto& o) { o.band = 0; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.band = 2; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.ramp.clear(); }));
+  EXPECT_TRUE(rejected([](auto& o) { o.ramp = {{0, 0, 1.5}}; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.ramp = {{NaN, 0, 1}}; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.low = NaN; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.low = 64.0; })); // above its greatest
+  EXPECT_TRUE(rejected([](auto& o) { o.low = 5.0, o.high = 5.0; }));
   RasterFile none = this->File(GDT_Int16, [](int, int, int) { return 3; });
   none.noData = 3.0;
   const std::string empty = none.Write(this->Folder / "none.tif");

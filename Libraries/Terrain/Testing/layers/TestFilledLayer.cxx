@@ -142,7 +142,7 @@ TEST_F(Filled, GroundOfAPatchIsNotMarked) {
   }
 }
 
-TEST_F(Filled, BadColoursAreRefused) {
+TEST_F(Filled, BadColoursAreRejected) {
   const std::string path = this->Raster("holes.tif", NaN);
   for (const double bad : {-0.1, 1.1, NaN}) {
     FilledLayerOptions options;

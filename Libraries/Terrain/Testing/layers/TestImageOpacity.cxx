@@ -1,4 +1,4 @@
-// What an image's pixels are as texels: opacity, masks, palettes, bits, overviews; and refusals.
+// What an image's pixels are as texels: opacity, masks, palettes, bits, overviews; and rejections.
 #include <cmath>
 #include <fstream>
 
@@ -52,16 +52,16 @@ protected:
     return texels.any ? Texel{texels.rgba[0], texels.rgba[1], texels.rgba[2], texels.rgba[3]}
                       : Texel{-1, -1, -1, -1};
   }
-  std::pair<Error::Kind, std::string> Refusal(const std::function<void()>& call) {
+  std::pair<Error::Kind, std::string> Rejection(const std::function<void()>& call) {
     testing::internal::CaptureStderr();
-    std::pair<Error::Kind, std::string> refusal(Error::Kind::Internal, "");
+    std::pair<Error::Kind, std::string> rejection(Error::Kind::Internal, "");
     try {
       call();
     } catch (const Error& error) {
-      refusal = {error.GetKind(), error.what()};
+      rejection = {error.GetKind(), error.what()};
     }
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    return refusal;
+    return rejection;
   }
 
   dspace::testing::TemporaryFolder Folder;
@@ -201,39 +201,39 @@ TEST_F(Pixels, OverviewsAreRead) {
   EXPECT_EQ(this->At(*layer, 0, 9, 9), (Texel{140, 180, 220, 255}));
 }
 
-TEST_F(Pixels, RefusalsNameTheFile) {
-  const auto refused = [&](const std::string& path, Error::Kind kind, const std::string& words,
-                           const RasterLayerOptions& options = {}) {
-    const auto [was, message] = this->Refusal([&] { this->Open(path, options); });
+TEST_F(Pixels, RejectionsNameTheFile) {
+  const auto rejected = [&](const std::string& path, Error::Kind kind, const std::string& words,
+                            const RasterLayerOptions& options = {}) {
+    const auto [was, message] = this->Rejection([&] { this->Open(path, options); });
     EXPECT_EQ(was, kind) << path << " " << message;
     EXPECT_NE(message.find("image '" + path + "'"), std::string::npos) << message;
     EXPECT_NE(message.find(words), std::string::npos) << message;
   };
   const auto one = [](int, int, int) { return 1.0; };
-  refused(this->Folder / "absent.tif", Error::Kind::NotFound, "");
+  rejected(this->Folder / "absent.tif", Error::Kind::NotFound, "");
   const std::string text = this->Folder / "text.png";
   std::ofstream(text) << "no picture";
-  refused(text, Error::Kind::Unsupported, "not recognized");
-  refused(this->File(1, GDT_Float32, one).Write(this->Folder / "f.tif"), Error::Kind::Unsupported,
-          "false colour");
-  refused(this->File(5, GDT_Byte, one).Write(this->Folder / "5.tif"), Error::Kind::Unsupported,
-          "5 bands");
+  rejected(text, Error::Kind::Unsupported, "not recognized");
+  rejected(this->File(1, GDT_Float32, one).Write(this->Folder / "f.tif"), Error::Kind::Unsupported,
+           "false colour");
+  rejected(this->File(5, GDT_Byte, one).Write(this->Folder / "5.tif"), Error::Kind::Unsupported,
+           "5 bands");
   const std::string good = this->File(3, GDT_Byte, one).Write(this->Folder / "good.tif");
   RasterLayerOptions options;
   options.extent = {{0.0, 5.0, 0.0, 1.0}};
-  refused(good, Error::Kind::InvalidArgument, "extent", options);
+  rejected(good, Error::Kind::InvalidArgument, "extent", options);
   options.extent = {{500.0, 5.0, 510.0, 1.0}};
-  refused(good, Error::Kind::InvalidArgument, "does not overlap terrain 'ground'", options);
+  rejected(good, Error::Kind::InvalidArgument, "does not overlap terrain 'ground'", options);
   options = {};
   options.network.retries = 11;
-  refused(good, Error::Kind::InvalidArgument, "retries", options);
+  rejected(good, Error::Kind::InvalidArgument, "retries", options);
   this->Place.crs = Crs::FromText("IAU_2015:49910"); // Mars
   options = {};
   options.crs = "IAU_2015:30110"; // the Moon
-  refused(good, Error::Kind::Unsupported, "another body", options);
+  rejected(good, Error::Kind::Unsupported, "another body", options);
   RasterFile bent = this->File(3, GDT_Byte, one);
   bent.geotransform = {{0.0, 1.0, 2.0, 64.0, 1.0, 2.0}};
-  refused(bent.Write(this->Folder / "bent.tif"), Error::Kind::InvalidArgument, "degenerate");
+  rejected(bent.Write(this->Folder / "bent.tif"), Error::Kind::InvalidArgument, "degenerate");
 }
 
 TEST_F(Pixels, AFileThatIsCutOrChangesIsAnError) {
@@ -242,11 +242,11 @@ TEST_F(Pixels, AFileThatIsCutOrChangesIsAnError) {
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   const auto cut = this->Open(path);
   for (int i = 0; i < 2; ++i) // not black the second time either
-    EXPECT_EQ(this->Refusal([&] { this->At(*cut, 0, 2, 15); }).first, Error::Kind::Corrupt);
+    EXPECT_EQ(this->Rejection([&] { this->At(*cut, 0, 2, 15); }).first, Error::Kind::Corrupt);
   const std::string other = this->File(3, GDT_Byte, value).Write(this->Folder / "other.tif");
   const auto changed = this->Open(other);
   std::filesystem::resize_file(other, std::filesystem::file_size(other) + 1);
-  const auto [kind, message] = this->Refusal([&] { this->At(*changed, 0, 2, 2); });
+  const auto [kind, message] = this->Rejection([&] { this->At(*changed, 0, 2, 2); });
   EXPECT_EQ(kind, Error::Kind::Io);
   EXPECT_NE(message.find("has changed"), std::string::npos) << message;
 }

@@ -1,4 +1,4 @@
-// Order, opacity and refusals of a stack of colour layers.
+// Order, opacity and rejections of a stack of colour layers.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -40,8 +40,8 @@ std::string Order(const LayerStack& stack) {
   return names;
 }
 
-void ExpectRefused(LayerStack& stack, Error::Kind kind, const std::string& words,
-                   const std::function<void()>& call) {
+void ExpectRejected(LayerStack& stack, Error::Kind kind, const std::string& words,
+                    const std::function<void()>& call) {
   const std::uint64_t revision = stack.Revision();
   const std::string order = Order(stack);
   try {
@@ -100,25 +100,25 @@ TEST(LayerStack, OnlyWhatIsSeenCounts) {
   EXPECT_EQ(stack.PixelSize(), 0.25);
 }
 
-TEST(LayerStack, RefusalsNameTheTerrainAndChangeNothing) {
+TEST(LayerStack, RejectionsNameTheTerrainAndChangeNothing) {
   LayerStack stack("terrain 'gale'");
   stack.Add(Named("a"));
   stack.Add(Named("b"));
   const auto bad = Error::Kind::InvalidArgument;
-  ExpectRefused(stack, bad, "name", [&] { stack.Add(Named("")); });
-  ExpectRefused(stack, bad, "'a' is taken", [&] { stack.Add(Named("a")); });
-  ExpectRefused(stack, bad, "needed", [&] { stack.Add({"c", nullptr, 1.0, true}); });
+  ExpectRejected(stack, bad, "name", [&] { stack.Add(Named("")); });
+  ExpectRejected(stack, bad, "'a' is taken", [&] { stack.Add(Named("a")); });
+  ExpectRejected(stack, bad, "needed", [&] { stack.Add({"c", nullptr, 1.0, true}); });
   for (double opacity : {-0.1, 1.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    ExpectRefused(stack, bad, "0 to 1", [&] { stack.Add(Named("c", 1.0, opacity)); });
-    ExpectRefused(stack, bad, "0 to 1", [&] { stack.Change("a", opacity, false, 1); });
+    ExpectRejected(stack, bad, "0 to 1", [&] { stack.Add(Named("c", 1.0, opacity)); });
+    ExpectRejected(stack, bad, "0 to 1", [&] { stack.Change("a", opacity, false, 1); });
   }
   EXPECT_TRUE(stack.Layers()[0].visible);
-  ExpectRefused(stack, bad, "to 2", [&] { stack.Add(Named("c"), 3); });
-  ExpectRefused(stack, bad, "to 1", [&] { stack.Change("a", 0.5, false, 2); });
+  ExpectRejected(stack, bad, "to 2", [&] { stack.Add(Named("c"), 3); });
+  ExpectRejected(stack, bad, "to 1", [&] { stack.Change("a", 0.5, false, 2); });
   EXPECT_EQ(stack.Layers()[0].opacity, 1.0);
-  ExpectRefused(stack, Error::Kind::NotFound, "'a', 'b'", [&] { stack.Change("x", {}, {}, {}); });
-  ExpectRefused(stack, Error::Kind::NotFound, "'x'", [&] { stack.Remove("x"); });
+  ExpectRejected(stack, Error::Kind::NotFound, "'a', 'b'", [&] { stack.Change("x", {}, {}, {}); });
+  ExpectRejected(stack, Error::Kind::NotFound, "'x'", [&] { stack.Remove("x"); });
   for (std::size_t i = 2; i < LayerStack::Most; ++i)
     stack.Add(Named("n" + std::to_string(i)));
-  ExpectRefused(stack, bad, "64", [&] { stack.Add(Named("c")); });
+  ExpectRejected(stack, bad, "64", [&] { stack.Add(Named("c")); });
 }

@@ -156,7 +156,7 @@ TEST(NoiseLayer, ChartsShowTheSame) {
   }
 }
 
-TEST(NoiseLayer, BadOptionsAreRefused) {
+TEST(NoiseLayer, BadOptionsAreRejected) {
   EXPECT_THROW(MakeNoiseLayer(Options(0.0, 2), 0.5), Error);
   EXPECT_THROW(MakeNoiseLayer(Options(1.0, 2), -0.1), Error);
   EXPECT_THROW(MakeNoiseLayer(Options(1.0, 2), 1.1), Error);

@@ -162,21 +162,21 @@ TEST(PerlinNoise, OctavesComeInAsSamplesResolveThem) {
   EXPECT_NEAR(noise.At(p, 1.0 + 1e-4), all, 1e-9);
 }
 
-TEST(PerlinNoise, BadOptionsAreRefused) {
-  const auto refused = [](double wavelength, int octaves, double gain) {
+TEST(PerlinNoise, BadOptionsAreRejected) {
+  const auto rejected = [](double wavelength, int octaves, double gain) {
     NoiseOptions options;
     options.wavelength = wavelength;
     options.octaves = octaves;
     options.gain = gain;
     EXPECT_THROW(OctaveNoise{options}, dspace::Error) << wavelength << octaves << gain;
   };
-  refused(0.0, 1, 0.5);
-  refused(std::nan(""), 1, 0.5);
-  refused(2e7, 1, 0.5);
-  refused(1.0, 0, 0.5);
-  refused(1.0, 17, 0.5);
-  refused(1.0, 1, 0.0);
-  refused(1.0, 1, 1.01);
+  rejected(0.0, 1, 0.5);
+  rejected(std::nan(""), 1, 0.5);
+  rejected(2e7, 1, 0.5);
+  rejected(1.0, 0, 0.5);
+  rejected(1.0, 17, 0.5);
+  rejected(1.0, 1, 0.0);
+  rejected(1.0, 1, 1.01);
 }
 
 } // namespace

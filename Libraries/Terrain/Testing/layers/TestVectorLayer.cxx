@@ -1,4 +1,4 @@
-// Shapes painted on a plane: coverage in closed form, widths, places, refusals.
+// Shapes painted on a plane: coverage in closed form, widths, places, rejections.
 #include <cmath>
 
 #include <gdal_priv.h>
@@ -295,8 +295,8 @@ TEST(VectorLayer, PixelSizeIsFineEnoughForItsShapes) {
   EXPECT_NEAR(size(line + "," + small, std::nullopt), 0.06, 1e-12);
 }
 
-void Refused(Error::Kind kind, const std::string& told, const std::string& path,
-             const RasterPlace& place, const VectorLayerOptions& options = {}) {
+void Rejected(Error::Kind kind, const std::string& told, const std::string& path,
+              const RasterPlace& place, const VectorLayerOptions& options = {}) {
   try {
     OpenVectorLayer(path, place, options);
     ADD_FAILURE() << told;
@@ -307,41 +307,41 @@ void Refused(Error::Kind kind, const std::string& told, const std::string& path,
   }
 }
 
-TEST(VectorLayer, WhatCannotBePaintedIsRefused) {
+TEST(VectorLayer, WhatCannotBePaintedIsRejected) {
   using Kind = Error::Kind;
   const TemporaryFolder folder;
   const PlaneChart plain;
   const PlaneChart mars("+proj=stere +lat_0=60 +lon_0=30 +R=3396190 +no_defs", -500.0, 500.0);
   const std::string line = Feature("LineString", "[[1100,4700],[1400,4300]]");
-  Refused(Kind::NotFound, "no such file", folder / "nowhere.json", plain.place);
+  Rejected(Kind::NotFound, "no such file", folder / "nowhere.json", plain.place);
   std::ofstream(folder / "broken.json") << R"({"type":"FeatureCollection","features":[{"ty)";
-  Refused(Kind::Corrupt, "", folder / "broken.json", plain.place);
+  Rejected(Kind::Corrupt, "", folder / "broken.json", plain.place);
   std::ofstream(folder / "text.json") << "no shapes at all";
-  Refused(Kind::Corrupt, "", folder / "text.json", plain.place);
-  Refused(Kind::InvalidArgument, "no features", Write(folder / "none.json", ""), plain.place);
-  Refused(Kind::InvalidArgument, "overlaps terrain 'plane'",
-          Write(folder / "far.json", Feature("Point", "[0,0]")), plain.place);
+  Rejected(Kind::Corrupt, "", folder / "text.json", plain.place);
+  Rejected(Kind::InvalidArgument, "no features", Write(folder / "none.json", ""), plain.place);
+  Rejected(Kind::InvalidArgument, "overlaps terrain 'plane'",
+           Write(folder / "far.json", Feature("Point", "[0,0]")), plain.place);
   const std::string path = Write(folder / "line.json", line);
   VectorLayerOptions options;
   options.mostVertices = 1;
-  Refused(Kind::Resource, "more than 1 vertices", path, plain.place, options);
+  Rejected(Kind::Resource, "more than 1 vertices", path, plain.place, options);
   options.mostVertices = 50; // long edges are divided
-  Refused(Kind::Resource, "more than 50 vertices",
-          Write(folder / "long.json", Feature("LineString", "[[-180,60],[180,60]]")), mars.place,
-          options);
+  Rejected(Kind::Resource, "more than 50 vertices",
+           Write(folder / "long.json", Feature("LineString", "[[-180,60],[180,60]]")), mars.place,
+           options);
   options = {};
   options.crs = "EPSG:4326"; // of the Earth
-  Refused(Kind::Unsupported, "body", Write(folder / "earth.json", Feature("Point", "[30,60]")),
-          mars.place, options);
+  Rejected(Kind::Unsupported, "body", Write(folder / "earth.json", Feature("Point", "[30,60]")),
+           mars.place, options);
   options.crs = "EPSG:4326";
-  Refused(Kind::Unsupported, "no CRS", Write(folder / "e2.json", Feature("Point", "[30,60]")),
-          plain.place, options);
+  Rejected(Kind::Unsupported, "no CRS", Write(folder / "e2.json", Feature("Point", "[30,60]")),
+           plain.place, options);
   // Metres that are taken for degrees.
-  Refused(Kind::InvalidArgument, "no longitude and latitude", path, mars.place);
+  Rejected(Kind::InvalidArgument, "not a longitude and latitude", path, mars.place);
   const auto bad = [&](auto change, const std::string& told) {
     VectorLayerOptions changed;
     change(changed);
-    Refused(Kind::InvalidArgument, told, path, plain.place, changed);
+    Rejected(Kind::InvalidArgument, told, path, plain.place, changed);
   };
   bad([](auto& o) { o.width = 0.0; }, "width");
   bad([](auto& o) { o.pixels = 65.0; }, "width in pixels");

@@ -455,7 +455,7 @@ TEST(ElevationPyramid, ChangesAreToldSinceAMoment) {
   EXPECT_TRUE(pyramid.Changes(pyramid.Changes(0).stamp).rectangles.empty());
 }
 
-TEST(ElevationPyramid, OptionsOutOfRangeAreRefused) {
+TEST(ElevationPyramid, OptionsOutOfRangeAreRejected) {
   const auto source = std::make_shared<NumberedPosts>(Lattice(1000, 1000, false, 3));
   ElevationPyramidOptions small;
   small.byteBudget = 1000;

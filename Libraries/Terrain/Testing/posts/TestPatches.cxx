@@ -1,4 +1,4 @@
-// Patches of terrain groups: their weights, and what is refused or warned of.
+// Patches of terrain groups: their weights, and what is rejected or warned of.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -114,7 +114,7 @@ std::string MessageOf(const Base& base, const std::string& path, const TerrainPa
   }
 }
 
-TEST(Patches, RefusesOtherBodiesAndMargins) {
+TEST(Patches, RejectsOtherBodiesAndMargins) {
   const TemporaryFolder folder;
   const Base base = Region();
   const std::string path = base.Write(folder / "base.tif");

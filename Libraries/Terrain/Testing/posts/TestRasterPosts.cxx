@@ -315,7 +315,7 @@ TEST(RasterPosts, PolesCloseTheLattice) {
   EXPECT_THROW(RasterPosts(source, options), Error);
 }
 
-TEST(RasterPosts, WhatCannotBeHalvedIsRefused) {
+TEST(RasterPosts, WhatCannotBeHalvedIsRejected) {
   const TemporaryFolder folder;
   const auto source = Write(folder, 36, 20, Bumps);
   RasterPostsOptions options;

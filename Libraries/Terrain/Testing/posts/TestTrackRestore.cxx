@@ -182,17 +182,17 @@ TEST(TrackRestore, ATerrainThatIsFullHasRoomForItsOwn) {
   }
 }
 
-TEST(TrackRestore, WhatIsNotAcceptedIsRefused) {
+TEST(TrackRestore, WhatIsNotAcceptedIsRejected) {
   WheelTracks tracks("ground");
   TrackStroke fine;
   fine.name = "fine";
   fine.contacts = {{{0.0, 0.0}, 0.1, 0.0, 0.0}};
-  const auto refused = [&](TrackStroke stroke, bool goesOn, const std::string& part) {
+  const auto rejected = [&](TrackStroke stroke, bool continues, const std::string& part) {
     const std::size_t before = tracks.StrokeCount();
     try {
-      tracks.Restore(goesOn ? std::vector<TrackStroke>{stroke, fine}
-                            : std::vector<TrackStroke>{fine, stroke},
-                     goesOn);
+      tracks.Restore(continues ? std::vector<TrackStroke>{stroke, fine}
+                               : std::vector<TrackStroke>{fine, stroke},
+                     continues);
       ADD_FAILURE() << part << " was accepted";
     } catch (const Error& error) {
       EXPECT_EQ(error.GetKind(), Error::Kind::InvalidArgument);
@@ -200,26 +200,26 @@ TEST(TrackRestore, WhatIsNotAcceptedIsRefused) {
     }
     EXPECT_EQ(tracks.StrokeCount(), before);
   };
-  refused(fine, true, "to go on");
+  rejected(fine, true, "to go on");
   TrackStroke stroke = fine;
   stroke.contacts[0].rolled = TrackContact::Unknown;
-  refused(stroke, false, "rolled is nan");
+  rejected(stroke, false, "rolled is nan");
   stroke = fine;
   stroke.contacts.clear();
-  refused(stroke, false, "no contact");
+  rejected(stroke, false, "no contact");
   stroke = fine;
   stroke.skipped.assign(65, fine.contacts[0]);
-  refused(stroke, false, "65");
+  rejected(stroke, false, "65");
   stroke = fine;
   stroke.skipped = {{{std::nan(""), 0.0}, 0.1, 0.0, 0.0}};
-  refused(stroke, false, "coordinate");
+  rejected(stroke, false, "coordinate");
   tracks.Restore({fine});
   stroke = fine;
   stroke.name = "other";
-  refused(stroke, true, "to go on");
+  rejected(stroke, true, "to go on");
   stroke = fine;
   stroke.profile.width = 0.3;
-  refused(stroke, true, "to go on");
+  rejected(stroke, true, "to go on");
 }
 
 } // namespace

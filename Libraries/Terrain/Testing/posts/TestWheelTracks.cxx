@@ -235,7 +235,7 @@ TEST(WheelTracks, WhatLiesOnALineIsLeftOut) {
   }
 }
 
-TEST(WheelTracks, ABudgetThatIsUsedUpRefusesAndChangesNothing) {
+TEST(WheelTracks, ABudgetThatIsUsedUpRejectsAndChangesNothing) {
   WheelTracksOptions options;
   options.byteBudget = 64 << 10;
   Ground ground(801, Hills, 124, options);
@@ -263,9 +263,9 @@ TEST(WheelTracks, ABudgetThatIsUsedUpRefusesAndChangesNothing) {
   ground.tracks->Add({Stroke("a", Rut(), Wander(random, 20, true))});
 }
 
-TEST(WheelTracks, WhatIsNotAcceptedIsRefused) {
+TEST(WheelTracks, WhatIsNotAcceptedIsRejected) {
   WheelTracks tracks("ground");
-  const auto refused = [&tracks](TrackAddition addition, const std::string& part) {
+  const auto rejected = [&tracks](TrackAddition addition, const std::string& part) {
     try {
       tracks.Add({Stroke("fine", Rut(), {{{0.0, 0.0}, 0.1}}), addition});
       ADD_FAILURE() << part << " was accepted";
@@ -276,19 +276,19 @@ TEST(WheelTracks, WhatIsNotAcceptedIsRefused) {
     EXPECT_TRUE(tracks.Empty());
   };
   const double nan = std::nan("");
-  refused(Stroke("w", Rut(), {{{nan, 0.0}, 0.1}}), "a coordinate");
-  refused(Stroke("w", Rut(), {{{0.0, 0.0}, -0.1}}), "sinkage");
-  refused(Stroke("w", Rut(), {{{0.0, 0.0}, nan}}), "sinkage");
-  refused(Stroke("w", Rut(), {{{0.0, 0.0}, 3.0}}), "sinkage");
-  refused(Stroke("w", Rut(), {{{0.0, 0.0}, 0.1, HUGE_VAL}}), "heading");
-  refused(Stroke("w", Rut(), {{{0.0, 0.0}, 0.1, 0.0, 1e12}}), "rolled");
-  refused(Stroke("fine", Rut(), {{{0.0, 0.0}, 0.1}}), "twice");
+  rejected(Stroke("w", Rut(), {{{nan, 0.0}, 0.1}}), "a coordinate");
+  rejected(Stroke("w", Rut(), {{{0.0, 0.0}, -0.1}}), "sinkage");
+  rejected(Stroke("w", Rut(), {{{0.0, 0.0}, nan}}), "sinkage");
+  rejected(Stroke("w", Rut(), {{{0.0, 0.0}, 3.0}}), "sinkage");
+  rejected(Stroke("w", Rut(), {{{0.0, 0.0}, 0.1, HUGE_VAL}}), "heading");
+  rejected(Stroke("w", Rut(), {{{0.0, 0.0}, 0.1, 0.0, 1e12}}), "rolled");
+  rejected(Stroke("fine", Rut(), {{{0.0, 0.0}, 0.1}}), "twice");
   TrackProfile rut = Rut();
   rut.width = 0.0;
-  refused(Stroke("w", rut, {{{0.0, 0.0}, 0.1}}), "width");
+  rejected(Stroke("w", rut, {{{0.0, 0.0}, 0.1}}), "width");
   rut = Rut();
   rut.treadPitch = 1e-9;
-  refused(Stroke("w", rut, {{{0.0, 0.0}, 0.1}}), "pitch");
+  rejected(Stroke("w", rut, {{{0.0, 0.0}, 0.1}}), "pitch");
   WheelTracksOptions options;
   options.byteBudget = 100;
   EXPECT_THROW(WheelTracks("ground", options), Error);

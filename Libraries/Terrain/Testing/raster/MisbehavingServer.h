@@ -132,7 +132,7 @@ private:
     if (mode != Mode::Good) {
       ++this->misbehaviours;
     }
-    const auto refuse = [&](const std::string& status) {
+    const auto reject = [&](const std::string& status) {
       Send(connection, "HTTP/1.1 " + status + "\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
     };
     const bool head = request.compare(0, 5, "HEAD ") == 0;
@@ -145,11 +145,11 @@ private:
     case Mode::Silent:
       return this->Hang(connection);
     case Mode::NotFound:
-      return refuse("404 Not Found");
+      return reject("404 Not Found");
     case Mode::Broken:
-      return refuse("500 Internal Server Error");
+      return reject("500 Internal Server Error");
     case Mode::Busy:
-      return refuse("503 Service Unavailable\r\nRetry-After: 1");
+      return reject("503 Service Unavailable\r\nRetry-After: 1");
     case Mode::Nonsense:
       return Send(connection, std::string(500, '\x7f'));
     case Mode::Page:
@@ -166,7 +166,7 @@ private:
       std::sscanf(request.c_str() + range, "Range: bytes=%llu-%llu", &first, &last);
       last = std::min<unsigned long long>(last, this->Body_.size() - 1);
       if (first > last) {
-        return refuse("416 Range Not Satisfiable");
+        return reject("416 Range Not Satisfiable");
       }
     }
     std::string body = this->Body_.substr(first, last - first + 1);

@@ -96,7 +96,7 @@ TEST(Crs, NamesItself) {
   EXPECT_EQ(Crs().GetKind(), Crs::Kind::None);
 }
 
-TEST(Crs, RefusesWhatItDoesNotKnow) {
+TEST(Crs, RejectsWhatItDoesNotKnow) {
   EXPECT_EQ(KindOf([] { Crs::FromText(""); }), Error::Kind::InvalidArgument);
   EXPECT_EQ(KindOf([] { Crs::FromText("EPSG:99999999"); }), Error::Kind::InvalidArgument);
   EXPECT_EQ(KindOf([] { Crs::FromText("no such thing"); }), Error::Kind::InvalidArgument);
@@ -206,7 +206,7 @@ TEST(SceneFrame, DistortsAsItsHeaderSays) {
   proj_destroy(cart);
 }
 
-TEST(SceneFrame, RefusesAPoleAndNaN) {
+TEST(SceneFrame, RejectsAPoleAndNaN) {
   const Crs crs = Crs::FromText("IAU_2015:49900");
   EXPECT_EQ(KindOf([&] { SceneFrame(crs, {0.0, 89.5}); }), Error::Kind::InvalidArgument);
   EXPECT_EQ(KindOf([&] { SceneFrame(crs, {std::nan(""), 0.0}); }), Error::Kind::InvalidArgument);

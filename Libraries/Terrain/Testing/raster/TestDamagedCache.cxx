@@ -134,7 +134,7 @@ TEST_F(DamagedCache, ACancelledBuildLeavesNothing) {
 
 TEST_F(DamagedCache, AFullDiskIsToldAndLeavesNothing) {
   const std::string path = this->File().Write(this->Folder / "full.tif");
-  const auto refused = [&] {
+  const auto rejected = [&] {
     rlimit before{};
     ::getrlimit(RLIMIT_FSIZE, &before);
     const rlimit small{60000, before.rlim_max};
@@ -152,13 +152,13 @@ TEST_F(DamagedCache, AFullDiskIsToldAndLeavesNothing) {
     EXPECT_NE(message.find(this->Overviews), std::string::npos) << message;
     EXPECT_NE(message.find("File too large"), std::string::npos) << message;
   };
-  refused();
+  rejected();
   EXPECT_EQ(this->Files(this->Overviews), 0);
   // What was there stays.
   const std::string file = *this->Builder.Build(path);
   fs::last_write_time(path, fs::last_write_time(path) + std::chrono::seconds(3));
   const auto size = fs::file_size(file);
-  refused();
+  rejected();
   EXPECT_EQ(this->Files(this->Overviews), 1);
   EXPECT_EQ(fs::file_size(file), size);
 }

@@ -74,8 +74,8 @@ void ExpectHeights(const std::vector<double>& heights) {
   EXPECT_EQ(wrong, 0);
 }
 
-std::string Refusal(const ElevationSource& source, const RasterWindow& window, Error::Kind kind,
-                    int factor = 1) {
+std::string Rejection(const ElevationSource& source, const RasterWindow& window, Error::Kind kind,
+                      int factor = 1) {
   try {
     source.ReadReduced(window, factor);
   } catch (const Error& error) {
@@ -97,7 +97,7 @@ TEST(DamagedRaster, AFileThatShrinksWhileOpenIsNotRead) {
       EXPECT_EQ(source.Read({0, 0, 1, 1})[0], float(Height(0, 0)));
       fs::resize_file(path, std::uintmax_t(double(fs::file_size(path)) * part));
       for (const int factor : {1, 4}) {
-        const std::string said = Refusal(source, {0, 0, Side, Side}, Error::Kind::Io, factor);
+        const std::string said = Rejection(source, {0, 0, Side, Side}, Error::Kind::Io, factor);
         EXPECT_NE(said.find("has changed since"), std::string::npos) << said;
       }
     }
@@ -119,9 +119,9 @@ TEST(DamagedRaster, AMosaicWhoseFileShrinksOrVanishesIsNotReadThere) {
       } else {
         fs::resize_file(right, std::uintmax_t(double(fs::file_size(right)) * part));
       }
-      for (int again = 0; again < 3; ++again) { // nor after the first refusal
-        Refusal(source, {Side, 0, Side, Side}, Error::Kind::Corrupt);
-        Refusal(source, {0, Side - 10, 2 * Side, 10}, Error::Kind::Corrupt);
+      for (int again = 0; again < 3; ++again) { // nor after the first rejection
+        Rejection(source, {Side, 0, Side, Side}, Error::Kind::Corrupt);
+        Rejection(source, {0, Side - 10, 2 * Side, 10}, Error::Kind::Corrupt);
       }
       ExpectHeights(source.Read({0, 0, Side, Side})); // what is there is read
       Write(right, kind);                             // and what comes back
@@ -141,7 +141,7 @@ TEST(DamagedRaster, AFileRewrittenInPlaceIsOpenedAnew) {
     file.write("changed!", 8);
   }
   fs::last_write_time(path, fs::last_write_time(path) + std::chrono::seconds(2));
-  Refusal(source, {0, 0, 1, 1}, Error::Kind::Io);
+  Rejection(source, {0, 0, 1, 1}, Error::Kind::Io);
   EXPECT_NO_THROW(ElevationSource(path).Read());
 }
 
@@ -178,7 +178,7 @@ TEST(DamagedRaster, NoFlippedByteOfADeflatedFileIsReadAsHeights) {
       CPLPopErrorHandler();
       unnoticed += read;
       const ElevationSource source(path);
-      const std::string said = Refusal(source, {0, 0, Side, Side}, Error::Kind::Corrupt);
+      const std::string said = Rejection(source, {0, 0, Side, Side}, Error::Kind::Corrupt);
       EXPECT_TRUE(!read || said.find("checksum") != std::string::npos) << said;
     }
   }

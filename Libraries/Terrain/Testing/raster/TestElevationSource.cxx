@@ -1,4 +1,4 @@
-// Rasters that GDAL opens: scale, offset, unit, no-data, place; and those that are refused.
+// Rasters that GDAL opens: scale, offset, unit, no-data, place; and those that are rejected.
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -41,10 +41,10 @@ protected:
     return file;
   }
 
-  // Expects GridTerrain::Load to refuse `path` with `kind`, naming the file and `words`, saying
+  // Expects GridTerrain::Load to reject `path` with `kind`, naming the file and `words`, saying
   // nothing on stderr.
-  void Refused(const std::string& path, Error::Kind kind, const std::string& words,
-               const GridTerrainOptions& options = {}) {
+  void Rejected(const std::string& path, Error::Kind kind, const std::string& words,
+                const GridTerrainOptions& options = {}) {
     testing::internal::CaptureStderr();
     std::string message;
     try {
@@ -92,8 +92,8 @@ TEST_F(Raster, TextOfAnotherEncodingBecomesUtf8) {
   for (const std::string& warning : source.Info().warnings)
     EXPECT_TRUE(dspace::IsUtf8(warning)) << warning;
   file.unit = "\xE4";
-  this->Refused(file.Write(this->Folder / "unit.tif"), Error::Kind::Unsupported,
-                "heights in unit '\xC3\xA4'");
+  this->Rejected(file.Write(this->Folder / "unit.tif"), Error::Kind::Unsupported,
+                 "heights in unit '\xC3\xA4'");
 }
 
 TEST_F(Raster, ReadsValuesByScaleOffsetAndUnit) {
@@ -118,7 +118,7 @@ TEST_F(Raster, HandGivenScaleReplacesTheFiles) {
   file.offset = 3.0;
   file.unit = "parsec";
   const std::string path = file.Write(this->Folder / "a.tif");
-  this->Refused(path, Error::Kind::Unsupported, "parsec");
+  this->Rejected(path, Error::Kind::Unsupported, "parsec");
   ElevationOptions options;
   options.verticalScale = 2.0;
   EXPECT_DOUBLE_EQ(ElevationSource(path, options).Read()[1], 20.0);
@@ -126,12 +126,12 @@ TEST_F(Raster, HandGivenScaleReplacesTheFiles) {
   EXPECT_DOUBLE_EQ(ElevationSource(path, options).Read()[1], 19.0);
   GridTerrainOptions bad;
   bad.elevation.verticalScale = 0.0;
-  this->Refused(path, Error::Kind::InvalidArgument, "vertical scale 0", bad);
+  this->Rejected(path, Error::Kind::InvalidArgument, "vertical scale 0", bad);
   bad.elevation.verticalScale = NaN;
-  this->Refused(path, Error::Kind::InvalidArgument, "vertical scale", bad);
+  this->Rejected(path, Error::Kind::InvalidArgument, "vertical scale", bad);
   bad.elevation.verticalScale = 1.0;
   bad.elevation.verticalOffset = INFINITY;
-  this->Refused(path, Error::Kind::InvalidArgument, "vertical offset", bad);
+  this->Rejected(path, Error::Kind::InvalidArgument, "vertical offset", bad);
 }
 
 TEST_F(Raster, NoDataAndNaNAreHoles) {
@@ -163,7 +163,7 @@ TEST_F(Raster, WindowIsItsOwnRaster) {
   for (const dspace::RasterWindow window :
        {dspace::RasterWindow{-1, 0, 2, 2}, {0, 0, 0, 2}, {6, 0, 3, 2}, {0, 0, 2, 2147483647}}) {
     bad.elevation.window = window;
-    this->Refused(path, Error::Kind::InvalidArgument, "does not lie within", bad);
+    this->Rejected(path, Error::Kind::InvalidArgument, "does not lie within", bad);
   }
 }
 
@@ -184,30 +184,30 @@ TEST_F(Raster, WithoutGeoreferenceHasUnitPixelsAndAWarning) {
   EXPECT_EQ(sized.Info().pixelToMap * Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.0, 15.0));
   GridTerrainOptions bad;
   bad.elevation.pixelSize = -1.0;
-  this->Refused(path, Error::Kind::InvalidArgument, "pixel size", bad);
+  this->Rejected(path, Error::Kind::InvalidArgument, "pixel size", bad);
   bad = {};
   bad.elevation.crs = "EPSG:4326";
-  this->Refused(path, Error::Kind::InvalidArgument, "geographic", bad);
+  this->Rejected(path, Error::Kind::InvalidArgument, "geographic", bad);
   // A terrain of it answers, without longitude and latitude.
   const auto terrain = GridTerrain::Load(path);
   EXPECT_EQ(terrain->SampleMap({0.5, 5.5}).height, 0.0);
   EXPECT_THROW(terrain->MapToGeographic({0.5, 5.5, 0.0}), Error);
 }
 
-TEST_F(Raster, RefusesFilesThatAreNoRasters) {
-  this->Refused(this->Folder / "absent.tif", Error::Kind::NotFound, "absent.tif");
-  this->Refused("", Error::Kind::NotFound, "");
-  this->Refused(std::filesystem::path(this->Folder / "x").parent_path().string(),
-                Error::Kind::Unsupported, "folder");
+TEST_F(Raster, RejectsFilesThatAreNoRasters) {
+  this->Rejected(this->Folder / "absent.tif", Error::Kind::NotFound, "absent.tif");
+  this->Rejected("", Error::Kind::NotFound, "");
+  this->Rejected(std::filesystem::path(this->Folder / "x").parent_path().string(),
+                 Error::Kind::Unsupported, "folder");
   const std::string empty = this->Folder / "empty.tif";
   std::ofstream(empty).close();
-  this->Refused(empty, Error::Kind::Corrupt, "empty");
+  this->Rejected(empty, Error::Kind::Corrupt, "empty");
   const std::string text = this->Folder / "text.tif";
   std::ofstream(text) << "this is no raster, whatever its name says\n";
-  this->Refused(text, Error::Kind::Unsupported, "not recognized");
+  this->Rejected(text, Error::Kind::Unsupported, "not recognized");
 }
 
-TEST_F(Raster, RefusesTruncatedFiles) {
+TEST_F(Raster, RejectsTruncatedFiles) {
   RasterFile file = this->File(200, 200);
   const std::string path = file.Write(this->Folder / "whole.tif");
   const auto size = std::filesystem::file_size(path);
@@ -222,40 +222,40 @@ TEST_F(Raster, RefusesTruncatedFiles) {
   }
 }
 
-TEST_F(Raster, RefusesWhatIsNoSurface) {
+TEST_F(Raster, RejectsWhatIsNoSurface) {
   RasterFile file = this->File();
   file.noData = 5.0;
   file.value = [](int c, int, int) { return c % 2 ? 5.0 : NaN; };
-  this->Refused(file.Write(this->Folder / "nodata.tif"), Error::Kind::InvalidArgument,
-                "without data");
-  this->Refused(this->File(1, 1).Write(this->Folder / "1x1.tif"), Error::Kind::InvalidArgument,
-                "1 x 1 posts");
-  this->Refused(this->File(9, 1).Write(this->Folder / "9x1.tif"), Error::Kind::InvalidArgument,
-                "9 x 1 posts");
+  this->Rejected(file.Write(this->Folder / "nodata.tif"), Error::Kind::InvalidArgument,
+                 "without data");
+  this->Rejected(this->File(1, 1).Write(this->Folder / "1x1.tif"), Error::Kind::InvalidArgument,
+                 "1 x 1 posts");
+  this->Rejected(this->File(9, 1).Write(this->Folder / "9x1.tif"), Error::Kind::InvalidArgument,
+                 "9 x 1 posts");
   file = this->File();
   file.type = GDT_CFloat64;
-  this->Refused(file.Write(this->Folder / "complex.tif"), Error::Kind::Unsupported, "complex");
+  this->Rejected(file.Write(this->Folder / "complex.tif"), Error::Kind::Unsupported, "complex");
   file = this->File();
   file.bands = 2;
   const std::string two = file.Write(this->Folder / "two.tif");
   GridTerrainOptions options;
   for (int band : {0, 3, -1}) {
     options.elevation.band = band;
-    this->Refused(two, Error::Kind::InvalidArgument, "accepted are 1 to 2", options);
+    this->Rejected(two, Error::Kind::InvalidArgument, "accepted are 1 to 2", options);
   }
   options = {};
   options.maximumPosts = 47;
-  this->Refused(two, Error::Kind::Resource, "47", options);
+  this->Rejected(two, Error::Kind::Resource, "47", options);
 }
 
-TEST_F(Raster, RefusesAWrongPlace) {
+TEST_F(Raster, RejectsAWrongPlace) {
   RasterFile file = this->File();
   file.geotransform = {{0.0, 1.0, 2.0, 0.0, 0.5, 1.0}}; // parallel pixel vectors
-  this->Refused(file.Write(this->Folder / "flat.tif"), Error::Kind::InvalidArgument, "degenerate");
+  this->Rejected(file.Write(this->Folder / "flat.tif"), Error::Kind::InvalidArgument, "degenerate");
   file = this->File();
   file.crs = "IAU_2015:30100";
   file.geotransform = {{0.0, 1.0, 0.0, 100.0, 0.0, -1.0}}; // latitude 99.5
-  this->Refused(file.Write(this->Folder / "pole.tif"), Error::Kind::InvalidArgument, "99.5");
+  this->Rejected(file.Write(this->Folder / "pole.tif"), Error::Kind::InvalidArgument, "99.5");
   GridTerrainOptions options;
   options.elevation.crs = "EPSG:4978";
   EXPECT_THROW(GridTerrain::Load(this->File().Write(this->Folder / "a.tif"), options), Error);
@@ -281,13 +281,13 @@ TEST_F(Raster, AnUnknownOrAnotherBodysCrsIsTold) {
   EXPECT_FALSE(this->Warns(ElevationSource(unknown, options), "of a body of radius"));
 }
 
-TEST_F(Raster, RefusesHeightsThatNothingHas) {
+TEST_F(Raster, RejectsHeightsThatNothingHas) {
   RasterFile file = this->File();
   const auto value = file.value;
   file.value = [value](int c, int r, int b) { return c == 3 && r == 2 ? 1e30 : value(c, r, b); };
   const std::string path = file.Write(this->Folder / "high.tif");
-  this->Refused(path, Error::Kind::InvalidArgument, "high.tif");
-  this->Refused(path, Error::Kind::InvalidArgument, "column 3, row 2 has the height");
+  this->Rejected(path, Error::Kind::InvalidArgument, "high.tif");
+  this->Rejected(path, Error::Kind::InvalidArgument, "column 3, row 2 has the height");
   file.noData = 1e30; // where the file says what it means, it is a hole
   EXPECT_NO_THROW(GridTerrain::Load(file.Write(this->Folder / "hole.tif")));
 }

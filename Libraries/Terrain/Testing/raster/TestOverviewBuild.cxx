@@ -63,7 +63,7 @@ TEST(OverviewBuild, FarGroundIsTheMeanOnceTheyAreThere) {
   const auto terrain = StreamedTerrain::Open(path, options);
   ElevationPyramid& pyramid = *terrain->Pyramid();
   EXPECT_TRUE(OverviewBuild::Wanted(terrain->Info()));
-  EXPECT_EQ(terrain->TakeOverviews(), 0) << "there are none yet";
+  EXPECT_EQ(terrain->LoadOverviews(), 0) << "there are none yet";
   for (const float height : Posts(pyramid, 4)) {
     EXPECT_TRUE(height == 0.0f || height == 90.0f) << height;
   }
@@ -73,7 +73,7 @@ TEST(OverviewBuild, FarGroundIsTheMeanOnceTheyAreThere) {
   std::atomic<int> levels{0};
   {
     const OverviewBuild build(folder / "cache", path, options.elevation,
-                              [&] { levels = terrain->TakeOverviews(); });
+                              [&] { levels = terrain->LoadOverviews(); });
     AwaitEnd(build);
     EXPECT_EQ(build.GetState(), OverviewBuild::State::Built) << build.Failure();
     EXPECT_EQ(build.Progress(), 1.0);
@@ -131,7 +131,7 @@ TEST(OverviewBuild, PolesTakeThemToo) {
   };
   EXPECT_GT(furthest(), 40.0f);
   const OverviewBuild build(folder / "cache", path, options.elevation,
-                            [&] { terrain->TakeOverviews(charts); });
+                            [&] { terrain->LoadOverviews(charts); });
   AwaitEnd(build);
   ASSERT_EQ(build.GetState(), OverviewBuild::State::Built) << build.Failure();
   EXPECT_LT(furthest(), 1e-3f);
@@ -162,7 +162,7 @@ TEST(OverviewBuild, AFailureIsToldAndTheGroundStaysAsItWas) {
   const auto terrain = StreamedTerrain::Open(path, options);
   const std::vector<float> before = Posts(*terrain->Pyramid(), 4);
   const OverviewBuild build(options.elevation.overviewCache, path, {},
-                            [&] { terrain->TakeOverviews(); });
+                            [&] { terrain->LoadOverviews(); });
   AwaitEnd(build);
   EXPECT_EQ(build.GetState(), OverviewBuild::State::Failed);
   EXPECT_NE(build.Failure().find(path + "/cache"), std::string::npos) << build.Failure();

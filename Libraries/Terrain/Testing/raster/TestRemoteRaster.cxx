@@ -1,4 +1,4 @@
-// Rasters that a server sends, and servers that stall, refuse, cut and lie: no read hangs, none
+// Rasters that a server sends, and servers that stall, reject, cut and lie: no read hangs, none
 // gives a wrong height, and all recover.
 #include <chrono>
 #include <cmath>
@@ -109,17 +109,17 @@ std::string Remote::Deflated;
 std::string Remote::Uncompressed;
 
 // Expects `call` to throw, names `url`, and gives the message.
-template<class Call> Error Refusal(const Call& call, const std::string& url) {
+template<class Call> Error Rejection(const Call& call, const std::string& url) {
   ::testing::internal::CaptureStderr();
-  Error refusal(Error::Kind::Internal, "", "was accepted");
+  Error rejection(Error::Kind::Internal, "", "was accepted");
   try {
     call();
   } catch (const Error& error) {
-    refusal = error;
+    rejection = error;
     EXPECT_NE(std::string(error.what()).find(url), std::string::npos) << error.what();
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  return refusal;
+  return rejection;
 }
 
 void ExpectHeights(const ElevationSource& source, const RasterWindow& w) {
@@ -159,7 +159,7 @@ TEST_F(Remote, OpeningSaysWhatTheServerAnswered) {
     const std::string url = server.Url("opening" + std::to_string(++n) + ".tif");
     server.mode = mode;
     const ElevationOptions options = WithoutRetries(KeepsWaiting(mode) ? Short : Long);
-    const Error error = Refusal([&] { ElevationSource(url, options); }, url);
+    const Error error = Rejection([&] { ElevationSource(url, options); }, url);
     EXPECT_EQ(int(error.GetKind()), int(kind)) << error.what();
     EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     server.mode = Mode::Good; // GDAL by itself would go on saying that there is no such file
@@ -179,12 +179,12 @@ TEST_F(Remote, NobodyListens) {
   ASSERT_EQ(::getsockname(taken, any, &length), 0);
   const std::string url =
       "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/gone.tif";
-  const Error error = Refusal([&] { ElevationSource(url, WithoutRetries(Long)); }, url);
+  const Error error = Rejection([&] { ElevationSource(url, WithoutRetries(Long)); }, url);
   EXPECT_EQ(int(error.GetKind()), int(Error::Kind::Io)) << error.what();
   ::close(taken);
 }
 
-TEST_F(Remote, OneRefusalIsRetried) {
+TEST_F(Remote, OneRejectionIsRetried) {
   MisbehavingServer server(Deflated);
   ElevationOptions options = WithoutRetries(Long);
   options.network.retries = 2;
@@ -210,7 +210,11 @@ TEST_F(Remote, NoReadIsWrongAndAllRecover) {
       server.mode = mode;
       // Pixels, an overview whose header has not been read yet, pixels again.
       for (const int factor : {1, 4, 1}) {
-        const Error error = Refusal([&] { source.ReadReduced({400, 300, 300, 400}, factor); }, url);
+        const Error error = Rejection(
+            [&] {
+              source.ReadReduced({400, 300, 300, 400}, factor);
+            },
+            url);
         const bool decoded = mode == Mode::Garbage || mode == Mode::Page;
         EXPECT_TRUE(decoded || error.GetKind() != Error::Kind::Corrupt) << error.what();
         EXPECT_TRUE(error.GetKind() != Error::Kind::InvalidArgument) << error.what();
@@ -232,18 +236,18 @@ TEST_F(Remote, AReadSaysWhatTheServerAnswered) {
   for (const auto& [mode, words] : {std::pair(Mode::NotFound, "=404"),
                                     {Mode::Broken, "=500"},
                                     {Mode::Busy, "=503"},
-                                    {Mode::Silent, "no answer: the server stalled"},
-                                    {Mode::Stall, "the answer broke off: the server stalled"},
-                                    {Mode::Cut, "the answer broke off"},
+                                    {Mode::Silent, "no response: the server stalled"},
+                                    {Mode::Stall, "incomplete response: the server stalled"},
+                                    {Mode::Cut, "incomplete response"},
                                     {Mode::Garbage, "Decoding error"}}) {
     const std::string url = server.Url("words" + std::to_string(int(mode)) + ".tif");
     server.mode = Mode::Good;
     const auto source = Open(url, mode);
     server.mode = mode;
-    const auto read = [&] { return Refusal([&] { source->Read({400, 300, 300, 400}); }, url); };
+    const auto read = [&] { return Rejection([&] { source->Read({400, 300, 300, 400}); }, url); };
     Error error = read();
     // Unless no byte of it came in time.
-    for (int n = 1; n < 3 && mode == Mode::Stall && Says(error, "no answer"); ++n) {
+    for (int n = 1; n < 3 && mode == Mode::Stall && Says(error, "no response"); ++n) {
       error = read();
     }
     EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
@@ -269,7 +273,7 @@ TEST_F(Remote, AMosaicOfUrlsRecoversToo) {
   const ElevationSource source(vrt, WithoutRetries(Short)); // asks no server yet
   for (const Mode mode : {Mode::NotFound, Mode::Silent, Mode::Cut}) {
     server.mode = mode; // before the mosaic's file is opened, later in the midst
-    Refusal([&] { source.Read({500, 100, 200, 200}); }, vrt);
+    Rejection([&] { source.Read({500, 100, 200, 200}); }, vrt);
     EXPECT_GT(server.misbehaviours, 0);
     server.misbehaviours = 0;
     server.mode = Mode::Good;
@@ -320,18 +324,18 @@ TEST_F(Remote, TheCoarserLevelStaysAndTheFinerComesLater) {
   }
 }
 
-TEST_F(Remote, LimitsOutOfRangeAreRefused) {
-  const auto refused = [&](const std::function<void(NetworkLimits&)>& change) {
+TEST_F(Remote, LimitsOutOfRangeAreRejected) {
+  const auto rejected = [&](const std::function<void(NetworkLimits&)>& change) {
     ElevationOptions options;
     change(options.network);
-    const Error error = Refusal([&] { ElevationSource(Deflated, options); }, Deflated);
+    const Error error = Rejection([&] { ElevationSource(Deflated, options); }, Deflated);
     EXPECT_EQ(int(error.GetKind()), int(Error::Kind::InvalidArgument)) << error.what();
   };
-  refused([](NetworkLimits& limits) { limits.connect = 0.0; });
-  refused([](NetworkLimits& limits) { limits.stall = -1.0; });
-  refused([](NetworkLimits& limits) { limits.request = std::nan(""); });
-  refused([](NetworkLimits& limits) { limits.retryDelay = 4000.0; });
-  refused([](NetworkLimits& limits) { limits.retries = 11; });
+  rejected([](NetworkLimits& limits) { limits.connect = 0.0; });
+  rejected([](NetworkLimits& limits) { limits.stall = -1.0; });
+  rejected([](NetworkLimits& limits) { limits.request = std::nan(""); });
+  rejected([](NetworkLimits& limits) { limits.retryDelay = 4000.0; });
+  rejected([](NetworkLimits& limits) { limits.retries = 11; });
 }
 
 } // namespace

@@ -7,6 +7,8 @@
 
 #include <dspace/Error.h>
 #include <dspace/mesh/DrapeImage.h>
+#include <dspace/mesh/ShadedRelief.h>
+#include <dspace/mesh/WarpImage.h>
 
 #include "Grids.h"
 #include "RasterFile.h"
@@ -119,22 +121,22 @@ TEST_F(Drape, ReliefColoursByHeightFromTheTopRow) {
   EXPECT_EQ(ShadedRelief(*rise, options).width, 5);
 }
 
-TEST_F(Drape, ReliefRefusesBadOptions) {
+TEST_F(Drape, ReliefRejectsBadOptions) {
   const auto flat = Flat(4, 4, NorthUp(0.0, 0.0, 1.0), Crs());
-  const auto refused = [&](const std::function<void(ShadedReliefOptions&)>& change) {
+  const auto rejected = [&](const std::function<void(ShadedReliefOptions&)>& change) {
     ShadedReliefOptions options;
     change(options);
     return KindOf([&] { ShadedRelief(*flat, options); }) == Error::Kind::InvalidArgument;
   };
-  EXPECT_TRUE(refused([](auto& o) { o.sunElevation_deg = 91.0; }));
-  EXPECT_TRUE(refused([](auto& o) { o.sunAzimuth_deg = NAN; }));
-  EXPECT_TRUE(refused([](auto& o) { o.ambient = -0.1; }));
-  EXPECT_TRUE(refused([](auto& o) { o.exaggeration = 0.0; }));
-  EXPECT_TRUE(refused([](auto& o) { o.ramp.clear(); }));
-  EXPECT_TRUE(refused([](auto& o) { o.ramp = {{2.0, 0.0, 0.0}}; }));
-  EXPECT_TRUE(refused([](auto& o) { o.rampLow = 3.0, o.rampHigh = 2.0; }));
-  EXPECT_TRUE(refused([](auto& o) { o.maximumSize = 0; }));
-  EXPECT_TRUE(refused([](auto& o) { o.maximumSize = 100000; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.sunElevation_deg = 91.0; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.sunAzimuth_deg = NAN; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.ambient = -0.1; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.exaggeration = 0.0; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.ramp.clear(); }));
+  EXPECT_TRUE(rejected([](auto& o) { o.ramp = {{2.0, 0.0, 0.0}}; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.rampLow = 3.0, o.rampHigh = 2.0; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.maximumSize = 0; }));
+  EXPECT_TRUE(rejected([](auto& o) { o.maximumSize = 100000; }));
 }
 
 TEST_F(Drape, TheSameGridIsCopied) {
@@ -226,7 +228,7 @@ TEST_F(Drape, PartialImagesAreMarkedAndLaidOver) {
   }
 }
 
-TEST_F(Drape, RefusesWhatDoesNotFit) {
+TEST_F(Drape, RejectsWhatDoesNotFit) {
   const std::string path = this->Globe(-180.0, "IAU_2015:49900");
   const auto mars = Flat(4, 4, NorthUp(0.0, 4.0, 1.0), Crs::FromText("IAU_2015:49900"));
   const auto moon = Flat(4, 4, NorthUp(0.0, 4.0, 1.0), Crs::FromText("IAU_2015:30100"));

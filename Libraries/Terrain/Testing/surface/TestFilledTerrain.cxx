@@ -122,7 +122,7 @@ TEST(FilledTerrain, OverviewsThatComeChangeNothing) {
   const auto terrain = StreamedTerrain::Open(path, options);
   std::atomic<int> levels{-1};
   const OverviewBuild build(folder / "cache", path, options.elevation,
-                            [&] { levels = terrain->TakeOverviews(); });
+                            [&] { levels = terrain->LoadOverviews(); });
   while (build.GetState() == OverviewBuild::State::Building) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

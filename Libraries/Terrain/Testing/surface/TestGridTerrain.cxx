@@ -146,7 +146,7 @@ TEST(GridTerrain, ArraysEqualSingles) {
   EXPECT_LT(valid, 1000);
 }
 
-TEST(GridTerrain, RefusesBadArguments) {
+TEST(GridTerrain, RejectsBadArguments) {
   const auto terrain = Rough(10, 10, 1);
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero(), up = Eigen::Vector3d::UnitZ();
   EXPECT_THROW(terrain->Sample({NaN, 0.0, 0.0}), Error);
@@ -167,7 +167,7 @@ TEST(GridTerrain, RefusesBadArguments) {
     EXPECT_NE(std::string(error.what()).find("row 1"), std::string::npos) << error.what();
   }
   EXPECT_THROW(GridTerrain("short", 3, 3, {1.0, 2.0}, NorthUp(0.0, 0.0, 1.0)), Error);
-  const auto refused = [](const std::vector<double>& heights, double size, const char* words) {
+  const auto rejected = [](const std::vector<double>& heights, double size, const char* words) {
     try {
       GridTerrain("far", 2, 2, heights, NorthUp(0.0, 0.0, size));
       ADD_FAILURE() << "no error: " << words;
@@ -177,9 +177,9 @@ TEST(GridTerrain, RefusesBadArguments) {
       EXPECT_EQ(e.GetObjectName(), "far");
     }
   };
-  refused({1.0, 2.0, 1e30, 1.0}, 1.0, "column 0, row 1 has the height 1e+30 m; accepted are -1e9");
-  refused({1.0, -1.1e9, NaN, 1.0}, 1.0, "column 1, row 0 has the height -1.1e+09");
-  refused({1.0, 2.0, 3.0, 1.0}, 1e20, "within 1e15 m");
+  rejected({1.0, 2.0, 1e30, 1.0}, 1.0, "column 0, row 1 has the height 1e+30 m; accepted are -1e9");
+  rejected({1.0, -1.1e9, NaN, 1.0}, 1.0, "column 1, row 0 has the height -1.1e+09");
+  rejected({1.0, 2.0, 3.0, 1.0}, 1e20, "within 1e15 m");
   EXPECT_NO_THROW(GridTerrain("sun", 2, 2, {7e8, 7e8, NaN, -7e8}, NorthUp(0.0, 0.0, 1.0)));
   EXPECT_THROW(GridTerrain("inf", 2, 2, {1.0, 2.0, INFINITY, 1.0}, NorthUp(0.0, 0.0, 1.0)), Error);
   EXPECT_THROW(GridTerrain("flat", 2, 2, {1.0, 2.0, 3.0, 4.0}, NorthUp(0.0, 0.0, 0.0)), Error);

@@ -27,7 +27,7 @@ StreamedTerrainOptions OnBody() {
 
 // Posts are a quarter of a pixel apart at most: across a kink of slope J a pixel their triangles
 // cut J / 16 off. Kinks are at columns of pixels (second differences) and at diagonals (twists).
-double MostDeparture(const Globe& globe) {
+double MaximumDeparture(const Globe& globe) {
   double difference = 0.0;
   double twist = 0.0;
   for (int r = 0; r + 1 < globe.width / 2; ++r) {
@@ -53,7 +53,7 @@ TEST(ResampledGlobe, HeightsAreThoseByHandWithinTheStatedDeparture) {
     globe.height = Bulges;
     const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
     ASSERT_TRUE(terrain->Resampling());
-    const double most = MostDeparture(globe) + 2e-3; // floats
+    const double most = MaximumDeparture(globe) + 2e-3; // floats
     std::mt19937 random(4);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     constexpr int Count = 3000;
@@ -121,7 +121,7 @@ TEST(ResampledGlobe, TheStatedErrorIsThatAtThePixels) {
   EXPECT_NEAR(report.rmsError, rms, 0.25 * rms); // of 256
   EXPECT_LE(report.greatestError, greatest + 1e-2);
   EXPECT_GT(report.greatestError, 0.5 * greatest);
-  EXPECT_LE(greatest, MostDeparture(globe) + 1e-2);
+  EXPECT_LE(greatest, MaximumDeparture(globe) + 1e-2);
   bool told = false;
   for (const std::string& warning : terrain->GetWarnings()) {
     told = told || warning.find("resampled to 452") != std::string::npos;
@@ -313,7 +313,7 @@ TEST(ResampledGlobe, PatchesLieOnIt) {
       EXPECT_NEAR(terrain->Sample(2e6 * Direction(lon, lat)).height, 5000.0, 1e-2) << lon;
     }
   }
-  const double most = MostDeparture(globe) + 2e-3;
+  const double most = MaximumDeparture(globe) + 2e-3;
   for (const double lon : {168.0, -158.0, 20.0}) {
     EXPECT_NEAR(terrain->Sample(2e6 * Direction(lon, 3.0)).height, ByHand(globe, lon, 3.0), most);
   }

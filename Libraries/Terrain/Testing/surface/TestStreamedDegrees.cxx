@@ -142,18 +142,18 @@ TEST(StreamedDegrees, RaysFromOrbitMeetALargeRastersHighestPlace) {
   }
 }
 
-TEST(StreamedDegrees, WhatCannotStandOnABodyIsRefused) {
+TEST(StreamedDegrees, WhatCannotStandOnABodyIsRejected) {
   const TemporaryFolder folder;
   Globe globe;
   globe.height = Bulges;
   const auto kindOf = [&](const RasterFile& file, const std::string& says) {
     try {
-      StreamedTerrain::Open(file.Write(folder / "refused.tif"), OnBody());
+      StreamedTerrain::Open(file.Write(folder / "rejected.tif"), OnBody());
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
       return error.GetKind();
     }
-    ADD_FAILURE() << "not refused: " << says;
+    ADD_FAILURE() << "not rejected: " << says;
     return Error::Kind::Io;
   };
   RasterFile file = globe.File();

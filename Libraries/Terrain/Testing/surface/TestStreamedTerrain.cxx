@@ -324,7 +324,7 @@ TEST(StreamedTerrain, RoughnessIsWhatIsLeftOfAPlane) {
   EXPECT_THROW(terrain->Roughness(points, 1.0, one), Error);
 }
 
-TEST(StreamedTerrain, WhatIsAskedWronglyIsRefused) {
+TEST(StreamedTerrain, WhatIsAskedWronglyIsRejected) {
   const TemporaryFolder folder;
   RasterFile file;
   file.width = 20;
@@ -346,7 +346,7 @@ TEST(StreamedTerrain, WhatIsAskedWronglyIsRefused) {
   EXPECT_THROW(StreamedTerrain::Open(file.Write(folder / "high.tif")), Error);
 }
 
-// One that is small is refused; of one that is large not every pixel is looked at.
+// One that is small is rejected; of one that is large not every pixel is looked at.
 TEST(StreamedTerrain, ALargeRasterThatSeemsEmptyIsWarnedOf) {
   const TemporaryFolder folder;
   RasterFile file;

@@ -282,8 +282,8 @@ TEST_F(StreamedTracks, AFileWrittenByHandIsWhatItSays) {
   EXPECT_NEAR(Height(*terrain, -8.0, 10.1), Before(-8.0) - 0.04, 1e-6);
 }
 
-TEST_F(StreamedTracks, FilesThatAreNoTracksAreRefusedAndChangeNothing) {
-  const auto refused = [this](const std::string& text, Error::Kind kind, const std::string& part) {
+TEST_F(StreamedTracks, FilesThatAreNoTracksAreRejectedAndChangeNothing) {
+  const auto rejected = [this](const std::string& text, Error::Kind kind, const std::string& part) {
     const std::string path = folder / "bad.geojson";
     std::ofstream(path) << text;
     try {
@@ -298,24 +298,24 @@ TEST_F(StreamedTracks, FilesThatAreNoTracksAreRefusedAndChangeNothing) {
   const std::string head = R"({"type": "FeatureCollection", "features": [{"type": "Feature", )";
   const std::string line =
       R"("geometry": {"type": "LineString", "coordinates": [[500010, 4199990], [500012, 4199990]]}}]})";
-  refused("", Error::Kind::Corrupt, "bad.geojson");
-  refused("no tracks at all", Error::Kind::Corrupt, "bad.geojson");
-  refused(head + R"("properties": {"sinkage": [0.1, 0.1, 0.1]}, )" + line, Error::Kind::Corrupt,
-          "3 numbers");
-  refused(head + R"("properties": {"width": 0.1}, )" + line, Error::Kind::Corrupt, "sinkage");
-  refused(head + R"("properties": {"sinkage": "deep"}, )" + line, Error::Kind::Corrupt, "sinkage");
-  refused(head + R"("properties": {"sinkage": -1.0}, )" + line, Error::Kind::InvalidArgument,
-          "sinkage");
-  refused(head + R"("properties": {"sinkage": 0.1, "crs": "EPSG:32634"}, )" + line,
-          Error::Kind::InvalidArgument, "34N");
-  refused(head + R"("properties": {"sinkage": 0.1}, "geometry": {"type": "Point",
+  rejected("", Error::Kind::Corrupt, "bad.geojson");
+  rejected("no tracks at all", Error::Kind::Corrupt, "bad.geojson");
+  rejected(head + R"("properties": {"sinkage": [0.1, 0.1, 0.1]}, )" + line, Error::Kind::Corrupt,
+           "3 numbers");
+  rejected(head + R"("properties": {"width": 0.1}, )" + line, Error::Kind::Corrupt, "sinkage");
+  rejected(head + R"("properties": {"sinkage": "deep"}, )" + line, Error::Kind::Corrupt, "sinkage");
+  rejected(head + R"("properties": {"sinkage": -1.0}, )" + line, Error::Kind::InvalidArgument,
+           "sinkage");
+  rejected(head + R"("properties": {"sinkage": 0.1, "crs": "EPSG:32634"}, )" + line,
+           Error::Kind::InvalidArgument, "34N");
+  rejected(head + R"("properties": {"sinkage": 0.1}, "geometry": {"type": "Point",
       "coordinates": [500010, 4199990]}}]})",
-          Error::Kind::Corrupt, "POINT");
+           Error::Kind::Corrupt, "POINT");
   EXPECT_THROW(terrain->LoadTracks(folder / "absent.geojson"), Error);
   EXPECT_THROW(terrain->SaveTracks(folder / "no/such/folder.geojson"), Error);
 }
 
-TEST_F(StreamedTracks, SubdivisionsAndTracksAreRefusedOnABody) {
+TEST_F(StreamedTracks, SubdivisionsAndTracksAreRejectedOnABody) {
   RasterFile file;
   file.width = 64;
   file.height = 32;

@@ -330,7 +330,7 @@ TEST(TerrainMesh, APathIsExactAllAlong) {
   EXPECT_EQ(ExpectZoneIsExact(mesh, {{{95.0, -60.0}}, 5.0}), 300);
 }
 
-TEST(TerrainMesh, RefusesBadArguments) {
+TEST(TerrainMesh, RejectsBadArguments) {
   const auto terrain = Rough(30, 30, 91);
   EXPECT_THROW(TerrainMesh(nullptr), Error);
   EXPECT_THROW(TerrainMesh(terrain, Budget(0)), Error);

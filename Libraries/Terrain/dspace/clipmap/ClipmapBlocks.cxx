@@ -24,7 +24,7 @@ Eigen::AlignedBox2d ClipmapBlocks::PostsOf(int level, int column, int row) const
 }
 
 // The hull of its corners at the least and the greatest height.
-bool ClipmapBlocks::OutsideOnPlane(const ClipmapSight& sight,
+bool ClipmapBlocks::OutsideOnPlane(const ClipmapViewVolume& sight,
                                    const Eigen::AlignedBox2d& block) const {
   Eigen::Matrix<double, 4, 8> corners;
   for (int i = 0; i < 4; ++i) {
@@ -42,7 +42,7 @@ bool ClipmapBlocks::OutsideOnPlane(const ClipmapSight& sight,
 }
 
 // A ball about the block, or the horizon before it.
-bool ClipmapBlocks::HiddenOnBody(const ClipmapSight& sight,
+bool ClipmapBlocks::HiddenOnBody(const ClipmapViewVolume& sight,
                                  const Eigen::AlignedBox2d& block) const {
   const PostPlacement& placement = this->Placement_;
   const std::array<double, 2>& heights = this->Heights_;
@@ -73,7 +73,7 @@ bool ClipmapBlocks::HiddenOnBody(const ClipmapSight& sight,
 }
 
 std::vector<ClipmapIndices::Run> ClipmapBlocks::Seen(const ClipmapIndices& indices,
-                                                     const ClipmapSight& sight, int level,
+                                                     const ClipmapViewVolume& sight, int level,
                                                      int finest) const {
   std::optional<Eigen::Vector2i> inner;
   if (level > finest) {

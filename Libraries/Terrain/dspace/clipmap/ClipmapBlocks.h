@@ -1,4 +1,4 @@
-// Which blocks of a clipmap's levels a view may see. No OpenGL.
+// Selects the blocks of a clipmap's levels that a view may see. No OpenGL.
 #ifndef DSPACE_TERRAIN_CLIPMAPBLOCKS_H
 #define DSPACE_TERRAIN_CLIPMAPBLOCKS_H
 
@@ -12,7 +12,7 @@
 namespace dspace {
 
 // The view, in the terrain's frame.
-struct ClipmapSight {
+struct ClipmapViewVolume {
   Eigen::Vector3d camera = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector4d> planes; // of the view volume, inwards; of any length
 };
@@ -26,13 +26,13 @@ public:
 
   // Runs of indices of a level's blocks that are not surely out of sight, joined where they follow
   // each other. `finest`: the finest level that is drawn; the others have its hole.
-  std::vector<ClipmapIndices::Run> Seen(const ClipmapIndices& indices, const ClipmapSight& sight,
-                                        int level, int finest) const;
+  std::vector<ClipmapIndices::Run>
+  Seen(const ClipmapIndices& indices, const ClipmapViewVolume& sight, int level, int finest) const;
 
 private:
   Eigen::AlignedBox2d PostsOf(int level, int column, int row) const;
-  bool OutsideOnPlane(const ClipmapSight& sight, const Eigen::AlignedBox2d& block) const;
-  bool HiddenOnBody(const ClipmapSight& sight, const Eigen::AlignedBox2d& block) const;
+  bool OutsideOnPlane(const ClipmapViewVolume& sight, const Eigen::AlignedBox2d& block) const;
+  bool HiddenOnBody(const ClipmapViewVolume& sight, const Eigen::AlignedBox2d& block) const;
 
   const ClipmapLevels& Levels_;
   const PostPlacement& Placement_;

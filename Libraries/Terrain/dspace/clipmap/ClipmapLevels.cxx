@@ -163,8 +163,8 @@ std::vector<ClipmapUpdate> ClipmapLevels::ChangesIn(int index, const ClipmapWind
   return updates;
 }
 
-bool ClipmapLevels::Bring(int index, const std::vector<ClipmapUpdate>& updates,
-                          const std::optional<double>& wait, const Upload& upload) {
+bool ClipmapLevels::Fill(int index, const std::vector<ClipmapUpdate>& updates,
+                         const std::optional<double>& wait, const Upload& upload) {
   Level& level = this->Levels_[index];
   // All of it is there before any of it goes up: the level stays what it was otherwise.
   std::vector<std::vector<float>> heights(updates.size());
@@ -216,9 +216,9 @@ ClipmapLevels::Filled ClipmapLevels::Fill(int index, const ClipmapWindow& window
                                           const std::optional<double>& wait, const Upload& upload) {
   Level& level = this->Levels_[index];
   const bool current =
-      level.changed.empty() || this->Bring(index, this->ChangesIn(index, window), wait, upload);
+      level.changed.empty() || this->Fill(index, this->ChangesIn(index, window), wait, upload);
   if (level.window != window) {
-    if (!this->Bring(index, this->Geometry_.Updates(level.window, window), wait, upload)) {
+    if (!this->Fill(index, this->Geometry_.Updates(level.window, window), wait, upload)) {
       return Filled::Not; // what changed outside the new window is still what it was
     }
     level.window = window;

@@ -1,4 +1,4 @@
-// What the levels of one view's clipmap hold: filled from a pyramid, uploaded piece by piece.
+// The levels of one view's clipmap: filled from a pyramid, uploaded in pieces.
 #ifndef DSPACE_TERRAIN_CLIPMAPLEVELS_H
 #define DSPACE_TERRAIN_CLIPMAPLEVELS_H
 
@@ -31,12 +31,12 @@ static_assert(sizeof(ClipmapTexel) == 16, "tightly packed");
 // change in the pyramid are uploaded again; until they are there the old ones are drawn. No OpenGL.
 class ClipmapLevels {
 public:
-  // Where the camera is.
+  // The position of the camera.
   struct View {
     Eigen::Vector2d place = Eigen::Vector2d::Zero(); // level-0 posts; may lie outside the lattice
     double height = 0.0;                             // [m] above the vertical datum
     double cellSize = 1.0;                           // [m] of a level-0 cell below it
-    std::optional<double> wait; // [s] for data that is missing; none: take what is there
+    std::optional<double> wait; // [s] for missing data; none: use loaded data only
   };
   struct State {
     int finest = 0;       // levels finest..Count()-1 are filled and drawn
@@ -54,8 +54,8 @@ public:
   ClipmapLevels(std::shared_ptr<ElevationPyramid> pyramid, int cells);
   ~ClipmapLevels();
 
-  // What posts are raised by from the next update on, with slopes to match; none at first. A change
-  // fills all levels anew. `placement` is where the posts stand. Throws what NoiseOptions::Check
+  // Sets noise that raises posts from the next update on, with matching slopes; default: none. A
+  // change refills all levels. `placement` places the posts. Throws what NoiseOptions::Check
   // throws.
   void SetNoise(const std::optional<ClipmapStyle::Noise>& noise, const PostPlacement& placement);
 
@@ -91,8 +91,8 @@ private:
   enum class Filled { Not, Before, Wholly }; // Before: with posts as they were before a change
   void NoteChanges();
   std::vector<ClipmapUpdate> ChangesIn(int level, const ClipmapWindow& window) const;
-  bool Bring(int level, const std::vector<ClipmapUpdate>& updates,
-             const std::optional<double>& wait, const Upload& upload);
+  bool Fill(int level, const std::vector<ClipmapUpdate>& updates, const std::optional<double>& wait,
+            const Upload& upload);
   Filled Fill(int level, const ClipmapWindow& window, const std::optional<double>& wait,
               const Upload& upload);
   // Whether a post of the lattice has no data.

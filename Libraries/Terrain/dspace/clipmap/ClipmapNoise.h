@@ -18,8 +18,8 @@ public:
   ClipmapNoise(const ClipmapStyle::Noise& noise, const PostPlacement& placement);
 
   const ClipmapStyle::Noise& Noise() const { return this->Noise_; }
-  // Raises each post of a block by the noise at its own place: the same in whatever block it comes,
-  // in every turn around a body.
+  // Raises each post of a block by the noise at its place. The value does not depend on the block,
+  // nor on the turn around a body.
   void Roughen(const PostLattice& lattice, const PostBlock& block,
                std::vector<float>& heights) const;
 

@@ -28,18 +28,18 @@ void CheckLines(const std::string& terrain, const std::string& what,
 
 void ClipmapStyle::Check(const std::string& terrain) const {
   if (this->details.size() > Detail::Most) {
-    Refuse(terrain, std::to_string(this->details.size()) + " details are given; accepted: up to " +
+    Reject(terrain, std::to_string(this->details.size()) + " details are given; accepted: up to " +
                         std::to_string(Detail::Most));
   }
   for (const Detail& detail : this->details) {
     if (!detail.image || detail.image->width < 1 || detail.image->height < 1) {
-      Refuse(terrain, "a detail has no image");
+      Reject(terrain, "a detail has no image");
     }
     Require(detail.size >= 1e-3 && detail.size <= 1e6, terrain, "the size of a detail", detail.size,
             "1e-3 to 1e6 m");
     for (const auto& [low, high] : {detail.slopes, detail.heights}) {
       if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) {
-        Refuse(terrain, "a detail's range is " + NumberText(low) + " to " + NumberText(high) +
+        Reject(terrain, "a detail's range is " + NumberText(low) + " to " + NumberText(high) +
                             "; accepted: finite, the first the lesser");
       }
     }
@@ -51,11 +51,11 @@ void ClipmapStyle::Check(const std::string& terrain) const {
   CheckOpacity(terrain, "its tracks", this->tracks.opacity);
   if (this->ramp) {
     if (!this->ramp->image && this->ramp->by != Ramp::By::Normal) {
-      Refuse(terrain, "its ramp has no colours");
+      Reject(terrain, "its ramp has no colours");
     }
     const auto [low, high] = this->ramp->range;
     if (!std::isfinite(low) || !std::isfinite(high) || low == high) {
-      Refuse(terrain, "its ramp goes from " + NumberText(low) + " to " + NumberText(high) +
+      Reject(terrain, "its ramp goes from " + NumberText(low) + " to " + NumberText(high) +
                           "; accepted: two finite values that differ");
     }
     CheckOpacity(terrain, "its ramp", this->ramp->opacity);
@@ -72,7 +72,7 @@ void ClipmapStyle::Check(const std::string& terrain) const {
   if (this->gridLabels) {
     const GridLabels& labels = *this->gridLabels;
     if (!this->grid) {
-      Refuse(terrain, "its grid's labels need a grid; accepted: both, or a grid alone");
+      Reject(terrain, "its grid's labels need a grid; accepted: both, or a grid alone");
     }
     Require(labels.fontSize >= 4 && labels.fontSize <= 200, terrain,
             "the font size of its grid's labels", labels.fontSize, "4 to 200 pixels");

@@ -1,4 +1,4 @@
-// What is laid over a clipmap's own colour: ramps, levels, contour lines, grids.
+// The style over a clipmap's own colour: ramps, levels, contour lines, grids.
 #ifndef DSPACE_TERRAIN_CLIPMAPSTYLE_H
 #define DSPACE_TERRAIN_CLIPMAPSTYLE_H
 

@@ -66,10 +66,10 @@ ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
   if (options.cells > 252) {
     throw Error(Error::Kind::InvalidArgument, name,
                 "level size " + std::to_string(options.cells) +
-                    " is refused; accepted is 12 to 252");
+                    " is rejected; accepted is 12 to 252");
   }
   for (const ClipmapChart& chart : this->Charts_) {
-    ClipmapLevels(chart.pyramid, options.cells); // refuses what cannot be drawn
+    ClipmapLevels(chart.pyramid, options.cells); // rejects what cannot be drawn
   }
   if (!(options.heights[0] <= options.heights[1]) || !std::isfinite(options.heights[0]) ||
       !std::isfinite(options.heights[1])) {
@@ -79,7 +79,7 @@ ClipmapTerrain::ClipmapTerrain(std::shared_ptr<ElevationPyramid> pyramid,
   if (!this->Grids_.empty() && this->Grids_.size() != this->Charts_.size()) {
     throw Error(Error::Kind::InvalidArgument, name,
                 std::to_string(this->Grids_.size()) +
-                    " grids of colour layers are refused; accepted: " +
+                    " grids of colour layers are rejected; accepted: " +
                     std::to_string(this->Charts_.size()) + ", one a chart, or none");
   }
   if (!this->Grids_.empty()) {

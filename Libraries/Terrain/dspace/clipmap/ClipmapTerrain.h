@@ -1,4 +1,4 @@
-// Terrain that is drawn as a clipmap: its posts, where they stand, and how they look.
+// A terrain that is drawn as a clipmap: its posts, their placement and style.
 #ifndef DSPACE_TERRAIN_CLIPMAPTERRAIN_H
 #define DSPACE_TERRAIN_CLIPMAPTERRAIN_H
 
@@ -26,7 +26,7 @@ struct ClipmapOptions {
   // From level-0 posts to the map's coordinates, along which a plane's grid lines run; a body's run
   // along its meridians and parallels [deg].
   Eigen::Affine2d postToMap = Eigen::Affine2d::Identity();
-  double deadline = 60.0; // [s] that a picture that is kept waits for its data
+  double deadline = 60.0; // [s] longest wait of a saved picture for its data
 };
 
 // Posts and where they stand.
@@ -54,12 +54,12 @@ public:
   // Mean colours of the style's details, linear light.
   const std::vector<Eigen::Vector3d>& DetailMeans() const { return this->DetailMeans_; }
 
-  // What is painted on it, under the style; it may change at any time. Null without grids.
+  // The colour layers, under the style; may change at any time. Null without grids.
   const std::shared_ptr<LayerStack>& Layers() const { return this->Layers_; }
   const std::vector<ColorGrid>& Grids() const { return this->Grids_; }
-  // Theirs; made at the first call, which starts threads. Not without grids.
+  // The tiles of the layers. The first call creates them and starts threads. Requires grids.
   ColorTiles& Tiles() const;
-  // As they are so far; nothing where no picture has asked for any.
+  // Statistics of the tiles; zeros before the first picture with layers.
   ColorTilesStatistics TileStatistics() const;
 
   // The terrain's own, which comes first, then the poles'.

@@ -26,14 +26,14 @@ Eigen::Affine2d PostToPolarMap(const StreamedTerrain& terrain, const PostPlaceme
 
 std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells,
                                        const ElevationPyramidOptions& options) {
-  constexpr std::int64_t MostColumns = 65536;
+  constexpr std::int64_t MaximumColumns = 65536;
   const std::shared_ptr<ElevationPyramid>& pyramid = terrain.Pyramid();
   const PostLattice& lattice = pyramid->Lattice();
   if (!terrain.ReachesPoles() || !lattice.periodic) {
     return {};
   }
   int complete = terrain.FullLevel();
-  while (complete < lattice.levels - 1 && lattice.ColumnsAt(complete) > MostColumns) {
+  while (complete < lattice.levels - 1 && lattice.ColumnsAt(complete) > MaximumColumns) {
     ++complete;
   }
   ElevationPyramidOptions quarter = options;
@@ -52,8 +52,8 @@ std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells
           group->Data() ? std::make_shared<const PolarPosts>(group->Data(), terrain.Placement(),
                                                              complete, south, CoarsestFor(cells))
                         : nullptr;
-      source = group->On(posts, PolarCrs(terrain, south),
-                         PostToPolarMap(terrain, posts->Placement()), data);
+      source = group->WithBase(posts, PolarCrs(terrain, south),
+                               PostToPolarMap(terrain, posts->Placement()), data);
     }
     charts.push_back({std::make_shared<ElevationPyramid>(source, quarter), posts->Placement()});
   }

@@ -67,7 +67,7 @@ Crs Crs::FromOgr(const OGRSpatialReference& source) {
   crs.Wkt_ = ExportedWkt(source);
   if (!IsUtf8(crs.Wkt_)) {
     // GeoTIFF says nothing of its texts' encoding, and old writers use Latin-1. Nothing of it
-    // remains: the reference is made anew from text of UTF-8.
+    // remains: the CRS is created again from UTF-8 text.
     OGRSpatialReference readable;
     if (readable.importFromWkt(ToUtf8(crs.Wkt_).c_str()) != OGRERR_NONE)
       throw Error(Error::Kind::Unsupported, "CRS '" + crs.Wkt_ + "'",

@@ -14,7 +14,7 @@ class OGRSpatialReference;
 namespace dspace {
 
 // Immutable and cheap to copy. Map coordinates are always (x, y) as rasters have them: easting
-// before northing, longitude before latitude, whatever order the authority lists.
+// before northing, longitude before latitude, independent of the order of the authority.
 class Crs {
 public:
   enum class Kind {

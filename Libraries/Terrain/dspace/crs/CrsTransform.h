@@ -9,8 +9,8 @@
 
 namespace dspace {
 
-// Map coordinates of one CRS to those of another on the same body. Calls may come from any thread;
-// they take turns.
+// Map coordinates of one CRS to those of another on the same body. Calls may come from any thread
+// and are serialized.
 class CrsTransform {
 public:
   // Throws Error(Unsupported) when PROJ has no way between the two, as between two bodies.

@@ -1,4 +1,4 @@
-// What heights of a grid are measured from, and how wrong a missing grid of it can be.
+// The zero of heights, and the error of drawing without the grid of a geoid or areoid.
 #ifndef DSPACE_TERRAIN_VERTICALDATUM_H
 #define DSPACE_TERRAIN_VERTICALDATUM_H
 

@@ -60,7 +60,7 @@ void RegisterGdal() {
   std::call_once(once, [] {
     GDALAllRegister();
     // Tiles are kept by the pyramid, under its own budget: GDAL's share of all memory (5 %) would
-    // stand beside it. Whoever asks for another size is heard.
+    // stand beside it. Users may set another size.
     if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr)) {
       GDALSetCacheMax64(GIntBig(64) << 20);
     }

@@ -1,4 +1,4 @@
-// GDAL's own error messages, caught: none reaches stderr, none is lost.
+// Collects GDAL's error messages: none reaches stderr, none is lost.
 #ifndef DSPACE_TERRAIN_GDALERRORS_H
 #define DSPACE_TERRAIN_GDALERRORS_H
 
@@ -9,8 +9,8 @@
 
 namespace dspace {
 
-// While it lives, this thread's GDAL and PROJ messages are collected here, made UTF-8: they quote
-// files. Not for public headers.
+// During its lifetime it collects this thread's GDAL and PROJ messages and converts them to UTF-8,
+// because they quote files. Not for public headers.
 class GdalErrors {
 public:
   GdalErrors();
@@ -27,7 +27,7 @@ public:
   // Throws Error(kind, object, message) when GDAL reported a failure.
   void Check(Error::Kind kind, const std::string& object) const;
 
-  // For a call that succeeded although something failed on the way: failures become warnings.
+  // Turns failures into warnings, for a call that succeeded in spite of them.
   void DemoteFailures();
 
   // Called by GDAL's handler.

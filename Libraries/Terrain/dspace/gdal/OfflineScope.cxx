@@ -10,8 +10,8 @@
 namespace dspace {
 namespace {
 
-CPLHTTPResult* FetchNothing(const char* url, CSLConstList, GDALProgressFunc, void*,
-                            CPLHTTPFetchWriteFunc, void*, void*) {
+CPLHTTPResult* RejectFetch(const char* url, CSLConstList, GDALProgressFunc, void*,
+                           CPLHTTPFetchWriteFunc, void*, void*) {
   const std::string why = "'" + std::string(url) + "' is not fetched: a file may name no server";
   CPLError(CE_Failure, CPLE_AppDefined, "%s", why.c_str());
   // With a null result GDAL would fetch it.
@@ -24,7 +24,7 @@ CPLHTTPResult* FetchNothing(const char* url, CSLConstList, GDALProgressFunc, voi
 } // namespace
 
 OfflineScope::OfflineScope() {
-  CPLHTTPPushFetchCallback(FetchNothing, nullptr);
+  CPLHTTPPushFetchCallback(RejectFetch, nullptr);
 }
 
 OfflineScope::~OfflineScope() {

@@ -1,4 +1,4 @@
-// Local files asked of no server. Not for public headers.
+// Prevents network access while a local file is read. Not for public headers.
 #ifndef DSPACE_TERRAIN_OFFLINESCOPE_H
 #define DSPACE_TERRAIN_OFFLINESCOPE_H
 
@@ -19,7 +19,7 @@ public:
   OfflineScope& operator=(const OfflineScope&) = delete;
 };
 
-// What a text states, as Crs::FromText reads it: GDAL would also read a file of that name, or ask a
+// Parses a CRS text as Crs::FromText accepts it; GDAL would also read a file of that name, or ask a
 // server for it. False where it is not understood.
 bool ReadCrsText(const std::string& text, OGRSpatialReference& srs);
 

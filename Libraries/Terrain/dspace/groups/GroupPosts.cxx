@@ -11,7 +11,7 @@
 namespace dspace {
 namespace {
 
-constexpr int MostSubdivisions = 24;
+constexpr int MaximumSubdivisions = 24;
 
 } // namespace
 
@@ -20,12 +20,12 @@ OpenPatches::OpenPatches(const ElevationInfo& base, const std::vector<TerrainPat
     const auto patch = std::make_shared<Patch>(base, options, this->Warnings_);
     const double ratio = std::max(1.0, patch->Place().BasePixel());
     const int needed = int(std::ceil(std::log2(ratio) - 1e-6));
-    if (needed > MostSubdivisions) {
+    if (needed > MaximumSubdivisions) {
       this->Warnings_.push_back(patch->Object() + ": its pixels are " + std::to_string(ratio) +
                                 " times finer than those of the raster below; posts stand only 2^" +
-                                std::to_string(MostSubdivisions) + " times closer");
+                                std::to_string(MaximumSubdivisions) + " times closer");
     }
-    this->Subdivisions_ = std::max(this->Subdivisions_, std::min(needed, MostSubdivisions));
+    this->Subdivisions_ = std::max(this->Subdivisions_, std::min(needed, MaximumSubdivisions));
     this->Patches_.push_back(patch);
   }
 }
@@ -38,7 +38,7 @@ GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base, const Eigen::Affi
     : Base_(std::move(base)), Data_(std::move(data)), Name_(Base_->GetName()) {
   this->Report_.warnings = patches.Warnings_;
   for (const std::shared_ptr<Patch>& opened : patches.Patches_) {
-    if (opened->Settle(this->GetLattice(), postToMap, poles, this->Report_.warnings)) {
+    if (opened->Attach(this->GetLattice(), postToMap, poles, this->Report_.warnings)) {
       this->Patches_.push_back(opened);
       this->Measure(this->Patches_.size() - 1, opened->Report());
     }
@@ -52,16 +52,17 @@ GroupPosts::GroupPosts(std::shared_ptr<const PostSource> base,
 
 GroupPosts::~GroupPosts() = default;
 
-std::shared_ptr<const GroupPosts> GroupPosts::On(std::shared_ptr<const PostSource> posts,
-                                                 const Crs& crs, const Eigen::Affine2d& postToMap,
-                                                 std::shared_ptr<const PostSource> data) const {
+std::shared_ptr<const GroupPosts>
+GroupPosts::WithBase(std::shared_ptr<const PostSource> posts, const Crs& crs,
+                     const Eigen::Affine2d& postToMap,
+                     std::shared_ptr<const PostSource> data) const {
   const std::shared_ptr<GroupPosts> group(new GroupPosts(std::move(posts), std::move(data)));
   ElevationInfo info;
   info.crs = crs;
   info.pixelToMap = postToMap; // for sizes
   for (const std::shared_ptr<Patch>& patch : this->Patches_) {
     const auto again = std::make_shared<Patch>(*patch, info);
-    if (again->SettleAgain(group->GetLattice(), postToMap)) {
+    if (again->Reattach(group->GetLattice(), postToMap)) {
       group->Patches_.push_back(again);
     }
   }
@@ -72,9 +73,9 @@ std::shared_ptr<const GroupPosts> GroupPosts::On(std::shared_ptr<const PostSourc
 void GroupPosts::ReadUpTo(std::size_t count, const PostBlock& block, float* heights) const {
   this->Base_->Read(block, heights);
   std::vector<char> made;
-  Patch::MadeUp madeUp;
+  Patch::FilledMask filledMask;
   if (this->Data_) {
-    madeUp = [&]() -> std::vector<char>& {
+    filledMask = [&]() -> std::vector<char>& {
       if (made.empty()) {
         std::vector<float> data(std::size_t(block.width) * block.height);
         this->Data_->Read(block, data.data());
@@ -86,7 +87,7 @@ void GroupPosts::ReadUpTo(std::size_t count, const PostBlock& block, float* heig
     };
   }
   for (std::size_t i = 0; i < count; ++i) {
-    this->Patches_[i]->Blend(block, heights, madeUp);
+    this->Patches_[i]->Blend(block, heights, filledMask);
   }
 }
 

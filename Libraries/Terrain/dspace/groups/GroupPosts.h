@@ -26,10 +26,10 @@ struct TerrainPatch {
   std::string name; // for messages; empty: the path
 };
 
-// What became of a patch. Heights are above the base's vertical datum.
+// The result for one patch. Heights are above the base's vertical datum.
 struct PatchReport {
   std::string name;
-  bool used = false;    // false: it has no data, or none on the base; a warning says so
+  bool used = false;    // false: it has no data, or none on the base; there is a warning
   double pixel = 0.0;   // [m] the longer side of its pixels on the ground, in its middle
   double margin = 0.0;  // [m]
   double addedTo = 0.0; // [m] its datum's zero above the base's, added to its heights
@@ -71,12 +71,12 @@ private:
 // times |patch - under| a metre more than the two themselves do. A patch's height between its own
 // posts is that of HeightGrid's triangles; on level l it is that of the level of its own
 // RasterPosts whose posts are about as far apart, and the weight is the mean over as many pixels.
-// Its posts are found by PROJ to within 0.01 of a pixel (of that level). Where there is nothing
-// under it, or what is made up, it is shown alone.
+// Its posts are found by PROJ to within 0.01 of a pixel (of that level). Where the
+// ground below has no data or is filled, the patch is shown alone.
 class GroupPosts : public PostSource {
 public:
   // `postToMap` takes level-0 posts of `base` to its map; with `poles` its first and last rows are
-  // a pole each. `data` is the base without what is made up in it; null: nothing is. Reads the
+  // a pole each. `data` is the base without filled posts; null: no post is filled. Reads the
   // patches once, for their weights and errors.
   GroupPosts(std::shared_ptr<const PostSource> base, const Eigen::Affine2d& postToMap, bool poles,
              OpenPatches patches, std::shared_ptr<const PostSource> data = nullptr);
@@ -97,9 +97,10 @@ public:
   std::array<double, 2> PatchHeights(const Eigen::AlignedBox2d& posts) const;
 
   // The same patches over other posts of the same body, of another map; `data` as above.
-  std::shared_ptr<const GroupPosts> On(std::shared_ptr<const PostSource> posts, const Crs& crs,
-                                       const Eigen::Affine2d& postToMap,
-                                       std::shared_ptr<const PostSource> data = nullptr) const;
+  std::shared_ptr<const GroupPosts>
+  WithBase(std::shared_ptr<const PostSource> posts, const Crs& crs,
+           const Eigen::Affine2d& postToMap,
+           std::shared_ptr<const PostSource> data = nullptr) const;
   const std::shared_ptr<const PostSource>& Base() const { return this->Base_; }
   const std::shared_ptr<const PostSource>& Data() const { return this->Data_; } // may be null
 

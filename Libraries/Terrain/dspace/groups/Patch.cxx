@@ -76,9 +76,9 @@ Patch::Patch(const ElevationInfo& base, const TerrainPatch& options,
   }
 }
 
-bool Patch::Settle(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
+bool Patch::Attach(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
                    std::vector<std::string>& warnings) {
-  this->Place_.Settle(lattice, postToMap, poles);
+  this->Place_.SetLattice(lattice, postToMap, poles);
   if (!this->Place_.Inside()) {
     warnings.push_back(this->Object_ + " lies wholly outside the raster below: it adds nothing");
     return false;
@@ -115,8 +115,8 @@ Patch::Patch(const Patch& other, const ElevationInfo& on)
     : Object_(other.Object_), Source_(other.Source_), Place_(Object_, on, Source_->Info()),
       Report_(other.Report_), Posts_(other.Posts_), Weight_(other.Weight_) {}
 
-bool Patch::SettleAgain(const PostLattice& lattice, const Eigen::Affine2d& postToMap) {
-  this->Place_.Settle(lattice, postToMap, false);
+bool Patch::Reattach(const PostLattice& lattice, const Eigen::Affine2d& postToMap) {
+  this->Place_.SetLattice(lattice, postToMap, false);
   this->PostPixels_ = this->Place_.PostSize();
   return this->Place_.Inside();
 }
@@ -209,7 +209,7 @@ private:
   std::vector<float> Posts_;
 };
 
-void Patch::Blend(const PostBlock& block, float* heights, const MadeUp& madeUp) const {
+void Patch::Blend(const PostBlock& block, float* heights, const FilledMask& filledMask) const {
   const int wanted = this->LevelFor(block.level);
   const int level = std::min(wanted, this->Posts_->GetLattice().levels - 1);
   std::vector<Eigen::Vector2d> pixels;
@@ -232,7 +232,7 @@ void Patch::Blend(const PostBlock& block, float* heights, const MadeUp& madeUp) 
   if (places.isEmpty()) {
     return;
   }
-  std::vector<char>* made = madeUp ? &madeUp() : nullptr;
+  std::vector<char>* made = filledMask ? &filledMask() : nullptr;
   const Heights own(*this->Posts_, level, places);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!(weights[i] > 0.0)) {

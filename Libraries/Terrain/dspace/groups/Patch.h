@@ -18,7 +18,7 @@ namespace dspace {
 
 class Patch {
 public:
-  // Throws what OpenPatches throws. Adds what is in doubt to `warnings`.
+  // Throws what OpenPatches throws. Appends doubts to `warnings`.
   Patch(const ElevationInfo& base, const TerrainPatch& options, std::vector<std::string>& warnings);
 
   // One that was settled, on another base of the same body.
@@ -30,20 +30,20 @@ public:
   const PatchWeight& Weight() const { return *this->Weight_; }
   PatchReport& Report() { return this->Report_; }
 
-  // Chooses the lattice, and reads the patch for its weights where it lies within. False, with a
-  // warning, where the patch adds nothing.
-  bool Settle(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
+  // Sets the lattice and, if the patch lies within, reads it for its weights. Returns false, with a
+  // warning, if the patch adds nothing.
+  bool Attach(const PostLattice& lattice, const Eigen::Affine2d& postToMap, bool poles,
               std::vector<std::string>& warnings);
-  // What its heights lie between in a box of places of level 0; least above greatest where it does
+  // The range of its heights in a box of places of level 0; least above greatest where it does
   // not reach, infinite where nothing is known.
   std::array<double, 2> HeightsIn(const Eigen::AlignedBox2d& posts) const;
-  // Which posts of a block are made up so far; asked for by the first patch that reaches it.
-  using MadeUp = std::function<std::vector<char>&()>;
-  // Over the heights of a block of that lattice, alone where they are none or made up. `madeUp` may
-  // be empty: nothing is.
-  void Blend(const PostBlock& block, float* heights, const MadeUp& madeUp) const;
+  // Returns which posts of a block are filled; called by the first patch that reaches the block.
+  using FilledMask = std::function<std::vector<char>&()>;
+  // Over the heights of a block of that lattice, alone where they are none or made up. `filledMask`
+  // may be empty: nothing is.
+  void Blend(const PostBlock& block, float* heights, const FilledMask& filledMask) const;
   // Of one that was settled elsewhere: its weights are known. False where it does not lie within.
-  bool SettleAgain(const PostLattice& lattice, const Eigen::Affine2d& postToMap);
+  bool Reattach(const PostLattice& lattice, const Eigen::Affine2d& postToMap);
 
 private:
   class Heights;

@@ -25,7 +25,7 @@ std::string NameOf(const Crs& crs) {
                    std::to_string(std::llround(crs.GetAxes().semiMajor)) + " m)";
 }
 
-void RefuseOthers(const std::string& object, const Crs& base, const Crs& patch) {
+void RejectOthers(const std::string& object, const Crs& base, const Crs& patch) {
   const bool baseHas = base.Ogr() != nullptr;
   const bool patchHas = patch.Ogr() != nullptr;
   if (baseHas != patchHas) {
@@ -59,7 +59,7 @@ Eigen::Vector2d Applied(const CrsTransform* transform, const Eigen::Vector2d& p,
 PatchPlace::PatchPlace(const std::string& object, const ElevationInfo& base,
                        const ElevationInfo& patch)
     : Base_(base), Patch_(patch), MapToPixel_(patch.pixelToMap.inverse()) {
-  RefuseOthers(object, base.crs, patch.crs);
+  RejectOthers(object, base.crs, patch.crs);
   if (base.crs.Ogr() && base.crs.GetWkt() != patch.crs.GetWkt()) {
     this->Transform_ = std::make_shared<const CrsTransform>(base.crs, patch.crs);
   }
@@ -138,8 +138,8 @@ void PatchPlace::FindSizes() {
   this->Widening_ = 2.0 * this->BasePixel_ * least.cwiseMax(tiny).cwiseInverse();
 }
 
-void PatchPlace::Settle(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap,
-                        bool poles) {
+void PatchPlace::SetLattice(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap,
+                            bool poles) {
   this->Lattice_ = lattice;
   this->PostToBaseMap_ = postToBaseMap;
   this->Poles_ = poles;
@@ -217,7 +217,7 @@ void PatchPlace::FindReach() {
   this->Columns_ = {box.min().x() - more.x(), box.max().x() + more.x(), false};
   this->Rows_ = {box.min().y() - more.y(), box.max().y() + more.y(), false};
   this->Columns_.all = this->Turn_ > 0.0 && box.sizes().x() > 0.4 * this->Turn_;
-  this->TakePoles();
+  this->InitPoles();
   const auto& lattice = this->Lattice_;
   this->Inside_ = this->Rows_.to >= 0.0 && this->Rows_.from <= double(lattice.rows - 1);
   if (!lattice.periodic && !this->Columns_.all) { // the first post was nearest to the middle
@@ -226,7 +226,7 @@ void PatchPlace::FindReach() {
 }
 
 // About a pole a patch reaches all longitudes, and all rows as far as the pole.
-void PatchPlace::TakePoles() {
+void PatchPlace::InitPoles() {
   const Crs& crs = this->Base_.crs;
   if (!(this->Turn_ > 0.0) || !crs.HasGeographic()) {
     return;

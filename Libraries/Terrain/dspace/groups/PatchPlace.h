@@ -1,4 +1,4 @@
-// Where a patch lies in the lattice of the terrain that it is part of.
+// The position of a patch in the lattice of its terrain.
 #ifndef DSPACE_TERRAIN_PATCHPLACE_H
 #define DSPACE_TERRAIN_PATCHPLACE_H
 
@@ -30,9 +30,9 @@ public:
   // over the patch; 0 where it has none in the base's CRS.
   double BasePixel() const { return this->BasePixel_; }
 
-  // Chooses the lattice; before it nothing below may be called. With `poles` its first and last row
+  // Sets the lattice. Call it before any function below. With `poles` its first and last row
   // are one point each.
-  void Settle(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap, bool poles);
+  void SetLattice(const PostLattice& lattice, const Eigen::Affine2d& postToBaseMap, bool poles);
   // Whether any of it lies in the lattice.
   bool Inside() const { return this->Inside_; }
   Eigen::Vector2d PostOf(const Eigen::Vector2d& pixel) const; // level 0, towards the lattice
@@ -64,7 +64,7 @@ private:
   };
   void FindSizes();
   void FindReach();
-  void TakePoles();
+  void InitPoles();
   double Unwrapped(double column) const;
   Eigen::Vector2d PixelOfPost(const Eigen::Vector2d& post) const {
     return this->PixelOf(this->PostToBaseMap_ * post);

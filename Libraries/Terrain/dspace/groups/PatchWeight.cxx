@@ -7,7 +7,7 @@
 namespace dspace {
 namespace {
 
-constexpr std::int64_t MostCells = 4000000;
+constexpr std::int64_t MaximumCells = 4000000;
 constexpr std::int64_t ReadWhole = 16000000; // pixels
 constexpr double Inset = 3.0; // cells: then all posts of the triangles about a weight have data
 
@@ -74,7 +74,7 @@ std::vector<float> SquaredDistances(const std::vector<std::uint8_t>& mask, int w
 std::vector<std::uint8_t> PatchWeight::ReadMask(const ElevationSource& source) {
   const RasterWindow all = source.Info().window;
   const std::int64_t pixels = std::int64_t(all.width) * all.height;
-  while ((pixels >> (2 * this->Bits_)) > MostCells) {
+  while ((pixels >> (2 * this->Bits_)) > MaximumCells) {
     ++this->Bits_;
   }
   const int side = 1 << this->Bits_;

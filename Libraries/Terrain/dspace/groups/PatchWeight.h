@@ -1,4 +1,4 @@
-// How much a patch counts against what lies under it.
+// The weight of a patch against the ground under it.
 #ifndef DSPACE_TERRAIN_PATCHWEIGHT_H
 #define DSPACE_TERRAIN_PATCHWEIGHT_H
 

@@ -28,7 +28,7 @@ double ColorGrid::RootTexelSize() const {
 
 int ColorGrid::ZoomFor(double pixel) const {
   const double zoom = std::ceil(std::log2(this->RootTexelSize() / pixel) - 1e-6);
-  return static_cast<int>(std::clamp(zoom, 0.0, double(MostZoom)));
+  return static_cast<int>(std::clamp(zoom, 0.0, double(MaximumZoom)));
 }
 
 } // namespace dspace

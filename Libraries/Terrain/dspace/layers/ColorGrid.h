@@ -1,4 +1,4 @@
-// The tiles that a terrain's colour layers are cut into: a quadtree over each chart.
+// The tiles of a terrain's colour layers: a quadtree over each chart.
 #ifndef DSPACE_LAYERS_COLORGRID_H
 #define DSPACE_LAYERS_COLORGRID_H
 
@@ -28,7 +28,7 @@ private:
 
 struct ColorGrid {
   static constexpr int TileTexels = 256;
-  static constexpr int MostZoom = 30;
+  static constexpr int MaximumZoom = 30;
 
   PostPlacement placement;
   Crs crs; // of map coordinates; None: the raster's own units
@@ -39,7 +39,7 @@ struct ColorGrid {
   int rootColumns = 1;   // side by side: 2 around a body, else 1; one row of them
   bool periodic = false; // along columns: the last tile's neighbour is the first
   Eigen::Affine2d postToMap = Eigen::Affine2d::Identity(); // posts to map (x, y) of `crs`
-  // Where there is ground, in posts: nothing is asked for outside.
+  // Where there is ground, in posts. No tile outside is requested.
   Eigen::AlignedBox2d extent;
 
   std::int64_t ColumnsAt(int zoom) const { return std::int64_t(this->rootColumns) << zoom; }
@@ -50,7 +50,7 @@ struct ColorGrid {
   Eigen::Affine2d TexelToMap(int zoom) const { return this->postToMap * this->TexelToPost(zoom); }
   // The greater side of a texel of zoom 0 [m] on the ground in the middle of the extent.
   double RootTexelSize() const;
-  // The least zoom whose texels are no larger than `pixel` [m]; at most MostZoom.
+  // The least zoom whose texels are no larger than `pixel` [m]; at most MaximumZoom.
   int ZoomFor(double pixel) const;
 };
 

@@ -1,4 +1,4 @@
-// What is painted on a terrain: an image, a raster in false colour, shapes, noise.
+// Interface of colour layers on a terrain: an image, a raster in false colour, shapes, noise.
 #ifndef DSPACE_LAYERS_COLORLAYER_H
 #define DSPACE_LAYERS_COLORLAYER_H
 
@@ -26,15 +26,15 @@ public:
   virtual ~ColorLayer() = default;
   virtual const std::string& GetName() const = 0; // for messages: "image 'mars.tif'"
   // Fills `rgba`, 4 bytes a texel, row by row: sRGB colour and straight opacity; where that is 0
-  // the colour is 0, too. A texel is the mean of what lies within it. False, and nothing written,
-  // where there is nothing at all. Throws Error when the data cannot be read.
+  // the colour is 0, too. A texel is the mean over its area. Returns false, and writes nothing,
+  // if the whole block is transparent. Throws Error when the data cannot be read.
   virtual bool Read(const ColorGrid& grid, const ColorBlock& block, std::uint8_t* rgba) const = 0;
   // Size of its finest detail [m] on the ground: closer texels show nothing more. Infinity where
   // any zoom will do.
   virtual double PixelSize() const = 0;
-  // In memory, of a file that is decoded as a whole.
+  // Memory of a file that is decoded as a whole [bytes].
   virtual std::size_t KeptBytes() const { return 0; }
-  // What was assumed when it was opened, each naming how to state it.
+  // Assumptions made at opening; each names the option that replaces it.
   virtual const std::vector<std::string>& Warnings() const = 0;
 };
 

@@ -81,12 +81,12 @@ struct ColorTiles::Implementation {
     std::vector<ColorTile> tiles = asked;
     for (ColorTile& tile : tiles) {
       if (tile.chart < 0 || std::size_t(tile.chart) >= this->grids.size() || tile.zoom < 0 ||
-          tile.zoom > ColorGrid::MostZoom) {
+          tile.zoom > ColorGrid::MaximumZoom) {
         throw Error(Error::Kind::InvalidArgument, "colour tiles",
                     "chart " + std::to_string(tile.chart) + ", zoom " + std::to_string(tile.zoom) +
                         " asked for; accepted are charts 0 to " +
                         std::to_string(this->grids.size() - 1) + ", zooms 0 to " +
-                        std::to_string(ColorGrid::MostZoom));
+                        std::to_string(ColorGrid::MaximumZoom));
       }
       const ColorGrid& grid = this->grids[std::size_t(tile.chart)];
       if (grid.periodic) {
@@ -107,7 +107,7 @@ struct ColorTiles::Implementation {
     return found->second.tile;
   }
 
-  std::map<Key, Resident>::iterator Forget(std::map<Key, Resident>::iterator found) {
+  std::map<Key, Resident>::iterator Evict(std::map<Key, Resident>::iterator found) {
     this->statistics.bytes -= found->second.Bytes();
     this->uses.erase(found->second.use);
     return this->tiles.erase(found);
@@ -118,14 +118,14 @@ struct ColorTiles::Implementation {
     const Key key(layer.get(), at);
     const auto old = this->tiles.find(key);
     if (old != this->tiles.end()) {
-      this->Forget(old);
+      this->Evict(old);
     }
     this->uses.push_front(key);
     const Resident& resident = this->tiles[key] =
         Resident{layer, std::move(tile), this->uses.begin()};
     this->statistics.bytes += resident.Bytes();
     while (this->statistics.bytes > this->options.byteBudget) {
-      this->Forget(this->tiles.find(this->uses.back()));
+      this->Evict(this->tiles.find(this->uses.back()));
     }
   }
 
@@ -142,7 +142,7 @@ struct ColorTiles::Implementation {
     this->latest.layers = this->stack->Layers(&this->latest.revision);
     for (auto it = this->tiles.begin(); it != this->tiles.end();) {
       const bool gone = it->second.layer && !this->IsInLatest(it->second.layer);
-      it = gone ? this->Forget(it) : std::next(it);
+      it = gone ? this->Evict(it) : std::next(it);
     }
   }
 
@@ -186,7 +186,7 @@ struct ColorTiles::Implementation {
         Unlocked(lock, [&] { read->texels = ReadLayerTile(*layer.layer, grid, at); });
         ++this->statistics.reads;
         own = std::move(read);
-        if (this->IsInLatest(layer.layer)) { // it may have been taken away meanwhile
+        if (this->IsInLatest(layer.layer)) { // it may have been removed since
           this->Store(layer.layer, at, own);
         }
       }
@@ -232,7 +232,7 @@ struct ColorTiles::Implementation {
         held[i] = std::move(tile);
       }
       if (!current) {
-        this->queue.Ask(asked[i], std::int64_t(i));
+        this->queue.Add(asked[i], std::int64_t(i));
         complete = false;
       }
     }
@@ -242,22 +242,22 @@ struct ColorTiles::Implementation {
 
 ColorTiles::ColorTiles(std::shared_ptr<const LayerStack> stack, std::vector<ColorGrid> grids,
                        const ColorTilesOptions& options) {
-  const auto refuse = [](const std::string& message) {
+  const auto reject = [](const std::string& message) {
     throw Error(Error::Kind::InvalidArgument, "colour tiles", message);
   };
   if (!stack || grids.empty()) {
-    refuse("a stack and at least one grid are needed");
+    reject("a stack and at least one grid are needed");
   }
   if (options.byteBudget < (std::size_t(16) << 20)) {
-    refuse("a budget of " + std::to_string(options.byteBudget) +
-           " bytes is refused; accepted is 16 MiB (16777216) or more");
+    reject("a budget of " + std::to_string(options.byteBudget) +
+           " bytes is rejected; accepted is 16 MiB (16777216) or more");
   }
   if (options.threads < 1 || options.threads > 64) {
-    refuse(std::to_string(options.threads) + " threads are refused; accepted is 1 to 64");
+    reject(std::to_string(options.threads) + " threads are rejected; accepted is 1 to 64");
   }
   if (!(options.retryDelay > 0.0 && options.retryDelay <= Queue::LongestDelay) ||
       options.attempts < 1) {
-    refuse("a retry delay in (0, 30] s and at least 1 attempt are accepted");
+    reject("a retry delay in (0, 30] s and at least 1 attempt are accepted");
   }
   this->Impl_ = std::make_unique<Implementation>(std::move(stack), std::move(grids), options);
 }
@@ -280,7 +280,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::TryGet(const std::vector<ColorT
     const std::lock_guard<std::mutex> lock(impl.mutex);
     impl.queue.BeginCall();
     if (impl.Serve(asked, impl.stack->Revision(), true, held)) {
-      impl.queue.ForgetCall();
+      impl.queue.CancelCall();
       return held;
     }
   }
@@ -300,7 +300,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::Get(const std::vector<ColorTile
   const std::uint64_t revision = impl.stack->Revision();
   impl.queue.BeginCall();
   if (impl.Serve(asked, revision, false, held)) {
-    impl.queue.ForgetCall();
+    impl.queue.CancelCall();
     return held;
   }
   Queue::Waiting waiting(impl.queue, asked);
@@ -308,7 +308,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::Get(const std::vector<ColorTile
   do {
     if (late) {
       throw Error(Error::Kind::DeadlineExceeded, "colour tiles",
-                  "they were not there within " + std::to_string(seconds) + " s" +
+                  "they were not loaded within " + std::to_string(seconds) + " s" +
                       (impl.statistics.lastFailure.empty()
                            ? std::string()
                            : "; the last failure: " + impl.statistics.lastFailure));
@@ -330,7 +330,7 @@ std::vector<ColorTiles::TilePointer> ColorTiles::Get(const std::vector<ColorTile
 
 std::uint64_t ColorTiles::Arrivals() const {
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);
-  this->Impl_->TakeStack(); // once the last layer is gone nobody else asks
+  this->Impl_->TakeStack(); // required after removal of the last layer
   return this->Impl_->arrivals + this->Impl_->stack->Revision();
 }
 

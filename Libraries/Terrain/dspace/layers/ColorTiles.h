@@ -1,4 +1,4 @@
-// Tiles of a stack of colour layers, composed by threads of their own, under a byte budget.
+// Composes and caches tiles of a stack of colour layers, in its own threads, under a byte budget.
 #ifndef DSPACE_LAYERS_COLORTILES_H
 #define DSPACE_LAYERS_COLORTILES_H
 
@@ -29,8 +29,9 @@ struct ColorTilesStatistics {
   std::string lastFailure; // its message; empty without any
 };
 
-// A drawing thread is answered at once, from memory; captures wait. A change of the stack composes
-// tiles anew from the layers' tiles in memory, without reading. Any thread may call.
+// TryGet() is for drawing threads and returns at once; Get() is for captures and waits. After a
+// change of the stack, tiles are composed again from the layers' tiles in memory, without reading.
+// Any thread may call.
 class ColorTiles {
 public:
   static constexpr int Side = ColorGrid::TileTexels + 2; // a texel of border all around
@@ -56,15 +57,15 @@ public:
   const LayerStack& Stack() const;
   const std::vector<ColorGrid>& Grids() const;
 
-  // One a tile, most wanted first: as it is in memory, of this or an earlier revision; null where
-  // it is not there. What is missing or out of date is asked for, and requests of earlier calls
-  // that are not among these are served after them.
+  // Returns one entry per requested tile, in order of priority: the tile in memory, of this or an
+  // earlier revision; null if there is none. Missing and outdated tiles are requested. Requests of
+  // earlier calls that are not among these are served later.
   std::vector<TilePointer> TryGet(const std::vector<ColorTile>& tiles);
-  // All of them, of the revision at the time of the call or a later one. Throws Error: what the
-  // last of the failed attempts threw; DeadlineExceeded when `seconds` ran out.
+  // Returns all tiles, of the revision at the time of the call or a later one. Throws the error of
+  // the last failed attempt, or Error(DeadlineExceeded) after `seconds`.
   std::vector<TilePointer> Get(const std::vector<ColorTile>& tiles, double seconds);
 
-  // Grows with each tile that arrives and with each change of the stack.
+  // Increases with each loaded tile and with each change of the stack.
   std::uint64_t Arrivals() const;
   ColorTilesStatistics Statistics() const;
 

@@ -16,7 +16,7 @@ void CheckOpacity(const std::string& terrain, const std::string& name, double op
   if (!(opacity >= 0.0 && opacity <= 1.0)) {
     throw Error(Error::Kind::InvalidArgument, Object(terrain),
                 "an opacity of " + std::to_string(opacity) + " for '" + name +
-                    "' is refused; accepted is 0 to 1");
+                    "' is rejected; accepted is 0 to 1");
   }
 }
 
@@ -25,7 +25,7 @@ void CheckPosition(const std::string& terrain, const std::string& name, std::siz
   if (position > top) {
     throw Error(Error::Kind::InvalidArgument, Object(terrain),
                 "position " + std::to_string(position) + " for '" + name +
-                    "' is refused; accepted is 0 (bottom) to " + std::to_string(top) + " (top)");
+                    "' is rejected; accepted is 0 (bottom) to " + std::to_string(top) + " (top)");
   }
 }
 
@@ -40,13 +40,13 @@ void LayerStack::Add(StackedLayer layer, std::optional<std::size_t> position) {
   const std::size_t count = this->Layers_.size();
   if (layer.name.empty()) {
     throw Error(Error::Kind::InvalidArgument, Object(this->Terrain_),
-                "a layer without a name is refused; accepted is one that the others do not have");
+                "a layer has no name; accepted: a name that no other layer has");
   }
   for (const StackedLayer& other : this->Layers_) {
     if (other.name == layer.name) {
       throw Error(Error::Kind::InvalidArgument, Object(this->Terrain_),
                   "the name '" + layer.name +
-                      "' is taken; accepted is one that the others do not "
+                      "' is taken; accepted: one that other layers do not "
                       "have");
     }
   }

@@ -32,8 +32,8 @@ public:
   // for an empty or taken name, an opacity out of range, a position beyond the top, or more than
   // Most layers.
   void Add(StackedLayer layer, std::optional<std::size_t> position = std::nullopt);
-  // Absent: unchanged. Throws as Add does, NotFound for a name that it has not; nothing is then
-  // changed.
+  // Changes a layer; absent values stay. Throws as Add does, and NotFound for an unknown name. An
+  // error changes nothing.
   void Change(const std::string& name, std::optional<double> opacity, std::optional<bool> visible,
               std::optional<std::size_t> position);
   void Remove(const std::string& name); // throws Error(NotFound)
@@ -41,9 +41,9 @@ public:
   // A copy, bottom first; into `revision`, where it is given, which one they are of.
   std::vector<StackedLayer> Layers(std::uint64_t* revision = nullptr) const;
   std::uint64_t Revision() const;
-  // That is seen at all: visible, opacity over 0.
+  // Whether no layer is visible with an opacity over 0.
   bool Empty() const;
-  // The finest that a layer that is seen has; infinity without one.
+  // The least PixelSize() of the visible layers; infinity without any.
   double PixelSize() const;
 
 private:

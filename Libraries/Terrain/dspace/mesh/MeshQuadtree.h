@@ -1,4 +1,4 @@
-// Which squares of a grid are drawn as one, and how they meet: decimation without cracks.
+// Decimation of a grid without cracks: which squares are drawn as one, and how they meet.
 #ifndef DSPACE_TERRAIN_MESHQUADTREE_H
 #define DSPACE_TERRAIN_MESHQUADTREE_H
 

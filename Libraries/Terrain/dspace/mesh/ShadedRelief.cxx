@@ -1,4 +1,4 @@
-#include <dspace/mesh/DrapeImage.h>
+#include <dspace/mesh/ShadedRelief.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,29 +9,30 @@ namespace dspace {
 
 namespace {
 
-[[noreturn]] void Refuse(const std::string& message) {
+[[noreturn]] void RejectRelief(const std::string& message) {
   throw Error(Error::Kind::InvalidArgument, "shaded relief", message);
 }
 
 void Check(const ShadedReliefOptions& o) {
   if (!std::isfinite(o.sunAzimuth_deg))
-    Refuse("the sun's azimuth is not finite");
+    RejectRelief("the sun's azimuth is not finite");
   if (!(o.sunElevation_deg >= 0.0 && o.sunElevation_deg <= 90.0))
-    Refuse("sun elevation " + std::to_string(o.sunElevation_deg) + " given; accepted is 0 to 90");
+    RejectRelief("sun elevation " + std::to_string(o.sunElevation_deg) +
+                 " given; accepted is 0 to 90");
   if (!(o.ambient >= 0.0 && o.ambient <= 1.0))
-    Refuse("ambient " + std::to_string(o.ambient) + " given; accepted is 0 to 1");
+    RejectRelief("ambient " + std::to_string(o.ambient) + " given; accepted is 0 to 1");
   if (!(o.exaggeration > 0.0) || !std::isfinite(o.exaggeration))
-    Refuse("exaggeration " + std::to_string(o.exaggeration) +
-           " given; accepted is a positive number");
+    RejectRelief("exaggeration " + std::to_string(o.exaggeration) +
+                 " given; accepted is a positive number");
   if (o.ramp.empty())
-    Refuse("the colour ramp is empty; at least one colour is needed");
+    RejectRelief("the colour ramp is empty; at least one colour is needed");
   for (const auto& color : o.ramp)
     for (double v : color)
       if (!(v >= 0.0 && v <= 1.0))
-        Refuse("a colour of the ramp is outside 0 to 1");
+        RejectRelief("a colour of the ramp is outside 0 to 1");
   if ((o.rampLow && !std::isfinite(*o.rampLow)) || (o.rampHigh && !std::isfinite(*o.rampHigh)) ||
       (o.rampLow && o.rampHigh && !(*o.rampLow < *o.rampHigh)))
-    Refuse("the ramp's limits must be finite and ascending");
+    RejectRelief("the ramp's limits must be finite and ascending");
 }
 
 } // namespace

@@ -44,8 +44,8 @@ struct TerrainMeshReport {
 // data. Within a zone they are GridTerrain's own. Texture coordinates run over the whole raster,
 // pixel edge to pixel edge, so that an image of the raster's extent lies right.
 //
-// What is built depends on the options and the present zones only, not on their history. Not for
-// several threads at once; tiles themselves are immutable and may be held.
+// The mesh depends only on the options and the current zones, not on their history. Not
+// synchronised. Tiles are immutable and may be kept.
 class TerrainMesh {
 public:
   // Throws Error(InvalidArgument) for an option out of range.

@@ -1,4 +1,4 @@
-#include <dspace/mesh/DrapeImage.h>
+#include <dspace/mesh/WarpImage.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ Picture ReadPicture(const DrapeSource& source, const std::string& object,
   GDALColorTable* table = count == 1 ? file->GetRasterBand(1)->GetColorTable() : nullptr;
   if (count < 1 || count > 4)
     throw Error(Error::Kind::Unsupported, object,
-                "it has " + std::to_string(count) + " bands; accepted are 1 (grey) to 4 (RGBA)");
+                "it has " + std::to_string(count) + " bands; accepted: 1 (grey) to 4 (RGBA)");
   if (file->GetRasterBand(1)->GetRasterDataType() != GDT_Byte)
     throw Error(Error::Kind::Unsupported, object,
                 std::string("its values are ") +
@@ -161,14 +161,14 @@ DatasetPointer ToDataset(Picture& p, const std::string& object) {
     const std::size_t size = static_cast<std::size_t>(p.width) * p.height;
     if (band->RasterIO(GF_Write, 0, 0, p.width, p.height, p.bands.data() + size * k, p.width,
                        p.height, GDT_Byte, 0, 0, nullptr) != CE_None)
-      throw Error(Error::Kind::Resource, object, errors.Message("its image cannot be kept"));
+      throw Error(Error::Kind::Resource, object, errors.Message("its image cannot be stored"));
   }
   dataset->GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
   return dataset;
 }
 
 // How many of the picture's pixels lie along the side of a terrain's cell; the least of some
-// places, since pixels crowd at a pole. Refuses a picture of another body, naming both.
+// places, since pixels crowd at a pole. Rejects a picture of another body, naming both.
 double PixelsAPost(const RasterPlace& place, const Picture& picture) {
   std::unique_ptr<CrsTransform> toPicture;
   if (picture.crs.Ogr() && place.crs.Ogr())
@@ -226,7 +226,7 @@ DrapeImage WarpImage(const RasterPlace& place, const DrapeSource& source,
             .asDiagonal();
     picture.crs = place.crs;
   } else if (picture.crs.GetKind() == Crs::Kind::None && place.crs.GetKind() != Crs::Kind::None) {
-    image.warnings.push_back(object + " has no CRS: the terrain's is taken");
+    image.warnings.push_back(object + " has no CRS: the terrain's is used");
     picture.crs = place.crs;
   }
   if (GoesAround(picture)) {
@@ -240,7 +240,7 @@ DrapeImage WarpImage(const RasterPlace& place, const DrapeSource& source,
   const double fineness = PixelsAPost(place, picture);
   const double longer = std::max(place.columns, place.rows);
   const auto most =
-      DrapeSize(place.columns, place.rows, options.maximumSize); // refuses a size out of range
+      DrapeSize(place.columns, place.rows, options.maximumSize); // rejects a size out of range
   const double factor =
       std::clamp(options.maximumSize / longer, 0.0, std::max(1.0, std::ceil(fineness)));
   image.width = std::max(most[0], static_cast<int>(std::round(place.columns * factor)));

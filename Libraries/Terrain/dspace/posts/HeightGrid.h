@@ -1,4 +1,4 @@
-// Posts in memory and the triangles between them: the one surface of Dspace's terrains.
+// Posts in memory and the triangles between them, which define the surface of all terrains.
 #ifndef DSPACE_TERRAIN_HEIGHTGRID_H
 #define DSPACE_TERRAIN_HEIGHTGRID_H
 

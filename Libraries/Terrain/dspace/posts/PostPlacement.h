@@ -1,4 +1,4 @@
-// Where the posts of a lattice stand in the scene: on a plane, or on a body.
+// Places the posts of a lattice in the scene: on a plane, or on a body.
 #ifndef DSPACE_TERRAIN_POSTPLACEMENT_H
 #define DSPACE_TERRAIN_POSTPLACEMENT_H
 
@@ -18,7 +18,7 @@ public:
   // `postToScene` takes (c, r) to scene (x, y) [m]; invertible.
   static PostPlacement OnPlane(const Eigen::Affine2d& postToScene, double originHeight = 0.0);
   // Longitude (east) and latitude of post (0, 0), and their steps a column and a row [deg];
-  // `radius` [m] is where height is 0; places are told as columns within half a turn of
+  // `radius` [m] is where height is 0; places are given as columns within half a turn of
   // `middleColumn`.
   static PostPlacement OnSphere(const Eigen::Vector2d& first_deg, const Eigen::Vector2d& step_deg,
                                 double radius, double middleColumn = 0.0);
@@ -57,8 +57,8 @@ public:
   Eigen::Vector3d Up(const Eigen::Vector3d& p_S) const;
   // North, unit: Y on a plane; on a body towards its north pole, any direction at the poles.
   Eigen::Vector3d North(const Eigen::Vector3d& p_S) const;
-  // What posts (0, 0) to `last` at heights from `low` to `high` [m] span in the scene; of a plane
-  // or a sphere.
+  // The bounds of posts (0, 0) to `last` at heights from `low` to `high` [m] in the scene; of a
+  // plane or a sphere.
   Eigen::AlignedBox3d BoundsOf(const Eigen::Vector2d& last, double low, double high) const;
   // The greater of a cell's two sides there [m], at height 0.
   double CellSize(const Eigen::Vector2d& post) const;

@@ -1,4 +1,4 @@
-// Where a terrain's posts come from: a raster, several of them, or a formula.
+// Interface to the posts of a terrain: from a raster, several rasters, or a formula.
 #ifndef DSPACE_TERRAIN_POSTSOURCE_H
 #define DSPACE_TERRAIN_POSTSOURCE_H
 
@@ -51,12 +51,13 @@ public:
   virtual ~PostSource() = default;
   virtual const std::string& GetName() const = 0; // for messages
   virtual const PostLattice& GetLattice() const = 0;
-  // Row by row into `heights`; NaN where there is no data and outside the lattice. Level 0 is the
-  // surface itself; a post of a coarser level is the mean over its cell, so that far ground does
-  // not shimmer. Called from several threads at once. Throws Error when the data cannot be read.
+  // Writes the block row by row to `heights`; NaN where there is no data and outside the lattice.
+  // Level 0 is the surface itself; a post of a coarser level is the mean over its cell, so that
+  // distant ground does not alias. Called from several threads at once. Throws Error when the data
+  // cannot be read.
   virtual void Read(const PostBlock& block, float* heights) const = 0;
-  // The same, and into `tracks` from 0 to 1 how much of each post's cell is rolled over. False, and
-  // `tracks` not written, where none is.
+  // The same, and writes to `tracks` how much of each post's cell wheels have rolled over, 0 to 1.
+  // Returns false, without writing `tracks`, if there are no tracks.
   virtual bool ReadWithTracks(const PostBlock& block, float* heights, float* /*tracks*/) const {
     this->Read(block, heights);
     return false;

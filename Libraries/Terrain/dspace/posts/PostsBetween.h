@@ -12,8 +12,9 @@ namespace dspace {
 // (below the diagonal a-d) and B, as in HeightGrid.
 double OnTriangles(double a, double b, double c, double d, double u, double v);
 
-// A block of a level finer than `full`, whose posts `read` gives. With `poles` the first and the
-// last row of the lattice are a pole each: from there the surface is ruled to the next row.
+// Reads a block of a level finer than `full`; `read` gives the posts of `full`. With `poles` the
+// first and the last row of the lattice are a pole each: from there the surface is ruled to the
+// next row.
 void ReadBetweenPosts(const PostLattice& lattice, bool poles, int full,
                       const std::function<void(const PostBlock&, float*)>& read,
                       const PostBlock& block, float* heights);

@@ -19,7 +19,7 @@ int RasterMeans::FirstReducedLevel() const {
   return this->Subdivisions_ + FullReads + 1;
 }
 
-void RasterMeans::ForgetReduced() {
+void RasterMeans::InvalidateReduced() {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   this->PoleHeights_.erase(this->PoleHeights_.lower_bound({this->FirstReducedLevel(), false}),
                            this->PoleHeights_.end());

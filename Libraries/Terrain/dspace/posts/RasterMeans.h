@@ -15,7 +15,7 @@
 
 namespace dspace {
 
-// RasterPosts documents what its levels are. Any thread may call.
+// RasterPosts documents the levels. Any thread may call.
 class RasterMeans {
 public:
   // `stretch`: pixels along a row from a post of level `subdivisions` to the next.
@@ -27,10 +27,10 @@ public:
   // Of all that a level's boxes about a pole reach; up to the raster's own posts, of the row next
   // to it.
   double PoleHeight(int level, bool last) const;
-  // Levels from here on are read from overviews, where the source has some.
+  // The first level that is read from overviews, if the source has any.
   int FirstReducedLevel() const;
-  // The source reads other overviews from now on.
-  void ForgetReduced();
+  // Clears cached reduced posts after the source has loaded other overviews.
+  void InvalidateReduced();
 
 private:
   std::vector<double> MeansOf(std::vector<BoxSpan> columns, std::vector<BoxSpan> rows, int factor,

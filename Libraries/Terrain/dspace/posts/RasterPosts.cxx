@@ -25,7 +25,7 @@ PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& optio
   if (options.subdivisions < 0 || options.subdivisions > 24) {
     throw Error(Error::Kind::InvalidArgument, object,
                 "subdivisions " + std::to_string(options.subdivisions) +
-                    " is refused; accepted is 0 to 24");
+                    " is rejected; accepted is 0 to 24");
   }
   if (options.poles && (!options.periodic || options.subdivisions < 1)) {
     throw Error(Error::Kind::InvalidArgument, object,
@@ -34,7 +34,7 @@ PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& optio
   if (options.columns != 0 && (!options.periodic || options.columns < width)) {
     throw Error(Error::Kind::InvalidArgument, object,
                 std::to_string(options.columns) +
-                    " columns are refused; accepted are, where it goes "
+                    " columns are rejected; accepted are, where it goes "
                     "once around, " +
                     std::to_string(width) + " or more");
   }
@@ -106,8 +106,8 @@ int RasterPosts::FirstReducedLevel() const {
   return this->Means_->FirstReducedLevel();
 }
 
-void RasterPosts::ForgetReduced() {
-  this->Means_->ForgetReduced();
+void RasterPosts::InvalidateReduced() {
+  this->Means_->InvalidateReduced();
 }
 
 void RasterPosts::ReadSubdivided(const PostBlock& block, float* heights) const {

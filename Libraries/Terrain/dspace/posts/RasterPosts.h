@@ -22,8 +22,8 @@ struct RasterPostsOptions {
   // needs `periodic` and subdivisions of 1 or more. A pole's height is the mean of the row next to
   // it; along each meridian the surface is straight between the two.
   bool poles = false;
-  // Of a periodic raster: so many columns around instead of its own, at least as many, which halve
-  // as often as is wanted; ColumnsAround() has them. 0: its own.
+  // Number of columns around the body for a periodic raster; at least its own. It must halve as
+  // often as needed; ColumnsAround() computes it. 0: the raster's own.
   std::int64_t columns = 0;
   int levels = 0; // 0: until a level has at most `coarsest` cells a side
   int coarsest = 96;
@@ -52,8 +52,8 @@ public:
   const std::string& GetName() const override { return this->Name_; }
   const PostLattice& GetLattice() const override { return this->Lattice_; }
   void Read(const PostBlock& block, float* heights) const override;
-  // The same, and into `shares` how much of each post's cell has data, 0 to 1; of levels that are
-  // no means, and at poles, 0 or 1.
+  // The same, and writes to `shares` how much of each post's cell has data, 0 to 1. At poles, and
+  // in levels that are not means, it is 0 or 1.
   void ReadWithShares(const PostBlock& block, float* heights, float* shares) const;
   bool Poles() const { return this->Poles_; }
 
@@ -61,11 +61,11 @@ public:
   int Subdivisions() const { return this->Subdivisions_; }
   // Halvings of a pixel that posts on columns of one's own choice are taken at.
   static constexpr int Finer = 2;
-  // Levels from here on are read from overviews, where the source has some.
+  // The first level that is read from overviews, if the source has any.
   int FirstReducedLevel() const;
-  // The source reads other overviews from now on.
-  void ForgetReduced();
-  // The level whose posts say all: those of finer levels lie on its triangles.
+  // Clears cached reduced posts after the source has loaded other overviews.
+  void InvalidateReduced();
+  // The finest level with information of its own: posts of finer levels lie on its triangles.
   int FullLevel() const { return this->Full_; }
   // Pixels along a row from a post of level `subdivisions` to the next; 1 unless columns are given.
   double Stretch() const { return this->Stretch_; }
@@ -84,13 +84,13 @@ private:
   std::unique_ptr<RasterMeans> Means_;
 };
 
-// Levels until the coarsest has at most `coarsest` cells a side; for a periodic lattice at most as
-// many as halve its columns evenly.
+// Number of levels until the coarsest has at most `coarsest` cells a side; for a periodic lattice
+// at most as many as halve its columns evenly.
 int LevelsFor(const PostLattice& lattice, int coarsest);
 
-// Of a raster that goes once around: its columns where they halve as often as it takes until at
-// most twice `coarsest` of them and at most `coarsest` cells between rows are left; else the next
-// greater number that does.
+// The number of columns for a raster that goes once around a body: the least number, from its own
+// on, that halves evenly until at most twice `coarsest` columns and at most `coarsest` cells
+// between rows are left.
 std::int64_t ColumnsAround(int columns, int rowCells, int coarsest);
 
 } // namespace dspace

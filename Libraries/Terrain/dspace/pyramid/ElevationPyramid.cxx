@@ -29,11 +29,11 @@ using Queue = TileQueue<TileKey, SinceRead>;
 // A caller that has used up its time elsewhere has none left to name.
 std::string WithinSeconds(double seconds) {
   if (!(seconds > 0.0)) {
-    return "its tiles were not there when the deadline was up";
+    return "its tiles were not loaded before the deadline";
   }
   char number[32];
   std::snprintf(number, sizeof number, "%g", seconds);
-  return "its tiles were not there within " + std::string(number) + " s";
+  return "its tiles were not loaded within " + std::string(number) + " s";
 }
 
 } // namespace
@@ -89,9 +89,9 @@ struct ElevationPyramid::Implementation {
   }
 
   // Of one view the coarse levels come first.
-  void Ask(const TileKey& key) { this->queue.Ask(key, -key[0]); }
+  void RequestTile(const TileKey& key) { this->queue.Add(key, -key[0]); }
 
-  void Forget(std::map<TileKey, Resident>::iterator found) {
+  void Evict(std::map<TileKey, Resident>::iterator found) {
     this->statistics.bytes -= found->second.tile->Bytes();
     this->uses.erase(found->second.use);
     this->tiles.erase(found);
@@ -100,14 +100,14 @@ struct ElevationPyramid::Implementation {
   void Store(const TileKey& key, std::shared_ptr<const PyramidTile> tile, const TileBox& stale) {
     const auto old = this->tiles.find(key);
     if (old != this->tiles.end()) {
-      this->Forget(old);
+      this->Evict(old);
     }
     this->statistics.bytes += tile->Bytes();
     this->uses.push_front(key);
     this->tiles[key] = {std::move(tile), this->uses.begin(), stale};
     ++this->arrivals;
     while (this->statistics.bytes > this->options.byteBudget) {
-      this->Forget(this->tiles.find(this->uses.back()));
+      this->Evict(this->tiles.find(this->uses.back()));
       ++this->statistics.evictions;
     }
   }
@@ -183,7 +183,7 @@ struct ElevationPyramid::Implementation {
       }
       if (!held[i]) {
         if (ask) {
-          this->Ask(pieces[i].key);
+          this->RequestTile(pieces[i].key);
         }
         complete = false;
       }
@@ -210,11 +210,11 @@ ElevationPyramid::ElevationPyramid(std::shared_ptr<const PostSource> source,
   if (options.byteBudget < (std::size_t(4) << 20)) {
     throw Error(Error::Kind::InvalidArgument, object,
                 "a budget of " + std::to_string(options.byteBudget) +
-                    " bytes is refused; accepted is 4 MiB (4194304) or more");
+                    " bytes is rejected; accepted is 4 MiB (4194304) or more");
   }
   if (options.threads < 1 || options.threads > 64) {
     throw Error(Error::Kind::InvalidArgument, object,
-                std::to_string(options.threads) + " threads are refused; accepted is 1 to 64");
+                std::to_string(options.threads) + " threads are rejected; accepted is 1 to 64");
   }
   if (!(options.retryDelay > 0.0 && options.retryDelay <= Queue::LongestDelay) ||
       options.attempts < 1) {
@@ -239,7 +239,7 @@ bool ElevationPyramid::TryRead(const PostBlock& block, float* heights, float* tr
     this->Impl_->queue.BeginCall();
     complete = this->Impl_->Serve(pieces, block, {heights, tracks}, held);
     if (complete) {
-      this->Impl_->queue.ForgetCall();
+      this->Impl_->queue.CancelCall();
     }
   }
   if (!complete) {
@@ -269,7 +269,7 @@ void ElevationPyramid::Read(const PostBlock& block, float* heights, float* track
   std::unique_lock<std::mutex> lock(impl.mutex);
   impl.queue.BeginCall();
   if (impl.Serve(pieces, block, {heights, tracks}, held)) {
-    impl.queue.ForgetCall();
+    impl.queue.CancelCall();
     return;
   }
   std::vector<TileKey> keys;

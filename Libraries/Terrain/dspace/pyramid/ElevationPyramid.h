@@ -1,4 +1,4 @@
-// Tiles of a post source in memory, under a byte budget, read by threads of its own.
+// Caches tiles of a post source in memory under a byte budget. Its own threads read them.
 #ifndef DSPACE_TERRAIN_ELEVATIONPYRAMID_H
 #define DSPACE_TERRAIN_ELEVATIONPYRAMID_H
 
@@ -26,18 +26,18 @@ struct ElevationPyramidStatistics {
   std::uint64_t patches = 0; // parts of tiles read again after a change
   std::uint64_t evictions = 0;
   std::uint64_t failures = 0; // reads that failed, each attempt counted
-  std::size_t pending = 0;    // tiles asked for and not there yet
+  std::size_t pending = 0;    // tiles requested and not loaded yet
   std::string lastFailure;    // its message; empty without any
 };
 
-// What changed up to a moment, in posts of level 0.
+// Changes up to a stamp, in posts of level 0.
 struct PyramidChanges {
   std::uint64_t stamp = 0; // of that moment
   std::vector<PostRectangle> rectangles;
 };
 
-// What a drawing thread asks is answered at once, from memory, or not; what is missing is then on
-// its way. Captures, queries and analyses wait. Any thread may call.
+// TryRead() is for drawing threads: it returns at once and requests missing tiles. Read() is for
+// captures, queries and analyses: it waits. Any thread may call.
 class ElevationPyramid {
 public:
   static constexpr int TileSize = 128; // posts a side
@@ -52,29 +52,30 @@ public:
   const PostSource& Source() const { return *this->Source_; }
   const PostLattice& Lattice() const { return this->Source_->GetLattice(); }
 
-  // The block as PostSource::Read gives it, from tiles in memory. False, and nothing written, where
-  // one is missing: it is then asked for, latest requests first and of them the coarsest.
+  // Reads the block as PostSource::Read does, from tiles in memory. Returns false, and writes
+  // nothing, if a tile is missing; it is then requested. Later requests are served first, of one
+  // call the coarsest tiles first.
   bool TryRead(const PostBlock& block, float* heights);
-  // The same, and nothing is asked for.
+  // The same without requesting missing tiles.
   bool ReadHeld(const PostBlock& block, float* heights);
-  // Reads what is missing first. Throws Error: what the last of the failed attempts threw;
-  // DeadlineExceeded when `seconds` ran out.
+  // Waits for missing tiles. Throws the error of the last failed attempt, or
+  // Error(DeadlineExceeded) after `seconds`.
   void Read(const PostBlock& block, float* heights,
             double seconds = std::numeric_limits<double>::infinity());
 
-  // The same, and into `tracks` what PostSource::ReadWithTracks gives, 0 where none is.
+  // The same, and writes to `tracks` the result of PostSource::ReadWithTracks, 0 without tracks.
   bool TryRead(const PostBlock& block, float* heights, float* tracks);
   void Read(const PostBlock& block, float* heights, float* tracks, double seconds);
 
-  // The source gives other posts in these rectangles of level 0 from now on: what is in memory of
-  // them is read again when it is asked for, and a read under way does not bring the old ones back.
+  // Call after the source's posts have changed in these rectangles of level 0. Tiles in memory are
+  // read again on demand, and a running read does not store old posts.
   void Invalidate(const std::vector<PostRectangle>& rectangles);
-  // Of all calls of Invalidate since `stamp`; all of the lattice where that is long ago.
+  // Rectangles of all calls of Invalidate since `since`; the whole lattice if that is too long ago.
   PyramidChanges Changes(std::uint64_t since) const;
-  // The stamp that Changes() would give, without waiting for anything.
+  // The stamp that Changes() would return. Does not wait.
   std::uint64_t LatestChange() const;
 
-  // Grows with each tile that arrives and with each change.
+  // Increases with each loaded tile and with each change.
   std::uint64_t Arrivals() const;
   ElevationPyramidStatistics Statistics() const;
 

@@ -10,7 +10,7 @@
 #include <dspace/posts/PostsBetween.h>
 #include <dspace/pyramid/FilledReach.h>
 #include <dspace/pyramid/PyramidTiles.h>
-#include <dspace/raster/LatestKept.h>
+#include <dspace/raster/LruCache.h>
 
 namespace dspace {
 namespace {
@@ -46,11 +46,11 @@ double Drawn(double here, float own, float weight, const Neighbours& around) {
 
 FilledPosts::FilledPosts(std::shared_ptr<const RasterPosts> posts, double reach)
     : Posts_(std::move(posts)), Reach_(reach),
-      Tiles_(std::make_unique<LatestKept<Key, Heights>>(KeptTiles)) {
+      Tiles_(std::make_unique<LruCache<Key, Heights>>(KeptTiles)) {
   if (!(reach > 0.0)) {
     throw Error(Error::Kind::InvalidArgument, this->GetName(),
                 "holes filled within " + std::to_string(reach) +
-                    " pixels of data are refused; accepted is a positive number");
+                    " pixels of data are rejected; accepted is a positive number");
   }
 }
 
@@ -144,7 +144,7 @@ FilledPosts::Heights FilledPosts::TileOf(const Key& key) const {
       this->Fill({int(key[0]), key[1] * PyramidTileSize, key[2] * PyramidTileSize, PyramidTileSize,
                   PyramidTileSize}));
   const std::lock_guard<std::mutex> lock(this->Mutex_);
-  this->Tiles_->Keep(key, heights);
+  this->Tiles_->Insert(key, heights);
   return heights;
 }
 

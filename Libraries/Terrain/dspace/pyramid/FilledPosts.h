@@ -1,4 +1,4 @@
-// A raster's posts, and where it has none ones that are made up from the ground around.
+// The posts of a raster with holes filled from the surrounding ground.
 #ifndef DSPACE_TERRAIN_FILLEDPOSTS_H
 #define DSPACE_TERRAIN_FILLEDPOSTS_H
 
@@ -13,7 +13,7 @@
 
 namespace dspace {
 
-template<typename Key, typename Value> class LatestKept;
+template<typename Key, typename Value> class LruCache;
 
 // Posts with data are the raster's, to the bit. A hole is filled from coarse to fine: a level's
 // posts without data start as the straight line between those of the next coarser level, and are
@@ -52,7 +52,7 @@ private:
   double Reach_;
   mutable std::mutex Mutex_; // of what follows
   mutable Heights Top_;
-  mutable std::unique_ptr<LatestKept<Key, Heights>> Tiles_; // of levels above the full one
+  mutable std::unique_ptr<LruCache<Key, Heights>> Tiles_; // of levels above the full one
 };
 
 } // namespace dspace

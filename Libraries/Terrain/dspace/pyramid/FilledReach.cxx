@@ -8,7 +8,7 @@
 namespace dspace {
 namespace {
 
-constexpr double ReachPosts = 64.0; // distances are told in posts no finer than that
+constexpr double ReachPosts = 64.0; // distances are counted in posts no finer than that
 constexpr int Far = 1 << 28;        // posts; no data in that row
 
 } // namespace

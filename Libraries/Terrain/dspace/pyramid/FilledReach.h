@@ -1,4 +1,4 @@
-// How far from data holes are filled. Not for public headers.
+// Limits filling to a distance from data. Not for public headers.
 #ifndef DSPACE_TERRAIN_FILLEDREACH_H
 #define DSPACE_TERRAIN_FILLEDREACH_H
 
@@ -14,7 +14,7 @@ public:
   // `reach`: in the raster's pixels.
   FilledReach(std::shared_ptr<const RasterPosts> posts, double reach);
 
-  // Takes away what was filled further from data than that.
+  // Removes posts that were filled further from data than that.
   void Drop(const PostBlock& block, std::vector<float>& heights) const;
 
 private:

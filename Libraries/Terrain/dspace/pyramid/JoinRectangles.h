@@ -1,4 +1,4 @@
-// Many small changes told as a few.
+// Merges many small changed rectangles into a few.
 #ifndef DSPACE_TERRAIN_JOINRECTANGLES_H
 #define DSPACE_TERRAIN_JOINRECTANGLES_H
 

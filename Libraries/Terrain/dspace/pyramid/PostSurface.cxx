@@ -9,12 +9,12 @@
 #include <dspace/Error.h>
 
 #include <dspace/pyramid/PyramidTiles.h>
-#include <dspace/raster/LatestKept.h>
+#include <dspace/raster/LruCache.h>
 
 namespace dspace {
 namespace {
 
-constexpr std::size_t MostSingles = 16; // of a tile: then it is read
+constexpr std::size_t MaximumSinglePosts = 16; // of a tile; for more, the tile is read
 
 // Posts with one of margin, so that the rims of holes can look around.
 struct Block {
@@ -38,31 +38,31 @@ CellRange CellsOf(const PostLattice& lattice, int level) {
 
 } // namespace
 
-// How many places were asked for one by one in tiles, the latest of them.
-struct PostSurface::Singles {
+// Number of single posts that were read from each of the most recent tiles.
+struct PostSurface::SinglePostCounts {
   std::mutex mutex;
-  LatestKept<std::pair<std::int64_t, std::int64_t>, std::shared_ptr<std::size_t>> tiles{4096};
+  LruCache<std::pair<std::int64_t, std::int64_t>, std::shared_ptr<std::size_t>> tiles{4096};
 };
 
 PostSurface::PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, bool poles,
                          double deadline, bool scattered)
     : Pyramid_(std::move(pyramid)), Level_(level), Poles_(poles), Deadline_(deadline),
-      Singles_(scattered ? std::make_unique<Singles>() : nullptr) {}
+      SinglePostCounts_(scattered ? std::make_unique<SinglePostCounts>() : nullptr) {}
 
 PostSurface::~PostSurface() = default;
 
-// Whether so many more places of a tile are to be read one by one: not where many were before.
-bool PostSurface::TakeSingles(std::size_t count, std::int64_t tileColumn,
-                              std::int64_t tileRow) const {
-  if (!this->Singles_ || count > MostSingles) {
+// Whether `count` more places of a tile should be read as single posts: not after many others.
+bool PostSurface::PrefersSinglePosts(std::size_t count, std::int64_t tileColumn,
+                                     std::int64_t tileRow) const {
+  if (!this->SinglePostCounts_ || count > MaximumSinglePosts) {
     return false;
   }
   const std::pair<std::int64_t, std::int64_t> key(tileColumn, tileRow);
-  const std::lock_guard<std::mutex> lock(this->Singles_->mutex);
-  this->Singles_->tiles.Keep(key, std::make_shared<std::size_t>(0));
-  std::size_t& before = **this->Singles_->tiles.Find(key);
+  const std::lock_guard<std::mutex> lock(this->SinglePostCounts_->mutex);
+  this->SinglePostCounts_->tiles.Insert(key, std::make_shared<std::size_t>(0));
+  std::size_t& before = **this->SinglePostCounts_->tiles.Find(key);
   before += count;
-  return before <= MostSingles;
+  return before <= MaximumSinglePosts;
 }
 
 HeightGrid::Facet PostSurface::At(const Eigen::Vector2d& post) const {
@@ -128,9 +128,10 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
     const auto cell = [&](std::int64_t c, std::int64_t r, bool below, double u, double v) {
       return this->OfCell(block, c, r, below, u, v);
     };
-    const bool singly = left > 0.0 &&
-                        this->TakeSingles(to - from, items[from].tileColumn, items[from].tileRow) &&
-                        !this->Pyramid_->ReadHeld(block.place, block.heights.data());
+    const bool singly =
+        left > 0.0 &&
+        this->PrefersSinglePosts(to - from, items[from].tileColumn, items[from].tileRow) &&
+        !this->Pyramid_->ReadHeld(block.place, block.heights.data());
     if (singly) {
       try {
         Block few;
@@ -150,7 +151,7 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
         facets.clear();
         from = to;
         continue;
-      } catch (const Error&) { // the pyramid makes its own attempts, and tells of them
+      } catch (const Error&) { // the pyramid tries again and reports errors
         facets.clear();
       }
     }

@@ -1,5 +1,4 @@
-// The surface between the posts of a pyramid, as queries ask for it: blocks are read as they are
-// needed.
+// Queries of the surface between the posts of a pyramid. Blocks are read on demand.
 #ifndef DSPACE_TERRAIN_POSTSURFACE_H
 #define DSPACE_TERRAIN_POSTSURFACE_H
 
@@ -14,25 +13,25 @@
 
 namespace dspace {
 
-// Triangles as HeightGrid has them, of the level whose posts say all: those of finer levels lie on
-// them but for their rounding. In the cells at a pole the surface is ruled from the pole to the
-// cell's other side. Places and facets are told in posts of level 0, cells in those of that level.
+// The triangles of HeightGrid between the posts of the finest level with information of its own;
+// posts of finer levels lie on them up to rounding. In the cells at a pole the surface is ruled
+// from the pole to the cell's other side. Places and facets are in posts of level 0, cells in posts
+// of that level.
 class PostSurface {
 public:
   using Facet = HeightGrid::Facet;
 
-  // `level` says all, and divides the lattice evenly. `poles`: the first and the last row are
-  // poles. `deadline` [s] is what a call waits for tiles. `scattered`: where few places lie in a
-  // tile that is not in memory, their posts alone are read, by the calling thread: worth it where
-  // tiles are dear and the source is no server's.
+  // `level` has all information and divides the lattice evenly. `poles`: the first and the last row
+  // are poles. `deadline` [s]: longest wait for tiles. `scattered`: if few places lie in a tile
+  // that is not in memory, the calling thread reads only their posts. Use it if tiles are expensive
+  // and the source is not on a server.
   PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, bool poles, double deadline,
               bool scattered = false);
   ~PostSurface();
 
   // Not valid outside the lattice and in holes.
   Facet At(const Eigen::Vector2d& post) const;
-  // For many places, in an order of its own: `take(i, facet)`, each block read once. NaN is
-  // outside.
+  // For many places: calls `take(i, facet)` in any order and reads each block once. NaN is outside.
   void At(const std::vector<Eigen::Vector2d>& posts,
           const std::function<void(std::size_t, const Facet&)>& take) const;
 
@@ -50,13 +49,13 @@ public:
   double Deadline() const { return this->Deadline_; }
 
 private:
-  struct Singles;
-  bool TakeSingles(std::size_t count, std::int64_t tileColumn, std::int64_t tileRow) const;
+  struct SinglePostCounts;
+  bool PrefersSinglePosts(std::size_t count, std::int64_t tileColumn, std::int64_t tileRow) const;
   std::shared_ptr<ElevationPyramid> Pyramid_;
   int Level_;
   bool Poles_;
   double Deadline_;
-  std::unique_ptr<Singles> Singles_; // null: tiles are read
+  std::unique_ptr<SinglePostCounts> SinglePostCounts_; // null: tiles are read
 };
 
 template<typename Posts>

@@ -40,7 +40,7 @@ struct TilePiece {
 // the lattice is in no piece.
 std::vector<TilePiece> CutIntoTiles(const PostLattice& lattice, const PostBlock& block);
 
-// What of a tile a change touches, given as posts of the tile's level (PostsTouched).
+// The part of a tile that a change touches, given as posts of the tile's level (PostsTouched).
 TileBox TouchedOfTile(const PostLattice& lattice, const PostRectangle& posts, const TileKey& key);
 
 // Rows of posts; the second plane is empty where nothing is rolled over.

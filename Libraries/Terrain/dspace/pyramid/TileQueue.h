@@ -1,5 +1,4 @@
-// Tiles that are asked for and not there yet: which comes next, what failed and when it is tried
-// again. Not for public headers.
+// A queue of requested tiles: their order, failures, and times of retries. Not for public headers.
 #ifndef DSPACE_TERRAIN_TILEQUEUE_H
 #define DSPACE_TERRAIN_TILEQUEUE_H
 
@@ -37,15 +36,15 @@ public:
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 
-  // Requests that `staleAfter` later calls did not repeat are dropped: nobody looks there any more.
+  // Requests that `staleAfter` later calls did not repeat are dropped as obsolete.
   TileQueue(std::uint64_t staleAfter, double retryDelay)
       : StaleAfter_(staleAfter), RetryDelay_(retryDelay) {}
 
   void BeginCall() { ++this->Call_; }
-  // It asked for nothing: older requests are no older for it.
-  void ForgetCall() { --this->Call_; }
+  // The call requested nothing: earlier requests do not age.
+  void CancelCall() { --this->Call_; }
 
-  void Ask(const Key& key, std::int64_t rank) {
+  void Add(const Key& key, std::int64_t rank) {
     Request& request = this->Requests_[key];
     request.call = this->Call_;
     request.rank = rank;
@@ -83,7 +82,7 @@ public:
   }
   bool IsNone(typename Requests::iterator it) { return it == this->Requests_.end(); }
 
-  // Waits for a request that is due; none once `stopping` is set. `wanted` is told of new ones.
+  // Waits for a request that is due; none once `stopping` is set. `wanted` is notified of new ones.
   typename Requests::iterator Wait(std::unique_lock<std::mutex>& lock,
                                    std::condition_variable& wanted, const bool& stopping) {
     while (!stopping) {
@@ -121,8 +120,8 @@ public:
     }
   }
 
-  // Says, while it lives, that a call waits for tiles: they are not dropped. Failures of earlier
-  // callers are not this one's: it makes its own attempts, at once. After all tiles are asked for.
+  // During its lifetime a call waits for tiles, which are then not dropped. Failures for earlier
+  // callers do not count: retries start at once. Create it after all tiles are requested.
   class Waiting {
   public:
     Waiting(TileQueue& queue, std::vector<Key> keys) : Queue_(queue), Keys_(std::move(keys)) {

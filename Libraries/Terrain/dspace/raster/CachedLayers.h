@@ -14,7 +14,7 @@ inline const char* const LayerPathItem = "DSPACE_PATH";
 
 // By its name: HASH-layer-N.tif.
 bool IsLayerFile(const std::string& file);
-// What of `files` belongs to one raster and band is one entry.
+// Groups `files` into one entry per raster and band.
 std::vector<ElevationCacheEntry> LayerEntries(const std::vector<std::string>& files);
 // Reads all pixels. Throws Error(Corrupt) naming the file.
 void VerifyLayerFile(const std::string& file);

@@ -11,8 +11,8 @@
 
 #include <dspace/gdal/GdalErrors.h>
 #include <dspace/raster/DatasetGate.h>
-#include <dspace/raster/FileBehind.h>
 #include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/UnderlyingFile.h>
 
 namespace dspace {
 namespace {
@@ -34,7 +34,7 @@ bool NamesSources(const std::string& path) {
          start.find("<OGRVRTDataSource") != std::string::npos;
 }
 
-constexpr int MostDeep = 16;
+constexpr int MaximumDepth = 16;
 
 void Gather(const std::string& path, int depth, std::set<std::string>& files) {
   const DatasetPointer dataset = OpenDataset(path, DatasetKind::Any);
@@ -43,8 +43,8 @@ void Gather(const std::string& path, int depth, std::set<std::string>& files) {
   }
   const CPLStringList found(dataset->GetFileList());
   for (int i = 0; i < found.size(); ++i) {
-    const std::string file = FileBehind(found[i]);
-    if (files.insert(file).second && file != path && depth < MostDeep && !IsRemote(file) &&
+    const std::string file = UnderlyingFile(found[i]);
+    if (files.insert(file).second && file != path && depth < MaximumDepth && !IsRemote(file) &&
         NamesSources(path)) {
       Gather(found[i], depth + 1, files);
     }
@@ -56,7 +56,7 @@ void Gather(const std::string& path, int depth, std::set<std::string>& files) {
 void NoteDataset(GDALDataset& dataset) {
   const CPLStringList files(dataset.GetFileList());
   for (int i = 0; i < files.size(); ++i) {
-    NoteFileRead(FileBehind(files[i]));
+    NoteFileRead(UnderlyingFile(files[i]));
   }
 }
 

@@ -1,4 +1,4 @@
-// Which files a raster or a file of shapes consists of, as GDAL knows them.
+// The files of a raster or vector dataset, as GDAL lists them.
 #ifndef DSPACE_TERRAIN_DATASETFILES_H
 #define DSPACE_TERRAIN_DATASETFILES_H
 
@@ -9,13 +9,14 @@ class GDALDataset;
 
 namespace dspace {
 
-// Tells FilesReadScope of them: headers, side files and overviews, a mosaic's sources. Files on a
-// server are told by their name, those in an archive as the archive. A source's own side files and
-// sources are not looked for here (MosaicFiles does), since a mosaic may have thousands.
+// Notes the files of a dataset (NoteFileRead): headers, side files, overviews, and the sources of a
+// mosaic. A file on a server is noted by its name, a file in an archive as the archive. Side files
+// and sources of the sources are not searched (MosaicFiles does that), because a mosaic may have
+// thousands.
 void NoteDataset(GDALDataset& dataset);
 
-// All files below a mosaic (a VRT), with what belongs to each; empty for any other file and for one
-// that GDAL does not open. Reads every source's head.
+// Returns all files below a mosaic (VRT), with their side files; empty for any other file and for
+// one that GDAL does not open. Reads the header of every source.
 std::vector<std::string> MosaicFiles(const std::string& path);
 
 } // namespace dspace

@@ -12,10 +12,10 @@
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
-#include <dspace/raster/FileBehind.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
 #include <dspace/raster/SelfContainedDrivers.h>
+#include <dspace/raster/UnderlyingFile.h>
 
 namespace dspace {
 namespace {
@@ -80,17 +80,18 @@ std::string RequireName(const std::string& name) {
     Reject(name, "it is a document in the place of a name; accepted here: names of files");
   }
   if (begins("/vsicurl/")) {
-    FilesGuard::Show(name);
+    FilesGuard::CheckFile(name);
     return name;
   }
   const bool archive = begins("/vsizip/") || begins("/vsitar/") || begins("/vsigzip/");
   if (begins("/vsi") && !archive) {
-    FilesGuard::Show(name);
-    Reject(name, "it is no plain file; accepted here: plain files, /vsizip/, /vsitar/, /vsigzip/");
+    FilesGuard::CheckFile(name);
+    Reject(name,
+           "it is not a plain file; accepted here: plain files, /vsizip/, /vsitar/, /vsigzip/");
   }
   std::error_code error;
-  const fs::path whole = archive ? fs::path(FileBehind(name)) : fs::absolute(name, error);
-  FilesGuard::Show(whole.string());
+  const fs::path whole = archive ? fs::path(UnderlyingFile(name)) : fs::absolute(name, error);
+  FilesGuard::CheckFile(whole.string());
   const fs::file_status status = fs::status(whole, error);
   if (!fs::exists(status)) {
     throw Error(Error::Kind::NotFound, "file '" + name.substr(0, 1000) + "'",
@@ -166,7 +167,7 @@ void CheckOpened(GDALDataset& dataset, const std::string& path, const Opening& o
   const CPLStringList files(dataset.GetFileList()); // GDAL looks for overviews and masks, too
   opening.Check();
   for (int i = 0; i < files.size(); ++i) {
-    FilesGuard::Show(FileBehind(files[i]));
+    FilesGuard::CheckFile(UnderlyingFile(files[i]));
   }
 }
 
@@ -174,10 +175,12 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
                            const char* const* options) {
   Opening opening;
   if (opening.Depth() > Nesting) {
-    Reject(name, "files that name files lead to it, " + std::to_string(Nesting) + " deep");
+    Reject(name,
+           "a chain of " + std::to_string(Nesting) + " files that refer to each other leads to it");
   }
   if (flags & GDAL_OF_UPDATE) {
-    Reject(name, "a file that names it would have it written; accepted here: files that are read");
+    Reject(name,
+           "another file requests write access to it; accepted here: files that are only read");
   }
   const std::string path = RequireName(name);
   const char* const mosaic[] = {"VRT", nullptr};
@@ -204,7 +207,7 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
 
 // What GDAL opens by itself. No exception may pass through GDAL.
 GDALDataset* OpenForGdal(GDALOpenInfo* info) {
-  if (!FilesGuard::Lives() || info->pszFilename[0] == '\0') {
+  if (!FilesGuard::IsActive() || info->pszFilename[0] == '\0') {
     return nullptr; // the other drivers' turn
   }
   try {
@@ -220,7 +223,7 @@ GDALDataset* OpenForGdal(GDALOpenInfo* info) {
   return nullptr;
 }
 
-void PutFirst(GDALDriver* gate) {
+void MoveToFront(GDALDriver* gate) {
   GDALDriverManager& manager = *GetGDALDriverManager();
   std::vector<GDALDriver*> others;
   for (int i = 0; i < manager.GetDriverCount(); ++i) {
@@ -252,7 +255,7 @@ void Register() {
   gate->SetMetadataItem(GDAL_DCAP_GNM, "YES");
   gate->SetMetadataItem(GDAL_DCAP_MULTIDIM_RASTER, "YES");
   gate->pfnOpen = OpenForGdal;
-  PutFirst(gate);
+  MoveToFront(gate);
 }
 
 // Once a process.
@@ -271,7 +274,7 @@ unsigned FlagsOf(DatasetKind kind) {
 
 DatasetPointer OpenDataset(const std::string& path, DatasetKind kind, const char* const* drivers) {
   RegisterGate();
-  if (FilesGuard::Lives()) {
+  if (FilesGuard::IsActive()) {
     return OpenGuarded(path, FlagsOf(kind), drivers, nullptr);
   }
   return DatasetPointer(
@@ -285,7 +288,7 @@ DatasetPointer OpenOwnTiff(const std::string& path) {
 }
 
 std::string AcceptedFormats(DatasetKind kind) {
-  if (FilesGuard::Lives()) {
+  if (FilesGuard::IsActive()) {
     return AcceptedNames(FlagsOf(kind));
   }
   return kind == DatasetKind::Shapes ? "any file of shapes that OGR opens"

@@ -1,4 +1,4 @@
-// The one way in which Dspace opens a raster or a file of shapes. Not for public headers.
+// The only way to open a raster or a vector file in Dspace. Not for public headers.
 //
 // All code that needs a GDAL dataset of an existing file calls OpenDataset; none calls GDALOpen,
 // GDALOpenEx or GDALDataset::Open.
@@ -31,14 +31,15 @@ enum class DatasetKind : std::uint8_t { Raster, Shapes, Any };
 //
 // Without a FilesGuard in this thread GDAL opens what it can. With one:
 // - The name must be that of a plain file or folder, of a file within an archive (/vsizip/,
-//   /vsitar/, /vsigzip/), or of a file on a server; the guard looks at it and may reject it.
+//   /vsitar/, /vsigzip/), or of a file on a server; the guard checks it.
 //   Documents in the place of a name, and names with a driver's prefix, are rejected.
 // - Only SelfContainedDrivers open it, or VRT for a mosaic whose sources (MosaicSources) pass the
 //   same checks first, each of them opened once.
 // - A dataset that names its overviews itself (OVERVIEW_FILE in the domain OVERVIEWS of its
 //   metadata) is rejected.
-// - The guard looks at every file that belongs to the dataset, with links resolved.
-// - Datasets that GDAL opens by itself meanwhile, or later in a thread with a guard (overviews,
+// - The guard checks every file that belongs to the dataset, with links resolved.
+// - Datasets that GDAL opens by itself during the call, or later in a thread with a guard
+// (overviews,
 //   masks, sources), pass the same checks. One that fails them makes the whole opening fail.
 //
 // Throws Error under a guard: what the guard throws; NotFound; InvalidArgument (a name that is

@@ -31,7 +31,7 @@ DeflateCheck::DeflateCheck(GDALDataset& dataset, GDALRasterBand& band) {
 
 DeflateCheck::~DeflateCheck() = default;
 
-bool DeflateCheck::Holds(GDALRasterBand& band, int column, int row) {
+bool DeflateCheck::IsIntact(GDALRasterBand& band, int column, int row) {
   const auto item = [&](const char* what) -> vsi_l_offset {
     const char* text =
         band.GetMetadataItem(CPLSPrintf("BLOCK_%s_%d_%d", what, column, row), "TIFF");
@@ -49,7 +49,7 @@ bool DeflateCheck::Holds(GDALRasterBand& band, int column, int row) {
     return false;
   }
   if ((stream[0] & 15) != 8 || (stream[0] * 256 + stream[1]) % 31 != 0) {
-    return true; // not zlib's, as where bits are stored in reverse: libtiff knows, or refuses it
+    return true; // not zlib's, as where bits are stored in reverse: libtiff knows, or rejects it
   }
   // Some programs store more rows than a last block has, none half as much again.
   std::vector<unsigned char> block(2 * this->Bytes_ + 64);
@@ -68,9 +68,9 @@ std::string DeflateCheck::Check(GDALRasterBand& band, const RasterWindow& w) {
       if (this->Checked_.count(key) != 0) {
         continue;
       }
-      if (!this->Holds(band, column, row)) {
+      if (!this->IsIntact(band, column, row)) {
         return "block " + std::to_string(column) + ", " + std::to_string(row) +
-               " is damaged: what is compressed there does not match its checksum (Adler-32)";
+               " is damaged: its content does not match its checksum (Adler-32)";
       }
       this->Checked_.insert(key);
     }

@@ -1,4 +1,4 @@
-// Whether the blocks of a GeoTIFF are what was compressed: GDAL does not look.
+// Verifies the checksums of compressed blocks of a GeoTIFF, which GDAL does not.
 #ifndef DSPACE_TERRAIN_DEFLATECHECK_H
 #define DSPACE_TERRAIN_DEFLATECHECK_H
 
@@ -25,11 +25,11 @@ public:
   DeflateCheck(GDALDataset& dataset, GDALRasterBand& band);
   ~DeflateCheck();
 
-  // What is wrong with the blocks that a window of the file's own pixels meets; empty if nothing.
+  // Describes the damage of blocks that meet a window of the file's own pixels; empty if none.
   std::string Check(GDALRasterBand& band, const RasterWindow& window);
 
 private:
-  bool Holds(GDALRasterBand& band, int column, int row);
+  bool IsIntact(GDALRasterBand& band, int column, int row);
   struct Closed {
     void operator()(void* file) const;
   };

@@ -17,7 +17,7 @@ constexpr const char* Accepted =
     "accepted on a body is a north-up grid in longitude and latitude, or in an equidistant "
     "cylindrical projection, on a sphere; or draw it on a plane";
 
-[[noreturn]] void Refuse(const ElevationInfo& info, Error::Kind kind, const std::string& message) {
+[[noreturn]] void Reject(const ElevationInfo& info, Error::Kind kind, const std::string& message) {
   throw Error(kind, "raster '" + info.path + "'", message);
 }
 
@@ -42,7 +42,7 @@ MapToDegrees ToDegrees(const ElevationInfo& info) {
   const OGRSpatialReference& srs = *crs.Ogr();
   const char* projection = srs.GetAttrValue("PROJECTION");
   if (!projection || std::string(projection) != SRS_PT_EQUIRECTANGULAR) {
-    Refuse(info, Error::Kind::Unsupported,
+    Reject(info, Error::Kind::Unsupported,
            "its CRS '" + crs.GetName() + "' is a projection of another kind; " + Accepted);
   }
   const double metre = crs.GetAxes().semiMajor * Degree; // of a degree
@@ -64,7 +64,7 @@ MapToDegrees ToDegrees(const ElevationInfo& info) {
       geographic.GetUnit();
   const Eigen::Vector2d off = map.factor.cwiseProduct(middle) + map.shift - place;
   if (!(std::abs(std::remainder(off.x(), 360.0)) < 1e-6 && std::abs(off.y()) < 1e-6)) {
-    Refuse(info, Error::Kind::Unsupported,
+    Reject(info, Error::Kind::Unsupported,
            "its CRS '" + crs.GetName() + "' is not understood as a grid of degrees; " + Accepted);
   }
   return map;
@@ -82,12 +82,12 @@ double RadiusOf(const ElevationInfo& info) {
 DegreeGrid DegreeGridOf(const ElevationInfo& info) {
   const Crs& crs = info.crs;
   if (!crs.HasGeographic() || !info.georeferenced) {
-    Refuse(info, Error::Kind::Unsupported,
+    Reject(info, Error::Kind::Unsupported,
            std::string("it has no longitude and latitude; ") + Accepted);
   }
   const BodyAxes& axes = crs.GetAxes();
   if (!(std::abs(axes.semiMajor - axes.semiMinor) <= 1e-9 * axes.semiMajor)) {
-    Refuse(info, Error::Kind::Unsupported,
+    Reject(info, Error::Kind::Unsupported,
            "its CRS '" + crs.GetName() + "' stands on an ellipsoid of " + Number(axes.semiMajor) +
                " by " + Number(axes.semiMinor) + " m; " + Accepted);
   }
@@ -103,7 +103,7 @@ DegreeGrid DegreeGridOf(const ElevationInfo& info) {
   const bool rotated = std::abs(m(0, 1)) * height > Near * std::abs(m(0, 0)) ||
                        std::abs(m(1, 0)) * width > Near * std::abs(m(1, 1));
   if (rotated || !(grid.step_deg.y() < 0.0)) {
-    Refuse(
+    Reject(
         info, Error::Kind::Unsupported,
         std::string(rotated ? "its pixels are rotated or sheared" : "its rows run to the north") +
             " against longitude and latitude; " + Accepted);
@@ -114,7 +114,7 @@ DegreeGrid DegreeGridOf(const ElevationInfo& info) {
   grid.periodic = turn(width);
   grid.repeats = turn(width - 1);
   if (!grid.periodic && !grid.repeats && width * step > 360.0) {
-    Refuse(info, Error::Kind::InvalidArgument,
+    Reject(info, Error::Kind::InvalidArgument,
            std::to_string(width) + " columns " + Number(step) +
                " degrees apart go around the body more than once; give a window of it");
   }
@@ -137,7 +137,7 @@ DegreeGrid DegreeGridOf(const ElevationInfo& info) {
   }
   grid.poles = edges && (grid.periodic || grid.repeats);
   if (grid.first_deg.y() > 90.0 + Near * row || last < -90.0 - Near * row) {
-    Refuse(info, Error::Kind::InvalidArgument,
+    Reject(info, Error::Kind::InvalidArgument,
            "its rows run from latitude " + Number(grid.first_deg.y()) + " to " + Number(last) +
                "; accepted is 90 to -90");
   }

@@ -1,4 +1,4 @@
-// How a raster lies on a sphere: its pixels as a grid of longitudes and latitudes.
+// A raster on a sphere: its pixels as a grid of longitudes and latitudes.
 #ifndef DSPACE_TERRAIN_DEGREEGRID_H
 #define DSPACE_TERRAIN_DEGREEGRID_H
 

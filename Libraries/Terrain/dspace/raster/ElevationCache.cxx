@@ -134,7 +134,7 @@ ElevationCache::Build(const std::string& path, const ElevationOptions& options,
       return file;
     }
   } catch (const Error&) {
-    // Absent or damaged: built below, where a folder that cannot be used is told.
+    // Absent or damaged: built below, which reports an unusable folder.
   }
   std::error_code failure;
   fs::create_directories(this->Folder_, failure);
@@ -149,7 +149,7 @@ ElevationCache::Build(const std::string& path, const ElevationOptions& options,
   }
   if (source.Identity() != identity) {
     throw Error(Error::Kind::Io, "raster '" + path + "'",
-                "it has changed while its overviews were built; build them anew");
+                "it has changed while its overviews were built; build them again");
   }
   overviews.Commit();
   return file;

@@ -17,7 +17,7 @@ std::string Object(const ElevationInfo& info) {
   return "raster '" + info.path + "'";
 }
 
-[[noreturn]] void Refuse(const ElevationInfo& info, const std::string& message) {
+[[noreturn]] void Reject(const ElevationInfo& info, const std::string& message) {
   throw Error(Error::Kind::InvalidArgument, Object(info), message);
 }
 
@@ -28,7 +28,7 @@ RasterWindow CheckedWindow(const ElevationOptions& options, int width, int heigh
   const RasterWindow& w = *options.window;
   if (w.column < 0 || w.row < 0 || w.width < 1 || w.height < 1 || w.width > width - w.column ||
       w.height > height - w.row)
-    Refuse(info, "window " + std::to_string(w.width) + " x " + std::to_string(w.height) + " at (" +
+    Reject(info, "window " + std::to_string(w.width) + " x " + std::to_string(w.height) + " at (" +
                      std::to_string(w.column) + ", " + std::to_string(w.row) +
                      ") does not lie within its " + std::to_string(width) + " x " +
                      std::to_string(height) + " pixels");
@@ -66,7 +66,7 @@ void CheckLatitudes(const ElevationInfo& info) {
     for (double r : {0.5, info.window.height - 0.5}) {
       const double latitude = (info.pixelToMap * Eigen::Vector2d(c, r)).y() * info.crs.GetUnit();
       if (std::abs(latitude) > 90.0 + 1e-6)
-        Refuse(info, "its georeference puts a pixel at latitude " + std::to_string(latitude) +
+        Reject(info, "its georeference puts a pixel at latitude " + std::to_string(latitude) +
                          "; accepted is -90 to 90");
     }
 }
@@ -100,7 +100,7 @@ void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, Ele
   const int width = dataset.GetRasterXSize(), height = dataset.GetRasterYSize();
   info.window = CheckedWindow(options, width, height, info);
   if (options.pixelSize && (!(*options.pixelSize > 0.0) || !std::isfinite(*options.pixelSize)))
-    Refuse(info, "pixel size " + std::to_string(*options.pixelSize) +
+    Reject(info, "pixel size " + std::to_string(*options.pixelSize) +
                      " given; accepted is a positive number");
   info.crs = ReadCrs(dataset, options);
   if (options.crs)
@@ -117,27 +117,28 @@ void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, Ele
           "its ground control points are not used: warp it first (gdalwarp), or "
           "it has no place on the map");
     if (!options.pixelSize)
-      info.warnings.push_back("no georeference: pixels are taken as 1 m squares, the top row to "
-                              "the north; give a pixel size");
+      info.warnings.push_back(
+          "no georeference: pixels are assumed to be 1 m squares, the top row to "
+          "the north; give a pixel size");
     if (info.crs.GetKind() != Crs::Kind::None && !options.crs) {
       info.warnings.push_back("its CRS '" + info.crs.GetName() +
                               "' is not used, since it has no geotransform");
       info.crs = Crs();
     }
     if (info.crs.GetKind() == Crs::Kind::Geographic)
-      Refuse(info, "a geographic CRS was given for a raster without georeference; give a "
+      Reject(info, "a geographic CRS was given for a raster without georeference; give a "
                    "projected one, or georeference the file");
   } else if (info.crs.GetKind() == Crs::Kind::None) {
-    info.warnings.push_back("no CRS: map coordinates are taken as metres in a plane, without "
+    info.warnings.push_back("no CRS: map coordinates are assumed to be metres in a plane, without "
                             "longitude and latitude; give a CRS");
   }
   for (double v : g)
     if (!std::isfinite(v))
-      Refuse(info, "its geotransform has a value that is not finite");
+      Reject(info, "its geotransform has a value that is not finite");
   const double det = g[1] * g[5] - g[2] * g[4];
   const double size = std::hypot(g[1], g[4]) * std::hypot(g[2], g[5]);
   if (!(std::abs(det) > 1e-6 * size) || size == 0.0)
-    Refuse(info, "its geotransform is degenerate (pixel vectors " + std::to_string(g[1]) + ", " +
+    Reject(info, "its geotransform is degenerate (pixel vectors " + std::to_string(g[1]) + ", " +
                      std::to_string(g[4]) + " and " + std::to_string(g[2]) + ", " +
                      std::to_string(g[5]) + " span no area)");
   Eigen::Matrix2d linear;
@@ -155,10 +156,10 @@ void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, Elevati
     info.verticalScale = options.verticalScale.value_or(1.0);
     info.verticalOffset = options.verticalOffset.value_or(0.0);
     if (!std::isfinite(info.verticalScale) || info.verticalScale == 0.0)
-      Refuse(info, "vertical scale " + std::to_string(info.verticalScale) +
+      Reject(info, "vertical scale " + std::to_string(info.verticalScale) +
                        " given; accepted is a finite number other than 0");
     if (!std::isfinite(info.verticalOffset))
-      Refuse(info, "the vertical offset given is not finite");
+      Reject(info, "the vertical offset given is not finite");
   } else {
     const double metres = MetresOfUnit(info.unit);
     if (metres == 0.0)
@@ -172,11 +173,12 @@ void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, Elevati
     info.verticalOffset = (hasOffset ? offset : 0.0) * metres;
     if (!std::isfinite(info.verticalScale) || info.verticalScale == 0.0 ||
         !std::isfinite(info.verticalOffset))
-      Refuse(info, "its scale " + std::to_string(scale) + " or offset " + std::to_string(offset) +
+      Reject(info, "its scale " + std::to_string(scale) + " or offset " + std::to_string(offset) +
                        " is not usable; give them by hand");
     if (info.unit.empty())
-      info.warnings.push_back("the unit of height is not stated: metres are taken; if it is not "
-                              "so, give the vertical scale");
+      info.warnings.push_back(
+          "the unit of height is not stated: metres are assumed; if that is not "
+          "so, give the vertical scale");
   }
 
   const double a = info.crs.GetAxes().semiMajor;
@@ -208,7 +210,7 @@ void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, Elevati
   if ((datum.kind == VerticalDatum::Kind::Radius || datum.kind == VerticalDatum::Kind::Sphere) &&
       datum.radius == 0.0) {
     if (a == 0.0)
-      Refuse(info, "vertical datum '" + datum.Text() + "' needs a radius (" + datum.Text() +
+      Reject(info, "vertical datum '" + datum.Text() + "' needs a radius (" + datum.Text() +
                        ":R), since there is no CRS that "
                        "has one");
     datum.radius = a;

@@ -21,7 +21,7 @@ namespace dspace {
 
 namespace {
 
-const char* const Changed = "the file has changed since it was opened; open it anew";
+const char* const Changed = "the file has changed since it was opened; open it again";
 
 } // namespace
 
@@ -31,10 +31,10 @@ struct ElevationSource::Implementation {
   GDALRasterBand* band = nullptr;
   int bandNumber = 1;
   NetworkLimits network;
-  FilesGuard::Look look; // of the guard under which it was opened
-  bool remote = false;   // itself, or what it is a mosaic of
-  bool suspect = false;  // a read failed
-  bool gaps = false;     // there may be some, see GivesZerosForGaps
+  FilesGuard::Check look; // of the guard under which it was opened
+  bool remote = false;    // itself, or what it is a mosaic of
+  bool suspect = false;   // a read failed
+  bool gaps = false;      // there may be some, see GivesZerosForGaps
   FileState file;
   std::unique_ptr<DeflateCheck> checksums; // of a file on a disk
   std::shared_ptr<const OverviewFile> overviews;
@@ -51,7 +51,7 @@ struct ElevationSource::Implementation {
         fresh->GetRasterBand(this->bandNumber)->GetRasterDataType() !=
             this->band->GetRasterDataType())
       throw Error(Error::Kind::Io, "raster '" + path + "'",
-                  "it is another raster than when it was opened; open it anew");
+                  "it is another raster than when it was opened; open it again");
     this->dataset = std::move(fresh);
     this->band = this->dataset->GetRasterBand(this->bandNumber);
     if (this->checksums)
@@ -89,10 +89,10 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   this->Info_.dataType = GDALGetDataTypeName(band.GetRasterDataType());
   if (GDALDataTypeIsComplex(band.GetRasterDataType()))
     throw Error(Error::Kind::Unsupported, object,
-                "complex values (" + this->Info_.dataType + ") are no heights");
+                "complex values (" + this->Info_.dataType + ") are not heights");
   if (band.GetColorTable())
     this->Info_.warnings.push_back("band " + std::to_string(options.band) +
-                                   " has a colour table: its indices are taken as heights");
+                                   " has a colour table: its indices are used as heights");
   if (!this->Impl_->remote)
     this->Impl_->checksums = std::make_unique<DeflateCheck>(dataset, band);
   this->Impl_->gaps = GivesZerosForGaps(band);
@@ -110,11 +110,11 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   if (!options.overviewCache.empty() && this->Info_.overviews == 0) {
     this->Impl_->cached = ElevationCache::FileFor(options.overviewCache, path, options.band);
     try {
-      this->Info_.overviews = this->TakeOverviews();
+      this->Info_.overviews = this->LoadOverviews();
       this->Info_.overviewsAreCached = this->Info_.overviews > 0;
     } catch (const Error& error) {
       this->Info_.warnings.push_back(std::string(error.what()) +
-                                     "; far ground is read without it until it is built anew");
+                                     "; distant ground is read without it until it is rebuilt");
     }
   }
   this->Info_.warnings.insert(this->Info_.warnings.end(), errors.Warnings().begin(),
@@ -139,7 +139,7 @@ std::vector<double> ElevationSource::ReadReduced(const RasterWindow& w, int fact
     throw Error(Error::Kind::InvalidArgument, object, "the window to read does not lie within it");
   if (factor < 1)
     throw Error(Error::Kind::InvalidArgument, object,
-                "factor " + std::to_string(factor) + " is refused; accepted is 1 or more");
+                "factor " + std::to_string(factor) + " is rejected; accepted is 1 or more");
   const int width = 1 + (w.width - 1) / factor, height = 1 + (w.height - 1) / factor;
   const std::size_t count = static_cast<std::size_t>(width) * height;
   std::vector<double> heights;
@@ -213,12 +213,12 @@ bool ElevationSource::ReadCached(const RasterWindow& w, int factor, double* valu
     overviews->Remove();
     throw Error(error.GetKind(), "raster '" + this->Info_.path + "'",
                 std::string(error.what()) +
-                    "; it is removed, and far ground read without it until it is built anew");
+                    "; it is removed, and distant ground is read without it until it is rebuilt");
   }
   return true;
 }
 
-int ElevationSource::TakeOverviews() {
+int ElevationSource::LoadOverviews() {
   if (this->Impl_->cached.empty()) {
     return 0;
   }
@@ -289,10 +289,10 @@ void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, 
   if (!impl.suspect)
     return;
   if (impl.remote)
-    ForgetAnswers(this->Info_.path);
+    ClearNetworkCache(this->Info_.path);
   const std::string message = errors.Message("GDAL gave no reason");
-  if (impl.remote && IsUnanswered(message))
-    throw Error(Error::Kind::Io, object, "cannot be read: " + InWords(message));
+  if (impl.remote && IsNetworkFailure(message))
+    throw Error(Error::Kind::Io, object, "cannot be read: " + ExplainHttpStatus(message));
   throw Error(Error::Kind::Corrupt, object, "cannot be read: " + message);
 }
 

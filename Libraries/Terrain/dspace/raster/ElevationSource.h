@@ -24,21 +24,21 @@ struct RasterWindow {
   int height = 0;
 };
 
-// For rasters that a server sends (/vsicurl/, http://, https://, and mosaics of such). They go
-// before GDAL's own settings (GDAL_HTTP_...). A read that fails ends after (retries + 2) times a
-// limit at most, an opening after (retries + 1) times; a pyramid that ends waits for its reads
-// under way.
+// Limits for rasters on a server (/vsicurl/, http://, https://, and mosaics of such). They replace
+// GDAL's own settings (GDAL_HTTP_...). A failing read ends after at most (retries + 2) times a
+// limit, a failing opening after (retries + 1) times. The destructor of a pyramid waits for its
+// running reads.
 struct NetworkLimits {
-  double connect = 10.0;   // [s] until a connection stands
-  double stall = 10.0;     // [s] with under 100 bytes a second; taken up to whole seconds
+  double connect = 10.0;   // [s] to connect
+  double stall = 10.0;     // [s] with under 100 bytes a second; rounded up to whole seconds
   double request = 60.0;   // [s] for one request as a whole
   int retries = 1;         // after 429, 502, 503, 504 and time-outs, within one read; 0 to 10
   double retryDelay = 0.5; // [s] before the first retry; grows
 };
 
-// What a file does not say, or says wrongly. A file states its vertical datum by a compound CRS, by
-// an offset of a body's radius (ISIS), or by a metadata item VERTICAL_DATUM with the text of
-// VerticalDatum::Text(), such as "sphere:1737400".
+// Options that complete or replace statements of a file. A file states its vertical datum by a
+// compound CRS, by an offset of a body's radius (ISIS), or by a metadata item VERTICAL_DATUM with
+// the text of VerticalDatum::Text(), such as "sphere:1737400".
 struct ElevationOptions {
   int band = 1; // counted from 1, as GDAL does
   // By hand: metres = value * verticalScale + verticalOffset. Either one replaces the file's own
@@ -50,11 +50,11 @@ struct ElevationOptions {
   std::optional<double> pixelSize;    // [map units], for a raster without georeference; default 1
   std::optional<RasterWindow> window; // only these pixels; must lie within the raster
   NetworkLimits network;
-  // A folder of ElevationCache: its overviews are read where the raster has none. Empty: none are.
+  // A folder of ElevationCache: its overviews are read if the raster has none. Empty: no cache.
   std::string overviewCache;
 };
 
-// What the source is, after options.
+// Properties of a source after applying the options.
 struct ElevationInfo {
   std::string path;
   std::string driver;   // GDAL's short name
@@ -75,8 +75,8 @@ struct ElevationInfo {
   std::vector<std::string> warnings; // each names what was assumed and how to state it
 };
 
-// An open raster. GDAL's messages become errors and warnings. Reads may come from any thread; they
-// take turns. Nothing is ever written beside the file.
+// An open raster. GDAL's messages become errors and warnings. Reads may come from any thread and
+// are serialized. Nothing is ever written beside the file.
 class ElevationSource {
 public:
   // Throws Error naming the file: NotFound; Io; Corrupt (damaged, empty); Unsupported (not a
@@ -92,16 +92,17 @@ public:
   // read there, Error(InvalidArgument) for a window outside.
   std::vector<double> Read(const RasterWindow& window) const;
   std::vector<double> Read() const; // all of Info().window
-  // The same with one value for every `factor` x `factor` pixels from the window's first on (fewer
-  // at its right and bottom edge): an overview's where the file has one for it; the mean where the
-  // cache does and the window begins at a multiple of `factor` in the file; else the pixel's in
-  // their middle. Throws Error(Corrupt) where the cache is damaged, once: it is then removed.
+  // The same with one value per `factor` x `factor` pixels from the window's first on (fewer at its
+  // right and bottom edge). The value is from an overview of the file, if there is one for the
+  // factor; else the mean from the cache, if the window begins at a multiple of `factor` in the
+  // file; else the pixel in the middle. Throws Error(Corrupt) if the cache is damaged; the cache
+  // file is then removed, so that the next call succeeds.
   std::vector<double> ReadReduced(const RasterWindow& window, int factor) const;
 
-  // Reads the overviews that ElevationOptions::overviewCache has by now, from the next ReadReduced
-  // on; Info() stays as it was. Their number of levels; 0 where there are none that fit, or the
-  // file has some of its own.
-  int TakeOverviews();
+  // Uses the current overviews of ElevationOptions::overviewCache from the next ReadReduced on;
+  // Info() does not change. Returns their number of levels; 0 if there are none that fit or if the
+  // file has overviews.
+  int LoadOverviews();
 
   // The band and the files that the raster consists of, with their sizes and times of change.
   std::string Identity() const;

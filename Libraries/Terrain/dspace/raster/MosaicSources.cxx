@@ -71,11 +71,11 @@ private:
     const bool relative = std::atoi(CPLGetXMLValue(&node, "relativetoVRT", "0")) != 0;
     const bool whole = name.empty() || name[0] == '/' || !relative;
     const std::string source = whole ? name : this->Folder_ + "/" + name;
-    FilesGuard::Show(source);
+    FilesGuard::CheckFile(source);
     std::error_code error;
     if (name.find('<') != std::string::npos ||
         (!IsRemote(source) && !fs::is_regular_file(source, error))) {
-      this->Reject("names '" + name.substr(0, 200) + "', which is no plain file");
+      this->Reject("names '" + name.substr(0, 200) + "', which is not a plain file");
     }
     if (this->Known_.insert(source).second) {
       this->Sources.push_back(source);

@@ -8,8 +8,8 @@
 namespace dspace {
 
 // The sources of a mosaic, in the document's order, each once; a relative name starts at the folder
-// of the document, with links resolved. Nothing is opened but the document. Each source is shown to
-// FilesGuard before this function asks whether it exists.
+// of the document, with links resolved. Nothing is opened but the document. FilesGuard checks each
+// source before this function tests whether it exists.
 //
 // Throws what the guard throws, and Error(InvalidArgument) for a document that names data in
 // another way than as plain files or files on a server: warped, raw or computed bands, open

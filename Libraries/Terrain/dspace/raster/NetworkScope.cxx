@@ -46,7 +46,7 @@ void CheckLimits(const NetworkLimits& limits, const std::string& object) {
     if (!(seconds > 0.0 && seconds <= 3600.0))
       throw Error(Error::Kind::InvalidArgument, object,
                   "network limit '" + std::string(name) + "' of " + std::to_string(seconds) +
-                      " s is refused; accepted is more than 0, up to 3600");
+                      " s is rejected; accepted is more than 0, up to 3600");
   };
   check("connect", limits.connect);
   check("stall", limits.stall);
@@ -54,7 +54,7 @@ void CheckLimits(const NetworkLimits& limits, const std::string& object) {
   check("retryDelay", limits.retryDelay);
   if (limits.retries < 0 || limits.retries > 10)
     throw Error(Error::Kind::InvalidArgument, object,
-                std::to_string(limits.retries) + " network retries are refused; accepted is 0 "
+                std::to_string(limits.retries) + " network retries are rejected; accepted is 0 "
                                                  "to 10");
 }
 
@@ -71,7 +71,7 @@ bool IsRemote(const std::string& path) {
   return false;
 }
 
-void ForgetAnswers(const std::string& path) {
+void ClearNetworkCache(const std::string& path) {
   const std::string gdal = GdalPath(path);
   const std::size_t at = gdal.find("/vsicurl/");
   if (at != std::string::npos)
@@ -80,7 +80,7 @@ void ForgetAnswers(const std::string& path) {
     VSICurlClearCache();
 }
 
-bool IsUnanswered(const std::string& message) {
+bool IsNetworkFailure(const std::string& message) {
   for (const char* words : {"response_code=", "response code", "CURL error", "IO error",
                             "Read error", "does not exist"})
     if (message.find(words) != std::string::npos)
@@ -88,13 +88,13 @@ bool IsUnanswered(const std::string& message) {
   return false;
 }
 
-std::string InWords(const std::string& message) {
+std::string ExplainHttpStatus(const std::string& message) {
   // Of a read that was tried in several ways the first message says most.
   const std::string first = message.substr(0, message.find("; "));
   if (first.find("response_code=0") != std::string::npos)
-    return first + " (no answer: the server stalled or the line was cut)";
+    return first + " (no response: the server stalled or the connection was lost)";
   if (first.find("response_code=206") != std::string::npos)
-    return first + " (the answer broke off: the server stalled or the line was cut)";
+    return first + " (incomplete response: the server stalled or the connection was lost)";
   if (first.find("response_code=") != std::string::npos)
     return first + " (HTTP status)";
   return first + " (the server did not send all of it)";

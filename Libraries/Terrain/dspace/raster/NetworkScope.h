@@ -10,8 +10,8 @@ namespace dspace {
 
 struct NetworkLimits;
 
-// While it lives, what this thread asks of a server ends within the limits, and what it opens is
-// nobody else's.
+// During its lifetime, network requests of this thread respect the limits, and datasets that it
+// opens are not shared with other threads.
 class NetworkScope {
 public:
   NetworkScope(const NetworkLimits& limits, const std::string& path);
@@ -27,20 +27,20 @@ private:
 // Throws Error(InvalidArgument) naming `object` for a limit out of range.
 void CheckLimits(const NetworkLimits& limits, const std::string& object);
 
-// GDAL's name of what users may give as http:// or https://.
+// GDAL's name of a path that may begin with http:// or https://.
 std::string GdalPath(const std::string& path);
 
-// Whether the path alone says that a server is asked.
+// Whether the path itself names a server.
 bool IsRemote(const std::string& path);
 
-// GDAL keeps failures and parts of answers as if they were the file. What it kept is dropped.
-void ForgetAnswers(const std::string& path);
+// Clears GDAL's cache of a path, which may contain failures and partial responses.
+void ClearNetworkCache(const std::string& path);
 
-// Whether GDAL's message is of bytes that did not come, rather than of such that are no raster's.
-bool IsUnanswered(const std::string& message);
+// Whether GDAL's message reports a failed transfer rather than invalid content.
+bool IsNetworkFailure(const std::string& message);
 
-// GDAL's message with what its response code means.
-std::string InWords(const std::string& message);
+// GDAL's message with the meaning of its HTTP status code.
+std::string ExplainHttpStatus(const std::string& message);
 
 } // namespace dspace
 

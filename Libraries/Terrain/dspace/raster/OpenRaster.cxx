@@ -102,7 +102,7 @@ DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
   GdalErrors errors;
   DatasetPointer dataset = OpenDataset(GdalPath(path), DatasetKind::Raster);
   if (!dataset && IsRemote(path)) {
-    ForgetAnswers(path);
+    ClearNetworkCache(path);
     const std::string message = errors.Message("not recognised by GDAL");
     throw Error(KindOfAnswer(message), object, message);
   }

@@ -1,4 +1,5 @@
-// Rasters opened with GDAL, and what GDAL does not say of them by itself. Not for public headers.
+// Opens rasters with GDAL and inspects properties that GDAL does not report. Not for public
+// headers.
 #ifndef DSPACE_TERRAIN_OPENRASTER_H
 #define DSPACE_TERRAIN_OPENRASTER_H
 
@@ -21,14 +22,14 @@ namespace dspace {
 DatasetPointer OpenRaster(const std::string& path, const NetworkLimits& limits,
                           std::vector<std::string>& warnings, std::string object = {});
 
-// A local file as it was when it was opened; empty for what is none.
+// State of a local file at the time of opening; empty for any other name.
 struct FileState {
   bool local = false;
   struct stat state = {};
 
   static FileState Of(const std::string& path);
-  // What a changed file gives is partly of the one and partly of the other. One that was replaced
-  // or removed by name is still read whole.
+  // A file that is changed in place gives a mixture of old and new content. A file that was
+  // replaced or removed by name is still read completely.
   bool ChangedInPlace(const std::string& path) const;
 };
 

@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t LeastPixels = 4000000; // smaller rasters lose little
 
 // One thread's own on Linux, where each has a number; elsewhere nothing happens.
-void BeOfLowPriority() {
+void LowerPriority() {
 #ifdef __linux__
   ::setpriority(PRIO_PROCESS, 0, 10);
 #endif
@@ -39,7 +39,7 @@ struct OverviewBuild::Implementation {
 
   void Run(const std::string& folder, const std::string& path, const ElevationOptions& options,
            const std::function<void()>& built) {
-    BeOfLowPriority();
+    LowerPriority();
     try {
       const auto goOn = [this](double part) {
         this->progress = part;

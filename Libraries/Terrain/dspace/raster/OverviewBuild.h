@@ -1,4 +1,4 @@
-// Overviews of a raster, built in the background.
+// Builds overviews of a raster in the background.
 #ifndef DSPACE_TERRAIN_OVERVIEWBUILD_H
 #define DSPACE_TERRAIN_OVERVIEWBUILD_H
 
@@ -10,24 +10,24 @@
 
 namespace dspace {
 
-// ElevationCache::Build in a thread of its own, of low priority. It ends when this does: what is
-// under way is then given up between two reads of some million pixels, and nothing half-made stays.
-// Its owner ends it before the process ends, which takes down GDAL.
+// Runs ElevationCache::Build in a thread of its own with low priority. The destructor cancels it:
+// the build stops between two reads of some million pixels, and no partial file stays. The owner
+// must destroy it before the process ends, because GDAL is then cleaned up.
 class OverviewBuild {
 public:
   enum class State {
     Building,
-    Built,  // there, and `built` has been called
-    Failed, // Failure() says why; drawing goes on without
+    Built,  // the overviews exist, and `built` has been called
+    Failed, // see Failure(); drawing continues without overviews
   };
 
-  // Whether it would be worth it: ElevationCache::Needs(), none in the cache, over four million
-  // pixels, and none of it on a server.
+  // Whether a build is useful: ElevationCache::Needs(), none in the cache, over four million
+  // pixels, and no part on a server.
   static bool Wanted(const ElevationInfo& info);
 
-  // Of the raster `path` into `folder`; `options` as for ElevationCache::Build. `built` is called
-  // in the thread, once the overviews can be read; what it throws is a failure, as
-  // is a thread that cannot be started. Returns at once.
+  // Starts a build for the raster `path` into `folder`; `options` as for ElevationCache::Build.
+  // Calls `built` in the thread, once the overviews can be read; an exception of `built` is a
+  // failure, as is a thread that cannot be started. Returns at once.
   OverviewBuild(std::string folder, std::string path, const ElevationOptions& options,
                 std::function<void()> built);
   OverviewBuild(const OverviewBuild&) = delete;

@@ -86,7 +86,7 @@ OverviewFile::OverviewFile(const std::string& file) : Name_(file) {
     }
     std::memcpy(&start, this->ReadAt(0, sizeof(start)).data(), sizeof(start));
     if (std::memcmp(start.magic, OverviewMagic, 8) != 0) {
-      Damaged(file, "it is no such file");
+      Damaged(file, "it is not an overview file");
     }
     if (start.ownChecksum != Checksum(reinterpret_cast<const char*>(&start),
                                       offsetof(OverviewPreamble, ownChecksum)) ||
@@ -107,7 +107,7 @@ OverviewFile::OverviewFile(const std::string& file) : Name_(file) {
     header.levels = reader.Take<std::int32_t>();
     if (header.width < 1 || header.height < 1 || header.levels < 1 || header.levels > 30 ||
         (header.sampleBytes != 4 && header.sampleBytes != 8) || header.TileCount() > index.size()) {
-      Damaged(file, "its index makes no sense");
+      Damaged(file, "its index is inconsistent");
     }
     header.tiles.resize(header.TileCount());
     for (OverviewHeader::Tile& tile : header.tiles) {

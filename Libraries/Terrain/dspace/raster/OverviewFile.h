@@ -12,7 +12,7 @@
 
 namespace dspace {
 
-// What stands at the end of the file. Native byte order: a cache is its machine's own.
+// The index at the end of the file. Native byte order: a cache is its machine's own.
 struct OverviewHeader {
   std::string identity; // ElevationSource::Identity() of what it was made from
   std::string path;     // of the same
@@ -53,7 +53,7 @@ public:
   // Cells of a level, row by row. Throws Error(Corrupt) for a damaged tile, Io.
   void Read(int level, const RasterWindow& cells, double* values) const;
   void Verify() const; // every tile
-  // Removes the file, unless another stands under its name by now.
+  // Removes the file, unless another file has replaced it.
   void Remove() const;
 
 private:

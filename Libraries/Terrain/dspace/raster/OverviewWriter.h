@@ -14,8 +14,8 @@ class AtomicFile;
 
 // Writes the overviews of `source`'s values, read from its first row to its last, into `output`,
 // which is empty; the caller commits it. Every cell is the mean of its pixels, however coarse.
-// False where `progress`, called with the part done, said so. Throws what the source and the output
-// throw.
+// Returns false if `progress`, called with the part done, returned false. Throws what the source
+// and the output throw.
 bool WriteOverviews(const ElevationSource& source, const std::string& identity, AtomicFile& output,
                     const std::function<bool(double)>& progress);
 

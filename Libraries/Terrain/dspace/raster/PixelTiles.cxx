@@ -22,7 +22,7 @@ PixelTiles::Tile PixelTiles::TileAt(int column, int row) const {
                           std::min(Size, all.height - row * Size)};
   const auto tile = std::make_shared<const std::vector<double>>(this->Source_->Read(part));
   const std::lock_guard<std::mutex> lock(this->Mutex_);
-  this->Tiles_.Keep(key, tile);
+  this->Tiles_.Insert(key, tile);
   return tile;
 }
 

@@ -1,4 +1,4 @@
-// Pixels of a raster about places that are asked for one by one.
+// A cache for reading single pixels of a raster.
 #ifndef DSPACE_TERRAIN_PIXELTILES_H
 #define DSPACE_TERRAIN_PIXELTILES_H
 
@@ -9,7 +9,7 @@
 
 #include <dspace/raster/ElevationSource.h>
 
-#include <dspace/raster/LatestKept.h>
+#include <dspace/raster/LruCache.h>
 
 namespace dspace {
 
@@ -30,7 +30,7 @@ private:
   Tile TileAt(int column, int row) const; // counts tiles
   std::shared_ptr<const ElevationSource> Source_;
   mutable std::mutex Mutex_; // of what follows
-  mutable LatestKept<std::pair<int, int>, Tile> Tiles_;
+  mutable LruCache<std::pair<int, int>, Tile> Tiles_;
 };
 
 } // namespace dspace

@@ -1,4 +1,4 @@
-// GDAL's drivers that are safe for files of strangers. Not for public headers.
+// GDAL's drivers that are safe for untrusted files. Not for public headers.
 #ifndef DSPACE_RASTER_SELFCONTAINEDDRIVERS_H
 #define DSPACE_RASTER_SELFCONTAINEDDRIVERS_H
 

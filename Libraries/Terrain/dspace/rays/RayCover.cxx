@@ -8,7 +8,7 @@
 namespace dspace {
 namespace {
 
-constexpr std::size_t MostKnown = 200000; // blocks; some 20 MB
+constexpr std::size_t MaximumCachedBlocks = 200000; // blocks; some 20 MB
 
 Eigen::AlignedBox2d Posts(int bits, std::int64_t c, std::int64_t r) {
   const double size = std::ldexp(1.0, bits);
@@ -47,7 +47,7 @@ RayTile::Range RayCover::OfPatches(int bits, std::int64_t c, std::int64_t r) con
   const RayTile::Range range = {std::nextafter(float(heights[0]), -HUGE_VALF),
                                 std::nextafter(float(heights[1]), HUGE_VALF)};
   const std::lock_guard<std::mutex> lock(this->Mutex_);
-  if (this->OfPatches_.size() >= MostKnown) {
+  if (this->OfPatches_.size() >= MaximumCachedBlocks) {
     this->OfPatches_.clear();
   }
   this->OfPatches_[key] = range;
@@ -63,7 +63,7 @@ RayTile::Range RayCover::Over(int bits, std::int64_t c, std::int64_t r,
   if (plain.least > plain.greatest) {
     return plain; // holes stay holes
   }
-  // Level 0 of a divided raster is rounded anew.
+  // Level 0 of a subdivided raster is rounded again.
   plain.least = std::nextafter(plain.least, -HUGE_VALF);
   plain.greatest = std::nextafter(plain.greatest, HUGE_VALF);
   if (this->Tracks_ && this->Tracks_->Reaches(this->InScene(bits, c, r))) {

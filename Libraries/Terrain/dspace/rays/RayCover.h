@@ -1,4 +1,4 @@
-// What lies on a terrain's plain surface, and how far its ground may be from there.
+// Bounds of patches and wheel tracks on a terrain's plain surface.
 #ifndef DSPACE_TERRAIN_RAYCOVER_H
 #define DSPACE_TERRAIN_RAYCOVER_H
 
@@ -17,8 +17,8 @@ namespace dspace {
 class GroupPosts;
 class WheelTracks;
 
-// Patches and wheel tracks on a raster. (c, r) counts blocks of 2^bits cells of level 0; told is
-// what holds for all posts at their corners. Any thread may call.
+// Patches and wheel tracks on a raster. (c, r) counts blocks of 2^bits cells of level 0. A result
+// holds for every corner post of the block. Any thread may call.
 class RayCover {
 public:
   // Either may be null. `postToScene` takes level-0 posts to the tracks' coordinates.
@@ -28,8 +28,7 @@ public:
 
   // False: the block's posts are those of the plain surface, but for their rounding.
   bool Reaches(int bits, std::int64_t c, std::int64_t r) const;
-  // What heights lie between where those of the plain surface lie within `plain`. Infinite where
-  // nothing is known.
+  // The range of heights if the plain surface lies within `plain`. Infinite if it is unknown.
   RayTile::Range Over(int bits, std::int64_t c, std::int64_t r, RayTile::Range plain) const;
 
 private:

@@ -12,7 +12,7 @@ namespace dspace {
 
 class RayLayer {
 public:
-  // What a ray remembers of a layer: the latest tile, and what is left of its deadline.
+  // State of one ray in a layer: its latest tile and the remaining time.
   struct Hold {
     std::shared_ptr<const RayTile> tile;
     std::function<double()> remaining; // [s]

@@ -35,7 +35,7 @@ public:
   void ColumnCrossings(double column, std::vector<double>& t) const;
   void RowCrossings(double row, std::vector<double>& t) const;
   bool Curved() const { return this->Curved_; } // not a straight line over the posts
-  // What heights along it may be off by through rounding.
+  // The rounding error of heights along the ray.
   double Slack() const { return this->Slack_; }
 
 private:

@@ -80,7 +80,7 @@ void RayTiles::DropChanged() {
   if (changes.rectangles.empty()) {
     return;
   }
-  this->Tiles_.DropIf(touched);
+  this->Tiles_.EraseIf(touched);
   for (auto it = this->Ranges_.begin(); it != this->Ranges_.end();) {
     it = touched(it->first) ? this->Ranges_.erase(it) : std::next(it);
   }
@@ -102,7 +102,7 @@ std::shared_ptr<const RayTile> RayTiles::Get(const Key& key, double seconds) {
     return tile; // of a moment that has passed
   }
   this->Ranges_[key] = tile->ranges.back().front();
-  this->Tiles_.Keep(key, tile);
+  this->Tiles_.Insert(key, tile);
   return tile;
 }
 

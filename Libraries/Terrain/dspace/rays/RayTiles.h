@@ -13,7 +13,7 @@
 
 #include <dspace/pyramid/ElevationPyramid.h>
 
-#include <dspace/raster/LatestKept.h>
+#include <dspace/raster/LruCache.h>
 
 namespace dspace {
 
@@ -64,7 +64,7 @@ private:
   void DropChanged(); // with the lock held
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::mutex Mutex_; // of what follows
-  LatestKept<Key, std::shared_ptr<const RayTile>> Tiles_;
+  LruCache<Key, std::shared_ptr<const RayTile>> Tiles_;
   std::map<Key, RayTile::Range> Ranges_;
   std::atomic<std::uint64_t> Seen_{0}; // change of the pyramid; written with the lock held
 };

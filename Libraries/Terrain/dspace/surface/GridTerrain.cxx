@@ -39,7 +39,7 @@ std::shared_ptr<const GridTerrain> GridTerrain::Load(const std::string& path,
                     " posts are more than the " + std::to_string(options.maximumPosts) +
                     " allowed; give a window");
   std::vector<std::string> warnings = WarningsOfPlace(info, true);
-  // The least that is refused is refused before the raster is read.
+  // The least that is rejected is rejected before the raster is read.
   if (info.window.width < 2 || info.window.height < 2)
     throw Error(Error::Kind::InvalidArgument, name,
                 std::to_string(info.window.width) + " x " + std::to_string(info.window.height) +

@@ -19,7 +19,7 @@ struct GridTerrainOptions {
   // Scene origin in map coordinates; the raster's middle by default.
   std::optional<Eigen::Vector2d> origin;
   double originHeight = 0.0; // [m] above the vertical datum, where scene z = 0
-  // Greatest number of posts that is loaded; about 11 bytes each. Larger rasters are refused.
+  // Greatest number of posts that is loaded; about 11 bytes each. Larger rasters are rejected.
   std::size_t maximumPosts = 100000000;
 };
 

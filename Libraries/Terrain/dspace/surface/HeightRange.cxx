@@ -46,8 +46,8 @@ HeightRange FindHeightRange(const std::string& name, const ElevationSource& sour
       range.warnings.push_back(
           "of its " + std::to_string(window.width) + " x " + std::to_string(window.height) +
           " pixels, the " + std::to_string(columns) + " x " + std::to_string(rows) +
-          " that were looked at have no data: it may hold no heights at all, or what it "
-          "states as no data is wrong");
+          " that were sampled have no data: it may contain no heights at all, or its "
+          "no-data value may be wrong");
       return range; // there may be heights between
     }
   }

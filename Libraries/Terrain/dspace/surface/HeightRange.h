@@ -1,4 +1,4 @@
-// Between which heights the ground of a raster lies. Not for public headers.
+// The range of heights of a raster. Not for public headers.
 #ifndef DSPACE_TERRAIN_HEIGHTRANGE_H
 #define DSPACE_TERRAIN_HEIGHTRANGE_H
 
@@ -20,9 +20,9 @@ struct HeightRange {
   std::vector<std::string> warnings; // heights that are in doubt
 };
 
-// Exact where the raster has at most 4 million pixels; else `pyramid` begins to read the first
-// picture's first level meanwhile. `name` is for messages. Throws Error(InvalidArgument) for a
-// height below a body's centre, and what reading throws.
+// Exact if the raster has at most 4 million pixels; else `pyramid` also starts to read the level of
+// the first picture. `name` is for messages. Throws Error(InvalidArgument) for a height below a
+// body's centre, and what reading throws.
 HeightRange FindHeightRange(const std::string& name, const ElevationSource& source,
                             const PostPlacement& placement, const Eigen::Affine2d& pixelToPost,
                             ElevationPyramid& pyramid);

@@ -12,7 +12,7 @@
 namespace dspace {
 namespace {
 
-constexpr double MostPixels = 4e6;
+constexpr double MaximumPixels = 4e6;
 constexpr double NoRoughness = std::numeric_limits<double>::quiet_NaN();
 
 // Heights over places in units of the radius.
@@ -82,7 +82,7 @@ PostBlock PixelRoughness::BlockAbout(const Eigen::Vector3d& p_S, double radius) 
                                          : double(lattice.ColumnsAt(level));
   const double wide = std::min(2.0 * reach.x(), most);
   const double high = std::min(2.0 * reach.y(), double(lattice.RowsAt(level)));
-  if (wide * high > MostPixels * every * every) {
+  if (wide * high > MaximumPixels * every * every) {
     throw Error(Error::Kind::InvalidArgument, this->Object_,
                 "radius " + std::to_string(radius) +
                     " m reaches over 4 million of its pixels; accepted is a smaller one");

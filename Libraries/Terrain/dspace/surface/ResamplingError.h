@@ -1,4 +1,5 @@
-// What it costs that a degree grid's posts do not stand at its pixels. Not for public headers.
+// The error that arises because a degree grid's posts do not stand at its pixels. Not for public
+// headers.
 #ifndef DSPACE_TERRAIN_RESAMPLINGERROR_H
 #define DSPACE_TERRAIN_RESAMPLINGERROR_H
 

@@ -2,22 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <sstream>
 #include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/clipmap/arithmetic/ClipmapWindow.h>
-#include <dspace/posts/RasterPosts.h>
-#include <dspace/pyramid/FilledPosts.h>
 #include <dspace/tracks/GroundTracks.h>
 
-#include <dspace/pyramid/PostSurface.h>
 #include <dspace/raster/DegreeGrid.h>
-#include <dspace/raster/NetworkScope.h>
 #include <dspace/surface/HeightRange.h>
 #include <dspace/surface/PixelRoughness.h>
 #include <dspace/surface/ResamplingError.h>
+#include <dspace/surface/TerrainPosts.h>
 #include <dspace/surface/TerrainRays.h>
 #include <dspace/surface/TerrainWarnings.h>
 
@@ -42,7 +38,7 @@ int SubdivisionsFor(const DegreeGrid& grid) {
 void RequireResults(const std::string& name, bool finite, Eigen::Index n, Eigen::Index results) {
   if (!finite || n != results) {
     throw Error(Error::Kind::InvalidArgument, name,
-                "finite points and as many results are accepted");
+                "accepted: finite points and one result per point");
   }
 }
 
@@ -54,6 +50,38 @@ StreamedTerrain::StreamedTerrain(const std::string& name, std::shared_ptr<Elevat
       Source_(std::move(source)) {}
 
 StreamedTerrain::~StreamedTerrain() = default;
+
+const std::shared_ptr<ElevationPyramid>& StreamedTerrain::Pyramid() const {
+  return this->Posts_->Pyramid();
+}
+
+const Eigen::Affine2d& StreamedTerrain::PixelToPost() const {
+  return this->Posts_->PixelToPost();
+}
+
+std::uint64_t StreamedTerrain::GetVersion() const {
+  return this->Pyramid()->Arrivals();
+}
+
+int StreamedTerrain::Subdivisions() const {
+  return this->Posts_->Subdivisions();
+}
+
+bool StreamedTerrain::ReachesPoles() const {
+  return this->Posts_->Poles();
+}
+
+const GroupReport* StreamedTerrain::Group() const {
+  return this->Posts_->Group() ? &this->Posts_->Group()->Report() : nullptr;
+}
+
+int StreamedTerrain::FullLevel() const {
+  return this->Posts_->FullLevel();
+}
+
+bool StreamedTerrain::FillsHoles() const {
+  return this->Posts_->FillsHoles();
+}
 
 std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
                                                        const StreamedTerrainOptions& options) {
@@ -69,10 +97,10 @@ std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
   }
   if (options.subdivisions < 0 || options.subdivisions > (options.onBody ? 0 : 12)) {
     throw Error(Error::Kind::InvalidArgument, name,
-                std::to_string(options.subdivisions) + " subdivisions are refused; accepted is " +
+                std::to_string(options.subdivisions) + " subdivisions are rejected; accepted is " +
                     (options.onBody ? "0: on a body they follow from its size" : "0 to 12"));
   }
-  ClipmapGeometry geometry(options.cells); // refuses what is out of range
+  ClipmapGeometry geometry(options.cells); // rejects what is out of range
   auto source = std::make_shared<ElevationSource>(path, options.elevation);
   if (options.onBody && DegreeGridOf(source->Info()).repeats) {
     ElevationOptions once = options.elevation;
@@ -85,35 +113,42 @@ std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
       new StreamedTerrain(name, std::move(source), std::move(warnings)));
   terrain->Deadline_ = options.deadline;
   if (options.onBody) {
-    terrain->StandOnBody(options);
+    terrain->InitOnBody(options);
   } else {
-    terrain->StandOnPlane(options);
+    terrain->InitOnPlane(options);
   }
-  terrain->TakeHeightRange();
-  terrain->TakePatches();
-  terrain->MakeRays();
+  terrain->FindHeightBounds();
+  terrain->AddPatchReports();
+  terrain->Rays_ = terrain->Posts_->MakeRays(terrain->Placement_.PostToScene());
   return terrain;
 }
 
-void StreamedTerrain::StandOnPlane(const StreamedTerrainOptions& options) {
+void StreamedTerrain::InitOnPlane(const StreamedTerrainOptions& options) {
   const ElevationInfo& info = this->Info();
   this->Frame_.emplace(info.crs, options.origin.value_or(MiddleOf(info)), options.originHeight);
-  this->Subdivisions_ = options.subdivisions;
-  this->MakePyramid(options, false, false);
-  this->Placement_ = PostPlacement::OnPlane(this->PlanePosts(), options.originHeight);
+  TerrainPosts::Layout layout;
+  layout.subdivisions = options.subdivisions;
+  this->Posts_ = std::make_shared<TerrainPosts>(this->GetName(), this->Source_, options, layout,
+                                                &*this->Frame_);
+  this->Placement_ =
+      PostPlacement::OnPlane(this->Posts_->PostToScene(*this->Frame_), options.originHeight);
 }
 
-void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
+void StreamedTerrain::InitOnBody(const StreamedTerrainOptions& options) {
   const DegreeGrid grid = DegreeGridOf(this->Info());
-  this->Subdivisions_ = SubdivisionsFor(grid);
+  TerrainPosts::Layout layout;
+  layout.subdivisions = SubdivisionsFor(grid);
+  layout.periodic = grid.periodic;
+  layout.poles = grid.poles;
   const RasterWindow& window = this->Info().window;
   if (grid.periodic && ColumnsAround(window.width, window.height - (grid.poles ? 0 : 1),
                                      CoarsestFor(options.cells)) != window.width) {
-    this->Subdivisions_ = std::max(this->Subdivisions_, RasterPosts::Finer);
+    layout.subdivisions = std::max(layout.subdivisions, RasterPosts::Finer);
   }
-  this->MakePyramid(options, grid.periodic, grid.poles);
-  const double parts = std::ldexp(1.0, this->Subdivisions_);
-  const PostLattice& lattice = this->Pyramid_->Lattice();
+  this->Posts_ =
+      std::make_shared<TerrainPosts>(this->GetName(), this->Source_, options, layout, nullptr);
+  const double parts = std::ldexp(1.0, this->Subdivisions());
+  const PostLattice& lattice = this->Posts_->Lattice();
   Eigen::Vector2d step = grid.step_deg / parts;
   if (grid.periodic) {
     step.x() = std::copysign(360.0 / double(lattice.columns), step.x());
@@ -124,7 +159,7 @@ void StreamedTerrain::StandOnBody(const StreamedTerrainOptions& options) {
   }
   this->Placement_ =
       PostPlacement::OnSphere(first, step, grid.radius, 0.5 * double(lattice.columns - 1));
-  if (this->Posts_->Stretch() != 1.0) {
+  if (this->Posts_->Raster().Stretch() != 1.0) {
     this->Resample(grid, options.pyramid);
   }
 }
@@ -140,105 +175,21 @@ void StreamedTerrain::Resample(const DegreeGrid& grid, const ElevationPyramidOpt
   this->Pixels_ = std::make_shared<ElevationPyramid>(pixels, small);
   this->PixelPlacement_ = PostPlacement::OnSphere(grid.first_deg, grid.step_deg, grid.radius,
                                                   0.5 * double(pixels->GetLattice().columns - 1));
-  this->Resampling_ = MeasureResampling(*this->Posts_);
+  this->Resampling_ = MeasureResampling(this->Posts_->Raster());
   std::ostringstream text;
   text.precision(3);
   text << "its " << this->Info().window.width << " columns around the body are resampled to "
-       << this->Resampling_->columns << ", which halve often enough: what is drawn and answered "
-       << "departs from its pixels by " << this->Resampling_->rmsError << " m rms, at most "
+       << this->Resampling_->columns
+       << ", which can be halved often enough: the drawn and queried surface "
+       << "differs from its pixels by " << this->Resampling_->rmsError << " m rms, at most "
        << this->Resampling_->greatestError << " m, at " << this->Resampling_->posts
-       << " of them taken at random";
+       << " random pixels";
   this->AddWarning(text.str());
 }
 
-void StreamedTerrain::MakePyramid(const StreamedTerrainOptions& options, bool periodic,
-                                  bool poles) {
-  const ElevationInfo& info = this->Info();
-  std::optional<OpenPatches> patches;
-  if (!options.patches.empty()) {
-    patches.emplace(info, options.patches);
-    this->Subdivisions_ = std::max(this->Subdivisions_, patches->Subdivisions());
-  }
-  RasterPostsOptions posts;
-  posts.subdivisions = this->Subdivisions_;
-  posts.periodic = periodic;
-  posts.poles = poles;
-  posts.coarsest = CoarsestFor(options.cells);
-  if (periodic) {
-    posts.columns =
-        ColumnsAround(info.window.width, info.window.height - (poles ? 0 : 1), posts.coarsest);
-  }
-  auto raster = std::make_shared<RasterPosts>(this->Source_, posts);
-  this->Posts_ = raster;
-  this->Poles_ = poles;
-  const double parts = std::ldexp(1.0, this->Subdivisions_);
-  const double across = parts / raster->Stretch();
-  this->PixelToPost_.linear() = Eigen::Vector2d(across, parts).asDiagonal();
-  this->PixelToPost_.translation() << -0.5 * across, poles ? 0.0 : -0.5 * parts;
-  this->MapToPost_ = this->PixelToPost_ * info.pixelToMap.inverse();
-  std::shared_ptr<const PostSource> source = raster;
-  if (options.fillHoles) {
-    this->Filled_ = std::make_shared<const FilledPosts>(raster, *options.fillHoles);
-    source = this->Filled_;
-  }
-  const std::shared_ptr<const PostSource> base = source;
-  this->FullLevel_ = raster->FullLevel();
-  int level = this->FullLevel_;
-  if (patches) {
-    this->Group_ =
-        std::make_shared<const GroupPosts>(base, this->MapToPost_.inverse(), poles,
-                                           std::move(*patches), this->Filled_ ? raster : nullptr);
-    source = this->Group_;
-    level = 0; // patches have posts between those of the raster
-  }
-  if (this->Filled_) {
-    ElevationPyramidOptions small = options.pyramid;
-    small.byteBudget = std::max(options.pyramid.byteBudget / 16, std::size_t(4) << 20);
-    const std::shared_ptr<const PostSource> holed =
-        this->Group_ ? std::shared_ptr<const PostSource>(
-                           this->Group_->On(raster, info.crs, this->MapToPost_.inverse()))
-                     : std::shared_ptr<const PostSource>(raster);
-    this->Holed_ = std::make_shared<const PostSurface>(
-        std::make_shared<ElevationPyramid>(holed, small), level, poles, options.deadline);
-  }
-  if (this->Frame_) {
-    this->Tracks_ = std::make_unique<GroundTracks>(this->GetName(), source, this->PlanePosts(),
-                                                   *this->Frame_, info.crs, options.tracks);
-    source = this->Tracks_->Posts();
-  }
-  this->Pyramid_ = std::make_shared<ElevationPyramid>(source, options.pyramid);
-  // A group's tiles hold far more posts than pixels were read.
-  const bool local =
-      !IsRemote(GdalPath(info.path)) &&
-      std::none_of(options.patches.begin(), options.patches.end(),
-                   [](const TerrainPatch& patch) { return IsRemote(GdalPath(patch.path)); });
-  const bool scattered = this->Group_ && local;
-  this->Surface_ =
-      std::make_unique<PostSurface>(this->Pyramid_, level, poles, options.deadline, scattered);
-  if (this->Group_) {
-    this->Plain_ =
-        std::make_unique<PostSurface>(this->Pyramid_, this->FullLevel_, poles, options.deadline);
-  }
-  this->RayGround_ = std::make_unique<RayGround>(
-      RayGround{base, options.pyramid, this->FullLevel_, poles, options.deadline});
-  this->RayGround_->options.byteBudget = std::size_t(4) << 20; // rays keep what they need
-  this->RayGround_->options.threads = 1;
-  if (this->Tracks_) {
-    this->Tracked_ =
-        std::make_unique<PostSurface>(this->Pyramid_, 0, poles, options.deadline, scattered);
-  }
-}
-
-Eigen::Affine2d StreamedTerrain::PlanePosts() const {
-  // PostToScene() takes posts to stand half a unit from the corner.
-  const Eigen::Affine2d postToMap =
-      this->Info().pixelToMap * (this->PixelToPost_.inverse() * Eigen::Translation2d(-0.5, -0.5));
-  return this->Frame_->PostToScene(postToMap);
-}
-
-void StreamedTerrain::TakeHeightRange() {
+void StreamedTerrain::FindHeightBounds() {
   const dspace::HeightRange range = FindHeightRange(
-      this->GetName(), *this->Source_, this->Placement_, this->PixelToPost_, *this->Pyramid_);
+      this->GetName(), *this->Source_, this->Placement_, this->PixelToPost(), *this->Pyramid());
   this->HeightRange_ = range.heights;
   this->HeightRangeIsExact_ = range.exact;
   for (const std::string& warning : range.warnings) {
@@ -247,14 +198,15 @@ void StreamedTerrain::TakeHeightRange() {
 }
 
 // Their warnings and heights.
-void StreamedTerrain::TakePatches() {
-  if (!this->Group_) {
+void StreamedTerrain::AddPatchReports() {
+  const GroupReport* group = this->Group();
+  if (!group) {
     return;
   }
-  for (const std::string& warning : this->Group_->Report().warnings) {
+  for (const std::string& warning : group->warnings) {
     this->AddWarning(warning);
   }
-  for (const PatchReport& patch : this->Group_->Report().patches) {
+  for (const PatchReport& patch : group->patches) {
     if (patch.used) {
       const double more = patch.heightsAreExact ? 0.0 : 0.5 * (patch.heights[1] - patch.heights[0]);
       this->HeightRange_ = {std::min(this->HeightRange_[0], patch.heights[0] - more),
@@ -264,19 +216,13 @@ void StreamedTerrain::TakePatches() {
   }
 }
 
-void StreamedTerrain::MakeRays() {
-  this->Rays_ = std::make_unique<TerrainRays>(
-      *this->RayGround_, *this->Surface_, this->Group_, this->Tracked_.get(),
-      this->Tracks_ ? this->Tracks_->Tracks() : nullptr, this->Placement_.PostToScene());
-}
-
 TerrainBounds StreamedTerrain::DoGetBounds() const {
-  const PostLattice& lattice = this->Pyramid_->Lattice();
+  const PostLattice& lattice = this->Posts_->Lattice();
   TerrainBounds bounds;
   // A lattice that goes around has no last post: its map ends a column further.
   const Eigen::Vector2d end(double(lattice.columns - (lattice.periodic ? 0 : 1)),
                             double(lattice.rows - 1));
-  const Eigen::Affine2d postToMap = this->MapToPost_.inverse();
+  const Eigen::Affine2d postToMap = this->Posts_->MapToPost().inverse();
   for (const double c : {0.0, end.x()}) {
     for (const double r : {0.0, end.y()}) {
       bounds.map.extend(Eigen::Vector2d(postToMap * Eigen::Vector2d(c, r)));
@@ -293,17 +239,17 @@ const ElevationInfo& StreamedTerrain::Info() const {
 const SceneFrame& StreamedTerrain::Frame() const {
   if (!this->Frame_) {
     throw Error(Error::Kind::Unsupported, this->GetName(),
-                "it stands on a body; only one on a plane has such a frame");
+                "it stands on a body; only a terrain on a plane has a scene frame");
   }
   return *this->Frame_;
 }
 
 Eigen::Vector2d StreamedTerrain::MapToPost(const Eigen::Vector2d& map) const {
-  Eigen::Vector2d post = this->MapToPost_ * map;
+  Eigen::Vector2d post = this->Posts_->MapToPost() * map;
   if (this->OnBody()) { // towards the data
     const double turn = 2.0 * M_PI / std::abs(this->Placement_.Step().x());
-    const double last = double(this->Pyramid_->Lattice().columns) - 1.0;
-    if (this->Pyramid_->Lattice().periodic) {
+    const double last = double(this->Posts_->Lattice().columns) - 1.0;
+    if (this->Posts_->Lattice().periodic) {
       post.x() -= turn * std::floor(post.x() / turn);
     } else if (post.x() < 0.0 || post.x() > last) {
       post.x() -= turn * std::round((post.x() - 0.5 * last) / turn);
@@ -332,39 +278,11 @@ Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
   return (up - toEast * east - toNorth * north).normalized();
 }
 
-const PostSurface& StreamedTerrain::SurfaceAt(const Eigen::Vector2d& post) const {
-  const bool plain =
-      this->Plain_ && !this->Tracked() && !this->Group_->Reaches(post, this->Plain_->Level());
-  return plain ? *this->Plain_ : this->Surface();
-}
-
-// Each surface is asked for all of its places at once.
-// NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is a view that is written through
-void StreamedTerrain::HeightsAt(const std::vector<Eigen::Vector2d>& posts,
-                                Eigen::Ref<Eigen::VectorXd> heights) const {
-  std::map<const PostSurface*, std::vector<std::size_t>> parts;
-  for (std::size_t i = 0; i < posts.size(); ++i) {
-    parts[&this->SurfaceAt(posts[i])].push_back(i);
-  }
-  for (const auto& [surface, indices] : parts) {
-    std::vector<Eigen::Vector2d> places;
-    places.reserve(indices.size());
-    for (const std::size_t i : indices) {
-      places.push_back(posts[i]);
-    }
-    const std::vector<std::size_t>& at = indices; // bindings are not captured
-    surface->At(places, [&](std::size_t k, const HeightGrid::Facet& facet) {
-      heights[Eigen::Index(at[k])] =
-          facet.valid ? facet.height : std::numeric_limits<double>::quiet_NaN();
-    });
-  }
-}
-
 // The surface at a place; `vertical_S` is the point of space that was asked for, whose vertical it
 // is found on.
 SurfaceSample StreamedTerrain::SampleAt(const Eigen::Vector2d& post,
                                         const Eigen::Vector3d& vertical_S) const {
-  const HeightGrid::Facet facet = this->SurfaceAt(post).At(post);
+  const HeightGrid::Facet facet = this->Posts_->SurfaceAt(post).At(post);
   SurfaceSample sample;
   if (!facet.valid) {
     return sample;
@@ -411,7 +329,7 @@ StreamedTerrain::PostsOf(const Eigen::Ref<const Rows3>& points_S) const {
 
 void StreamedTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
                                 Eigen::Ref<Eigen::VectorXd> heights) const {
-  this->HeightsAt(this->PostsOf(points_S), heights);
+  this->Posts_->Heights(this->PostsOf(points_S), heights);
 }
 
 void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,
@@ -420,12 +338,13 @@ void StreamedTerrain::DoHeightsMap(const Eigen::Ref<const Rows2>& map,
   for (Eigen::Index i = 0; i < map.rows(); ++i) {
     posts[i] = this->MapToPost(map.row(i));
   }
-  this->HeightsAt(posts, heights);
+  this->Posts_->Heights(posts, heights);
 }
 
 Eigen::Vector3d StreamedTerrain::DoMapToScene(const Eigen::Vector3d& map) const {
-  return this->OnBody() ? this->Placement_.ToScene(this->MapToPost_ * map.head<2>(), map.z())
-                        : this->Frame_->MapToScene(map);
+  return this->OnBody()
+             ? this->Placement_.ToScene(this->Posts_->MapToPost() * map.head<2>(), map.z())
+             : this->Frame_->MapToScene(map);
 }
 
 Eigen::Vector3d StreamedTerrain::DoSceneToMap(const Eigen::Vector3d& p_S) const {
@@ -433,7 +352,7 @@ Eigen::Vector3d StreamedTerrain::DoSceneToMap(const Eigen::Vector3d& p_S) const 
     return this->Frame_->SceneToMap(p_S);
   }
   const Eigen::Vector3d post = this->Placement_.ToPosts(p_S);
-  const Eigen::Vector2d map = this->MapToPost_.inverse() * Eigen::Vector2d(post.head<2>());
+  const Eigen::Vector2d map = this->Posts_->MapToPost().inverse() * Eigen::Vector2d(post.head<2>());
   return {map.x(), map.y(), post.z()};
 }
 
@@ -446,7 +365,7 @@ Eigen::Vector3d StreamedTerrain::DoNorth(const Eigen::Vector3d& p_S) const {
 }
 
 int StreamedTerrain::DoResidentLevel(const Eigen::Vector2d& map) const {
-  const PostLattice& lattice = this->Pyramid_->Lattice();
+  const PostLattice& lattice = this->Posts_->Lattice();
   const Eigen::Vector2d post = this->MapToPost(map);
   const double edge = 1e-9;
   if (!(lattice.periodic ||
@@ -459,7 +378,7 @@ int StreamedTerrain::DoResidentLevel(const Eigen::Vector2d& map) const {
     const Eigen::Vector2d place = post.cwiseMax(0.0) * std::ldexp(1.0, -level);
     const auto c = std::int64_t(std::floor(place.x()));
     const auto r = std::int64_t(std::floor(place.y()));
-    if (this->Pyramid_->TryRead({level, c, r, 2, 2}, heights.data())) {
+    if (this->Pyramid()->TryRead({level, c, r, 2, 2}, heights.data())) {
       return level;
     }
   }
@@ -469,7 +388,7 @@ int StreamedTerrain::DoResidentLevel(const Eigen::Vector2d& map) const {
 RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,
                                     double maximumDistance) const {
   const double most = 1e9; // [m] that heights are within
-  const RayPath path(this->Placement_, this->Pyramid_->Lattice(), origin_S, unit_S, maximumDistance,
+  const RayPath path(this->Placement_, this->Posts_->Lattice(), origin_S, unit_S, maximumDistance,
                      this->HeightRangeIsExact_ ? this->DrawnHeights()[0] : -most,
                      this->HeightRangeIsExact_ ? this->DrawnHeights()[1] : most);
   const SurfaceRay::Hit found = this->Rays_->Get().Intersect(path);
@@ -485,26 +404,10 @@ RayHit StreamedTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen
   return hit;
 }
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is a view that is written through
-void StreamedTerrain::FilledAt(const std::vector<Eigen::Vector2d>& posts,
-                               Eigen::Ref<Eigen::VectorXd> filled) const {
-  this->HeightsAt(posts, filled);
-  for (double& height : filled) {
-    height = std::isnan(height) ? height : (this->Holed_ ? 1.0 : 0.0);
-  }
-  if (this->Holed_) {
-    this->Holed_->At(posts, [&](std::size_t i, const HeightGrid::Facet& facet) {
-      if (facet.valid) {
-        filled[Eigen::Index(i)] = 0.0;
-      }
-    });
-  }
-}
-
 void StreamedTerrain::Filled(const Eigen::Ref<const Rows3>& points_S,
                              Eigen::Ref<Eigen::VectorXd> filled) const {
   RequireResults(this->GetName(), points_S.allFinite(), points_S.rows(), filled.size());
-  this->FilledAt(this->PostsOf(points_S), filled);
+  this->Posts_->Filled(this->PostsOf(points_S), filled);
 }
 
 void StreamedTerrain::FilledMap(const Eigen::Ref<const Rows2>& map,
@@ -515,7 +418,7 @@ void StreamedTerrain::FilledMap(const Eigen::Ref<const Rows2>& map,
   for (Eigen::Index i = 0; i < map.rows(); ++i) {
     posts.push_back(this->MapToPost(map.row(i)));
   }
-  this->FilledAt(posts, filled);
+  this->Posts_->Filled(posts, filled);
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is a view that is written through
@@ -527,7 +430,7 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
   }
   if (points_S.rows() != roughness.size() || !points_S.allFinite()) {
     throw Error(Error::Kind::InvalidArgument, this->GetName(),
-                "finite points and as many results are accepted");
+                "accepted: finite points and one result per point");
   }
   PixelRoughness::Pixels pixels;
   if (this->Pixels_) {
@@ -537,12 +440,12 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
       this->Pixels_->Read(block, heights, this->Deadline_);
     };
   } else {
-    pixels.lattice = this->Pyramid_->Lattice();
+    pixels.lattice = this->Posts_->Lattice();
     pixels.placement = this->Placement_;
-    pixels.level = this->Surface_->Level();
-    pixels.between = this->Poles_ && pixels.level + 1 == this->Subdivisions_;
+    pixels.level = this->Posts_->SurfaceLevel();
+    pixels.between = this->ReachesPoles() && pixels.level + 1 == this->Subdivisions();
     pixels.read = [this](const PostBlock& block, float* heights) {
-      this->ReadPixels(block, heights);
+      this->Posts_->ReadPixels(block, heights);
     };
   }
   const PixelRoughness ground(this->GetName(), std::move(pixels));
@@ -551,34 +454,12 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
   }
 }
 
-// Posts of pixels with ruts as they are, not the means that coarser posts show, and without what is
-// made up.
-void StreamedTerrain::ReadPixels(const PostBlock& block, float* heights) const {
-  if (this->Tracked()) {
-    this->Undisturbed().Pyramid_->Read(block, heights, this->Deadline_);
-    this->Tracks_->Posts()->Lower(block, heights);
-  } else {
-    this->Pyramid_->Read(block, heights, this->Deadline_);
-  }
-  if (this->Holed_) {
-    std::vector<float> own(std::size_t(block.width) * block.height);
-    this->Holed_->SharedPyramid()->Read(block, own.data(), this->Deadline_);
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      heights[k] = std::isnan(own[k]) ? own[k] : heights[k];
-    }
-  }
-}
-
-bool StreamedTerrain::Tracked() const {
-  return this->Tracks_ && !this->Tracks_->Empty();
-}
-
-const GroundTracks& StreamedTerrain::RequireTracks() const {
-  if (!this->Tracks_) {
+GroundTracks& StreamedTerrain::RequireTracks() const {
+  if (!this->Posts_->Tracks()) {
     throw Error(Error::Kind::Unsupported, this->GetName(),
                 "it stands on a body; wheel tracks are accepted on a plane");
   }
-  return *this->Tracks_;
+  return *this->Posts_->Tracks();
 }
 
 const WheelTracks& StreamedTerrain::Tracks() const {
@@ -586,18 +467,15 @@ const WheelTracks& StreamedTerrain::Tracks() const {
 }
 
 void StreamedTerrain::AddTracks(const std::vector<TrackAddition>& additions) {
-  this->RequireTracks();
-  this->Pyramid_->Invalidate(this->Tracks_->Add(additions));
+  this->Pyramid()->Invalidate(this->RequireTracks().Add(additions));
 }
 
-void StreamedTerrain::RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn) {
-  this->RequireTracks();
-  this->Pyramid_->Invalidate(this->Tracks_->Restore(strokes, goesOn));
+void StreamedTerrain::RestoreTracks(const std::vector<TrackStroke>& strokes, bool continues) {
+  this->Pyramid()->Invalidate(this->RequireTracks().Restore(strokes, continues));
 }
 
 void StreamedTerrain::ClearTracks() {
-  this->RequireTracks();
-  this->Pyramid_->Invalidate(this->Tracks_->Clear());
+  this->Pyramid()->Invalidate(this->RequireTracks().Clear());
 }
 
 void StreamedTerrain::SaveTracks(const std::string& path) const {
@@ -609,67 +487,35 @@ void StreamedTerrain::LoadTracks(const std::string& path, std::size_t most) {
 }
 
 std::array<double, 2> StreamedTerrain::DrawnHeights() const {
-  if (!this->Tracks_) {
+  if (!this->Posts_->Tracks()) {
     return this->HeightRange_;
   }
-  return {this->HeightRange_[0] - TrackProfile::MostSinkage - TrackProfile::MostTread,
-          this->HeightRange_[1] + TrackProfile::MostRim};
+  return {this->HeightRange_[0] - TrackProfile::MaximumSinkage - TrackProfile::MaximumTread,
+          this->HeightRange_[1] + TrackProfile::MaximumRim};
 }
 
 const StreamedTerrain& StreamedTerrain::Undisturbed() const {
-  if (!this->Tracks_) {
+  if (!this->Posts_->Tracks()) {
     return *this;
   }
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   if (!this->Undisturbed_) {
-    ElevationPyramidOptions options;
-    options.byteBudget = std::size_t(16) << 20;
     std::unique_ptr<StreamedTerrain> bare(
         new StreamedTerrain(this->GetName(), this->Source_, this->GetWarnings()));
-    bare->Group_ = this->Group_;
-    bare->Pyramid_ = std::make_shared<ElevationPyramid>(this->Tracks_->Bare(), options);
-    bare->Surface_ = std::make_unique<PostSurface>(bare->Pyramid_, this->Surface_->Level(),
-                                                   this->Poles_, this->Deadline_);
-    if (this->Plain_) {
-      bare->Plain_ = std::make_unique<PostSurface>(bare->Pyramid_, this->Plain_->Level(),
-                                                   this->Poles_, this->Deadline_);
-    }
-    bare->Posts_ = this->Posts_;
-    bare->Filled_ = this->Filled_;
-    bare->Holed_ = this->Holed_;
-    bare->FullLevel_ = this->FullLevel_;
-    bare->RayGround_ = std::make_unique<RayGround>(*this->RayGround_);
+    bare->Posts_ = this->Posts_->Bare();
     bare->Placement_ = this->Placement_;
     bare->Frame_ = this->Frame_;
-    bare->PixelToPost_ = this->PixelToPost_;
-    bare->MapToPost_ = this->MapToPost_;
-    bare->Poles_ = this->Poles_;
-    bare->Subdivisions_ = this->Subdivisions_;
     bare->Deadline_ = this->Deadline_;
     bare->HeightRange_ = this->HeightRange_;
     bare->HeightRangeIsExact_ = this->HeightRangeIsExact_;
-    bare->MakeRays();
+    bare->Rays_ = bare->Posts_->MakeRays(bare->Placement_.PostToScene());
     this->Undisturbed_ = std::move(bare);
   }
   return *this->Undisturbed_;
 }
 
-int StreamedTerrain::TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others) {
-  if (this->Filled_) { // fills follow from coarse levels, also where finer tiles were made already
-    return 0;
-  }
-  const int levels = this->Source_->TakeOverviews();
-  if (levels > 0) {
-    this->Posts_->ForgetReduced();
-    std::vector<std::shared_ptr<ElevationPyramid>> pyramids = others;
-    pyramids.push_back(this->Pyramid_);
-    for (const std::shared_ptr<ElevationPyramid>& pyramid : pyramids) {
-      PostRectangle coarse{0, 0, pyramid->Lattice().columns, pyramid->Lattice().rows};
-      coarse.from = this->Posts_->FirstReducedLevel();
-      pyramid->Invalidate({coarse});
-    }
-  }
-  return levels;
+int StreamedTerrain::LoadOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others) {
+  return this->Posts_->LoadOverviews(others);
 }
 
 } // namespace dspace

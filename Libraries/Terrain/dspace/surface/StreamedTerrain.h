@@ -1,4 +1,4 @@
-// A raster of any size as a TerrainSurface: heights come from a pyramid of tiles.
+// A raster of any size as a TerrainSurface. A pyramid of tiles provides the heights.
 #ifndef DSPACE_TERRAIN_STREAMEDTERRAIN_H
 #define DSPACE_TERRAIN_STREAMEDTERRAIN_H
 
@@ -22,11 +22,8 @@
 namespace dspace {
 
 struct DegreeGrid;
-struct RayGround;
-class FilledPosts;
 class GroundTracks;
-class PostSurface;
-class RasterPosts;
+class TerrainPosts;
 class TerrainRays;
 
 struct StreamedTerrainOptions {
@@ -34,23 +31,24 @@ struct StreamedTerrainOptions {
   // On a plane (SceneFrame): scene origin in map coordinates; the raster's middle by default.
   std::optional<Eigen::Vector2d> origin;
   double originHeight = 0.0; // [m] above the vertical datum, where scene z = 0
-  // On the body: the scene is the body-fixed frame (Z to the north pole, X to longitude 0), and
-  // height 0 the sphere of the vertical datum's radius, or where it states none of the CRS's
-  // semi-major axis. A degree grid on a sphere is needed. One that
-  // goes once around is closed across its edge, and where it reaches the poles over them.
+  // The terrain stands on the body: the scene is the body-fixed frame (Z to the north pole, X to
+  // longitude 0). Height 0 is the sphere with the radius of the vertical datum or, if it states
+  // none, the semi-major axis of the CRS. Requires a degree grid on a sphere. A grid that goes once
+  // around is closed across its edge, and over the poles if it reaches them.
   bool onBody = false;
-  // On a plane each cell between pixels is halved so often: wheel tracks need posts some
-  // centimetres apart. 0 to 12; on a body it follows from its size.
+  // On a plane, each cell between pixels is halved this many times. Wheel tracks need posts some
+  // centimetres apart. 0 to 12. On a body it follows from the body's size.
   int subdivisions = 0;
   WheelTracksOptions tracks; // on a plane
-  // Holes are filled where data are within so many of the raster's pixels, infinity for all of them
-  // (FilledPosts): drawn and answered alike, told apart by Filled(). Patches lie on it, and over
-  // holes of the raster alone, without a margin. > 0; absent: holes stay.
+  // Fills holes that are within this many pixels of data (FilledPosts); infinity: all. Filled
+  // ground is drawn and answers queries like other ground; Filled() distinguishes it. Patches lie
+  // on it; over holes of the raster they are shown alone, without a margin. > 0; absent: holes
+  // stay.
   std::optional<double> fillHoles;
-  int cells = 124; // of a clipmap level that it will be drawn with: how far it is halved
+  int cells = 124; // a side of the clipmap levels that draw it; sets the number of levels
   ElevationPyramidOptions pyramid;
-  double deadline = 60.0; // [s] that a query waits for tiles
-  // Of higher resolution, later ones on top; see GroupPosts. Level 0 is as fine as the finest.
+  double deadline = 60.0; // [s] longest wait of a query for tiles
+  // Patches of higher resolution, later ones on top; see GroupPosts. The finest sets level 0.
   std::vector<TerrainPatch> patches;
 };
 
@@ -65,21 +63,21 @@ struct ResamplingReport {
   double greatestError = 0.0; // [m]
 };
 
-// Posts stand at pixel centres; on a body they are divided until a chord departs from the sphere by
-// at most a millimetre, and resampled where ResamplingReport says so. Between the posts of level 0
-// are the triangles of HeightGrid: heights are linear in post coordinates. Queries read what is
-// missing, hence wait, and are the same whatever was drawn before; they are for any thread but a
-// drawing one.
+// Posts stand at pixel centres. On a body, cells are divided until a chord departs from the sphere
+// by at most a millimetre, and posts are resampled if ResamplingReport is present. Between the
+// posts of level 0 are the triangles of HeightGrid: heights are linear in post coordinates. Queries
+// read missing tiles and wait for them; results do not depend on what was drawn before. Any thread
+// but a drawing one may query.
 class StreamedTerrain : public TerrainSurface {
 public:
-  // Reads the raster's header and what HeightRange() says. Throws what ElevationSource throws, and
-  // Error(Unsupported) for a raster that cannot stand on a body.
+  // Reads the raster's header and a sample for HeightRange(). Throws what ElevationSource throws,
+  // and Error(Unsupported) for a raster that cannot stand on a body.
   static std::shared_ptr<StreamedTerrain> Open(const std::string& path,
                                                const StreamedTerrainOptions& options = {});
   ~StreamedTerrain() override;
 
   const ElevationInfo& Info() const;
-  const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
+  const std::shared_ptr<ElevationPyramid>& Pyramid() const;
   const PostPlacement& Placement() const { return this->Placement_; }
   // Least and greatest height [m]: exact where the raster has at most 4 million pixels, else that
   // of up to 512 x 512 of them widened by half to either side, a guess that only culling uses.
@@ -88,49 +86,50 @@ public:
   // Map coordinates to level-0 posts; without meaning outside a plane's map or the body.
   Eigen::Vector2d MapToPost(const Eigen::Vector2d& map) const;
   // Level-0 posts from pixels of the raster's corners: the place of an image that lies on it.
-  const Eigen::Affine2d& PixelToPost() const { return this->PixelToPost_; }
+  const Eigen::Affine2d& PixelToPost() const;
   // On a plane only.
   const SceneFrame& Frame() const;
-  std::uint64_t GetVersion() const override { return this->Pyramid_->Arrivals(); }
+  std::uint64_t GetVersion() const override;
   // How often cells between pixels are halved: 2^n posts of level 0 a pixel.
-  int Subdivisions() const { return this->Subdivisions_; }
+  int Subdivisions() const;
   // Whether it goes from pole to pole of its body.
-  bool ReachesPoles() const { return this->Poles_; }
-  // What became of its patches; null without any.
-  const GroupReport* Group() const { return this->Group_ ? &this->Group_->Report() : nullptr; }
+  bool ReachesPoles() const;
+  // The result for each patch; null without patches.
+  const GroupReport* Group() const;
 
-  // What resampling costs; none where every pixel is a post.
+  // The error of resampling; absent if every pixel is a post.
   const std::optional<ResamplingReport>& Resampling() const { return this->Resampling_; }
-  // Reads the overviews that its cache folder has by now, here and in `others` (its pole charts),
-  // where coarse levels are read anew; finer ones and queries stay as they are. Their number of
-  // levels; 0 where there are none, and where holes are filled: fills are made from what the raster
-  // had when it was opened. Throws what ElevationSource::TakeOverviews throws.
-  int TakeOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {});
-  // The level whose posts say all of the raster; those of a group's patches stand closer.
-  int FullLevel() const { return this->FullLevel_; }
+  // Uses the current overviews of the cache folder, here and in `others` (pole charts). Coarse
+  // levels are read again; finer ones and queries do not change. Returns the number of overview
+  // levels; 0 if there are none, and if holes are filled, because fills depend on the overviews at
+  // opening. Throws what ElevationSource::LoadOverviews throws.
+  int LoadOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others = {});
+  // The finest level with information of the raster; patches of a group have finer posts.
+  int FullLevel() const;
 
-  // Wheels leave ruts, in what is drawn and in all that is answered from then on. Places are of the
-  // scene's frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
+  // Adds ruts of wheels, which change drawing and queries from now on. Places are in the scene's
+  // frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
   void AddTracks(const std::vector<TrackAddition>& additions);
   void ClearTracks();
   // Throws what WheelTracks::Restore throws, and Error(Unsupported) on a body.
-  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool goesOn = false);
-  // See TrackFile.h. What is loaded is added; a wheel of its name goes on with it.
+  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool continues = false);
+  // See TrackFile.h. Loaded tracks are added. A wheel of the same name continues
+  // its loaded track.
   void SaveTracks(const std::string& path) const;
   // Throws Error(Resource) for a file of more contacts than `most`.
   void LoadTracks(const std::string& path,
                   std::size_t most = std::numeric_limits<std::size_t>::max());
   const WheelTracks& Tracks() const; // throws Error(Unsupported) on a body
-  // The same ground as it was before all wheels; lives as long as this.
+  // The ground without wheel tracks. Valid as long as this.
   const StreamedTerrain& Undisturbed() const;
-  // HeightRange() and as far as ruts and rims reach beyond it.
+  // HeightRange() widened by the greatest depth of ruts and height of rims.
   std::array<double, 2> DrawnHeights() const;
 
-  // Into `filled` 1 where the ground is made up (StreamedTerrainOptions::fillHoles), 0 where it is
-  // between posts with data, NaN where there is none.
+  // Writes to `filled`: 1 where the ground is filled (StreamedTerrainOptions::fillHoles), 0 where
+  // it is between posts with data, NaN where there is none.
   void Filled(const Eigen::Ref<const Rows3>& points_S, Eigen::Ref<Eigen::VectorXd> filled) const;
   void FilledMap(const Eigen::Ref<const Rows2>& map, Eigen::Ref<Eigen::VectorXd> filled) const;
-  bool FillsHoles() const { return this->Filled_ != nullptr; }
+  bool FillsHoles() const;
 
   // Root mean square [m] of the heights of the raster's pixels within `radius` [m] of each point
   // about the plane that fits them best (least squares, of heights above the vertical datum): the
@@ -161,56 +160,30 @@ protected:
 private:
   StreamedTerrain(const std::string& name, std::shared_ptr<ElevationSource> source,
                   std::vector<std::string> warnings);
-  void StandOnPlane(const StreamedTerrainOptions& options);
-  void StandOnBody(const StreamedTerrainOptions& options);
-  void MakePyramid(const StreamedTerrainOptions& options, bool periodic, bool poles);
+  void InitOnPlane(const StreamedTerrainOptions& options);
+  void InitOnBody(const StreamedTerrainOptions& options);
   void Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options);
-  Eigen::Affine2d PlanePosts() const;        // level-0 posts to the scene
-  const GroundTracks& RequireTracks() const; // throws Error(Unsupported) on a body
-  bool Tracked() const;
-  // What answers there.
-  const PostSurface& SurfaceAt(const Eigen::Vector2d& post) const;
-  void FilledAt(const std::vector<Eigen::Vector2d>& posts,
-                Eigen::Ref<Eigen::VectorXd> filled) const;
+  GroundTracks& RequireTracks() const; // throws Error(Unsupported) on a body
   std::vector<Eigen::Vector2d> PostsOf(const Eigen::Ref<const Rows3>& points_S) const;
-  void HeightsAt(const std::vector<Eigen::Vector2d>& posts,
-                 Eigen::Ref<Eigen::VectorXd> heights) const;
-  const PostSurface& Surface() const { return this->Tracked() ? *this->Tracked_ : *this->Surface_; }
-  void ReadPixels(const PostBlock& block, float* heights) const;
-  void TakeHeightRange();
-  void TakePatches();
-  void MakeRays();
+  void FindHeightBounds();
+  void AddPatchReports();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
   Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;
   bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
 
   std::shared_ptr<ElevationSource> Source_;
-  std::shared_ptr<RasterPosts> Posts_;
-  std::shared_ptr<const FilledPosts> Filled_;
-  std::shared_ptr<const PostSurface> Holed_; // the surface as it is without what is filled
-  std::shared_ptr<const GroupPosts> Group_;
-  std::unique_ptr<PostSurface> Plain_; // of a group: the raster's own posts, where no patch reaches
-  std::shared_ptr<ElevationPyramid> Pyramid_;
-  std::unique_ptr<PostSurface> Surface_;
-  std::unique_ptr<GroundTracks> Tracks_; // on a plane; and what follows
-  std::unique_ptr<PostSurface> Tracked_; // of level 0: ruts are between the raster's posts
-  std::unique_ptr<RayGround> RayGround_;
+  std::shared_ptr<TerrainPosts> Posts_;
   std::unique_ptr<TerrainRays> Rays_;
-  mutable std::mutex Mutex_; // of what follows, which is made when somebody asks
-  mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
   PostPlacement Placement_;
-  std::optional<SceneFrame> Frame_;
-  Eigen::Affine2d PixelToPost_ = Eigen::Affine2d::Identity();
-  Eigen::Affine2d MapToPost_ = Eigen::Affine2d::Identity();
-  bool Poles_ = false;
-  int Subdivisions_ = 0;
-  int FullLevel_ = 0;
+  std::optional<SceneFrame> Frame_; // on a plane
   std::optional<ResamplingReport> Resampling_;
   std::shared_ptr<ElevationPyramid> Pixels_; // the raster's own where it is resampled, and their
   PostPlacement PixelPlacement_;             // places
   double Deadline_ = 60.0;
   std::array<double, 2> HeightRange_ = {0.0, 0.0};
   bool HeightRangeIsExact_ = false;
+  mutable std::mutex Mutex_; // of Undisturbed_
+  mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
 };
 
 } // namespace dspace

@@ -1,4 +1,4 @@
-// What rays on a terrain need of their own, made when the first ray needs it. Not for public
+// The data structures for rays on a terrain, created for the first ray. Not for public
 // headers.
 #ifndef DSPACE_TERRAIN_TERRAINRAYS_H
 #define DSPACE_TERRAIN_TERRAINRAYS_H

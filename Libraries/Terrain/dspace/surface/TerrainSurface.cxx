@@ -9,7 +9,7 @@ namespace dspace {
 
 namespace {
 
-[[noreturn]] void Refuse(const std::string& object, const std::string& message) {
+[[noreturn]] void Reject(const std::string& object, const std::string& message) {
   throw Error(Error::Kind::InvalidArgument, object, message);
 }
 
@@ -20,18 +20,18 @@ void CheckFinite(const std::string& object, const char* what, const Vector& v) {
   std::string values;
   for (Eigen::Index i = 0; i < v.size(); ++i)
     values += (i ? ", " : "") + std::to_string(v[i]);
-  Refuse(object, std::string(what) + " (" + values + ") is not finite");
+  Reject(object, std::string(what) + " (" + values + ") is not finite");
 }
 
 template<typename Rows>
 void CheckRows(const std::string& object, const char* what, const Rows& rows,
                Eigen::Index results) {
   if (rows.rows() != results)
-    Refuse(object,
+    Reject(object,
            std::to_string(results) + " results for " + std::to_string(rows.rows()) + " " + what);
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
     if (!rows.row(i).allFinite())
-      Refuse(object, std::string(what) + ": row " + std::to_string(i) + " is not finite");
+      Reject(object, std::string(what) + ": row " + std::to_string(i) + " is not finite");
 }
 
 double Wrapped(double longitude_deg) {
@@ -125,9 +125,9 @@ RayHit TerrainSurface::Intersect(const Eigen::Vector3d& origin_S,
   CheckFinite(this->Name_, "ray direction", direction_S);
   const double length = direction_S.stableNorm();
   if (!(length > 0.0))
-    Refuse(this->Name_, "ray direction is zero");
+    Reject(this->Name_, "ray direction is zero");
   if (!(maximumDistance >= 0.0))
-    Refuse(this->Name_,
+    Reject(this->Name_,
            "maximum distance " + std::to_string(maximumDistance) + " given; accepted is 0 or more");
   return this->DoIntersect(origin_S, direction_S.stableNormalized(), maximumDistance);
 }
@@ -138,11 +138,11 @@ void TerrainSurface::Intersect(const Eigen::Ref<const Rows3>& origins_S,
   CheckRows(this->Name_, "ray origins", origins_S, distances.size());
   CheckRows(this->Name_, "ray directions", directions_S, distances.size());
   if (!(maximumDistance >= 0.0))
-    Refuse(this->Name_,
+    Reject(this->Name_,
            "maximum distance " + std::to_string(maximumDistance) + " given; accepted is 0 or more");
   for (Eigen::Index i = 0; i < directions_S.rows(); ++i)
     if (directions_S.row(i).isZero(0.0))
-      Refuse(this->Name_, "ray directions: row " + std::to_string(i) + " is zero");
+      Reject(this->Name_, "ray directions: row " + std::to_string(i) + " is zero");
   for (Eigen::Index i = 0; i < distances.size(); ++i)
     distances[i] =
         this->DoIntersect(origins_S.row(i), directions_S.row(i).stableNormalized(), maximumDistance)
@@ -175,7 +175,7 @@ Eigen::Vector3d TerrainSurface::GeographicToMap(const Eigen::Vector3d& lonLatHei
   if (!this->Crs_.HasGeographic())
     this->Crs_.Geographic(); // throws, naming the CRS
   if (std::abs(lonLatHeight.y()) > 90.0)
-    Refuse(this->Name_,
+    Reject(this->Name_,
            "latitude " + std::to_string(lonLatHeight.y()) + " given; accepted is -90 to 90");
   Eigen::Vector2d p =
       lonLatHeight.head<2>().cwiseProduct(this->GeographicSigns_) / this->GeographicUnit_;

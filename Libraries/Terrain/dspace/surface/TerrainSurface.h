@@ -1,4 +1,4 @@
-// The ground as everything else sees it: height, normal, slope, rays, map and scene coordinates.
+// Interface of all terrains: height, normal, slope, rays, map and scene coordinates.
 #ifndef DSPACE_TERRAIN_TERRAINSURFACE_H
 #define DSPACE_TERRAIN_TERRAINSURFACE_H
 
@@ -66,14 +66,14 @@ public:
   TerrainSurface(const TerrainSurface&) = delete;
   TerrainSurface& operator=(const TerrainSurface&) = delete;
 
-  // What it is, for messages: "terrain 'gale.tif'".
+  // The name for messages: "terrain 'gale.tif'".
   const std::string& GetName() const { return this->Name_; }
   const Crs& GetCrs() const { return this->Crs_; }
   const VerticalDatum& GetVerticalDatum() const { return this->VerticalDatum_; }
-  // What was assumed or is in doubt about place and height; shown to the user as they are.
+  // Assumptions and doubts about place and height, as shown to the user.
   const std::vector<std::string>& GetWarnings() const { return this->Warnings_; }
   TerrainBounds GetBounds() const;
-  // Changes with every change of what queries answer or of what is drawn (tiles that arrive).
+  // Changes with every change of query results or of the drawn surface (including loaded tiles).
   virtual std::uint64_t GetVersion() const { return 0; }
 
   // One point, in scene or in map coordinates.
@@ -128,7 +128,7 @@ public:
 protected:
   TerrainSurface(std::string name, Crs crs, VerticalDatum datum, std::vector<std::string> warnings);
 
-  // For what is noticed once the data is there; only while it is being built.
+  // For warnings after the data is loaded. Only during construction.
   void AddWarning(std::string warning) { this->Warnings_.push_back(std::move(warning)); }
 
   virtual TerrainBounds DoGetBounds() const = 0;

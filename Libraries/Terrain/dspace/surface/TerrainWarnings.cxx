@@ -89,7 +89,7 @@ void WarnOfSteepness(const HeightGrid& grid, const Eigen::AlignedBox3d& box,
       << box.sizes().y() << " m";
   if (steep)
     out << ", and half of its slopes are above " << *middle << " degrees";
-  out << ": if its values are no metres, state vertical_scale (metres a unit)";
+  out << ": if its values are not in metres, state vertical_scale (metres per unit)";
   warnings.push_back(out.str());
 }
 

@@ -1,4 +1,4 @@
-// What a terrain says of itself when it is loaded: places and heights that are in doubt.
+// Warnings about doubtful places and heights of a terrain when it is loaded.
 #ifndef DSPACE_TERRAIN_TERRAINWARNINGS_H
 #define DSPACE_TERRAIN_TERRAINWARNINGS_H
 

@@ -11,7 +11,7 @@ namespace dspace {
 namespace {
 
 // Each is compared with every tile in memory, while all who read tiles wait.
-constexpr std::size_t MostRectangles = 256;
+constexpr std::size_t MaximumRectangles = 256;
 
 } // namespace
 
@@ -23,13 +23,14 @@ GroundTracks::GroundTracks(const std::string& name, std::shared_ptr<const PostSo
       Posts_(std::make_shared<const TrackPosts>(this->Bare_, this->Tracks_, postToScene)) {}
 
 std::vector<PostRectangle> GroundTracks::Add(const std::vector<TrackAddition>& additions) {
-  return JoinRectangles(this->Posts_->RectanglesOf(this->Tracks_->Add(additions)), MostRectangles);
+  return JoinRectangles(this->Posts_->RectanglesOf(this->Tracks_->Add(additions)),
+                        MaximumRectangles);
 }
 
 std::vector<PostRectangle> GroundTracks::Restore(const std::vector<TrackStroke>& strokes,
-                                                 bool goesOn) {
-  return JoinRectangles(this->Posts_->RectanglesOf(this->Tracks_->Restore(strokes, goesOn)),
-                        MostRectangles);
+                                                 bool continues) {
+  return JoinRectangles(this->Posts_->RectanglesOf(this->Tracks_->Restore(strokes, continues)),
+                        MaximumRectangles);
 }
 
 std::vector<PostRectangle> GroundTracks::Clear() {

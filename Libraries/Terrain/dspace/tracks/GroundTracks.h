@@ -13,7 +13,8 @@
 
 namespace dspace {
 
-// What changes returns where: rectangles that a pyramid over Posts() invalidates.
+// Functions that change tracks return the changed rectangles, which a pyramid over Posts() must
+// invalidate.
 class GroundTracks {
 public:
   // `name` is for messages; `bare` are the posts without tracks, `postToScene` takes those of level
@@ -29,11 +30,11 @@ public:
 
   // Throw what WheelTracks throws.
   std::vector<PostRectangle> Add(const std::vector<TrackAddition>& additions);
-  std::vector<PostRectangle> Restore(const std::vector<TrackStroke>& strokes, bool goesOn);
+  std::vector<PostRectangle> Restore(const std::vector<TrackStroke>& strokes, bool continues);
   std::vector<PostRectangle> Clear();
   // In `crs`; see TrackFile.h.
   void Save(const std::string& path) const;
-  // What the file holds, to be added. Throws Error(Resource) for more contacts than `most`.
+  // Reads a file as additions. Throws Error(Resource) for more contacts than `most`.
   std::vector<TrackAddition> Read(const std::string& path, std::size_t most) const;
 
 private:

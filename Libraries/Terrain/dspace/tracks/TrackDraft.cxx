@@ -54,7 +54,7 @@ void TrackDraft::Append(const TrackContact& given, bool exact, double tolerance)
       std::abs(c.sinkage - line.back().sinkage) <= still) {
     return; // it stands
   }
-  if (line.size() >= 2 && this->skipped.size() < MostSkipped) {
+  if (line.size() >= 2 && this->skipped.size() < MaximumSkipped) {
     const KeptContact& from = line[line.size() - 2];
     const auto onLine = [&](const KeptContact& between) {
       return OnLine(from, c, between, tolerance);

@@ -10,7 +10,7 @@
 
 namespace dspace {
 
-// What is kept of a contact: half of TrackContact's size.
+// A stored contact, half the size of TrackContact.
 struct KeptContact {
   double x;
   double y;
@@ -20,7 +20,7 @@ struct KeptContact {
 };
 
 struct TrackDraft {
-  static constexpr std::size_t MostSkipped = 64;
+  static constexpr std::size_t MaximumSkipped = 64;
 
   std::string name;
   TrackProfile profile;

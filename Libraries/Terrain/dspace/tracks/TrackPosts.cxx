@@ -7,14 +7,14 @@
 
 #include <dspace/pyramid/ElevationPyramid.h>
 
-#include <dspace/raster/LatestKept.h>
+#include <dspace/raster/LruCache.h>
 
 namespace dspace {
 namespace {
 
 constexpr int Size = ElevationPyramid::TileSize;
 constexpr std::size_t KeptTiles = 128; // 64 KiB each
-constexpr int MostPlaces = 8;          // along a side of a cell
+constexpr int MaximumPlaces = 8;       // along a side of a cell
 constexpr double Widest = 4.0;         // rut widths that posts may be apart
 
 // Depths at places within the cells of a block, where there are any.
@@ -113,8 +113,7 @@ TrackPosts::TrackPosts(std::shared_ptr<const PostSource> source,
     : Source_(std::move(source)), Tracks_(std::move(tracks)), PostToScene_(postToScene),
       SceneToPost_(postToScene.inverse()),
       Tiles_(
-          std::make_unique<LatestKept<Key, std::shared_ptr<const std::vector<float>>>>(KeptTiles)) {
-}
+          std::make_unique<LruCache<Key, std::shared_ptr<const std::vector<float>>>>(KeptTiles)) {}
 
 TrackPosts::~TrackPosts() = default;
 
@@ -146,7 +145,7 @@ std::shared_ptr<const std::vector<float>> TrackPosts::TileOf(const Key& key) con
   auto heights = std::make_shared<std::vector<float>>(std::size_t(Size) * Size);
   this->Source_->Read({int(key[0]), key[1] * Size, key[2] * Size, Size, Size}, heights->data());
   const std::lock_guard<std::mutex> lock(this->Mutex_);
-  this->Tiles_->Keep(key, heights);
+  this->Tiles_->Insert(key, heights);
   return heights;
 }
 
@@ -175,7 +174,7 @@ bool TrackPosts::ReadWithTracks(const PostBlock& block, float* heights, float* t
     return false;
   }
   this->ReadSource(block, heights);
-  Canvas canvas(this->GetLattice(), block, std::min(1 << std::min(block.level, 16), MostPlaces));
+  Canvas canvas(this->GetLattice(), block, std::min(1 << std::min(block.level, 16), MaximumPlaces));
   for (const TrackSegment& segment : segments) {
     canvas.Draw(segment, this->PostToScene_, this->SceneToPost_);
   }

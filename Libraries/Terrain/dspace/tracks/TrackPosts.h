@@ -13,7 +13,7 @@
 
 namespace dspace {
 
-template<typename Key, typename Value> class LatestKept;
+template<typename Key, typename Value> class LruCache;
 
 // On a plane. A post of level 0 is lowered by the depth where it stands; one of a coarser level by
 // the mean over its cell, of 2^level x 2^level places up to 8 x 8, evenly apart. A level whose
@@ -36,7 +36,7 @@ public:
   // 0: no means are taken.
   void Lower(const PostBlock& block, float* heights) const;
 
-  // What to invalidate in a pyramid.
+  // The rectangles to invalidate in a pyramid.
   std::vector<PostRectangle> RectanglesOf(const std::vector<TrackReach>& changed) const;
 
 private:
@@ -51,7 +51,7 @@ private:
   Eigen::Affine2d PostToScene_;
   Eigen::Affine2d SceneToPost_;
   mutable std::mutex Mutex_; // of what follows
-  mutable std::unique_ptr<LatestKept<Key, std::shared_ptr<const std::vector<float>>>> Tiles_;
+  mutable std::unique_ptr<LruCache<Key, std::shared_ptr<const std::vector<float>>>> Tiles_;
 };
 
 } // namespace dspace

@@ -13,15 +13,15 @@ namespace dspace {
 // treadDepth (1 - cos(2 pi s / treadPitch)) / 2, s the distance rolled there, measured along the
 // wheel's heading. Metres.
 struct TrackProfile {
-  static constexpr double MostSinkage = 1.0; // [m]
-  static constexpr double MostTread = 0.25;
-  static constexpr double MostRim = 0.5;
+  static constexpr double MaximumSinkage = 1.0; // [m]
+  static constexpr double MaximumTread = 0.25;
+  static constexpr double MaximumRim = 0.5;
   double width = 0.2;      // of the floor: the wheel's contact; > 0, at most 10
   double wall = 0.02;      // of one wall, seen from above; 0 to 2
   double rimWidth = 0.0;   // of one rim; 0 to 2
-  double rimHeight = 0.0;  // 0 to MostRim
+  double rimHeight = 0.0;  // 0 to MaximumRim
   double treadPitch = 0.0; // 0: no tread
-  double treadDepth = 0.0; // 0 to MostTread
+  double treadDepth = 0.0; // 0 to MaximumTread
 
   double Reach() const { return 0.5 * this->width + this->wall + this->rimWidth; }
   bool operator==(const TrackProfile& o) const;
@@ -31,12 +31,12 @@ struct TrackProfile {
 struct TrackContact {
   static constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector2d place = Eigen::Vector2d::Zero(); // [m]
-  double sinkage = 0.0;                            // [m] below the ground, 0 to MostSinkage
+  double sinkage = 0.0;                            // [m] below the ground, 0 to MaximumSinkage
   double heading = Unknown; // [rad] counter-clockwise from X; unknown: along the path
   double rolled = Unknown;  // [m] by the wheel's rim; unknown: as far as it moved
 };
 
-// What is done to the ground at a place.
+// The effect on the ground at a place.
 struct TrackDepth {
   float depth = 0.0f;  // [m] of the ground's surface, negative on a rim
   float weight = 0.0f; // 1 where it is rolled over, down to 0 at the top of the walls

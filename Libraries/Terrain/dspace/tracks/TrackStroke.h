@@ -1,4 +1,4 @@
-// One wheel's way over the ground.
+// The path of one wheel over the ground.
 #ifndef DSPACE_TERRAIN_TRACKSTROKE_H
 #define DSPACE_TERRAIN_TRACKSTROKE_H
 

@@ -49,12 +49,12 @@ WheelTracks::WheelTracks(std::string name, const WheelTracksOptions& options)
   if (options.byteBudget < (std::size_t(64) << 10)) {
     throw Error(Error::Kind::InvalidArgument, this->Name_,
                 "a budget of " + std::to_string(options.byteBudget) +
-                    " bytes for wheel tracks is refused; accepted is 64 KiB (65536) or more");
+                    " bytes for wheel tracks is rejected; accepted is 64 KiB (65536) or more");
   }
   if (!(options.tolerance >= 0.0 && options.tolerance <= 0.1)) {
     throw Error(Error::Kind::InvalidArgument, this->Name_,
                 "a tolerance of " + std::to_string(options.tolerance) +
-                    " m for wheel tracks is refused; accepted is 0 to 0.1");
+                    " m for wheel tracks is rejected; accepted is 0 to 0.1");
   }
 }
 
@@ -96,7 +96,7 @@ std::size_t WheelTracks::CostOf(const TrackDraft& draft, std::unordered_set<Cell
   return bytes;
 }
 
-void WheelTracks::RequireRoom(std::size_t cost) const {
+void WheelTracks::RequireBudget(std::size_t cost) const {
   if (this->Bytes_ + cost > this->Options_.byteBudget) {
     throw Error(Error::Kind::Resource, this->Name_,
                 "its wheel tracks hold " + std::to_string(this->Bytes_) +
@@ -106,7 +106,7 @@ void WheelTracks::RequireRoom(std::size_t cost) const {
   }
 }
 
-void WheelTracks::TakeSquares(Cell cell) {
+void WheelTracks::AllocateSquares(Cell cell) {
   std::int64_t x = std::int32_t(cell >> 32);
   std::int64_t y = std::int32_t(cell & 0xffffffffu);
   for (auto& squares : this->Squares_) {
@@ -118,7 +118,7 @@ void WheelTracks::TakeSquares(Cell cell) {
   }
 }
 
-void WheelTracks::GiveSquares(Cell cell) {
+void WheelTracks::ReleaseSquares(Cell cell) {
   std::int64_t x = std::int32_t(cell >> 32);
   std::int64_t y = std::int32_t(cell & 0xffffffffu);
   for (auto& squares : this->Squares_) {
@@ -148,7 +148,7 @@ void WheelTracks::Forget(std::uint64_t entry, const Eigen::AlignedBox2d& box) {
     this->Bytes_ -= EntryBytes;
     if (entries.empty()) {
       this->Cells_.erase(found);
-      this->GiveSquares(cell);
+      this->ReleaseSquares(cell);
       this->Bytes_ -= CellBytes;
     }
   });
@@ -228,7 +228,7 @@ void WheelTracks::Commit(TrackDraft& draft, std::vector<TrackReach>& changed) {
       std::vector<std::uint64_t>& entries = found->second;
       if (isNew) {
         this->Bytes_ += CellBytes;
-        this->TakeSquares(cell);
+        this->AllocateSquares(cell);
       }
       entries.push_back(entry);
       this->Bytes_ += EntryBytes;
@@ -243,7 +243,7 @@ std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& addit
     CheckStroke(addition, this->Name_);
     if (!names.insert(addition.name).second && !addition.begin) {
       throw Error(Error::Kind::InvalidArgument, this->Name_,
-                  "track '" + addition.name + "' is given twice; accepted: once, or begun anew");
+                  "track '" + addition.name + "' is given twice; accepted: once, or with `begin`");
     }
   }
   const std::lock_guard<std::mutex> lock(this->Mutex_);
@@ -261,7 +261,7 @@ std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& addit
       draft.Append(contact, addition.exact, this->Options_.tolerance);
     }
     cost += this->CostOf(draft, taken);
-    this->RequireRoom(cost);
+    this->RequireBudget(cost);
     if (draft.stroke == this->Strokes_.size()) {
       draft.stroke = strokes++;
     }
@@ -400,31 +400,32 @@ std::vector<TrackStroke> WheelTracks::Strokes(std::size_t first) const {
   return strokes;
 }
 
-std::vector<TrackReach> WheelTracks::Restore(const std::vector<TrackStroke>& strokes, bool goesOn) {
-  const auto refuse = [this](const TrackStroke& stroke, const std::string& what) {
+std::vector<TrackReach> WheelTracks::Restore(const std::vector<TrackStroke>& strokes,
+                                             bool continues) {
+  const auto reject = [this](const TrackStroke& stroke, const std::string& what) {
     throw Error(Error::Kind::InvalidArgument, "track '" + stroke.name + "' on " + this->Name_,
                 what);
   };
   for (const TrackStroke& stroke : strokes) {
     CheckStroke(stroke, this->Name_);
     if (stroke.contacts.empty()) {
-      refuse(stroke, "it has no contact; accepted to be restored: one or more");
+      reject(stroke, "it has no contact; accepted to be restored: one or more");
     }
-    if (stroke.skipped.size() > TrackDraft::MostSkipped) {
-      refuse(stroke, "it has " + std::to_string(stroke.skipped.size()) +
+    if (stroke.skipped.size() > TrackDraft::MaximumSkipped) {
+      reject(stroke, "it has " + std::to_string(stroke.skipped.size()) +
                          " contacts on its last line; accepted: up to " +
-                         std::to_string(TrackDraft::MostSkipped));
+                         std::to_string(TrackDraft::MaximumSkipped));
     }
     for (const auto* list : {&stroke.contacts, &stroke.skipped}) {
       for (const TrackContact& contact : *list) {
         if (std::isnan(contact.rolled)) {
-          refuse(stroke, "the distance rolled is nan; accepted to be restored: finite numbers");
+          reject(stroke, "the distance rolled is nan; accepted to be restored: finite numbers");
         }
       }
     }
   }
   const std::lock_guard<std::mutex> lock(this->Mutex_);
-  if (goesOn &&
+  if (continues &&
       (strokes.empty() || this->Strokes_.empty() || this->Strokes_.back().name != strokes[0].name ||
        !(this->Strokes_.back().profile == strokes[0].profile))) {
     throw Error(Error::Kind::InvalidArgument, this->Name_,
@@ -442,7 +443,7 @@ std::vector<TrackReach> WheelTracks::Restore(const std::vector<TrackStroke>& str
     draft.name = stroke.name;
     draft.profile = stroke.profile;
     draft.stroke = this->Strokes_.size() + drafts.size() - 1;
-    if (goesOn) {
+    if (continues) {
       --draft.stroke;
       if (drafts.size() == 1) { // from its last contact on
         draft.kept = this->Strokes_.back().contacts.size() - 1;
@@ -454,7 +455,7 @@ std::vector<TrackReach> WheelTracks::Restore(const std::vector<TrackStroke>& str
     std::transform(stroke.skipped.begin(), stroke.skipped.end(), std::back_inserter(draft.skipped),
                    half);
     cost += this->CostOf(draft, taken);
-    this->RequireRoom(cost);
+    this->RequireBudget(cost);
   }
   std::vector<TrackReach> changed;
   for (TrackDraft& draft : drafts) {

@@ -1,4 +1,4 @@
-// What wheels have rolled over: ruts as lines of contacts, found by place, under a byte budget.
+// Wheel tracks: ruts as lines of contacts with a spatial index, under a byte budget.
 #ifndef DSPACE_TERRAIN_WHEELTRACKS_H
 #define DSPACE_TERRAIN_WHEELTRACKS_H
 
@@ -21,11 +21,11 @@
 namespace dspace {
 
 struct TrackAddition : TrackStroke {
-  bool begin = false; // a new stroke; else the wheel's latest one goes on, where there is one
+  bool begin = false; // starts a new stroke; else continues the wheel's latest one, if any
   bool exact = false; // all contacts are kept
 };
 
-// What changed, and how wide the ruts there are.
+// A changed area and the width of its ruts.
 struct TrackReach {
   Eigen::AlignedBox2d box;
   double width = 0.0; // [m], rims included
@@ -39,44 +39,45 @@ struct TrackStatistics {
 };
 
 struct WheelTracksOptions {
-  // All that is kept is counted: 33 bytes a contact, 16 to 32 more for finding it, 96 a square of
-  // 2 m that is rolled over, 4 kB a stroke. Straight ahead that is some 180 bytes a metre of one
-  // wheel, in a curve of 5 m radius some 400: 64 MiB hold 25 km of a vehicle with six wheels.
+  // Budget for all stored data: 33 bytes a contact, 16 to 32 more for the index, 96 per square of 2
+  // m that is rolled over, 4 kB a stroke. That is some 180 bytes per metre of one wheel straight
+  // ahead, some 400 in a curve of 5 m radius: 64 MiB hold 25 km of a vehicle with six wheels.
   std::size_t byteBudget = std::size_t(64) << 20; // at least 64 KiB
-  // Contacts that lie on the line between others to this are left out [m]: place, sinkage and
-  // distance rolled. Then headings depart by at most half a degree, and no line is longer than 1 m.
+  // Contacts that lie on the line between others within this tolerance are omitted [m]: place,
+  // sinkage and distance rolled. Headings then depart by at most half a degree, and no line is
+  // longer than 1 m.
   double tolerance = 1e-3;
 };
 
-// Any thread may call. Where ruts overlap the deepest counts, and where only their rims do the one
-// of the nearest: their order does not matter.
+// Any thread may call. Where ruts overlap, the deepest counts; where only their rims do, the rim of
+// the nearest rut. The order of ruts does not matter.
 class WheelTracks {
 public:
   // `name` is for messages. Throws Error(InvalidArgument) for an option out of range.
   explicit WheelTracks(std::string name, const WheelTracksOptions& options = {});
 
-  // All of them or, with an Error, none: InvalidArgument for a value that is not accepted, Resource
-  // when the budget is used up. A stroke that goes on with another profile is a new one that begins
-  // where the old one ends.
+  // Adds all of them or, on an error, none. Throws Error: InvalidArgument for a value out of range,
+  // Resource if the budget is used up. A stroke that continues with another profile becomes a new
+  // one, which begins at the end of the old one.
   std::vector<TrackReach> Add(const std::vector<TrackAddition>& additions);
   std::vector<TrackReach> Clear();
-  // Strokes as Strokes() gives them, of these or of other tracks: to the bit, and what is added
-  // later is kept as it would be there, if the tolerance is the same. They come after those that
-  // there are; `goesOn`: the first goes on with the last of these, of the same name and profile.
-  // They need what they need there and no more. Throws as Add.
-  std::vector<TrackReach> Restore(const std::vector<TrackStroke>& strokes, bool goesOn = false);
+  // Adds strokes from Strokes() of this or another object, exactly. With the same tolerance, later
+  // additions give the same result as in the original. The strokes come after existing ones.
+  // `continues`: the first one continues the last existing stroke, which has the same name and
+  // profile. They need the same budget as in the original. Throws as Add.
+  std::vector<TrackReach> Restore(const std::vector<TrackStroke>& strokes, bool continues = false);
 
   bool Empty() const;
   TrackStatistics Statistics() const;
   std::size_t StrokeCount() const;
-  // As they are kept, in the order in which they were begun; without the first ones.
+  // As stored, in the order in which they began, from index `first` on.
   std::vector<TrackStroke> Strokes(std::size_t first = 0) const;
-  // Whether anything may reach into a box; true more often than that, by some metres or, for large
-  // boxes, by their size.
+  // Whether a rut may reach into a box. Conservative by some metres or, for large boxes, by their
+  // size.
   bool Reaches(const Eigen::AlignedBox2d& box) const;
-  // By how much ruts change heights at most [m]: downwards (at most 0) and upwards.
+  // Bounds of the change of heights by ruts [m]: downwards (at most 0) and upwards.
   std::array<double, 2> Changes() const;
-  // What reaches into a box, of ruts at least `width` wide; in no order that depends on time.
+  // Segments that reach into a box, of ruts at least `width` wide, in a reproducible order.
   std::vector<TrackSegment> Near(const Eigen::AlignedBox2d& box, double width = 0.0) const;
 
 private:
@@ -92,11 +93,11 @@ private:
   TrackDraft Begin(const TrackAddition& addition) const;
   TrackSegment SegmentOf(const Stroke& stroke, std::size_t index) const;
   std::size_t CostOf(const TrackDraft& draft, std::unordered_set<Cell>& taken) const;
-  void RequireRoom(std::size_t cost) const;
+  void RequireBudget(std::size_t cost) const;
   void Commit(TrackDraft& draft, std::vector<TrackReach>& changed);
   void Forget(std::uint64_t entry, const Eigen::AlignedBox2d& box);
-  void TakeSquares(Cell cell);
-  void GiveSquares(Cell cell);
+  void AllocateSquares(Cell cell);
+  void ReleaseSquares(Cell cell);
 
   std::string Name_;
   WheelTracksOptions Options_;

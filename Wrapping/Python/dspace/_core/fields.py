@@ -25,7 +25,7 @@ def named(about, message):
     return f"{about}: {message}" if about else message
 
 
-def refuse(about, what, value, accepted, kind=InvalidArgument):
+def reject(about, what, value, accepted, kind=InvalidArgument):
     """Raises an error: `what` is `value`, which is not `accepted`."""
     about = about() if callable(about) else about
     raise kind(named(about, f"{what} is {shown(value)}; accepted: {accepted}"), about or "")
@@ -54,14 +54,14 @@ def text(value, what, about=None, accepted="a str"):
             value.encode()
             return value
     except UnicodeEncodeError:
-        refuse(about, what, value, f"{accepted} of whole characters")
-    refuse(about, what, value, accepted, WrongType)
+        reject(about, what, value, f"{accepted} of whole characters")
+    reject(about, what, value, accepted, WrongType)
 
 
 def flag(value, what, about=None):
     """A bool. Other values, such as "no" or None, are rejected although Python gives them a truth value."""
     if not isinstance(value, (bool, np.bool_)):
-        refuse(about, what, value, "True or False", WrongType)
+        reject(about, what, value, "True or False", WrongType)
     return bool(value)
 
 
@@ -72,14 +72,14 @@ def number(value, what, about=None):
             raise TypeError
         return float(value)
     except (TypeError, ValueError, OverflowError):
-        refuse(about, what, value, "a number", WrongType)
+        reject(about, what, value, "a number", WrongType)
 
 
 def real(value, what, about=None, accepted="a number"):
     """A float, finite or infinite, but not NaN."""
     value = number(value, what, about)
     if value != value:
-        refuse(about, what, value, accepted)
+        reject(about, what, value, accepted)
     return value
 
 
@@ -87,7 +87,7 @@ def path(value, what, about=None, accepted="a path"):
     """A path, of a str or a path object, as a str."""
     value = text(os.fspath(value) if isinstance(value, os.PathLike) else value, what, about, accepted)
     if not value or "\0" in value:
-        refuse(about, what, value, f"{accepted} that is not empty and holds no zero bytes")
+        reject(about, what, value, f"{accepted} that is not empty and holds no zero bytes")
     return value
 
 
@@ -98,7 +98,7 @@ def file_path(value, what, about=None):
     except TypeError:
         path = None
     if not isinstance(path, str):
-        refuse(about, what, value, "a path", WrongType)
+        reject(about, what, value, "a path", WrongType)
     return text(path, what, about, "a path")
 
 
@@ -109,7 +109,7 @@ def numbers(value, count, what, about=None, accepted=None):
     except (TypeError, ValueError, OverflowError):
         array = None
     if array is None or array.shape != (count,) or isinstance(value, str):
-        refuse(about, what, value, accepted or f"{count} numbers", WrongType)
+        reject(about, what, value, accepted or f"{count} numbers", WrongType)
     return array
 
 
@@ -118,7 +118,7 @@ def array_of(value, what, accepted, about=None):
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        refuse(about, what, value, accepted, WrongType)
+        reject(about, what, value, accepted, WrongType)
 
 
 def integers(value, count, what, about=None, accepted=None):
@@ -129,14 +129,14 @@ def integers(value, count, what, about=None, accepted=None):
         values = []
     if len(values) != count or not all(isinstance(v, (int, np.integer))
                                        and not isinstance(v, bool) for v in values):
-        refuse(about, what, value, accepted or f"{count} integers", WrongType)
+        reject(about, what, value, accepted or f"{count} integers", WrongType)
     return [int(v) for v in values]
 
 
 def integer(value, what, about=None, accepted="an integer"):
     """One integer."""
     if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
-        refuse(about, what, value, accepted, WrongType)
+        reject(about, what, value, accepted, WrongType)
     return int(value)
 
 
@@ -147,7 +147,7 @@ def items(value, what, about, accepted):
             return list(value)
     except TypeError:
         pass
-    refuse(about, what, value, accepted, WrongType)
+    reject(about, what, value, accepted, WrongType)
 
 
 def word(value, words, what, about=None):
@@ -155,7 +155,7 @@ def word(value, words, what, about=None):
     try:  # an unhashable value is not a word
         return words[value]
     except (KeyError, TypeError):
-        refuse(about, what, value, ", ".join(map(repr, words)))
+        reject(about, what, value, ", ".join(map(repr, words)))
 
 
 def keywords(values, accepted, about=None):
@@ -175,7 +175,7 @@ def color(value, what="the colour", about=None):
             try:
                 return np.array([int(value[i:i + 2], 16) / 255 for i in (1, 3, 5)])
             except ValueError:
-                refuse(about, what, value, accepted)
+                reject(about, what, value, accepted)
         names = vtkNamedColors()
         # CSS has both spellings of grey, VTK one each. VTK ends the process for a str that is no UTF-8.
         plain = value.isascii() and value.replace("_", "").isalnum()
@@ -183,7 +183,7 @@ def color(value, what="the colour", about=None):
             if names.ColorExists(name):
                 c = names.GetColor3d(name)
                 return np.array([c.GetRed(), c.GetGreen(), c.GetBlue()])
-        refuse(about, what, value, accepted)
+        reject(about, what, value, accepted)
     return numbers(value, 3, what, about, accepted)
 
 
@@ -199,15 +199,15 @@ def put(message, about=None, **values):
             low, high = _INTEGERS[field.type]
             accepted = traits.accepted(field) or f"an integer from {low} to {high}"
             if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
-                refuse(about, name, value, accepted, WrongType)
+                reject(about, name, value, accepted, WrongType)
             if not low <= value <= high:
-                refuse(about, name, value, accepted)
+                reject(about, name, value, accepted)
             value = int(value)
         try:
             setattr(message, name, value)
         except (TypeError, ValueError):
             kind = InvalidArgument if isinstance(value, str) else WrongType
-            refuse(about, name, value, _OTHERS.get(field.type, "another type"), kind)
+            reject(about, name, value, _OTHERS.get(field.type, "another type"), kind)
 
 
 def put_given(message, about=None, **values):

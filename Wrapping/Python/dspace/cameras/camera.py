@@ -1,5 +1,5 @@
 """Cameras: their mounts, chases and projections."""
-from dspace._core.fields import about, number, numbers, put, put_given, put_vector, refuse, word
+from dspace._core.fields import about, number, numbers, put, put_given, put_vector, reject, word
 from dspace._core.strict import Strict
 from dspace.frames.frame import put_pose
 from dspace.frames.poses import Pose, to_pose
@@ -194,7 +194,7 @@ def put_projection(message, fov_deg=None, height=None, tangents=None, near=None,
     given = {name: value for name, value in
              (("fov_deg", fov_deg), ("height", height), ("tangents", tangents)) if value is not None}
     if len(given) > 1:
-        refuse(about, "the projection", given, "one of fov_deg, height and tangents")
+        reject(about, "the projection", given, "one of fov_deg, height and tangents")
     if height is not None:
         put(message.orthographic, about, height=height)
     elif tangents is not None:

@@ -1,6 +1,6 @@
 """Sessions, which own scenes and viewports."""
 from dspace._core.delegates import delegate
-from dspace._core.fields import Named, flag, refuse, text
+from dspace._core.fields import Named, flag, reject, text
 from dspace._core.traits import DEFAULT_SCENE
 from dspace.clients.local import LocalClient
 from dspace.errors import AlreadyExists, WrongType
@@ -37,7 +37,7 @@ class Session:
     def execute(self, command):
         """Executes a dspace.proto.commands_pb2.Command and returns its Reply."""
         if not isinstance(command, pb.Command):
-            refuse("session", "the command", command, "a dspace.proto.commands_pb2.Command", WrongType)
+            reject("session", "the command", command, "a dspace.proto.commands_pb2.Command", WrongType)
         return self._client.execute(command)
 
     def scene(self, name=DEFAULT_SCENE, lights=True):
@@ -47,7 +47,7 @@ class Session:
         """
         text(name, "the scene's name", "session")
         if not name:
-            refuse("session", "the scene's name", name, "any that is not empty")
+            reject("session", "the scene's name", name, "any that is not empty")
         command = pb.Command(scene=name)
         command.create_scene.no_lights = not flag(lights, "lights", f"scene {name!r}")
         try:

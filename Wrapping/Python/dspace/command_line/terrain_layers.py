@@ -22,18 +22,18 @@ def add_arguments(parser):
                         help="a band's values from green over ochre to white, least to greatest")
     parser.add_argument("--shapes", dest="layers", action=Layer, metavar="FILE",
                         help="polygons, lines and points: GeoJSON, GeoPackage, Shapefile, ...")
-    parser.set_defaults(refuse=parser.error)
+    parser.set_defaults(reject=parser.error)
 
 
 def check(options):
     """What argparse does not see, in its way."""
     layers = options.layers or []
     if layers and options.color_by_height:
-        options.refuse(f"argument --color-by-height: not allowed with argument --{layers[0][0]}")
+        options.reject(f"argument --color-by-height: not allowed with argument --{layers[0][0]}")
     images = sum(kind == "image" for kind, _ in layers)
     for name, given in (("--image-crs", options.image_crs), ("--image-extent", options.image_extent)):
         if given is not None and images != 1:
-            options.refuse(f"argument {name}: {images} images are given; accepted: one")
+            options.reject(f"argument {name}: {images} images are given; accepted: one")
 
 
 def paint(terrains, options):

@@ -2,7 +2,7 @@
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import about, items, put, refuse, shown, word
+from dspace._core.fields import about, items, put, reject, shown, word
 from dspace._core.strict import Strict
 from dspace.errors import Error, InvalidArgument, WrongType
 from dspace.frames.poses import Pose, multiply, quaternion_of_axis, quaternion_of_matrix, to_pose, vector
@@ -102,7 +102,7 @@ class Frame(Strict):
         """Hangs it under `parent` (scene.root for none), keeping its "local" or its "world" pose."""
         keep_world_pose = word(keep, {"local": False, "world": True}, "keep", self._label)
         if parent is None:
-            refuse(self._label, "the parent", parent, "a frame of its scene; scene.root is the root",
+            reject(self._label, "the parent", parent, "a frame of its scene; scene.root is the root",
                    WrongType)
         self._scene._do("reparent_frame", frame=self._id, parent=self._scene._frame_id(parent),
                         keep_world_pose=keep_world_pose)

@@ -1,7 +1,7 @@
 """Poses, rotations, and what may be given for them."""
 import numpy as np
 
-from dspace._core.fields import array_of, number, numbers, refuse
+from dspace._core.fields import array_of, number, numbers, reject
 from dspace.errors import InvalidArgument, WrongType
 
 # As FrameRules.h has them.
@@ -20,15 +20,15 @@ def quaternion_of_axis(axis, angle_deg):
     if isinstance(axis, str):
         axes = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
         if axis not in axes:
-            refuse(None, "the axis", axis, "x, y, z or 3 numbers")
+            reject(None, "the axis", axis, "x, y, z or 3 numbers")
         axis = axes[axis]
     axis = vector(axis, "the axis")
     length = np.linalg.norm(axis)
     if not 0 < length < np.inf:
-        refuse(None, "the axis", axis, "any direction but zero, of finite numbers")
+        reject(None, "the axis", axis, "any direction but zero, of finite numbers")
     angle_deg = number(angle_deg, "the angle")
     if not np.isfinite(angle_deg):
-        refuse(None, "the angle", angle_deg, "a finite number of degrees")
+        reject(None, "the angle", angle_deg, "a finite number of degrees")
     half = np.radians(angle_deg) / 2
     return np.concatenate(([np.cos(half)], np.sin(half) * axis / length))
 
@@ -82,12 +82,12 @@ class Pose:
         quaternion = numbers(quaternion, 4, "the quaternion", None, "4 numbers w, x, y, z").copy()
         scale = number(scale, "the scale")
         if not (np.abs(position) <= MAXIMUM_COORDINATE).all():  # false for NaN, as all of these
-            refuse(None, "the position", given[0], "3 finite numbers within 1e18 m")
+            reject(None, "the position", given[0], "3 finite numbers within 1e18 m")
         if not abs(np.linalg.norm(quaternion) - 1) <= UNIT_TOLERANCE:
-            refuse(None, "the quaternion", given[1], "w, x, y, z of length 1 within 1e-6; its length "
+            reject(None, "the quaternion", given[1], "w, x, y, z of length 1 within 1e-6; its length "
                    f"is {np.linalg.norm(quaternion):.9g}")
         if not MINIMUM_SCALE <= scale <= MAXIMUM_SCALE:
-            refuse(None, "the scale", scale, "from 1e-12 to 1e12")
+            reject(None, "the scale", scale, "from 1e-12 to 1e12")
         self._hold(position, quaternion, scale)
 
     def _hold(self, position, quaternion, scale):
@@ -105,7 +105,7 @@ class Pose:
         """From px py pz qw qx qy qz scale, or without the scale, which then is 1."""
         array = array_of(row, "the pose", _ROW)
         if array.shape not in ((7,), (8,)):
-            refuse(None, "the pose", row, _ROW, WrongType)
+            reject(None, "the pose", row, _ROW, WrongType)
         return cls(array[:3], array[3:7], array[7] if len(array) == 8 else 1.0)
 
     @classmethod
@@ -217,5 +217,5 @@ def to_pose(position=None, quaternion=None, scale=None, pose=None):
     if array.shape == (4, 4):
         return Pose.from_matrix(array)
     if array.shape not in ((7,), (8,)):
-        refuse(None, "the pose", pose, accepted, WrongType)
+        reject(None, "the pose", pose, accepted, WrongType)
     return Pose.from_row(array)

@@ -1,7 +1,7 @@
 """Settings and connecting, for all kinds of connections to a server."""
 import os
 
-from dspace._core.fields import flag, number, refuse, text
+from dspace._core.fields import flag, number, reject, text
 from dspace._core.replies import make_error, to_reply, warn
 from dspace._core.signals import SLICE, check_signals
 from dspace.errors import WrongType
@@ -11,16 +11,16 @@ def prepare(link, address, certificate, key, authority, insecure, timeout, label
     """Checks the settings that all kinds of links have, and sets them. Returns a function that sets the same on another
     link and returns that link."""
     if "\0" in text(address, "the address", label):
-        refuse(label, "the address", address, "one without a character of code 0")
+        reject(label, "the address", address, "one without a character of code 0")
     files = []
     for value, what in ((certificate, "certificate"), (key, "key"), (authority, "authority")):
         if value is not None and not isinstance(value, (str, os.PathLike)):
-            refuse(label, what, value, "the path of a PEM file", WrongType)
+            reject(label, what, value, "the path of a PEM file", WrongType)
         files.append("" if value is None else os.path.abspath(os.fspath(value)))
     flag(insecure, "insecure", label)
     seconds = number(timeout, "the timeout", label)
     if not 0 < seconds <= 1e6:
-        refuse(label, "the timeout", timeout, "seconds above 0, up to 1e6")
+        reject(label, "the timeout", timeout, "seconds above 0, up to 1e6")
 
     def prepared(other):
         other.SetCertificates(*files)

@@ -3,7 +3,7 @@ import os
 import time
 
 from dspace import vtk as _vtk
-from dspace._core.fields import flag, number, refuse, text
+from dspace._core.fields import flag, number, reject, text
 from dspace._core.replies import make_error, to_bytes, to_reply, warn
 from dspace._core.signals import SLICE, check_signals
 from dspace._core.traits import UNAWAITED
@@ -190,7 +190,7 @@ class RemoteSession(Session):
         if rate is not None:
             rate = number(rate, "the pace", "session")
             if not 0 < rate < float("inf"):
-                refuse("session", "the pace", rate, "None, or a finite number above 0")
+                reject("session", "the pace", rate, "None, or a finite number above 0")
         self._client._open().SetPace(0.0 if rate is None else rate)
         self._client.pace = rate
 

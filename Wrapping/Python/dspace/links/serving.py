@@ -7,7 +7,7 @@ import sys
 import tempfile
 import time
 
-from dspace._core.fields import flag, items, number, path, refuse
+from dspace._core.fields import flag, items, number, path, reject
 from dspace.errors import DeadlineExceeded, Io
 
 LISTENING = "dspace serve: listening on "
@@ -33,7 +33,7 @@ class ServerProcess:
     def __init__(self, roots, record=None, pack=False, timeout=60.0):
         self._timeout = number(timeout, "the timeout", "server")
         if not self._timeout > 0:
-            refuse("server", "the timeout", timeout, "seconds above 0")
+            reject("server", "the timeout", timeout, "seconds above 0")
         pack = flag(pack, "pack", "server")
         self._record = [] if record is None else [
             "--record", os.path.abspath(path(record, "the recording", "server"))] + ["--pack"] * pack

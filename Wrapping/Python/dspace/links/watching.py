@@ -2,7 +2,7 @@
 import time
 
 from dspace import vtk as _vtk
-from dspace._core.fields import real, refuse, text
+from dspace._core.fields import real, reject, text
 from dspace._core.replies import make_error, to_reply
 from dspace._core.signals import SLICE, check_signals
 from dspace._core.wire import encode
@@ -137,14 +137,14 @@ class Watcher(Session):
         active one until Viewport.event moves it. scene: default the server's only one."""
         label = f"view {text(name, 'the name', 'watcher')!r}"
         if not name:
-            refuse("watcher", "the view's name", name, "any that is not empty")
+            reject("watcher", "the view's name", name, "any that is not empty")
         if scene is None:
             scenes = self.scenes
             if len(scenes) != 1:
-                refuse(label, "the scene", None, "one of " + (", ".join(map(repr, scenes)) or "none yet"))
+                reject(label, "the scene", None, "one of " + (", ".join(map(repr, scenes)) or "none yet"))
             scene = next(iter(scenes.values()))
         elif not isinstance(scene, Scene) or scene._client is not self._client:
-            refuse(label, "the scene", scene, "a scene of this watcher", WrongType)
+            reject(label, "the scene", scene, "a scene of this watcher", WrongType)
         name = OWN + name
         if not camera:
             return scene.add_viewport(size, name=name, samples=samples)

@@ -3,7 +3,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dspace._core.fields import flag, number, numbers, refuse, text
+from dspace._core.fields import flag, number, numbers, reject, text
 from dspace.errors import InvalidArgument
 from dspace.frames.poses import Pose
 from dspace.movies.path import FovPath, PlacePath, TurnPath, looking
@@ -41,17 +41,17 @@ class Key:
             put("run", _finite(self.run, "run", about))
         put("fov_deg", _finite(self.fov_deg, "fov_deg", about))
         if not 1e-6 <= self.fov_deg <= 179:
-            refuse(about, "fov_deg", self.fov_deg, "1e-6 to 179 degrees")
+            reject(about, "fov_deg", self.fov_deg, "1e-6 to 179 degrees")
         if (self.quaternion is None) == (self.target is None):
-            refuse(about, "what it looks at", (self.quaternion, self.target), "one of quaternion and target")
+            reject(about, "what it looks at", (self.quaternion, self.target), "one of quaternion and target")
         if self.easing not in EASINGS:
-            refuse(about, "easing", self.easing, " or ".join(map(repr, EASINGS)))
+            reject(about, "easing", self.easing, " or ".join(map(repr, EASINGS)))
         put("cut", flag(self.cut, "cut", about))
         put("frame", text(self.frame, "frame", about, "a frame's path"))
         if self.target_frame is not None:
             put("target_frame", text(self.target_frame, "target_frame", about, "a frame's path"))
             if self.target is None:
-                refuse(about, "target_frame", self.target_frame, "none without a target")
+                reject(about, "target_frame", self.target_frame, "none without a target")
         put("position", _triple(self.position, "position", about))
         put("up", _triple(self.up, "up", about))
         try:
@@ -64,21 +64,21 @@ class Key:
             raise type(error)(f"{about}: {error}", about) from None
         if self.target is not None and self.target_frame in (None, self.frame):
             if looking(self.position, self.target, self.up) is None:
-                refuse(about, "the target", self.target, f"another place than {self.position}, and not along "
+                reject(about, "the target", self.target, f"another place than {self.position}, and not along "
                        f"up, {self.up}")
 
 
 def _finite(value, what, about, low=-np.inf):
     value = number(value, what, about)
     if not np.isfinite(value) or value < low:
-        refuse(about, what, value, "a finite number" + (f" of {low:g} or more" if np.isfinite(low) else ""))
+        reject(about, what, value, "a finite number" + (f" of {low:g} or more" if np.isfinite(low) else ""))
     return value
 
 
 def _triple(value, what, about):
     array = numbers(value, 3, what, about)
     if not np.isfinite(array).all():
-        refuse(about, what, value, "3 finite numbers")
+        reject(about, what, value, "3 finite numbers")
     return tuple(map(float, array))
 
 
@@ -156,7 +156,7 @@ class Shot:
             if not self.follows:
                 q = looking(position, target, up)
                 if q is None:
-                    refuse(f"the key at {key.time:g} s", "the target", key.target, "another place than the "
+                    reject(f"the key at {key.time:g} s", "the target", key.target, "another place than the "
                            "camera's, and not along up")
                 quaternions.append(q)
         places = PlacePath(self.times, positions, self.rests)

@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time as clock
 
-from dspace._core.fields import integer, path as path_of, refuse, text
+from dspace._core.fields import integer, path as path_of, reject, text
 from dspace._core.files import AtomicFile, atomic_write
 from dspace.errors import Error, Io
 from dspace.movies.draw import Stage, open_run, png, require_run
@@ -37,7 +37,7 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
     codec = codec_of(out, movie.size)
     jobs = integer(jobs, "jobs", "movie", "an integer from 1 to 64")
     if not 1 <= jobs <= 64:
-        refuse("movie", "jobs", jobs, "an integer from 1 to 64")
+        reject("movie", "jobs", jobs, "an integer from 1 to 64")
     require_run(run)
     if scheduler is not None:
         require_address(scheduler)
@@ -47,7 +47,7 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
         path_of(run, "the run", "movie", "a recording's path or FILE.py:NAME")
         run = absolute(run)  # workers may stand in another folder
     elif jobs > 1 or scheduler:
-        refuse("movie", "the run", run, "a recording's path or FILE.py:NAME, where several processes share it")
+        reject("movie", "the run", run, "a recording's path or FILE.py:NAME, where several processes share it")
     if codec is not None:  # what is missing at the end is told at the beginning
         programs()
         _check_place(out)
@@ -90,7 +90,7 @@ def require_address(scheduler):
     address = re.fullmatch(r"(tcp|tls)://(\[[0-9A-Fa-f:.]+\]|[^\s:/\[\]]+):([0-9]{1,5})",
                            text(scheduler, "the scheduler", "movie"))
     if not address or not 1 <= int(address[3]) <= 65535:
-        refuse("movie", "the scheduler", scheduler, "tcp://HOST:PORT or tls://HOST:PORT, of a Dask scheduler")
+        reject("movie", "the scheduler", scheduler, "tcp://HOST:PORT or tls://HOST:PORT, of a Dask scheduler")
 
 
 @contextlib.contextmanager

@@ -1,7 +1,7 @@
 """Movies: cameras through key frames, several views in one picture, texts over it."""
 import math
 
-from dspace._core.fields import Named, integer, integers, number, path as path_of, refuse
+from dspace._core.fields import Named, integer, integers, number, path as path_of, reject
 from dspace._core.files import atomic_write
 from dspace._core.traits import DEFAULT_SAMPLES, SAMPLES, SIDE
 from dspace.cameras.camera import Camera
@@ -34,21 +34,21 @@ class Movie:
         accepted = f"(width, height), whole numbers from {SIDE[0]} to {SIDE[1]}"
         self.size = tuple(integers(size, 2, "the size", about, accepted))
         if not all(SIDE[0] <= each <= SIDE[1] for each in self.size):
-            refuse(about, "the size", self.size, accepted)
+            reject(about, "the size", self.size, accepted)
         self.rate = number(rate, "the rate", about)
         if not 0.01 <= self.rate <= 1000:
-            refuse(about, "the rate", rate, "0.01 to 1000 pictures a second")
+            reject(about, "the rate", rate, "0.01 to 1000 pictures a second")
         accepted = f"an integer from {SAMPLES[0]} to {SAMPLES[1]}"
         self.samples = integer(samples, "samples", about, accepted)
         if not SAMPLES[0] <= self.samples <= SAMPLES[1]:
-            refuse(about, "samples", samples, accepted)
+            reject(about, "samples", samples, accepted)
         self.start = None if start is None else number(start, "start", about)
         self.speed = number(speed, "speed", about)
         if not (math.isfinite(self.start or 0.0) and math.isfinite(self.speed)):
-            refuse(about, "start and speed", (start, speed), "finite numbers")
+            reject(about, "start and speed", (start, speed), "finite numbers")
         self._duration = None if duration is None else number(duration, "the duration", about)
         if self._duration is not None and not 0 < self._duration <= 1e6:
-            refuse(about, "the duration", duration, "above 0, up to 1e6 seconds")
+            reject(about, "the duration", duration, "above 0, up to 1e6 seconds")
         self.views, self.overlays = Named("view", {}), []
         self.label = ""  # of its file
 
@@ -68,7 +68,7 @@ class Movie:
         view: a view's name (default: the first, made now if there is none). values: see Key; frame= another
         frame (a Frame or its path) than the one that the camera stands on."""
         if not isinstance(viewport, (Viewport, Camera, type(None))):
-            refuse("movie", "what the key sees", viewport, "a dspace.Viewport, a dspace.Camera, or None", WrongType)
+            reject("movie", "what the key sees", viewport, "a dspace.Viewport, a dspace.Camera, or None", WrongType)
         if view is None:
             view = next(iter(self.views), None)
         elif view not in self.views:
@@ -102,7 +102,7 @@ class Movie:
         """Seconds."""
         last = max((key.time for view in self.views.values() for key in view.keys), default=0.0)
         if self._duration is None and not last:
-            refuse("movie", "the duration", None, "seconds, where no key comes after 0 s")
+            reject("movie", "the duration", None, "seconds, where no key comes after 0 s")
         return last if self._duration is None else self._duration
 
     @property

@@ -3,7 +3,7 @@ import math
 import re
 from dataclasses import dataclass, field
 
-from dspace._core.fields import color, flag, integer, number, numbers, refuse, text
+from dspace._core.fields import color, flag, integer, number, numbers, reject, text
 from dspace._core.traits import DEFAULT_SCENE, FONT_SIZES
 from dspace.errors import WrongType
 from dspace.scene.viewport import ANCHORS
@@ -51,17 +51,17 @@ class View:
     def __post_init__(self):
         about = f"view {self.name!r}"
         if not text(self.name, "the name", about):
-            refuse("a view", "the name", self.name, "one that is not empty")
+            reject("a view", "the name", self.name, "one that is not empty")
         self.rectangle = tuple(map(float, numbers(self.rectangle, 4, "the rectangle", about)))
         x, y, width, height = self.rectangle
         if not (0 <= x < 1 and 0 <= y < 1 and 0 < width <= 1 + 1e-9 - x and 0 < height <= 1 + 1e-9 - y):
-            refuse(about, "the rectangle", self.rectangle, "left, top, width, height within 0 to 1")
+            reject(about, "the rectangle", self.rectangle, "left, top, width, height within 0 to 1")
         for name in ("scene", "vantage", "camera"):
             text(getattr(self, name), name, about)
         for name in ("ornaments", "corner_axes"):
             flag(getattr(self, name), name, about)
         if isinstance(self.hide, str) or not all(isinstance(each, str) for each in self.hide):
-            refuse(about, "hide", self.hide, "a list of fragments' names", WrongType)
+            reject(about, "hide", self.hide, "a list of fragments' names", WrongType)
         self.hide = tuple(self.hide)
         self._check_colors(about)
         self._check_distances(about)
@@ -73,20 +73,20 @@ class View:
                 continue
             parts = color(value, name, about)
             if not all(0 <= each <= 1 for each in parts):
-                refuse(about, name, value, "red, green and blue from 0 to 1")
+                reject(about, name, value, "red, green and blue from 0 to 1")
             if not isinstance(value, str):
                 setattr(self, name, tuple(map(float, parts)))
         if self.background_top is not None and self.background is None:
-            refuse(about, "background_top", self.background_top, "none without a background")
+            reject(about, "background_top", self.background_top, "none without a background")
 
     def _check_distances(self, about):
         near, far = (None if value is None else number(value, name, about)
                      for name, value in (("near", self.near), ("far", self.far)))
         if near is not None and not 1e-9 <= near <= 1e18:
-            refuse(about, "near", self.near, "1e-9 to 1e18 metres")
+            reject(about, "near", self.near, "1e-9 to 1e18 metres")
         least = 0.05 if near is None else near
         if far is not None and not (least < far <= 1e18 or far == math.inf):
-            refuse(about, "far", self.far, f"more than near ({least:g}), up to 1e18 metres, or infinite")
+            reject(about, "far", self.far, f"more than near ({least:g}), up to 1e18 metres, or infinite")
         self.near, self.far = near, far
 
     def pixels(self, size):
@@ -96,7 +96,7 @@ class View:
         left, top, right, bottom = (round(round(part, 9) * pixels) for part, pixels in
                                     zip((x, y, x + width, y + height), (*size, *size)))
         if right <= left or bottom <= top:
-            refuse(f"view {self.name!r}", "the rectangle", self.rectangle, f"a pixel or more of {size}")
+            reject(f"view {self.name!r}", "the rectangle", self.rectangle, f"a pixel or more of {size}")
         return left, top, right, bottom
 
 
@@ -122,30 +122,30 @@ class Overlay:
         rows = []
         for number_, row in enumerate(self.rows, 1):
             if not isinstance(row, (tuple, list)) or len(row) != 2 or not all(isinstance(c, str) for c in row):
-                refuse(about, "a row", row, "a label and a value, each a str", WrongType)
+                reject(about, "a row", row, "a label and a value, each a str", WrongType)
             rows.append(tuple(row))
             if re.search("[{}]", FIELD.sub("", row[1])):
-                refuse(about, f"the value of row {number_}", row[1], "each brace with its other one, as in {run:.2f}; "
+                reject(about, f"the value of row {number_}", row[1], "each brace with its other one, as in {run:.2f}; "
                        "{{ or }} for a brace that is drawn")
             for key, form in FIELD.findall(row[1]):
                 if not writable(form, key in ("movie", "run")):
-                    refuse(about, "a value's format", f"{{{key}:{form}}}", "one such as {run:.2f}, of up to "
+                    reject(about, "a value's format", f"{{{key}:{form}}}", "one such as {run:.2f}, of up to "
                            f"{WIDEST} characters and places")
         self.rows = tuple(rows)
         if not self.title and not rows:
-            refuse(about, "what it says", "", "a title, or rows")
+            reject(about, "what it says", "", "a title, or rows")
         if self.anchor not in ANCHORS:
-            refuse(about, "anchor", self.anchor, ", ".join(map(repr, ANCHORS)))
+            reject(about, "anchor", self.anchor, ", ".join(map(repr, ANCHORS)))
         integer(self.font_size, "font_size", about, "an integer, 0 or 4 to 200")
         if self.font_size and not FONT_SIZES[0] <= self.font_size <= FONT_SIZES[1]:
-            refuse(about, "font_size", self.font_size, "0 or 4 to 200 pixels")
+            reject(about, "font_size", self.font_size, "0 or 4 to 200 pixels")
         self.since = number(self.since, "since", about)
         if not math.isfinite(self.since):
-            refuse(about, "since", self.since, "a finite number")
+            reject(about, "since", self.since, "a finite number")
         if self.until is not None:
             self.until = number(self.until, "until", about)
             if not self.until > self.since:
-                refuse(about, "until", self.until, f"after since ({self.since:g} s)")
+                reject(about, "until", self.until, f"after since ({self.since:g} s)")
 
     def shows(self, time):
         return self.since <= time and (self.until is None or time < self.until)

@@ -3,7 +3,7 @@ import os
 
 import numpy as np
 
-from dspace._core.fields import Named, refuse
+from dspace._core.fields import Named, reject
 from dspace._core.strict import Strict
 from dspace.errors import WrongType
 from dspace.kinematics.frames_file import FILE_NAME, path_of, read_frames_file
@@ -56,7 +56,7 @@ class Assembly(Strict):
         """Stands as a vehicle of dspace.rover that was solved on terrain: its base and all frames."""
         for each in ("position", "quaternion", "frames"):
             if not hasattr(state, each):
-                refuse(f"vehicle {self._name!r}", "the state", state,
+                reject(f"vehicle {self._name!r}", "the state", state,
                        "what dspace.rover's solve() returned", WrongType)
         rows = [np.concatenate((state.position, state.quaternion, (self.pose.scale,)))]
         rows += [np.concatenate((position, quaternion, (1.0,)))

@@ -3,7 +3,7 @@ import numpy as np
 
 from dspace._core import wire
 from dspace._core.fields import (about, array_of, file_path, flag, integers, keywords, number, numbers, put,
-                                 put_color, put_given, put_vector, refuse, shown, word)
+                                 put_color, put_given, put_vector, reject, shown, word)
 from dspace._core.replies import warn
 from dspace.cameras.camera import put_projection
 from dspace.errors import InvalidArgument, WrongType
@@ -56,7 +56,7 @@ class ObjectFactory:
         label = f"file {first!r}"
         turn = word("z" if up is None else up, UP, "up", label)
         if not isinstance(levels, (list, tuple)):
-            refuse(label, "levels", levels, "a list of (path, pixels)", WrongType)
+            reject(label, "levels", levels, "a list of (path, pixels)", WrongType)
         kind = ("URDF" if first.lower().endswith(".urdf")
                 else "frames.json" if is_assembly(first) else None)
         if kind:

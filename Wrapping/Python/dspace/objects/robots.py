@@ -1,7 +1,7 @@
 """Articulated models: joints that move frames."""
 from collections.abc import Mapping
 
-from dspace._core.fields import Named, flag, number, refuse, text
+from dspace._core.fields import Named, flag, number, reject, text
 from dspace._core.strict import Strict
 from dspace.errors import WrongType
 from dspace.frames.poses import Pose
@@ -162,7 +162,7 @@ class Robot(Strict):
 
         clamp: what lies beyond a limit is set to it; else it raises."""
         if not hasattr(positions, "items"):
-            refuse(self._label, "positions", positions, "a dict {name: degrees or metres}", WrongType)
+            reject(self._label, "positions", positions, "a dict {name: degrees or metres}", WrongType)
         self._set(positions, clamp)
 
     def place(self, state):
@@ -174,7 +174,7 @@ class Robot(Strict):
         The terrain's frame must be the one that the robot hangs on."""
         for each in ("position", "quaternion", "joints"):
             if not hasattr(state, each):
-                refuse(self._label, "the state", state, "what dspace.rover's solve() returned", WrongType)
+                reject(self._label, "the state", state, "what dspace.rover's solve() returned", WrongType)
         pose = Pose(state.position, state.quaternion, self.pose.scale)
         self.set_joints(state.joints, clamp=True)  # refuses another vehicle's before anything moves
         self.pose = pose

@@ -3,7 +3,7 @@ import bisect
 import math
 import time
 
-from dspace._core.fields import flag, integer, number, real, refuse, text
+from dspace._core.fields import flag, integer, number, real, reject, text
 from dspace._core.replies import to_reply, warn
 from dspace._core.traits import scene_name
 from dspace._core.wire import command_of
@@ -152,7 +152,7 @@ class Playback:
         speed = real(speed, "the speed", self.file.label)
         until = None if until is None else real(until, "until", self.file.label, "a time [s]")
         if on_step is not None and not callable(on_step):
-            refuse(self.file.label, "on_step", on_step, "a function of the Playback", WrongType)
+            reject(self.file.label, "on_step", on_step, "a function of the Playback", WrongType)
         paced = speed != 0 and math.isfinite(speed)
         direction = -1 if speed < 0 else 1
         began, from_time = time.monotonic(), self.time

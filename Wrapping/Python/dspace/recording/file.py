@@ -5,7 +5,7 @@ import threading
 from typing import NamedTuple
 
 from dspace import vtk as _vtk
-from dspace._core.fields import refuse, text
+from dspace._core.fields import reject, text
 from dspace._core.replies import make_error, to_bytes
 from dspace._core.signals import SLICE, check_signals
 from dspace.errors import Closed, Corrupt, WrongThread
@@ -19,7 +19,7 @@ def path_of(path):
     path = text(os.fspath(path) if isinstance(path, os.PathLike) else path, "the path", "recording",
                 "a str or a path")
     if not path or "\0" in path:
-        refuse("recording", "the path", path, "one that is not empty and holds no zero bytes")
+        reject("recording", "the path", path, "one that is not empty and holds no zero bytes")
     return os.path.abspath(path)
 
 

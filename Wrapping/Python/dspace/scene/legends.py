@@ -1,5 +1,5 @@
 """Colour bars over a viewport's picture."""
-from dspace._core.fields import flag, items, number, put, put_color, put_given, refuse, word
+from dspace._core.fields import flag, items, number, put, put_color, put_given, reject, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.proto import commands_pb2 as pb
 from dspace.telemetry.telemetry import Channel
@@ -16,7 +16,7 @@ def put_value(row, value, viewport, table):
         row.value = str(value)
         return
     if channel.scene != viewport.scene:
-        refuse(table, "the scene of " + repr(channel.name), channel.scene.name, "the viewport's")
+        reject(table, "the scene of " + repr(channel.name), channel.scene.name, "the viewport's")
     row.telemetry = channel.name
     put_given(row, table, digits=digits)
 
@@ -79,7 +79,7 @@ class ViewportLegends:
                                       "layer of false colour", self._viewport._label())
             given = {"title": shown.name, "unit": shown.unit or ""}
         else:
-            refuse(self._viewport._label, "a legend", shown, "one of a Terrain or of a layer of false colour",
+            reject(self._viewport._label, "a legend", shown, "one of a Terrain or of a layer of false colour",
                    WrongType)
         (low, high), colors = ramp["range"], list(ramp["colors"])
         if low > high:  # a ramp may run downwards

@@ -1,7 +1,7 @@
 """Checks that arguments of a scene's methods belong to the scene."""
 import numpy as np
 
-from dspace._core.fields import named, refuse, text
+from dspace._core.fields import named, reject, text
 from dspace.cameras.vantage import Vantage
 from dspace.errors import InvalidArgument, WrongType
 from dspace.frames.frame import Frame
@@ -42,8 +42,8 @@ class SceneMembership:
         if isinstance(frame, (int, np.integer)) and not isinstance(frame, bool):
             if 0 < frame < 2**63:
                 return int(frame)
-            refuse(f"scene {self._scene.name!r}", "the frame's id", frame, "an id, from 1 to 2^63 - 1")
-        refuse(f"scene {self._scene.name!r}", "the frame", frame, "a Frame, a Robot, an Assembly, a path or an id",
+            reject(f"scene {self._scene.name!r}", "the frame's id", frame, "an id, from 1 to 2^63 - 1")
+        reject(f"scene {self._scene.name!r}", "the frame", frame, "a Frame, a Robot, an Assembly, a path or an id",
                WrongType)
 
     def name_of(self, thing, kind, what, about=None):
@@ -53,14 +53,14 @@ class SceneMembership:
         if isinstance(thing, str):
             return text(thing, f"the {what}", about or f"scene {self._scene.name!r}", "a name")
         if not isinstance(thing, kind):
-            refuse(about or f"scene {self._scene.name!r}", f"the {what}", thing,
+            reject(about or f"scene {self._scene.name!r}", f"the {what}", thing,
                    f"a dspace.{kind.__name__} of scene {self._scene.name!r} or its name", WrongType)
         self.require_own(thing, f"{what} {thing.name!r}", about)
         return thing.name
 
     def fragment_name(self, fragment, default=""):
         if fragment is None and default is None:
-            refuse(f"scene {self._scene.name!r}", "the fragment", None, "a dspace.Fragment or its name",
+            reject(f"scene {self._scene.name!r}", "the fragment", None, "a dspace.Fragment or its name",
                    WrongType)
         return self.name_of(fragment, Fragment, "fragment")
 

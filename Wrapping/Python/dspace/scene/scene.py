@@ -3,7 +3,7 @@ import numpy as np
 
 from dspace._core import wire
 from dspace._core.delegates import delegate
-from dspace._core.fields import (Named, about, array_of, flag, integers, keywords, put, put_given, put_vector, refuse,
+from dspace._core.fields import (Named, about, array_of, flag, integers, keywords, put, put_given, put_vector, reject,
                                  shown)
 from dspace._core.strict import Strict
 from dspace.cameras.camera import CHASE, Camera, put_chase, put_projection
@@ -158,7 +158,7 @@ class Scene(Strict):
         changes by C++ code wait for the next command; further changes of poses are merged into one
         event, which lists each frame once."""
         if not callable(callback):
-            refuse(f"scene {self._name_!r}", "the callback", callback, "a function of one FrameEvent",
+            reject(f"scene {self._name_!r}", "the callback", callback, "a function of one FrameEvent",
                    WrongType)
         self._do("follow_frames")
         return self._client.frame_listeners.add(self, callback)
@@ -166,7 +166,7 @@ class Scene(Strict):
     def remove_listener(self, token):
         """Removes a callback of on_frame_change. Returns False if there is none of that token."""
         if not isinstance(token, int):
-            refuse(f"scene {self._name_!r}", "the token", token, "what on_frame_change returned",
+            reject(f"scene {self._name_!r}", "the token", token, "what on_frame_change returned",
                    WrongType)
         listeners = self._client.frame_listeners
         if not listeners.remove(self, token):
@@ -303,7 +303,7 @@ class Scene(Strict):
             put_vector(look.up, up, "up", label)
         elif chase is not None:
             if not isinstance(chase, dict):
-                refuse(label, "chase", chase, f"a dict of {', '.join(CHASE)}", WrongType)
+                reject(label, "chase", chase, f"a dict of {', '.join(CHASE)}", WrongType)
             keywords(chase, CHASE, f"{label}, chase")
             put_chase(mount.chase, **chase, about=label)
         else:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dspace._core.delegates import delegate
-from dspace._core.fields import file_path, flag, integers, items, put, put_color, put_given, refuse, word
+from dspace._core.fields import file_path, flag, integers, items, put, put_color, put_given, reject, word
 from dspace._core.strict import Strict
 from dspace._core.traits import SIDE
 from dspace.cameras.camera import Camera
@@ -209,7 +209,7 @@ class Viewport(Strict):
     @vantage.setter
     def vantage(self, vantage):
         if vantage is None:
-            refuse(self._label, "the vantage", None, "a dspace.Vantage or its name", WrongType)
+            reject(self._label, "the vantage", None, "a dspace.Vantage or its name", WrongType)
         self._do("set_viewport", vantage=self.scene._vantage_name(vantage, self._label))
 
     @property
@@ -286,7 +286,7 @@ class Viewport(Strict):
         rows = rows.items() if hasattr(rows, "items") else rows
         for row in items(rows, "rows", table, "a dict or pairs of a label and a value"):
             if not isinstance(row, (tuple, list)) or len(row) != 2:
-                refuse(table, "a row", row, "a label and a value", WrongType)
+                reject(table, "a row", row, "a label and a value", WrongType)
             put_value(message.row.add(label=str(row[0])), row[1], self, table)
         put_given(message, table, font_size=font_size, margin=margin,
                   background_opacity=background_opacity)

@@ -4,7 +4,7 @@ import time as _time
 
 import numpy as np
 
-from dspace._core.fields import items, number, put, put_vector, real, refuse, shown, text, word
+from dspace._core.fields import items, number, put, put_vector, real, reject, shown, text, word
 from dspace._core.strict import Strict
 from dspace.errors import DeadlineExceeded, NotFound, WrongType
 from dspace.frames.frame import Frame
@@ -174,7 +174,7 @@ class Question(Strict):
         label = f"question {self.name!r}"
         text(answer, "the answer", label)
         if self.choices and answer not in self.choices:
-            refuse(label, "the answer", answer, ", ".join(map(repr, self.choices)))
+            reject(label, "the answer", answer, ", ".join(map(repr, self.choices)))
         event = service_pb2.ViewerEvent()
         event.answer.question, event.answer.answer = self.name, answer
         self._scene._client.tell(event)
@@ -209,7 +209,7 @@ class SceneMessages:
         if time is not None:
             message.time_s = number(time, "the time", label)
         if data is not None and not hasattr(data, "items"):
-            refuse(label, "the data", data, "a dict of names to numbers, texts, or (number, unit) pairs", WrongType)
+            reject(label, "the data", data, "a dict of names to numbers, texts, or (number, unit) pairs", WrongType)
         for name, value in (data or {}).items():
             datum = message.datum.add()
             put(datum, label, name=name)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import about, array_of, items, number, put, refuse, shown, text, word
+from dspace._core.fields import about, array_of, items, number, put, reject, shown, text, word
 from dspace._core.strict import Strict
 from dspace._core.traits import limits
 from dspace.errors import InvalidArgument, NotFound, WrongType
@@ -44,7 +44,7 @@ def _line(value, label):
     if size > MAXIMUM_TEXT:
         raise InvalidArgument(f"{label}: its text has {size} bytes; accepted: up to {MAXIMUM_TEXT}", label)
     if CONTROLS.search(value):
-        refuse(label, "its text", value, "one without control characters (no tab, no line break)")
+        reject(label, "its text", value, "one without control characters (no tab, no line break)")
     return value
 
 
@@ -206,7 +206,7 @@ class Telemetry(Mapping):
                 try:
                     message.label[-1].value = each
                 except (TypeError, ValueError):
-                    refuse(label, "a label's value", each, "an integer from -2147483648 to 2147483647")
+                    reject(label, "a label's value", each, "an integer from -2147483648 to 2147483647")
         limits = dict(zip(LIMITS, (alarm_low, warning_low, warning_high, alarm_high)))
         if any(limit is not None for limit in limits.values()):
             _put_limits(message.limits, limits, label)
@@ -228,10 +228,10 @@ class Telemetry(Mapping):
             keys = values.ravel() if quick else items(values, "the channels", "telemetry",
                                                       "a list of channels or names, or an integer array of ids")
             if numbers.shape != (len(keys),):
-                refuse("telemetry", "the shape of the values", numbers.shape, f"({len(keys)},), one a channel")
+                reject("telemetry", "the shape of the values", numbers.shape, f"({len(keys)},), one a channel")
             if quick:
                 if len(keys) and keys.min() < 0:
-                    refuse("telemetry", "an id", int(keys.min()), "ids of channels, from 1 on")
+                    reject("telemetry", "an id", int(keys.min()), "ids of channels, from 1 on")
                 command = self._scene._command()
                 command.set_telemetry.SetInParent()
                 wire.put_array(command.set_telemetry, "id", keys.astype(np.uint64))
@@ -242,7 +242,7 @@ class Telemetry(Mapping):
         elif hasattr(values, "items"):
             pairs = [(*self._known(key), value) for key, value in values.items()]
         else:
-            refuse("telemetry", "the values", values, "a dict of names to values, or channels and an array",
+            reject("telemetry", "the values", values, "a dict of names to values, or channels and an array",
                    WrongType)
         numbers, texts = self._scene._command(), self._scene._command()
         ids, found = [], []
@@ -274,7 +274,7 @@ class Telemetry(Mapping):
         """(name, id, kind) of a channel or a name."""
         if isinstance(key, Channel):
             if key.scene != self._scene:
-                refuse(_label(key.name), "its scene", key.scene.name, f"a channel of {self._scene.name!r}")
+                reject(_label(key.name), "its scene", key.scene.name, f"a channel of {self._scene.name!r}")
             return key.name, key.id, key._kind
         found = ids_of(self._scene).get(text(key, "the name", "telemetry", "a channel, or its name"))
         if found is None:

@@ -2,7 +2,7 @@
 import math
 import warnings
 
-from dspace._core.fields import items, number, put, real, refuse, text, word
+from dspace._core.fields import items, number, put, real, reject, text, word
 from dspace._core.traits import DEFAULT_SCENE
 from dspace.errors import DspaceWarning, WrongType
 from dspace.frames.frame import Frame, put_pose
@@ -16,7 +16,7 @@ KINDS = {kind: kind for kind in ("picked", "selection", "answer", "edited", "dra
 def _value(name, about):
     """The label of an edited value in messages. Rejects an empty name."""
     if not text(name, "the name", about):
-        refuse(about, "the name of a value", name, "one that is not empty")
+        reject(about, "the name of a value", name, "one that is not empty")
     return f"value {name!r}"
 
 
@@ -51,7 +51,7 @@ class ViewerEvents:
         say, or of one kind only: "picked", "selection", "answer", "edited" or "dragged". Called by
         process_events(). Callbacks stay until the session is closed."""
         if not callable(callback):
-            refuse("session", "the callback", callback, "a function of one ViewerEvent", WrongType)
+            reject("session", "the callback", callback, "a function of one ViewerEvent", WrongType)
         if kind is not None:
             word(kind, KINDS, "the kind", "session")
         self._session._client.events.callbacks.append((kind, callback))
@@ -66,9 +66,9 @@ class ViewerEvents:
         low, high = number(low, "low", label), number(high, "high", label)
         text(unit, "the unit", label)
         if not low <= high:
-            refuse(label, "low, high", (low, high), "low <= high")
+            reject(label, "low, high", (low, high), "low <= high")
         if not callable(callback):
-            refuse(label, "the callback", callback, "a function of one number", WrongType)
+            reject(label, "the callback", callback, "a function of one number", WrongType)
 
         def hear(event):
             edited = event.edited
@@ -96,7 +96,7 @@ class ViewerEvents:
         """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:
         dspace.NotFound when nobody drives; up to 1 MiB."""
         if not isinstance(event, service_pb2.ViewerEvent):
-            refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
+            reject("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
         self._session._client.tell(event)
 
     def answer(self, question, answer):
@@ -112,14 +112,14 @@ class ViewerEvents:
         label = _value(name, "event")
         value = number(value, "the value", label)
         if not math.isfinite(value):
-            refuse(label, "it", value, "a finite number")
+            reject(label, "it", value, "a finite number")
         channel = next((scene.telemetry[name] for scene in self._session.scenes.values() if name in scene.telemetry), None)
         if channel is not None:
             if channel.kind == "text" or (channel.kind == "choice" and value not in channel.labels):
-                refuse(label, "it", value, "a channel of numbers or choices" if channel.kind == "text"
+                reject(label, "it", value, "a channel of numbers or choices" if channel.kind == "text"
                        else ", ".join(f"{number} ({label})" for number, label in channel.labels.items()))
             if unit is not None and unit != channel.unit:
-                refuse(label, "the unit", unit, repr(channel.unit))
+                reject(label, "the unit", unit, repr(channel.unit))
             unit = channel.unit
         unit = "" if unit is None else unit
         event = service_pb2.ViewerEvent()
@@ -132,10 +132,10 @@ class ViewerEvents:
         objects = items(objects, "the objects", "event", "a list of objects")
         for each in objects:
             if not isinstance(each, GraphicsObject):
-                refuse("event", "an object", each, "a GraphicsObject", WrongType)
+                reject("event", "an object", each, "a GraphicsObject", WrongType)
         scenes = {each.scene.name for each in objects}
         if len(scenes) > 1:
-            refuse("event", "the selection's scenes", sorted(scenes), "objects of one scene")
+            reject("event", "the selection's scenes", sorted(scenes), "objects of one scene")
         event.selection.scene = scenes.pop() if scenes else ""
         event.selection.object.extend(each.id for each in objects)
         self.tell(event)
@@ -156,7 +156,7 @@ class ViewerEvents:
                 message.scene = frame.scene.name
                 setattr(message, field, frame.id)
         if not isinstance(relative_to, (Frame, type(None))):
-            refuse(label, "relative_to", relative_to, "a Frame, or None for the root", WrongType)
+            reject(label, "relative_to", relative_to, "a Frame, or None for the root", WrongType)
         message.goal = goal.path if isinstance(goal, Frame) else goal
         put_pose(message.pose, to_pose(position, quaternion, None, pose))
         put(message, label, done=done)

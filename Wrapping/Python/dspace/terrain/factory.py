@@ -1,6 +1,6 @@
 """Opens the terrain of a scene."""
 from dspace._core.fields import (Named, array_of, file_path, flag, items, keywords, numbers, put, put_color, put_given,
-                                 put_vector, refuse, shown, word)
+                                 put_vector, reject, shown, word)
 from dspace.errors import InvalidArgument, WrongType
 from dspace.terrain.terrain import MODES, Terrain
 
@@ -11,19 +11,19 @@ def _put_patches(message, label, patches):
     for index, patch in enumerate(items(patches, "patches", label, accepted)):
         what = f"patch {index}"
         if not isinstance(patch, dict):
-            refuse(label, what, patch, "a dict of path and options", WrongType)
+            reject(label, what, patch, "a dict of path and options", WrongType)
         sent = message.patch.add()
         known = [field.name for field in sent.DESCRIPTOR.fields]
         keywords(patch, known, f"{label}, {what}")
         if "path" not in patch:
-            refuse(label, what, patch, "a dict that has a path")
+            reject(label, what, patch, "a dict that has a path")
         given = dict(patch, path=file_path(patch["path"], "the path", f"{label}, {what}"))
         put_given(sent, f"{label}, {what}", **given)
 
 
 def _folder(value, label):
     folder = "" if isinstance(value, bool) else file_path(value, "the cache", label)
-    return folder or refuse(label, "the cache", value, "a folder, False or None", WrongType)
+    return folder or reject(label, "the cache", value, "a folder, False or None", WrongType)
 
 
 class TerrainFactory:
@@ -88,13 +88,13 @@ class TerrainFactory:
             message.relief.SetInParent()
             known = [field.name for field in message.relief.DESCRIPTOR.fields]
             if not isinstance(relief, dict):
-                refuse(label, "relief", relief, f"a dict of {', '.join(known)}", WrongType)
+                reject(label, "relief", relief, f"a dict of {', '.join(known)}", WrongType)
             keywords(relief, known, f"{label}, relief")
             put(message.relief, label, **relief)
         if origin is not None:
             values = array_of(origin, "the origin", "map x, y[, height]", label).ravel()
             if len(values) not in (2, 3):
-                refuse(label, "the origin", origin, "map x, y[, height]", WrongType)
+                reject(label, "the origin", origin, "map x, y[, height]", WrongType)
             put_vector(message.map_origin, [*values, 0.0][:3], "the origin", label)
         message.fragment = self._scene._fragment_name(fragment)
         message.unlit = not flag(lit, "lit", label)

@@ -1,5 +1,5 @@
 """Colour layers of terrain: images, false colour, shapes and noise painted on it."""
-from dspace._core.fields import color, file_path, flag, items, numbers, put, put_color, put_given, refuse, shown
+from dspace._core.fields import color, file_path, flag, items, numbers, put, put_color, put_given, reject, shown
 from dspace._core.strict import Strict
 from dspace.errors import NotFound, WrongType
 
@@ -145,11 +145,11 @@ class TerrainLayers:
         _put_raster(message, label, path, crs, extent)
         put_given(message, label, band=band, low=low, high=high)
         if band is not None and message.band == 0:
-            refuse(label, "band", band, "an integer from 1 on")
+            reject(label, "band", band, "an integer from 1 on")
         for value in () if colors is None else items(colors, "colors", label, "a list of colours"):
             put_color(message.color.add(), value, "a colour of the ramp", label)
         if colors is not None and not message.color:
-            refuse(label, "colors", colors, "one colour or more, or None")
+            reject(label, "colors", colors, "one colour or more, or None")
         return self._added(command)
 
     def add_shapes(self, path, line=(1, 1, 0), fill=(1, 1, 0, 0.25), width=None, pixels=2.0, point=6.0,
@@ -226,7 +226,7 @@ class TerrainLayers:
         put(message, label, terrain=self._name, opacity=opacity, hidden=not flag(visible, "visible", label))
         put_given(message, label, name=name, position=position)
         if name == "":
-            refuse(label, "the name of a layer", name, "a str that is not empty, or None")
+            reject(label, "the name of a layer", name, "a str that is not empty, or None")
         return command
 
     def _added(self, command):
@@ -251,5 +251,5 @@ def _shade(value, what, label):
     except (TypeError, ValueError):
         values = ()
     if len(values) not in (3, 4):
-        refuse(label, what, value, _SHADE, WrongType)
+        reject(label, what, value, _SHADE, WrongType)
     return (*values, 1.0)[:4]

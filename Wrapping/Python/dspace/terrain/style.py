@@ -1,5 +1,5 @@
 """The style of a clipmap: false colour, lines, details and noise over its own colour."""
-from dspace._core.fields import file_path, flag, items, keywords, numbers, put, put_color, put_given, refuse, word
+from dspace._core.fields import file_path, flag, items, keywords, numbers, put, put_color, put_given, reject, word
 from dspace.errors import InvalidArgument, WrongType
 
 COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.Ramp.By
@@ -82,11 +82,11 @@ class TerrainStyle:
 def _put_detail(message, detail, label):
     """A dict into a Detail."""
     if not isinstance(detail, dict):
-        refuse(label, "it", detail, "a dict of image, size, slope, height, opacity", WrongType)
+        reject(label, "it", detail, "a dict of image, size, slope, height, opacity", WrongType)
     keywords(detail, ("image", "size", "slope", "height", "opacity"), label)
     for needed in ("image", "size"):
         if needed not in detail:
-            refuse(label, "it", detail, f"a dict with {needed!r}", WrongType)
+            reject(label, "it", detail, f"a dict with {needed!r}", WrongType)
     low, high = numbers(detail.get("slope", (0, 90)), 2, "its slope", label, "low, high")
     put(message, label, path=file_path(detail["image"], "its image", label), size=detail["size"],
         slope_low=low, slope_high=high, opacity=detail.get("opacity", 0.5))
@@ -99,11 +99,11 @@ def _put_noise(message, noise, label):
     """A dict into a Noise."""
     accepted = ("wavelength", "amplitude", "octaves", "gain", "seed")
     if not isinstance(noise, dict):
-        refuse(label, "it", noise, f"a dict of {', '.join(accepted)}", WrongType)
+        reject(label, "it", noise, f"a dict of {', '.join(accepted)}", WrongType)
     keywords(noise, accepted, label)
     for needed in accepted[:2]:
         if needed not in noise:
-            refuse(label, "it", noise, f"a dict with {needed!r}", WrongType)
+            reject(label, "it", noise, f"a dict with {needed!r}", WrongType)
     put(message, label, **{"octaves": 4, "gain": 0.5, "seed": 0, **noise})
 
 
@@ -114,7 +114,7 @@ def _put_lines(message, lines, what, label):
     lines = lines if isinstance(lines, dict) else {"interval": lines}
     keywords(lines, ("interval", "width", "color", "opacity"), f"{label}, {what}")
     if "interval" not in lines:
-        refuse(label, what, lines, "an interval, or a dict with one", WrongType)
+        reject(label, what, lines, "an interval, or a dict with one", WrongType)
     put(message, f"{label}, {what}", interval=lines["interval"], width=lines.get("width", 1.0),
         opacity=lines.get("opacity", 1.0))
     put_color(message.color, lines.get("color", (0, 0, 0)), f"the colour of its {what}", label)

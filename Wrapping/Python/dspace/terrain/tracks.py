@@ -2,7 +2,7 @@
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, file_path, flag, put, put_given, refuse
+from dspace._core.fields import array_of, file_path, flag, put, put_given, reject
 from dspace.errors import InvalidArgument, WrongType
 
 _CONTACTS = "a dict of wheels' names to contacts (x, y) or (n, 2), or what a vehicle's solve() returns"
@@ -34,11 +34,11 @@ class TerrainTracks:
         # Of a vehicle's state the wheels' middles: a wide wheel may rest on either edge.
         contacts = getattr(wheels, "wheel_centers", wheels)
         if not isinstance(contacts, dict):
-            refuse(label, "wheels", wheels, _CONTACTS, WrongType)
+            reject(label, "wheels", wheels, _CONTACTS, WrongType)
         for what, given in (("sinkage", sinkage), ("heading_deg", heading_deg), ("rolled", rolled)):
             unknown = set(given) - set(contacts) if isinstance(given, dict) else set()
             if unknown:
-                refuse(label, f"a wheel of {what}", sorted(unknown, key=str)[0],
+                reject(label, f"a wheel of {what}", sorted(unknown, key=str)[0],
                        f"wheels that are given: {', '.join(map(repr, contacts))}")
         command = self._scene._command()
         message = command.track_wheels

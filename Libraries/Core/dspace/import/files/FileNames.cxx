@@ -48,7 +48,7 @@ std::string PercentDecode(const std::string& text) {
 }
 
 std::string ResolveReference(const std::string& fromFile, const std::string& reference) {
-  const auto refuse = [&](const std::string& why) {
+  const auto reject = [&](const std::string& why) {
     throw Error(Error::Kind::Unsupported, "file '" + fromFile + "'",
                 "refers to '" + reference + "', " + why);
   };
@@ -56,10 +56,10 @@ std::string ResolveReference(const std::string& fromFile, const std::string& ref
   std::replace(name.begin(), name.end(), '\\', '/');
   const std::size_t colon = name.find(':');
   if (name.empty() || name.find('\0') != std::string::npos) {
-    refuse("which is no file name");
+    reject("which is not a file name");
   }
   if (name[0] == '/' || (colon != std::string::npos && colon < name.find('/'))) {
-    refuse("which is not a relative file name; only files beside the model are read");
+    reject("which is not a relative file name; only files beside the model are read");
   }
   const fs::path relative = fs::path(name).lexically_normal();
   auto part = relative.begin();
@@ -67,7 +67,7 @@ std::string ResolveReference(const std::string& fromFile, const std::string& ref
     ++part;
   }
   if (part != relative.end() && *part == "..") {
-    refuse("which is more than one folder above the model's own");
+    reject("which is more than one folder above the model's own");
   }
   return (fs::path(fromFile).parent_path() / relative).string();
 }

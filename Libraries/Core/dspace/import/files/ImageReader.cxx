@@ -87,7 +87,7 @@ std::shared_ptr<const Image> ReadImageMemory(const void* data, std::size_t size,
     hints.attribute("oiio:UnassociatedAlpha", 1);
     if (!input->open(name, spec, hints)) {
       throw Error(Error::Kind::Corrupt, object,
-                  "is no readable " + type + ": " + input->geterror());
+                  "is not a readable " + type + ": " + input->geterror());
     }
     CheckSize(spec, object);
     auto image = std::make_shared<Image>();

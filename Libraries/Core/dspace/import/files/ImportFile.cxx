@@ -15,7 +15,7 @@ std::string FileObject(const std::string& path) {
 
 std::string ReadFileBytes(const std::string& path, std::size_t maximum) {
   namespace fs = std::filesystem;
-  NoteFileRead(path); // before it is read: a change meanwhile shows
+  NoteFileRead(path); // before reading, so that a concurrent change is detected
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {

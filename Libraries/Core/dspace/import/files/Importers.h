@@ -8,7 +8,7 @@
 
 namespace dspace {
 
-// Each reads one file of its own format, whatever the file's extension. It may leave CheckModel,
+// Each reads one file of its own format and ignores the file's extension. It may leave CheckModel,
 // ImportOptions::strict and the naming of Model::path to ReadModel; it honours maximumTriangles.
 // Throws Error as ReadModel does.
 Model ReadGltf(const std::string& path, const ImportOptions& options); // glTF 2.0 text and binary

@@ -154,7 +154,7 @@ void CheckResult(const Model& model, const ImportOptions& options) {
                     std::to_string(options.maximumTriangles) + " are accepted");
   }
   if (options.strict && !model.warnings.empty()) {
-    throw Error(Error::Kind::Corrupt, object, model.warnings.front() + " (refused: strict)");
+    throw Error(Error::Kind::Corrupt, object, model.warnings.front() + " (rejected: strict)");
   }
 }
 

@@ -12,13 +12,13 @@ namespace dspace {
 // How a file is read.
 struct ImportOptions {
   bool strict = false;                     // warnings (missing textures, meshes, ...) become errors
-  std::size_t maximumTriangles = 50000000; // a file that expands beyond this is refused
-  bool pointCloud = false; // points alone are drawn; else a file without faces or lines is refused
+  std::size_t maximumTriangles = 50000000; // a file that expands beyond this is rejected
+  bool pointCloud = false; // points alone are drawn; else a file without faces or lines is rejected
 };
 
 // Reads `path` by its content (magic bytes) and, where that is silent, its extension:
 // .gltf .glb .wrl .wrz .iv .obj .stl .ply. Triangles that the file gives no normals get them from
-// ComputeNormals with its default crease angle. A file without faces and lines is refused unless
+// ComputeNormals with its default crease angle. A file without faces and lines is rejected unless
 // options.pointCloud, with which the vertices of a PLY or OBJ become points. URDF is read by
 // ReadUrdf (Urdf.h), since it has joints. Throws Error: NotFound, Io, Unsupported (type), Corrupt
 // (with what is wrong and where).

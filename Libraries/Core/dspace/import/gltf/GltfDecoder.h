@@ -50,7 +50,7 @@ struct GltfRequest {
 };
 
 // Decodes a request through Assimp, one mesh a primitive. Throws Error(Corrupt) where Assimp
-// refuses, or gives other counts than the file says.
+// rejects, or gives other counts than the file says.
 std::vector<Mesh> DecodeGltf(const GltfDocument& document, const GltfMaterials& materials,
                              GltfRequest& request, std::vector<std::string>& warnings);
 

@@ -129,7 +129,7 @@ void GltfDocument::ParseJson(const char* begin, const char* end) {
     message = e.what();
   }
   if (!good || !this->Root_.isObject()) {
-    this->Fail("is no glTF: its JSON is damaged or truncated: " + Utf8Beginning(message, 200));
+    this->Fail("is not glTF: its JSON is damaged or truncated: " + Utf8Beginning(message, 200));
   }
   for (const char* name :
        {"accessors", "bufferViews", "buffers", "images", "materials", "meshes", "nodes", "samplers",
@@ -160,7 +160,7 @@ std::size_t GltfDocument::Count(const Json::Value& object, const char* key, std:
     return fallback;
   }
   if (!value.isUInt64() || value.asUInt64() > MaximumCount) {
-    this->Fail(where + "." + key + " is no whole number from 0 to 2^40");
+    this->Fail(where + "." + key + " is not a whole number from 0 to 2^40");
   }
   return static_cast<std::size_t>(value.asUInt64());
 }
@@ -185,7 +185,7 @@ double GltfDocument::Number(const Json::Value& object, const char* key, double f
     return fallback;
   }
   if (!value.isNumeric() || !std::isfinite(value.asDouble())) {
-    this->Fail(where + "." + key + " is no finite number");
+    this->Fail(where + "." + key + " is not a finite number");
   }
   return value.asDouble();
 }
@@ -204,7 +204,7 @@ std::vector<double> GltfDocument::Numbers(const Json::Value& object, const char*
     numbers.push_back(good ? value[i].asDouble() : 0.0);
   }
   if (!good) {
-    this->Fail(where + "." + key + " is no array of " + std::to_string(n) + " finite numbers");
+    this->Fail(where + "." + key + " is not an array of " + std::to_string(n) + " finite numbers");
   }
   return numbers;
 }
@@ -234,7 +234,7 @@ void GltfDocument::CheckVersionAndExtensions() const {
   const std::string version =
       asset.isObject() && asset["version"].isString() ? asset["version"].asString() : "";
   if (version.compare(0, 2, "2.") != 0) {
-    this->Fail(version.empty() ? "is no glTF: asset.version is missing"
+    this->Fail(version.empty() ? "is not glTF: asset.version is missing"
                                : "is glTF " + version + "; version 2 is read",
                version.empty() ? Error::Kind::Corrupt : Error::Kind::Unsupported);
   }
@@ -261,7 +261,7 @@ std::string GltfDocument::LoadUri(const std::string& uri) const {
     std::string bytes;
     if (comma == std::string::npos || mark == std::string::npos || mark > comma ||
         !DecodeBase64(uri.data() + comma + 1, uri.data() + uri.size(), bytes)) {
-      this->Fail("has a data: URI that is no base64");
+      this->Fail("has a data: URI that is not base64");
     }
     return bytes;
   }

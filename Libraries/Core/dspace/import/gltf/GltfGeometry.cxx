@@ -220,7 +220,7 @@ private:
     if (!accessor.hasView && !primitive.draco) {
       this->Document_.Fail(where + " has no buffer view");
     }
-    // Assimp drops faces with indices out of range without a word.
+    // Assimp silently drops faces with indices out of range.
     const std::uint32_t largest =
         primitive.draco ? 0 : GltfAccessorMaximum(this->Document_, accessor);
     if (largest >= primitive.vertices) {

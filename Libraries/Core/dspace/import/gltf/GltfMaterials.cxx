@@ -12,7 +12,7 @@ namespace dspace {
 
 namespace {
 
-// All textures of one file together: beyond this a file is refused, whatever its compressed size.
+// All textures of one file together: beyond this a file is rejected, whatever its compressed size.
 constexpr std::size_t MaximumTextureBytes = std::size_t(1) << 31;
 
 // sRGB encoding of a linear value in [0, 1] (IEC 61966-2-1).

@@ -20,7 +20,7 @@ Eigen::Affine3d NodeTransform(const GltfDocument& document, const Json::Value& n
   const std::vector<double> s = document.Numbers(node, "scale", 3, {1, 1, 1}, where);
   const Eigen::Quaterniond q(r[3], r[0], r[1], r[2]); // the file lists x y z w
   if (!(q.norm() > 1e-6) || !std::isfinite(q.norm())) {
-    document.Fail(where + ".rotation is no rotation");
+    document.Fail(where + ".rotation is not a rotation");
   }
   local =
       Eigen::Translation3d(t[0], t[1], t[2]) * q.normalized() * Eigen::Scaling(s[0], s[1], s[2]);

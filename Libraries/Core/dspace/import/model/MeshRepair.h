@@ -6,8 +6,8 @@
 
 namespace dspace {
 
-// Makes the normals unit length. Where one has no length (or is not finite) the mesh's normals are
-// dropped, so that whoever draws it computes them, and false is returned.
+// Makes the normals unit length. If one has no length or is not finite, drops all normals of the
+// mesh, so that they are computed later, and returns false.
 bool NormalizeNormals(Mesh& mesh);
 
 // Drops the vertices that no index names, keeping the order of the others. Meshes with an index

@@ -113,7 +113,7 @@ private:
   void CheckNode(const ModelNode& node, std::size_t index) const {
     if (node.parent < -1 || node.parent >= static_cast<int>(index)) {
       this->Fail("node", index, node.name,
-                 "parent " + std::to_string(node.parent) + " is no earlier node");
+                 "parent " + std::to_string(node.parent) + " is not an earlier node");
     }
     if (!node.local.matrix().allFinite()) {
       this->Fail("node", index, node.name, "its transform is not finite");

@@ -1,4 +1,4 @@
-// What an importer returns: meshes, materials and a node tree, free of VTK and OpenGL.
+// The result of an importer: meshes, materials and a node tree, free of VTK and OpenGL.
 #ifndef DSPACE_IMPORT_MODEL_H
 #define DSPACE_IMPORT_MODEL_H
 
@@ -67,13 +67,13 @@ struct ModelNode {
   std::vector<int> meshes;                             // indices into Model::meshes
 };
 
-// One imported file, unscaled and unrotated: exactly what the file says, in its own units and axes.
+// One imported file, unscaled and unrotated, in its own units and axes.
 struct Model {
   std::string path;
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
   std::vector<ModelNode> nodes;      // parents come before children
-  std::vector<std::string> warnings; // what was left out or repaired, each naming what and where
+  std::vector<std::string> warnings; // each names an omission or a repair and its place
 
   // Triangles over all nodes, instances counted each time.
   std::size_t TriangleCount() const;
@@ -84,7 +84,7 @@ struct Model {
 };
 
 // Throws Error(Corrupt) naming `path` and the mesh when an index, vertex, node or material of the
-// model is out of range or not finite: what every importer's result passes before it is returned.
+// model is out of range or not finite. Every importer calls it before it returns.
 void CheckModel(const Model& model);
 
 } // namespace dspace

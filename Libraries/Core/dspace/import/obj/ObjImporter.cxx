@@ -221,7 +221,7 @@ Model ReadObj(const std::string& path, const ImportOptions& options) {
   for (const tinyobj::shape_t& shape : shapes) {
     builder.Add(shape);
   }
-  if (text.sections.empty()) { // ReadModel refuses them unless a point cloud is asked for
+  if (text.sections.empty()) { // ReadModel rejects them unless a point cloud is asked for
     builder.AddAllPoints();
   }
   model.meshes = builder.Finish();

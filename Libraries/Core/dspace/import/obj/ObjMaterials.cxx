@@ -49,7 +49,7 @@ private:
         return {library};
       }
     } catch (const Error&) {
-      return {library}; // refused again, with its warning, where it is read
+      return {library}; // rejected again, with its warning, where it is read
     }
     std::istringstream words(library);
     std::vector<std::string> names;

@@ -23,7 +23,7 @@ struct ObjMaterials {
 };
 
 // Reads the libraries that an OBJ file's mtllib statements name (each the rest of its line: one
-// name, with blanks, or several), and their textures. What is missing is a warning.
+// name, with blanks, or several), and their textures. Each missing file is a warning.
 ObjMaterials ReadObjMaterials(const std::string& objPath, const std::vector<std::string>& libraries,
                               std::vector<std::string>& warnings);
 

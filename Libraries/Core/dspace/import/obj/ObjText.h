@@ -9,9 +9,9 @@
 
 namespace dspace {
 
-// What tinyobjloader is handed in place of the file. It takes NaN for zero, skips faces with bad
-// indices, splits names at spaces and knows no continued lines; so every number is checked here,
-// and its text has absolute indices and, as object names, numbers of sections.
+// The text for tinyobjloader in place of the file. The library takes NaN for zero, skips faces with
+// bad indices, splits names at spaces and knows no continued lines; so every number is checked
+// here, and its text has absolute indices and, as object names, numbers of sections.
 struct ObjText {
   // Consecutive faces of one group and material.
   struct Section {

@@ -76,7 +76,7 @@ PlyType ParseType(const std::string& word, const Lines& lines) {
     }
   }
   lines.Fail("'" + Utf8Beginning(word, 60) +
-             "' is no type; char, uchar, short, ushort, int, uint, "
+             "' is not a type; char, uchar, short, ushort, int, uint, "
              "float and double are");
 }
 
@@ -172,7 +172,7 @@ PlyHeader ParsePlyHeader(const std::string& bytes, const std::string& path) {
       PlyElement& element = header.elements.back();
       element.properties.push_back(ParseProperty(words, lines));
       if (element.Find(words.back()) + 1 != static_cast<int>(element.properties.size())) {
-        lines.Fail("property '" + words.back() + "' of " + element.name + " stands there twice");
+        lines.Fail("property '" + words.back() + "' of " + element.name + " is given twice");
       }
     } else {
       lines.Fail("'" + Utf8Beginning(words[0], 60) + "' is not understood");
@@ -267,7 +267,7 @@ double PlyValues::NextText(PlyType type, const PlyElement& element, std::uint64_
                     word.find_first_of("eE") != std::string::npos &&
                     word.find('-', 1) != std::string::npos;
   if (result.ptr != text.data() + i || (result.ec != std::errc() && !tiny)) {
-    this->Fail("'" + word + "' is no number", element, row);
+    this->Fail("'" + word + "' is not a number", element, row);
   }
   value = tiny ? 0.0 : value;
   if (IsPlyInteger(type)) {
@@ -276,7 +276,7 @@ double PlyValues::NextText(PlyType type, const PlyElement& element, std::uint64_
         {0, 4294967295.0}};
     const double* range = limits[static_cast<std::size_t>(type)];
     if (value != std::floor(value) || value < range[0] || value > range[1]) {
-      this->Fail("'" + word + "' is no integer of its type", element, row);
+      this->Fail("'" + word + "' is not an integer of its type", element, row);
     }
   }
   return value;

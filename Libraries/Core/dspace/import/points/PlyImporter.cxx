@@ -105,7 +105,7 @@ private:
 
   void ReadVertices(const PlyElement& element) {
     if (this->HasVertices_) {
-      this->Fail("element vertex stands there twice");
+      this->Fail("element vertex is given twice");
     }
     this->HasVertices_ = true;
     const int p[3] = {FindAny(element, {"x"}), FindAny(element, {"y"}), FindAny(element, {"z"})};
@@ -304,7 +304,7 @@ private:
       model.nodes[0].local.translate(origin);
     }
     // A file with faces and edges shows both; one with neither is a cloud of points, which
-    // ReadModel refuses unless it is asked for.
+    // ReadModel rejects unless it is asked for.
     if (!this->Primitives_.triangles.empty()) {
       this->AddMesh(model, Mesh::Primitive::Triangles, this->Primitives_.triangles, origin);
     }

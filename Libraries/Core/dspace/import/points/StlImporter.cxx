@@ -215,7 +215,7 @@ void ReadText(const std::string& text, Model& model, const ImportOptions& option
     }
     Solid solid(model.path, words.RestOfLine());
     for (word = words.Next(); word == "facet"; word = words.Next()) {
-      // Their normals are often wrong or null: they are made anew from the triangles.
+      // Their normals are often wrong or null: they are computed from the triangles.
       words.Expect("normal");
       for (int i = 0; i < 3; ++i) {
         words.Next();
@@ -272,7 +272,7 @@ Model ReadStl(const std::string& path, const ImportOptions& options) {
     ReadBinary(bytes, model, options);
   } else {
     throw Error(Error::Kind::Corrupt, FileObject(path),
-                "is no STL: neither a text that begins with 'solid' nor " +
+                "is not an STL file: neither a text that begins with 'solid' nor " +
                     std::to_string(BinaryHeader) + " bytes long");
   }
   if (model.meshes.empty()) {

@@ -350,7 +350,7 @@ private:
 
   void Warn(const std::string& message) {
     if (this->Options_.strict) {
-      this->Fail(message + " (refused: strict)", Error::Kind::NotFound);
+      this->Fail(message + " (rejected: strict)", Error::Kind::NotFound);
     }
     this->Out_.warnings.push_back(message);
   }

@@ -1,4 +1,4 @@
-// Robots described in URDF: links, joints and visuals, without their geometry loaded.
+// Robots described in URDF: links, joints and visuals, without loading their geometry.
 #ifndef DSPACE_IMPORT_URDF_H
 #define DSPACE_IMPORT_URDF_H
 

@@ -89,7 +89,7 @@ int XmlDepth(const std::string& text) {
 urdf::ModelInterfaceSharedPtr ParseUrdfText(const std::string& path, const std::string& text,
                                             std::vector<std::string>& warnings) {
   if (text.find('\0') != std::string::npos) {
-    throw Error(Error::Kind::Corrupt, FileObject(path), "is no URDF: it has zero bytes");
+    throw Error(Error::Kind::Corrupt, FileObject(path), "is not a URDF: it has zero bytes");
   }
   const int depth = XmlDepth(text);
   if (depth > MaximumUrdfDepth) {
@@ -105,7 +105,7 @@ urdf::ModelInterfaceSharedPtr ParseUrdfText(const std::string& path, const std::
     log.Messages.push_back(e.what());
   }
   if (!model) {
-    std::string message = "is no valid URDF";
+    std::string message = "is not a valid URDF";
     for (std::size_t i = 0; i < log.Messages.size() && i < 4; ++i) {
       message += (i == 0 ? ": " : "; ") + log.Messages[i];
     }

@@ -14,7 +14,7 @@ namespace dspace {
 constexpr int MaximumUrdfDepth = 1000;
 
 // Parses URDF text, after checking that no nesting would exhaust the parser's stack. What urdfdom
-// logs goes into `warnings`, or into the Error(Corrupt) that is thrown when it refuses the text.
+// logs goes into `warnings`, or into the Error(Corrupt) that is thrown when it rejects the text.
 // The links' and joints' own graph is not checked: urdfdom accepts loops and second parents.
 urdf::ModelInterfaceSharedPtr ParseUrdfText(const std::string& path, const std::string& text,
                                             std::vector<std::string>& warnings);

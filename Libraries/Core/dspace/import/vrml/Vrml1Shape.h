@@ -8,7 +8,7 @@ class SoNode;
 
 namespace dspace {
 
-// What the nodes so far have set. Pointers are Coin's nodes of that kind, or null.
+// State set by the nodes so far. Pointers are Coin's nodes of that kind, or null.
 struct Vrml1State {
   int node = 0;       // the model's node that `local` is relative to
   int localNode = -1; // the model's node for `local`, made when a shape needs it

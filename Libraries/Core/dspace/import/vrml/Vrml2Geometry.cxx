@@ -184,7 +184,7 @@ Vrml2Geometry MakeVrml2Geometry(SoNode* node, bool textured) {
     }
   } else {
     out.complaints.push_back("a " + std::string(type.getName().getString()) +
-                             " is no geometry: left out");
+                             " is not a geometry: left out");
   }
   return out;
 }

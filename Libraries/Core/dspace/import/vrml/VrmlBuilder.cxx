@@ -179,7 +179,7 @@ void VrmlBuilder::Inline(const VrmlFile& file, const std::vector<std::string>& u
       path = ResolveReference(file.path, url.substr(0, url.find('#')));
       this->Open(path);
     } catch (const Error& e) {
-      // A bomb is refused wherever it hides; a file that is absent or damaged is left out.
+      // A bomb is rejected wherever it hides; a file that is absent or damaged is left out.
       if (e.GetKind() == Error::Kind::Resource) {
         throw;
       }

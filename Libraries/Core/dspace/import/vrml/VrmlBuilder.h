@@ -23,7 +23,7 @@ public:
   // Walks the file itself; once.
   Model Run();
 
-  // What a mesh or material is made of: addresses of Coin's nodes and numbers. Equal keys share.
+  // Identity of a mesh or material: addresses of Coin's nodes and numbers. Equal keys share.
   using Key = std::vector<std::uintptr_t>;
 
   // Counts a step of the walk. Throws Error(Resource) beyond 2,000,000 steps or 512 levels.

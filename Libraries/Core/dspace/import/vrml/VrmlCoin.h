@@ -46,7 +46,7 @@ struct VrmlFile {
 };
 
 // Reads, guards and parses a file; adds to `warnings`. Throws as ReadVrmlText and GuardVrml do, and
-// Error(Corrupt) with Coin's words when Coin refuses the text.
+// Error(Corrupt) with Coin's words when Coin rejects the text.
 VrmlFile ParseVrml(const std::string& path, CoinSession& session,
                    std::vector<std::string>& warnings);
 

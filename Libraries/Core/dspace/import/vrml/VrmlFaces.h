@@ -11,7 +11,7 @@
 
 namespace dspace {
 
-// Which of an attribute's values a corner gets.
+// Selects the value of an attribute for a corner.
 enum class VrmlBinding {
   None,
   Overall,          // the first
@@ -39,7 +39,7 @@ struct VrmlFaces {
   double creaseAngle = 0.0;    // radians
 };
 
-// What a shape says of its flaws: "3 faces with an index out of range are left out".
+// Descriptions of a shape's flaws: "3 faces with an index out of range are left out".
 using VrmlComplaints = std::vector<std::string>;
 
 // Triangles. A face with an index out of range, a point not finite, or fewer than three corners is

@@ -15,14 +15,14 @@ class vtkRenderer;
 
 namespace dspace {
 
-// Each stands in a corner of the picture. What changes is answered: the picture is old then.
+// Each stands in a corner of the picture. Functions return whether the picture has changed.
 class ColorBars {
 public:
   // Creates or replaces, by name; false where the same bar was there. `width` and `height` are the
   // picture's. Throws Error(InvalidArgument) naming the bar and the value.
   bool Set(const ColorBar& bar, vtkRenderer* overlay, int width, int height);
   bool Remove(const std::string& name, vtkRenderer* overlay); // false where there is none
-  // All of them anew, in the corners of a picture of another size.
+  // Places all of them in the corners of a picture of another size.
   void Resize(vtkRenderer* overlay, int width, int height);
   // Draws all of them over everything else in the overlay, in the order of their names, so that a
   // picture does not depend on the order in which they were set.

@@ -14,8 +14,8 @@ struct FlatArea {
   std::vector<std::uint32_t> triangles; // indices of points
 };
 
-// What closed contours of whole numbers enclose; where they run about a place more often one way
-// than the other, it is inside. Contours may cross themselves and each other.
+// Fills the inside of closed contours with integer coordinates. Where they run about a place more
+// often one way than the other, it is inside. Contours may cross themselves and each other.
 using Contour = std::vector<Eigen::Vector2i>;
 FlatArea FillContours(const std::vector<Contour>& contours);
 

@@ -39,7 +39,7 @@ std::vector<char32_t> ReadCharacters(Font font) {
     FT_Done_FreeType(library);
   }
   if (characters.empty()) {
-    RefuseFont(font);
+    RejectFont(font);
   }
   return characters;
 }
@@ -67,7 +67,7 @@ const char* FontFile(Font font) {
   return font == Font::Sans ? DSPACE_FONT_SANS : DSPACE_FONT_MONO;
 }
 
-void RefuseFont(Font font) {
+void RejectFont(Font font) {
   throw Error(Error::Kind::Resource, "font '" + std::string(FontFile(font)) + "'",
               "cannot be read; text needs this file (Debian's package fonts-dejavu-core)");
 }
@@ -79,14 +79,14 @@ void RequireGlyphs(const std::string& object, const char* what, const std::strin
     if (character == U'\n') {
       continue;
     }
-    const std::string refused = std::string(what) + " holds " + CharacterText(character);
+    const std::string rejected = std::string(what) + " holds " + CharacterText(character);
     if (IsRightToLeft(character)) {
-      Refuse(object, refused + ", of a script that is written from right to left; accepted: "
-                               "scripts written from left to right");
+      Reject(object, rejected + ", of a script that is written from right to left; accepted: "
+                                "scripts written from left to right");
     }
     if (!std::binary_search(known.begin(), known.end(), character)) {
-      Refuse(object,
-             refused + ", which the font " + FontName(font) +
+      Reject(object,
+             rejected + ", which the font " + FontName(font) +
                  " lacks; accepted: the font's characters up to U+FFFF (Latin, Greek, Cyrillic and "
                  "other alphabets, mathematical signs, arrows)");
     }

@@ -8,7 +8,7 @@ class vtkTextProperty;
 
 namespace dspace {
 
-// Not VTK's built-in fonts, which end with Latin-1 and leave out other letters without a word.
+// Not VTK's built-in fonts, which silently omit letters beyond Latin-1.
 enum class Font {
   Sans, // DejaVu Sans: labels and letters in the scene
   Mono  // DejaVu Sans Mono, bold: tables; all characters are equally wide
@@ -23,7 +23,7 @@ const char* FontFile(Font font);
 void RequireGlyphs(const std::string& object, const char* what, const std::string& text, Font font);
 
 // Throws Error(Resource): the font's file cannot be read.
-[[noreturn]] void RefuseFont(Font font);
+[[noreturn]] void RejectFont(Font font);
 
 // Text of this property is drawn in the font.
 void UseFont(vtkTextProperty* look, Font font);

@@ -12,8 +12,7 @@ class vtkTextActor;
 
 namespace dspace {
 
-// VTK has one text renderer, and sessions may have threads of their own: whoever uses it holds
-// this.
+// VTK has one text renderer for all threads. Code that uses it must hold this lock.
 std::unique_lock<std::recursive_mutex> LockTextRenderer();
 
 // Monospaced text at a place in pixels, `fontSize` pixels high; colour in sRGB with opacity, 0

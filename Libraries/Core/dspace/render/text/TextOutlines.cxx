@@ -80,7 +80,7 @@ OutlineFont::OutlineFont(Font font) : Face_(std::make_unique<Face>()) {
       FT_New_Face(self.freetype, FontFile(font), 0, &self.face) != 0 ||
       FT_Load_Char(self.face, 'H', FT_LOAD_NO_SCALE) != 0 ||
       self.face->glyph->metrics.height <= 0) {
-    RefuseFont(font);
+    RejectFont(font);
   }
   self.capital = double(self.face->glyph->metrics.height);
 }

@@ -21,7 +21,7 @@ namespace {
 
 void RequireText(const std::string& object, const std::string& text) {
   if (text.find_first_not_of(" \t\n") == std::string::npos) {
-    Refuse(object, "is empty; at least one visible character is needed");
+    Reject(object, "is empty; at least one visible character is needed");
   }
   RequireTextLength(object, "it", text);
   RequirePlainText(object, "it", text, true);
@@ -61,7 +61,7 @@ Mesh MakeTextMesh(const std::string& text, double height) {
     x += letter.advance;
   }
   if (mesh.indices.empty()) {
-    Refuse(object, "is blank; at least one visible character is needed");
+    Reject(object, "is blank; at least one visible character is needed");
   }
   return mesh;
 }
@@ -71,7 +71,8 @@ Part MakeLabel(const std::string& text, const LabelStyle& style) {
   RequireText(object, text);
   RequireGlyphs(object, "it", text, Font::Sans);
   if (style.fontSize < 4 || style.fontSize > 200) {
-    Refuse(object, "font size " + std::to_string(style.fontSize) + " is refused; 4 to 200 pixels");
+    Reject(object, "font size " + std::to_string(style.fontSize) +
+                       " is rejected; accepted: 4 to 200 pixels");
   }
   vtkNew<vtkTextProperty> look;
   UseFont(look, Font::Sans);

@@ -11,9 +11,9 @@
 namespace dspace {
 
 // Letters as flat triangles in XY, facing +Z, the baseline along X from the origin; a capital
-// letter is `height` metres high. UTF-8 of the characters that the font has (Fonts.h); lines broken
-// by '\n'. Throws Error(InvalidArgument) for an empty text, one of more than 4,096 characters, a
-// character that cannot be drawn, or a height outside 1e-9 to 1e15 m.
+// letter is `height` metres high. UTF-8 of the characters that the font has (Fonts.h); lines are
+// separated by '\n'. Throws Error(InvalidArgument) for an empty text, one of more than 4,096
+// characters, a character that cannot be drawn, or a height outside 1e-9 to 1e15 m.
 Mesh MakeTextMesh(const std::string& text, double height);
 
 // A billboard (GraphicsObject::billboard): a textured rectangle in pixels whose lower left corner

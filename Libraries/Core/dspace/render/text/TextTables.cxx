@@ -17,7 +17,7 @@ void TextTables::Place(Placed& placed, vtkRenderer* overlay, int width, int heig
   }
 }
 
-void TextTables::TakeAway(const Placed& placed, vtkRenderer* overlay) {
+void TextTables::RemoveActors(const Placed& placed, vtkRenderer* overlay) {
   for (const auto& actor : placed.actors) {
     overlay->RemoveViewProp(actor);
   }
@@ -37,7 +37,7 @@ bool TextTables::Set(const TextTable& table, vtkRenderer* overlay, int width, in
                   Font::Mono);
   }
   Placed& placed = this->Placed_[table.name];
-  TakeAway(placed, overlay);
+  RemoveActors(placed, overlay);
   placed.table = table;
   Place(placed, overlay, width, height);
   return true;
@@ -48,14 +48,14 @@ bool TextTables::Remove(const std::string& name, vtkRenderer* overlay) {
   if (found == this->Placed_.end()) {
     return false;
   }
-  TakeAway(found->second, overlay);
+  RemoveActors(found->second, overlay);
   this->Placed_.erase(found);
   return true;
 }
 
 void TextTables::Resize(vtkRenderer* overlay, int width, int height) {
   for (auto& entry : this->Placed_) {
-    TakeAway(entry.second, overlay);
+    RemoveActors(entry.second, overlay);
     Place(entry.second, overlay, width, height);
   }
 }

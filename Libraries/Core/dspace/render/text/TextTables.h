@@ -15,14 +15,14 @@ class vtkTextActor;
 
 namespace dspace {
 
-// Each stands in a corner of the picture. What changes is answered: the picture is old then.
+// Each stands in a corner of the picture. Functions return whether the picture has changed.
 class TextTables {
 public:
   // Creates or replaces, by name; false where the same table was there. `width` and `height` are
   // the picture's. Throws Error(InvalidArgument) naming the table and the value.
   bool Set(const TextTable& table, vtkRenderer* overlay, int width, int height);
   bool Remove(const std::string& name, vtkRenderer* overlay); // false where there is none
-  // All of them anew, in the corners of a picture of another size.
+  // Places all of them in the corners of a picture of another size.
   void Resize(vtkRenderer* overlay, int width, int height);
   // Draws all of them over everything else in the overlay, in the order of their names, so that a
   // picture does not depend on the order in which they were set.
@@ -34,7 +34,7 @@ private:
     std::vector<vtkSmartPointer<vtkTextActor>> actors;
   };
   static void Place(Placed& placed, vtkRenderer* overlay, int width, int height);
-  static void TakeAway(const Placed& placed, vtkRenderer* overlay);
+  static void RemoveActors(const Placed& placed, vtkRenderer* overlay);
   std::map<std::string, Placed> Placed_;
 };
 

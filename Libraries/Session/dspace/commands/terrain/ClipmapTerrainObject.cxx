@@ -116,7 +116,7 @@ void ClipmapTerrainObject::BuildOverviews(const std::string& folder,
     for (std::size_t i = 1; i < this->Clipmap_->Charts().size(); ++i) {
       poles.push_back(this->Clipmap_->Charts()[i].pyramid);
     }
-    this->Overviews_ = this->Surface_->TakeOverviews(poles);
+    this->Overviews_ = this->Surface_->LoadOverviews(poles);
   };
   this->Build_ =
       std::make_unique<OverviewBuild>(folder, this->Surface_->Info().path, options, built);
@@ -126,11 +126,11 @@ bool ClipmapTerrainObject::Focus(const std::vector<Eigen::Vector2d>& points_S, d
   const std::string label = "terrain '" + this->Name() + "'";
   for (const Eigen::Vector2d& point : points_S) {
     if (!point.allFinite()) {
-      Refuse(label, "a point of the focus is not finite");
+      Reject(label, "a point of the focus is not finite");
     }
   }
   if (!points_S.empty() && !(radius > 0.0 && std::isfinite(radius))) {
-    Refuse(label, "the radius of the focus is " + NumberText(radius) + "; accepted: > 0 m, finite");
+    Reject(label, "the radius of the focus is " + NumberText(radius) + "; accepted: > 0 m, finite");
   }
   return false;
 }

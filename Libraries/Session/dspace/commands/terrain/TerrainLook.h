@@ -7,6 +7,7 @@
 
 #include <dspace/clipmap/ClipmapTerrain.h>
 #include <dspace/interpreter/Registry.h>
+#include <dspace/layers/ColorRamp.h>
 #include <dspace/mesh/DrapeImage.h>
 #include <dspace/surface/StreamedTerrain.h>
 

@@ -26,29 +26,29 @@ constexpr int Slack = 4096;
 constexpr std::chrono::microseconds ToTell{500};
 
 void Check(const ServerOptions& options) {
-  const auto refuse = [](const char* what, const std::string& value, const char* accepted) {
+  const auto reject = [](const char* what, const std::string& value, const char* accepted) {
     throw Error(Error::Kind::InvalidArgument, "server",
                 std::string(what) + " is " + value + "; accepted: " + accepted);
   };
   if (options.maximumMessage < 1024 || options.maximumMessage > (std::size_t(1) << 30)) {
-    refuse("the largest message", std::to_string(options.maximumMessage), "1 KiB to 1 GiB");
+    reject("the largest message", std::to_string(options.maximumMessage), "1 KiB to 1 GiB");
   }
   if (options.maximumConnections < 1 || options.maximumConnections > 1000) {
-    refuse("the number of connections", std::to_string(options.maximumConnections), "1 to 1000");
+    reject("the number of connections", std::to_string(options.maximumConnections), "1 to 1000");
   }
   if (!(options.maximumRate > 0)) {
-    refuse("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
+    reject("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
   }
   if (!(options.seat_s >= 0 && options.seat_s <= 1e6)) {
-    refuse("the time that a place is kept", NumberText(options.seat_s) + " s", "0 to 1e6");
+    reject("the time that a place is kept", NumberText(options.seat_s) + " s", "0 to 1e6");
   }
   if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
-    refuse("the silence", NumberText(options.silence_s) + " s", "above 0, up to 1e6");
+    reject("the silence", NumberText(options.silence_s) + " s", "above 0, up to 1e6");
   }
 }
 
 // gRPC would take a living server's socket away from it.
-void RefuseTakenSocket(const LinkAddress& address) {
+void RejectTakenSocket(const LinkAddress& address) {
   if (address.path.empty()) {
     return;
   }
@@ -81,7 +81,7 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   hub.options = options;
   const LinkAddress address = LinkAddress::Parse(options.listen);
   const auto credentials = MakeServerCredentials(address, options.security);
-  RefuseTakenSocket(address);
+  RejectTakenSocket(address);
   hub.service = std::make_unique<Service>(hub);
   grpc::ServerBuilder builder;
   // Half of what there is stays for files and for answers.

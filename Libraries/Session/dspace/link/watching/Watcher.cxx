@@ -43,8 +43,8 @@ struct Watcher::Link {
   bool once = false;  // connected
   bool final = false; // never will be
   bool ending = false;
-  v1::Error error;     // why it is not connected
-  std::string refusal; // the same, if it is what the server says
+  v1::Error error;       // why it is not connected
+  std::string rejection; // the same, if it is what the server says
 
   bool Forked() const { return getpid() != this->process; }
   v1::Error Foreign() const {
@@ -81,7 +81,7 @@ struct Watcher::Link {
         {
           const std::lock_guard lock(this->mutex);
           this->connected = this->once = true;
-          this->refusal.clear();
+          this->rejection.clear();
           this->changed.notify_all();
         }
         try {
@@ -118,7 +118,7 @@ struct Watcher::Link {
     bool useless = false;
     this->error = ToError(this->options.address, status, useless);
     this->final = useless && !this->once;
-    this->refusal = useless ? this->error.message() : std::string();
+    this->rejection = useless ? this->error.message() : std::string();
     this->changed.notify_all();
   }
 
@@ -128,7 +128,7 @@ struct Watcher::Link {
       lock.unlock();
       this->Watch();
       lock.lock();
-      const milliseconds pause(this->refusal.empty() ? 100 : 1000);
+      const milliseconds pause(this->rejection.empty() ? 100 : 1000);
       this->changed.wait_for(lock, pause, [this] { return this->ending; });
     }
   }
@@ -267,12 +267,12 @@ bool Watcher::Connected(std::string* why) const {
   return this->Link_->connected;
 }
 
-std::string Watcher::Refusal() const {
+std::string Watcher::Rejection() const {
   if (this->Link_->Forked()) {
     return {};
   }
   const std::lock_guard lock(this->Link_->mutex);
-  return this->Link_->refusal;
+  return this->Link_->rejection;
 }
 
 bool Watcher::Tell(const v1::ViewerEvent& event) {

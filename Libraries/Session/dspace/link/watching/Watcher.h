@@ -44,7 +44,7 @@ public:
   bool Connected(std::string* why = nullptr) const;
   // Why the server refuses what it did not refuse before: a state that is too large to be sent, too
   // many viewers. Empty: it does not, or nobody answers. It is asked again each second.
-  std::string Refusal() const;
+  std::string Rejection() const;
   // Sends an event to whoever drives, waiting up to timeout_s (of the options, or a shorter one);
   // false when nobody does. Throws Error.
   bool Tell(const v1::ViewerEvent& event);

@@ -16,7 +16,7 @@ ClipmapGeometry::ClipmapGeometry(int cells) : Cells_(cells), Texels_(1) {
   if (cells < 12 || cells > 1020 || cells % 4 != 0) {
     throw Error(Error::Kind::InvalidArgument, "clipmap",
                 "level size " + std::to_string(cells) +
-                    " is refused; accepted is a multiple of 4 from 12 to 1020 cells");
+                    " is rejected; accepted is a multiple of 4 from 12 to 1020 cells");
   }
   while (this->Texels_ < cells + 3) {
     this->Texels_ *= 2;

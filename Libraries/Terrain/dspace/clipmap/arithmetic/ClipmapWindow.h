@@ -67,7 +67,7 @@ public:
     return static_cast<int>(post & (this->Texels_ - 1)); // two's complement: also below 0
   }
 
-  // What must be uploaded, border included, when the window `from` (none: nothing is there yet)
+  // The posts to upload, border included, when the window `from` (none: nothing is there yet)
   // becomes `to`: the L-shaped news, cut where the texture wraps.
   std::vector<ClipmapUpdate> Updates(const std::optional<ClipmapWindow>& from,
                                      const ClipmapWindow& to) const;

@@ -33,7 +33,7 @@ void RegisterClipmapDrawer(CustomDrawers& drawers) {
 
 namespace {
 
-// Lines or filled while it lives, whatever is thrown.
+// Sets line or fill mode during its lifetime, also if an exception is thrown.
 class PolygonMode {
 public:
   explicit PolygonMode(GLenum mode) { glPolygonMode(GL_FRONT_AND_BACK, mode); }
@@ -43,10 +43,10 @@ public:
 };
 
 // The camera's place and the view volume, in the terrain's frame.
-ClipmapSight SightOf(const ClipmapCamera& camera, const DrawView& view) {
+ClipmapViewVolume ViewVolumeOf(const ClipmapCamera& camera, const DrawView& view) {
   const Eigen::Matrix4d clip =
       view.projection.ClipFromView(view.width, view.height) * camera.X_VS.matrix();
-  ClipmapSight sight;
+  ClipmapViewVolume sight;
   sight.camera = camera.position;
   for (const int axis : {0, 1}) {
     for (const double sign : {1.0, -1.0}) {
@@ -178,7 +178,7 @@ bool ClipmapDrawer::PrepareLayers(const CustomDrawing& drawing) {
       std::find_if(this->Charts_.begin(), this->Charts_.end(),
                    [this](const auto& other) { return other.get() == this->Active_; });
   return this->Layers_.Prepare(drawing, std::size_t(index - this->Charts_.begin()), chart.levels,
-                               chart.state, SightOf(camera, drawing.view), chart.heights);
+                               chart.state, ViewVolumeOf(camera, drawing.view), chart.heights);
 }
 
 // Before any is bound for drawing: an upload ends with its unit unbound.
@@ -340,7 +340,7 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     state->vtkglCullFace(camera.mirrored > 0.0f ? GL_BACK : GL_FRONT);
   }
   const ClipmapBlocks blocks(chart.levels, chart.placement, chart.heights);
-  const ClipmapSight sight = SightOf(camera, drawing.view);
+  const ClipmapViewVolume sight = ViewVolumeOf(camera, drawing.view);
   std::vector<GLsizei> counts;
   std::vector<const void*> firsts;
   glBindVertexArray(this->VertexArray_);

@@ -34,7 +34,7 @@ public:
   std::vector<Caption> Captions(const CustomDrawing& drawing, const RenderTarget& target) override;
 
 private:
-  // What is kept of one chart of the terrain.
+  // State of one chart of the terrain.
   struct Chart {
     Chart(const ClipmapChart& from, const ClipmapOptions& options)
         : placement(from.placement), levels(from.pyramid, options.cells), heights(options.heights) {

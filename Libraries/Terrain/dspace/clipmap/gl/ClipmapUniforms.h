@@ -1,4 +1,4 @@
-// What a clipmap's shaders are told. Not a public header.
+// The uniforms of a clipmap's shaders. Not a public header.
 #ifndef DSPACE_TERRAIN_CLIPMAPUNIFORMS_H
 #define DSPACE_TERRAIN_CLIPMAPUNIFORMS_H
 

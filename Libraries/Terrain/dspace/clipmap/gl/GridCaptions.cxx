@@ -14,7 +14,7 @@ namespace dspace {
 namespace {
 
 constexpr double RadianInDegrees = 180.0 / M_PI;
-constexpr std::size_t MostOfFamily = 20;
+constexpr std::size_t MaximumPerDirection = 20;
 
 // A pixel in which the ground is seen.
 struct Seen {
@@ -176,9 +176,9 @@ void AddCrossings(const Strip& strip, int family, double interval, bool around, 
 
 // Of more lines than there may be, every second, fifth, tenth, ...
 void Thin(Places& places) {
-  for (std::int64_t ten = 1; places.size() > MostOfFamily; ten *= 10) {
+  for (std::int64_t ten = 1; places.size() > MaximumPerDirection; ten *= 10) {
     for (const std::int64_t digit : {2, 5, 10}) {
-      for (auto it = places.begin(); it != places.end() && places.size() > MostOfFamily;) {
+      for (auto it = places.begin(); it != places.end() && places.size() > MaximumPerDirection;) {
         it = it->first % (digit * ten) != 0 ? places.erase(it) : std::next(it);
       }
     }

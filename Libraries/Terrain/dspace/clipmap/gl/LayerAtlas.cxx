@@ -22,7 +22,7 @@ constexpr int TilesUnit = 16;
 constexpr int PagesUnit = 17;
 
 constexpr int Side = ColorTiles::Side;
-constexpr int Zooms = ColorGrid::MostZoom + 1;
+constexpr int Zooms = ColorGrid::MaximumZoom + 1;
 constexpr int UploadsAPicture = 24; // of an interactive one: 6 MB
 
 constexpr std::int32_t Nowhere = std::numeric_limits<std::int32_t>::min();
@@ -138,7 +138,7 @@ void LayerAtlas::ClearPage(const ColorTile& tile) {
 }
 
 // Of the tile whose last use is longest ago, unless that is now.
-int LayerAtlas::TakeSlot() {
+int LayerAtlas::AllocateSlot() {
   if (this->Free_.empty()) {
     auto oldest = this->Entries_.end();
     for (auto it = this->Entries_.begin(); it != this->Entries_.end(); ++it) {
@@ -168,8 +168,8 @@ void LayerAtlas::Upload(int slot, const ColorTiles::Tile& tile,
   statistics.textureBytesUploaded += tile.texels.size();
 }
 
-void LayerAtlas::Keep(const ColorTile& tile, const ColorTiles::TilePointer& shown,
-                      RenderStatistics& statistics) {
+void LayerAtlas::Store(const ColorTile& tile, const ColorTiles::TilePointer& shown,
+                       RenderStatistics& statistics) {
   Entry& entry = this->Entries_[tile];
   entry.used = this->Calls_;
   entry.shown = shown;
@@ -182,7 +182,7 @@ void LayerAtlas::Keep(const ColorTile& tile, const ColorTiles::TilePointer& show
     return;
   }
   if (entry.slot < 0) {
-    entry.slot = this->TakeSlot();
+    entry.slot = this->AllocateSlot();
   }
   if (entry.slot < 0) { // no room
     this->ClearPage(tile);
@@ -221,7 +221,7 @@ bool LayerAtlas::Show(ColorTiles& tiles, const std::vector<ColorTile>& wanted,
         complete = false;
       } else {
         uploads += there[i]->texels.empty() ? 0 : 1;
-        this->Keep(tile, there[i], statistics);
+        this->Store(tile, there[i], statistics);
         found = this->Entries_.find(tile);
       }
     }

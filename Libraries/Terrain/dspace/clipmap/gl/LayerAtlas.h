@@ -33,8 +33,8 @@ public:
 
   int Slots() const { return this->Slots_; }
 
-  // Uploads what is new of `wanted` (SeenTiles, at most Slots() of one chart). Without `wait` some
-  // of what is in memory, else all of it, waiting so many seconds for what is not; throws what
+  // Uploads what is new of `wanted` (VisibleTiles, at most Slots() of one chart). Without `wait`
+  // some of what is in memory, else all of it, waiting so many seconds for what is not; throws what
   // ColorTiles::Get throws. False where some of it is not there or not of the stack's revision.
   bool Show(ColorTiles& tiles, const std::vector<ColorTile>& wanted,
             const std::optional<double>& wait, RenderStatistics& statistics);
@@ -48,12 +48,12 @@ private:
     std::weak_ptr<const ColorTiles::Tile> shown;
     std::uint64_t used = 0; // by the latest call of Show()
   };
-  int TakeSlot();
-  void Keep(const ColorTile& tile, const ColorTiles::TilePointer& shown,
-            RenderStatistics& statistics);
+  int AllocateSlot();
+  void Store(const ColorTile& tile, const ColorTiles::TilePointer& shown,
+             RenderStatistics& statistics);
   void Upload(int slot, const ColorTiles::Tile& tile, RenderStatistics& statistics) const;
   void SetPage(const ColorTile& tile, int slot);
-  void ClearPage(const ColorTile& tile); // nor is it told to be the parent of another
+  void ClearPage(const ColorTile& tile); // also as the parent of other tiles
   int SlotOfParent(const ColorTile& tile) const;
   void ClearPages();
   // Column, row, slot (-1: transparent), slot of the tile that it is a part of (-2: not there).

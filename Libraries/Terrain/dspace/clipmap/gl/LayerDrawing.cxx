@@ -26,7 +26,7 @@ int SlotsFor(const DrawView& view, int samples) {
 
 bool LayerDrawing::Prepare(const CustomDrawing& drawing, std::size_t chart,
                            const ClipmapLevels& levels, const ClipmapLevels::State& state,
-                           const ClipmapSight& sight, const std::array<double, 2>& heights) {
+                           const ClipmapViewVolume& sight, const std::array<double, 2>& heights) {
   const LayerStack* stack = this->Terrain_.Layers().get();
   this->Shown_ = stack && !stack->Empty();
   if (!this->Shown_) {
@@ -64,8 +64,8 @@ bool LayerDrawing::Prepare(const CustomDrawing& drawing, std::size_t chart,
     return levels.HeightNear(post, state.finest).value_or(state.groundHeight);
   };
   const std::vector<ColorTile> tiles =
-      SeenTiles(*this->Grid_, int(chart), view, this->Finest_,
-                std::size_t(std::min(slots, this->Atlas_->Slots())));
+      VisibleTiles(*this->Grid_, int(chart), view, this->Finest_,
+                   std::size_t(std::min(slots, this->Atlas_->Slots())));
   std::optional<double> wait;
   if (drawn.complete) {
     wait = this->Terrain_.Options().deadline;

@@ -7,7 +7,7 @@
 
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
-#include <dspace/clipmap/SeenTiles.h>
+#include <dspace/clipmap/VisibleTiles.h>
 #include <dspace/clipmap/gl/LayerAtlas.h>
 #include <dspace/render/CustomDrawer.h>
 
@@ -21,7 +21,7 @@ public:
   // Brings what the view sees of a chart. False where some of it is not there yet; waits with
   // view.complete, and throws then what ColorTiles::Get throws.
   bool Prepare(const CustomDrawing& drawing, std::size_t chart, const ClipmapLevels& levels,
-               const ClipmapLevels::State& state, const ClipmapSight& sight,
+               const ClipmapLevels::State& state, const ClipmapViewVolume& sight,
                const std::array<double, 2>& heights);
   // Whether there is something to draw, hence #define DSPACE_LAYERS.
   bool Shown() const { return this->Shown_; }

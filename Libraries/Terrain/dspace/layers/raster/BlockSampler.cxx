@@ -55,7 +55,7 @@ void PixelFinder::Find(Eigen::Matrix2Xd& places) const {
 BlockSampler::BlockSampler(std::shared_ptr<const RasterLevels> levels, RasterPosition raster)
     : Levels_(std::move(levels)), Raster_(std::move(raster)) {}
 
-std::unique_ptr<PixelFinder> BlockSampler::TakeFinder(const Crs& grid) const {
+std::unique_ptr<PixelFinder> BlockSampler::AcquireFinder(const Crs& grid) const {
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
     const auto found = this->Finders_.find(grid.GetWkt());
@@ -68,7 +68,7 @@ std::unique_ptr<PixelFinder> BlockSampler::TakeFinder(const Crs& grid) const {
   return std::make_unique<PixelFinder>(grid, this->Raster_);
 }
 
-void BlockSampler::ReturnFinder(const Crs& grid, std::unique_ptr<PixelFinder> finder) const {
+void BlockSampler::ReleaseFinder(const Crs& grid, std::unique_ptr<PixelFinder> finder) const {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   this->Finders_.emplace(grid.GetWkt(), std::move(finder));
 }
@@ -77,7 +77,7 @@ bool BlockSampler::Sample(const ColorGrid& grid, const ColorBlock& block,
                           std::vector<float>& texels) const {
   const int step = this->Levels_->Channels() + 1;
   const SquareReader reader(*this->Levels_, this->Raster_);
-  std::unique_ptr<PixelFinder> finder = this->TakeFinder(grid.crs);
+  std::unique_ptr<PixelFinder> finder = this->AcquireFinder(grid.crs);
   const std::int64_t around =
       grid.periodic ? grid.ColumnsAt(block.zoom) * (ColorGrid::TileTexels / Side) : 0;
   std::vector<std::unique_ptr<TexelSquare>> squares;
@@ -95,12 +95,12 @@ bool BlockSampler::Sample(const ColorGrid& grid, const ColorBlock& block,
           left,
           top,
           {}});
-      if (reader.Settle(*square)) {
+      if (reader.ChooseLevel(*square)) {
         squares.push_back(std::move(square));
       }
     }
   }
-  this->ReturnFinder(grid.crs, std::move(finder));
+  this->ReleaseFinder(grid.crs, std::move(finder));
   if (squares.empty()) {
     return false;
   }

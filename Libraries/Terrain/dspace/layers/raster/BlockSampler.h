@@ -52,8 +52,8 @@ public:
   bool Sample(const ColorGrid& grid, const ColorBlock& block, std::vector<float>& texels) const;
 
 private:
-  std::unique_ptr<PixelFinder> TakeFinder(const Crs& grid) const;
-  void ReturnFinder(const Crs& grid, std::unique_ptr<PixelFinder> finder) const;
+  std::unique_ptr<PixelFinder> AcquireFinder(const Crs& grid) const;
+  void ReleaseFinder(const Crs& grid, std::unique_ptr<PixelFinder> finder) const;
 
   std::shared_ptr<const RasterLevels> Levels_;
   RasterPosition Raster_;

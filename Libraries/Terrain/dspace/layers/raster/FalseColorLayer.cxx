@@ -24,25 +24,25 @@ std::string Number(double value) {
 }
 
 void Check(const std::string& object, const FalseColorOptions& colors) {
-  const auto refuse = [&](const std::string& message) {
+  const auto reject = [&](const std::string& message) {
     throw Error(Error::Kind::InvalidArgument, object, message);
   };
   if (colors.band < 1) {
-    refuse("band " + std::to_string(colors.band) + " asked for; accepted are 1 and more");
+    reject("band " + std::to_string(colors.band) + " asked for; accepted are 1 and more");
   }
   if (colors.ramp.empty()) {
-    refuse("the colour ramp is empty; at least one colour is needed");
+    reject("the colour ramp is empty; at least one colour is needed");
   }
   for (const auto& color : colors.ramp) {
     for (const double v : color) {
       if (!(v >= 0.0 && v <= 1.0)) {
-        refuse("a colour of the ramp has " + Number(v) + "; accepted is 0 to 1");
+        reject("a colour of the ramp has " + Number(v) + "; accepted is 0 to 1");
       }
     }
   }
   for (const auto& end : {colors.low, colors.high}) {
     if (end && !std::isfinite(*end)) {
-      refuse("an end of the range is " + Number(*end) + "; accepted is a finite number");
+      reject("an end of the range is " + Number(*end) + "; accepted is a finite number");
     }
   }
 }
@@ -71,7 +71,7 @@ std::array<double, 2> RangeOf(RasterLevels& levels, const FalseColorOptions& col
   if (!(range[0] < range[1])) {
     throw Error(Error::Kind::InvalidArgument, levels.Object(),
                 "a range of " + Number(range[0]) + " to " + Number(range[1]) +
-                    " is refused; accepted is a low end below the high one");
+                    " is rejected; accepted is a low end below the high one");
   }
   return range;
 }

@@ -82,8 +82,8 @@ std::shared_ptr<const ColorLayer> OpenFilledLayer(const std::string& path, int b
   RasterLayerOptions raster;
   raster.network = options.network;
   raster.cacheFolder = options.cacheFolder;
-  auto levels = std::make_shared<RasterLevels>(object, path, std::max(1, band), raster,
-                                               RasterLevels::Shown::Holes);
+  auto levels =
+      std::make_shared<RasterLevels>(object, path, std::max(1, band), raster, RasterShown::Holes);
   const PlacedRaster placed = PlaceRasterAt(
       *levels, terrain, terrain.crs,
       terrain.pixelToMap * Eigen::Translation2d(-double(window.column), -double(window.row)));
@@ -97,7 +97,7 @@ std::shared_ptr<const ColorLayer> OpenFilledLayer(const std::string& path, int b
       const PlacedRaster place = PlaceRaster(*cover, terrain, own);
       covers.push_back(std::make_unique<BlockSampler>(std::move(cover), place.position));
     } catch (const Error&) {
-      // It adds nothing to the ground either, and whoever opened the terrain was told so.
+      // It adds nothing to the ground either; opening the terrain has reported a warning.
     }
   }
   return std::make_shared<HoleLayer>(std::move(levels), placed, options.color, std::move(covers));

@@ -1,4 +1,4 @@
-// Where a terrain's raster has no data, and its ground is made up: painted over.
+// Marks filled ground of a terrain, where the raster has no data.
 #ifndef DSPACE_LAYERS_FILLEDLAYER_H
 #define DSPACE_LAYERS_FILLEDLAYER_H
 
@@ -20,7 +20,7 @@ struct FilledLayerOptions {
   std::string cacheFolder; // for averaged overviews, see RasterLayerOptions
 };
 
-// A raster that lies on the terrain's: where it has data, nothing is made up.
+// A raster that lies on the terrain's: where it has data, nothing is filled.
 struct FilledLayerPatch {
   std::string path;
   int band = 1;

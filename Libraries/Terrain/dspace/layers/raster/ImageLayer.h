@@ -15,7 +15,7 @@
 
 namespace dspace {
 
-// Where a file does not say, or says wrongly.
+// Options that complete or replace the georeference of a file.
 struct RasterLayerOptions {
   std::optional<std::string> crs; // replaces the file's; the terrain's where the file has none
   // Map x, y of the outer corners of its top-left and bottom-right pixels, in its CRS; replaces the

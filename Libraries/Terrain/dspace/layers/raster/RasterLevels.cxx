@@ -5,10 +5,16 @@
 #include <limits>
 
 #include <dspace/Error.h>
+#include <dspace/layers/raster/ImageLayer.h>
+#include <dspace/layers/raster/RasterOverviews.h>
+#include <dspace/layers/raster/RasterPixels.h>
+#include <dspace/raster/NetworkScope.h>
 
 namespace dspace {
 namespace {
 
+const char* const Changed = "the file has changed since it was opened; open it again";
+constexpr int Large = 4096;                               // pixels a side
 constexpr std::size_t StripPixels = std::size_t(1) << 20; // that are in memory at once
 constexpr double Tiny = 1e-9;                             // of a pixel
 constexpr double ManyPixels = 8.0; // a side of a cell: too many to ask a server for
@@ -37,23 +43,115 @@ Cover CoverOf(int cell, double pixelsACell, int pixels) {
 
 } // namespace
 
-void RasterLevels::Read(const LevelWindow& window, float* cells) const {
-  this->MakeOverviews(window);
-  this->With([&](Handle& handle) { this->ReadCells(handle, window, cells); });
+RasterLevels::RasterLevels(std::string object, std::string path, int band,
+                           const RasterLayerOptions& options, RasterShown shown)
+    : Object_(std::move(object)), Path_(std::move(path)), Network_(options.network),
+      Check_(FilesGuard::Current()) {
+  CheckLimits(options.network, this->Object_);
+  this->File_ = FileState::Of(this->Path_);
+  DatasetPointer file = OpenRaster(this->Path_, this->Network_, this->Warnings_, this->Object_);
+  const NetworkScope scope(this->Network_, this->Path_);
+  this->Remote_ = IsRemote(this->Path_) || IsRemoteMosaic(*file);
+  this->Content_ = RasterContent::Of(*file, band, this->Object_, this->Warnings_);
+  auto handle = std::make_unique<RasterHandle>();
+  handle->levels = this->Content_.LevelsOf(*file);
+  this->FileLevels_ = handle->levels.size();
+  const bool alone = this->FileLevels_ == 1;
+  if (this->Remote_ && alone && std::max(this->Width(), this->Height()) > Large) {
+    this->Warnings_.push_back(this->Object_ +
+                              " has no overviews and is on a server: distant views show single "
+                              "pixels instead of means; build overviews (gdaladdo -r average)");
+  }
+  this->Overviews_ = std::make_unique<RasterOverviews>(this->Object_, this->Path_, this->File_,
+                                                       this->Content_, shown);
+  if (!this->Remote_ && alone) {
+    this->Overviews_->Plan(*file, options.cacheFolder);
+  }
+  this->Pixels_ = std::make_unique<RasterPixels>(this->Object_, this->Path_, this->Content_, shown,
+                                                 this->Remote_, *this->Overviews_);
+  this->Pixels_->PlanCaching(*file, this->FileLevels_, this->Warnings_);
+  handle->file = std::move(file);
+  this->Idle_.push_back(std::move(handle));
 }
 
-void RasterLevels::ReadCells(Handle& handle, const LevelWindow& window, float* cells) const {
+RasterLevels::~RasterLevels() = default;
+
+std::size_t RasterLevels::KeptBytes() const {
+  return this->Pixels_->CachedBytes();
+}
+
+void RasterLevels::SetBias(double bias) {
+  this->Pixels_->SetBias(bias);
+}
+
+double RasterLevels::Bias() const {
+  return this->Pixels_->Bias();
+}
+
+std::unique_ptr<RasterHandle> RasterLevels::Open() const {
+  std::vector<std::string> known; // the constructor has reported them
+  auto handle = std::make_unique<RasterHandle>();
+  handle->file = OpenRaster(this->Path_, this->Network_, known, this->Object_);
+  if (!this->Content_.Matches(*handle->file)) {
+    throw Error(Error::Kind::Io, this->Object_,
+                "it is another raster than when it was opened; open it again");
+  }
+  handle->levels = this->Content_.LevelsOf(*handle->file);
+  if (handle->levels.size() != this->FileLevels_) {
+    throw Error(Error::Kind::Io, this->Object_,
+                "it has other overviews than when it was opened; open it again");
+  }
+  return handle;
+}
+
+// After a failed read GDAL may treat unread blocks as blocks that the file leaves out. The handle
+// is then not used again.
+void RasterLevels::WithHandle(const std::function<void(RasterHandle&)>& use) const {
+  if (this->File_.ChangedInPlace(this->Path_)) {
+    throw Error(Error::Kind::Io, this->Object_, Changed);
+  }
+  const NetworkScope scope(this->Network_, this->Path_);
+  const FilesGuard guard(this->Check_);
+  std::unique_ptr<RasterHandle> handle;
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    if (!this->Idle_.empty()) {
+      handle = std::move(this->Idle_.back());
+      this->Idle_.pop_back();
+    }
+  }
+  if (!handle) {
+    handle = this->Open();
+  }
+  this->Overviews_->Add(*handle);
+  use(*handle);
+  if (this->File_.ChangedInPlace(this->Path_)) {
+    throw Error(Error::Kind::Io, this->Object_, Changed);
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  this->Idle_.push_back(std::move(handle));
+}
+
+void RasterLevels::Read(const LevelWindow& window, float* cells) const {
+  const auto read = [this](RasterHandle& handle, const LevelWindow& part, float* to) {
+    this->ReadCells(handle, part, to);
+  };
+  this->Overviews_->Make(window, {[this] { return this->Open(); }, read, this->Bias()});
+  this->WithHandle([&](RasterHandle& handle) { this->ReadCells(handle, window, cells); });
+}
+
+void RasterLevels::ReadCells(RasterHandle& handle, const LevelWindow& window, float* cells) const {
   const int columns = this->ColumnsAt(window.levelX);
   const int rows = this->RowsAt(window.levelY);
-  const Level* level = &handle.levels[0];
-  for (const Level& other : handle.levels) { // ever coarser
+  const RasterLevel* level = &handle.levels[0];
+  for (const RasterLevel& other : handle.levels) { // ever coarser
     if (other.width >= columns && other.height >= rows) {
       level = &other;
     }
   }
   const double pixelsX = double(level->width) / columns;
   const double pixelsY = double(level->height) / rows;
-  const int step = this->Channels_ + 1;
+  const int step = this->Channels() + 1;
   std::vector<Cover> across;
   std::vector<float> parts; // of all pixels of all of them
   for (int i = 0; i < window.width; ++i) {
@@ -65,14 +163,15 @@ void RasterLevels::ReadCells(Handle& handle, const LevelWindow& window, float* c
   const int top = CoverOf(window.row, pixelsY, level->height).first;
   const int bottom = CoverOf(window.row + window.height - 1, pixelsY, level->height).last + 1;
   RasterWindow part{across.front().first, top, across.back().last + 1 - across.front().first, 0};
-  Raw raw;
+  RasterPixels::Raw raw;
   if (this->Remote_ && std::max(pixelsX, pixelsY) > ManyPixels) {
     part.height = bottom - top;
-    this->ReadRaw(*level, part, window.width, window.height, raw);
-    this->Convert(*level, raw, 0, std::size_t(window.width) * window.height, cells);
+    this->Pixels_->Read(*level, part, window.width, window.height, raw);
+    this->Pixels_->Convert(*level, raw, 0, std::size_t(window.width) * window.height, cells);
     return;
   }
-  const std::shared_ptr<const Raw> kept = this->KeptOf(handle, *level);
+  const std::shared_ptr<const RasterPixels::Raw> kept =
+      this->Pixels_->CachedLevel(*level, std::size_t(level - handle.levels.data()));
   const bool same = level->width == columns && level->height == rows;
   if (!same) {
     std::fill_n(cells, std::size_t(window.width) * window.height * step, 0.0f);
@@ -84,17 +183,17 @@ void RasterLevels::ReadCells(Handle& handle, const LevelWindow& window, float* c
   for (part.row = top; part.row < bottom; part.row += part.height) {
     part.height = std::min(most, bottom - part.row);
     if (!kept) {
-      this->ReadRaw(*level, part, part.width, part.height, raw);
+      this->Pixels_->Read(*level, part, part.width, part.height, raw);
     }
     for (int y = part.row; y < part.row + part.height; ++y) {
       const std::size_t first = kept ? std::size_t(y) * level->width + part.column
                                      : std::size_t(y - part.row) * part.width;
       if (same) {
-        this->Convert(*level, kept ? *kept : raw, first, part.width,
-                      cells + std::size_t(y - top) * row.size());
+        this->Pixels_->Convert(*level, kept ? *kept : raw, first, part.width,
+                               cells + std::size_t(y - top) * row.size());
         continue;
       }
-      this->Convert(*level, kept ? *kept : raw, first, part.width, row.data());
+      this->Pixels_->Convert(*level, kept ? *kept : raw, first, part.width, row.data());
       std::fill(line.begin(), line.end(), 0.0f);
       const float* share = parts.data();
       for (int i = 0; i < window.width; ++i) {
@@ -128,10 +227,10 @@ void RasterLevels::ReadCells(Handle& handle, const LevelWindow& window, float* c
 std::array<double, 2> RasterLevels::FindRange(bool& exact) const {
   constexpr double Most = double(1 << 24); // pixels that are all looked at
   constexpr double Few = double(1 << 22);
-  const double pixels = double(this->Width_) * this->Height_;
+  const double pixels = double(this->Width()) * this->Height();
   exact = pixels <= Most;
   int level = 0;
-  this->With([&](Handle& handle) {
+  this->WithHandle([&](RasterHandle& handle) {
     while (!exact && pixels > std::ldexp(Few, 2 * level) &&
            handle.levels.back().width <= this->ColumnsAt(level + 1)) {
       ++level;
@@ -142,7 +241,7 @@ std::array<double, 2> RasterLevels::FindRange(bool& exact) const {
   const int rows = this->RowsAt(level);
   const int every = exact ? 1 : int(std::ceil(double(columns) * rows / Few));
   const int height = every > 1 ? 1 : int(std::clamp<std::size_t>(StripPixels / columns, 1, rows));
-  std::vector<float> cells(std::size_t(columns) * height * (this->Channels_ + 1));
+  std::vector<float> cells(std::size_t(columns) * height * (this->Channels() + 1));
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (int row = 0; row < rows; row += height * every) {
@@ -151,14 +250,14 @@ std::array<double, 2> RasterLevels::FindRange(bool& exact) const {
     for (std::size_t i = 0; i < std::size_t(columns) * some; ++i) {
       const double opacity = cells[2 * i + 1];
       if (opacity > 0.0) {
-        const double value = cells[2 * i] / opacity + this->Bias_;
+        const double value = cells[2 * i] / opacity + this->Bias();
         low = std::min(low, value);
         high = std::max(high, value);
       }
     }
   }
   if (!(low <= high)) {
-    throw Error(Error::Kind::Corrupt, this->Object_, "it holds no value that is not no-data");
+    throw Error(Error::Kind::Corrupt, this->Object_, "all of its values are no-data");
   }
   return {low, high};
 }

@@ -1,10 +1,10 @@
-// Averaged overviews of a large raster without any: a TIFF a level, beside nothing but themselves.
-#include <dspace/layers/raster/RasterLevels.h>
+#include <dspace/layers/raster/RasterOverviews.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 
 #include <cpl_vsi.h>
 
@@ -26,80 +26,95 @@ const char* const IdentityItem = "DSPACE_SOURCE";
 
 } // namespace
 
-void RasterLevels::PlanOverviews(GDALDataset& file, const std::string& folder, bool hasOwn) {
-  if (this->Remote_ || hasOwn || std::max(this->Width_, this->Height_) <= NeedsOverviews) {
+RasterOverviews::RasterOverviews(std::string object, std::string path, FileState state,
+                                 const RasterContent& content, RasterShown shown)
+    : Object_(std::move(object)), Path_(std::move(path)), File_(state), Content_(content),
+      Shown_(shown) {}
+
+RasterOverviews::~RasterOverviews() {
+  if (this->InMemory_) {
+    this->Remove();
+  }
+}
+
+void RasterOverviews::Plan(GDALDataset& file, const std::string& folder) {
+  const RasterContent& content = this->Content_;
+  if (std::max(content.width, content.height) <= NeedsOverviews) {
     return;
   }
-  static std::atomic<int> count{0};
-  const bool holes = this->Shown_ == Shown::Holes;
+  const bool holes = this->Shown_ == RasterShown::Holes;
   this->Identity_ = std::string("1: ") + (holes ? "holes of " : "") + "band " +
-                    std::to_string(this->Band_) + " of " + std::to_string(this->Width_) + " x " +
-                    std::to_string(this->Height_) + " x " + std::to_string(this->Bands_) +
+                    std::to_string(content.band) + " of " + std::to_string(content.width) + " x " +
+                    std::to_string(content.height) + " x " + std::to_string(content.bands) +
                     FilesOf(file);
   this->InMemory_ = folder.empty();
-  const std::string place =
-      this->InMemory_ ? "/vsimem/dspace-layer-" + std::to_string(count++) : folder;
-  const std::string name = ElevationCache::FileFor(place, this->Path_, this->Band_);
-  this->OverviewStem_ = name.substr(0, name.rfind('.')) + (holes ? "-layer-holes-" : "-layer-");
-  this->Folder_ = place;
+  this->Folder_ = folder;
+  if (this->InMemory_) {
+    std::ostringstream own; // no other object has this address at the same time
+    own << "/vsimem/dspace-layer-" << this;
+    this->Folder_ = own.str();
+  }
+  const std::string name = ElevationCache::FileFor(this->Folder_, this->Path_, content.band);
+  this->Stem_ = name.substr(0, name.rfind('.')) + (holes ? "-layer-holes-" : "-layer-");
 }
 
-std::string RasterLevels::OverviewFileOf(int level) const {
-  return this->OverviewStem_ + std::to_string(level) + ".tif";
+bool RasterOverviews::IsCoarsest(int level) const {
+  return std::max(this->Content_.ColumnsAt(level), this->Content_.RowsAt(level)) <= Smallest;
 }
 
-void RasterLevels::RemoveOverviews() const {
+std::string RasterOverviews::FileOf(int level) const {
+  return this->Stem_ + std::to_string(level) + ".tif";
+}
+
+void RasterOverviews::Remove() {
   const GdalErrors quiet;
-  this->OverviewsReady_ = false;
-  for (int level = FirstLevel; !this->OverviewStem_.empty() && level < 31; ++level) {
-    VSIUnlink(this->OverviewFileOf(level).c_str());
+  this->Ready_ = false;
+  for (int level = FirstLevel; !this->Stem_.empty() && level < 31; ++level) {
+    VSIUnlink(this->FileOf(level).c_str());
   }
 }
 
-bool RasterLevels::AddOverview(Handle& handle, int level) const {
+bool RasterOverviews::AddLevel(RasterHandle& handle, int level) {
   const GdalErrors quiet;
-  DatasetPointer file = OpenOwnTiff(this->OverviewFileOf(level));
+  DatasetPointer file = OpenOwnTiff(this->FileOf(level));
   const char* identity = file ? file->GetMetadataItem(IdentityItem) : nullptr;
   if (!identity || identity != this->Identity_ ||
-      file->GetRasterXSize() != this->ColumnsAt(level) ||
-      file->GetRasterYSize() != this->RowsAt(level) ||
-      file->GetRasterCount() != this->Channels_ + 1) {
+      file->GetRasterXSize() != this->Content_.ColumnsAt(level) ||
+      file->GetRasterYSize() != this->Content_.RowsAt(level) ||
+      file->GetRasterCount() != this->Content_.channels + 1) {
     return false;
   }
-  Level cells;
+  RasterLevel cells;
   cells.width = file->GetRasterXSize();
   cells.height = file->GetRasterYSize();
   cells.cached = true;
-  for (int k = 1; k <= this->Channels_; ++k) {
+  for (int k = 1; k <= this->Content_.channels; ++k) {
     cells.colors.push_back(file->GetRasterBand(k));
   }
-  cells.alpha = file->GetRasterBand(this->Channels_ + 1);
+  cells.alpha = file->GetRasterBand(this->Content_.channels + 1);
   handle.levels.push_back(std::move(cells));
   handle.overviews.push_back(std::move(file));
   return true;
 }
 
-// All that there are, once they are ready.
-void RasterLevels::AddOverviews(Handle& handle) const {
-  if (!this->OverviewsReady_ || !handle.overviews.empty()) {
+void RasterOverviews::Add(RasterHandle& handle) {
+  if (!this->Ready_ || !handle.overviews.empty()) {
     return;
   }
-  for (int level = FirstLevel; this->AddOverview(handle, level); ++level) {
-    if (std::max(this->ColumnsAt(level), this->RowsAt(level)) <= Smallest) {
+  for (int level = FirstLevel; this->AddLevel(handle, level); ++level) {
+    if (this->IsCoarsest(level)) {
       return;
     }
   }
-  this->OverviewsReady_ = false; // somebody has removed them: they are made again
+  this->Ready_ = false; // they were removed: Make() builds them again
 }
 
-// Whoever comes first makes them, the others wait.
-void RasterLevels::MakeOverviews(const LevelWindow& window) const {
-  if (this->OverviewStem_.empty() || this->OverviewsReady_ ||
-      std::min(window.levelX, window.levelY) < FirstLevel) {
+void RasterOverviews::Make(const LevelWindow& window, const Access& access) {
+  if (this->Stem_.empty() || this->Ready_ || std::min(window.levelX, window.levelY) < FirstLevel) {
     return;
   }
-  const std::lock_guard<std::mutex> lock(this->Making_);
-  if (this->OverviewsReady_) {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  if (this->Ready_) {
     return;
   }
   if (!this->InMemory_) {
@@ -110,29 +125,28 @@ void RasterLevels::MakeOverviews(const LevelWindow& window) const {
                   "cannot be made: " + failure.message());
     }
   }
-  std::vector<std::string> known;
-  const std::unique_ptr<Handle> handle = this->Open(known);
+  const std::unique_ptr<RasterHandle> handle = access.open();
   for (int level = FirstLevel;; ++level) {
-    if (!this->AddOverview(*handle, level)) {
-      this->WriteOverview(*handle, level);
-      if (!this->AddOverview(*handle, level)) {
+    if (!this->AddLevel(*handle, level)) {
+      this->WriteLevel(*handle, level, access);
+      if (!this->AddLevel(*handle, level)) {
         throw Error(Error::Kind::Io, this->Object_,
                     "its overviews in '" + this->Folder_ + "' cannot be read back");
       }
     }
-    if (std::max(this->ColumnsAt(level), this->RowsAt(level)) <= Smallest) {
+    if (this->IsCoarsest(level)) {
       break;
     }
   }
-  this->OverviewsReady_ = true;
+  this->Ready_ = true;
 }
 
 // Straight colours of 8 bits, or values as doubles; opacity 0 to 255.
-void RasterLevels::WriteOverview(Handle& handle, int level) const {
-  const int step = this->Channels_ + 1;
-  const int columns = this->ColumnsAt(level);
-  const int rows = this->RowsAt(level);
-  const std::string target = this->OverviewFileOf(level);
+void RasterOverviews::WriteLevel(RasterHandle& handle, int level, const Access& access) {
+  const int step = this->Content_.channels + 1;
+  const int columns = this->Content_.ColumnsAt(level);
+  const int rows = this->Content_.RowsAt(level);
+  const std::string target = this->FileOf(level);
   std::optional<AtomicFile> disk; // removes what is not committed
   if (!this->InMemory_) {
     disk.emplace(target, this->Object_ + ", overviews '" + target + "'");
@@ -156,7 +170,7 @@ void RasterLevels::WriteOverview(Handle& handle, int level) const {
                                  "BIGTIFF=IF_SAFER", "INTERLEAVE=BAND",  nullptr};
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   DatasetPointer file(driver ? driver->Create(part.c_str(), columns, rows, step,
-                                              this->Band_ > 0 ? GDT_Float64 : GDT_Byte,
+                                              this->Content_.band > 0 ? GDT_Float64 : GDT_Byte,
                                               const_cast<char**>(options))
                              : nullptr);
   check(file != nullptr);
@@ -171,18 +185,18 @@ void RasterLevels::WriteOverview(Handle& handle, int level) const {
     cells.resize(size * step);
     straight.resize(size * step);
     try {
-      this->ReadCells(handle, {level, level, 0, row, columns, some}, cells.data());
+      access.read(handle, {level, level, 0, row, columns, some}, cells.data());
     } catch (const Error&) {
       file.reset();
       discard();
       throw;
     }
     for (std::size_t i = 0; i < size; ++i) {
-      const double opacity = cells[i * step + this->Channels_];
-      for (int k = 0; k < this->Channels_; ++k) {
-        straight[i * step + k] = opacity > 0.0 ? cells[i * step + k] / opacity + this->Bias_ : 0.0;
+      const double opacity = cells[i * step + this->Content_.channels];
+      for (int k = 0; k < this->Content_.channels; ++k) {
+        straight[i * step + k] = opacity > 0.0 ? cells[i * step + k] / opacity + access.bias : 0.0;
       }
-      straight[i * step + this->Channels_] = 255.0 * opacity;
+      straight[i * step + this->Content_.channels] = 255.0 * opacity;
     }
     const auto pixel = GSpacing(step * sizeof(double));
     check(file->RasterIO(GF_Write, 0, row, columns, some, straight.data(), columns, some,

@@ -1,18 +1,18 @@
-// Pixels as GDAL gives them, once or each time, and what they become.
-#include <dspace/layers/raster/RasterLevels.h>
+#include <dspace/layers/raster/RasterPixels.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <dspace/Error.h>
+#include <dspace/layers/raster/RasterOverviews.h>
 
 #include <dspace/raster/NetworkScope.h>
 
 namespace dspace {
 namespace {
 
-constexpr double MostKept = 64e6; // pixels of an image that is kept in memory
+constexpr double MaximumCached = 64e6; // pixels of an image that is kept in memory
 constexpr double LargeBlock =
     1 << 20;                  // pixels of a quarter of a file or more, which are decoded together
 constexpr int StripRows = 64; // that are decoded at a time
@@ -21,32 +21,38 @@ constexpr std::array<const char*, 7> Streams = {"JPEG", "PNG",    "GIF",   "BIGG
 
 } // namespace
 
-// Whatever part of such a file is read, all that stands before it is decoded.
-void RasterLevels::PlanKeeping(GDALDataset& file) {
+RasterPixels::RasterPixels(std::string object, std::string path, const RasterContent& content,
+                           RasterShown shown, bool remote, RasterOverviews& overviews)
+    : Object_(std::move(object)), Path_(std::move(path)), Content_(content), Shown_(shown),
+      Remote_(remote), Overviews_(overviews) {}
+
+// To read any part of such a file, GDAL decodes everything before that part.
+void RasterPixels::PlanCaching(GDALDataset& file, std::size_t levels,
+                               std::vector<std::string>& warnings) {
+  this->Levels_.resize(levels);
   int width = 1;
   int height = 1;
   file.GetRasterBand(1)->GetBlockSize(&width, &height);
   const GDALDriver* driver = file.GetDriver();
   const std::string format = driver ? GDALGetDriverShortName(file.GetDriver()) : "";
   const bool stream = std::find(Streams.begin(), Streams.end(), format) != Streams.end();
-  const double pixels = double(this->Width_) * this->Height_;
+  const double pixels = double(this->Content_.width) * this->Content_.height;
   const double block = double(width) * height;
   if (this->Remote_ || !(stream || (block > LargeBlock && 4.0 * block > pixels))) {
     return;
   }
-  this->Keeps_ = pixels <= MostKept;
-  if (!this->Keeps_) {
-    this->Warnings_.push_back(this->Object_ + " has " + std::to_string(this->Width_) + " x " +
-                              std::to_string(this->Height_) + " pixels in a format (" + format +
-                              ") whose parts cannot be read by themselves: each of its tiles " +
-                              "takes long; convert it to a tiled TIFF (gdal_translate -co "
-                              "TILED=YES)");
+  this->Caches_ = pixels <= MaximumCached;
+  if (!this->Caches_) {
+    warnings.push_back(this->Object_ + " has " + std::to_string(this->Content_.width) + " x " +
+                       std::to_string(this->Content_.height) + " pixels in a format (" + format +
+                       ") that cannot be read in parts: each of its tiles " +
+                       "takes long; convert it to a tiled TIFF (gdal_translate -co "
+                       "TILED=YES)");
   }
 }
 
-// `columns` x `rows` pixels of `part`, which may have more.
-void RasterLevels::ReadRaw(const Level& level, const RasterWindow& part, int columns, int rows,
-                           Raw& raw) const {
+void RasterPixels::Read(const RasterLevel& level, const RasterWindow& part, int columns, int rows,
+                        Raw& raw) {
   const std::size_t count = std::size_t(columns) * rows;
   GdalErrors errors;
   const auto check = [&](CPLErr result) {
@@ -55,14 +61,15 @@ void RasterLevels::ReadRaw(const Level& level, const RasterWindow& part, int col
     }
     const std::string message = errors.Message("GDAL gave no reason");
     if (level.cached) {
-      this->RemoveOverviews();
+      this->Overviews_.Remove();
       throw Error(Error::Kind::Corrupt, this->Object_,
-                  "its overviews in the cache are damaged; they are made anew: " + message);
+                  "its overviews in the cache are damaged; they are rebuilt: " + message);
     }
     if (this->Remote_) {
-      ForgetAnswers(this->Path_);
-      if (IsUnanswered(message)) {
-        throw Error(Error::Kind::Io, this->Object_, "cannot be read: " + InWords(message));
+      ClearNetworkCache(this->Path_);
+      if (IsNetworkFailure(message)) {
+        throw Error(Error::Kind::Io, this->Object_,
+                    "cannot be read: " + ExplainHttpStatus(message));
       }
     }
     throw Error(Error::Kind::Corrupt, this->Object_, "cannot be read: " + message);
@@ -96,20 +103,20 @@ void RasterLevels::ReadRaw(const Level& level, const RasterWindow& part, int col
   }
 }
 
-// Null where parts are read as they are needed. Whoever comes first decodes, the others wait.
-std::shared_ptr<const RasterLevels::Raw> RasterLevels::KeptOf(const Handle& handle,
-                                                              const Level& level) const {
-  if (!this->Keeps_ || level.cached) {
+// The first caller decodes the level; concurrent callers wait.
+std::shared_ptr<const RasterPixels::Raw> RasterPixels::CachedLevel(const RasterLevel& level,
+                                                                   std::size_t index) {
+  if (!this->Caches_ || level.cached) {
     return nullptr;
   }
-  const std::lock_guard<std::mutex> lock(this->Keeping_);
-  std::shared_ptr<const Raw>& kept = this->Kept_[std::size_t(&level - handle.levels.data())];
-  if (!kept) {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  std::shared_ptr<const Raw>& cached = this->Levels_[index];
+  if (!cached) {
     auto whole = std::make_shared<Raw>();
     Raw strip;
     for (int row = 0; row < level.height; row += StripRows) {
       const int rows = std::min(StripRows, level.height - row);
-      this->ReadRaw(level, {0, row, level.width, rows}, level.width, rows, strip);
+      this->Read(level, {0, row, level.width, rows}, level.width, rows, strip);
       if (row == 0) {
         whole->samples.reserve(strip.samples.size() / rows * level.height);
         whole->mask.reserve(strip.mask.size() / rows * level.height);
@@ -124,32 +131,31 @@ std::shared_ptr<const RasterLevels::Raw> RasterLevels::KeptOf(const Handle& hand
     for (GDALRasterBand* band : level.colors) { // GDAL has decoded them a second time
       band->FlushCache(false);
     }
-    this->KeptBytes_ += whole->samples.size() + whole->mask.size();
-    kept = std::move(whole);
+    this->CachedBytes_ += whole->samples.size() + whole->mask.size();
+    cached = std::move(whole);
   }
-  return kept;
+  return cached;
 }
 
-// Channels times opacity, and opacity.
-void RasterLevels::Convert(const Level& level, const Raw& raw, std::size_t first, std::size_t count,
-                           float* pixels) const {
+void RasterPixels::Convert(const RasterLevel& level, const Raw& raw, std::size_t first,
+                           std::size_t count, float* pixels) const {
   const GDALDataType type = level.colors[0]->GetRasterDataType();
   const int samples = int(level.colors.size()) + (level.alpha ? 1 : 0);
   const int size = GDALGetDataTypeSizeBytes(type);
   const void* from = raw.samples.data() + first * std::size_t(samples * size);
   const std::uint8_t* mask = raw.mask.empty() ? nullptr : raw.mask.data() + first;
-  const int step = this->Channels_ + 1;
-  if (this->Band_ > 0) {
+  const int step = this->Content_.channels + 1;
+  if (this->Content_.band > 0) {
     // A value may need more digits than a float has, until the bias is gone.
     std::vector<double> values(count * std::size_t(samples));
     GDALCopyWords64(from, type, size, values.data(), GDT_Float64, sizeof(double),
                     GPtrDiff_t(values.size()));
     for (std::size_t i = 0; i < count; ++i) {
       const double* p = &values[i * std::size_t(samples)];
-      const double value = level.cached ? *p : *p * this->Scale_ + this->Offset_;
+      const double value = level.cached ? *p : *p * this->Content_.scale + this->Content_.offset;
       float opacity = level.alpha ? float(p[1]) * (1.0f / 255.0f) : mask ? mask[i] / 255.0f : 1.0f;
       opacity = std::isfinite(value) ? opacity : 0.0f;
-      if (this->Shown_ == Shown::Holes && !level.cached) {
+      if (this->Shown_ == RasterShown::Holes && !level.cached) {
         pixels[2 * i] = 0.0f;
         pixels[2 * i + 1] = 1.0f - opacity;
         continue;
@@ -159,11 +165,12 @@ void RasterLevels::Convert(const Level& level, const Raw& raw, std::size_t first
     }
     return;
   }
-  const float scale = level.cached ? 1.0f : float(this->Scale_);
-  const float alphaScale = level.cached ? 1.0f / 255.0f : float(this->AlphaScale_);
-  const bool indexed = !this->Palette_.empty() && !level.cached;
+  const float scale = level.cached ? 1.0f : float(this->Content_.scale);
+  const float alphaScale = level.cached ? 1.0f / 255.0f : float(this->Content_.alphaScale);
+  const bool indexed = !this->Content_.palette.empty() && !level.cached;
   const auto convert = [&](auto* p) {
-    if (!level.alpha && !mask && !indexed && this->Channels_ == 3) { // most, and the quickest
+    if (!level.alpha && !mask && !indexed &&
+        this->Content_.channels == 3) { // most, and the quickest
       for (std::size_t i = 0; i < count; ++i, p += 3, pixels += 4) {
         pixels[0] = p[0] * scale;
         pixels[1] = p[1] * scale;
@@ -176,17 +183,17 @@ void RasterLevels::Convert(const Level& level, const Raw& raw, std::size_t first
       float opacity = level.alpha ? p[samples - 1] * alphaScale : mask ? mask[i] / 255.0f : 1.0f;
       if (indexed) {
         const std::array<float, 4>& color =
-            this->Palette_[std::min(std::size_t(p[0]), this->Palette_.size() - 1)];
+            this->Content_.palette[std::min(std::size_t(p[0]), this->Content_.palette.size() - 1)];
         opacity *= color[3];
         for (int k = 0; k < 3; ++k) {
           pixels[k] = color[std::size_t(k)] * opacity;
         }
       } else {
-        for (int k = 0; k < this->Channels_; ++k) {
+        for (int k = 0; k < this->Content_.channels; ++k) {
           pixels[k] = opacity > 0.0f ? p[k] * scale * opacity : 0.0f;
         }
       }
-      pixels[this->Channels_] = opacity;
+      pixels[this->Content_.channels] = opacity;
     }
   };
   if (type == GDT_Byte) {

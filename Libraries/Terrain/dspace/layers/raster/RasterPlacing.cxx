@@ -22,7 +22,7 @@ std::string NameOf(const Crs& crs) {
          std::to_string(std::llround(crs.GetAxes().semiMajor)) + " m)";
 }
 
-void RefuseAnotherBody(const std::string& object, const Crs& raster, const RasterPlace& terrain) {
+void RejectAnotherBody(const std::string& object, const Crs& raster, const RasterPlace& terrain) {
   const double a = raster.GetAxes().semiMajor;
   const double b = terrain.crs.GetAxes().semiMajor;
   if (a > 0.0 && b > 0.0 && std::abs(a - b) > OneBody * b) {
@@ -36,7 +36,7 @@ void RefuseAnotherBody(const std::string& object, const Crs& raster, const Raste
 Eigen::Affine2d PixelToMap(RasterLevels& levels, const RasterPlace& terrain,
                            const RasterLayerOptions& options, Crs& crs) {
   const std::string& object = levels.Object();
-  const RasterLevels::Georeference& own = levels.Place();
+  const RasterContent::Georeference& own = levels.Place();
   crs = options.crs ? Crs::FromText(*options.crs) : own.crs;
   Eigen::Affine2d map = own.pixelToMap;
   const Eigen::Vector2d size(levels.Width(), levels.Height());
@@ -65,11 +65,11 @@ Eigen::Affine2d PixelToMap(RasterLevels& levels, const RasterPlace& terrain,
                 "its geotransform is degenerate; give its extent");
   }
   if (crs.GetKind() == Crs::Kind::None && terrain.crs.GetKind() != Crs::Kind::None) {
-    levels.Warnings().push_back(object + " has no CRS: the terrain's is taken; give its CRS");
+    levels.Warnings().push_back(object + " has no CRS: the terrain's is used; give its CRS");
     crs = terrain.crs;
   } else if (crs.GetKind() != Crs::Kind::None && terrain.crs.GetKind() == Crs::Kind::None) {
     levels.Warnings().push_back(terrain.name + " has no CRS: that of " + object +
-                                " is taken to be the same; give the terrain's CRS");
+                                " is used for both; give the terrain's CRS");
   }
   return map;
 }
@@ -190,7 +190,7 @@ PlacedRaster PlaceRasterAt(RasterLevels& levels, const RasterPlace& terrain, con
   position.width = levels.Width();
   position.height = levels.Height();
   position.crs = crs;
-  RefuseAnotherBody(levels.Object(), position.crs, terrain);
+  RejectAnotherBody(levels.Object(), position.crs, terrain);
   CloseAround(position, pixelToMap);
   position.mapToPixel = pixelToMap.inverse();
   std::unique_ptr<CrsTransform> toRaster;

@@ -11,9 +11,9 @@ namespace dspace {
 namespace {
 
 constexpr int Side = TexelPlaces::Side;
-constexpr double LeastCells = 1.5;            // a texel's side, in cells of the level that is read
-constexpr int MostPlaces = 16;                // in a texel, a side
-constexpr double MostCells = double(1 << 22); // read for one square
+constexpr double LeastCells = 1.5; // a texel's side, in cells of the level that is read
+constexpr int MaximumPlaces = 16;  // in a texel, a side
+constexpr double MaximumCells = double(1 << 22); // read for one square
 
 TexelRange Meet(const TexelPatch& patch, const TexelRange& range) {
   return {std::max(patch.x, range.left), std::max(patch.y, range.top),
@@ -222,7 +222,7 @@ bool SquareReader::Columns(const Eigen::AlignedBox2d& reach, LevelWindow& window
   return true;
 }
 
-bool SquareReader::Settle(TexelSquare& square) const {
+bool SquareReader::ChooseLevel(TexelSquare& square) const {
   const Eigen::AlignedBox2d wanted = ReachOf(square.places, square.wanted);
   const Eigen::AlignedBox2d all = ReachOf(square.places, TexelRange());
   const Eigen::Vector2d texel = LeastTexel(square.places);
@@ -233,7 +233,7 @@ bool SquareReader::Settle(TexelSquare& square) const {
   window.levelX = levelOf(texel.x());
   window.levelY = levelOf(texel.y());
   while (this->Rows(all, window) && this->Columns(all, window)) {
-    if (double(window.width) * window.height <= MostCells) {
+    if (double(window.width) * window.height <= MaximumCells) {
       return this->Rows(wanted, window) && this->Columns(wanted, window);
     }
     ++(window.width > window.height ? window.levelX : window.levelY); // about a pole
@@ -270,7 +270,7 @@ void SquareReader::Sample(const TexelSquare& square, const LevelWindow& window,
   const Eigen::Vector2d scale = this->CellsAPixel(window);
   const auto placesAlong = [&](const Eigen::Vector2d& side) {
     const double cellsLong = side.cwiseAbs().cwiseProduct(scale).maxCoeff();
-    return int(std::clamp(std::ceil(cellsLong - 0.01), 1.0, double(MostPlaces)));
+    return int(std::clamp(std::ceil(cellsLong - 0.01), 1.0, double(MaximumPlaces)));
   };
   const auto run = [&](auto summing) {
     constexpr int Step = decltype(summing)::Size;

@@ -33,7 +33,7 @@ public:
 
   // False where what is wanted does not meet the raster. The level is that of the whole square, so
   // that it is the same for all blocks.
-  bool Settle(TexelSquare& square) const;
+  bool ChooseLevel(TexelSquare& square) const;
   void Read(const LevelWindow& window, std::vector<float>& cells) const;
   void Sample(const TexelSquare& square, const LevelWindow& window, const std::vector<float>& cells,
               const ColorBlock& block, float* texels) const;

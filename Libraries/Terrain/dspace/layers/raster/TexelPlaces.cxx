@@ -9,7 +9,7 @@ namespace dspace {
 namespace {
 
 constexpr double Tolerance = 0.01; // of a pixel or of a texel
-constexpr double Margin = 2.0;     // texels beyond the extent that are told all the same
+constexpr double Margin = 2.0;     // texels beyond the extent that are included
 
 } // namespace
 

@@ -17,7 +17,7 @@ namespace dspace {
 
 using TexelChain = std::vector<Eigen::Vector2d>; // (0, 0) is the outer corner of the first texel
 
-// What one pen draws: half axes of an ellipse, upright [texels].
+// Lines of one pen: half axes of an ellipse, upright [texels].
 struct TexelStroke {
   TexelChain chain;
   Eigen::Vector2d pen = Eigen::Vector2d::Ones();

@@ -86,13 +86,13 @@ Crs VectorCrsOf(OGRLayer& layer, GDALDataset& file, const std::string& path,
   if ((driver == "GeoJSON" && !StatesCrs(path)) || driver == "GeoJSONSeq") {
     if (!terrain.crs.HasGeographic()) {
       warnings.push_back(object + " states no CRS: map coordinates of " + terrain.name +
-                         " are taken; `crs` states another");
+                         " are used; `crs` states another");
       return terrain.crs;
     }
     if (!IsEarth(terrain.crs)) {
       const Crs degrees = terrain.crs.Geographic();
       warnings.push_back(object + " states no CRS: longitude and latitude of '" +
-                         degrees.GetName() + "' are taken; `crs` states another");
+                         degrees.GetName() + "' are used; `crs` states another");
       return degrees;
     }
   }
@@ -100,7 +100,7 @@ Crs VectorCrsOf(OGRLayer& layer, GDALDataset& file, const std::string& path,
     return Crs::FromOgr(*srs);
   }
   warnings.push_back(object + ", layer '" + ToUtf8(layer.GetName()) + "', states no CRS: that of " +
-                     terrain.name + " is taken; `crs` states another");
+                     terrain.name + " is used; `crs` states another");
   return terrain.crs;
 }
 

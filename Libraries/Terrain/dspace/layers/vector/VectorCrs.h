@@ -1,4 +1,4 @@
-// In which CRS the shapes of a file are. Not for public headers.
+// Determines the CRS of a vector file. Not for public headers.
 #ifndef DSPACE_LAYERS_VECTORCRS_H
 #define DSPACE_LAYERS_VECTORCRS_H
 

@@ -107,7 +107,7 @@ public:
       }
     }
     if (!met) {
-      Refuse(this->Name_, "none of its features overlaps " + terrain.name);
+      Reject(this->Name_, "none of its features overlaps " + terrain.name);
     }
   }
 
@@ -155,7 +155,7 @@ private:
   void Paint(const PlacedShape& shape, const MapConversion& conversion, const VectorTracer& tracer,
              const std::vector<Eigen::Vector2d>& turns, const VectorTracer::Width& width,
              VectorCanvas& canvas) const {
-    const VectorLook& look = this->File_.looks[shape.shape->look];
+    const VectorStyle& look = this->File_.looks[shape.shape->look];
     if (shape.shape->kind == VectorShape::Kind::Point) {
       for (const Eigen::Vector2d& turn : turns) {
         const Eigen::Vector2d middle = tracer.ToTexel(shape.rings[0].map[0]) + turn;

@@ -32,17 +32,17 @@ struct VectorLayerOptions {
   std::size_t mostVertices = 10'000'000; // of all features together; long edges count as several
 };
 
-// Whatever OGR opens (GeoJSON, GeoPackage, Shapefile, ...). Edges are straight in the file's own
-// CRS; in another they are followed to a quarter of a texel. Areas are even-odd: holes stay holes.
-// In longitude and latitude the shorter way leads from one vertex to the next, also across the date
-// line; a ring that so goes once around contains the nearer pole. What has no place in the
-// terrain's CRS is left out, with a warning. Later features cover earlier ones, lines their fills;
-// they mix in linear light. PixelSize() is the least of a thousandth of the extent of all of them,
-// a 64th of the smallest area's or path's, a quarter of `width` and the terrain's own pixel, but no
-// less than a millionth of the extent and 0.1 mm. Throws Error naming the file: NotFound (file,
-// layer), Corrupt, Unsupported (a CRS of another body), InvalidArgument (an option, no features,
-// places that are no longitude and latitude, no overlap with the terrain), Resource (too many
-// vertices).
+// Opens any vector file that OGR reads (GeoJSON, GeoPackage, Shapefile, ...). Edges are straight in
+// the file's own CRS; in another they are followed to a quarter of a texel. Areas are even-odd:
+// holes stay holes. In longitude and latitude the shorter way leads from one vertex to the next,
+// also across the date line; a ring that so goes once around contains the nearer pole. What has no
+// place in the terrain's CRS is left out, with a warning. Later features cover earlier ones, lines
+// their fills; they mix in linear light. PixelSize() is the least of a thousandth of the extent of
+// all of them, a 64th of the smallest area's or path's, a quarter of `width` and the terrain's own
+// pixel, but no less than a millionth of the extent and 0.1 mm. Throws Error naming the file:
+// NotFound (file, layer), Corrupt, Unsupported (a CRS of another body), InvalidArgument (an option,
+// no features, places that are no longitude and latitude, no overlap with the terrain), Resource
+// (too many vertices).
 std::shared_ptr<const ColorLayer> OpenVectorLayer(const std::string& path,
                                                   const RasterPlace& terrain,
                                                   const VectorLayerOptions& options = {});

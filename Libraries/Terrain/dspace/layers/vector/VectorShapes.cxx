@@ -99,8 +99,8 @@ private:
     }
     return number;
   }
-  VectorLook LookOf(const OGRFeature& feature) {
-    VectorLook look{this->Options_.line, this->Options_.fill, this->Options_.line, std::nullopt};
+  VectorStyle LookOf(const OGRFeature& feature) {
+    VectorStyle look{this->Options_.line, this->Options_.fill, this->Options_.line, std::nullopt};
     this->Color(feature, "stroke", look.line);
     this->Color(feature, "fill", look.fill);
     this->Color(feature, "marker-color", look.point);
@@ -224,9 +224,9 @@ private:
       }
       const bool inside = place.y() >= low - beyond && place.y() <= high + beyond;
       if (this->Degrees_ && (!inside || std::abs(place.x()) > 2.0 * this->Turn_)) {
-        Refuse(this->Object_, "a vertex is (" + NumberText(place.x()) + ", " +
+        Reject(this->Object_, "a vertex is (" + NumberText(place.x()) + ", " +
                                   NumberText(place.y()) +
-                                  "), which is no longitude and latitude; accepted: a CRS "
+                                  "), which is not a longitude and latitude; accepted: a CRS "
                                   "stated for the layer in which it is a place");
       }
       if (this->Turn_ > 0.0 && inside) {
@@ -312,7 +312,7 @@ VectorFile ReadVectorFile(const std::string& path, const RasterPlace& terrain,
   }
   if (std::all_of(result.groups.begin(), result.groups.end(),
                   [](const VectorGroup& group) { return group.shapes.empty(); })) {
-    Refuse(object, "it has no features with a geometry");
+    Reject(object, "it has no features with a geometry");
   }
   return result;
 }

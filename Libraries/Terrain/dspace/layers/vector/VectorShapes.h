@@ -15,7 +15,7 @@
 namespace dspace {
 
 // Colours are sRGB and opacity, 0 to 1.
-struct VectorLook {
+struct VectorStyle {
   std::array<double, 4> line;
   std::array<double, 4> fill;
   std::array<double, 4> point;
@@ -43,7 +43,7 @@ struct VectorGroup {
 
 struct VectorFile {
   std::vector<VectorGroup> groups;
-  std::vector<VectorLook> looks;
+  std::vector<VectorStyle> looks;
   std::vector<std::string> warnings;
 };
 

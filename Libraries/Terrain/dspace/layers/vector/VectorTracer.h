@@ -20,8 +20,8 @@ public:
     double metres = 0.0;
     double pixels = 0.0;
   };
-  // Half axes [texels] of a pen there that is round on the ground; those of a body are told to a
-  // hundredth.
+  // Half axes [texels] of a pen there that is round on the ground; on a body
+  // accurate to a hundredth.
   Eigen::Vector2d PenAt(const Eigen::Vector2d& texel, const Width& width) const;
   // The greatest in the block, or a little more.
   double Reach(const Width& width) const;

@@ -134,7 +134,7 @@ private:
       const std::string type(this->Tokens_.Expect(Kind::Word, "the type of a field").text);
       const std::string fieldName(this->Tokens_.Expect(Kind::Word, "the name of a field").text);
       if (!FindVrmlFieldType(type, field.type) || field.type.base == Base::Enum) {
-        this->Tokens_.Fail("'" + type + "' is no type of a field");
+        this->Tokens_.Fail("'" + type + "' is not a type of a field");
       }
       if (!event) {
         field.emitted = "f" + std::to_string(this->Serial_++);

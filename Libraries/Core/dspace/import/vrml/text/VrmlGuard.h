@@ -1,4 +1,4 @@
-// What stands between a VRML file and Coin: a strict reading of the text. Internal, not installed.
+// Rewrites a VRML file for Coin after strict checks of its text. Internal, not installed.
 #ifndef DSPACE_IMPORT_VRML_GUARD_H
 #define DSPACE_IMPORT_VRML_GUARD_H
 
@@ -18,7 +18,7 @@ struct GuardedVrml {
 };
 
 // Coin crashes, hangs or opens files on its own on some input, so it never sees the file itself but
-// a text written anew from it, with only the nodes and fields of VrmlNodeTable, every value checked
+// a text rewritten from it, with only the nodes and fields of VrmlNodeTable, every value checked
 // for its type. Left out, with a warning each kind: unknown nodes and fields, EXTERNPROTO, USE of
 // an unknown name, text; silently: ROUTE, scripts, sensors, lights, viewpoints.
 // DEF, PROTO and interface names are replaced by numbered ones.

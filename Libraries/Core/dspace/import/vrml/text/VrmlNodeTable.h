@@ -1,4 +1,4 @@
-// Which VRML nodes and fields the importer reads, and of what type they are. Internal.
+// The VRML nodes and fields that the importer reads, and their types. Internal.
 #ifndef DSPACE_IMPORT_VRML_NODE_TABLE_H
 #define DSPACE_IMPORT_VRML_NODE_TABLE_H
 

@@ -31,7 +31,7 @@ public:
     for (long count = 1; !this->Tokens_.At(Kind::CloseBracket); ++count) {
       for (int i = 0; i < type.arity; ++i) {
         if (this->Tokens_.At(Kind::CloseBracket)) {
-          this->Warn("a list whose length is no multiple of " + std::to_string(type.arity) +
+          this->Warn("a list whose length is not a multiple of " + std::to_string(type.arity) +
                          " loses its incomplete last value",
                      line);
           this->Out_.resize(complete);

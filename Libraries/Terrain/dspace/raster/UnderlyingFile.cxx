@@ -1,4 +1,4 @@
-#include <dspace/raster/FileBehind.h>
+#include <dspace/raster/UnderlyingFile.h>
 
 #include <filesystem>
 
@@ -6,7 +6,7 @@
 
 namespace dspace {
 
-std::string FileBehind(const std::string& name) {
+std::string UnderlyingFile(const std::string& name) {
   namespace fs = std::filesystem;
   std::string rest = name;
   while (rest.compare(0, 4, "/vsi") == 0 && !IsRemote(rest)) {

@@ -1,4 +1,4 @@
-#include <dspace/clipmap/SeenTiles.h>
+#include <dspace/clipmap/VisibleTiles.h>
 
 #include <algorithm>
 #include <cmath>
@@ -150,8 +150,8 @@ private:
 
 } // namespace
 
-std::vector<ColorTile> SeenTiles(const ColorGrid& grid, int chart, const LayerView& view,
-                                 int finest, std::size_t most) {
+std::vector<ColorTile> VisibleTiles(const ColorGrid& grid, int chart, const LayerView& view,
+                                    int finest, std::size_t most) {
   const Search search(grid, chart, view);
   std::priority_queue<Candidate> open; // the coarsest on the screen first
   std::vector<Candidate> seen;

@@ -1,6 +1,6 @@
-// Which tiles of a terrain's colour layers a view needs. No OpenGL.
-#ifndef DSPACE_LAYERS_SEENTILES_H
-#define DSPACE_LAYERS_SEENTILES_H
+// Selects the tiles of a terrain's colour layers that a view needs. No OpenGL.
+#ifndef DSPACE_LAYERS_VISIBLETILES_H
+#define DSPACE_LAYERS_VISIBLETILES_H
 
 #include <array>
 #include <functional>
@@ -12,7 +12,7 @@
 namespace dspace {
 
 struct LayerView {
-  ClipmapSight sight;
+  ClipmapViewVolume sight;
   Eigen::Vector3d forward = Eigen::Vector3d::UnitX(); // of the camera, unit, in the terrain's frame
   bool parallel = false;
   double pixel = 1e-3;    // [m] a pixel's side; of a perspective view at 1 m of depth
@@ -25,8 +25,8 @@ struct LayerView {
 // Tiles that the view may see, down to zoom `finest` or until their texels are as small as pixels;
 // with each tile those that it is a part of. Coarse ones first, of a zoom the nearest. At most
 // `most`: then those are left out whose texels are smallest on the screen.
-std::vector<ColorTile> SeenTiles(const ColorGrid& grid, int chart, const LayerView& view,
-                                 int finest, std::size_t most);
+std::vector<ColorTile> VisibleTiles(const ColorGrid& grid, int chart, const LayerView& view,
+                                    int finest, std::size_t most);
 
 } // namespace dspace
 

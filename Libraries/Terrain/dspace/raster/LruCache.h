@@ -1,6 +1,6 @@
-// The things that were used latest, by their keys.
-#ifndef DSPACE_TERRAIN_LATESTKEPT_H
-#define DSPACE_TERRAIN_LATESTKEPT_H
+// A cache of values by key that evicts the least recently used one.
+#ifndef DSPACE_TERRAIN_LRUCACHE_H
+#define DSPACE_TERRAIN_LRUCACHE_H
 
 #include <cstddef>
 #include <iterator>
@@ -10,12 +10,13 @@
 
 namespace dspace {
 
-// Not for several threads at once: whoever has it locks.
-template<typename Key, typename Value> class LatestKept {
+// Not synchronised: the owner locks.
+template<typename Key, typename Value> class LruCache {
 public:
-  explicit LatestKept(std::size_t most) : Most_(most) {}
+  explicit LruCache(std::size_t most) : Most_(most) {}
 
-  // Null where it is not kept; used with this. Valid until the next call that is not const.
+  // The value, which becomes the most recently used; null if absent. Valid until the next call of
+  // another function.
   const Value* Find(const Key& key) {
     const auto found = this->Entries_.find(key);
     if (found == this->Entries_.end()) {
@@ -25,8 +26,8 @@ public:
     return &found->second.value;
   }
 
-  // What is kept of that key stays.
-  void Keep(const Key& key, Value value) {
+  // Inserts a value and may evict another. An existing value of the key stays.
+  void Insert(const Key& key, Value value) {
     if (this->Find(key)) {
       return;
     }
@@ -38,7 +39,7 @@ public:
     }
   }
 
-  template<typename Predicate> void DropIf(const Predicate& drop) {
+  template<typename Predicate> void EraseIf(const Predicate& drop) {
     for (auto it = this->Entries_.begin(); it != this->Entries_.end();) {
       if (drop(it->first)) {
         this->Uses_.erase(it->second.use);
@@ -56,7 +57,7 @@ private:
   };
   std::size_t Most_;
   std::map<Key, Entry> Entries_;
-  std::list<Key> Uses_; // latest first
+  std::list<Key> Uses_; // most recent first
 };
 
 } // namespace dspace
