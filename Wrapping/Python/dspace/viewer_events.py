@@ -85,8 +85,8 @@ class ViewerEvents:
     # --- Saying --------------------------------------------------------------------------------
 
     def send_event(self, event):
-        """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:
-        dspace.NotFound when nobody drives; up to 1 MiB."""
+        """Sends a dspace.proto.service_pb2.ViewerEvent of up to 1 MiB to the simulation. A Watcher raises
+        dspace.NotFound if the server has no driver."""
         if not isinstance(event, service_pb2.ViewerEvent):
             refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
         self._client.send_event(event)

@@ -88,8 +88,8 @@ class Watcher(Session):
     that is removed, or lost with its server, are there again when the scene is. Everything else that
     would change the scene raises dspace.Unsupported.
 
-    What a person does goes to whoever drives: send_event(), answer(), edited(), select(), dragged(),
-    Viewport.pick(send=True), and clicks in viewports of one's own (Viewport.event).
+    Actions of a person are sent to the driver: send_event(), answer(), edited(), select(), dragged(),
+    Viewport.pick(send=True), and clicks in the watcher's own viewports (Viewport.event).
     """
 
     def __init__(self, client):
@@ -120,8 +120,8 @@ class Watcher(Session):
 
     @property
     def error(self):
-        """Why the server refuses to go on (a state that is too large to be sent, too many viewers), or what could
-        not be applied since the last snapshot; empty: nothing."""
+        """Why the server rejects the viewer (a state that is too large to send, too many viewers), or the first
+        command since the last snapshot that failed here; empty: no error."""
         return self._client.watcher().GetError()
 
     def record(self, path, commit_every=0.1, pack=False):
