@@ -64,7 +64,7 @@ class Scene(Belonging, Messages, ObjectMaking, TerrainMaking, Strict):
         return self._name_
 
     def remove(self):
-        """Refused while a viewport shows it."""
+        """Rejected while a viewport shows it."""
         self._do("remove_scene")
 
     @property

@@ -32,7 +32,7 @@ protected:
 
   // The command is refused with this kind, its message holds `text`, and every answer about the
   // scene stays what it was.
-  void Refuse(v1::Command command, v1::Error::Kind kind, const std::string& text) {
+  void Reject(v1::Command command, v1::Error::Kind kind, const std::string& text) {
     const std::string before = this->Picture();
     const v1::Reply reply = this->Interpreter_.Execute(command);
     EXPECT_EQ(reply.error().kind(), kind) << command.ShortDebugString() << reply.ShortDebugString();

@@ -79,9 +79,9 @@ TEST_F(CameraCommands, TheirPoseIsAnsweredInAnyFrame) {
   EXPECT_NEAR(inCarrier.position().y(), 0, 1e-12);
   EXPECT_NEAR(inCarrier.position().z(), 0, 1e-12);
   ask.mutable_get_camera_pose()->set_relative_to(999);
-  this->Refuse(ask, Kind::NOT_FOUND, "999");
+  this->Reject(ask, Kind::NOT_FOUND, "999");
   ask.mutable_get_camera_pose()->set_name("none");
-  this->Refuse(ask, Kind::NOT_FOUND, "camera 'none'");
+  this->Reject(ask, Kind::NOT_FOUND, "camera 'none'");
 }
 
 TEST_F(CameraCommands, ChaseIsKept) {
@@ -105,45 +105,45 @@ TEST_F(CameraCommands, ChaseIsKept) {
   EXPECT_EQ(mount.chase().smoothing_s(), 0.5);
   v1::Command remove;
   remove.mutable_remove_frame()->set_frame(rover);
-  this->Refuse(remove, v1::Error::INVALID_ARGUMENT, "chase");
+  this->Reject(remove, v1::Error::INVALID_ARGUMENT, "chase");
 }
 
-TEST_F(CameraCommands, BadInputIsRefusedAndChangesNothing) {
+TEST_F(CameraCommands, BadInputIsRejectedAndChangesNothing) {
   v1::Command good = LookingDown("down");
   this->Accept(good);
   v1::Command c = LookingDown("down");
   Set(c.mutable_set_camera()->mutable_mount()->mutable_look_at()->mutable_target(), 0, 0, 10);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "down"); // at its own target
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "down"); // at its own target
   c.Clear();
   c.mutable_set_camera()->set_name("down");
   v1::Projection* projection = c.mutable_set_camera()->mutable_projection();
   projection->set_near(10);
   projection->set_far(1);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "down");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "down");
   projection->clear_far();
   projection->mutable_perspective()->set_vertical_fov_deg(180);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "180");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "180");
   projection->mutable_orthographic()->set_height(0);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "height");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "height");
   c.Clear();
   c.mutable_set_camera()->set_name("lost");
   c.mutable_set_camera()->mutable_mount()->set_frame(55);
-  this->Refuse(c, v1::Error::NOT_FOUND, "55");
+  this->Reject(c, v1::Error::NOT_FOUND, "55");
   c.mutable_set_camera()->set_vantage("nowhere");
-  this->Refuse(c, v1::Error::NOT_FOUND, "nowhere");
+  this->Reject(c, v1::Error::NOT_FOUND, "nowhere");
   c.Clear();
   c.mutable_set_active_camera()->set_name("absent");
-  this->Refuse(c, v1::Error::NOT_FOUND, "absent");
+  this->Reject(c, v1::Error::NOT_FOUND, "absent");
   c.Clear();
   c.mutable_set_light()->set_name("bad");
   c.mutable_set_light()->set_intensity(-1);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "bad");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "bad");
   c.mutable_set_light()->set_intensity(1);
   c.mutable_set_light()->set_kind(static_cast<v1::SetLight::Kind>(17));
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "17");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "17");
   c.Clear();
   c.mutable_remove_fragment()->set_name("physical");
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "physical");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "physical");
 }
 
 TEST_F(CameraCommands, FragmentsAndLights) {

@@ -91,60 +91,60 @@ TEST_F(FrameCommands, RemovedFramesAreNamedChildrenFirst) {
   EXPECT_EQ(this->Accept(list).objects().object_size(), 0);
 }
 
-TEST_F(FrameCommands, BadInputIsRefusedAndChangesNothing) {
+TEST_F(FrameCommands, BadInputIsRejectedAndChangesNothing) {
   const FrameId a = this->AddFrame("a");
   const FrameId b = this->AddFrame("b", a);
   v1::Command c;
   c.mutable_create_frame()->set_name("a");
-  this->Refuse(c, v1::Error::ALREADY_EXISTS, "a");
+  this->Reject(c, v1::Error::ALREADY_EXISTS, "a");
   c.mutable_create_frame()->set_name("x/y");
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "x/y");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "x/y");
   c.mutable_create_frame()->set_name("new");
   c.mutable_create_frame()->set_parent(99);
-  this->Refuse(c, v1::Error::NOT_FOUND, "99");
+  this->Reject(c, v1::Error::NOT_FOUND, "99");
   c.mutable_create_frame()->set_parent(0);
   c.mutable_create_frame()->mutable_pose()->mutable_rotation()->set_w(2);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "new");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "new");
   c.Clear();
   c.mutable_reparent_frame()->set_frame(a);
   c.mutable_reparent_frame()->set_parent(b);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "a");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "a");
   c.Clear();
   AddRow(c.mutable_set_poses(), a, {5, 0, 0, 1, 0, 0, 0, 1});
   AddRow(c.mutable_set_poses(), b, {NAN, 0, 0, 1, 0, 0, 0, 1});
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "a/b");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "a/b");
   c.mutable_set_poses()->mutable_pose()->RemoveLast();
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "15 numbers");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "15 numbers");
   c.Clear();
   AddRow(c.mutable_set_poses(), a, {5, 0, 0, 1, 0, 0, 0, 1});
   c.mutable_set_poses()->add_frame(b);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "1 poses for 2 frames");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "1 poses for 2 frames");
   c.Clear();
   c.mutable_remove_frame()->set_frame(RootFrame);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "root");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "root");
   c.Clear();
   c.mutable_find_frame()->set_path("a/nothing");
-  this->Refuse(c, v1::Error::NOT_FOUND, "a/nothing");
+  this->Reject(c, v1::Error::NOT_FOUND, "a/nothing");
 }
 
-TEST_F(FrameCommands, UnknownCommandsAndScenesAreRefusedByName) {
+TEST_F(FrameCommands, UnknownCommandsAndScenesAreRejectedByName) {
   v1::Command c;
-  this->Refuse(c, v1::Error::UNSUPPORTED, "none");
+  this->Reject(c, v1::Error::UNSUPPORTED, "none");
   ASSERT_TRUE(c.ParseFromString(std::string("\xfa\x3e\x00", 3))); // field 1007, empty message
-  this->Refuse(c, v1::Error::UNSUPPORTED, "number 1007");
+  this->Reject(c, v1::Error::UNSUPPORTED, "number 1007");
   c.Clear();
   c.mutable_capture();
-  this->Refuse(c, v1::Error::UNSUPPORTED, "capture"); // the plain interpreter draws nothing
+  this->Reject(c, v1::Error::UNSUPPORTED, "capture"); // the plain interpreter draws nothing
   c.Clear();
   c.set_scene("moon");
   c.mutable_create_frame()->set_name("x");
-  this->Refuse(c, v1::Error::NOT_FOUND, "moon");
+  this->Reject(c, v1::Error::NOT_FOUND, "moon");
   c.Clear();
   c.mutable_create_scene();
-  this->Refuse(c, v1::Error::ALREADY_EXISTS, "scene");
+  this->Reject(c, v1::Error::ALREADY_EXISTS, "scene");
   c.Clear();
   c.mutable_set_time()->set_time_s(std::numeric_limits<double>::infinity());
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "time");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "time");
 }
 
 } // namespace

@@ -253,7 +253,7 @@ TEST_F(FrameFollowing, ScenesAreFollowedOneByOneAndLeaveNoListener) {
   this->Accept(scene); // a new one of that name begins without followers
   create.mutable_create_frame()->set_id(0);
   EXPECT_EQ(this->Accept(create).frame_event_size(), 0);
-  this->Refuse(
+  this->Reject(
       [] {
         v1::Command command;
         command.set_scene("nowhere");

@@ -124,37 +124,37 @@ TEST_F(MessageTest, TheNewestTenThousandAreKept) {
   EXPECT_EQ(all.last(), 10003u);
 }
 
-TEST_F(MessageTest, EventsThatAreRefused) {
+TEST_F(MessageTest, EventsThatAreRejected) {
   this->Log("mode");
-  this->Refuse(Event(""), Kind::INVALID_ARGUMENT, "its kind is empty");
-  this->Refuse(Event("a\nb"), Kind::INVALID_ARGUMENT, "its kind");
-  this->Refuse(Event("note", std::string(4097, 'x')), Kind::INVALID_ARGUMENT, "4097 bytes");
+  this->Reject(Event(""), Kind::INVALID_ARGUMENT, "its kind is empty");
+  this->Reject(Event("a\nb"), Kind::INVALID_ARGUMENT, "its kind");
+  this->Reject(Event("note", std::string(4097, 'x')), Kind::INVALID_ARGUMENT, "4097 bytes");
   v1::Command event = Event("note");
   event.mutable_log_event()->set_number(1);
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "its number is 1; accepted: above 1");
+  this->Reject(event, Kind::INVALID_ARGUMENT, "its number is 1; accepted: above 1");
   event = Event("note");
   event.mutable_log_event()->set_severity(v1::Severity(9));
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "its severity is 9");
+  this->Reject(event, Kind::INVALID_ARGUMENT, "its severity is 9");
   event = Event("note");
   event.mutable_log_event()->mutable_position();
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "no frame");
+  this->Reject(event, Kind::INVALID_ARGUMENT, "no frame");
   event.mutable_log_event()->set_frame(1);
   event.mutable_log_event()->mutable_position()->set_x(1e19);
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "its position");
+  this->Reject(event, Kind::INVALID_ARGUMENT, "its position");
   event = Event("note");
   event.mutable_log_event()->set_frame(99);
-  this->Refuse(event, Kind::NOT_FOUND, "99");
+  this->Reject(event, Kind::NOT_FOUND, "99");
   event = Event("note");
   event.mutable_log_event()->set_time_s(std::numeric_limits<double>::infinity());
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "its time is inf");
+  this->Reject(event, Kind::INVALID_ARGUMENT, "its time is inf");
   event = Event("note");
   for (int i = 0; i < 5; ++i) {
     event.mutable_log_event()->add_datum()->set_name("d" + std::to_string(i));
     event.mutable_log_event()->mutable_datum(i)->set_text(std::string(4000, 'x'));
   }
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "accepted: up to 16384");
+  this->Reject(event, Kind::INVALID_ARGUMENT, "accepted: up to 16384");
   event.mutable_log_event()->mutable_datum(0)->set_name("d1");
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "occurs twice");
+  this->Reject(event, Kind::INVALID_ARGUMENT, "occurs twice");
   EXPECT_EQ(this->Log("mode").number(), 2u); // nothing of them counted
 }
 
@@ -200,13 +200,13 @@ TEST_F(MessageTest, QuestionsAreOpenUntilTheyAreClosed) {
   ASSERT_EQ(this->Questions().question_size(), 2);
   EXPECT_EQ(this->Questions().question(0).choice(1), "no");
 
-  this->Refuse(Question("go"), Kind::ALREADY_EXISTS, "'go': it is already open");
-  this->Refuse(Question(""), Kind::INVALID_ARGUMENT, "its name is empty");
-  this->Refuse(Question("a", ""), Kind::INVALID_ARGUMENT, "its text is empty");
+  this->Reject(Question("go"), Kind::ALREADY_EXISTS, "'go': it is already open");
+  this->Reject(Question(""), Kind::INVALID_ARGUMENT, "its name is empty");
+  this->Reject(Question("a", ""), Kind::INVALID_ARGUMENT, "its text is empty");
   v1::Command twice = Question("a");
   twice.mutable_ask_operator()->add_choice("yes");
   twice.mutable_ask_operator()->add_choice("yes");
-  this->Refuse(twice, Kind::INVALID_ARGUMENT, "its choice 'yes' occurs twice");
+  this->Reject(twice, Kind::INVALID_ARGUMENT, "its choice 'yes' occurs twice");
 
   v1::Command other; // names are the session's: answers do not say of which scene
   other.set_scene("other");
@@ -214,14 +214,14 @@ TEST_F(MessageTest, QuestionsAreOpenUntilTheyAreClosed) {
   this->Accept(other);
   v1::Command same = Question("go");
   same.set_scene("other");
-  this->Refuse(same, Kind::ALREADY_EXISTS, "in scene 'scene'");
+  this->Reject(same, Kind::ALREADY_EXISTS, "in scene 'scene'");
 
   v1::Command close;
   close.mutable_close_question()->set_name("go");
   close.mutable_close_question()->set_answer("yes");
   close.mutable_close_question()->set_from("console");
   this->Accept(close);
-  this->Refuse(close, Kind::NOT_FOUND, "'go'");
+  this->Reject(close, Kind::NOT_FOUND, "'go'");
   ASSERT_EQ(this->Questions().question_size(), 1);
   EXPECT_EQ(this->Questions().question(0).name(), "speed");
   this->Accept(same);

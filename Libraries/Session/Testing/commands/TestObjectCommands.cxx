@@ -121,10 +121,10 @@ TEST_F(ObjectCommands, MaterialChangesAreLaidOverEachOther) {
   this->Accept(command);
   EXPECT_FALSE(this->Describe(box).material().has_color());
   set->mutable_material()->set_opacity(1.5);
-  this->Refuse(command, v1::Error::INVALID_ARGUMENT, "1.5");
+  this->Reject(command, v1::Error::INVALID_ARGUMENT, "1.5");
   set->mutable_material()->set_opacity(1);
   set->mutable_material()->set_texture("/nowhere/at/all.png");
-  this->Refuse(command, v1::Error::NOT_FOUND, "/nowhere/at/all.png");
+  this->Reject(command, v1::Error::NOT_FOUND, "/nowhere/at/all.png");
 }
 
 TEST_F(ObjectCommands, TiltMarkersTurnRed) {
@@ -139,10 +139,10 @@ TEST_F(ObjectCommands, TiltMarkersTurnRed) {
   this->Accept(tilt);
   EXPECT_GT(this->Describe(id).material().color().r(), this->Describe(id).material().color().g());
   tilt.mutable_set_tilt()->set_tilt_deg(-1);
-  this->Refuse(tilt, v1::Error::INVALID_ARGUMENT, "-1");
+  this->Reject(tilt, v1::Error::INVALID_ARGUMENT, "-1");
   tilt.mutable_set_tilt()->set_tilt_deg(40);
   tilt.mutable_set_tilt()->set_object(this->AddBox());
-  this->Refuse(tilt, v1::Error::INVALID_ARGUMENT, "not a tilt marker");
+  this->Reject(tilt, v1::Error::INVALID_ARGUMENT, "not a tilt marker");
 }
 
 TEST_F(ObjectCommands, TrailsGrowAndAreCleared) {
@@ -160,56 +160,56 @@ TEST_F(ObjectCommands, TrailsGrowAndAreCleared) {
   EXPECT_NEAR(info.bounds_center().x(), 6, 1e-6);
   EXPECT_NEAR(info.bounds_center().y(), 3, 1e-6);
   append.mutable_append_trail()->set_point(10, NAN);
-  this->Refuse(append, v1::Error::INVALID_ARGUMENT, "trail");
+  this->Reject(append, v1::Error::INVALID_ARGUMENT, "trail");
   v1::Command clear;
   clear.mutable_clear_trail()->set_object(id);
   this->Accept(clear);
   EXPECT_EQ(this->Describe(id).bounds_radius(), 0);
   append.mutable_append_trail()->set_object(this->AddBox());
-  this->Refuse(append, v1::Error::INVALID_ARGUMENT, "not a trail");
+  this->Reject(append, v1::Error::INVALID_ARGUMENT, "not a trail");
 }
 
-TEST_F(ObjectCommands, BadInputIsRefusedAndChangesNothing) {
+TEST_F(ObjectCommands, BadInputIsRejectedAndChangesNothing) {
   const ObjectId box = this->AddBox("box");
   v1::Command c;
   c.mutable_import_object()->add_level()->set_path("/nowhere/at/all.glb");
-  this->Refuse(c, v1::Error::NOT_FOUND, "/nowhere/at/all.glb");
+  this->Reject(c, v1::Error::NOT_FOUND, "/nowhere/at/all.glb");
   c.mutable_import_object()->clear_level();
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "names no file");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "names no file");
   const TemporaryFile empty("empty.obj", "");
   c.mutable_import_object()->add_level()->set_path(empty.Path());
-  this->Refuse(c, v1::Error::CORRUPT, "empty.obj");
+  this->Reject(c, v1::Error::CORRUPT, "empty.obj");
   const TemporaryFile good("good.obj", Triangle);
   c.mutable_import_object()->mutable_level(0)->set_path(good.Path());
   c.mutable_import_object()->set_scale(0);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "scale");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "scale");
   c.mutable_import_object()->clear_scale();
   c.mutable_import_object()->mutable_object()->set_name("box");
-  this->Refuse(c, v1::Error::ALREADY_EXISTS, "box");
+  this->Reject(c, v1::Error::ALREADY_EXISTS, "box");
   c.mutable_import_object()->mutable_object()->set_name("other");
   c.mutable_import_object()->mutable_object()->set_frame(77);
-  this->Refuse(c, v1::Error::NOT_FOUND, "77");
+  this->Reject(c, v1::Error::NOT_FOUND, "77");
   c.Clear();
   c.mutable_create_primitive()->mutable_sphere()->set_radius(-1);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "-1");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "-1");
   c.mutable_create_primitive()->mutable_torus()->set_radius(1);
   c.mutable_create_primitive()->mutable_torus()->set_tube(2);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "2");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "2");
   c.mutable_create_primitive()->mutable_lines()->add_point(1);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "multiple of 3");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "multiple of 3");
   c.mutable_create_primitive()->clear_shape();
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "its shape is missing");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "its shape is missing");
   c.Clear();
   c.mutable_set_object_offset()->set_object(box);
   c.mutable_set_object_offset()->mutable_offset()->mutable_scale()->set_x(1);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "scale");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "scale");
   c.Clear();
   c.mutable_move_to_fragment()->set_object(box);
   c.mutable_move_to_fragment()->set_fragment("ornamental");
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "ornamental");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "ornamental");
   c.Clear();
   c.mutable_remove_object()->set_object(1234);
-  this->Refuse(c, v1::Error::NOT_FOUND, "1234");
+  this->Reject(c, v1::Error::NOT_FOUND, "1234");
 }
 
 TEST_F(ObjectCommands, AStrangeSizeIsPointedOut) {

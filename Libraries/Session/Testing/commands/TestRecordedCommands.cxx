@@ -58,10 +58,10 @@ TEST_F(RecordedCommands, JointsMoveFramesWithinTheirLimits) {
   EXPECT_NEAR(lower.pose(2), 1, 1e-14);
   EXPECT_NEAR(lower.pose(6), std::sin(-M_PI / 12), 1e-14);
 
-  this->Refuse(Joints(60), v1::Error::INVALID_ARGUMENT, "shoulder");
-  this->Refuse(Joints(10, false, 1), v1::Error::INVALID_ARGUMENT, "follows");
-  this->Refuse(Joints(10, false, 9), v1::Error::NOT_FOUND, "9");
-  this->Refuse(Joints(NAN, true), v1::Error::INVALID_ARGUMENT, "shoulder");
+  this->Reject(Joints(60), v1::Error::INVALID_ARGUMENT, "shoulder");
+  this->Reject(Joints(10, false, 1), v1::Error::INVALID_ARGUMENT, "follows");
+  this->Reject(Joints(10, false, 9), v1::Error::NOT_FOUND, "9");
+  this->Reject(Joints(NAN, true), v1::Error::INVALID_ARGUMENT, "shoulder");
   v1::Command clamped = Joints(60, true);
   this->Accept(clamped);
   v1::Command describe;
@@ -74,24 +74,24 @@ TEST_F(RecordedCommands, RobotsAreWholeOrNot) {
   v1::Command load;
   load.mutable_load_robot()->set_path(file.Path());
   load.mutable_load_robot()->set_strict(true);
-  this->Refuse(load, v1::Error::NOT_FOUND, "absent.stl");
+  this->Reject(load, v1::Error::NOT_FOUND, "absent.stl");
   this->AddFrame("arm");
   load.mutable_load_robot()->set_strict(false);
-  this->Refuse(load, v1::Error::ALREADY_EXISTS, "arm");
+  this->Reject(load, v1::Error::ALREADY_EXISTS, "arm");
   load.mutable_load_robot()->set_name("arm 2");
   load.mutable_load_robot()->set_fragment("no such fragment");
-  this->Refuse(load, v1::Error::NOT_FOUND, "no such fragment"); // found out half way
+  this->Reject(load, v1::Error::NOT_FOUND, "no such fragment"); // found out half way
   load.mutable_load_robot()->clear_fragment();
   load.mutable_load_robot()->set_base_id(50);
-  this->Refuse(load, v1::Error::INVALID_ARGUMENT, "base_id");
+  this->Reject(load, v1::Error::INVALID_ARGUMENT, "base_id");
   load.mutable_load_robot()->set_base_id(0);
   const v1::RobotReply robot = this->Accept(load).robot();
   v1::Command remove;
   remove.mutable_remove_frame()->set_frame(robot.link(1).frame());
-  this->Refuse(remove, v1::Error::INVALID_ARGUMENT, "arm 2");
+  this->Reject(remove, v1::Error::INVALID_ARGUMENT, "arm 2");
   v1::Command object;
   object.mutable_remove_object()->set_object(robot.link(0).object(0));
-  this->Refuse(object, v1::Error::INVALID_ARGUMENT, "arm 2");
+  this->Reject(object, v1::Error::INVALID_ARGUMENT, "arm 2");
   remove.mutable_remove_frame()->set_frame(robot.base());
   this->Accept(remove);
   v1::Command list;

@@ -108,27 +108,27 @@ TEST_F(TelemetryTest, AStepIsSetWholeOrNotAtAll) {
   const std::uint64_t b = this->Add("b");
   const std::uint64_t text = this->AddText("text");
   this->Set({{a, 1.0}, {b, 2.0}});
-  this->Refuse(Values({{a, 3.0}, {b, Infinite}}), Kind::INVALID_ARGUMENT, "'b': its value is inf");
-  this->Refuse(Values({{a, 3.0}, {b, -Infinite}}), Kind::INVALID_ARGUMENT, "-inf");
-  this->Refuse(Values({{a, 3.0}, {a, 4.0}}), Kind::INVALID_ARGUMENT, "'a': it occurs twice");
-  this->Refuse(Values({{a, 3.0}, {b + 100, 4.0}}), Kind::NOT_FOUND, "no such channel");
-  this->Refuse(Values({{a, 3.0}, {text, 4.0}}), Kind::INVALID_ARGUMENT, "set_telemetry_texts");
+  this->Reject(Values({{a, 3.0}, {b, Infinite}}), Kind::INVALID_ARGUMENT, "'b': its value is inf");
+  this->Reject(Values({{a, 3.0}, {b, -Infinite}}), Kind::INVALID_ARGUMENT, "-inf");
+  this->Reject(Values({{a, 3.0}, {a, 4.0}}), Kind::INVALID_ARGUMENT, "'a': it occurs twice");
+  this->Reject(Values({{a, 3.0}, {b + 100, 4.0}}), Kind::NOT_FOUND, "no such channel");
+  this->Reject(Values({{a, 3.0}, {text, 4.0}}), Kind::INVALID_ARGUMENT, "set_telemetry_texts");
   v1::Command uneven = Values({{a, 3.0}, {b, 4.0}});
   uneven.mutable_set_telemetry()->add_value(5.0);
-  this->Refuse(uneven, Kind::INVALID_ARGUMENT, "3 values and 0 times are given for 2 channels");
+  this->Reject(uneven, Kind::INVALID_ARGUMENT, "3 values and 0 times are given for 2 channels");
   v1::Command times = Values({{a, 3.0}, {b, 4.0}});
   times.mutable_set_telemetry()->add_time_s(1.0);
-  this->Refuse(times, Kind::INVALID_ARGUMENT, "2 values and 1 times");
+  this->Reject(times, Kind::INVALID_ARGUMENT, "2 values and 1 times");
   times.mutable_set_telemetry()->add_time_s(None);
-  this->Refuse(times, Kind::INVALID_ARGUMENT, "its time is nan");
+  this->Reject(times, Kind::INVALID_ARGUMENT, "its time is nan");
   v1::Command wrong;
   wrong.mutable_set_telemetry_texts()->add_id(a);
   wrong.mutable_set_telemetry_texts()->add_text("x");
-  this->Refuse(wrong, Kind::INVALID_ARGUMENT, "command set_telemetry");
+  this->Reject(wrong, Kind::INVALID_ARGUMENT, "command set_telemetry");
   v1::Command control;
   control.mutable_set_telemetry_texts()->add_id(text);
   control.mutable_set_telemetry_texts()->add_text("two\nlines");
-  this->Refuse(control, Kind::INVALID_ARGUMENT, "its text");
+  this->Reject(control, Kind::INVALID_ARGUMENT, "its text");
   EXPECT_EQ(this->Ask("a").value(), 1.0);
 }
 
@@ -138,26 +138,26 @@ TEST_F(TelemetryTest, WhatMayBeDefined) {
   this->Add("rover_2");
   this->Add("a");
   for (const char* name : {"", "/", "rover//x", "/rover", "rover/", "rover/./x", "..", "a\nb"}) {
-    this->Refuse(Define(name), Kind::INVALID_ARGUMENT, "name");
+    this->Reject(Define(name), Kind::INVALID_ARGUMENT, "name");
   }
-  this->Refuse(Define(std::string(256, 'n')), Kind::INVALID_ARGUMENT, "256 bytes");
+  this->Reject(Define(std::string(256, 'n')), Kind::INVALID_ARGUMENT, "256 bytes");
   this->Add(std::string(255, 'n'));
-  this->Refuse(Define("a"), Kind::ALREADY_EXISTS, "'a'");
-  this->Refuse(Define("b", "m\ts"), Kind::INVALID_ARGUMENT, "its unit");
-  this->Refuse(Define("b", std::string(65, 'm')), Kind::INVALID_ARGUMENT, "65 bytes");
+  this->Reject(Define("a"), Kind::ALREADY_EXISTS, "'a'");
+  this->Reject(Define("b", "m\ts"), Kind::INVALID_ARGUMENT, "its unit");
+  this->Reject(Define("b", std::string(65, 'm')), Kind::INVALID_ARGUMENT, "65 bytes");
   v1::Command text = Define("b", "W");
   text.mutable_create_telemetry()->set_kind(v1::CreateTelemetry::TEXT);
-  this->Refuse(text, Kind::INVALID_ARGUMENT, "unit or limits");
+  this->Reject(text, Kind::INVALID_ARGUMENT, "unit or limits");
   v1::Command kind = Define("b");
   kind.mutable_create_telemetry()->set_kind(v1::CreateTelemetry::Kind(7));
-  this->Refuse(kind, Kind::INVALID_ARGUMENT, "its kind is 7");
+  this->Reject(kind, Kind::INVALID_ARGUMENT, "its kind is 7");
   EXPECT_EQ(this->Below("rover"),
             (std::vector<std::string>{"rover/wheel_fl", "rover/wheel_fl/torque"}));
   EXPECT_EQ(this->Below("").size(), 5u);
   v1::Command both;
   both.mutable_list_telemetry()->add_name("a");
   both.mutable_list_telemetry()->set_below("rover");
-  this->Refuse(both, Kind::INVALID_ARGUMENT, "one or the other");
+  this->Reject(both, Kind::INVALID_ARGUMENT, "one or the other");
 }
 
 TEST_F(TelemetryTest, IdsAreNeverUsedAgain) {
@@ -168,13 +168,13 @@ TEST_F(TelemetryTest, IdsAreNeverUsedAgain) {
   remove.mutable_remove_telemetry()->add_id(second);
   v1::Command unknown = remove;
   unknown.mutable_remove_telemetry()->add_id(77);
-  this->Refuse(unknown, Kind::NOT_FOUND, "77");
+  this->Reject(unknown, Kind::NOT_FOUND, "77");
   this->Accept(remove);
   EXPECT_TRUE(this->Below("").empty());
   EXPECT_GT(this->Add("a"), second);
   v1::Command again = Define("c");
   again.mutable_create_telemetry()->set_id(second);
-  this->Refuse(again, Kind::INVALID_ARGUMENT, "its id is 2; accepted: above 3");
+  this->Reject(again, Kind::INVALID_ARGUMENT, "its id is 2; accepted: above 3");
   again.mutable_create_telemetry()->set_id(50);
   this->Accept(again);
   EXPECT_EQ(this->Add("d"), 51u);
@@ -216,10 +216,10 @@ TEST_F(TelemetryTest, LimitsSayHowAValueIs) {
   EXPECT_EQ(this->Ask("t").channel().unit(), "Cel");
   v1::Command crossed = change;
   crossed.mutable_set_telemetry_limits()->mutable_limits()->set_warning_low(11);
-  this->Refuse(crossed, Kind::INVALID_ARGUMENT, "alarm_high is 10, below warning_low, 11");
+  this->Reject(crossed, Kind::INVALID_ARGUMENT, "alarm_high is 10, below warning_low, 11");
   v1::Command endless = change;
   endless.mutable_set_telemetry_limits()->mutable_limits()->set_alarm_high(Infinite);
-  this->Refuse(endless, Kind::INVALID_ARGUMENT, "alarm_high is inf");
+  this->Reject(endless, Kind::INVALID_ARGUMENT, "alarm_high is inf");
   change.mutable_set_telemetry_limits()->clear_limits();
   this->Accept(change);
   EXPECT_EQ(state(1e9), Info::GOOD);
@@ -229,7 +229,7 @@ TEST_F(TelemetryTest, ChoicesHaveLabels) {
   v1::Command define = Define("mode");
   v1::CreateTelemetry* create = define.mutable_create_telemetry();
   create->set_kind(v1::CreateTelemetry::CHOICE);
-  this->Refuse(define, Kind::INVALID_ARGUMENT, "0 labels");
+  this->Reject(define, Kind::INVALID_ARGUMENT, "0 labels");
   const auto add = [create](int value, const char* label) {
     create->add_label()->set_value(value);
     create->mutable_label(create->label_size() - 1)->set_label(label);
@@ -239,12 +239,12 @@ TEST_F(TelemetryTest, ChoicesHaveLabels) {
   v1::Command twice = define;
   twice.mutable_create_telemetry()->add_label()->set_label("idle");
   twice.mutable_create_telemetry()->mutable_label(2)->set_value(9);
-  this->Refuse(twice, Kind::INVALID_ARGUMENT, "occurs twice");
+  this->Reject(twice, Kind::INVALID_ARGUMENT, "occurs twice");
   const std::uint64_t id = this->Accept(define).telemetry().channel(0).channel().id();
   this->Set({{id, -3.0}});
   EXPECT_EQ(this->Ask("mode").text(), "driving");
-  this->Refuse(Values({{id, 1.0}}), Kind::INVALID_ARGUMENT, "a value with a label");
-  this->Refuse(Values({{id, -2.5}}), Kind::INVALID_ARGUMENT, "a value with a label");
+  this->Reject(Values({{id, 1.0}}), Kind::INVALID_ARGUMENT, "a value with a label");
+  this->Reject(Values({{id, -2.5}}), Kind::INVALID_ARGUMENT, "a value with a label");
   this->Set({{id, None}});
   EXPECT_EQ(this->Ask("mode").text(), "");
 }

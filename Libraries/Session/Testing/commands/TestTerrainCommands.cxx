@@ -113,49 +113,49 @@ TEST_F(TerrainCommands, FocusKeepsTheMeshesThatDoNotChange) {
   EXPECT_GT(same, after.size() / 2);
   EXPECT_LT(same, after.size());
   focus.mutable_focus_terrain()->set_radius(-1);
-  this->Refuse(focus, v1::Error::INVALID_ARGUMENT, "-1");
+  this->Reject(focus, v1::Error::INVALID_ARGUMENT, "-1");
 }
 
-TEST_F(TerrainCommands, BadInputIsRefusedAndChangesNothing) {
+TEST_F(TerrainCommands, BadInputIsRejectedAndChangesNothing) {
   v1::Command c;
   c.mutable_open_terrain()->set_path("/nowhere/at/all.tif");
-  this->Refuse(c, v1::Error::NOT_FOUND, "/nowhere/at/all.tif");
+  this->Reject(c, v1::Error::NOT_FOUND, "/nowhere/at/all.tif");
   const TemporaryFile text("text.tif", "this is no raster");
   c.mutable_open_terrain()->set_path(text.Path());
   EXPECT_TRUE(this->Interpreter_.Execute(c).has_error());
   c.mutable_open_terrain()->set_path(this->File_.Path());
   c.mutable_open_terrain()->set_frame(44);
-  this->Refuse(c, v1::Error::NOT_FOUND, "44");
+  this->Reject(c, v1::Error::NOT_FOUND, "44");
   c.mutable_open_terrain()->set_frame(0);
   c.mutable_open_terrain()->set_fragment("ornamental");
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "ornamental");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "ornamental");
   c.mutable_open_terrain()->clear_fragment();
   c.mutable_open_terrain()->mutable_drape()->set_path("/nowhere/at/all.png");
-  this->Refuse(c, v1::Error::NOT_FOUND, "/nowhere/at/all.png");
+  this->Reject(c, v1::Error::NOT_FOUND, "/nowhere/at/all.png");
   c.mutable_open_terrain()->mutable_relief()->set_sun_elevation_deg(100);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "100");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "100");
   c.mutable_open_terrain()->clear_appearance();
   c.mutable_open_terrain()->set_vertical_datum("moonoid");
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "moonoid");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "moonoid");
   const v1::TerrainReply terrain = this->Open();
   c.Clear();
   c.mutable_remove_object()->set_object(terrain.object());
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "remove_terrain");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "remove_terrain");
   c.Clear();
   c.mutable_set_object_offset()->set_object(terrain.object());
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "terrain");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "terrain");
   c.Clear();
   c.mutable_query_terrain()->set_terrain("terrain");
   c.mutable_query_terrain()->add_point(1);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "multiple of 2");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "multiple of 2");
   c.mutable_query_terrain()->add_point(1);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "no quantity is requested");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "no quantity is requested");
   c.mutable_query_terrain()->set_terrain("sea");
-  this->Refuse(c, v1::Error::NOT_FOUND, "sea");
+  this->Reject(c, v1::Error::NOT_FOUND, "sea");
   c.Clear();
   c.mutable_remove_terrain()->set_terrain("terrain");
   this->Accept(c);
-  this->Refuse(c, v1::Error::NOT_FOUND, "terrain");
+  this->Reject(c, v1::Error::NOT_FOUND, "terrain");
 }
 
 } // namespace

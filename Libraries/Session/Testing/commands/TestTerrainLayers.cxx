@@ -73,9 +73,9 @@ protected:
     return names;
   }
 
-  void RefuseLayer(const v1::Command& command, v1::Error::Kind kind, const std::string& text) {
+  void RejectLayer(const v1::Command& command, v1::Error::Kind kind, const std::string& text) {
     const std::string before = LayersOf(this->Interpreter_).DebugString();
-    this->Refuse(command, kind, text);
+    this->Reject(command, kind, text);
     EXPECT_EQ(LayersOf(this->Interpreter_).DebugString(), before);
   }
 
@@ -119,7 +119,7 @@ TEST_F(TerrainLayers, AreNamedOrderedChangedAndRemoved) {
   remove.mutable_remove_terrain_layer()->set_name("noise");
   this->Accept(remove);
   EXPECT_EQ(this->Names(), "noise 2, low");
-  this->RefuseLayer(remove, v1::Error::NOT_FOUND, "there are: 'noise 2', 'low'");
+  this->RejectLayer(remove, v1::Error::NOT_FOUND, "there are: 'noise 2', 'low'");
   EXPECT_EQ(this->Add(Noise()).name(), "noise"); // free again
 }
 
@@ -199,49 +199,49 @@ TEST_F(TerrainLayers, ARecordingCarriesNamesAndAbsolutePaths) {
   EXPECT_EQ(LayersOf(other).DebugString(), LayersOf(this->Interpreter_).DebugString());
 }
 
-TEST_F(TerrainLayers, BadInputIsRefusedAndChangesNothing) {
+TEST_F(TerrainLayers, BadInputIsRejectedAndChangesNothing) {
   this->OpenGround();
   this->Add(Noise("one"));
-  this->RefuseLayer(Noise("one"), v1::Error::ALREADY_EXISTS, "'one'");
-  this->RefuseLayer(Noise("a\nb"), v1::Error::INVALID_ARGUMENT, "control");
+  this->RejectLayer(Noise("one"), v1::Error::ALREADY_EXISTS, "'one'");
+  this->RejectLayer(Noise("a\nb"), v1::Error::INVALID_ARGUMENT, "control");
   v1::Command c = Noise();
   c.mutable_add_terrain_layer()->set_opacity(1.5);
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "1.5");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "1.5");
   c.mutable_add_terrain_layer()->set_opacity(NAN);
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "0 to 1");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "0 to 1");
   c = Noise();
   c.mutable_add_terrain_layer()->set_position(2);
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "2");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "2");
   c = Noise();
   c.mutable_add_terrain_layer()->mutable_noise()->set_wavelength(-1);
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "-1");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "-1");
   c = Noise();
   c.mutable_add_terrain_layer()->mutable_noise()->set_octaves(17);
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "17");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "17");
   c = Noise();
   c.mutable_add_terrain_layer()->mutable_noise()->set_contrast(2);
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "2");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "2");
   c = Noise();
   c.mutable_add_terrain_layer()->clear_kind();
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "no kind");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "no kind");
   c.mutable_add_terrain_layer()->mutable_image()->set_path("/nowhere/at/all.png");
-  this->RefuseLayer(c, v1::Error::NOT_FOUND, "/nowhere/at/all.png");
+  this->RejectLayer(c, v1::Error::NOT_FOUND, "/nowhere/at/all.png");
   c.mutable_add_terrain_layer()->mutable_image()->set_path(this->Image_.Path());
   for (const double value : {1.0, 2.0, 3.0}) {
     c.mutable_add_terrain_layer()->mutable_image()->add_extent(value);
   }
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "3 numbers");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "3 numbers");
   c.mutable_add_terrain_layer()->mutable_false_color()->set_path(this->Values_.Path());
   c.mutable_add_terrain_layer()->mutable_false_color()->set_band(2);
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "2");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "2");
   c.mutable_add_terrain_layer()->mutable_false_color()->set_band(1);
   c.mutable_add_terrain_layer()->mutable_false_color()->add_color()->set_r(2);
-  this->RefuseLayer(c, v1::Error::INVALID_ARGUMENT, "2");
+  this->RejectLayer(c, v1::Error::INVALID_ARGUMENT, "2");
   c.mutable_add_terrain_layer()->mutable_shapes()->set_path("/nowhere/at/all.json");
-  this->RefuseLayer(c, v1::Error::NOT_FOUND, "/nowhere/at/all.json");
+  this->RejectLayer(c, v1::Error::NOT_FOUND, "/nowhere/at/all.json");
   c = Noise();
   c.mutable_add_terrain_layer()->set_terrain("nowhere");
-  this->RefuseLayer(c, v1::Error::NOT_FOUND, "nowhere");
+  this->RejectLayer(c, v1::Error::NOT_FOUND, "nowhere");
 
   const std::string before = LayersOf(this->Interpreter_).DebugString();
   EXPECT_EQ(this->Change("one", [](auto& c) { c.set_opacity(-1); }).error().kind(),
@@ -260,7 +260,7 @@ TEST_F(TerrainLayers, BadInputIsRefusedAndChangesNothing) {
 
 TEST_F(TerrainLayers, AreOfClipmaps) {
   this->OpenGround(v1::OpenTerrain::TRIANGLES);
-  this->Refuse(Noise(), v1::Error::UNSUPPORTED, "clipmap");
+  this->Reject(Noise(), v1::Error::UNSUPPORTED, "clipmap");
   EXPECT_EQ(this->Change("noise", [](auto&) {}).error().kind(), v1::Error::UNSUPPORTED);
 }
 
@@ -269,7 +269,7 @@ TEST_F(TerrainLayers, AreAtMost64) {
   for (int i = 0; i < 64; ++i) {
     this->Add(Noise());
   }
-  this->RefuseLayer(Noise(), v1::Error::INVALID_ARGUMENT, "64");
+  this->RejectLayer(Noise(), v1::Error::INVALID_ARGUMENT, "64");
 }
 
 TEST_F(TerrainLayers, ALedgerRebuildsThem) {

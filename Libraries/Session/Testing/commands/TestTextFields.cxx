@@ -54,12 +54,12 @@ TEST_F(TextFields, OfErrorRepliesAreUtf8) {
 TEST_F(TextFields, OfCommandsAreRejectedByName) {
   v1::Command command;
   command.mutable_create_frame()->set_name("M\xE4st");
-  this->Refuse(command, v1::Error::INVALID_ARGUMENT,
+  this->Reject(command, v1::Error::INVALID_ARGUMENT,
                "command create_frame: its field 'name' is not UTF-8; accepted: text of UTF-8");
   v1::Command scene;
   scene.set_scene("\xE4");
   scene.mutable_list_frames();
-  this->Refuse(scene, v1::Error::INVALID_ARGUMENT, "its field 'scene' is not UTF-8");
+  this->Reject(scene, v1::Error::INVALID_ARGUMENT, "its field 'scene' is not UTF-8");
 }
 
 // A handler that lets a library's text through: who hears of the command can read it all the same.

@@ -226,25 +226,25 @@ TEST_F(TrackLedger, ManyContactsComeInPieces) {
             this->Interpreter_.Execute(describe).terrain().track_length());
 }
 
-TEST_F(TrackLedger, WhatDoesNotFitTogetherIsRefused) {
+TEST_F(TrackLedger, WhatDoesNotFitTogetherIsRejected) {
   v1::Command restore;
   restore.mutable_restore_tracks()->set_terrain("terrain");
   v1::RestoreTracks::Stroke* stroke = restore.mutable_restore_tracks()->add_stroke();
   stroke->set_name("wheel");
   stroke->set_width(0.2);
   stroke->add_rolled(0.0);
-  this->Refuse(restore, v1::Error::INVALID_ARGUMENT, "0 coordinates");
+  this->Reject(restore, v1::Error::INVALID_ARGUMENT, "0 coordinates");
   stroke->add_place(0.0);
   stroke->add_place(0.0);
   stroke->add_heading(0.0f);
   stroke->add_sinkage(0.1f);
   stroke->set_skipped(2);
-  this->Refuse(restore, v1::Error::INVALID_ARGUMENT, "says that 2");
+  this->Reject(restore, v1::Error::INVALID_ARGUMENT, "says that 2");
   stroke->set_skipped(1);
-  this->Refuse(restore, v1::Error::INVALID_ARGUMENT, "no contact");
+  this->Reject(restore, v1::Error::INVALID_ARGUMENT, "no contact");
   stroke->set_skipped(0);
   stroke->set_sinkage(0, 2.0f);
-  this->Refuse(restore, v1::Error::INVALID_ARGUMENT, "sinkage");
+  this->Reject(restore, v1::Error::INVALID_ARGUMENT, "sinkage");
   stroke->set_sinkage(0, 0.1f);
   this->Accept(restore);
   // A ledger that hears of tracks and has no terrain to ask does not leave them out.

@@ -85,7 +85,7 @@ protected:
     EXPECT_NE(reply.error().message().find("; accepted here: "), std::string::npos)
         << reply.error().message();
   }
-  static void ExpectRefused(const v1::Reply& reply) {
+  static void ExpectRejected(const v1::Reply& reply) {
     EXPECT_EQ(reply.error().kind(), v1::Error::INVALID_ARGUMENT) << reply.ShortDebugString();
     EXPECT_TRUE(reply.error().message().find("outside of the folders that the server allows") !=
                     std::string::npos ||
@@ -115,14 +115,14 @@ TEST_F(ConfinedFiles, AMosaicOfOtherFilesIsNot) {
            "<SourceFilename relativetoVRT=\"1\">inside.asc</SourceFilename></VRTRasterBand>",
            Band("inside.asc", " SUBCLASS=\"VRTDerivedRasterBand\"")}) {
     this->WriteMosaic(band);
-    ExpectRefused(this->OpenTerrain());
+    ExpectRejected(this->OpenTerrain());
   }
   // Nor one of mosaics, however deep.
   this->WriteMosaic(Band("../secret.asc"), "inner.vrt");
   this->WriteMosaic(Band("inner.vrt"));
-  ExpectRefused(this->OpenTerrain());
+  ExpectRejected(this->OpenTerrain());
   this->WriteMosaic(Band("mosaic.vrt")); // of itself
-  ExpectRefused(this->OpenTerrain());
+  ExpectRejected(this->OpenTerrain());
 }
 
 TEST_F(ConfinedFiles, FormatsThatReferToOtherFilesAreRejected) {
@@ -190,12 +190,12 @@ TEST_F(ConfinedFiles, SideFilesDoNotLeadOut) {
   for (const char* side : {".ovr", ".msk", ".aux.xml"}) {
     const std::string link = this->Folder + "/root/other.asc" + side;
     std::filesystem::create_symlink(this->Folder + "/secret.asc", link);
-    ExpectRefused(this->OpenTerrain("other.asc"));
+    ExpectRejected(this->OpenTerrain("other.asc"));
     std::filesystem::remove(link);
   }
   // Overviews that are a mosaic of a file out there.
   this->WriteMosaic(Band("../secret.asc"), "other.asc.ovr");
-  ExpectRefused(this->OpenTerrain("other.asc"));
+  ExpectRejected(this->OpenTerrain("other.asc"));
 }
 
 // GDAL finds a link's relative sources beside what it points to.
@@ -231,7 +231,7 @@ TEST_F(ConfinedFiles, AModelsOwnFilesAreConfinedToo) {
   };
   const v1::Reply inside = import("inside.bin");
   EXPECT_FALSE(inside.has_error()) << inside.error().message();
-  ExpectRefused(import("link.bin"));
+  ExpectRejected(import("link.bin"));
   this->Write("/root/urdf.urdf",
               R"(<robot name="r"><link name="a"><visual><geometry><mesh filename=")" +
                   this->Folder + R"(/secret.stl"/></geometry></visual></link></robot>)");

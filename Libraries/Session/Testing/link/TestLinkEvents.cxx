@@ -32,7 +32,7 @@ protected:
     return heard;
   }
 
-  void Refuse(const v1::ViewerEvent& event, const std::string& text) {
+  void Reject(const v1::ViewerEvent& event, const std::string& text) {
     try {
       this->Viewer->SendEvent(event);
       FAIL() << event.ShortDebugString();
@@ -130,17 +130,17 @@ TEST_F(LinkEvents, InvalidEventsAreRejectedByTheServer) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     event.mutable_edited()->set_value(bad);
-    this->Refuse(event, "value 'speed'");
+    this->Reject(event, "value 'speed'");
   }
   event.mutable_dragged()->set_goal("arm");
   event.mutable_dragged()->mutable_pose()->mutable_rotation()->set_w(1.1);
-  this->Refuse(event, "goal 'arm'");
+  this->Reject(event, "goal 'arm'");
   event.mutable_dragged()->mutable_pose()->mutable_rotation()->set_w(1);
   event.mutable_dragged()->mutable_pose()->mutable_position()->set_x(
       std::numeric_limits<double>::quiet_NaN());
-  this->Refuse(event, "goal 'arm'");
+  this->Reject(event, "goal 'arm'");
   event.mutable_answer()->set_question(std::string(1 << 20, 'q'));
-  this->Refuse(event, "accepted: up to 1048576");
+  this->Reject(event, "accepted: up to 1048576");
   // One that the server does not know, of a newer viewer, goes through whole.
   event.Clear();
   event.GetReflection()->MutableUnknownFields(&event)->AddVarint(100, 42);

@@ -172,8 +172,8 @@ class WireCommands : public CommandTest {};
 TEST_F(WireCommands, UnknownCommandsAreRejectedByNumber) {
   v1::Command command;
   command.GetReflection()->MutableUnknownFields(&command)->AddLengthDelimited(4321, "");
-  this->Refuse(command, Kind::UNSUPPORTED, "command number 4321");
-  this->Refuse(v1::Command(), Kind::UNSUPPORTED, "command none");
+  this->Reject(command, Kind::UNSUPPORTED, "command number 4321");
+  this->Reject(v1::Command(), Kind::UNSUPPORTED, "command none");
 }
 
 TEST_F(WireCommands, UnimplementedCommandsAreRejected) {
@@ -189,7 +189,7 @@ TEST_F(WireCommands, UnimplementedCommandsAreRejected) {
     }
     v1::Command command;
     command.GetReflection()->MutableMessage(&command, field);
-    this->Refuse(command, Kind::UNIMPLEMENTED,
+    this->Reject(command, Kind::UNIMPLEMENTED,
                  "command " + field->name() + ": this version does not implement it");
     command.set_scene("no such scene");
     const v1::Reply reply = this->Interpreter_.Execute(command);

@@ -136,7 +136,7 @@ protected:
   }
 
   // Playing it is refused, with all of these words.
-  void Refuses(Error::Kind kind, const std::vector<std::string>& words) {
+  void Rejects(Error::Kind kind, const std::vector<std::string>& words) {
     try {
       RecordingReader reader(this->Path_);
       Interpreter shown;

@@ -187,7 +187,7 @@ TEST_F(PlaybackOf, AnIndexOfTimesThatIsDamagedShowsNoWrongInstant) {
   EXPECT_EQ(playback.Seek(0.5), 0.5);
 }
 
-TEST_F(PlaybackOf, RefusesDamage) {
+TEST_F(PlaybackOf, RejectsDamage) {
   this->Drive(10, 1000);
   this->Change("UPDATE command SET time = time + 1 WHERE seq = 7");
   const auto says = [&](const char* words, Error::Kind kind, const auto& run) {

@@ -101,7 +101,7 @@ TEST_F(ForgedPacked, NothingIsWrittenOutsideOfItsFolder) {
   EXPECT_EQ(std::distance(fs::directory_iterator(victim), fs::directory_iterator()), 1);
 }
 
-TEST_F(ForgedPacked, RefusesNamesThatAreNone) {
+TEST_F(ForgedPacked, RejectsNamesThatAreNone) {
   for (const std::vector<std::string>& names : {std::vector<std::string>{"relative"},
                                                 {"../up"},
                                                 {""},
@@ -116,7 +116,7 @@ TEST_F(ForgedPacked, RefusesNamesThatAreNone) {
     }
     this->Forge(files);
     const std::string last = *std::max_element(names.begin(), names.end());
-    this->Refuses(Error::Kind::Corrupt, {"'" + last.substr(0, 2)});
+    this->Rejects(Error::Kind::Corrupt, {"'" + last.substr(0, 2)});
   }
 }
 
@@ -130,16 +130,16 @@ TEST_F(ForgedPacked, APartGrowsToNoMoreThanItSays) {
             Z_OK);
   small.resize(size);
   this->Forge({{"/bomb", small, 100}});
-  this->Refuses(Error::Kind::Corrupt, {"/bomb", "is damaged at byte 0"});
+  this->Rejects(Error::Kind::Corrupt, {"/bomb", "is damaged at byte 0"});
 }
 
 // Every part of SQLite's that is no table could run without end.
-TEST_F(ForgedPacked, RefusesViews) {
+TEST_F(ForgedPacked, RejectsViews) {
   this->Forge({});
   this->Change("DROP TABLE asset; CREATE VIEW asset AS WITH RECURSIVE n(id) AS (SELECT 1 UNION ALL "
                "SELECT id + 1 FROM n) SELECT id, '/a' AS path, 'read' AS state, 0 AS size, x'' AS "
                "sha256, 0 AS packed, x'' AS checksum FROM n");
-  this->Refuses(Error::Kind::Corrupt, {this->Path_});
+  this->Rejects(Error::Kind::Corrupt, {this->Path_});
 }
 
 TEST(RecordedNames, AreWholeValuesOfXmlOnly) {

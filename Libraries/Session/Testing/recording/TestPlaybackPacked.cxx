@@ -35,7 +35,7 @@ TEST_F(PlaybackPacked, WithoutPackingFilesMustBeWhatTheyWere) {
   const fs::path material = this->Here_ / "part.mtl";
   const std::string before = Content(material);
   Write(material, "newmtl m\nKd 1 0.6 0\n"); // as many bytes
-  this->Refuses(Error::Kind::Corrupt, {this->Path_, material.string(), "has changed",
+  this->Rejects(Error::Kind::Corrupt, {this->Path_, material.string(), "has changed",
                                        "accepted: its " + std::to_string(before.size())});
   {
     RecordingReader reader(this->Path_);
@@ -46,12 +46,12 @@ TEST_F(PlaybackPacked, WithoutPackingFilesMustBeWhatTheyWere) {
     EXPECT_EQ(unchecked.Files().Locate("/a"), "/a");
   }
   fs::remove(material);
-  this->Refuses(Error::Kind::NotFound, {material.string(), "is missing"});
+  this->Rejects(Error::Kind::NotFound, {material.string(), "is missing"});
   Write(material, before);
   EXPECT_EQ(this->Played(), live);
   // A source that only the mosaic names.
   Write(this->Here_ / "a&b.asc", Content(this->Here_ / "a&b.asc") + "\n");
-  this->Refuses(Error::Kind::Corrupt, {"a&b.asc", "has changed"});
+  this->Rejects(Error::Kind::Corrupt, {"a&b.asc", "has changed"});
 }
 
 TEST_F(PlaybackPacked, WhatWasNotThereMayNotBeThereNow) {
@@ -72,10 +72,10 @@ TEST_F(PlaybackPacked, WhatWasNotThereMayNotBeThereNow) {
   RecordingReader reader(this->Path_);
   { const RecordedFiles whole(reader); }
   Write(this->Here_ / "part.mtl", "newmtl m\nKd 1 1 1\n");
-  this->Refuses(Error::Kind::Corrupt, {"part.mtl", "did not exist"});
+  this->Rejects(Error::Kind::Corrupt, {"part.mtl", "did not exist"});
 }
 
-TEST_F(PlaybackPacked, DamagedContentIsRefusedByName) {
+TEST_F(PlaybackPacked, DamagedContentIsRejectedByName) {
   this->Record(true);
   const std::string whole = Content(this->Path_);
   const std::string material = (this->Here_ / "part.mtl").string();
@@ -83,14 +83,14 @@ TEST_F(PlaybackPacked, DamagedContentIsRefusedByName) {
   for (const char* change : {"SET data = CAST(replace(data, 'Kd', 'Ks') AS BLOB)",
                              "SET size = size + 1", "SET place = 1", "SET checksum = x'00'"}) {
     this->Change("UPDATE content " + std::string(change) + of);
-    this->Refuses(Error::Kind::Corrupt, {this->Path_, material, "is damaged at byte 0"});
+    this->Rejects(Error::Kind::Corrupt, {this->Path_, material, "is damaged at byte 0"});
     Write(this->Path_, whole);
   }
   this->Change("DELETE FROM content" + of);
-  this->Refuses(Error::Kind::Corrupt, {material, "ends at byte 0 of"});
+  this->Rejects(Error::Kind::Corrupt, {material, "ends at byte 0 of"});
   Write(this->Path_, whole);
   this->Change("UPDATE asset SET size = 1 WHERE path = '" + material + "'");
-  this->Refuses(Error::Kind::Corrupt, {"asset", "is damaged"});
+  this->Rejects(Error::Kind::Corrupt, {"asset", "is damaged"});
   Write(this->Path_, whole);
   this->Played();
 }

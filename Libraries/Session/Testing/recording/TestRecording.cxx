@@ -250,7 +250,7 @@ TEST_F(Recording, WallTimeNeverGoesBack) {
   EXPECT_EQ(Ask(this->Path_, "SELECT group_concat(wall, ' ') FROM snapshot"), "100.0 101.0");
 }
 
-TEST_F(Recording, RefusesWhatItCannotDo) {
+TEST_F(Recording, RejectsWhatItCannotDo) {
   const auto refused = [&](const std::string& path, const RecordingOptions& options,
                            Error::Kind kind) {
     try {

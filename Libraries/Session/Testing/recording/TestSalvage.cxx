@@ -128,7 +128,7 @@ protected:
     return report;
   }
 
-  void Refuses(Error::Kind kind, const std::string& words) const {
+  void Rejects(Error::Kind kind, const std::string& words) const {
     try {
       session::SalvageRecording(this->Of("bad"), this->Of("new"), On);
       ADD_FAILURE() << words;
@@ -298,11 +298,11 @@ TEST_F(Salvage, APartBeginsWithItsState) {
 }
 
 TEST_F(Salvage, WhatCannotBeSalvagedLeavesNothingBehind) {
-  this->Refuses(Error::Kind::NotFound, "no such file");
+  this->Rejects(Error::Kind::NotFound, "no such file");
   Write(this->Of("bad"), std::string(3 * Page, '\0'));
-  this->Refuses(Error::Kind::Corrupt, "nothing in it can be recovered");
+  this->Rejects(Error::Kind::Corrupt, "nothing in it can be recovered");
   Write(this->Of("bad"), "");
-  this->Refuses(Error::Kind::Corrupt, "nothing in it can be recovered");
+  this->Rejects(Error::Kind::Corrupt, "nothing in it can be recovered");
   this->Make(this->Of("whole"));
   std::filesystem::copy_file(this->Of("whole"), this->Of("bad"),
                              std::filesystem::copy_options::overwrite_existing);
@@ -316,11 +316,11 @@ TEST_F(Salvage, WhatCannotBeSalvagedLeavesNothingBehind) {
                Error);
   EXPECT_EQ(calls, 20);
   Run(this->Of("bad"), "UPDATE meta SET value = 2 WHERE key = 'format'");
-  this->Refuses(Error::Kind::Unsupported, "a newer Dspace wrote it");
+  this->Rejects(Error::Kind::Unsupported, "a newer Dspace wrote it");
   EXPECT_FALSE(std::filesystem::exists(this->Of("new")));
   Run(this->Of("bad"), "UPDATE meta SET value = 'damaged' WHERE key = 'format'");
   EXPECT_TRUE(this->Salvaged().IsComplete());
-  this->Refuses(Error::Kind::AlreadyExists, "there is such a file");
+  this->Rejects(Error::Kind::AlreadyExists, "there is such a file");
   EXPECT_TRUE(std::filesystem::exists(this->Of("new"))); // it is another one's
 }
 

@@ -46,7 +46,7 @@ bool NamesFile(const std::string& crs) {
          (proj && text.find('/') != std::string::npos) || fs::exists(crs, error);
 }
 
-[[noreturn]] void RefusePath(const std::string& value, const std::string& field,
+[[noreturn]] void RejectPath(const std::string& value, const std::string& field,
                              const std::string& why) {
   throw Error(Error::Kind::InvalidArgument, "file '" + value.substr(0, 1000) + "'",
               field + " " + why);
@@ -92,7 +92,7 @@ void Confinement::Apply(v1::Command& command) const {
           return this->Check(text, field.full_name(), kind == TextKind::ReadFile);
         }
         if (NamesFile(text)) {
-          RefusePath(
+          RejectPath(
               text, field.full_name(),
               "names a file; accepted: AUTHORITY:CODE, WKT and PROJ without grids, parameter "
               "files, EXTENSION and init=");
@@ -126,18 +126,18 @@ void Confinement::RequireThere(const std::string& real, const std::string& text,
                 field + " names no existing file; accepted: an existing file");
   }
   if (!fs::is_regular_file(status) && !fs::is_directory(status)) {
-    RefusePath(text, field, "is neither a file nor a folder");
+    RejectPath(text, field, "is neither a file nor a folder");
   }
 }
 
 std::string Confinement::Check(const std::string& text, const std::string& field,
                                bool isRead) const {
   if (text.find('\0') != std::string::npos) {
-    RefusePath(text, field, "contains a zero byte");
+    RejectPath(text, field, "contains a zero byte");
   }
   // GDAL interprets a name that contains "<VRTDataset" as the document itself.
   if (text.find_first_of("<>") != std::string::npos) {
-    RefusePath(text, field, "contains '<' or '>'; accepted: names without them");
+    RejectPath(text, field, "contains '<' or '>'; accepted: names without them");
   }
   // The opened path is the checked one: the same absolute path.
   const fs::path path = fs::absolute(text).lexically_normal();
@@ -156,7 +156,7 @@ std::string Confinement::Check(const std::string& text, const std::string& field
   for (const std::string& root : this->Roots_) {
     accepted += (accepted.empty() ? "" : ", ") + root;
   }
-  RefusePath(text, field,
+  RejectPath(text, field,
              "is outside of the folders that " + this->Who_ + " allows; accepted: files in " +
                  (accepted.empty() ? "no folder" : accepted));
 }

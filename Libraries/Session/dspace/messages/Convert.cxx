@@ -20,7 +20,7 @@ Eigen::Quaterniond ToRotation(const v1::Quaternion& q, const std::string& object
   Pose X;
   X.rotation = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z());
   if (!IsValidPose(X)) {
-    RefusePose(object, X);
+    RejectPose(object, X);
   }
   return NormalisedPose(X).rotation;
 }
@@ -34,7 +34,7 @@ Pose ToPose(const v1::Pose& pose, const std::string& object) {
   }
   X.scale = pose.has_scale() ? pose.scale() : 1.0;
   if (!IsValidPose(X)) {
-    RefusePose(object, X);
+    RejectPose(object, X);
   }
   return NormalisedPose(X);
 }
@@ -45,7 +45,7 @@ Eigen::Affine3d ToAffine(const v1::Offset& offset, const std::string& object) {
       offset.has_scale() ? ToVector(offset.scale()) : Eigen::Vector3d::Ones();
   RequirePosition(object, "the position", position);
   if (!((scale.array().abs() >= MinimumScale) && (scale.array().abs() <= MaximumScale)).all()) {
-    Refuse(object, "the scale is " + VectorText(scale) +
+    Reject(object, "the scale is " + VectorText(scale) +
                        "; accepted: 1e-12 to 1e12, or the negative of it, on each axis");
   }
   Eigen::Affine3d X = Eigen::Affine3d::Identity();
@@ -66,7 +66,7 @@ std::array<double, 3> ToColor(const v1::Color& color, const std::string& object)
 
 Nature ToNature(v1::Nature nature, const std::string& object) {
   if (nature != v1::PHYSICAL && nature != v1::ORNAMENTAL) {
-    Refuse(object, "its nature is " + std::to_string(int(nature)) +
+    Reject(object, "its nature is " + std::to_string(int(nature)) +
                        "; accepted: PHYSICAL (0), ORNAMENTAL (1)");
   }
   return nature == v1::PHYSICAL ? Nature::Physical : Nature::Ornamental;
@@ -85,7 +85,7 @@ Eigen::Quaterniond RotationToZUp(v1::UpAxis up, const std::string& object) {
   case v1::UP_MINUS_Z:
     return {0, 1, 0, 0};
   default:
-    Refuse(object, "its up axis is " + std::to_string(int(up)) +
+    Reject(object, "its up axis is " + std::to_string(int(up)) +
                        "; accepted: UP_Z (0), UP_Y (1), UP_X (2), UP_MINUS_Z (3)");
   }
 }
@@ -221,7 +221,7 @@ v1::Error::Kind FromKind(Error::Kind kind) {
 
 std::size_t RowsOf(int values, int size, const std::string& object, const char* what) {
   if (values % size != 0) {
-    Refuse(object, std::string(what) + " holds " + std::to_string(values) +
+    Reject(object, std::string(what) + " holds " + std::to_string(values) +
                        " numbers; accepted: a multiple of " + std::to_string(size));
   }
   return std::size_t(values / size);

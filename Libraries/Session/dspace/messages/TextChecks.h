@@ -13,7 +13,7 @@ namespace dspace::session {
 inline void RequireShortText(const std::string& object, const char* what, const std::string& text,
                              std::size_t most, bool lines) {
   if (text.size() > most) {
-    Refuse(object, std::string(what) + " has " + std::to_string(text.size()) +
+    Reject(object, std::string(what) + " has " + std::to_string(text.size()) +
                        " bytes; accepted: up to " + std::to_string(most));
   }
   RequirePlainText(object, what, text, lines);
@@ -33,7 +33,7 @@ inline void RequireLines(const std::string& object, const char* what, const std:
 inline void RequireWord(const std::string& object, const char* what, const std::string& text,
                         std::size_t most) {
   if (text.empty()) {
-    Refuse(object, std::string(what) + " is empty; accepted: 1 to " + std::to_string(most) +
+    Reject(object, std::string(what) + " is empty; accepted: 1 to " + std::to_string(most) +
                        " bytes without control characters");
   }
   RequireLine(object, what, text, most);

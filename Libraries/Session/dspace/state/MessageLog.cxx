@@ -17,13 +17,13 @@ constexpr std::size_t MaximumQuestions = 1000; // open ones of a scene
 
 void CheckSeverity(const std::string& label, v1::Severity severity) {
   if (!v1::Severity_IsValid(severity)) {
-    Refuse(label, "its severity is " + std::to_string(int(severity)) + "; accepted: 0 to 3");
+    Reject(label, "its severity is " + std::to_string(int(severity)) + "; accepted: 0 to 3");
   }
 }
 
 void CheckData(const std::string& label, const v1::LogEvent& event) {
   if (event.datum_size() > MaximumData) {
-    Refuse(label, "it has " + std::to_string(event.datum_size()) + " data; accepted: up to " +
+    Reject(label, "it has " + std::to_string(event.datum_size()) + " data; accepted: up to " +
                       std::to_string(MaximumData));
   }
   std::set<std::string> names;
@@ -32,10 +32,10 @@ void CheckData(const std::string& label, const v1::LogEvent& event) {
     RequireLines(label, "the text of a datum", datum.text(), MostBytes("EventDatum.text"));
     RequireLine(label, "the unit of a datum", datum.unit(), MostBytes("EventDatum.unit"));
     if (!names.insert(datum.name()).second) {
-      Refuse(label, "its datum " + QuotedText(datum.name()) + " occurs twice; accepted: once");
+      Reject(label, "its datum " + QuotedText(datum.name()) + " occurs twice; accepted: once");
     }
     if (!datum.unit().empty() && !datum.has_number()) {
-      Refuse(label, "its datum " + QuotedText(datum.name()) +
+      Reject(label, "its datum " + QuotedText(datum.name()) +
                         " has a unit and is not a number; accepted: units of numbers only");
     }
   }
@@ -53,14 +53,14 @@ void MessageLog::Log(v1::LogEvent& event, double now) {
   if (event.has_position()) {
     RequirePosition(label, "its position", ToVector(event.position()));
     if (event.frame() == 0 && event.frame_path().empty()) {
-      Refuse(label, "it has a position and no frame; accepted: a frame, 1 for the root");
+      Reject(label, "it has a position and no frame; accepted: a frame, 1 for the root");
     }
   }
   if (event.has_time_s()) {
     RequireFinite(label, "its time", event.time_s());
   }
   if (event.number() != 0 && event.number() <= this->LastNumber_) {
-    Refuse(label, "its number is " + std::to_string(event.number()) + "; accepted: above " +
+    Reject(label, "its number is " + std::to_string(event.number()) + "; accepted: above " +
                       std::to_string(this->LastNumber_) + ", or 0");
   }
   v1::LogEvent whole = event;
@@ -73,7 +73,7 @@ void MessageLog::Log(v1::LogEvent& event, double now) {
   // As it is kept, which is what recordings, snapshots and viewers take it up from.
   const std::size_t bytes = whole.ByteSizeLong();
   if (bytes > MaximumEvent) {
-    Refuse(label, "it has " + std::to_string(bytes) +
+    Reject(label, "it has " + std::to_string(bytes) +
                       " bytes with its number and time; accepted: "
                       "up to " +
                       std::to_string(MaximumEvent));
@@ -97,17 +97,17 @@ void MessageLog::Ask(v1::AskOperator& question, double now) {
   RequireLines(label, "its text", question.text(), MostBytes("AskOperator.text"));
   CheckSeverity(label, question.severity());
   if (question.text().empty()) {
-    Refuse(label, "its text is empty; accepted: the question's text");
+    Reject(label, "its text is empty; accepted: the question's text");
   }
   if (question.choice_size() > MaximumChoices) {
-    Refuse(label, "it has " + std::to_string(question.choice_size()) +
+    Reject(label, "it has " + std::to_string(question.choice_size()) +
                       " choices; accepted: up to " + std::to_string(MaximumChoices));
   }
   std::set<std::string> choices;
   for (const std::string& choice : question.choice()) {
     RequireWord(label, "a choice", choice, MostBytes("AskOperator.choice"));
     if (!choices.insert(choice).second) {
-      Refuse(label, "its choice " + QuotedText(choice) + " occurs twice; accepted: once");
+      Reject(label, "its choice " + QuotedText(choice) + " occurs twice; accepted: once");
     }
   }
   if (question.has_time_s()) {

@@ -81,10 +81,10 @@ double Robot::CheckedPosition(std::size_t index, double position, bool clamp) co
   const UrdfJoint& joint = this->Urdf_.joints[index];
   const std::string label = "joint '" + joint.name + "' of robot '" + this->Name_ + "'";
   if (!HasPosition(joint)) {
-    Refuse(label, "it has no position to set; accepted: revolute, continuous and prismatic joints");
+    Reject(label, "it has no position to set; accepted: revolute, continuous and prismatic joints");
   }
   if (joint.mimic >= 0) {
-    Refuse(label, "it follows joint '" + this->Urdf_.joints[std::size_t(joint.mimic)].name +
+    Reject(label, "it follows joint '" + this->Urdf_.joints[std::size_t(joint.mimic)].name +
                       "'; set that one");
   }
   RequireFinite(label, "the position", position);
@@ -99,7 +99,7 @@ double Robot::CheckedPosition(std::size_t index, double position, bool clamp) co
   // Rounded radians in a file must not reject the round number of degrees that they represent.
   const double slack = joint.type == UrdfJoint::Type::Prismatic ? 1e-6 : 1e-6 * 180.0 / M_PI;
   if (!clamp && (position < joint.lower - slack || position > joint.upper + slack)) {
-    Refuse(label, "the position is " + NumberText(position) + "; accepted: " +
+    Reject(label, "the position is " + NumberText(position) + "; accepted: " +
                       NumberText(joint.lower) + " to " + NumberText(joint.upper) + UnitOf(joint));
   }
   return std::min(std::max(position, joint.lower), joint.upper);

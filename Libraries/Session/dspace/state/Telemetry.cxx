@@ -32,7 +32,7 @@ void CheckName(const std::string& name) {
     const std::size_t end = std::min(name.find('/', begin), name.size());
     const std::string part = name.substr(begin, end - begin);
     if (part.empty() || part == "." || part == "..") {
-      Refuse(label, "a part of its name is '" + part +
+      Reject(label, "a part of its name is '" + part +
                         "'; accepted: names joined by '/', none of them empty, '.' or '..'");
     }
     if (end == name.size()) {
@@ -60,7 +60,7 @@ void CheckLimits(const std::string& label, const v1::TelemetryLimits& limits) {
     }
     RequireFinite(label, name, *value);
     if (before && *value < last) {
-      Refuse(label, std::string(name) + " is " + NumberText(*value) + ", below " + before + ", " +
+      Reject(label, std::string(name) + " is " + NumberText(*value) + ", below " + before + ", " +
                         NumberText(last) +
                         "; accepted: alarm_low <= warning_low <= warning_high "
                         "<= alarm_high");
@@ -74,7 +74,7 @@ void CheckLabels(const std::string& label, const v1::CreateTelemetry& command) {
   const bool choice = command.kind() == v1::CreateTelemetry::CHOICE;
   if (choice ? command.label_size() < 1 || command.label_size() > MaximumLabels
              : command.label_size() > 0) {
-    Refuse(label, "it has " + std::to_string(command.label_size()) + " labels; accepted: " +
+    Reject(label, "it has " + std::to_string(command.label_size()) + " labels; accepted: " +
                       (choice ? "1 to 1,000 for a choice" : "labels of a choice only"));
   }
   std::set<std::int32_t> values;
@@ -82,7 +82,7 @@ void CheckLabels(const std::string& label, const v1::CreateTelemetry& command) {
   for (const v1::CreateTelemetry::Label& each : command.label()) {
     RequireWord(label, "a label", each.label(), MostBytes("CreateTelemetry.Label.label"));
     if (!values.insert(each.value()).second || !texts.insert(each.label()).second) {
-      Refuse(label, "its label " + QuotedText(each.label()) + " of value " +
+      Reject(label, "its label " + QuotedText(each.label()) + " of value " +
                         std::to_string(each.value()) + " occurs twice; accepted: each once");
     }
   }
@@ -105,14 +105,14 @@ std::uint64_t Telemetry::Create(const v1::CreateTelemetry& command, std::uint64_
   const std::string label = Label(command.name());
   CheckName(command.name());
   if (!v1::CreateTelemetry::Kind_IsValid(command.kind())) {
-    Refuse(label, "its kind is " + std::to_string(int(command.kind())) + "; accepted: 0 to 2");
+    Reject(label, "its kind is " + std::to_string(int(command.kind())) + "; accepted: 0 to 2");
   }
   const bool number = command.kind() == v1::CreateTelemetry::NUMBER;
   RequireLine(label, "its unit", command.unit(), MostBytes("CreateTelemetry.unit"));
   RequireLine(label, "its description", command.description(),
               MostBytes("CreateTelemetry.description"));
   if (!number && (!command.unit().empty() || command.has_limits())) {
-    Refuse(label, "it has a unit or limits; accepted: units and limits of numbers only");
+    Reject(label, "it has a unit or limits; accepted: units and limits of numbers only");
   }
   CheckLabels(label, command);
   CheckLimits(label, command.limits());
@@ -121,7 +121,7 @@ std::uint64_t Telemetry::Create(const v1::CreateTelemetry& command, std::uint64_
   }
   const std::uint64_t id = command.id() == 0 ? free : command.id();
   if (id <= this->LastId_ || id >= MaximumId) {
-    Refuse(label, "its id is " + std::to_string(id) + "; accepted: above " +
+    Reject(label, "its id is " + std::to_string(id) + "; accepted: above " +
                       std::to_string(this->LastId_) + " and below 2^63, or 0");
   }
   Channel channel;
@@ -172,7 +172,7 @@ void Telemetry::SetLimits(const v1::SetTelemetryLimits& command) {
   Channel& channel = this->At(command.id());
   const std::string label = Label(channel.about.name());
   if (channel.about.kind() != v1::CreateTelemetry::NUMBER) {
-    Refuse(label, "it is not a number; accepted: limits of numbers only");
+    Reject(label, "it is not a number; accepted: limits of numbers only");
   }
   CheckLimits(label, command.limits());
   v1::CreateTelemetry about = channel.about;
@@ -201,7 +201,7 @@ std::vector<Telemetry::Channel*> Telemetry::Check(const Command& command, const 
   const std::string label = std::string("command ") + name;
   if (values.size() != command.id_size() ||
       (command.time_s_size() != 0 && command.time_s_size() != command.id_size())) {
-    Refuse(label, std::to_string(values.size()) + " values and " +
+    Reject(label, std::to_string(values.size()) + " values and " +
                       std::to_string(command.time_s_size()) + " times are given for " +
                       std::to_string(command.id_size()) +
                       " channels; accepted: one value each, and one time each or no times");
@@ -212,7 +212,7 @@ std::vector<Telemetry::Channel*> Telemetry::Check(const Command& command, const 
   for (int i = 0; i < command.id_size(); ++i) {
     Channel& channel = this->At(command.id(i));
     if (channel.step == this->Step_) {
-      Refuse(Label(channel.about.name()), "it occurs twice in " + label + "; accepted: once");
+      Reject(Label(channel.about.name()), "it occurs twice in " + label + "; accepted: once");
     }
     channel.step = this->Step_;
     channels.push_back(&channel);
@@ -229,15 +229,15 @@ void Telemetry::Set(const v1::SetTelemetry& command, double now) {
     const v1::CreateTelemetry& about = channels[i]->about;
     const double value = command.value(int(i));
     if (about.kind() == v1::CreateTelemetry::TEXT) {
-      Refuse(Label(about.name()), "it is a text; accepted: command set_telemetry_texts");
+      Reject(Label(about.name()), "it is a text; accepted: command set_telemetry_texts");
     }
     if (std::isinf(value)) {
-      Refuse(Label(about.name()),
+      Reject(Label(about.name()),
              "its value is " + NumberText(value) + "; accepted: a finite number, or NaN for none");
     }
     if (about.kind() == v1::CreateTelemetry::CHOICE && !std::isnan(value) &&
         !HasLabel(about, value)) {
-      Refuse(Label(about.name()), "its value is " + NumberText(value) +
+      Reject(Label(about.name()), "its value is " + NumberText(value) +
                                       "; accepted: a value with a label, or NaN for none");
     }
   }
@@ -260,7 +260,7 @@ void Telemetry::SetTexts(const v1::SetTelemetryTexts& command, double now) {
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const v1::CreateTelemetry& about = channels[i]->about;
     if (about.kind() != v1::CreateTelemetry::TEXT) {
-      Refuse(Label(about.name()), "it is a number; accepted: command set_telemetry");
+      Reject(Label(about.name()), "it is a number; accepted: command set_telemetry");
     }
     RequireLine(Label(about.name()), "its text", command.text(int(i)), most);
   }
@@ -280,7 +280,7 @@ void Telemetry::Remove(const v1::RemoveTelemetry& command) {
   for (const std::uint64_t id : command.id()) {
     const Channel& channel = this->Get(id);
     if (!ids.insert(id).second) {
-      Refuse(Label(channel.about.name()),
+      Reject(Label(channel.about.name()),
              "it occurs twice in command remove_telemetry; accepted: once");
     }
   }

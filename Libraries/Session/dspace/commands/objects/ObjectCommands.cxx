@@ -40,7 +40,7 @@ DetailLevel LoadLevel(const Context& context, v1::ImportObject& command,
 
 void ImportObject(const Context& context, v1::ImportObject& command) {
   if (command.level_size() == 0 || command.level(0).path().empty()) {
-    Refuse("command import_object", "it names no file; accepted: at least one level with a path");
+    Reject("command import_object", "it names no file; accepted: at least one level with a path");
   }
   const std::string file = "file '" + command.level(0).path() + "'";
   const double scale = command.has_scale() ? command.scale() : 1.0;
@@ -63,13 +63,13 @@ void RemoveObject(const Context& context, v1::RemoveObject& command) {
   SceneState& state = *context.scene;
   for (const auto& [name, robot] : state.robots) {
     if (robot->HasObject(id)) {
-      Refuse(ObjectLabel(*state.scene, id),
+      Reject(ObjectLabel(*state.scene, id),
              "it belongs to robot '" + name + "'; accepted: hide it, or remove the robot");
     }
   }
   for (const auto& [name, terrain] : state.terrains) {
     if (terrain->Object() == id) {
-      Refuse(ObjectLabel(*state.scene, id),
+      Reject(ObjectLabel(*state.scene, id),
              "it is terrain '" + name + "'; accepted: command remove_terrain");
     }
   }
@@ -95,7 +95,7 @@ void SetObjectOffset(const Context& context, v1::SetObjectOffset& command) {
   Scene& scene = context.GetScene();
   for (const auto& [name, terrain] : context.scene->terrains) {
     if (terrain->Object() == command.object()) {
-      Refuse(ObjectLabel(scene, command.object()),
+      Reject(ObjectLabel(scene, command.object()),
              "terrain '" + name + "' is queried in its frame; accepted: move the frame");
     }
   }

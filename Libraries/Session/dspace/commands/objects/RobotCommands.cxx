@@ -88,13 +88,13 @@ void CheckIds(const v1::LoadRobot& command, const Urdf& urdf, const std::string&
       command.base_id() != 0 || command.link_id_size() > 0 || command.object_id_size() > 0;
   if (command.object_name_size() != 0 &&
       std::size_t(command.object_name_size()) != VisualCount(urdf)) {
-    Refuse(label, "object_name does not fit the file; accepted: none, or " +
+    Reject(label, "object_name does not fit the file; accepted: none, or " +
                       std::to_string(VisualCount(urdf)) + " of them");
   }
   if (given &&
       (command.base_id() == 0 || std::size_t(command.link_id_size()) != urdf.links.size() ||
        std::size_t(command.object_id_size()) != VisualCount(urdf))) {
-    Refuse(label, "base_id, link_id and object_id do not fit the file; accepted: none of them, or "
+    Reject(label, "base_id, link_id and object_id do not fit the file; accepted: none of them, or "
                   "1, " +
                       std::to_string(urdf.links.size()) + " and " +
                       std::to_string(VisualCount(urdf)) + " of them");
@@ -201,7 +201,7 @@ void LoadRobot(const Context& context, v1::LoadRobot& command) {
   CheckIds(command, urdf, label);
   for (const UrdfLink& link : urdf.links) {
     if (!IsValidFrameName(link.name)) {
-      RefuseFrameName("file '" + path + "': link '" + link.name + "'", link.name);
+      RejectFrameName("file '" + path + "': link '" + link.name + "'", link.name);
     }
   }
   const Pose X_FB = ToPose(command.pose(), label);
@@ -225,7 +225,7 @@ void RemoveRobot(const Context& context, v1::RemoveRobot& command) {
 void SetJoints(const Context& context, v1::SetJoints& command) {
   Robot& robot = FindRobot(context, command.robot());
   if (command.joint_size() != command.position_size()) {
-    Refuse(RobotLabel(command.robot()),
+    Reject(RobotLabel(command.robot()),
            std::to_string(command.position_size()) + " positions for " +
                std::to_string(command.joint_size()) + " joints; accepted: one for each");
   }

@@ -21,7 +21,7 @@ void CreateVantage(const Context& context, v1::CreateVantage& command) {
 void RemoveVantage(const Context& context, v1::RemoveVantage& command) {
   for (const auto& [name, viewport] : context.state.viewports) {
     if (viewport.scene == context.sceneName && viewport.vantage == command.name()) {
-      Refuse("vantage '" + command.name() + "'",
+      Reject("vantage '" + command.name() + "'",
              "viewport '" + name + "' shows it; remove the viewport or show another vantage first");
     }
   }
@@ -52,7 +52,7 @@ CameraMount::ChaseAxes ToAxes(v1::Mount::Chase::Axes axes, const std::string& ca
   case v1::Mount::Chase::PARENT:
     return CameraMount::ChaseAxes::Parent;
   default:
-    Refuse(camera, "its chase axes are " + std::to_string(int(axes)) + "; accepted: 0 to 2");
+    Reject(camera, "its chase axes are " + std::to_string(int(axes)) + "; accepted: 0 to 2");
   }
 }
 
@@ -114,7 +114,7 @@ void RemoveCamera(const Context& context, v1::RemoveCamera& command) {
   for (const auto& [name, viewport] : context.state.viewports) {
     if (viewport.scene == context.sceneName && viewport.vantage == vantage &&
         viewport.camera == command.name()) {
-      Refuse("camera '" + command.name() + "'",
+      Reject("camera '" + command.name() + "'",
              "viewport '" + name + "' looks through it; give the viewport another camera first");
     }
   }

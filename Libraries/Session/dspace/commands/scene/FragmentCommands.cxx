@@ -52,7 +52,7 @@ Light::Kind ToKind(v1::SetLight::Kind kind, const std::string& light) {
   case v1::SetLight::AMBIENT:
     return Light::Kind::Ambient;
   default:
-    Refuse(light, "its kind is " + std::to_string(int(kind)) + "; accepted: 0 to 4");
+    Reject(light, "its kind is " + std::to_string(int(kind)) + "; accepted: 0 to 4");
   }
 }
 

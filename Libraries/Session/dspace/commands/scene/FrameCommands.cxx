@@ -22,10 +22,10 @@ void CreateFrame(const Context& context, v1::CreateFrame& command) {
 }
 
 // A link's frame belongs to its robot: poses may be set, the linkage may not be taken apart.
-void RefuseRobotsLink(const Context& context, FrameId frame, const char* what) {
+void RejectRobotsLink(const Context& context, FrameId frame, const char* what) {
   for (const auto& [name, robot] : context.scene->robots) {
     if (frame != robot->Base() && robot->HasFrame(frame)) {
-      Refuse("frame '" + context.Frames().Path(frame) + "'",
+      Reject("frame '" + context.Frames().Path(frame) + "'",
              std::string("it is a link of robot '") + name + "' and cannot be " + what +
                  "; accepted: the robot's base frame");
     }
@@ -36,7 +36,7 @@ void RemoveFrame(const Context& context, v1::RemoveFrame& command) {
   FrameTree& frames = context.Frames();
   std::vector<FrameId> removed;
   if (frames.Contains(command.frame())) {
-    RefuseRobotsLink(context, command.frame(), "removed");
+    RejectRobotsLink(context, command.frame(), "removed");
     std::vector<FrameId> open = {command.frame()};
     while (!open.empty()) { // parents first; turned round below
       removed.push_back(open.back());
@@ -55,7 +55,7 @@ void RemoveFrame(const Context& context, v1::RemoveFrame& command) {
 
 void ReparentFrame(const Context& context, v1::ReparentFrame& command) {
   if (context.Frames().Contains(command.frame())) {
-    RefuseRobotsLink(context, command.frame(), "moved to another parent");
+    RejectRobotsLink(context, command.frame(), "moved to another parent");
   }
   context.Frames().Reparent(command.frame(), ToFrame(command.parent()), command.keep_world_pose());
   AddPose(context.Frames().LocalPose(command.frame()),
@@ -69,7 +69,7 @@ void RenameFrame(const Context& context, v1::RenameFrame& command) {
 void SetPoses(const Context& context, v1::SetPoses& command) {
   const std::size_t n = RowsOf(command.pose_size(), PoseSize, "command set_poses", "pose");
   if (n != std::size_t(command.frame_size())) {
-    Refuse("command set_poses", "pose holds " + std::to_string(n) + " poses for " +
+    Reject("command set_poses", "pose holds " + std::to_string(n) + " poses for " +
                                     std::to_string(command.frame_size()) +
                                     " frames; accepted: one of 8 numbers for each");
   }

@@ -45,7 +45,7 @@ void CreateScene(const Context& context, v1::CreateScene& command) {
 void RemoveScene(const Context& context, v1::RemoveScene&) {
   for (const auto& [name, viewport] : context.state.viewports) {
     if (viewport.scene == context.sceneName) {
-      Refuse("scene '" + context.sceneName + "'",
+      Reject("scene '" + context.sceneName + "'",
              "viewport '" + name + "' shows it; remove the viewport first");
     }
   }

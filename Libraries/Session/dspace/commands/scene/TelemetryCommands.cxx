@@ -25,7 +25,7 @@ void ListTelemetry(const Context& context, v1::ListTelemetry& command) {
   context.reply.mutable_telemetry();
   const bool named = command.id_size() > 0 || command.name_size() > 0;
   if (named && !command.below().empty()) {
-    Refuse("command list_telemetry", "ids or names are given, and below is '" + command.below() +
+    Reject("command list_telemetry", "ids or names are given, and below is '" + command.below() +
                                          "'; accepted: one or the other");
   }
   for (const std::uint64_t id : command.id()) {

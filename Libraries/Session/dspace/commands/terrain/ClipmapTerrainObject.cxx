@@ -126,11 +126,11 @@ bool ClipmapTerrainObject::Focus(const std::vector<Eigen::Vector2d>& points_S, d
   const std::string label = "terrain '" + this->Name() + "'";
   for (const Eigen::Vector2d& point : points_S) {
     if (!point.allFinite()) {
-      Refuse(label, "a point of the focus is not finite");
+      Reject(label, "a point of the focus is not finite");
     }
   }
   if (!points_S.empty() && !(radius > 0.0 && std::isfinite(radius))) {
-    Refuse(label, "the radius of the focus is " + NumberText(radius) + "; accepted: > 0 m, finite");
+    Reject(label, "the radius of the focus is " + NumberText(radius) + "; accepted: > 0 m, finite");
   }
   return false;
 }

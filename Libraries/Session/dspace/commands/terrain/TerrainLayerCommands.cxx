@@ -47,7 +47,7 @@ template<class Message> RasterLayerOptions ToRaster(const Message& from, std::st
   }
   if (from.extent_size() != 0) {
     if (from.extent_size() != 4) {
-      Refuse("file '" + from.path() + "'",
+      Reject("file '" + from.path() + "'",
              "its extent holds " + std::to_string(from.extent_size()) +
                  " numbers; accepted: 4 (left, top, right, bottom) or none");
     }
@@ -176,7 +176,7 @@ Opened Open(const ClipmapTerrainObject& terrain, Add& command, const std::string
   case Add::kNoise:
     return MakeNoise(command.noise());
   default:
-    Refuse(label, "the layer has no kind; accepted: an image, false colour, shapes, noise");
+    Reject(label, "the layer has no kind; accepted: an image, false colour, shapes, noise");
   }
 }
 

@@ -41,7 +41,7 @@ DrapeSource ToDrape(v1::OpenTerrain::Drape& from) {
   }
   if (from.extent_size() != 0) {
     if (from.extent_size() != 4) {
-      Refuse("file '" + from.path() + "'",
+      Reject("file '" + from.path() + "'",
              "its extent holds " + std::to_string(from.extent_size()) +
                  " numbers; accepted: 4 (left, top, right, bottom) or none");
     }
@@ -128,7 +128,7 @@ ClipmapOptions ClipmapLook(const StreamedTerrain& surface, const v1::OpenTerrain
   if (command.has_color()) {
     material->color = ToColor(command.color(), surface.GetName());
   } else if (command.relief().has_sun_azimuth_deg() || command.relief().has_sun_elevation_deg()) {
-    Refuse(surface.GetName(), "a clipmap's relief is lit by the scene's lights; accepted: no sun "
+    Reject(surface.GetName(), "a clipmap's relief is lit by the scene's lights; accepted: no sun "
                               "angles, or mode triangles");
   }
   options.material = material;

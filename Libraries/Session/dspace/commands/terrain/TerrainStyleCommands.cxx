@@ -54,14 +54,14 @@ ClipmapStyle::Ramp ToRamp(const v1::StyleTerrain::Ramp& ramp, const StreamedTerr
   using Ramp = v1::StyleTerrain::Ramp;
   ClipmapStyle::Ramp result;
   if (!Ramp::By_IsValid(ramp.by())) {
-    Refuse(label, "a ramp by " + std::to_string(ramp.by()) +
+    Reject(label, "a ramp by " + std::to_string(ramp.by()) +
                       " is not known; accepted: height, slope, aspect, normal");
   }
   result.by = static_cast<ClipmapStyle::Ramp::By>(ramp.by());
   result.opacity = ramp.opacity();
   if (ramp.by() == Ramp::NORMAL) {
     if (ramp.has_low() || ramp.has_high() || ramp.color_size() > 0) {
-      Refuse(label, "normals have colours of their own; accepted: no range and no colours");
+      Reject(label, "normals have colours of their own; accepted: no range and no colours");
     }
     return result;
   }

@@ -24,7 +24,7 @@ ColorBar ToColorBar(const v1::SetColorBar& command) {
   bar.values.assign(command.value().begin(), command.value().end());
   bar.horizontal = command.horizontal();
   if (!v1::SetTextTable::Anchor_IsValid(command.anchor())) {
-    Refuse(label, "its anchor is " + std::to_string(int(command.anchor())) + "; accepted: 0 to 3");
+    Reject(label, "its anchor is " + std::to_string(int(command.anchor())) + "; accepted: 0 to 3");
   }
   if (command.has_anchor()) {
     bar.anchor = static_cast<TextTable::Anchor>(command.anchor());

@@ -28,13 +28,13 @@ TextTable ToTable(const v1::SetTextTable& command, const Cell& live) {
   for (const v1::SetTextTable::Row& row : command.row()) {
     table.rows.emplace_back(row.label(), row.telemetry().empty() ? row.value() : live(row));
     if (row.digits() > MostDigits) {
-      Refuse(label, "the digits of " + QuotedText(row.telemetry()) + " are " +
+      Reject(label, "the digits of " + QuotedText(row.telemetry()) + " are " +
                         std::to_string(row.digits()) + "; accepted: 0 to " +
                         std::to_string(MostDigits));
     }
   }
   if (!v1::SetTextTable::Anchor_IsValid(command.anchor())) {
-    Refuse(label, "its anchor is " + std::to_string(int(command.anchor())) + "; accepted: 0 to 3");
+    Reject(label, "its anchor is " + std::to_string(int(command.anchor())) + "; accepted: 0 to 3");
   }
   table.anchor = static_cast<TextTable::Anchor>(command.anchor());
   if (command.has_margin()) {

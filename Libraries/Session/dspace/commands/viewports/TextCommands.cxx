@@ -59,7 +59,7 @@ void SetText(const Context& context, v1::SetText& command) {
   scene.Object(command.object()); // throws where there is none
   const auto found = context.scene->texts.find(command.object());
   if (found == context.scene->texts.end()) {
-    Refuse(ObjectLabel(scene, command.object()), "it is no text");
+    Reject(ObjectLabel(scene, command.object()), "it is no text");
   }
   v1::CreateText next = found->second;
   next.set_text(command.text());

@@ -25,7 +25,7 @@ InputEvent ToEvent(const v1::ViewportEvent& from) {
   const std::string label = "event of viewport '" + from.viewport() + "'";
   if (!v1::ViewportEvent::Type_IsValid(from.type()) ||
       !v1::ViewportEvent::Button_IsValid(from.button())) {
-    Refuse(label, "its type is " + std::to_string(int(from.type())) + " and its button " +
+    Reject(label, "its type is " + std::to_string(int(from.type())) + " and its button " +
                       std::to_string(int(from.button())) + "; accepted: 0 to 4 and 0 to 3");
   }
   RequireFinite(label, "x", from.x());

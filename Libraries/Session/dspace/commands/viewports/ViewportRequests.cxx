@@ -49,7 +49,7 @@ void ViewportCommands::Capture(const Context& context, v1::Capture& command) {
   request.depth = command.depth();
   request.label = command.label();
   if (!request.color && !request.depth && !request.label) {
-    Refuse("capture of viewport '" + command.viewport() + "'",
+    Reject("capture of viewport '" + command.viewport() + "'",
            "it requests no plane; accepted: color, depth, label");
   }
   this->LastCapture_ = viewport.GetCapture(request);
@@ -85,7 +85,7 @@ void ViewportCommands::SaveImage(const Context&, v1::SaveImage& command) {
     request.label = true;
     break;
   default:
-    Refuse("file '" + path + "'", "the plane is " + std::to_string(int(command.plane())) +
+    Reject("file '" + path + "'", "the plane is " + std::to_string(int(command.plane())) +
                                       "; accepted: COLOR (0), DEPTH (1), LABEL (2)");
   }
   const dspace::Capture taken = viewport.GetCapture(request);

@@ -24,7 +24,7 @@ constexpr int Backlog = 128;
 constexpr int ToWait_ms = 50;             // where there is no descriptor
 constexpr unsigned MostUnread_ms = 60000; // what was sent and the other side does not confirm
 
-[[noreturn]] void Refuse(const std::string& target, const std::string& why) {
+[[noreturn]] void Reject(const std::string& target, const std::string& why) {
   throw Error(Error::Kind::Io, "address '" + target + "'",
               "the system does not let a server listen there: " + why);
 }
@@ -75,7 +75,7 @@ ServerListener::ServerListener(const LinkAddress& address, std::size_t maximum)
     : Maximum_(maximum) {
   try {
     if (pipe2(this->Wake_, O_CLOEXEC) != 0) {
-      Refuse(address.target, std::strerror(errno));
+      Reject(address.target, std::strerror(errno));
     }
     if (address.path.empty()) {
       this->ListenAtHost(address.target);
@@ -135,7 +135,7 @@ void ServerListener::ListenAtPath(const std::string& path) {
   std::copy(path.begin(), path.end(), place.sun_path);
   const int listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (listener < 0) {
-    Refuse("unix:" + path, std::strerror(errno));
+    Reject("unix:" + path, std::strerror(errno));
   }
   this->Listeners_.push_back(listener);
   // Accessible to the owner only from the start, minus the process's umask. (Setting the umask
@@ -143,7 +143,7 @@ void ServerListener::ListenAtPath(const std::string& path) {
   if (fchmod(listener, 0700) != 0 ||
       bind(listener, reinterpret_cast<sockaddr*>(&place), sizeof(place)) != 0 ||
       listen(listener, Backlog) != 0) {
-    Refuse("unix:" + path, std::strerror(errno));
+    Reject("unix:" + path, std::strerror(errno));
   }
   this->Path_ = path;
   this->PathInode_ = lstat(path.c_str(), &info) == 0 ? info.st_ino : 0;
@@ -161,7 +161,7 @@ void ServerListener::ListenAtHost(const std::string& target) {
   addrinfo* found = nullptr;
   const int unknown = getaddrinfo(host.c_str(), target.substr(colon + 1).c_str(), &hints, &found);
   if (unknown != 0) {
-    Refuse(target, gai_strerror(unknown));
+    Reject(target, gai_strerror(unknown));
   }
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> all(found, freeaddrinfo);
   std::string why;
@@ -191,11 +191,11 @@ void ServerListener::ListenAtHost(const std::string& target) {
     close(listener);
     why = std::strerror(error);
     if (error == EADDRINUSE) {
-      Refuse(target, why); // do not share an address with another server
+      Reject(target, why); // do not share an address with another server
     }
   }
   if (this->Listeners_.empty()) {
-    Refuse(target, why);
+    Reject(target, why);
   }
 }
 
