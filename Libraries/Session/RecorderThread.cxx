@@ -9,8 +9,8 @@
 namespace dspace::session {
 namespace {
 
-constexpr double Slice = 0.1;         // [s]: so often the thread looks what is wanted of it
-constexpr std::size_t MostNews = 100; // that wait to be taken
+constexpr double Slice = 0.1;             // [s] between checks of requests
+constexpr std::size_t MostWarnings = 100; // pending warnings
 
 std::string Number(double value) {
   char text[32];
@@ -39,10 +39,10 @@ void RecorderThread::End() {
   }
 }
 
-void RecorderThread::Tell(const std::string& text) {
+void RecorderThread::Warn(const std::string& text) {
   const std::lock_guard lock(this->mutex);
-  if (this->news.size() < MostNews) {
-    this->news.push_back(text);
+  if (this->warnings.size() < MostWarnings) {
+    this->warnings.push_back(text);
   }
 }
 
@@ -57,7 +57,7 @@ void RecorderThread::SetFailure(const std::string& why) {
   }
   this->counts.failure = why;
   if (this->recording) {
-    this->news.push_back(why + "; recording has stopped, what was written stays");
+    this->warnings.push_back(why + "; recording has stopped, what was written stays");
   }
 }
 
@@ -69,13 +69,13 @@ void RecorderThread::Run() {
   }
   if (this->session) {
     const std::string failure = this->session->StopRecording();
-    this->Look();
+    this->UpdateCounts();
     if (!failure.empty()) {
       this->Fail(failure);
     }
-    this->session = nullptr; // its graphics context is this thread's
+    this->session = nullptr; // its graphics context belongs to this thread
   }
-  this->watcher.reset(); // its place is free again
+  this->watcher.reset(); // frees its connection
   const std::lock_guard lock(this->mutex);
   this->over = true;
   this->changed.notify_all();
@@ -83,23 +83,23 @@ void RecorderThread::Run() {
 
 void RecorderThread::Follow() {
   std::vector<v1::WatchReply> messages;
-  this->heard = Clock::now();
-  while (this->Going()) {
+  this->lastContact = Clock::now();
+  while (this->IsRunning()) {
     if (this->watcher->TakeAll(messages, Slice)) {
       for (v1::WatchReply& message : messages) {
-        if (!this->Going()) {
+        if (!this->IsRunning()) {
           return;
         }
         this->Take(message);
       }
-      this->heard = Clock::now(); // however long that took
+      this->lastContact = Clock::now(); // regardless of the time that this took
     }
-    this->LookAtLink();
-    this->Look();
+    this->CheckLink();
+    this->UpdateCounts();
   }
 }
 
-bool RecorderThread::Going() {
+bool RecorderThread::IsRunning() {
   const std::lock_guard lock(this->mutex);
   return !this->ending && this->counts.failure.empty();
 }
@@ -108,22 +108,22 @@ void RecorderThread::Take(v1::WatchReply& message) {
   if (message.has_snapshot()) {
     this->Begin(message);
   } else if (message.has_command()) {
-    this->CarryOut(*message.mutable_command());
+    this->Execute(*message.mutable_command());
   }
   const std::lock_guard lock(this->mutex);
   this->sequence = message.sequence();
 }
 
-void RecorderThread::CarryOut(v1::Command& command) {
+void RecorderThread::Execute(v1::Command& command) {
   if (command.has_set_time()) {
     this->time_s = command.set_time().time_s();
   }
   const v1::Reply reply = this->session->GetInterpreter().Execute(command);
   if (reply.has_error()) {
-    this->session->Miss(command, reply.error().message());
-    if (!std::exchange(this->unlike, true)) {
-      this->Tell(this->Name() + "what the server has done cannot be done here (" +
-                 reply.error().message() + "): it is recorded, without snapshots from here on");
+    this->session->AddFailed(command, reply.error().message());
+    if (!std::exchange(this->diverged, true)) {
+      this->Warn(this->Name() + "a command of the server failed here (" + reply.error().message() +
+                 "); it is recorded, but the recording has no snapshots from here on");
     }
   }
 }
@@ -138,24 +138,25 @@ void RecorderThread::Begin(v1::WatchReply& message) {
   }
   if (!first && message.sequence() < before) {
     this->Fail(this->Name() + "the server at '" + this->options.address +
-               "' was started anew: its scenes are others");
+               "' was restarted and has other scenes");
     return;
   }
   const vtkSmartPointer<vtkDspaceSession> old = this->session;
   this->session = vtkSmartPointer<vtkDspaceSession>::New();
-  if (old) { // the context goes on, with what is on the GPU already
+  if (old) { // keeps the render context with its GPU resources
     this->session->SetRenderContext(old->GetRenderContext());
   }
-  this->unlike = false;
+  this->diverged = false;
   for (v1::Command& command : *message.mutable_snapshot()->mutable_command()) {
-    this->CarryOut(command);
+    this->Execute(command);
   }
   if (!first) {
     this->session->TakeRecording(old);
-    this->Tell(this->Name() + "it was cut off from the server, or too slow for it: " +
+    this->Warn(this->Name() +
+               "the connection to the server was lost, or this process was too slow: " +
                std::to_string(message.sequence() - before) +
                " commands are missing before simulation time " + Number(this->time_s) +
-               " s, and it has a gap there");
+               " s; the recording has a gap there");
     return;
   }
   const std::string failure = this->session->Record(this->path, this->commitEvery_s, this->pack);
@@ -166,29 +167,31 @@ void RecorderThread::Begin(v1::WatchReply& message) {
   this->changed.notify_all();
 }
 
-// Whether the server is there, and lets this in.
-void RecorderThread::LookAtLink() {
+// Checks the connection to the server.
+void RecorderThread::CheckLink() {
   std::string why;
   if (this->watcher->Connected(&why)) {
-    this->heard = Clock::now();
+    this->lastContact = Clock::now();
     this->rejection.clear();
     return;
   }
   const std::string said = this->watcher->Rejection();
-  if (!said.empty()) { // it may be let in again
-    this->heard = Clock::now();
+  if (!said.empty()) { // the server may accept it later
+    this->lastContact = Clock::now();
     if (said != this->rejection) {
       this->rejection = said;
-      this->Tell(this->Name() + "nothing is recorded while the server refuses it: " + said);
+      this->Warn(this->Name() +
+                 "nothing is recorded while the server rejects the connection: " + said);
     }
-  } else if (Clock::now() - this->heard > std::chrono::duration<double>(this->options.timeout_s)) {
+  } else if (Clock::now() - this->lastContact >
+             std::chrono::duration<double>(this->options.timeout_s)) {
     this->Fail(this->Name() + "the server at '" + this->options.address +
-               "' is gone: nobody answers within " + Number(this->options.timeout_s) + " s");
+               "' has not responded for " + Number(this->options.timeout_s) + " s");
   }
 }
 
-// How far it is; does what is wanted.
-void RecorderThread::Look() {
+// Executes requests and updates the counters.
+void RecorderThread::UpdateCounts() {
   if (!this->session) {
     return;
   }

@@ -42,44 +42,43 @@ vtkSmartPointer<vtkDataArray> ToArray(const char* name, const std::vector<T>& va
 } // namespace
 
 struct vtkDspaceSession::Internals {
-  // In this order: the viewports go before the scenes that they show.
+  // In this order: viewports are destroyed before the scenes that they show.
   dspace::session::Interpreter interpreter;
   std::map<std::string, vtkSmartPointer<vtkDspaceScene>> scenes;
   dspace::session::ViewportCommands viewports;
   dspace::v1::Command command;
   std::map<std::string, vtkSmartPointer<vtkDataArray>> planes;
   dspace::session::Ledger ledger{&interpreter.GetState()};
-  double time_s = 0.0; // that was set last, in whatever scene
+  double time_s = 0.0; // the last one set, of any scene
   std::unique_ptr<dspace::session::RecordingWriter> recording;
   dspace::session::RecordingCounts counts; // of the last one
 
-  // The command is recorded whatever becomes of the ledger, which only snapshots are made of. What
-  // this throws becomes a warning in the reply; a server's viewers hear of the command from another
-  // listener.
-  void Note(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply) {
-    std::string trouble;
+  // Records the command even if the ledger fails, which only snapshots depend on. An exception
+  // becomes a warning in the reply; another listener sends the command to a server's viewers.
+  void OnCommand(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply) {
+    std::string failure;
     try {
       this->ledger.Add(accepted, reply);
     } catch (const std::exception& error) {
-      trouble = error.what();
+      failure = error.what();
     }
     if (accepted.has_set_time()) {
       this->time_s = accepted.set_time().time_s();
     }
-    this->Keep(accepted, reply, trouble);
-    if (!trouble.empty()) {
-      throw std::runtime_error(trouble);
+    this->AddToRecording(accepted, reply, failure);
+    if (!failure.empty()) {
+      throw std::runtime_error(failure);
     }
   }
 
-  void Keep(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply,
-            std::string& trouble) {
+  void AddToRecording(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply,
+                      std::string& failure) {
     if (!this->recording) {
       return;
     }
-    const std::string failure = this->recording->Add(accepted, reply, this->ledger);
-    if (!failure.empty()) {
-      trouble += (trouble.empty() ? "" : "; ") + failure +
+    const std::string stopped = this->recording->Add(accepted, reply, this->ledger);
+    if (!stopped.empty()) {
+      failure += (failure.empty() ? "" : "; ") + stopped +
                  "; recording has stopped, what was written stays";
     }
   }
@@ -100,7 +99,7 @@ vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
   dspace::session::AddTextCommands(commands);
   this->Impl->interpreter.AddListener(
       [this](const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
-        this->Impl->Note(command, reply);
+        this->Impl->OnCommand(command, reply);
       });
 }
 
@@ -191,8 +190,8 @@ void vtkDspaceSession::TakeRecording(vtkDspaceSession* other) {
   this->Impl->recording = std::move(other->Impl->recording);
   this->Impl->counts = other->Impl->counts;
   if (this->Impl->recording) {
-    this->Impl->recording->Jump(this->Impl->ledger, this->Impl->time_s,
-                                &this->Impl->interpreter.GetState().files);
+    this->Impl->recording->Resync(this->Impl->ledger, this->Impl->time_s,
+                                  &this->Impl->interpreter.GetState().files);
   }
 }
 
@@ -252,9 +251,9 @@ std::string vtkDspaceSession::Replay(const std::string& bytes, vtkDspaceRecorded
                           : nullptr;
   if (entry && entry->effect != dspace::session::Effect::Change) {
     const std::string name = dspace::session::CommandName(command);
-    return dspace::session::ErrorReply(
-               dspace::v1::Error::CORRUPT, "command " + name,
-               "command " + name + ": it changes nothing, and no recording holds such a one")
+    return dspace::session::ErrorReply(dspace::v1::Error::CORRUPT, "command " + name,
+                                       "command " + name +
+                                           ": it changes nothing; recordings contain only changes")
         .SerializeAsString();
   }
   return this->Execute(bytes);
@@ -264,11 +263,12 @@ void vtkDspaceSession::ConfineProcess() {
   const dspace::ConfinedDrivers confined;
 }
 
-std::string vtkDspaceSession::Miss(const dspace::v1::Command& accepted, const std::string& why) {
-  this->Impl->ledger.Miss(accepted, why);
-  std::string trouble;
-  this->Impl->Keep(accepted, dspace::v1::Reply(), trouble);
-  return trouble;
+std::string vtkDspaceSession::AddFailed(const dspace::v1::Command& accepted,
+                                        const std::string& why) {
+  this->Impl->ledger.AddFailed(accepted, why);
+  std::string failure;
+  this->Impl->AddToRecording(accepted, dspace::v1::Reply(), failure);
+  return failure;
 }
 
 const dspace::session::Ledger& vtkDspaceSession::GetLedger() {

@@ -6,7 +6,7 @@
 
 #include <dspace/link/watching/LatestSteps.h>
 #include <dspace/link/watching/LinkBanner.h>
-#include <dspace/link/watching/OwnViews.h>
+#include <dspace/link/watching/ViewerViews.h>
 #include <dspace/link/watching/Watcher.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/ErrorReply.h>
@@ -20,9 +20,9 @@ vtkStandardNewMacro(vtkDspaceWatcher);
 
 namespace {
 
-constexpr int MostChanges = 100000;      // of frames, that wait to be taken
-constexpr double WriterToldWithin = 2.0; // [s] of a snapshot
-constexpr double LongestTellPick = 1.0;  // [s]: a click is not to stop the viewer for longer
+constexpr int MostChanges = 100000;   // pending frame events
+constexpr double WriterTimeout = 2.0; // [s] of a snapshot
+constexpr double PickTimeout = 1.0;   // [s]: a click is not to stop the viewer for longer
 
 } // namespace
 
@@ -30,34 +30,34 @@ struct vtkDspaceWatcher::Internals {
   dspace::session::WatcherOptions options;
   std::unique_ptr<dspace::session::Watcher> watcher;
   vtkSmartPointer<vtkDspaceSession> session = vtkSmartPointer<vtkDspaceSession>::New();
-  dspace::session::OwnViews own;
+  dspace::session::ViewerViews views;
   std::uint64_t sequence = 0;
   std::string writer;
   bool writerConnected = false;
-  bool writerUntold = false; // since the last snapshot, which is followed by it
-  std::string trouble;
-  std::string failed; // the reply that says why there is no connection, or no word of an event
+  bool writerPending = false; // not received since the last snapshot
+  std::string error;
+  std::string failed; // the reply with the error of a connection or an event
   dspace::session::LinkBanner banner;
-  std::set<std::string> followed; // scenes whose frames' changes are told
-  dspace::v1::Reply changes;      // of these, that nobody has taken
+  std::set<std::string> followed; // scenes with frame events
+  dspace::v1::Reply changes;      // their pending events
 
   dspace::session::Interpreter& Interpreter() { return this->session->GetInterpreter(); }
 
   void Apply(dspace::v1::WatchReply& message) {
     if (message.has_snapshot()) {
       this->Begin(*message.mutable_snapshot());
-      this->writerUntold = true;
+      this->writerPending = true;
     } else if (message.has_command()) {
       this->Apply(*message.mutable_command());
     } else if (message.has_writer()) {
       this->writer = message.writer().name();
       this->writerConnected = message.writer().connected();
-      this->writerUntold = false;
+      this->writerPending = false;
     }
     this->sequence = message.sequence();
   }
 
-  // In their order, without the steps that make no difference any more.
+  // Applies messages in order, without superseded steps.
   void Apply(std::vector<dspace::v1::WatchReply>& messages) {
     std::size_t at = 0;
     while (at < messages.size()) {
@@ -76,26 +76,27 @@ struct vtkDspaceWatcher::Internals {
     }
   }
 
-  // Nobody keeps, hears of, or is moved by each step.
+  // Whether intermediate steps are not recorded, followed or needed by a lagging camera.
   bool OnlyLatest() {
     return this->followed.empty() && this->session->GetRecordingPath().empty() &&
            !dspace::session::HasLaggingCamera(this->Interpreter().GetState());
   }
 
   void Begin(dspace::v1::WatchReply::Snapshot& snapshot) {
-    this->own.Leave(this->Interpreter());
-    // The context goes on, with what is on the GPU already.
+    this->views.BeforeSnapshot(this->Interpreter());
+    // The new session keeps the render context with its GPU resources.
     const vtkSmartPointer<vtkDspaceRenderContext> context = this->session->GetRenderContext();
     const vtkSmartPointer<vtkDspaceSession> before = this->session;
     this->session = vtkSmartPointer<vtkDspaceSession>::New();
     this->session->SetRenderContext(context);
-    this->trouble.clear();
+    this->error.clear();
     this->banner.Follow(this->Interpreter());
-    const std::set<std::string> scenes = std::exchange(this->followed, {}); // it is no change
+    const std::set<std::string> scenes =
+        std::exchange(this->followed, {}); // a snapshot causes no events
     for (dspace::v1::Command& command : *snapshot.mutable_command()) {
       this->Apply(command);
     }
-    this->own.Enter(this->Interpreter());
+    this->views.AfterSnapshot(this->Interpreter());
     this->followed = scenes;
     for (const std::string& scene : scenes) {
       this->Follow(scene);
@@ -105,15 +106,15 @@ struct vtkDspaceWatcher::Internals {
 
   void Apply(dspace::v1::Command& command) {
     if (command.has_remove_scene()) {
-      this->own.MakeRoom(this->Interpreter(), command);
+      this->views.RemoveConflicting(this->Interpreter(), command);
     }
     dspace::v1::Reply reply = this->Interpreter().Execute(command);
-    if (reply.has_error() && this->own.MakeRoom(this->Interpreter(), command)) {
+    if (reply.has_error() && this->views.RemoveConflicting(this->Interpreter(), command)) {
       reply = this->Interpreter().Execute(command);
     }
     if (reply.has_error()) {
-      this->session->Miss(command, reply.error().message());
-      this->trouble = this->trouble.empty() ? reply.error().message() : this->trouble;
+      this->session->AddFailed(command, reply.error().message());
+      this->error = this->error.empty() ? reply.error().message() : this->error;
     }
     this->changes.mutable_frame_event()->MergeFrom(reply.frame_event());
     if (this->changes.frame_event_size() > MostChanges) {
@@ -128,7 +129,7 @@ struct vtkDspaceWatcher::Internals {
     dspace::v1::Command command;
     command.set_scene(scene);
     command.mutable_follow_frames();
-    this->Interpreter().Execute(command); // one that there is not yet is followed once it is
+    this->Interpreter().Execute(command); // a missing scene is followed when it is created
   }
 
   void ShowBanner() {
@@ -145,7 +146,7 @@ struct vtkDspaceWatcher::Internals {
   dspace::v1::Reply Execute(dspace::v1::Command& command) {
     using dspace::session::Effect;
     if (command.has_capture()) {
-      command.mutable_capture()->set_inline_data(true); // the session does not see this one
+      command.mutable_capture()->set_inline_data(true); // the planes must be in the reply
     }
     if (command.has_follow_frames()) {
       dspace::v1::Reply reply = this->Interpreter().Execute(command);
@@ -160,18 +161,19 @@ struct vtkDspaceWatcher::Internals {
     if (!entry || entry->effect != Effect::Change) {
       return this->Interpreter().Execute(command);
     }
-    if (!this->own.Owns(command)) {
+    if (!this->views.Owns(command)) {
       const std::string name = dspace::session::CommandName(command);
       return dspace::session::ErrorReply(
           dspace::v1::Error::UNSUPPORTED, "command " + name,
           "command " + name +
-              ": who watches changes nothing; accepted: requests, and viewports, vantages and "
-              "cameras of one's own, whose names begin with '" +
-              std::string(dspace::session::OwnViews::Prefix) + "'");
+              ": a viewer cannot change the scene; accepted: requests, and changes of the viewer's "
+              "own "
+              "viewports, vantages and cameras, whose names begin with '" +
+              std::string(dspace::session::ViewerViews::Prefix) + "'");
     }
-    const dspace::v1::Reply reply = this->own.Execute(this->Interpreter(), command);
+    const dspace::v1::Reply reply = this->views.Execute(this->Interpreter(), command);
     if (command.has_viewport_event() && reply.pick().object() != 0) {
-      this->TellPick(command.viewport_event().viewport(), reply.pick());
+      this->SendPick(command.viewport_event().viewport(), reply.pick());
     }
     if (command.has_create_viewport() || command.has_resize_viewport()) {
       this->ShowBanner();
@@ -179,8 +181,8 @@ struct vtkDspaceWatcher::Internals {
     return reply;
   }
 
-  // What a person has clicked on. Nobody is there to hear it: then it is for the viewer alone.
-  void TellPick(const std::string& viewport, const dspace::v1::PickReply& pick) {
+  // Sends a pick to the simulation. Without a driver, only the viewer receives it.
+  void SendPick(const std::string& viewport, const dspace::v1::PickReply& pick) {
     if (!this->watcher || !this->watcher->Connected() || !this->writerConnected) {
       return;
     }
@@ -189,7 +191,7 @@ struct vtkDspaceWatcher::Internals {
     event.mutable_picked()->set_viewport(viewport);
     *event.mutable_picked()->mutable_pick() = pick;
     dspace::session::Catch([&] {
-      this->watcher->Tell(event, LongestTellPick);
+      this->watcher->SendEvent(event, PickTimeout);
       return dspace::v1::Reply();
     });
   }
@@ -216,33 +218,34 @@ void vtkDspaceWatcher::SetTimeout(double seconds) {
 }
 
 std::string vtkDspaceWatcher::Connect(const std::string& address, const std::string& name) {
-  const std::string reply = this->ConnectLater(address, name);
+  const std::string reply = this->BeginConnect(address, name);
   int state = 0;
-  while (this->Impl->watcher && (state = this->WaitToConnect(1e6)) == 0) {
+  while (this->Impl->watcher && (state = this->WaitForConnect(1e6)) == 0) {
   }
   return state < 0 ? this->TakeReply() : reply;
 }
 
-std::string vtkDspaceWatcher::ConnectLater(const std::string& address, const std::string& name) {
+std::string vtkDspaceWatcher::BeginConnect(const std::string& address, const std::string& name) {
   using dspace::session::Watcher;
   this->Impl->options.address = address;
   this->Impl->options.name = name;
   return dspace::session::Catch([this] {
            this->Impl->watcher.reset();
-           this->Impl->watcher = std::make_unique<Watcher>(this->Impl->options, Watcher::Later());
+           this->Impl->watcher =
+               std::make_unique<Watcher>(this->Impl->options, Watcher::NonBlocking());
            return dspace::v1::Reply();
          })
       .SerializeAsString();
 }
 
-int vtkDspaceWatcher::WaitToConnect(double seconds) {
+int vtkDspaceWatcher::WaitForConnect(double seconds) {
   bool connected = false;
   const dspace::v1::Reply reply = dspace::session::Catch([&] {
     if (!this->Impl->watcher) {
       throw dspace::Error(dspace::Error::Kind::Io, "watcher",
-                          "nothing is being connected; accepted: ConnectLater before");
+                          "no connection was started; accepted: BeginConnect first");
     }
-    connected = this->Impl->watcher->WaitToOpen(seconds);
+    connected = this->Impl->watcher->WaitForConnect(seconds);
     return dspace::v1::Reply();
   });
   if (reply.has_error()) {
@@ -260,18 +263,18 @@ std::string vtkDspaceWatcher::TakeReply() {
 int vtkDspaceWatcher::Update(double wait) {
   std::size_t applied = 0;
   std::vector<dspace::v1::WatchReply> messages;
-  // Not for ever: what comes faster than it is applied is for the next call.
+  // Limited: messages that arrive faster than they are applied wait for the next call.
   const auto longest = [&] {
-    return applied == 0                                       ? wait
-           : this->Impl->writerUntold && this->GetConnected() ? WriterToldWithin
-                                                              : 0.0;
+    return applied == 0                                        ? wait
+           : this->Impl->writerPending && this->GetConnected() ? WriterTimeout
+                                                               : 0.0;
   };
   while (this->Impl->watcher && applied < 10000 &&
          this->Impl->watcher->TakeAll(messages, longest())) {
     this->Impl->Apply(messages);
     applied += messages.size();
   }
-  this->Impl->own.Wake(this->Impl->Interpreter(), !this->Impl->writerConnected);
+  this->Impl->views.Resume(this->Impl->Interpreter(), !this->Impl->writerConnected);
   this->Impl->ShowBanner();
   return static_cast<int>(applied);
 }
@@ -292,10 +295,10 @@ std::string vtkDspaceWatcher::GetWriterName() {
   return this->Impl->writer;
 }
 
-std::string vtkDspaceWatcher::GetTrouble() {
+std::string vtkDspaceWatcher::GetError() {
   const std::string rejection =
       this->Impl->watcher ? this->Impl->watcher->Rejection() : std::string();
-  return rejection.empty() ? this->Impl->trouble : rejection;
+  return rejection.empty() ? this->Impl->error : rejection;
 }
 
 std::string vtkDspaceWatcher::Execute(const std::string& bytes) {
@@ -311,29 +314,29 @@ std::string vtkDspaceWatcher::TakeFrameEvents() {
   return bytes;
 }
 
-std::string vtkDspaceWatcher::TellLater(const std::string& bytes) {
+std::string vtkDspaceWatcher::BeginSendEvent(const std::string& bytes) {
   return dspace::session::Catch([&] {
            dspace::v1::ViewerEvent event;
            if (!this->Impl->watcher || !event.ParseFromString(bytes)) {
              throw dspace::Error(dspace::Error::Kind::Corrupt, "event",
                                  "the bytes are not a ViewerEvent, or there is no connection");
            }
-           this->Impl->watcher->BeginTell(event, this->Impl->options.timeout_s);
+           this->Impl->watcher->BeginSendEvent(event, this->Impl->options.timeout_s);
            return dspace::v1::Reply();
          })
       .SerializeAsString();
 }
 
-int vtkDspaceWatcher::WaitToTell(double seconds) {
+int vtkDspaceWatcher::WaitForSendEvent(double seconds) {
   bool told = false;
   const dspace::v1::Reply reply = dspace::session::Catch([&] {
     if (!this->Impl->watcher) {
       throw dspace::Error(dspace::Error::Kind::Io, "event", "there is no connection");
     }
-    told = this->Impl->watcher->WaitToTell(seconds);
-    if (told && !this->Impl->watcher->TakeTold()) {
+    told = this->Impl->watcher->WaitForSendEvent(seconds);
+    if (told && !this->Impl->watcher->TakeSendEventResult()) {
       throw dspace::Error(dspace::Error::Kind::NotFound, "simulation",
-                          "nobody drives the server now; the event is dropped");
+                          "the server has no driver; the event is dropped");
     }
     return dspace::v1::Reply();
   });
@@ -344,9 +347,9 @@ int vtkDspaceWatcher::WaitToTell(double seconds) {
   return told ? 1 : 0;
 }
 
-void vtkDspaceWatcher::DropTell() {
+void vtkDspaceWatcher::CancelSendEvent() {
   if (this->Impl->watcher) {
-    this->Impl->watcher->DropTell();
+    this->Impl->watcher->CancelSendEvent();
   }
 }
 

@@ -58,7 +58,7 @@ def picture_of(scene):
 @pytest.fixture
 def refused(scene):
     """refused(kind, text): the block raises `kind` with `text` and leaves the scene as it was."""
-    class Refused:
+    class Rejected:
         def __init__(self, kind, text=""):
             self.kind, self.text = kind, text
 
@@ -73,7 +73,7 @@ def refused(scene):
             assert picture_of(scene) == self.before
             return True
 
-    return Refused
+    return Rejected
 
 
 @pytest.fixture

@@ -129,7 +129,7 @@ def test_a_million_heights(scene):
     assert terrain.tiles["bytes"] > 0 and terrain.tiles["failures"] == 0
 
 
-# --- Refusals --------------------------------------------------------------------------------------
+# --- Rejections --------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("given, text", [
     ({"on_body": True, "origin": (0, 0)}, "origin"),

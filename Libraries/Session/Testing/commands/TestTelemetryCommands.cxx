@@ -110,7 +110,7 @@ TEST_F(TelemetryTest, AStepIsSetWholeOrNotAtAll) {
   this->Set({{a, 1.0}, {b, 2.0}});
   this->Reject(Values({{a, 3.0}, {b, Infinite}}), Kind::INVALID_ARGUMENT, "'b': its value is inf");
   this->Reject(Values({{a, 3.0}, {b, -Infinite}}), Kind::INVALID_ARGUMENT, "-inf");
-  this->Reject(Values({{a, 3.0}, {a, 4.0}}), Kind::INVALID_ARGUMENT, "'a': it is there twice");
+  this->Reject(Values({{a, 3.0}, {a, 4.0}}), Kind::INVALID_ARGUMENT, "'a': it occurs twice");
   this->Reject(Values({{a, 3.0}, {b + 100, 4.0}}), Kind::NOT_FOUND, "no such channel");
   this->Reject(Values({{a, 3.0}, {text, 4.0}}), Kind::INVALID_ARGUMENT, "set_telemetry_texts");
   v1::Command uneven = Values({{a, 3.0}, {b, 4.0}});
@@ -239,12 +239,12 @@ TEST_F(TelemetryTest, ChoicesHaveLabels) {
   v1::Command twice = define;
   twice.mutable_create_telemetry()->add_label()->set_label("idle");
   twice.mutable_create_telemetry()->mutable_label(2)->set_value(9);
-  this->Reject(twice, Kind::INVALID_ARGUMENT, "there twice");
+  this->Reject(twice, Kind::INVALID_ARGUMENT, "occurs twice");
   const std::uint64_t id = this->Accept(define).telemetry().channel(0).channel().id();
   this->Set({{id, -3.0}});
   EXPECT_EQ(this->Ask("mode").text(), "driving");
-  this->Reject(Values({{id, 1.0}}), Kind::INVALID_ARGUMENT, "one that has a label");
-  this->Reject(Values({{id, -2.5}}), Kind::INVALID_ARGUMENT, "one that has a label");
+  this->Reject(Values({{id, 1.0}}), Kind::INVALID_ARGUMENT, "a value with a label");
+  this->Reject(Values({{id, -2.5}}), Kind::INVALID_ARGUMENT, "a value with a label");
   this->Set({{id, None}});
   EXPECT_EQ(this->Ask("mode").text(), "");
 }

@@ -1,4 +1,4 @@
-// What a writer is told of commands that it did not wait for.
+// Errors and warnings of commands that were sent without waiting.
 #include "LinkTestSupport.h"
 
 #include <future>
@@ -74,7 +74,7 @@ TEST_F(LinkTest, ErrorsOfWhatWasAbandonedHitNothingElse) {
 }
 
 // What is waited for is never carried out after something that was refused and not waited for.
-TEST_F(LinkTest, ACommandThatIsWaitedForIsNotCarriedOutAfterARejection) {
+TEST_F(LinkTest, AWaitingCommandIsNotExecutedAfterAnError) {
   this->StartServer();
   std::promise<void> go;
   std::vector<double> times;
@@ -124,7 +124,8 @@ TEST_F(LinkTest, WhatIsBeforeACommandMustBeDoneWithinItsTimeout) {
   Accept(client.Send(hold));
   const v1::Reply late = client.Execute(MakeFrame(7));
   EXPECT_EQ(late.error().kind(), v1::Error::DEADLINE_EXCEEDED);
-  EXPECT_NE(late.error().message().find("not done within 5 s; it was not sent"), std::string::npos)
+  EXPECT_NE(late.error().message().find("not completed within 5 s; this command was not sent"),
+            std::string::npos)
       << late.ShortDebugString();
   go.set_value();
   Accept(client.Flush());

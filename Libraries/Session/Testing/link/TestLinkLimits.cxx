@@ -1,4 +1,4 @@
-// What a server and its clients let others cost them, and what a child process of a client may do.
+// The limits of a server and its clients, and what a child process of a client may do.
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
@@ -26,7 +26,7 @@ v1::ViewerEvent MakeEvent(int number, std::size_t bytes) {
   return event;
 }
 
-TEST_F(LinkLimits, EventsThatNobodyReadsTakeBoundedMemoryAndCutNobodyOff) {
+TEST_F(LinkLimits, UnreadEventsTakeBoundedMemoryAndDisconnectNoClient) {
   this->Options.unreadBytes = 4 << 20; // of replies
   this->StartServer();
   Watcher watcher(this->ToWatch());
@@ -34,7 +34,7 @@ TEST_F(LinkLimits, EventsThatNobodyReadsTakeBoundedMemoryAndCutNobodyOff) {
   ASSERT_TRUE(writer.IsOpen);
   int delivered = 0;
   for (int i = 0; i < 60; ++i) {
-    delivered += watcher.Tell(MakeEvent(i, 1000000));
+    delivered += watcher.SendEvent(MakeEvent(i, 1000000));
   }
   // 8 MiB wait in the server, some on the way.
   EXPECT_GE(delivered, 8);
@@ -42,7 +42,7 @@ TEST_F(LinkLimits, EventsThatNobodyReadsTakeBoundedMemoryAndCutNobodyOff) {
   EXPECT_LT(this->Server->GetCounts().waitingBytes, std::size_t(9) << 20);
   writer.Send(1, MakeScene());
   EXPECT_EQ(writer.WaitFor(1), delivered);
-  EXPECT_THROW(watcher.Tell(MakeEvent(0, 2 << 20)), Error);
+  EXPECT_THROW(watcher.SendEvent(MakeEvent(0, 2 << 20)), Error);
 }
 
 TEST_F(LinkLimits, EventsThatASimulationDoesNotTakeAreTheNewestOfBoundedSize) {
@@ -51,7 +51,7 @@ TEST_F(LinkLimits, EventsThatASimulationDoesNotTakeAreTheNewestOfBoundedSize) {
   RemoteClient client(this->ClientOptions());
   constexpr int Events = 40;
   for (int i = 0; i < Events; ++i) {
-    ASSERT_TRUE(Within20s([&] { return watcher.Tell(MakeEvent(i, 1000000)); }));
+    ASSERT_TRUE(Within20s([&] { return watcher.SendEvent(MakeEvent(i, 1000000)); }));
   }
   Accept(client.Execute(MakeScene())); // comes after them
   std::vector<std::string> heard;
@@ -164,7 +164,7 @@ TEST_F(LinkLimits, SnapshotsAreMadeOncePerStateAndNotAtEveryCall) {
   EXPECT_LE(double(this->Server->GetCounts().snapshots), seconds / 0.1 + 2);
 }
 
-TEST_F(LinkLimits, ASnapshotThatFailsIsToldAndEndsNothing) {
+TEST_F(LinkLimits, AFailedSnapshotIsReportedAndEndsNothing) {
   this->Server = std::make_unique<session::Server>(this->Options);
   this->Served = std::make_unique<ServedInterpreter>();
   auto work = this->Served->Work();
@@ -177,7 +177,7 @@ TEST_F(LinkLimits, ASnapshotThatFailsIsToldAndEndsNothing) {
     Watcher watcher(this->ToWatch());
     FAIL() << "a viewer has something to show";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("there is no snapshot: as it happens"),
+    EXPECT_NE(std::string(error.what()).find("the snapshot failed: as it happens"),
               std::string::npos)
         << error.what();
   }
@@ -185,7 +185,7 @@ TEST_F(LinkLimits, ASnapshotThatFailsIsToldAndEndsNothing) {
   Accept(client.Execute(MakeScene()));
 }
 
-TEST_F(LinkLimits, AChildProcessIsToldAndMayCloseWhatItsParentOpened) {
+TEST_F(LinkLimits, AChildProcessGetsAnErrorAndMayCloseTheClientsOfItsParent) {
   if (testing::Sanitized()) {
     GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
   }
@@ -201,7 +201,7 @@ TEST_F(LinkLimits, AChildProcessIsToldAndMayCloseWhatItsParentOpened) {
         reply.error().message().find("accepted: a connection of its own") != std::string::npos;
     bool refused = false;
     try {
-      watcher->Tell(MakeEvent(0, 1));
+      watcher->SendEvent(MakeEvent(0, 1));
     } catch (const Error& error) {
       refused = error.GetKind() == Error::Kind::Unsupported;
     }
@@ -220,7 +220,7 @@ TEST_F(LinkLimits, AChildProcessIsToldAndMayCloseWhatItsParentOpened) {
   EXPECT_TRUE(ended);
   EXPECT_EQ(status, 0);
   Accept(client->Execute(MakeFrame(2))); // and the parent goes on
-  EXPECT_TRUE(watcher->Tell(MakeEvent(0, 1)));
+  EXPECT_TRUE(watcher->SendEvent(MakeEvent(0, 1)));
 }
 
 // Whatever the process's mask; and what its other threads make meanwhile is not closed to others.

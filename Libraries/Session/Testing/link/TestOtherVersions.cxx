@@ -169,14 +169,14 @@ TEST_F(WireLink, UnknownFieldsReachViewers) {
 
 class WireCommands : public CommandTest {};
 
-TEST_F(WireCommands, UnknownOnesAreRejectedByNumber) {
+TEST_F(WireCommands, UnknownCommandsAreRejectedByNumber) {
   v1::Command command;
   command.GetReflection()->MutableUnknownFields(&command)->AddLengthDelimited(4321, "");
   this->Reject(command, Kind::UNSUPPORTED, "command number 4321");
   this->Reject(v1::Command(), Kind::UNSUPPORTED, "command none");
 }
 
-TEST_F(WireCommands, LaterOnesAreTypedAndSayThatTheyAreNotCarriedOut) {
+TEST_F(WireCommands, UnimplementedCommandsAreRejected) {
   int told = 0;
   this->Interpreter_.AddListener([&told](const v1::Command&, const v1::Reply&) { ++told; });
   const Descriptor* commands = v1::Command::descriptor();
@@ -184,12 +184,13 @@ TEST_F(WireCommands, LaterOnesAreTypedAndSayThatTheyAreNotCarriedOut) {
   for (int i = 0; i < commands->field_count(); ++i) {
     const FieldDescriptor* field = commands->field(i);
     const session::CommandTraits* traits = session::CommandTraits::Find(field->number());
-    if (!traits || traits->GetEffect() != session::Effect::Later) {
+    if (!traits || traits->GetEffect() != session::Effect::Unimplemented) {
       continue;
     }
     v1::Command command;
     command.GetReflection()->MutableMessage(&command, field);
-    this->Reject(command, Kind::UNIMPLEMENTED, "command " + field->name() + ": it is typed");
+    this->Reject(command, Kind::UNIMPLEMENTED,
+                 "command " + field->name() + ": this version does not implement it");
     command.set_scene("no such scene");
     const v1::Reply reply = this->Interpreter_.Execute(command);
     EXPECT_EQ(reply.error().kind(), Kind::UNIMPLEMENTED) << field->name();

@@ -48,7 +48,7 @@ Interpreter::Interpreter() {
   AddTerrainCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);
   AddMessageCommands(this->Registry_);
-  this->Registry_.AddLater();
+  this->Registry_.AddUnimplemented();
 }
 
 v1::Reply Interpreter::Execute(v1::Command& command) {
@@ -66,9 +66,9 @@ v1::Reply Interpreter::Execute(v1::Command& command) {
     reply = ErrorReply(v1::Error::INTERNAL, "command " + CommandName(command), error.what());
   }
   if (reply.has_error()) {
-    events.ForgetUndone(before);
+    events.DiscardSince(before);
   } else if (this->Depth_ == 0) {
-    events.MoveTo(reply); // what listeners caused
+    events.MoveTo(reply); // events that listeners caused
   }
   MakeTextUtf8(reply);
   return reply;
@@ -78,9 +78,9 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   const Registry::Entry* entry = this->Registry_.Find(command.command_case());
   if (!entry) {
     throw Error(Error::Kind::Unsupported, "command " + CommandName(command),
-                "this session does not carry out such a command");
+                "this session does not support the command");
   }
-  if (FindForeignText(command)) {
+  if (FindInvalidText(command)) {
     RequireUtf8(command, "command " + CommandName(command));
   }
   const std::string name = SceneName(command);
@@ -90,22 +90,23 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   entry->run(Context{this->State_, scene, name, reply}, command);
   this->State_.files.Note(command, read.Files());
   if (this->Depth_ == 1) {
-    this->State_.frameEvents.MoveTo(reply); // before it is told: listeners pass the reply on
+    this->State_.frameEvents.MoveTo(reply); // before listeners are notified: they forward the reply
   }
   if (entry->effect == Effect::Change) {
     MakeTextUtf8(command); // listeners send and record both
     MakeTextUtf8(reply);
-    this->Tell(command, reply);
+    this->NotifyListeners(command, reply);
   }
 }
 
-void Interpreter::Tell(const v1::Command& command, v1::Reply& reply) {
-  const auto listeners = this->Listeners_; // they may come and go meanwhile
+void Interpreter::NotifyListeners(const v1::Command& command, v1::Reply& reply) {
+  const auto listeners = this->Listeners_; // a listener may add or remove listeners
   for (const auto& [token, listener] : listeners) {
     try {
       listener(command, reply);
     } catch (const std::exception& error) {
-      reply.add_warning(std::string("done, but a listener failed: ") + error.what());
+      reply.add_warning(std::string("the command was executed, but a listener failed: ") +
+                        error.what());
     }
   }
 }

@@ -6,8 +6,9 @@
 #include <dspace/Error.h>
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/ledger/LedgerFrames.h>
+#include <dspace/ledger/LedgerNames.h>
 #include <dspace/ledger/LedgerObjects.h>
-#include <dspace/ledger/LedgerViews.h>
+#include <dspace/ledger/LedgerViewports.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/state/MessageLog.h>
@@ -93,7 +94,7 @@ struct LedgerScene {
     }
   }
 
-  // What a simulation says; ids, numbers and times of events stand in the accepted commands.
+  // Telemetry, events and questions. Accepted commands contain the ids, numbers and times.
   bool AddMessages(const v1::Command& command) {
     using C = v1::Command;
     switch (command.command_case()) {
@@ -133,7 +134,7 @@ struct LedgerScene {
   void Put(const std::string& name, const State* state, std::vector<v1::Command>& out) const {
     this->names.PutFirst(name, out);
     const std::vector<std::string> fragments = this->names.Fragments();
-    this->objects.PutOrphans(name, fragments, out);
+    this->objects.PutOrphanedVisuals(name, fragments, out);
     this->frames.Put(name, fragments, out);
     this->objects.Put(name, this->frames, fragments, state, out);
     this->names.PutLast(name, out);
@@ -149,14 +150,14 @@ struct Ledger::Impl {
   const State* state = nullptr;
   std::map<std::string, LedgerScene> scenes;
   LedgerViewports viewports;
-  std::vector<v1::Command> others; // of a later version: numbers that no command here has
-  // What is not known any more, and why: by scene, "" for all that is no scene's.
+  std::vector<v1::Command> others; // of a later version, with unknown numbers
+  // The reasons why scenes are unknown, by scene; "": data that belongs to no scene.
   std::map<std::string, std::string> faults;
-  bool unnamed = false; // there was no memory to say which
+  bool unnamed = false; // there was no memory to store the reason
 
-  void Take(const v1::Command& accepted, const v1::Reply& reply, const std::string& name);
+  void Apply(const v1::Command& accepted, const v1::Reply& reply, const std::string& name);
   void Fail(const v1::Command& command, const std::string& name, const std::string& why);
-  // Of the scene that the command changes; empty for viewports, which are the session's.
+  // The scene that the command changes; empty for viewports, which belong to the session.
   static std::string FaultKey(const v1::Command& command) {
     const CommandTraits* traits = CommandTraits::Find(command.command_case());
     const bool viewport = traits && traits->GetOwner() == CommandTraits::Owner::Viewport;
@@ -171,8 +172,8 @@ Ledger::~Ledger() = default;
 Ledger::Ledger(Ledger&&) noexcept = default;
 Ledger& Ledger::operator=(Ledger&&) noexcept = default;
 
-void Ledger::Impl::Take(const v1::Command& accepted, const v1::Reply& reply,
-                        const std::string& name) {
+void Ledger::Impl::Apply(const v1::Command& accepted, const v1::Reply& reply,
+                         const std::string& name) {
   if (accepted.has_create_scene()) {
     this->scenes.erase(name);
     this->scenes.emplace(name, accepted.create_scene());
@@ -193,21 +194,21 @@ void Ledger::Impl::Take(const v1::Command& accepted, const v1::Reply& reply,
   }
   const auto found = this->scenes.find(name);
   if (found == this->scenes.end()) {
-    throw Error(Error::Kind::Internal, "ledger", "it knows no scene '" + name + "'");
+    throw Error(Error::Kind::Internal, "ledger", "there is no scene '" + name + "'");
   }
   if (!(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
         found->second.AddMessages(accepted) || found->second.names.Add(accepted, reply))) {
     throw Error(Error::Kind::Internal, "ledger",
-                "its .proto says that the ledger keeps it, and the ledger has no code for it");
+                "its .proto states `kept: LEDGER`, but the ledger has no code for it");
   }
 }
 
 void Ledger::Impl::Fail(const v1::Command& command, const std::string& name,
                         const std::string& why) {
   this->unnamed = true;
-  std::string text = "command " + CommandName(command) + " is not in it (" + why +
-                     "); there is no snapshot " +
-                     (name.empty() ? "any more" : "until scene '" + name + "' is removed");
+  std::string text = "command " + CommandName(command) + " is missing from it (" + why +
+                     "); there are no more snapshots" +
+                     (name.empty() ? "" : " until scene '" + name + "' is removed");
   this->faults.emplace(name, std::move(text));
   this->unnamed = false;
 }
@@ -223,19 +224,19 @@ void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
   Impl& impl = *this->Impl_;
   const std::string& scene = SceneName(accepted);
   const std::string name = Impl::FaultKey(accepted);
-  const bool anew = accepted.has_create_scene() || accepted.has_remove_scene();
-  if (!impl.faults.empty() && !anew && impl.faults.count(name)) {
+  const bool resets = accepted.has_create_scene() || accepted.has_remove_scene();
+  if (!impl.faults.empty() && !resets && impl.faults.count(name)) {
     return;
   }
   try {
-    impl.Take(accepted, reply, scene);
+    impl.Apply(accepted, reply, scene);
   } catch (const std::exception& error) {
     impl.Fail(accepted, name, error.what());
     throw Error(Error::Kind::Internal, "state", impl.faults.at(name));
   }
 }
 
-void Ledger::Miss(const v1::Command& accepted, const std::string& why) {
+void Ledger::AddFailed(const v1::Command& accepted, const std::string& why) {
   this->Impl_->Fail(accepted, Impl::FaultKey(accepted), why);
 }
 

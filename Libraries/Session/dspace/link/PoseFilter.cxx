@@ -9,7 +9,8 @@ namespace dspace::session {
 namespace {
 
 constexpr int PoseSize = 8;
-constexpr std::size_t MostFrames = 10000000; // remembered in all scenes; beyond it begins anew
+constexpr std::size_t MostFrames =
+    10000000; // stored in all scenes; the filter is cleared beyond this
 
 // Of a scene's poses, or of its telemetry.
 std::string KeyOf(const v1::Command& command) {
@@ -22,14 +23,14 @@ template<class Message> bool HasUnknown(const Message& message) {
 
 } // namespace
 
-bool LeavesPoses(const v1::Command& command) {
+bool KeepsPoses(const v1::Command& command) {
   const CommandTraits* traits = CommandTraits::Find(command.command_case());
   return traits && traits->KeepsPoses();
 }
 
 bool PoseFilter::Pass(v1::Command& command) {
-  if (HasUnknown(command)) { // says more than is known here
-    this->Forget();
+  if (HasUnknown(command)) { // has unknown fields
+    this->Clear();
     return true;
   }
   if (command.has_set_poses()) {
@@ -43,21 +44,21 @@ bool PoseFilter::Pass(v1::Command& command) {
   }
   if (command.has_set_telemetry()) {
     v1::SetTelemetry& set = *command.mutable_set_telemetry();
-    if (set.time_s_size() > 0 || HasUnknown(set)) { // says more than values
+    if (set.time_s_size() > 0 || HasUnknown(set)) { // has more than values
       this->Scenes_.erase(KeyOf(command));
       return true;
     }
     return this->PassRows(this->Scenes_[KeyOf(command)], *set.mutable_id(), *set.mutable_value(),
                           1);
   }
-  if (!LeavesPoses(command)) {
-    this->Forget();
+  if (!KeepsPoses(command)) {
+    this->Clear();
   }
   return true;
 }
 
-// Finds the places of the ids; false when one stands twice.
-bool PoseFilter::Look(Frames& frames, const Ids& ids) {
+// Finds the entries of the ids; false if an id occurs twice.
+bool PoseFilter::FindEntries(Frames& frames, const Ids& ids) {
   const std::size_t n = std::size_t(ids.size());
   if (frames.ids.size() == n &&
       std::memcmp(frames.ids.data(), ids.data(), n * sizeof(std::uint64_t)) == 0) {
@@ -69,7 +70,7 @@ bool PoseFilter::Look(Frames& frames, const Ids& ids) {
   ++this->Step_;
   for (std::size_t i = 0; i < n; ++i) {
     const auto [place, made] =
-        frames.places.emplace(frames.ids[i], std::uint32_t(frames.entries.size()));
+        frames.entryOf.emplace(frames.ids[i], std::uint32_t(frames.entries.size()));
     if (made) {
       frames.entries.emplace_back();
     }
@@ -85,12 +86,12 @@ bool PoseFilter::Look(Frames& frames, const Ids& ids) {
 bool PoseFilter::PassRows(Frames& frames, Ids& ids, Numbers& rows, int size) {
   const int n = ids.size();
   if (n == 0 || rows.size() != n * size) {
-    return true; // to be refused, or judged, by whoever carries it out
+    return true; // the server checks it
   }
   if (frames.entries.size() + std::size_t(n) > MostFrames) {
     frames = {};
   }
-  if (!this->Look(frames, ids)) {
+  if (!this->FindEntries(frames, ids)) {
     return true; // likewise
   }
   const std::size_t bytes = std::size_t(size) * sizeof(double);
@@ -100,7 +101,7 @@ bool PoseFilter::PassRows(Frames& frames, Ids& ids, Numbers& rows, int size) {
     const double* row = rows.data() + i * size;
     if (entry.number > 0 && entry.number <= this->Accepted_ &&
         std::memcmp(entry.row.data(), row, bytes) == 0) {
-      continue; // it is there
+      continue; // the other side has it
     }
     if (to < i) {
       ids.Set(to, ids.Get(i));
@@ -127,14 +128,14 @@ void PoseFilter::Sent(const v1::Command& command, std::uint64_t number) {
 void PoseFilter::SentRows(const v1::Command& command, const Ids& ids, const Numbers& rows, int size,
                           std::uint64_t number) {
   Frames& frames = this->Scenes_[KeyOf(command)];
-  // Those of the step that has just passed, less what was left out: in the same order.
+  // The ids of the step that passed last, without the omitted ones, in the same order.
   std::size_t at = 0;
   for (int i = 0; i < ids.size(); ++i) {
     while (at < frames.ids.size() && frames.ids[at] != ids.Get(i)) {
       ++at;
     }
     if (at == frames.ids.size()) {
-      this->Forget(); // Pass has not seen it
+      this->Clear(); // Pass has not seen it
       return;
     }
     Entry& entry = frames.entries[frames.order[at]];

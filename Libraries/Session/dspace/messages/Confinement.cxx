@@ -49,7 +49,7 @@ bool NamesFile(const std::string& crs) {
 [[noreturn]] void RejectPath(const std::string& value, const std::string& field,
                              const std::string& why) {
   throw Error(Error::Kind::InvalidArgument, "file '" + value.substr(0, 1000) + "'",
-              "as " + field + " it " + why);
+              field + " " + why);
 }
 
 } // namespace
@@ -75,7 +75,7 @@ Confinement::Confinement(const std::vector<std::string>& roots, std::string who)
     const fs::path path = fs::canonical(root, error);
     if (error || !fs::is_directory(path)) {
       throw Error(Error::Kind::NotFound, "folder '" + root + "'",
-                  "there is no such folder; accepted as a root: one that there is");
+                  "there is no such folder; accepted: existing folders as roots");
     }
     this->Roots_.push_back(path);
   }
@@ -111,19 +111,19 @@ void Confinement::RequireWithin(const std::string& path) const {
     }
   }
   throw Error(Error::Kind::InvalidArgument, "file '" + path.substr(0, 1000) + "'",
-              "a file that the command names leads to it, and it lies outside of what " +
+              "a file of the command refers to it, and it is outside of the folders that " +
                   this->Who_ + " allows");
 }
 
-// What is not there may mean something else than a file to the library that is to read it, and what
-// is no plain file may never end.
+// A library may interpret the name of a missing file in another way, and reading a special file may
+// never end.
 void Confinement::RequireThere(const std::string& real, const std::string& text,
                                const std::string& field) const {
   std::error_code error;
   const fs::file_status status = fs::status(real, error);
   if (!fs::exists(status)) {
     throw Error(Error::Kind::NotFound, "file '" + text.substr(0, 1000) + "'",
-                "as " + field + " there is no such file; accepted: one that there is");
+                field + " names no existing file; accepted: an existing file");
   }
   if (!fs::is_regular_file(status) && !fs::is_directory(status)) {
     RejectPath(text, field, "is neither a file nor a folder");
@@ -133,13 +133,13 @@ void Confinement::RequireThere(const std::string& real, const std::string& text,
 std::string Confinement::Check(const std::string& text, const std::string& field,
                                bool isRead) const {
   if (text.find('\0') != std::string::npos) {
-    RejectPath(text, field, "holds a zero byte");
+    RejectPath(text, field, "contains a zero byte");
   }
-  // GDAL takes a name with "<VRTDataset" anywhere in it for that document itself.
+  // GDAL interprets a name that contains "<VRTDataset" as the document itself.
   if (text.find_first_of("<>") != std::string::npos) {
-    RejectPath(text, field, "holds '<' or '>'; accepted: names without");
+    RejectPath(text, field, "contains '<' or '>'; accepted: names without them");
   }
-  // What is opened is what was looked at: the same absolute path.
+  // The opened path is the checked one: the same absolute path.
   const fs::path path = fs::absolute(text).lexically_normal();
   std::error_code error;
   const fs::path real = fs::weakly_canonical(path, error);
@@ -157,7 +157,7 @@ std::string Confinement::Check(const std::string& text, const std::string& field
     accepted += (accepted.empty() ? "" : ", ") + root;
   }
   RejectPath(text, field,
-             "lies outside of what " + this->Who_ + " allows; accepted: files in " +
+             "is outside of the folders that " + this->Who_ + " allows; accepted: files in " +
                  (accepted.empty() ? "no folder" : accepted));
 }
 

@@ -25,7 +25,7 @@ bool IsThere(const RecordingAsset& asset) {
   return std::filesystem::is_regular_file(asset.path, error);
 }
 
-// Without its files a packed recording would replay nowhere.
+// A packed recording without its files could not be played.
 void RequireFiles(const std::string& name, const std::vector<RecordingAsset>& assets) {
   std::vector<std::string> gone;
   for (const RecordingAsset& asset : assets) {
@@ -35,17 +35,17 @@ void RequireFiles(const std::string& name, const std::vector<RecordingAsset>& as
   }
   if (!gone.empty()) {
     const std::string more = gone.size() > 2
-                                 ? ", nor are " + std::to_string(gone.size() - 1) + " others"
-                             : gone.size() == 2 ? ", nor is 1 other"
+                                 ? ", and so are " + std::to_string(gone.size() - 1) + " others"
+                             : gone.size() == 2 ? ", and so is 1 other"
                                                 : "";
     throw Error(Error::Kind::NotFound, name,
-                "its file '" + gone[0] + "' is not there" + more +
+                "its file '" + gone[0] + "' is missing" + more +
                     "; accepted: all of them as they were recorded");
   }
 }
 
 // All of a recording, which may be being written, into an empty file.
-void Copy(const RecordingReader& reader, const NewRecording& out, const KeepGoing& keepGoing) {
+void Copy(const RecordingReader& reader, const NewRecording& out, const CancelCheck& checkCancel) {
   const RecordingDatabase::View view(reader.Database());
   sqlite3* opened = nullptr;
   int result = sqlite3_open_v2(out.Path().c_str(), &opened, SQLITE_OPEN_READWRITE, nullptr);
@@ -55,7 +55,7 @@ void Copy(const RecordingReader& reader, const NewRecording& out, const KeepGoin
         sqlite3_backup_init(target.get(), "main", reader.Database().Handle(), "main"),
         sqlite3_backup_finish);
     do {
-      keepGoing();
+      checkCancel();
       result =
           backup ? sqlite3_backup_step(backup.get(), PagesAtOnce) : sqlite3_errcode(target.get());
     } while (result == SQLITE_OK);
@@ -71,9 +71,9 @@ void Copy(const RecordingReader& reader, const NewRecording& out, const KeepGoin
 }
 
 void PackOne(RecordingFile& file, RecordingAssets& packer, const std::string& name,
-             const RecordingAsset& asset, const KeepGoing& keepGoing) {
+             const RecordingAsset& asset, const CancelCheck& checkCancel) {
   file.Begin();
-  if (packer.Pack(asset, keepGoing)) {
+  if (packer.Pack(asset, checkCancel)) {
     file.Commit();
     return;
   }
@@ -86,7 +86,7 @@ void PackOne(RecordingFile& file, RecordingAssets& packer, const std::string& na
 } // namespace
 
 PackReport PackRecording(const std::string& path, const std::optional<std::string>& out,
-                         const KeepGoing& keepGoing) {
+                         const CancelCheck& checkCancel) {
   std::vector<RecordingAsset> assets;
   std::string target, name;
   std::unique_ptr<NewRecording> made;
@@ -100,7 +100,7 @@ PackReport PackRecording(const std::string& path, const std::optional<std::strin
       made = std::make_unique<NewRecording>(*out);
       target = made->Path();
       name = made->Name();
-      Copy(reader, *made, keepGoing);
+      Copy(reader, *made, checkCancel);
     }
   }
   PackReport report;
@@ -109,8 +109,8 @@ PackReport PackRecording(const std::string& path, const std::optional<std::strin
     RecordingAssets packer(file, true);
     for (const RecordingAsset& asset : assets) {
       if (IsNeeded(asset)) {
-        RequireFiles(name, {asset}); // it may have gone meanwhile
-        PackOne(file, packer, name, asset, keepGoing);
+        RequireFiles(name, {asset}); // it may have been removed since
+        PackOne(file, packer, name, asset, checkCancel);
       } else if (asset.state != "absent" && !asset.packed) {
         report.missing.push_back(asset.path);
       }

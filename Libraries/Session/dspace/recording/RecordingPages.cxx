@@ -3,7 +3,7 @@
 // of its payload, the row's number (both varints), the payload, and where that does not fit, the
 // number of the first page of a chain that holds the rest. The payload is a record: types of its
 // columns, then their values. The write-ahead log has a head of 32 bytes, then pages, each after a
-// head of 24 that states the page's number and a salt, which changes when the log begins anew.
+// head of 24 that states the page's number and a salt, which changes when the log restarts.
 #include <dspace/recording/RecordingPages.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ namespace {
 constexpr unsigned char Leaf = 13;
 constexpr std::size_t LogHead = 32;
 constexpr std::size_t FrameHead = 24;
-constexpr std::size_t Turns = 8; // of a log, whose pages are tried
-constexpr std::size_t MaximumColumns = 7;
+constexpr std::size_t Generations = 8; // of a log, whose pages are tried
+constexpr std::size_t MostColumns = 7;
 
 // A file's bytes; none where there is no such file.
 class Source {
@@ -154,10 +154,10 @@ double ToReal(const Column& column) {
   return whole ? double(*whole) : std::get<double>(column);
 }
 
-// Makes rows of records, those whose checksum holds.
-class Believer {
+// Converts records with a valid checksum to rows.
+class RowValidator {
 public:
-  std::optional<FoundRow> Believe(std::int64_t key, std::vector<Column>& columns) {
+  std::optional<FoundRow> Validate(std::int64_t key, std::vector<Column>& columns) {
     return columns.size() == 7 ? Asset(key, columns)
            : columns.size() == 6 && std::holds_alternative<std::monostate>(columns[0]) &&
                    std::holds_alternative<std::string>(columns[4]) &&
@@ -237,14 +237,14 @@ class Pages {
 public:
   Pages(const Source& data, const Source& log, std::size_t size)
       : Data_(data), Log_(log), Size_(size) {
-    this->FindTurns();
+    this->FindGenerations();
   }
 
-  bool Find(const std::function<void(FoundRow&&)>& take, const KeepGoing& keepGoing) {
+  bool Find(const std::function<void(FoundRow&&)>& take, const CancelCheck& checkCancel) {
     bool any = false;
     const auto look = [&](const std::string& page) {
       for (const std::size_t start : {0, 100}) { // the first page begins with the file's head
-        any = this->FindInPage(page, start, take, keepGoing) || any;
+        any = this->FindInPage(page, start, take, checkCancel) || any;
       }
     };
     for (std::size_t place = 0; place < this->Data_.Size(); place += this->Size_) {
@@ -259,12 +259,12 @@ public:
 
 private:
   // Places in the log of a page's newest version, in one of the log's turns.
-  using Turn = std::map<std::uint64_t, std::size_t>;
+  using Generation = std::map<std::uint64_t, std::size_t>;
 
-  // The log's own turn first, then the others (its head may be damaged), then none, which leaves
-  // the file itself.
-  void FindTurns() {
-    std::map<std::string, Turn> turns;
+  // The log's own generation first, then the others (its head may be damaged), then none, which
+  // leaves the file itself.
+  void FindGenerations() {
+    std::map<std::string, Generation> turns;
     for (std::size_t place = LogHead; place + FrameHead < this->Log_.Size();
          place += FrameHead + this->Size_) {
       const std::string head = this->Log_.Read(place, FrameHead);
@@ -273,34 +273,34 @@ private:
       }
     }
     const std::string own = this->Log_.Read(16, 8);
-    std::vector<std::pair<std::string, Turn>> order(turns.begin(), turns.end());
+    std::vector<std::pair<std::string, Generation>> order(turns.begin(), turns.end());
     std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
       return std::make_pair(a.first != own, -std::ptrdiff_t(a.second.size())) <
              std::make_pair(b.first != own, -std::ptrdiff_t(b.second.size()));
     });
-    for (std::size_t i = 0; i < order.size() && i < Turns; ++i) {
-      this->Turns_.push_back(std::move(order[i].second));
+    for (std::size_t i = 0; i < order.size() && i < Generations; ++i) {
+      this->Generations_.push_back(std::move(order[i].second));
     }
-    this->Turns_.emplace_back();
+    this->Generations_.emplace_back();
   }
 
-  std::string Page(std::uint64_t number, const Turn& turn) const {
-    const auto logged = turn.find(number);
-    if (logged != turn.end()) {
+  std::string Page(std::uint64_t number, const Generation& generation) const {
+    const auto logged = generation.find(number);
+    if (logged != generation.end()) {
       return this->Log_.Read(logged->second, this->Size_);
     }
     return number > 0 ? this->Data_.Read((number - 1) * this->Size_, this->Size_) : std::string();
   }
 
   bool FindInPage(const std::string& page, std::size_t start,
-                  const std::function<void(FoundRow&&)>& take, const KeepGoing& keepGoing) {
-    keepGoing();
+                  const std::function<void(FoundRow&&)>& take, const CancelCheck& checkCancel) {
+    checkCancel();
     if (page.size() < start + 8 || static_cast<unsigned char>(page[start]) != Leaf) {
       return false;
     }
     // Cells of a sound page share no bytes; in a forged one they may, which must not take long.
     std::set<std::uint64_t> seen;
-    this->Left_ = (this->Data_.Size() + this->Log_.Size()) * this->Turns_.size();
+    this->Left_ = (this->Data_.Size() + this->Log_.Size()) * this->Generations_.size();
     bool any = false;
     const std::uint64_t count = Unsigned(page, start + 3, 2);
     for (std::size_t n = 0; n < count && start + 10 + 2 * n <= page.size(); ++n) {
@@ -308,10 +308,10 @@ private:
       if (!seen.insert(place).second) {
         continue;
       }
-      keepGoing();
-      for (const Turn& turn : this->Turns_) {
+      checkCancel();
+      for (const Generation& generation : this->Generations_) {
         bool chained = false;
-        std::optional<FoundRow> row = this->RowAt(page, std::size_t(place), turn, chained);
+        std::optional<FoundRow> row = this->RowAt(page, std::size_t(place), generation, chained);
         if (row) {
           any = true;
           take(std::move(*row));
@@ -324,15 +324,15 @@ private:
     return any;
   }
 
-  std::optional<FoundRow> RowAt(const std::string& page, std::size_t at, const Turn& turn,
-                                bool& chained) {
+  std::optional<FoundRow> RowAt(const std::string& page, std::size_t at,
+                                const Generation& generation, bool& chained) {
     const auto size = Varint(page, at);
     const auto key = size ? Varint(page, at) : std::nullopt;
     if (!key || *size > this->Data_.Size() + this->Log_.Size()) {
       return std::nullopt;
     }
     const std::optional<std::string> record =
-        this->PayloadAt(page, at, std::size_t(*size), turn, chained);
+        this->PayloadAt(page, at, std::size_t(*size), generation, chained);
     std::size_t place = 0;
     const auto head = record ? Varint(*record, place) : std::nullopt;
     if (!head || *head > record->size()) {
@@ -349,12 +349,12 @@ private:
       }
       columns.push_back(std::move(*column));
     }
-    return this->Believer_.Believe(std::int64_t(*key), columns);
+    return this->Validator_.Validate(std::int64_t(*key), columns);
   }
 
   // With its overflow pages; how much of it is on the leaf itself is SQLite's rule.
   std::optional<std::string> PayloadAt(const std::string& page, std::size_t at, std::size_t size,
-                                       const Turn& turn, bool& chained) {
+                                       const Generation& generation, bool& chained) {
     const std::size_t most = this->Size_ - 35;
     if (size <= most) {
       return at + size <= page.size() ? std::optional<std::string>(page.substr(at, size))
@@ -374,7 +374,7 @@ private:
         return std::nullopt;
       }
       this->Left_ -= this->Size_;
-      const std::string next = this->Page(following, turn);
+      const std::string next = this->Page(following, generation);
       const std::size_t wanted = std::min(size - payload.size(), this->Size_ - 4);
       if (next.size() < 4 + wanted) {
         return std::nullopt;
@@ -388,9 +388,9 @@ private:
   const Source& Data_;
   const Source& Log_;
   const std::size_t Size_;
-  std::vector<Turn> Turns_;
+  std::vector<Generation> Generations_;
   std::size_t Left_ = 0; // bytes of chains that cells of the present page may still have
-  Believer Believer_;
+  RowValidator Validator_;
 };
 
 // Of pages: what the file's head says, which may be damaged, ours, and a common one.
@@ -411,11 +411,11 @@ std::vector<std::size_t> SizesOf(const Source& data) {
 } // namespace
 
 void FindRows(const std::string& path, const std::function<void(FoundRow&&)>& take,
-              const KeepGoing& keepGoing) {
+              const CancelCheck& checkCancel) {
   const Source data(path);
   const Source log(path + "-wal");
   for (const std::size_t size : SizesOf(data)) {
-    if (Pages(data, log, size).Find(take, keepGoing)) {
+    if (Pages(data, log, size).Find(take, checkCancel)) {
       return;
     }
   }

@@ -22,7 +22,8 @@ namespace dspace::session {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t TransactionBytes = 8u << 20; // so many waiting are written at once
+constexpr std::size_t TransactionBytes =
+    8u << 20; // starts a transaction when this many bytes are queued
 
 // SQLite gives -0 back as 0, which has another checksum.
 double WithoutMinus0(double value) {
@@ -42,10 +43,11 @@ void Check(const RecordingOptions& options, const std::string& path) {
            " s; accepted: 0.001 to 60");
   }
   if (options.queueBytes < (1u << 20)) {
-    reject("the queue has " + std::to_string(options.queueBytes) + " bytes; accepted: 1 MiB on");
+    refuse("the queue has " + std::to_string(options.queueBytes) +
+           " bytes; accepted: 1 MiB or more");
   }
   if (options.snapshotBytes == 0 || options.snapshotCommands == 0) {
-    reject("a snapshot after nothing; accepted: 1 byte and 1 command on");
+    refuse("the distance between snapshots is 0; accepted: 1 byte and 1 command or more");
   }
 }
 
@@ -57,8 +59,8 @@ void CheckSize(const std::vector<v1::Command>& commands, const RecordingOptions&
   }
   if (bytes > options.largestSnapshot) {
     throw Error(Error::Kind::Resource, "recording '" + path + "'",
-                "the state that it would begin with has " + std::to_string(bytes) +
-                    " bytes; accepted: up to " + std::to_string(options.largestSnapshot));
+                "the initial state has " + std::to_string(bytes) + " bytes; accepted: up to " +
+                    std::to_string(options.largestSnapshot));
   }
 }
 
@@ -102,7 +104,7 @@ struct RecordingWriter::Impl {
   // A child of the process that records has no such thread, and the mutex as it was.
   const pid_t process = getpid();
   bool Forked() const { return getpid() != this->process; }
-  std::string Foreign() const {
+  std::string ForkedError() const {
     return "recording '" + this->path + "': process " + std::to_string(this->process) +
            " writes it, and this one is its child; accepted: a recording of its own";
   }
@@ -114,7 +116,7 @@ struct RecordingWriter::Impl {
     return this->wall_s;
   }
 
-  void HandFiles(const v1::Command& command) {
+  void EnqueueFiles(const v1::Command& command) {
     const CommandFiles none;
     for (const auto& [file, stamp] : (this->files ? *this->files : none).Of(command)) {
       const auto known = this->handed.find(file);
@@ -127,7 +129,7 @@ struct RecordingWriter::Impl {
   }
 
   // Blocks while the queue is full; nothing after a failure.
-  void Hand(RecordingRow row) {
+  void Enqueue(RecordingRow row) {
     std::unique_lock<std::mutex> lock(this->mutex);
     this->room.wait(lock, [this] {
       return this->queued < this->options.queueBytes || !this->counts.failure.empty();
@@ -167,7 +169,7 @@ struct RecordingWriter::Impl {
       return "the state has " + std::to_string(this->lastSnapshot) + " bytes; accepted: up to " +
              std::to_string(this->options.largestSnapshot);
     }
-    this->Hand(std::move(row));
+    this->Enqueue(std::move(row));
     return {};
   }
 
@@ -183,7 +185,7 @@ struct RecordingWriter::Impl {
     if (recorded->has_set_time()) {
       this->time_s = WithoutMinus0(recorded->set_time().time_s());
     }
-    this->HandFiles(*recorded);
+    this->EnqueueFiles(*recorded);
     RecordingRow row;
     row.seq = ++this->seq;
     row.time_s = this->time_s;
@@ -192,7 +194,7 @@ struct RecordingWriter::Impl {
     row.payload = recorded->SerializeAsString();
     this->bytesSince += row.payload.size();
     ++this->commandsSince;
-    this->Hand(std::move(row));
+    this->Enqueue(std::move(row));
     // Not oftener than four times their own size: a large state costs a part of the file at most.
     if (this->bytesSince >= std::max(this->options.snapshotBytes, 4 * this->lastSnapshot) ||
         (this->commandsSince >= this->options.snapshotCommands &&
@@ -292,7 +294,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const Ledger& initial,
   this->Impl_->time_s = WithoutMinus0(time_s);
   this->Impl_->files = files;
   for (const v1::Command& command : commands) {
-    this->Impl_->HandFiles(command);
+    this->Impl_->EnqueueFiles(command);
   }
   const std::string failure = this->Impl_->TakeSnapshot(initial);
   if (!failure.empty()) {
@@ -318,7 +320,7 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
                                  const Ledger& ledger) {
   Impl& impl = *this->Impl_;
   if (impl.Forked()) {
-    return std::exchange(impl.told, true) ? std::string() : impl.Foreign();
+    return std::exchange(impl.told, true) ? std::string() : impl.ForkedError();
   }
   {
     const std::lock_guard<std::mutex> lock(impl.mutex);
@@ -332,7 +334,7 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
     impl.Put(accepted, reply, ledger);
   } catch (const std::exception& error) { // out of memory, say: what follows is not to be used
     impl.told = true;
-    return impl.Fail(std::string("a command could not be kept: ") + error.what());
+    return impl.Fail(std::string("a command could not be stored: ") + error.what());
   }
   return {};
 }
@@ -340,7 +342,7 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
 std::string RecordingWriter::Flush() {
   Impl& impl = *this->Impl_;
   if (impl.Forked()) {
-    return impl.Foreign();
+    return impl.ForkedError();
   }
   std::unique_lock<std::mutex> lock(impl.mutex);
   impl.flush = true;
@@ -351,7 +353,7 @@ std::string RecordingWriter::Flush() {
   return impl.counts.failure;
 }
 
-void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFiles* files) {
+void RecordingWriter::Resync(const Ledger& ledger, double time_s, const CommandFiles* files) {
   Impl& impl = *this->Impl_;
   if (impl.Forked()) {
     return;
@@ -363,7 +365,7 @@ void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFil
   std::string failure;
   try {
     for (const v1::Command& command : ledger.Commands()) {
-      impl.HandFiles(command);
+      impl.EnqueueFiles(command);
     }
     {
       const std::lock_guard<std::mutex> lock(impl.mutex);
@@ -381,7 +383,7 @@ void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFil
 RecordingCounts RecordingWriter::Counts() const {
   if (this->Impl_->Forked()) {
     RecordingCounts none;
-    none.failure = this->Impl_->Foreign();
+    none.failure = this->Impl_->ForkedError();
     return none;
   }
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);

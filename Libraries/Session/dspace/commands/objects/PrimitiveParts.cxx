@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint32_t DefaultResolution = 32;
 
-// A message's resolution; beyond int's range it is refused with the largest int.
+// The resolution of a message; values beyond the range of int become the largest int, which is
+// rejected.
 template<class Shape> int ResolutionOf(const Shape& shape) {
   const std::uint32_t value = shape.has_resolution() ? shape.resolution() : DefaultResolution;
   return int(std::min<std::uint32_t>(value, 1u << 30));
@@ -38,8 +39,8 @@ std::vector<Part> LineParts(const v1::CreatePrimitive::Lines& lines) {
   std::size_t begin = 0;
   for (const std::uint32_t count : lines.count()) {
     if (count > points.size() - begin) {
-      Reject("line set", "count asks for more points than the " + std::to_string(points.size()) +
-                             " that point holds");
+      Reject("line set",
+             "count needs more points than the " + std::to_string(points.size()) + " in point");
     }
     parts.push_back(PartOf(MakeLineSet(
         {points.begin() + std::ptrdiff_t(begin), points.begin() + std::ptrdiff_t(begin + count)},
@@ -47,7 +48,7 @@ std::vector<Part> LineParts(const v1::CreatePrimitive::Lines& lines) {
     begin += count;
   }
   if (begin != points.size()) {
-    Reject("line set", "count takes " + std::to_string(begin) + " of " +
+    Reject("line set", "count uses " + std::to_string(begin) + " of " +
                            std::to_string(points.size()) + " points; accepted: all of them");
   }
   return parts;
@@ -107,7 +108,7 @@ std::vector<Part> PartsOfShape(const v1::CreatePrimitive& command) {
   case Shape::SHAPE_NOT_SET:
     break;
   }
-  Reject("primitive", "it has no shape that is known here; accepted: box, sphere, cylinder, cone, "
+  Reject("primitive", "its shape is missing or unknown; accepted: box, sphere, cylinder, cone, "
                       "plane, disc, torus, arrow, axes, lines, points, frustum, goal, tilt");
 }
 

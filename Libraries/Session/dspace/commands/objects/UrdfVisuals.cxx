@@ -11,7 +11,7 @@ namespace dspace::session {
 namespace {
 
 constexpr double StandInSize = 0.1; // [m], where nothing says how large the part is
-constexpr const char* CubeStandsIn = "; a cube of 0.1 m stands in for it";
+constexpr const char* CubePlaceholder = "; a cube of 0.1 m replaces it";
 
 Eigen::Affine3d ToAffine(const Pose& X) {
   return Eigen::Affine3d(X.Matrix());
@@ -19,7 +19,7 @@ Eigen::Affine3d ToAffine(const Pose& X) {
 
 constexpr double BeamWidth = 0.01; // of the longest edge of a box of beams
 
-// Orange, so that nobody takes it for the part itself.
+// Orange, to distinguish it from the part itself.
 std::shared_ptr<const Material> StandInMaterial() {
   auto material = std::make_shared<Material>();
   material->name = "stand-in";
@@ -68,15 +68,15 @@ UrdfGeometry StandInForMesh(const UrdfVisual& visual, std::string& text) {
     size = bounds.sizes().array() * visual.size.array().abs();
     center = visual.size.asDiagonal() * bounds.center();
   }
-  // Beyond that no number is a part's, whoever stated it.
+  // No part is larger than this.
   if (!(size.maxCoeff() >= 1e-6 && size.maxCoeff() <= 1e9 && center.norm() <= 1e9)) {
-    text = CubeStandsIn;
+    text = CubePlaceholder;
     return SmallCube(visual);
   }
   std::ostringstream out;
   out.precision(3);
   out << "; the edges of an orange box of " << size.x() << " x " << size.y() << " x " << size.z()
-      << " m, the bounds that it states, stand in for it";
+      << " m, the bounds that it states, replace it";
   text = out.str();
   UrdfGeometry made;
   made.X_LO = ToAffine(visual.X_LV) * Eigen::Translation3d(center);
@@ -149,7 +149,7 @@ std::vector<std::string> UrdfWarnings(const Urdf& urdf) {
   for (const UrdfLink& link : urdf.links) {
     for (const UrdfVisual& visual : link.visuals) {
       if (visual.missing) {
-        warnings[visual.warning] += CubeStandsIn;
+        warnings[visual.warning] += CubePlaceholder;
       }
     }
   }

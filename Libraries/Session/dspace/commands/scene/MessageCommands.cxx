@@ -21,7 +21,7 @@ void LogEvent(const Context& context, v1::LogEvent& command) {
                                                        : path);
     }
   }
-  context.scene->messages.Log(event, context.TheScene().Time());
+  context.scene->messages.Log(event, context.GetScene().Time());
   command = event;
   *context.reply.mutable_event() = event;
 }
@@ -59,12 +59,12 @@ void AskOperator(const Context& context, v1::AskOperator& command) {
   for (const auto& [name, scene] : context.state.scenes) {
     if (scene.messages.HasQuestion(command.name())) {
       throw Error(Error::Kind::AlreadyExists, "question " + QuotedText(command.name()),
-                  "it is open already, in scene '" + name +
+                  "it is already open, in scene '" + name +
                       "'; accepted: another name, or after "
                       "it is closed");
     }
   }
-  context.scene->messages.Ask(command, context.TheScene().Time());
+  context.scene->messages.Ask(command, context.GetScene().Time());
 }
 
 void ListQuestions(const Context& context, v1::ListQuestions&) {

@@ -12,7 +12,7 @@ void List(const Context& context, const Telemetry::Channel& channel) {
 }
 
 void CreateTelemetry(const Context& context, v1::CreateTelemetry& command) {
-  // Ids go on through the session, so that a scene that is made anew has others.
+  // Ids are unique in the session, so that a recreated scene has other ids.
   const std::uint64_t id =
       context.scene->telemetry.Create(command, context.state.lastTelemetryId + 1);
   context.state.lastTelemetryId = std::max(context.state.lastTelemetryId, id);
@@ -59,11 +59,11 @@ void AddTelemetryCommands(Registry& registry) {
                });
   registry.Add(C::kSetTelemetry, &C::mutable_set_telemetry,
                [](const Context& context, v1::SetTelemetry& command) {
-                 context.scene->telemetry.Set(command, context.TheScene().Time());
+                 context.scene->telemetry.Set(command, context.GetScene().Time());
                });
   registry.Add(C::kSetTelemetryTexts, &C::mutable_set_telemetry_texts,
                [](const Context& context, v1::SetTelemetryTexts& command) {
-                 context.scene->telemetry.SetTexts(command, context.TheScene().Time());
+                 context.scene->telemetry.SetTexts(command, context.GetScene().Time());
                });
   registry.Add(C::kRemoveTelemetry, &C::mutable_remove_telemetry,
                [](const Context& context, v1::RemoveTelemetry& command) {

@@ -87,7 +87,7 @@ constexpr std::int64_t MeshPixels = 4000000;
 // Where overviews are read; empty: nowhere.
 std::string CacheFolder(v1::OpenTerrain& command) {
   if (!command.has_overview_cache()) {
-    return ElevationCache::DefaultFolder(); // whose it is where a recording replays
+    return ElevationCache::DefaultFolder(); // of the user who plays the recording
   }
   if (!command.overview_cache().empty()) {
     command.set_overview_cache(AbsolutePath(command.overview_cache()));
@@ -113,8 +113,8 @@ void WarnOfOverviews(const Context& context, const std::string& label, const Ele
   context.reply.add_warning(
       label + ": its raster of " + std::to_string(info.window.width) + " x " +
       std::to_string(info.window.height) +
-      " pixels has no overviews: far ground is every n-th pixel" +
-      (builds ? " until some are built, which has begun; `" : std::string("; `")) + build + "'" +
+      " pixels has no overviews: distant ground shows every n-th pixel" +
+      (builds ? " until the background build completes; `" : std::string("; `")) + build + "'" +
       info.path + "'` builds overviews");
 }
 
@@ -148,7 +148,7 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   options.onBody = command.on_body();
   if (command.has_map_origin()) {
     if (options.onBody) {
-      Reject(label, "it stands on its body, whose centre is the origin; accepted: no origin");
+      Reject(label, "it is on a body, whose centre is the origin; accepted: no origin");
     }
     options.origin = Eigen::Vector2d(command.map_origin().x(), command.map_origin().y());
     options.originHeight = command.map_origin().z();
@@ -221,10 +221,10 @@ v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
                       " is not known; accepted: auto, triangles, clipmap");
   }
   if (command.on_body() && command.mode() == Command::TRIANGLES) {
-    Reject(label, "triangles stand on a plane; accepted on a body: a clipmap");
+    Reject(label, "triangles need a plane; accepted on a body: a clipmap");
   }
   if (command.patch_size() != 0 && command.mode() == Command::TRIANGLES) {
-    Reject(label, "triangles are of one raster; accepted with patches: a clipmap");
+    Reject(label, "triangles use one raster; accepted with patches: a clipmap");
   }
   if (command.subdivisions() != 0 && command.mode() == Command::TRIANGLES) {
     Reject(label, "triangles have no posts between pixels; accepted with subdivisions: a clipmap");
@@ -256,12 +256,12 @@ ObjectId AddTerrainObject(const Context& context, const v1::OpenTerrain& command
                           const TerrainObject& terrain) {
   GraphicsObject object;
   object.id = command.object_id();
-  object.name = command.object_name().empty() ? FreeObjectName(context.TheScene(), terrain.Name())
+  object.name = command.object_name().empty() ? FreeObjectName(context.GetScene(), terrain.Name())
                                               : command.object_name();
   object.frame = ToFrame(command.frame());
   object.fragment = command.fragment();
   terrain.Draw(object);
-  return context.TheScene().AddObject(std::move(object));
+  return context.GetScene().AddObject(std::move(object));
 }
 
 void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
@@ -285,14 +285,14 @@ void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
   command.set_path(path);
   command.set_name(name);
   command.set_object_id(terrain->Object());
-  command.set_object_name(context.TheScene().Object(terrain->Object()).name);
+  command.set_object_name(context.GetScene().Object(terrain->Object()).name);
   DescribeTo(context, *terrain, context.reply.mutable_terrain());
   context.scene->terrains[name] = std::move(terrain);
 }
 
 void RemoveTerrain(const Context& context, v1::RemoveTerrain& command) {
-  context.TheScene().RemoveObject(FindTerrain(context, command.terrain()).Object());
-  context.scene->ForgetRemoved();
+  context.GetScene().RemoveObject(FindTerrain(context, command.terrain()).Object());
+  context.scene->EraseRemoved();
 }
 
 void FocusTerrain(const Context& context, v1::FocusTerrain& command) {
@@ -309,7 +309,7 @@ void FocusTerrain(const Context& context, v1::FocusTerrain& command) {
   if (terrain.Focus(points, command.radius())) {
     GraphicsObject drawn;
     terrain.Draw(drawn);
-    context.TheScene().SetObjectLevels(terrain.Object(), std::move(drawn.levels));
+    context.GetScene().SetObjectLevels(terrain.Object(), std::move(drawn.levels));
   }
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 using Add = v1::AddTerrainLayer;
 
-// A layer and what is told of it.
+// A layer and its description.
 struct Opened {
   std::shared_ptr<const ColorLayer> layer;
   v1::TerrainLayerReply about;
@@ -176,7 +176,7 @@ Opened Open(const ClipmapTerrainObject& terrain, Add& command, const std::string
   case Add::kNoise:
     return MakeNoise(command.noise());
   default:
-    Reject(label, "a layer of no kind; accepted: an image, false colour, shapes, noise");
+    Reject(label, "the layer has no kind; accepted: an image, false colour, shapes, noise");
   }
 }
 
@@ -186,7 +186,7 @@ void Warn(const Context& context, const ColorLayer& layer) {
   }
 }
 
-// What marks ground that is made up stays on top, unless it is told otherwise.
+// The layer that marks interpolated ground stays on top, unless a command moves it.
 std::optional<std::size_t> UnderFilled(const TerrainLayers& layers) {
   v1::TerrainLayerList list;
   layers.Describe(list);

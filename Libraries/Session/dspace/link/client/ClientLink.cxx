@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 
 #include <unistd.h>
 
 #include <grpcpp/impl/codegen/sync_stream.h>
 
 #include <dspace/Error.h>
+#include <dspace/interpreter/Interpreter.h>
 #include <dspace/link/ProcessName.h>
 #include <dspace/messages/ErrorReply.h>
+#include <dspace/messages/TextFields.h>
 #include <dspace/scene/Checks.h>
 
 namespace dspace::session {
@@ -18,6 +21,13 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::chrono::seconds ToLeave{3};
+constexpr std::size_t MostEvents = 10000;
+constexpr std::size_t MostEventBytes = 16 << 20;
+// How far a sender may be ahead of the written bytes: a few steps, so that their memory is reused
+// while it is in the processor's caches. If writing stalls for ToCatchUp, the sender may fill the
+// window.
+constexpr std::size_t UnsentBytes = 1 << 20;
+constexpr std::chrono::milliseconds ToCatchUp{5};
 
 Error::Kind ToKind(v1::Error::Kind kind) {
   switch (kind) {
@@ -52,19 +62,19 @@ void Raise(const v1::Error& error) {
 }
 
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const LinkSecurity& security,
-                                           double silence_s) {
+                                           double keepalive_s) {
   const LinkAddress parsed = LinkAddress::Parse(address);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);                  // pictures
   arguments.SetMaxSendMessageSize(-1);                     // the server has its limit
-  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // a connection of one's own
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // a separate connection for each client
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
-  // A connection that is dead without a word is found out by asking, also while nothing is sent.
-  const int silence_ms = int(std::clamp(1e3 * silence_s, 1.0, 1e9));
-  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, silence_ms);
-  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(silence_ms, 10000));
+  // Pings detect a dead connection, also while nothing is sent.
+  const int keepalive_ms = int(std::clamp(1e3 * keepalive_s, 1.0, 1e9));
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, keepalive_ms);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(keepalive_ms, 10000));
   arguments.SetInt(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 0);
   arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
@@ -101,7 +111,9 @@ v1::Error ToError(const std::string& address, const grpc::Status& status, bool& 
   case Code::CANCELLED:
   case Code::UNAVAILABLE:
     return say(v1::Error::IO,
-               status.error_message().empty() ? "it has gone" : status.error_message(), false);
+               status.error_message().empty() ? "it has closed the connection"
+                                              : status.error_message(),
+               false);
   default:
     return say(v1::Error::IO, "the connection failed: " + status.error_message(), true);
   }
@@ -132,17 +144,17 @@ RemoteClient::Link::Link(const RemoteClientOptions& from)
                 "the timeout is " + NumberText(this->options.timeout_s) +
                     " s; accepted: above 0, up to 1e6");
   }
-  if (!(this->options.silence_s > 0 && this->options.silence_s <= 1e6)) {
+  if (!(this->options.keepalive_s > 0 && this->options.keepalive_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
-                "the silence is " + NumberText(this->options.silence_s) +
+                "the keepalive time is " + NumberText(this->options.keepalive_s) +
                     " s; accepted: above 0, up to 1e6");
   }
   this->pacer.SetRate(this->options.pace);
   this->channel =
-      MakeChannel(this->options.address, this->options.security, this->options.silence_s);
+      MakeChannel(this->options.address, this->options.security, this->options.keepalive_s);
 }
 
-// The generated stub's Drive, but for messages that are in bytes already.
+// Drive of the generated stub, for serialized messages.
 std::unique_ptr<RemoteClient::Link::Stream> RemoteClient::Link::Call(grpc::ClientContext& context) {
   static const grpc::internal::RpcMethod method("/dspace.v1.Dspace/Drive",
                                                 grpc::internal::RpcMethod::BIDI_STREAMING);
@@ -155,11 +167,12 @@ bool RemoteClient::Link::Forked() const {
   return getpid() != this->process;
 }
 
-v1::Reply RemoteClient::Link::Foreign() {
-  return this->Fault(v1::Error::UNSUPPORTED,
-                     "process " + std::to_string(this->process) +
-                         " connected to it, and this one is its child; accepted: a connection of "
-                         "its own");
+v1::Reply RemoteClient::Link::ForkedError() {
+  return this->Fault(
+      v1::Error::UNSUPPORTED,
+      "process " + std::to_string(this->process) +
+          " opened the connection, and this one is its child; accepted: a connection "
+          "of its own");
 }
 
 void RemoteClient::Link::Break(v1::Error::Kind kind, const std::string& message) {
@@ -174,7 +187,7 @@ void RemoteClient::Link::End() {
     std::unique_lock lock(this->mutex);
     this->ending = true;
     this->toSend.notify_all();
-    // The writing thread says goodbye, so that the server keeps no place for this client.
+    // The writing thread closes the stream, so that the server keeps no reservation.
     if (this->leaving || (this->connected && !this->broken)) {
       this->changed.wait_for(lock, ToLeave, [this] { return !this->context; });
     }
@@ -187,7 +200,205 @@ void RemoteClient::Link::End() {
   }
 }
 
-void RemoteClient::Link::Keep() {
+// --- The user's thread -------------------------------------------------------------------------
+
+v1::Reply RemoteClient::Link::Fault(v1::Error::Kind kind, const std::string& message) {
+  const std::string object = "server '" + this->options.address + "'";
+  return ErrorReply(kind, object, object + ": " + message);
+}
+
+void RemoteClient::Link::Finish(v1::Reply&& with) {
+  this->reply = std::move(with);
+  this->activity = Activity::Done;
+}
+
+// A command that waits for its reply is sent after all commands without replies are completed. If
+// one of these has failed, it is not executed.
+void RemoteClient::Link::BeginWaitForEarlier() {
+  this->deadline = After(this->options.timeout_s);
+  if (!this->noReply && this->done < this->unawaited && !this->broken) {
+    this->activity = Activity::Earlier;
+  } else {
+    this->Admit();
+  }
+}
+
+bool RemoteClient::Link::WaitForEarlier(std::unique_lock<std::mutex>& lock,
+                                        LinkClock::time_point until) {
+  if (this->changed.wait_until(lock, std::min(until, this->deadline), [this] {
+        return this->broken || this->failure.has_error() || this->done >= this->unawaited;
+      })) {
+    this->Admit();
+  } else if (LinkClock::now() < this->deadline) {
+    return false;
+  } else {
+    this->Finish(
+        this->Fault(v1::Error::DEADLINE_EXCEEDED, "earlier commands were not completed within " +
+                                                      NumberText(this->options.timeout_s) +
+                                                      " s; this command was not sent"));
+  }
+  return true;
+}
+
+// Checks whether the command must be sent.
+void RemoteClient::Link::Admit() {
+  this->catchUp = LinkClock::now() + ToCatchUp;
+  if (this->failure.has_error()) {
+    this->Finish(std::exchange(this->failure, {}));
+    return;
+  }
+  if (FindInvalidText(this->command)) { // the server could not parse it and would never reply
+    this->Finish(Catch([&]() -> v1::Reply {
+      RequireUtf8(this->command, "command " + CommandName(this->command));
+      return {};
+    }));
+    return;
+  }
+  if (this->options.onlyChanges && !this->filter.Pass(this->command) && !this->broken) {
+    this->Finish({});
+    return;
+  }
+  this->bytes = this->command.ByteSizeLong();
+  if (this->opened && this->bytes > this->server.maximumMessage) {
+    this->filter.Clear();
+    this->Finish(this->Fault(v1::Error::RESOURCE, "the command has " + std::to_string(this->bytes) +
+                                                      " bytes; accepted: up to " +
+                                                      std::to_string(this->server.maximumMessage)));
+    return;
+  }
+  this->bytes += 64;
+  this->activity = Activity::Window;
+}
+
+bool RemoteClient::Link::WaitForWindow(std::unique_lock<std::mutex>& lock,
+                                       LinkClock::time_point until) {
+  const auto room = [this] {
+    return this->broken || this->pending.empty() ||
+           (this->pending.size() < this->options.windowCommands &&
+            this->pendingBytes + this->bytes <= this->options.windowBytes);
+  };
+  const auto near = [this] {
+    return this->broken || this->absorbing || this->unsentBytes == 0 ||
+           this->unsentBytes + this->bytes <= UnsentBytes;
+  };
+  this->crowded = !near();
+  const bool come =
+      this->changed.wait_until(lock, std::min({until, this->deadline, this->catchUp}), near);
+  this->crowded = false;
+  if (!come) {
+    if (LinkClock::now() < std::min(this->deadline, this->catchUp)) {
+      return false;
+    }
+    this->absorbing = true;
+  }
+  if (!this->changed.wait_until(lock, std::min(until, this->deadline), room)) {
+    if (LinkClock::now() < this->deadline) {
+      return false;
+    }
+    this->filter.Clear();
+    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED, "the send window stayed full for " +
+                                                               NumberText(this->options.timeout_s) +
+                                                               " s; the command was not sent"));
+  } else if (this->broken) {
+    v1::Reply gone;
+    *gone.mutable_error() = this->error;
+    this->Finish(std::move(gone));
+  } else {
+    this->Put();
+    lock.unlock(); // the woken thread needs it
+    this->toSend.notify_one();
+    lock.lock();
+  }
+  return true;
+}
+
+void RemoteClient::Link::Put() {
+  ++this->last;
+  if (this->options.onlyChanges) {
+    this->filter.Sent(this->command, this->last);
+  }
+  v1::SendCommand& send = *this->scratch.mutable_send();
+  send.set_number(this->last);
+  send.set_no_reply(this->noReply);
+  send.set_acknowledged(this->acknowledged);
+  send.mutable_command()->Swap(&this->command);
+  this->pending.push_back({this->last, this->bytes, ToBytes(this->scratch)});
+  this->pendingBytes += this->bytes;
+  this->unsentBytes += this->bytes;
+  ++this->counts.sent;
+  this->counts.bytes += this->bytes - 64;
+  if (this->noReply) {
+    this->unawaited = this->last;
+    this->Finish({});
+  } else {
+    this->awaited = this->last;
+    this->activity = Activity::Reply;
+  }
+}
+
+bool RemoteClient::Link::WaitForReply(std::unique_lock<std::mutex>& lock,
+                                      LinkClock::time_point until) {
+  const bool come = this->changed.wait_until(lock, std::min(until, this->deadline),
+                                             [this] { return this->broken || this->awaited == 0; });
+  if (this->awaited == 0) {
+    this->activity = Activity::Done; // with the reply that has come
+    return true;
+  }
+  if (!come && LinkClock::now() < this->deadline) {
+    return false;
+  }
+  this->abandoned.insert(std::exchange(this->awaited, 0));
+  this->filter.Clear();
+  v1::Reply lost;
+  if (come) {
+    *lost.mutable_error() = this->error;
+  } else {
+    lost = this->Fault(v1::Error::DEADLINE_EXCEEDED,
+                       "no reply within " + NumberText(this->options.timeout_s) +
+                           " s; it is unknown whether the command was executed");
+  }
+  this->Finish(std::move(lost));
+  return true;
+}
+
+bool RemoteClient::Link::WaitForFlush(std::unique_lock<std::mutex>& lock,
+                                      LinkClock::time_point until) {
+  const bool come = this->changed.wait_until(lock, std::min(until, this->deadline), [this] {
+    return this->broken || this->done >= this->last;
+  });
+  v1::Reply result;
+  if (this->broken) {
+    *result.mutable_error() = this->error;
+  } else if (!come && LinkClock::now() < this->deadline) {
+    return false;
+  } else if (!come) {
+    this->Finish(
+        this->Fault(v1::Error::DEADLINE_EXCEEDED, std::to_string(this->last - this->done) +
+                                                      " commands were not completed within " +
+                                                      NumberText(this->options.timeout_s) + " s"));
+    return true;
+  }
+  if (this->failure.has_error()) { // the first thing that went wrong
+    result = std::exchange(this->failure, {});
+  }
+  this->Finish(std::move(result));
+  return true;
+}
+
+void RemoteClient::Link::MoveUnawaitedReplies(v1::Reply& reply) {
+  // Earlier warnings and events come first.
+  reply.mutable_warning()->MergeFrom(this->unawaitedReplies.warning());
+  if (this->unawaitedReplies.frame_event_size() > 0) {
+    auto events = std::move(*this->unawaitedReplies.mutable_frame_event());
+    events.MergeFrom(reply.frame_event());
+    reply.mutable_frame_event()->Swap(&events);
+  }
+  this->unawaitedReplies.Clear();
+}
+
+// --- The link's threads ------------------------------------------------------------------------
+
+void RemoteClient::Link::RunConnection() {
   auto lost = LinkClock::now();
   std::unique_lock lock(this->mutex);
   while (!this->ending && !this->broken) {
@@ -203,8 +414,8 @@ void RemoteClient::Link::Keep() {
     }
     bool final = false;
     const v1::Error error = ToError(this->options.address, status, final);
-    // A client that was let in once is not sent away because its former self is still there. (What
-    // a stream that was opened has too much of is its messages' size.)
+    // A client that reconnects is not rejected because its old connection still exists. (An opened
+    // stream fails with this status because of the size of its messages.)
     const bool crowded =
         this->opened && !opened && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
     final = final && !crowded;
@@ -221,7 +432,7 @@ void RemoteClient::Link::Keep() {
 bool RemoteClient::Link::Drive(grpc::Status& status) {
   const auto soon = std::chrono::system_clock::now() + milliseconds(200);
   if (!this->channel->WaitForConnected(soon)) {
-    status = {grpc::StatusCode::UNAVAILABLE, "nobody answers, or nobody who may"};
+    status = {grpc::StatusCode::UNAVAILABLE, "it does not respond, or rejects the connection"};
     return false;
   }
   grpc::ClientContext drive;
@@ -246,22 +457,22 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
   v1::DriveReply message;
   const bool answered = stream->Write(ToBytes(open)) && stream->Read(&message);
   bool good = answered && message.has_opened();
-  bool over = !answered; // there is a status, or soon
-  v1::Reply refused;
+  bool over = !answered; // the stream ends with a status
+  v1::Reply rejected;
   if (good) {
     const std::lock_guard lock(this->mutex);
-    refused = this->Resume(message.opened());
-    good = !refused.has_error();
+    rejected = this->Resume(message.opened());
+    good = !rejected.has_error();
     this->leaving = !good;
     this->changed.notify_all();
   }
-  if (refused.has_error()) { // the place that it was given is not wanted: first that, then the news
+  if (rejected.has_error()) { // releases the reservation first, then reports the error
     stream->WritesDone();
     over = true;
     while (stream->Read(&message)) {
     }
     const std::lock_guard lock(this->mutex);
-    this->error = refused.error();
+    this->error = rejected.error();
     this->broken = true;
     this->changed.notify_all();
   }
@@ -272,10 +483,10 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
     while (over && stream->Read(&message)) {
       {
         const std::lock_guard lock(this->mutex);
-        this->Hear(message);
+        this->HandleReply(message);
         over = !this->broken;
       }
-      this->changed.notify_all(); // without the mutex, which whoever wakes up wants
+      this->changed.notify_all(); // without the mutex, which the woken thread needs
     }
   }
   {
@@ -302,10 +513,10 @@ v1::Reply RemoteClient::Link::Resume(const v1::Opened& message) {
     return this->Fault(v1::Error::UNSUPPORTED, "it speaks protocol '" + message.protocol() +
                                                    "'; accepted: '" + LinkProtocol + "'");
   }
-  if (this->opened && !message.resumed()) { // of a server that does not know `again`
+  if (this->opened && !message.resumed()) { // the server does not know `again`
     return this->Fault(v1::Error::IO,
-                       "it was started anew, or somebody else has driven it since: what was "
-                       "made there is gone or not known; accepted: to connect again");
+                       "it was restarted, or another client has driven it since: its scenes are "
+                       "lost or unknown; accepted: connect again");
   }
   this->counts.reconnections += this->opened ? 1 : 0;
   this->opened = this->connected = true;
@@ -331,7 +542,7 @@ void RemoteClient::Link::Write(Stream& stream) {
     const auto request = this->TakeNext();
     grpc::WriteOptions options;
     if (this->next < this->pending.size()) {
-      options.set_buffer_hint(); // what follows takes it along
+      options.set_buffer_hint(); // the next message flushes it
     }
     lock.unlock();
     const bool written = stream.Write(request, options);
@@ -340,6 +551,77 @@ void RemoteClient::Link::Write(Stream& stream) {
       return; // reading ends too
     }
   }
+}
+
+grpc::ByteBuffer RemoteClient::Link::TakeNext() {
+  const Pending& command = this->pending[this->next++];
+  this->unsentBytes -= command.bytes;
+  if (this->unsentBytes <=
+      UnsentBytes / 2) { // not for each command: the waiting thread then sends several
+    this->absorbing = false;
+    if (this->crowded) {
+      this->changed.notify_all();
+    }
+  }
+  return command.request;
+}
+
+void RemoteClient::Link::Rewind(std::uint64_t last) {
+  this->next = 0;
+  this->unsentBytes = this->pendingBytes;
+  while (this->next < this->pending.size() && this->pending[this->next].number <= last) {
+    this->unsentBytes -= this->pending[this->next].bytes;
+    ++this->next;
+  }
+}
+
+void RemoteClient::Link::HandleReply(v1::DriveReply& message) {
+  if (message.has_event()) {
+    const std::size_t size = message.event().SpaceUsedLong();
+    while (!this->events.empty() &&
+           (this->events.size() >= MostEvents || this->eventBytes + size > MostEventBytes)) {
+      this->eventBytes -= this->events.front().SpaceUsedLong();
+      this->events.pop_front();
+    }
+    this->eventBytes += size;
+    this->events.push_back(std::move(*message.mutable_event()));
+  } else if (message.has_closed()) {
+    this->broken = true;
+    this->error = message.closed().error();
+  } else if (message.has_done()) {
+    const std::uint64_t number = message.done().number();
+    this->done = std::max(this->done, number);
+    while (!this->pending.empty() && this->pending.front().number <= number) {
+      this->pendingBytes -= this->pending.front().bytes;
+      this->unsentBytes -= this->next > 0 ? 0 : this->pending.front().bytes;
+      this->next -= this->next > 0 ? 1 : 0;
+      this->pending.pop_front();
+    }
+    if (message.done().has_reply() && number > this->acknowledged) {
+      this->acknowledged = number;
+      this->TakeReply(number, *message.mutable_done()->mutable_reply());
+    }
+    this->filter.Accepted(this->done);
+  }
+}
+
+void RemoteClient::Link::TakeReply(std::uint64_t number, v1::Reply& reply) {
+  if (reply.has_error()) {
+    this->filter.Clear(); // its values were not set
+  }
+  if (number == this->awaited) {
+    this->reply = std::move(reply);
+    this->awaited = 0;
+    return;
+  }
+  const bool dropped = this->abandoned.count(number) != 0;
+  // Replies come in order: there will be none for an earlier number.
+  this->abandoned.erase(this->abandoned.begin(), this->abandoned.upper_bound(number));
+  if (reply.has_error() && !dropped && !this->failure.has_error()) {
+    *this->failure.mutable_error() = reply.error();
+  }
+  this->unawaitedReplies.mutable_warning()->MergeFrom(reply.warning());
+  this->unawaitedReplies.mutable_frame_event()->MergeFrom(reply.frame_event());
 }
 
 } // namespace dspace::session

@@ -14,7 +14,7 @@
 #include <grpcpp/resource_quota.h>
 
 #include <dspace/Error.h>
-#include <dspace/link/server/ServerHub.h>
+#include <dspace/link/server/ServerService.h>
 #include <dspace/scene/Checks.h>
 
 namespace dspace::session {
@@ -22,8 +22,8 @@ namespace {
 
 // Room for a message's own fields around a command.
 constexpr int Slack = 4096;
-// How long a client whose commands want no reply waits to hear that the last one is done.
-constexpr std::chrono::microseconds ToTell{500};
+// How long the completion of commands without replies may be delayed.
+constexpr std::chrono::microseconds DoneDelay{500};
 
 void Check(const ServerOptions& options) {
   const auto reject = [](const char* what, const std::string& value, const char* accepted) {
@@ -37,17 +37,17 @@ void Check(const ServerOptions& options) {
     reject("the number of connections", std::to_string(options.maximumConnections), "1 to 1000");
   }
   if (!(options.maximumRate > 0)) {
-    reject("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
+    refuse("the number of commands a second", std::to_string(options.maximumRate), "above 0");
   }
-  if (!(options.seat_s >= 0 && options.seat_s <= 1e6)) {
-    reject("the time that a place is kept", NumberText(options.seat_s) + " s", "0 to 1e6");
+  if (!(options.reservation_s >= 0 && options.reservation_s <= 1e6)) {
+    refuse("the reservation time", NumberText(options.reservation_s) + " s", "0 to 1e6");
   }
-  if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
-    reject("the silence", NumberText(options.silence_s) + " s", "above 0, up to 1e6");
+  if (!(options.keepalive_s > 0 && options.keepalive_s <= 1e6)) {
+    refuse("the keepalive time", NumberText(options.keepalive_s) + " s", "above 0, up to 1e6");
   }
 }
 
-// gRPC would take a living server's socket away from it.
+// Prevents gRPC from replacing the socket of a running server.
 void RejectTakenSocket(const LinkAddress& address) {
   if (address.path.empty()) {
     return;
@@ -62,14 +62,14 @@ void RejectTakenSocket(const LinkAddress& address) {
   bool taken = !S_ISSOCK(info.st_mode);
   const int probe = taken ? -1 : socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (probe >= 0) {
-    // One whose queue is full lives, too.
+    // A server with a full queue is alive too.
     taken = connect(probe, reinterpret_cast<const sockaddr*>(&place), sizeof(place)) == 0 ||
             (errno != ECONNREFUSED && errno != ENOENT);
     close(probe);
   }
   if (taken) {
     throw Error(Error::Kind::Io, "address '" + address.target + "'",
-                "something is there already; accepted: a path that is free");
+                "the path exists already; accepted: a free path");
   }
 }
 
@@ -84,7 +84,7 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   RejectTakenSocket(address);
   hub.service = std::make_unique<Service>(hub);
   grpc::ServerBuilder builder;
-  // Half of what there is stays for files and for answers.
+  // Half of the descriptors stay available for files and replies.
   hub.listener = std::make_unique<ServerListener>(
       address,
       std::min(std::size_t(4 * options.maximumConnections + 32), RaiseDescriptorLimit() / 2));
@@ -93,23 +93,23 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   builder.RegisterService(hub.service.get());
   builder.SetMaxReceiveMessageSize(int(options.maximumMessage) + Slack);
   builder.SetMaxSendMessageSize(-1); // pictures
-  // No thread is left for a connection beyond the limit to hold one up.
+  // Limits the threads, so that connections beyond the limit cannot block one.
   grpc::ResourceQuota quota("dspace");
   quota.SetMaxThreads(int(options.maximumConnections + DrivesAtOnce) + 8);
   builder.SetResourceQuota(quota);
-  // Who connects and says nothing takes nobody's place for long.
+  // A client that connects and sends nothing is disconnected soon.
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 5000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 60000);
-  const int silence_ms = int(std::max(1.0, 1e3 * options.silence_s));
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, silence_ms);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(silence_ms, 10000));
+  const int keepalive_ms = int(std::max(1.0, 1e3 * options.keepalive_s));
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, keepalive_ms);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(keepalive_ms, 10000));
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 200);
   builder.AddChannelArgument(GRPC_ARG_TCP_READ_CHUNK_SIZE, LinkReadBytes);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, LinkFrameBytes);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, LinkAheadBytes);
   hub.server = builder.BuildAndStart();
   if (!hub.server) {
-    throw Error(Error::Kind::Io, "address '" + address.target + "'", "gRPC does not serve there");
+    throw Error(Error::Kind::Io, "address '" + address.target + "'", "gRPC cannot serve there");
   }
   hub.listener->Start(std::move(acceptor));
   hub.address = address.target;
@@ -126,7 +126,7 @@ Server::~Server() {
     return;
   }
   hub.listener->Stop();
-  // Who does not read is not waited for: its connection is cut off.
+  // Connections of clients that do not read are closed.
   std::mutex mutex;
   std::condition_variable ended;
   bool over = false;
@@ -134,7 +134,7 @@ Server::~Server() {
     std::unique_lock lock(mutex);
     auto pause = std::chrono::milliseconds(700);
     while (!ended.wait_for(lock, pause, [&] { return over; })) {
-      hub.listener->CutOff();
+      hub.listener->CloseConnections();
       pause = std::chrono::milliseconds(100);
     }
   });
@@ -191,11 +191,11 @@ bool Server::Run(const SessionWork& work, double seconds) {
   std::unique_lock lock(hub.mutex);
   while (!hub.stopping) {
     hub.PutSnapshots(work, lock);
-    hub.CutOffLate();
-    if (hub.tasks.empty() && hub.writer.untold > 0) {
-      hub.work.wait_for(lock, ToTell, [&] { return hub.stopping || !hub.tasks.empty(); });
-      if (hub.tasks.empty() && hub.writer.untold > 0) {
-        hub.TellDone();
+    hub.DisconnectLate();
+    if (hub.tasks.empty() && hub.writer.unacknowledgedDone > 0) {
+      hub.work.wait_for(lock, DoneDelay, [&] { return hub.stopping || !hub.tasks.empty(); });
+      if (hub.tasks.empty() && hub.writer.unacknowledgedDone > 0) {
+        hub.SendDone();
       }
     }
     if (hub.tasks.empty()) {
@@ -210,17 +210,18 @@ bool Server::Run(const SessionWork& work, double seconds) {
     Task task = std::move(hub.tasks.front());
     hub.tasks.pop_front();
     hub.taskBytes -= task.bytes;
-    if (hub.taskBytes <= ReadAheadBytes / 2) { // not for each: whoever waits then queues several
+    if (hub.taskBytes <=
+        ReadAheadBytes / 2) { // not for each task: the waiting thread then queues several
       hub.space.notify_all();
     }
     if (task.generation != hub.writer.generation) {
-      continue; // somebody else drives by now
+      continue; // another client has taken over
     }
     lock.unlock();
     v1::Reply reply = work.execute(task.command);
     lock.lock();
     ++hub.counts.commands;
-    hub.Keep(std::move(task.command), task.bytes);
+    hub.Recycle(std::move(task.command), task.bytes);
     if (task.generation == hub.writer.generation) {
       hub.writer.done = task.number;
       hub.Answer(task.number, task.noReply, std::move(reply));
@@ -250,7 +251,7 @@ void Server::Publish(const v1::Command& command) {
       size = message->ByteSizeLong() + 64;
     }
     if (viewer->out.bytes - viewer->partBytes + size > hub.options.unreadBytes) {
-      viewer->FallBehind(); // it will begin anew, once it reads again
+      viewer->FallBehind(); // it gets a snapshot when it reads again
     } else {
       viewer->out.Put(message, size);
     }

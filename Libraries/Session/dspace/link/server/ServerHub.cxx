@@ -12,27 +12,13 @@ namespace dspace::session {
 namespace {
 
 constexpr std::size_t KeptReplies = 1024;
-constexpr std::size_t SpentCommands = 16;
-constexpr std::size_t SpentBytes = 1 << 20;                   // of each at most
+constexpr std::size_t RecycledCommands = 16;
+constexpr std::size_t RecycledBytes = 1 << 20;                // of each at most
 constexpr std::chrono::milliseconds SnapshotPause{100};       // between two of them, at least
-constexpr std::uint64_t TellEvery = 32;                       // commands without replies, at least
+constexpr std::uint64_t DoneEvery = 32;                       // commands without replies, at least
 constexpr std::size_t LargestReply = std::size_t(2000) << 20; // protobuf's own limit is 2 GiB
 
 } // namespace
-
-grpc::Status CheckClient(const std::string& protocol, const std::string& name) {
-  if (protocol != LinkProtocol) {
-    return {grpc::StatusCode::FAILED_PRECONDITION, "the client speaks protocol '" +
-                                                       protocol.substr(0, 64) + "'; accepted: '" +
-                                                       LinkProtocol + "'"};
-  }
-  if (name.size() > 256) {
-    return {grpc::StatusCode::INVALID_ARGUMENT, "the client's name is " +
-                                                    std::to_string(name.size()) +
-                                                    " bytes long; accepted: up to 256"};
-  }
-  return grpc::Status::OK;
-}
 
 void Server::Hub::Acknowledge(std::uint64_t number) {
   Writer& to = this->writer;
@@ -42,9 +28,9 @@ void Server::Hub::Acknowledge(std::uint64_t number) {
   }
 }
 
-void Server::Hub::Keep(v1::Command&& command, std::size_t bytes) {
-  if (this->spent.size() < SpentCommands && bytes <= SpentBytes) {
-    this->spent.push_back(std::move(command));
+void Server::Hub::Recycle(v1::Command&& command, std::size_t bytes) {
+  if (this->recycled.size() < RecycledCommands && bytes <= RecycledBytes) {
+    this->recycled.push_back(std::move(command));
   }
 }
 
@@ -52,13 +38,13 @@ void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply) {
   const bool silent =
       noReply && !reply.has_error() && reply.warning().empty() && reply.frame_event().empty();
   if (silent) {
-    this->writer.untold = number; // a later one tells of this one too
-    if (number % TellEvery == 0) {
-      this->TellDone();
+    this->writer.unacknowledgedDone = number; // the next message covers this one too
+    if (number % DoneEvery == 0) {
+      this->SendDone();
     }
     return;
   }
-  this->writer.untold = 0;
+  this->writer.unacknowledgedDone = 0;
   auto message = std::make_shared<v1::DriveReply>();
   message->mutable_done()->set_number(number);
   std::size_t size = reply.ByteSizeLong() + 64;
@@ -80,21 +66,21 @@ void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply) {
   this->PutToWriter(std::move(message), size);
 }
 
-void Server::Hub::TellDone() {
+void Server::Hub::SendDone() {
   auto message = std::make_shared<v1::DriveReply>();
-  message->mutable_done()->set_number(std::exchange(this->writer.untold, 0));
+  message->mutable_done()->set_number(std::exchange(this->writer.unacknowledgedDone, 0));
   this->PutToWriter(std::move(message), 64);
 }
 
 void Server::Hub::PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size) {
   const std::shared_ptr<DriveStream>& stream = this->writer.stream;
   if (!stream) {
-    return; // it asks again when it comes back
+    return; // the client gets it when it resumes
   }
   auto& out = stream->out;
   const auto silent = [](const v1::DriveReply& m) { return m.has_done() && !m.done().has_reply(); };
   if (!out.messages.empty() && silent(*reply) && silent(*out.messages.back().first)) {
-    out.messages.back().first = std::move(reply); // the newer number says it all
+    out.messages.back().first = std::move(reply); // the newer number covers both
     return;
   }
   if (!out.messages.empty() && out.bytes - stream->eventBytes + size > this->options.unreadBytes) {
@@ -102,13 +88,13 @@ void Server::Hub::PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::
     stream->eventBytes = 0;
     out.ended = true;
     out.ready.notify_one();
-    stream->context->TryCancel(); // it does not read: its replies are kept, and it may come back
+    stream->context->TryCancel(); // it does not read; its replies are stored, and it may resume
     return;
   }
   out.Put(std::move(reply), size);
 }
 
-void Server::Hub::TellWriterName() {
+void Server::Hub::SendWriterName() {
   auto message = std::make_shared<v1::WatchReply>();
   message->set_sequence(this->sequence);
   message->mutable_writer()->set_name(this->writer.name);
@@ -126,19 +112,18 @@ void Server::Hub::TellWriterName() {
   }
 }
 
-std::string Server::Hub::WhoDrives() const {
+std::string Server::Hub::DriverConflict() const {
   const Writer& who = this->writer;
   if (who.stream && !who.left) {
-    return "'" + who.name + "' drives; accepted: to watch, or to take over explicitly";
+    return "'" + who.name + "' is the driver; accepted: watch, or take over explicitly";
   }
   const double gone = std::chrono::duration<double>(LinkClock::now() - who.lost).count();
-  if (who.key.empty() || who.left || gone >= this->options.seat_s || HasDied(who.process)) {
+  if (who.key.empty() || who.left || gone >= this->options.reservation_s || HasDied(who.process)) {
     return {};
   }
-  return "'" + who.name + "' drives and has lost its connection, " +
-         std::to_string(long(std::ceil(this->options.seat_s - gone))) +
-         " s more are kept for it to come back; accepted: to watch, to wait, or to take over "
-         "explicitly";
+  return "'" + who.name + "' is the driver and has lost its connection; its reservation ends in " +
+         std::to_string(long(std::ceil(this->options.reservation_s - gone))) +
+         " s; accepted: watch, wait, or take over explicitly";
 }
 
 LinkClock::time_point Server::Hub::SnapshotDue(LinkClock::time_point otherwise) const {
@@ -153,11 +138,11 @@ LinkClock::time_point Server::Hub::SnapshotDue(LinkClock::time_point otherwise) 
 void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock) {
   const auto began = LinkClock::now();
   if (this->SnapshotDue(LinkClock::time_point::max()) > began) {
-    return; // nobody waits for one, or the last one was just made
+    return; // none is requested, or the last one is too recent
   }
   grpc::Status failed;
   if (!this->snapshot) {
-    // Nobody else publishes meanwhile: that is this thread's.
+    // Only this thread publishes, so that the state does not change.
     lock.unlock();
     SnapshotLimits limits;
     limits.part = std::min(limits.part, this->options.maximumMessage);
@@ -165,12 +150,12 @@ void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mu
     try {
       made = std::make_shared<SnapshotMessages>(work.snapshot(), this->sequence, limits);
     } catch (const std::exception& error) {
-      failed = {grpc::StatusCode::INTERNAL, std::string("there is no snapshot: ") + error.what()};
+      failed = {grpc::StatusCode::INTERNAL, std::string("the snapshot failed: ") + error.what()};
     }
     lock.lock();
     this->snapshot = made;
     ++this->counts.snapshots;
-    // Viewers that come and go without end do not stop whoever drives.
+    // Frequent new viewers must not stop the driver.
     const auto now = LinkClock::now();
     this->nextSnapshot = now + std::max<LinkClock::duration>(SnapshotPause, 10 * (now - began));
   }
@@ -195,10 +180,10 @@ void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mu
       viewer->out.ready.notify_one();
     }
   }
-  this->TellWriterName();
+  this->SendWriterName();
 }
 
-void Server::Hub::CutOffLate() {
+void Server::Hub::DisconnectLate() {
   if (this->deadlines.empty()) {
     return;
   }

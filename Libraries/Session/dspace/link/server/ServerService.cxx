@@ -1,8 +1,8 @@
-// The calls of the service, each in a thread of gRPC's.
+#include <dspace/link/server/ServerService.h>
+
 #include <algorithm>
 #include <thread>
 
-#include <dspace/link/server/ServerHub.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/scene/Checks.h>
@@ -20,13 +20,51 @@ constexpr seconds ToSayGoodbye{10};
 constexpr std::size_t LargestEvent = 1 << 20;  // of viewers, bytes
 constexpr std::size_t WaitingEvents = 8 << 20; // for one simulation, bytes
 
+// Counts a connection while it exists. Not Good() if there are `maximum` already.
+class Connection {
+public:
+  Connection(unsigned& count, std::mutex& mutex, unsigned maximum) : Count_(count), Mutex_(mutex) {
+    const std::lock_guard lock(mutex);
+    this->Good_ = count < maximum;
+    count += this->Good_ ? 1 : 0;
+  }
+  ~Connection() {
+    if (this->Good_) {
+      const std::lock_guard lock(this->Mutex_);
+      --this->Count_;
+    }
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  bool Good() const { return this->Good_; }
+
+private:
+  unsigned& Count_;
+  std::mutex& Mutex_;
+  bool Good_ = false;
+};
+
 Status TooMany(unsigned maximum, const char* what) {
   return {StatusCode::RESOURCE_EXHAUSTED,
           "there are " + std::to_string(maximum) + " " + what + " already; accepted: no more"};
 }
 
-// Whether the client ended its side, rather than that the connection broke: what says the latter
-// may come a moment after the end.
+// OK, or what is wrong with the protocol version or the name of a client.
+Status CheckClient(const std::string& protocol, const std::string& name) {
+  if (protocol != LinkProtocol) {
+    return {StatusCode::FAILED_PRECONDITION, "the client speaks protocol '" +
+                                                 protocol.substr(0, 64) + "'; accepted: '" +
+                                                 LinkProtocol + "'"};
+  }
+  if (name.size() > 256) {
+    return {StatusCode::INVALID_ARGUMENT, "the client's name is " + std::to_string(name.size()) +
+                                              " bytes long; accepted: up to 256"};
+  }
+  return Status::OK;
+}
+
+// Whether the client closed its side. A broken connection may be reported a moment after the end of
+// the stream.
 bool HasLeft(const grpc::ServerContext& context) {
   for (int i = 0; i < 10; ++i) {
     if (context.IsCancelled()) {
@@ -43,7 +81,7 @@ std::shared_ptr<v1::DriveReply> MakeClosed(v1::Error::Kind kind, const std::stri
   return reply;
 }
 
-// What a simulation would otherwise take for a person's wish.
+// Rejects values that a simulation must not take for input of a person.
 void CheckEvent(const v1::ViewerEvent& event) {
   if (event.has_edited()) {
     RequireFinite("value '" + event.edited().name() + "'", "the value", event.edited().value());
@@ -70,7 +108,7 @@ Status Server::Service::Hello(grpc::ServerContext*, const v1::HelloRequest* requ
   return Status::OK;
 }
 
-// A call of Drive. However it ends, nothing holds its context then and its sender has ended.
+// A call of Drive. When it ends, nothing refers to its context, and its sender has ended.
 struct Server::Service::Driving {
   Hub& hub;
   grpc::ServerContext* context;
@@ -81,15 +119,16 @@ struct Server::Service::Driving {
     std::unique_lock lock(this->hub.mutex);
     this->me->out.ended = true;
     this->me->out.ready.notify_all();
-    // Whoever does not read what is still sent to it is not waited for longer than one who is lost.
+    // A client that does not read its last messages gets no more time than one with a lost
+    // connection.
     const auto seat = std::chrono::duration_cast<LinkClock::duration>(
-        std::chrono::duration<double>(this->hub.options.seat_s));
+        std::chrono::duration<double>(this->hub.options.reservation_s));
     auto& deadline = this->hub.deadlines[this->context];
     deadline = std::min(deadline, LinkClock::now() + seconds(1) + seat);
     if (this->hub.writer.stream == this->me) {
       this->hub.writer.stream.reset();
       this->hub.writer.lost = LinkClock::now();
-      this->hub.TellWriterName();
+      this->hub.SendWriterName();
     }
     lock.unlock();
     if (this->sender.joinable()) {
@@ -127,14 +166,15 @@ Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
       return good;
     }
     generation = hub.writer.generation;
-    hub.TellWriterName();
+    hub.SendWriterName();
   }
   const Status result = this->Read(*stream, *me, generation);
-  const bool left = !result.ok() || HasLeft(*context); // whom it sends away is not waited for
+  const bool left = !result.ok() || HasLeft(*context); // a rejected client is not waited for
   std::unique_lock lock(hub.mutex);
   if (left && hub.writer.stream == me) {
     hub.writer.left = true;
-    // What it still sent is carried out, unless it waits no longer or somebody else comes.
+    // Its queued commands are executed, unless the client stops waiting or another client takes
+    // over.
     while (!hub.tasks.empty() && !hub.stopping && !me->out.ended && !context->IsCancelled()) {
       hub.space.wait_for(lock, milliseconds(50));
     }
@@ -176,21 +216,21 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
   }
   Hub& hub = this->Hub_;
   if (hub.stopping) {
-    return {StatusCode::UNAVAILABLE, "the server is ending"};
+    return {StatusCode::UNAVAILABLE, "the server is shutting down"};
   }
   Writer& writer = hub.writer;
   const bool resumed = writer.key == open.key();
-  const std::string taken = resumed || open.take_over() ? std::string() : hub.WhoDrives();
+  const std::string taken = resumed || open.take_over() ? std::string() : hub.DriverConflict();
   if (!taken.empty()) {
     return {StatusCode::ALREADY_EXISTS, taken};
   }
   if (open.again() && !resumed) {
     return {
         StatusCode::ABORTED,
-        "it was started anew, or somebody else has driven it since: what was made there is gone "
-        "or not known; accepted: to connect again"};
+        "it was restarted, or another client has driven it since: its scenes are lost or unknown; "
+        "accepted: connect again"};
   }
-  if (writer.stream) { // of a lost connection, or of whom it is taken over from
+  if (writer.stream) { // a lost connection, or the replaced driver
     DriveStream& old = *writer.stream;
     old.out.Clear();
     old.eventBytes = 0;
@@ -205,7 +245,7 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
     hub.deadlines[old.context] = LinkClock::now() + ToSayGoodbye;
   }
   if (!resumed) {
-    hub.tasks.clear(); // whoever drives now is not to see them done
+    hub.tasks.clear(); // the new driver must not see them executed
     hub.taskBytes = 0;
     hub.space.notify_all();
     Writer next;
@@ -249,8 +289,8 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
       return {StatusCode::INVALID_ARGUMENT, "a message after the first is not `send`"};
     }
     v1::SendCommand& send = *request.mutable_send();
-    // What it holds, which may be far more than what came: an empty message is two bytes on the
-    // wire.
+    // The memory of the command, which may be far larger than the message: an empty message has two
+    // bytes on the wire.
     const std::size_t bytes = send.command().SpaceUsedLong() + sizeof(Task);
     std::unique_lock lock(hub.mutex);
     if (me.out.ended || generation != hub.writer.generation) {
@@ -258,14 +298,15 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
     }
     hub.Acknowledge(send.acknowledged());
     if (send.number() <= hub.writer.queued) {
-      continue; // has come before the connection was lost
+      continue; // received before the connection was lost
     }
     if (send.number() != hub.writer.queued + 1) {
       return {StatusCode::INVALID_ARGUMENT, "command " + std::to_string(send.number()) +
                                                 " came after " + std::to_string(hub.writer.queued) +
                                                 "; accepted: the next number"};
     }
-    // Beyond the rate it waits, and what it sends waits with it. A second's worth may come at once.
+    // A client beyond the rate waits, and its further messages wait too. A burst of one second is
+    // accepted.
     auto& due = hub.writer.due;
     due = std::max(due, LinkClock::now() - seconds(1)) + period;
     const auto free = [&] {
@@ -289,13 +330,13 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
     hub.writer.queued = send.number();
     Task task{generation, send.number(), send.no_reply(), bytes, {}};
     task.command.Swap(send.mutable_command());
-    if (!hub.spent.empty()) {
-      send.mutable_command()->Swap(&hub.spent.back());
-      hub.spent.pop_back();
+    if (!hub.recycled.empty()) {
+      send.mutable_command()->Swap(&hub.recycled.back());
+      hub.recycled.pop_back();
     }
     hub.tasks.push_back(std::move(task));
     hub.taskBytes += bytes;
-    lock.unlock(); // whoever wakes up wants it
+    lock.unlock(); // the woken thread needs it
     hub.work.notify_one();
   }
   return Status::OK;
@@ -304,7 +345,7 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
 Status Server::Service::Watch(grpc::ServerContext* context, const v1::WatchRequest* request,
                               grpc::ServerWriter<v1::WatchReply>* stream) {
   Hub& hub = this->Hub_;
-  const unsigned most = hub.options.maximumConnections - 1; // one is for whoever drives
+  const unsigned most = hub.options.maximumConnections - 1; // one is reserved for the driver
   const Connection connection(hub.watching, hub.mutex, most);
   if (!connection.Good()) {
     return TooMany(most, "viewers");
@@ -336,7 +377,7 @@ Status Server::Service::Watch(grpc::ServerContext* context, const v1::WatchReque
     }
   }
   hub.viewers.erase(&me);
-  return hub.stopping ? Status(StatusCode::UNAVAILABLE, "the server is ending") : me.failed;
+  return hub.stopping ? Status(StatusCode::UNAVAILABLE, "the server is shutting down") : me.failed;
 }
 
 Status Server::Service::Tell(grpc::ServerContext*, const v1::TellRequest* request,
@@ -360,7 +401,7 @@ Status Server::Service::Tell(grpc::ServerContext*, const v1::TellRequest* reques
   }
   const std::lock_guard lock(this->Hub_.mutex);
   const auto& writer = this->Hub_.writer.stream;
-  // A simulation that does not read is not to be cut off for its viewers' sake.
+  // Events of viewers must not disconnect a simulation that does not read.
   if (writer && writer->out.messages.size() < 1000 && writer->eventBytes + size <= WaitingEvents) {
     writer->eventBytes += size;
     writer->out.Put(std::move(message), size);
