@@ -95,7 +95,7 @@ class Frame(Strict):
     def remove(self):
         """Removes it with its subtree and all objects and lights on it.
 
-        Rejected while a camera stands on or follows a frame of it."""
+        An error while a camera stands on or follows a frame of it."""
         self._scene._do("remove_frame", frame=self._id)
 
     def reparent(self, parent, keep="local"):

@@ -40,7 +40,7 @@ def make_connection(link, address, name):
     state = -1 if reply.HasField("error") else 0
     while state == 0:
         state = link.WaitForConnect(SLICE)
-        hear_signals()
+        check_signals()
         if state < 0:
             reply = to_reply(link.TakeReply())
     if reply.HasField("error"):

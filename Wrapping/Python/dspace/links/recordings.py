@@ -40,7 +40,7 @@ class ServedRecording(Recording):
             make_connection(self._recorder, client.address, client.name)
             self._recorder.BeginRecord(path, every, pack)
             while (begun := self._recorder.WaitForRecord(SLICE)) == 0:
-                hear_signals()
+                check_signals()
         except BaseException:
             self._recorder = None  # which ends it
             raise
@@ -91,7 +91,7 @@ class ServedRecording(Recording):
         problem = self._catch_up(recorder, None)
         recorder.BeginFlush()
         while not recorder.WaitForFlush(SLICE):
-            hear_signals()
+            check_signals()
         self._raise(recorder.GetRecordingFailure() or problem)
         if refused is not None:
             raise refused
@@ -166,7 +166,7 @@ class ServedRecording(Recording):
         recorder.BeginStop()
         try:
             while not recorder.WaitForStop(SLICE):
-                hear_signals()
+                check_signals()
         finally:
             _active.discard(self)
             self._failure = recorder.GetRecordingFailure()

@@ -61,7 +61,7 @@ class WatchClient(LocalClient):
         try:
             while state == 0:
                 state = watcher.WaitForSendEvent(SLICE)
-                hear_signals()
+                check_signals()
                 if state < 0:
                     reply = to_reply(watcher.TakeReply())
         except BaseException:

@@ -72,7 +72,7 @@ class Scene(Strict):
         return self._name_
 
     def remove(self):
-        """Rejected while a viewport shows it."""
+        """Removes the scene. Raises an error while a viewport shows it."""
         self._do("remove_scene")
 
     @property

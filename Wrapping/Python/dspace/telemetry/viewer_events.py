@@ -96,8 +96,8 @@ class ViewerEvents:
         """Sends a dspace.proto.service_pb2.ViewerEvent of up to 1 MiB to the simulation. A Watcher raises
         dspace.NotFound if the server has no driver."""
         if not isinstance(event, service_pb2.ViewerEvent):
-            refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
-        self._client.send_event(event)
+            reject("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
+        self._session._client.send_event(event)
 
     def answer(self, question, answer):
         """Answers a question of the simulation."""
