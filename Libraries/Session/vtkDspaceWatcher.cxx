@@ -6,7 +6,7 @@
 
 #include <dspace/link/watching/LatestSteps.h>
 #include <dspace/link/watching/LinkBanner.h>
-#include <dspace/link/watching/OwnViews.h>
+#include <dspace/link/watching/ViewerViews.h>
 #include <dspace/link/watching/Watcher.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/ErrorReply.h>

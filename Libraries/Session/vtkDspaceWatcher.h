@@ -4,7 +4,7 @@
  *
  * Update applies what the server has accepted; between two calls nothing changes. Viewports,
  * vantages and cameras of the watcher's own, named "viewer:...", may be made, and outlast snapshots
- * (<dspace/link/watching/OwnViews.h>); all other changes are refused. Where the simulation or the
+ * (<dspace/link/watching/ViewerViews.h>); all other changes are refused. Where the simulation or the
  * server is gone the last picture stays, and every viewport says so. No C++ exception leaves a
  * method; what can fail returns a serialized Reply. See <dspace/link/watching/Watcher.h>.
  */

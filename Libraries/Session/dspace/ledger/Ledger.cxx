@@ -7,7 +7,7 @@
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/ledger/LedgerFrames.h>
 #include <dspace/ledger/LedgerObjects.h>
-#include <dspace/ledger/LedgerViews.h>
+#include <dspace/ledger/LedgerNames.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/state/MessageLog.h>

@@ -1,7 +1,7 @@
 // The viewports of the ledger.
 #include <algorithm>
 
-#include <dspace/ledger/LedgerViews.h>
+#include <dspace/ledger/LedgerNames.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/state/State.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
-#include <dspace/recording/KeepGoing.h>
+#include <dspace/recording/CancelCheck.h>
 #include <dspace/recording/RecordingFile.h>
 
 namespace dspace::session {

@@ -2,7 +2,7 @@
 #ifndef DSPACE_SESSION_RECORDING_CHECK_H
 #define DSPACE_SESSION_RECORDING_CHECK_H
 
-#include <dspace/recording/KeepGoing.h>
+#include <dspace/recording/CancelCheck.h>
 #include <dspace/recording/RecordingReader.h>
 
 namespace dspace::session {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include <dspace/recording/KeepGoing.h>
+#include <dspace/recording/CancelCheck.h>
 #include <dspace/recording/RecordingReader.h>
 
 namespace dspace::session {

@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include <dspace/recording/KeepGoing.h>
+#include <dspace/recording/CancelCheck.h>
 #include <dspace/recording/RecordingFile.h>
 
 namespace dspace::session {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <dspace/recording/KeepGoing.h>
+#include <dspace/recording/CancelCheck.h>
 
 namespace dspace::session {
 

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
-#include <dspace/interpreter/Telling.h>
+#include <dspace/link/watching/ViewerEventCall.h>
 #include <dspace/link/LinkDiagnosis.h>
 #include <dspace/link/SnapshotMessages.h>
 #include <dspace/link/client/ClientLink.h>

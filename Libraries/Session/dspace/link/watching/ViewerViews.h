@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <dspace/interpreter/Interpreter.h>
-#include <dspace/ledger/LedgerViews.h>
+#include <dspace/ledger/LedgerNames.h>
 
 namespace dspace::session {
 

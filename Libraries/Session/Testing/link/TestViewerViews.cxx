@@ -1,6 +1,6 @@
 // A viewer's own vantages and cameras beside what a simulation does (viewports: Python.watching),
 // and whom its banner hears.
-#include <dspace/link/watching/OwnViews.h>
+#include <dspace/link/watching/ViewerViews.h>
 
 #include <memory>
 

@@ -1,4 +1,4 @@
-#include <dspace/link/watching/OwnViews.h>
+#include <dspace/link/watching/ViewerViews.h>
 
 #include <algorithm>
 

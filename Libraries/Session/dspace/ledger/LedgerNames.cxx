@@ -1,4 +1,4 @@
-#include <dspace/ledger/LedgerViews.h>
+#include <dspace/ledger/LedgerNames.h>
 
 #include <algorithm>
 

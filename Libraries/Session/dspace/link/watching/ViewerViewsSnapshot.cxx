@@ -1,5 +1,5 @@
 // Views of one's own when a snapshot takes the place of what they look at.
-#include <dspace/link/watching/OwnViews.h>
+#include <dspace/link/watching/ViewerViews.h>
 
 #include <algorithm>
 #include <set>
