@@ -27,7 +27,7 @@ meant by a field that is left out. The number of a command or field is what stan
 twice.
 """
 
-EFFECTS = {"CHANGE": "changes the scene", "REQUEST": "a request", "LATER": "not carried out yet"}
+EFFECTS = {"CHANGE": "changes the scene", "REQUEST": "a request", "UNIMPLEMENTED": "not carried out yet"}
 
 
 def read_protos():

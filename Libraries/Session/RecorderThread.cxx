@@ -9,8 +9,8 @@
 namespace dspace::session {
 namespace {
 
-constexpr double Slice = 0.1;         // [s]: so often the thread looks what is wanted of it
-constexpr std::size_t MostNews = 100; // that wait to be taken
+constexpr double Slice = 0.1;             // [s]: so often the thread looks what is wanted of it
+constexpr std::size_t MostWarnings = 100; // that wait to be taken
 
 std::string Number(double value) {
   char text[32];
@@ -39,10 +39,10 @@ void RecorderThread::End() {
   }
 }
 
-void RecorderThread::Tell(const std::string& text) {
+void RecorderThread::Warn(const std::string& text) {
   const std::lock_guard lock(this->mutex);
-  if (this->news.size() < MostNews) {
-    this->news.push_back(text);
+  if (this->warnings.size() < MostWarnings) {
+    this->warnings.push_back(text);
   }
 }
 
@@ -57,7 +57,7 @@ void RecorderThread::SetFailure(const std::string& why) {
   }
   this->counts.failure = why;
   if (this->recording) {
-    this->news.push_back(why + "; recording has stopped, what was written stays");
+    this->warnings.push_back(why + "; recording has stopped, what was written stays");
   }
 }
 
@@ -69,7 +69,7 @@ void RecorderThread::Run() {
   }
   if (this->session) {
     const std::string failure = this->session->StopRecording();
-    this->Look();
+    this->UpdateCounts();
     if (!failure.empty()) {
       this->Fail(failure);
     }
@@ -83,23 +83,23 @@ void RecorderThread::Run() {
 
 void RecorderThread::Follow() {
   std::vector<v1::WatchReply> messages;
-  this->heard = Clock::now();
-  while (this->Going()) {
+  this->lastContact = Clock::now();
+  while (this->IsRunning()) {
     if (this->watcher->TakeAll(messages, Slice)) {
       for (v1::WatchReply& message : messages) {
-        if (!this->Going()) {
+        if (!this->IsRunning()) {
           return;
         }
         this->Take(message);
       }
-      this->heard = Clock::now(); // however long that took
+      this->lastContact = Clock::now(); // however long that took
     }
-    this->LookAtLink();
-    this->Look();
+    this->CheckLink();
+    this->UpdateCounts();
   }
 }
 
-bool RecorderThread::Going() {
+bool RecorderThread::IsRunning() {
   const std::lock_guard lock(this->mutex);
   return !this->ending && this->counts.failure.empty();
 }
@@ -120,9 +120,9 @@ void RecorderThread::CarryOut(v1::Command& command) {
   }
   const v1::Reply reply = this->session->GetInterpreter().Execute(command);
   if (reply.has_error()) {
-    this->session->Miss(command, reply.error().message());
-    if (!std::exchange(this->unlike, true)) {
-      this->Tell(this->Name() + "what the server has done cannot be done here (" +
+    this->session->AddFailed(command, reply.error().message());
+    if (!std::exchange(this->diverged, true)) {
+      this->Warn(this->Name() + "what the server has done cannot be done here (" +
                  reply.error().message() + "): it is recorded, without snapshots from here on");
     }
   }
@@ -146,13 +146,13 @@ void RecorderThread::Begin(v1::WatchReply& message) {
   if (old) { // the context goes on, with what is on the GPU already
     this->session->SetRenderContext(old->GetRenderContext());
   }
-  this->unlike = false;
+  this->diverged = false;
   for (v1::Command& command : *message.mutable_snapshot()->mutable_command()) {
     this->CarryOut(command);
   }
   if (!first) {
     this->session->TakeRecording(old);
-    this->Tell(this->Name() + "it was cut off from the server, or too slow for it: " +
+    this->Warn(this->Name() + "it was cut off from the server, or too slow for it: " +
                std::to_string(message.sequence() - before) +
                " commands are missing before simulation time " + Number(this->time_s) +
                " s, and it has a gap there");
@@ -167,28 +167,29 @@ void RecorderThread::Begin(v1::WatchReply& message) {
 }
 
 // Whether the server is there, and lets this in.
-void RecorderThread::LookAtLink() {
+void RecorderThread::CheckLink() {
   std::string why;
   if (this->watcher->Connected(&why)) {
-    this->heard = Clock::now();
-    this->refusal.clear();
+    this->lastContact = Clock::now();
+    this->rejection.clear();
     return;
   }
-  const std::string said = this->watcher->Refusal();
+  const std::string said = this->watcher->Rejection();
   if (!said.empty()) { // it may be let in again
-    this->heard = Clock::now();
-    if (said != this->refusal) {
-      this->refusal = said;
-      this->Tell(this->Name() + "nothing is recorded while the server refuses it: " + said);
+    this->lastContact = Clock::now();
+    if (said != this->rejection) {
+      this->rejection = said;
+      this->Warn(this->Name() + "nothing is recorded while the server refuses it: " + said);
     }
-  } else if (Clock::now() - this->heard > std::chrono::duration<double>(this->options.timeout_s)) {
+  } else if (Clock::now() - this->lastContact >
+             std::chrono::duration<double>(this->options.timeout_s)) {
     this->Fail(this->Name() + "the server at '" + this->options.address +
                "' is gone: nobody answers within " + Number(this->options.timeout_s) + " s");
   }
 }
 
 // How far it is; does what is wanted.
-void RecorderThread::Look() {
+void RecorderThread::UpdateCounts() {
   if (!this->session) {
     return;
   }

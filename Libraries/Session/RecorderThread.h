@@ -38,7 +38,7 @@ struct RecorderThread {
   std::uint64_t flushesWanted = 0;
   std::uint64_t flushesDone = 0;
   RecordingCounts counts;
-  std::deque<std::string> news; // for the simulation
+  std::deque<std::string> warnings; // for the simulation
 
   // What went wrong before the thread is told in `counts`, and so is everything later.
   void Start();
@@ -55,22 +55,22 @@ private:
   using Clock = std::chrono::steady_clock;
   void Run();
   void Follow();
-  bool Going();
+  bool IsRunning();
   void Take(v1::WatchReply& message);
   void Begin(v1::WatchReply& message);
   void CarryOut(v1::Command& command);
-  void LookAtLink();
-  void Look();
-  void Tell(const std::string& text);
+  void CheckLink();
+  void UpdateCounts();
+  void Warn(const std::string& text);
   void Fail(const std::string& why);
   void SetFailure(const std::string& why); // with the mutex held; the first one stays
   std::string Name() const { return "recording '" + this->path + "': "; }
 
   vtkSmartPointer<vtkDspaceSession> session;
-  double time_s = 0.0; // of the last command that set one
-  bool unlike = false; // a command could not be carried out here
-  std::string refusal; // that was told last
-  Clock::time_point heard;
+  double time_s = 0.0;   // of the last command that set one
+  bool diverged = false; // a command could not be carried out here
+  std::string rejection; // that was told last
+  Clock::time_point lastContact;
 };
 
 } // namespace dspace::session

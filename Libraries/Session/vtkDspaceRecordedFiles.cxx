@@ -45,8 +45,8 @@ std::string vtkDspaceRecordedFiles::GetFolder() {
   return this->Impl->files ? this->Impl->files->Folder() : std::string();
 }
 
-std::string vtkDspaceRecordedFiles::Place(const std::string& path) {
-  return this->Impl->files ? this->Impl->files->Place(path) : path;
+std::string vtkDspaceRecordedFiles::Locate(const std::string& path) {
+  return this->Impl->files ? this->Impl->files->Locate(path) : path;
 }
 
 std::string vtkDspaceRecordedFiles::Map(const std::string& bytes) {

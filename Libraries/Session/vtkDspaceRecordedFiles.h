@@ -32,7 +32,7 @@ public:
   /// Where they were unpacked; empty: nothing was packed.
   std::string GetFolder();
   /// Where a path of the recording's is.
-  std::string Place(const std::string& path);
+  std::string Locate(const std::string& path);
   /// A serialized Command with its paths made those of the folder.
   std::string Map(const std::string& command);
 #ifndef __VTK_WRAP__

@@ -47,21 +47,22 @@ void vtkDspaceRecorder::SetTimeout(double seconds) {
   this->Impl->options.timeout_s = seconds;
 }
 
-std::string vtkDspaceRecorder::ConnectLater(const std::string& address, const std::string& name) {
+std::string vtkDspaceRecorder::BeginConnect(const std::string& address, const std::string& name) {
   using dspace::session::Watcher;
   this->Impl->options.address = address;
   this->Impl->options.name = name;
   return dspace::session::Catch([this] {
-           this->Impl->watcher = std::make_unique<Watcher>(this->Impl->options, Watcher::Later());
+           this->Impl->watcher =
+               std::make_unique<Watcher>(this->Impl->options, Watcher::NonBlocking());
            return dspace::v1::Reply();
          })
       .SerializeAsString();
 }
 
-int vtkDspaceRecorder::WaitToConnect(double seconds) {
+int vtkDspaceRecorder::WaitForConnect(double seconds) {
   bool connected = false;
   const dspace::v1::Reply reply = dspace::session::Catch([&] {
-    connected = this->Impl->watcher && this->Impl->watcher->WaitToOpen(seconds);
+    connected = this->Impl->watcher && this->Impl->watcher->WaitForConnect(seconds);
     return dspace::v1::Reply();
   });
   if (reply.has_error()) {
@@ -76,7 +77,7 @@ std::string vtkDspaceRecorder::TakeReply() {
   return std::exchange(this->Impl->failed, std::string());
 }
 
-void vtkDspaceRecorder::RecordLater(const std::string& path, double commitEvery, bool pack) {
+void vtkDspaceRecorder::BeginRecord(const std::string& path, double commitEvery, bool pack) {
   Internals& self = *this->Impl;
   if (!self.watcher || self.thread.joinable()) {
     return;
@@ -87,7 +88,7 @@ void vtkDspaceRecorder::RecordLater(const std::string& path, double commitEvery,
   self.Start();
 }
 
-int vtkDspaceRecorder::WaitToRecord(double seconds) {
+int vtkDspaceRecorder::WaitForRecord(double seconds) {
   Internals& self = *this->Impl;
   self.Wait(seconds, [&self] { return self.recording; });
   const Lock lock(self.mutex);
@@ -107,22 +108,22 @@ long long vtkDspaceRecorder::GetSequence() {
   return static_cast<long long>(this->Impl->sequence);
 }
 
-void vtkDspaceRecorder::FlushLater() {
+void vtkDspaceRecorder::BeginFlush() {
   const Lock lock(this->Impl->mutex);
   ++this->Impl->flushesWanted;
 }
 
-bool vtkDspaceRecorder::WaitToFlush(double seconds) {
+bool vtkDspaceRecorder::WaitForFlush(double seconds) {
   Internals& self = *this->Impl;
   return self.Wait(seconds, [&self] { return self.flushesDone >= self.flushesWanted; });
 }
 
-void vtkDspaceRecorder::StopLater() {
+void vtkDspaceRecorder::BeginStop() {
   const Lock lock(this->Impl->mutex);
   this->Impl->ending = true;
 }
 
-bool vtkDspaceRecorder::WaitToStop(double seconds) {
+bool vtkDspaceRecorder::WaitForStop(double seconds) {
   return !this->Impl->thread.joinable() || this->Impl->Wait(seconds, [] { return false; });
 }
 
@@ -145,14 +146,14 @@ std::string vtkDspaceRecorder::GetRecordingMissing() {
   return lines;
 }
 
-std::string vtkDspaceRecorder::TakeNews() {
+std::string vtkDspaceRecorder::TakeWarnings() {
   const Lock lock(this->Impl->mutex);
-  if (this->Impl->news.empty()) {
+  if (this->Impl->warnings.empty()) {
     return {};
   }
-  std::string news = std::move(this->Impl->news.front());
-  this->Impl->news.pop_front();
-  return news;
+  std::string warning = std::move(this->Impl->warnings.front());
+  this->Impl->warnings.pop_front();
+  return warning;
 }
 
 void vtkDspaceRecorder::PrintSelf(ostream& os, vtkIndent indent) {

@@ -6,7 +6,7 @@
  * for what comes to be recorded. It draws nothing, but carries every command out, so that it reads
  * models and terrain by the paths that the server has, and has a graphics context for the
  * viewports. A command that cannot be carried out here is recorded all the same, and told
- * (TakeNews).
+ * (TakeWarnings).
  *
  * All of this is for one thread. Nothing waits for longer than it is told to; a child of the
  * process (fork) may only destroy it. No C++ exception leaves a method.
@@ -26,35 +26,35 @@ public:
   vtkTypeMacro(vtkDspaceRecorder, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// To be set before ConnectLater, as for vtkDspaceRemoteSession. The timeout [s] (above 0, to
+  /// To be set before BeginConnect, as for vtkDspaceRemoteSession. The timeout [s] (above 0, to
   /// 1e6; default 30) is also how long a server may not answer before the recording ends.
   void SetCertificates(const std::string& certificate, const std::string& key,
                        const std::string& authority);
   void SetInsecure(bool insecure);
   void SetTimeout(double seconds);
-  /// ConnectLater, then WaitToConnect, up to so many seconds each time, until it returns 1
+  /// BeginConnect, then WaitForConnect, up to so many seconds each time, until it returns 1
   /// (connected) or -1 (no: TakeReply, a serialized Reply, says why).
-  std::string ConnectLater(const std::string& address, const std::string& name);
-  int WaitToConnect(double seconds);
+  std::string BeginConnect(const std::string& address, const std::string& name);
+  int WaitForConnect(double seconds);
   std::string TakeReply();
 
-  /// Then RecordLater, once, as vtkDspaceSession::Record, and WaitToRecord until it returns 1 (the
+  /// Then BeginRecord, once, as vtkDspaceSession::Record, and WaitForRecord until it returns 1 (the
   /// recording is there, and begins with the state that the server had) or -1 (GetRecordingFailure
   /// says why not).
-  void RecordLater(const std::string& path, double commitEvery, bool pack);
-  int WaitToRecord(double seconds);
+  void BeginRecord(const std::string& path, double commitEvery, bool pack);
+  int WaitForRecord(double seconds);
   /// Until the command of this number (Reply.sequence) is recorded: 1; -1: it never will be.
   int WaitFor(long long sequence, double seconds);
   /// The number of the last command that is recorded, or in the state that the recording began
   /// with.
   long long GetSequence();
-  /// FlushLater, then WaitToFlush until it is true: all that is recorded is written, or failed.
-  void FlushLater();
-  bool WaitToFlush(double seconds);
-  /// StopLater ends the recording with what has been taken in by then; WaitToStop is true once the
+  /// BeginFlush, then WaitForFlush until it is true: all that is recorded is written, or failed.
+  void BeginFlush();
+  bool WaitForFlush(double seconds);
+  /// BeginStop ends the recording with what has been taken in by then; WaitForStop is true once the
   /// file is closed.
-  void StopLater();
-  bool WaitToStop(double seconds);
+  void BeginStop();
+  bool WaitForStop(double seconds);
 
   /// As of vtkDspaceSession, a tenth of a second old at most.
   unsigned long long GetRecordingCount(const std::string& name);
@@ -62,7 +62,7 @@ public:
   std::string GetRecordingFailure();
   std::string GetRecordingMissing();
   /// What the simulation should know, once: the next of what went wrong; empty: nothing more.
-  std::string TakeNews();
+  std::string TakeWarnings();
 
 protected:
   vtkDspaceRecorder();

@@ -24,7 +24,7 @@ vtkStandardNewMacro(vtkDspaceRecordingTask);
 
 namespace {
 
-using dspace::session::KeepGoing;
+using dspace::session::CancelCheck;
 using dspace::session::RecordingReader;
 using dspace::v1::RecordingReply;
 
@@ -50,7 +50,7 @@ void Put(const dspace::session::SalvageReport& from, dspace::v1::SalvageReport* 
 } // namespace
 
 struct vtkDspaceRecordingTask::Internals {
-  using Work = std::function<void(RecordingReply&, const KeepGoing&)>;
+  using Work = std::function<void(RecordingReply&, const CancelCheck&)>;
 
   ~Internals() { this->End(); }
 
@@ -101,25 +101,25 @@ vtkDspaceRecordingTask::~vtkDspaceRecordingTask() {
   }
 }
 
-void vtkDspaceRecordingTask::CheckLater(const std::string& path) {
-  this->Impl->Begin([path](RecordingReply&, const KeepGoing& keepGoing) {
+void vtkDspaceRecordingTask::BeginCheck(const std::string& path) {
+  this->Impl->Begin([path](RecordingReply&, const CancelCheck& checkCancel) {
     RecordingReader reader(path);
-    dspace::session::CheckRecording(reader, keepGoing);
+    dspace::session::CheckRecording(reader, checkCancel);
   });
 }
 
-void vtkDspaceRecordingTask::CutLater(const std::string& path, const std::string& out,
+void vtkDspaceRecordingTask::BeginCut(const std::string& path, const std::string& out,
                                       unsigned long long first, unsigned long long last) {
-  this->Impl->Begin([=](RecordingReply& reply, const KeepGoing& keepGoing) {
+  this->Impl->Begin([=](RecordingReply& reply, const CancelCheck& checkCancel) {
     RecordingReader reader(path);
-    reply.set_number(dspace::session::CutRecording(reader, out, first, last, keepGoing));
+    reply.set_number(dspace::session::CutRecording(reader, out, first, last, checkCancel));
   });
 }
 
-void vtkDspaceRecordingTask::PackLater(const std::string& path, const std::string& out) {
-  this->Impl->Begin([=](RecordingReply& reply, const KeepGoing& keepGoing) {
+void vtkDspaceRecordingTask::BeginPack(const std::string& path, const std::string& out) {
+  this->Impl->Begin([=](RecordingReply& reply, const CancelCheck& checkCancel) {
     const dspace::session::PackReport report = dspace::session::PackRecording(
-        path, out.empty() ? std::nullopt : std::optional<std::string>(out), keepGoing);
+        path, out.empty() ? std::nullopt : std::optional<std::string>(out), checkCancel);
     reply.mutable_pack()->set_files(report.files);
     reply.mutable_pack()->set_bytes(report.bytes);
     for (const std::string& each : report.missing) {
@@ -128,9 +128,9 @@ void vtkDspaceRecordingTask::PackLater(const std::string& path, const std::strin
   });
 }
 
-void vtkDspaceRecordingTask::SalvageLater(const std::string& path, const std::string& out) {
-  this->Impl->Begin([=](RecordingReply& reply, const KeepGoing& keepGoing) {
-    Put(dspace::session::SalvageRecording(path, out, keepGoing), reply.mutable_salvage());
+void vtkDspaceRecordingTask::BeginSalvage(const std::string& path, const std::string& out) {
+  this->Impl->Begin([=](RecordingReply& reply, const CancelCheck& checkCancel) {
+    Put(dspace::session::SalvageRecording(path, out, checkCancel), reply.mutable_salvage());
   });
 }
 

@@ -23,17 +23,17 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// Reads all of a recording: <dspace/recording/RecordingCheck.h>.
-  void CheckLater(const std::string& path);
+  void BeginCheck(const std::string& path);
   /// The commands first..last as a new recording, which begins after the snapshot `number`:
   /// <dspace/recording/RecordingCut.h>.
-  void CutLater(const std::string& path, const std::string& out, unsigned long long first,
+  void BeginCut(const std::string& path, const std::string& out, unsigned long long first,
                 unsigned long long last);
   /// Takes the files that a recording needs into it, or where `out` is not empty into a copy:
   /// `pack`. <dspace/recording/RecordingPack.h>
-  void PackLater(const std::string& path, const std::string& out);
+  void BeginPack(const std::string& path, const std::string& out);
   /// What survives of a damaged recording as a new one: `salvage`.
   /// <dspace/recording/RecordingSalvage.h>
-  void SalvageLater(const std::string& path, const std::string& out);
+  void BeginSalvage(const std::string& path, const std::string& out);
 
   /// Up to so many seconds; whether the work has ended.
   bool Wait(double seconds);

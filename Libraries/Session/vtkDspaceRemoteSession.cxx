@@ -65,14 +65,14 @@ std::string vtkDspaceRemoteSession::SetPace(double rate) {
 }
 
 std::string vtkDspaceRemoteSession::Connect(const std::string& address, const std::string& name) {
-  std::string reply = this->ConnectLater(address, name);
+  std::string reply = this->BeginConnect(address, name);
   int state = 0;
-  while (this->Impl->client && (state = this->WaitToConnect(1e6)) == 0) {
+  while (this->Impl->client && (state = this->WaitForConnect(1e6)) == 0) {
   }
   return state < 0 ? this->TakeReply() : reply;
 }
 
-std::string vtkDspaceRemoteSession::ConnectLater(const std::string& address,
+std::string vtkDspaceRemoteSession::BeginConnect(const std::string& address,
                                                  const std::string& name) {
   using dspace::session::RemoteClient;
   this->Impl->options.address = address;
@@ -80,16 +80,16 @@ std::string vtkDspaceRemoteSession::ConnectLater(const std::string& address,
   return dspace::session::Catch([&] {
            this->Impl->client.reset();
            this->Impl->client =
-               std::make_unique<RemoteClient>(this->Impl->options, RemoteClient::Later());
+               std::make_unique<RemoteClient>(this->Impl->options, RemoteClient::NonBlocking());
            return dspace::v1::Reply();
          })
       .SerializeAsString();
 }
 
-int vtkDspaceRemoteSession::WaitToConnect(double seconds) {
+int vtkDspaceRemoteSession::WaitForConnect(double seconds) {
   bool connected = false;
   const std::string reply = this->Impl->With([&](dspace::session::RemoteClient& client) {
-    connected = client.WaitToOpen(seconds);
+    connected = client.WaitForConnect(seconds);
     return dspace::v1::Reply();
   });
   if (!reply.empty()) {

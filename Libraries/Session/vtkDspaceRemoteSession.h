@@ -36,11 +36,11 @@ public:
 
   /// To "host:port" or "unix:PATH", under a name for people.
   std::string Connect(const std::string& address, const std::string& name);
-  /// The same in two parts, for whoever must do other things meanwhile: ConnectLater, then
-  /// WaitToConnect, up to so many seconds each time, until it returns 1 (connected) or -1 (no:
+  /// The same in two parts, for whoever must do other things meanwhile: BeginConnect, then
+  /// WaitForConnect, up to so many seconds each time, until it returns 1 (connected) or -1 (no:
   /// TakeReply says why).
-  std::string ConnectLater(const std::string& address, const std::string& name);
-  int WaitToConnect(double seconds);
+  std::string BeginConnect(const std::string& address, const std::string& name);
+  int WaitForConnect(double seconds);
   /// Carries out a serialized Command and returns the serialized Reply.
   std::string Execute(const std::string& command);
   /// The same without waiting: the reply is empty, or an earlier command's error.

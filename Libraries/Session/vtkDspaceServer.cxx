@@ -65,7 +65,7 @@ struct vtkDspaceServer::Internals {
     }
   }
 
-  void Hear(const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
+  void OnCommand(const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
     dspace::v1::Command recorded;
     if (this->server && dspace::session::ToRecorded(command, reply, recorded)) {
       ++this->published;
@@ -77,7 +77,9 @@ struct vtkDspaceServer::Internals {
 vtkDspaceServer::vtkDspaceServer() : Impl(new Internals) {
   this->Impl->listener = this->Impl->session->GetInterpreter().AddListener(
       [impl = this->Impl.get()](const dspace::v1::Command& command,
-                                const dspace::v1::Reply& reply) { impl->Hear(command, reply); });
+                                const dspace::v1::Reply& reply) {
+        impl->OnCommand(command, reply);
+      });
 }
 
 vtkDspaceServer::~vtkDspaceServer() { // others may keep the session

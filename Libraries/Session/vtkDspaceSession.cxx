@@ -56,30 +56,30 @@ struct vtkDspaceSession::Internals {
   // The command is recorded whatever becomes of the ledger, which only snapshots are made of. What
   // this throws becomes a warning in the reply; a server's viewers hear of the command from another
   // listener.
-  void Note(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply) {
-    std::string trouble;
+  void OnCommand(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply) {
+    std::string failure;
     try {
       this->ledger.Add(accepted, reply);
     } catch (const std::exception& error) {
-      trouble = error.what();
+      failure = error.what();
     }
     if (accepted.has_set_time()) {
       this->time_s = accepted.set_time().time_s();
     }
-    this->Keep(accepted, reply, trouble);
-    if (!trouble.empty()) {
-      throw std::runtime_error(trouble);
+    this->AddToRecording(accepted, reply, failure);
+    if (!failure.empty()) {
+      throw std::runtime_error(failure);
     }
   }
 
-  void Keep(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply,
-            std::string& trouble) {
+  void AddToRecording(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply,
+                      std::string& failure) {
     if (!this->recording) {
       return;
     }
-    const std::string failure = this->recording->Add(accepted, reply, this->ledger);
-    if (!failure.empty()) {
-      trouble += (trouble.empty() ? "" : "; ") + failure +
+    const std::string stopped = this->recording->Add(accepted, reply, this->ledger);
+    if (!stopped.empty()) {
+      failure += (failure.empty() ? "" : "; ") + stopped +
                  "; recording has stopped, what was written stays";
     }
   }
@@ -100,7 +100,7 @@ vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
   dspace::session::AddTextCommands(commands);
   this->Impl->interpreter.AddListener(
       [this](const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
-        this->Impl->Note(command, reply);
+        this->Impl->OnCommand(command, reply);
       });
 }
 
@@ -191,8 +191,8 @@ void vtkDspaceSession::TakeRecording(vtkDspaceSession* other) {
   this->Impl->recording = std::move(other->Impl->recording);
   this->Impl->counts = other->Impl->counts;
   if (this->Impl->recording) {
-    this->Impl->recording->Jump(this->Impl->ledger, this->Impl->time_s,
-                                &this->Impl->interpreter.GetState().files);
+    this->Impl->recording->Resync(this->Impl->ledger, this->Impl->time_s,
+                                  &this->Impl->interpreter.GetState().files);
   }
 }
 
@@ -264,11 +264,12 @@ void vtkDspaceSession::ConfineProcess() {
   const dspace::ConfinedDrivers confined;
 }
 
-std::string vtkDspaceSession::Miss(const dspace::v1::Command& accepted, const std::string& why) {
-  this->Impl->ledger.Miss(accepted, why);
-  std::string trouble;
-  this->Impl->Keep(accepted, dspace::v1::Reply(), trouble);
-  return trouble;
+std::string vtkDspaceSession::AddFailed(const dspace::v1::Command& accepted,
+                                        const std::string& why) {
+  this->Impl->ledger.AddFailed(accepted, why);
+  std::string failure;
+  this->Impl->AddToRecording(accepted, dspace::v1::Reply(), failure);
+  return failure;
 }
 
 const dspace::session::Ledger& vtkDspaceSession::GetLedger() {

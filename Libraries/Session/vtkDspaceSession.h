@@ -96,7 +96,7 @@ public:
   /// For who follows another session: a command that was accepted there, and that could not be
   /// carried out here for the reason given. It is recorded like others; without its effect there is
   /// no snapshot until its scene is removed. Returns why recording has ended, or an empty string.
-  std::string Miss(const dspace::v1::Command& accepted, const std::string& why);
+  std::string AddFailed(const dspace::v1::Command& accepted, const std::string& why);
 #endif
 
 protected:

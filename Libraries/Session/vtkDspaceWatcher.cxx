@@ -20,9 +20,9 @@ vtkStandardNewMacro(vtkDspaceWatcher);
 
 namespace {
 
-constexpr int MostChanges = 100000;      // of frames, that wait to be taken
-constexpr double WriterToldWithin = 2.0; // [s] of a snapshot
-constexpr double LongestTellPick = 1.0;  // [s]: a click is not to stop the viewer for longer
+constexpr int MostChanges = 100000;   // of frames, that wait to be taken
+constexpr double WriterTimeout = 2.0; // [s] of a snapshot
+constexpr double PickTimeout = 1.0;   // [s]: a click is not to stop the viewer for longer
 
 } // namespace
 
@@ -30,12 +30,12 @@ struct vtkDspaceWatcher::Internals {
   dspace::session::WatcherOptions options;
   std::unique_ptr<dspace::session::Watcher> watcher;
   vtkSmartPointer<vtkDspaceSession> session = vtkSmartPointer<vtkDspaceSession>::New();
-  dspace::session::OwnViews own;
+  dspace::session::ViewerViews views;
   std::uint64_t sequence = 0;
   std::string writer;
   bool writerConnected = false;
-  bool writerUntold = false; // since the last snapshot, which is followed by it
-  std::string trouble;
+  bool writerPending = false; // since the last snapshot, which is followed by it
+  std::string error;
   std::string failed; // the reply that says why there is no connection, or no word of an event
   dspace::session::LinkBanner banner;
   std::set<std::string> followed; // scenes whose frames' changes are told
@@ -46,13 +46,13 @@ struct vtkDspaceWatcher::Internals {
   void Apply(dspace::v1::WatchReply& message) {
     if (message.has_snapshot()) {
       this->Begin(*message.mutable_snapshot());
-      this->writerUntold = true;
+      this->writerPending = true;
     } else if (message.has_command()) {
       this->Apply(*message.mutable_command());
     } else if (message.has_writer()) {
       this->writer = message.writer().name();
       this->writerConnected = message.writer().connected();
-      this->writerUntold = false;
+      this->writerPending = false;
     }
     this->sequence = message.sequence();
   }
@@ -83,19 +83,19 @@ struct vtkDspaceWatcher::Internals {
   }
 
   void Begin(dspace::v1::WatchReply::Snapshot& snapshot) {
-    this->own.Leave(this->Interpreter());
+    this->views.BeforeSnapshot(this->Interpreter());
     // The context goes on, with what is on the GPU already.
     const vtkSmartPointer<vtkDspaceRenderContext> context = this->session->GetRenderContext();
     const vtkSmartPointer<vtkDspaceSession> before = this->session;
     this->session = vtkSmartPointer<vtkDspaceSession>::New();
     this->session->SetRenderContext(context);
-    this->trouble.clear();
+    this->error.clear();
     this->banner.Follow(this->Interpreter());
     const std::set<std::string> scenes = std::exchange(this->followed, {}); // it is no change
     for (dspace::v1::Command& command : *snapshot.mutable_command()) {
       this->Apply(command);
     }
-    this->own.Enter(this->Interpreter());
+    this->views.AfterSnapshot(this->Interpreter());
     this->followed = scenes;
     for (const std::string& scene : scenes) {
       this->Follow(scene);
@@ -105,15 +105,15 @@ struct vtkDspaceWatcher::Internals {
 
   void Apply(dspace::v1::Command& command) {
     if (command.has_remove_scene()) {
-      this->own.MakeRoom(this->Interpreter(), command);
+      this->views.RemoveConflicting(this->Interpreter(), command);
     }
     dspace::v1::Reply reply = this->Interpreter().Execute(command);
-    if (reply.has_error() && this->own.MakeRoom(this->Interpreter(), command)) {
+    if (reply.has_error() && this->views.RemoveConflicting(this->Interpreter(), command)) {
       reply = this->Interpreter().Execute(command);
     }
     if (reply.has_error()) {
-      this->session->Miss(command, reply.error().message());
-      this->trouble = this->trouble.empty() ? reply.error().message() : this->trouble;
+      this->session->AddFailed(command, reply.error().message());
+      this->error = this->error.empty() ? reply.error().message() : this->error;
     }
     this->changes.mutable_frame_event()->MergeFrom(reply.frame_event());
     if (this->changes.frame_event_size() > MostChanges) {
@@ -160,18 +160,18 @@ struct vtkDspaceWatcher::Internals {
     if (!entry || entry->effect != Effect::Change) {
       return this->Interpreter().Execute(command);
     }
-    if (!this->own.Owns(command)) {
+    if (!this->views.Owns(command)) {
       const std::string name = dspace::session::CommandName(command);
       return dspace::session::ErrorReply(
           dspace::v1::Error::UNSUPPORTED, "command " + name,
           "command " + name +
               ": who watches changes nothing; accepted: requests, and viewports, vantages and "
               "cameras of one's own, whose names begin with '" +
-              std::string(dspace::session::OwnViews::Prefix) + "'");
+              std::string(dspace::session::ViewerViews::Prefix) + "'");
     }
-    const dspace::v1::Reply reply = this->own.Execute(this->Interpreter(), command);
+    const dspace::v1::Reply reply = this->views.Execute(this->Interpreter(), command);
     if (command.has_viewport_event() && reply.pick().object() != 0) {
-      this->TellPick(command.viewport_event().viewport(), reply.pick());
+      this->SendPick(command.viewport_event().viewport(), reply.pick());
     }
     if (command.has_create_viewport() || command.has_resize_viewport()) {
       this->ShowBanner();
@@ -180,7 +180,7 @@ struct vtkDspaceWatcher::Internals {
   }
 
   // What a person has clicked on. Nobody is there to hear it: then it is for the viewer alone.
-  void TellPick(const std::string& viewport, const dspace::v1::PickReply& pick) {
+  void SendPick(const std::string& viewport, const dspace::v1::PickReply& pick) {
     if (!this->watcher || !this->watcher->Connected() || !this->writerConnected) {
       return;
     }
@@ -189,7 +189,7 @@ struct vtkDspaceWatcher::Internals {
     event.mutable_picked()->set_viewport(viewport);
     *event.mutable_picked()->mutable_pick() = pick;
     dspace::session::Catch([&] {
-      this->watcher->Tell(event, LongestTellPick);
+      this->watcher->SendEvent(event, PickTimeout);
       return dspace::v1::Reply();
     });
   }
@@ -216,33 +216,34 @@ void vtkDspaceWatcher::SetTimeout(double seconds) {
 }
 
 std::string vtkDspaceWatcher::Connect(const std::string& address, const std::string& name) {
-  const std::string reply = this->ConnectLater(address, name);
+  const std::string reply = this->BeginConnect(address, name);
   int state = 0;
-  while (this->Impl->watcher && (state = this->WaitToConnect(1e6)) == 0) {
+  while (this->Impl->watcher && (state = this->WaitForConnect(1e6)) == 0) {
   }
   return state < 0 ? this->TakeReply() : reply;
 }
 
-std::string vtkDspaceWatcher::ConnectLater(const std::string& address, const std::string& name) {
+std::string vtkDspaceWatcher::BeginConnect(const std::string& address, const std::string& name) {
   using dspace::session::Watcher;
   this->Impl->options.address = address;
   this->Impl->options.name = name;
   return dspace::session::Catch([this] {
            this->Impl->watcher.reset();
-           this->Impl->watcher = std::make_unique<Watcher>(this->Impl->options, Watcher::Later());
+           this->Impl->watcher =
+               std::make_unique<Watcher>(this->Impl->options, Watcher::NonBlocking());
            return dspace::v1::Reply();
          })
       .SerializeAsString();
 }
 
-int vtkDspaceWatcher::WaitToConnect(double seconds) {
+int vtkDspaceWatcher::WaitForConnect(double seconds) {
   bool connected = false;
   const dspace::v1::Reply reply = dspace::session::Catch([&] {
     if (!this->Impl->watcher) {
       throw dspace::Error(dspace::Error::Kind::Io, "watcher",
-                          "nothing is being connected; accepted: ConnectLater before");
+                          "nothing is being connected; accepted: BeginConnect before");
     }
-    connected = this->Impl->watcher->WaitToOpen(seconds);
+    connected = this->Impl->watcher->WaitForConnect(seconds);
     return dspace::v1::Reply();
   });
   if (reply.has_error()) {
@@ -262,16 +263,16 @@ int vtkDspaceWatcher::Update(double wait) {
   std::vector<dspace::v1::WatchReply> messages;
   // Not for ever: what comes faster than it is applied is for the next call.
   const auto longest = [&] {
-    return applied == 0                                       ? wait
-           : this->Impl->writerUntold && this->GetConnected() ? WriterToldWithin
-                                                              : 0.0;
+    return applied == 0                                        ? wait
+           : this->Impl->writerPending && this->GetConnected() ? WriterTimeout
+                                                               : 0.0;
   };
   while (this->Impl->watcher && applied < 10000 &&
          this->Impl->watcher->TakeAll(messages, longest())) {
     this->Impl->Apply(messages);
     applied += messages.size();
   }
-  this->Impl->own.Wake(this->Impl->Interpreter(), !this->Impl->writerConnected);
+  this->Impl->views.Resume(this->Impl->Interpreter(), !this->Impl->writerConnected);
   this->Impl->ShowBanner();
   return static_cast<int>(applied);
 }
@@ -292,9 +293,10 @@ std::string vtkDspaceWatcher::GetWriterName() {
   return this->Impl->writer;
 }
 
-std::string vtkDspaceWatcher::GetTrouble() {
-  const std::string refusal = this->Impl->watcher ? this->Impl->watcher->Refusal() : std::string();
-  return refusal.empty() ? this->Impl->trouble : refusal;
+std::string vtkDspaceWatcher::GetError() {
+  const std::string rejection =
+      this->Impl->watcher ? this->Impl->watcher->Rejection() : std::string();
+  return rejection.empty() ? this->Impl->error : rejection;
 }
 
 std::string vtkDspaceWatcher::Execute(const std::string& bytes) {
@@ -310,27 +312,27 @@ std::string vtkDspaceWatcher::TakeFrameEvents() {
   return bytes;
 }
 
-std::string vtkDspaceWatcher::TellLater(const std::string& bytes) {
+std::string vtkDspaceWatcher::BeginSendEvent(const std::string& bytes) {
   return dspace::session::Catch([&] {
            dspace::v1::ViewerEvent event;
            if (!this->Impl->watcher || !event.ParseFromString(bytes)) {
              throw dspace::Error(dspace::Error::Kind::Corrupt, "event",
                                  "the bytes are not a ViewerEvent, or there is no connection");
            }
-           this->Impl->watcher->BeginTell(event, this->Impl->options.timeout_s);
+           this->Impl->watcher->BeginSendEvent(event, this->Impl->options.timeout_s);
            return dspace::v1::Reply();
          })
       .SerializeAsString();
 }
 
-int vtkDspaceWatcher::WaitToTell(double seconds) {
+int vtkDspaceWatcher::WaitForSendEvent(double seconds) {
   bool told = false;
   const dspace::v1::Reply reply = dspace::session::Catch([&] {
     if (!this->Impl->watcher) {
       throw dspace::Error(dspace::Error::Kind::Io, "event", "there is no connection");
     }
-    told = this->Impl->watcher->WaitToTell(seconds);
-    if (told && !this->Impl->watcher->TakeTold()) {
+    told = this->Impl->watcher->WaitForSendEvent(seconds);
+    if (told && !this->Impl->watcher->TakeSendEventResult()) {
       throw dspace::Error(dspace::Error::Kind::NotFound, "simulation",
                           "nobody drives the server now; the event is dropped");
     }
@@ -343,9 +345,9 @@ int vtkDspaceWatcher::WaitToTell(double seconds) {
   return told ? 1 : 0;
 }
 
-void vtkDspaceWatcher::DropTell() {
+void vtkDspaceWatcher::CancelSendEvent() {
   if (this->Impl->watcher) {
-    this->Impl->watcher->DropTell();
+    this->Impl->watcher->CancelSendEvent();
   }
 }
 

@@ -4,8 +4,8 @@
  *
  * Update applies what the server has accepted; between two calls nothing changes. Viewports,
  * vantages and cameras of the watcher's own, named "viewer:...", may be made, and outlast snapshots
- * (<dspace/link/watching/ViewerViews.h>); all other changes are refused. Where the simulation or the
- * server is gone the last picture stays, and every viewport says so. No C++ exception leaves a
+ * (<dspace/link/watching/ViewerViews.h>); all other changes are refused. Where the simulation or
+ * the server is gone the last picture stays, and every viewport says so. No C++ exception leaves a
  * method; what can fail returns a serialized Reply. See <dspace/link/watching/Watcher.h>.
  */
 #ifndef vtkDspaceWatcher_h
@@ -31,11 +31,11 @@ public:
   void SetInsecure(bool insecure);
   void SetTimeout(double seconds);
   std::string Connect(const std::string& address, const std::string& name);
-  /// The same in two parts, for whoever must do other things meanwhile: ConnectLater, then
-  /// WaitToConnect, up to so many seconds each time, until it returns 1 (connected) or -1 (no:
+  /// The same in two parts, for whoever must do other things meanwhile: BeginConnect, then
+  /// WaitForConnect, up to so many seconds each time, until it returns 1 (connected) or -1 (no:
   /// TakeReply says why).
-  std::string ConnectLater(const std::string& address, const std::string& name);
-  int WaitToConnect(double seconds);
+  std::string BeginConnect(const std::string& address, const std::string& name);
+  int WaitForConnect(double seconds);
   std::string TakeReply();
 
   /// Applies all that has come; waits up to so many seconds for something. Returns how many
@@ -50,7 +50,7 @@ public:
   std::string GetWriterName();
   /// Why the server refuses to go on, or what could not be applied since the last snapshot; empty:
   /// nothing.
-  std::string GetTrouble();
+  std::string GetError();
 
   /// Carries out a serialized Command: requests, and commands on views of one's own. An event that
   /// clicks on something in a viewport of one's own also tells the simulation (ViewerEvent.Picked),
@@ -59,12 +59,13 @@ public:
   /// A serialized Reply with what has happened to the frames of followed scenes (FollowFrames)
   /// since the last call, in order. A snapshot brings none. At most 100,000 wait; older ones go.
   std::string TakeFrameEvents();
-  /// Sends a serialized ViewerEvent to the simulation: TellLater, then WaitToTell, up to so many
-  /// seconds each time, until it returns 1 (told) or -1 (no: TakeReply says why; its error is
-  /// NOT_FOUND when nobody drives). DropTell waits no longer. The timeout is the connection's.
-  std::string TellLater(const std::string& event);
-  int WaitToTell(double seconds);
-  void DropTell();
+  /// Sends a serialized ViewerEvent to the simulation: BeginSendEvent, then WaitForSendEvent, up to
+  /// so many seconds each time, until it returns 1 (told) or -1 (no: TakeReply says why; its error
+  /// is NOT_FOUND when nobody drives). CancelSendEvent waits no longer. The timeout is the
+  /// connection's.
+  std::string BeginSendEvent(const std::string& event);
+  int WaitForSendEvent(double seconds);
+  void CancelSendEvent();
   /// What draws; another one after each snapshot.
   vtkDspaceSession* GetSession();
   void Close();

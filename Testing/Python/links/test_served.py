@@ -75,8 +75,8 @@ def test_a_viewer_draws_the_same_picture(tmp_path):
             with dspace.watch(server.address) as late:
                 for watcher in (late, early):
                     while watcher.sequence < late.sequence or watcher.sequence < 55:
-                        assert watcher.update(20.0), (watcher.sequence, watcher.trouble)
-                    assert watcher.trouble == ""
+                        assert watcher.update(20.0), (watcher.sequence, watcher.error)
+                    assert watcher.error == ""
                     assert watcher.simulation == "drive"
                     assert np.array_equal(watcher.viewports["view"].image(), wanted)
             # It looks from elsewhere, and changes nothing.

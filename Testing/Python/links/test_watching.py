@@ -44,11 +44,11 @@ def follow(watcher, session):
     """Applies all that the simulation has done."""
     session.scene().add_frame("mark")
     while "scene" not in watcher.scenes or "mark" not in watcher.scenes["scene"].frames:
-        assert watcher.update(20.0), watcher.trouble
+        assert watcher.update(20.0), watcher.error
     session.scene().frame("mark").remove()
     while "mark" in watcher.scenes["scene"].frames:
-        assert watcher.update(20.0), watcher.trouble
-    assert watcher.trouble == ""
+        assert watcher.update(20.0), watcher.error
+    assert watcher.error == ""
 
 
 def drag(view):
@@ -192,7 +192,7 @@ def test_what_the_simulation_removes_goes(tmp_path):
         session.scene("another").add_frame("f")
         while "another" not in watcher.scenes or not watcher.scenes["another"].frames:
             assert watcher.update(20.0)
-        assert watcher.trouble == "" and not watcher.viewports
+        assert watcher.error == "" and not watcher.viewports
         watcher.add_view("riding", size=SIZE, eye=(1, 1, 1), target=(0, 0, 0))  # the only scene
         build(session)
         follow(watcher, session)
@@ -207,9 +207,9 @@ def test_what_people_do_reaches_the_simulation(tmp_path):
         session.on_event(picked.append, kind="picked")
         session.on_edited("speed", edited.append, low=0.0, high=2.0, unit="m/s")
         view, scene = watcher.add_view("mine", size=SIZE), watcher.scenes["scene"]
-        hit = watcher.viewports["view"].pick(80, 60, tell=True)
+        hit = watcher.viewports["view"].pick(80, 60, send=True)
         assert hit.object.name == "ball"
-        assert watcher.viewports["view"].pick(1, 1, tell=True) is None  # the sky is no event
+        assert watcher.viewports["view"].pick(1, 1, send=True) is None  # the sky is no event
         view.event("press", 80, 60, button="left")
         assert view.event("release", 80, 60, button="left").object_name == "ball"
         watcher.select([scene.objects["ball"], scene.objects["post"]])
@@ -285,12 +285,12 @@ def test_what_is_no_event_is_refused(tmp_path):
             event = service_pb2.ViewerEvent()
             event.edited.name, event.edited.value = "speed", bad
             with pytest.raises(dspace.InvalidArgument, match="value 'speed'"):
-                watcher.tell(event)  # by the server, whatever the viewer is
+                watcher.send_event(event)  # by the server, whatever the viewer is
         event = service_pb2.ViewerEvent()
         event.dragged.goal = "arm"
         event.dragged.pose.rotation.w = 2.0
         with pytest.raises(dspace.InvalidArgument, match="goal 'arm'"):
-            watcher.tell(event)
+            watcher.send_event(event)
         with pytest.raises(dspace.InvalidArgument, match="accepted: up to 1048576"):
             watcher.answer("deploy?", "g" * (1 << 20))
         with pytest.raises(dspace.WrongType):
@@ -337,7 +337,7 @@ def test_a_session_of_ones_own_hears_itself():
         view = build(session).add_viewport(SIZE, "main")
         heard = []
         session.on_event(lambda event: heard.append(event.WhichOneof("kind")))
-        view.pick(80, 60, tell=True)
+        view.pick(80, 60, send=True)
         session.answer("deploy?", "go")
         assert heard == [] and len(session.process_events()) == 2 and heard == ["picked", "answer"]
         assert session.process_events() == []
@@ -388,16 +388,16 @@ def test_a_viewer_says_why_it_is_refused(tmp_path):
     """By a server that was started anew and lets no viewer in; once there is one that does, it follows."""
     with Served(tmp_path) as server:
         with dspace.watch(server.address, name="eyes", timeout=20.0) as watcher:
-            assert watcher.trouble == ""
+            assert watcher.error == ""
             server.kill()
             with Served(tmp_path, "--max-connections", "1"):
-                while not watcher.trouble:
+                while not watcher.error:
                     watcher.update(0.1)
-                assert "viewers already" in watcher.trouble and not watcher.connected
+                assert "viewers already" in watcher.error and not watcher.connected
             with Served(tmp_path):
                 while not watcher.connected:
                     watcher.update(0.1)
-                assert watcher.trouble == ""
+                assert watcher.error == ""
 
 
 @pytest.mark.parametrize("smoothing", [0.0, 0.7])
@@ -418,7 +418,7 @@ def test_a_viewer_that_is_behind_shows_what_who_kept_up_shows(tmp_path, smoothin
         session.wait = True
         came = watcher.sequence
         while watcher.sequence < came + 600:
-            assert watcher.update(20.0), watcher.trouble
+            assert watcher.update(20.0), watcher.error
         image = watcher.viewports["chase"].image()
         assert (image != before).any()
         assert (image == session.viewports["chase"].image()).all()

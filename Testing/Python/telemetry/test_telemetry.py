@@ -143,14 +143,14 @@ def test_viewers_hear_all_of_it_and_answer(tmp_path):
             with dspace.watch(server.address) as late:  # from a snapshot
                 for watcher in (early, late):
                     while "scene" not in watcher.scenes or not watcher.scenes["scene"].questions:
-                        assert watcher.update(20.0), watcher.trouble
+                        assert watcher.update(20.0), watcher.error
                     seen = watcher.scenes["scene"]
                     assert seen.telemetry.read() == {"rover/power": 9.0}
                     assert (seen.telemetry["rover/power"].time, seen.telemetry["rover/power"].unit) == (9.0, "W")
                     assert [(e.number, e.kind, e.text, e.data) for e in seen.events()] == [
                         (1, "staging", "second stage", {"mass": 3.5})]
                     assert np.array_equal(watcher.viewports["view"].image(), wanted)
-                    assert watcher.trouble == ""
+                    assert watcher.error == ""
                     with pytest.raises(dspace.Unsupported):
                         seen.telemetry.set({"rover/power": 1.0})
                 early.scenes["scene"].questions[0].reply("yes")

@@ -45,8 +45,8 @@ def follow(watcher, session, wanted):
     """Until the viewer has the time that is set now."""
     session.scene().time = wanted
     while watcher.scenes["scene"].time != wanted:
-        assert watcher.update(20.0), watcher.trouble
-    assert watcher.trouble == ""
+        assert watcher.update(20.0), watcher.error
+    assert watcher.error == ""
 
 
 @pytest.mark.parametrize("limit", ["90000", "67108864"])

@@ -118,7 +118,7 @@ TEST_F(FaultyLedger, IsTakenForWholeAgainByNoOtherCommand) {
   v1::Command viewport; // one that could not be made here
   viewport.set_scene("one");
   viewport.mutable_create_viewport()->set_name("view");
-  EXPECT_EQ(session->Miss(viewport, "no room"), "");
+  EXPECT_EQ(session->AddFailed(viewport, "no room"), "");
   try {
     session->GetLedger().Commands();
     ADD_FAILURE() << "a snapshot without a command";

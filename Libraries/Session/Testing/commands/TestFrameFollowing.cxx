@@ -6,25 +6,27 @@
 namespace dspace::testing {
 namespace {
 
-struct Told {
+struct ReceivedEvent {
   v1::FrameEvent::Type type;
   std::vector<FrameId> frames;
-  bool operator==(const Told& o) const { return this->type == o.type && this->frames == o.frames; }
+  bool operator==(const ReceivedEvent& o) const {
+    return this->type == o.type && this->frames == o.frames;
+  }
 };
 
-void PrintTo(const Told& told, std::ostream* os) {
-  *os << v1::FrameEvent::Type_Name(told.type) << ::testing::PrintToString(told.frames);
+void PrintTo(const ReceivedEvent& received, std::ostream* os) {
+  *os << v1::FrameEvent::Type_Name(received.type) << ::testing::PrintToString(received.frames);
 }
 
-std::vector<Told> EventsOf(const v1::Reply& reply) {
-  std::vector<Told> all;
+std::vector<ReceivedEvent> EventsOf(const v1::Reply& reply) {
+  std::vector<ReceivedEvent> all;
   for (const v1::FrameEvent& event : reply.frame_event()) {
     all.push_back({event.type(), {event.frame().begin(), event.frame().end()}});
   }
   return all;
 }
 
-using Events = std::vector<Told>;
+using Events = std::vector<ReceivedEvent>;
 
 class FrameFollowing : public CommandTest {
 protected:
@@ -102,7 +104,7 @@ TEST_F(FrameFollowing, ThousandsOfPosesAreOneEvent) {
   EXPECT_EQ(this->Accept(set).frame_event_size(), 0); // they are there already
 }
 
-TEST_F(FrameFollowing, RobotsAreToldByTheirFrames) {
+TEST_F(FrameFollowing, RobotsAreReportedByTheirFrames) {
   const TemporaryFile file("follow.urdf", R"(<robot name="arm">
     <link name="base"/><link name="upper"/>
     <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
@@ -114,12 +116,12 @@ TEST_F(FrameFollowing, RobotsAreToldByTheirFrames) {
   const FrameId base = reply.robot().base();
   const FrameId lower = reply.robot().link(0).frame();
   const FrameId upper = reply.robot().link(1).frame();
-  Events told = EventsOf(reply);
-  ASSERT_GE(told.size(), 3u);
-  told.resize(3); // poses may follow
-  EXPECT_EQ(told, (Events{{v1::FrameEvent::CREATED, {base}},
-                          {v1::FrameEvent::CREATED, {lower}},
-                          {v1::FrameEvent::CREATED, {upper}}}));
+  Events received = EventsOf(reply);
+  ASSERT_GE(received.size(), 3u);
+  received.resize(3); // poses may follow
+  EXPECT_EQ(received, (Events{{v1::FrameEvent::CREATED, {base}},
+                              {v1::FrameEvent::CREATED, {lower}},
+                              {v1::FrameEvent::CREATED, {upper}}}));
   c.mutable_set_joints()->set_robot("arm");
   c.mutable_set_joints()->add_joint(0);
   c.mutable_set_joints()->add_position(30);
@@ -128,7 +130,7 @@ TEST_F(FrameFollowing, RobotsAreToldByTheirFrames) {
   EXPECT_EQ(EventsOf(this->Accept(c)), (Events{{v1::FrameEvent::REMOVED, {upper, lower, base}}}));
 }
 
-TEST_F(FrameFollowing, WhatARefusedCommandTookBackIsNotTold) {
+TEST_F(FrameFollowing, ChangesThatARejectedCommandRevertedAreNotReported) {
   const TemporaryFile file("refused.urdf", R"(<robot name="arm"><link name="base">
     <visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>)");
   this->Follow();
@@ -145,7 +147,7 @@ TEST_F(FrameFollowing, WhatARefusedCommandTookBackIsNotTold) {
 }
 
 // A listener on the tree that throws makes the command fail with its change made.
-TEST_F(FrameFollowing, WhatARefusedCommandLeftIsTold) {
+TEST_F(FrameFollowing, ChangesThatARejectedCommandLeftAreReported) {
   this->Follow();
   const auto token =
       this->Tree().AddListener([](const FrameEvent&) { throw std::runtime_error("listener"); });
@@ -190,14 +192,14 @@ TEST_F(FrameFollowing, DirectPosesThatPileUpAreJoined) {
   EXPECT_TRUE(this->Interpreter_.Execute(refused).has_error());
   move(b, -3);
   const v1::Reply reply = this->Ask();
-  const Events told = EventsOf(reply);
+  const Events received = EventsOf(reply);
   const std::size_t full = session::FrameEventLog::MaximumWaiting;
-  ASSERT_EQ(told.size(), full + 3);
-  EXPECT_EQ(told[full - 2], (Told{v1::FrameEvent::POSES_CHANGED, {a}}));
-  EXPECT_EQ(told[full - 1], (Told{v1::FrameEvent::POSES_CHANGED, {b, a}}));
-  EXPECT_EQ(told[full], (Told{v1::FrameEvent::RENAMED, {b}}));
-  EXPECT_EQ(told[full + 1], (Told{v1::FrameEvent::POSES_CHANGED, {b}}));
-  EXPECT_EQ(told[full + 2], (Told{v1::FrameEvent::POSES_CHANGED, {b}}));
+  ASSERT_EQ(received.size(), full + 3);
+  EXPECT_EQ(received[full - 2], (ReceivedEvent{v1::FrameEvent::POSES_CHANGED, {a}}));
+  EXPECT_EQ(received[full - 1], (ReceivedEvent{v1::FrameEvent::POSES_CHANGED, {b, a}}));
+  EXPECT_EQ(received[full], (ReceivedEvent{v1::FrameEvent::RENAMED, {b}}));
+  EXPECT_EQ(received[full + 1], (ReceivedEvent{v1::FrameEvent::POSES_CHANGED, {b}}));
+  EXPECT_EQ(received[full + 2], (ReceivedEvent{v1::FrameEvent::POSES_CHANGED, {b}}));
   for (int i = 1; i < reply.frame_event_size(); ++i) {
     EXPECT_GT(reply.frame_event(i).revision(), reply.frame_event(i - 1).revision());
   }
@@ -209,7 +211,7 @@ TEST_F(FrameFollowing, DirectPosesThatPileUpAreJoined) {
             (Events{{v1::FrameEvent::POSES_CHANGED, {a}}, {v1::FrameEvent::POSES_CHANGED, {b}}}));
 }
 
-TEST_F(FrameFollowing, CommandsOfListenersAreToldInTheOuterReply) {
+TEST_F(FrameFollowing, CommandsOfListenersAreReportedInTheOuterReply) {
   this->Follow();
   std::vector<int> heard;
   bool nested = false;
@@ -222,9 +224,9 @@ TEST_F(FrameFollowing, CommandsOfListenersAreToldInTheOuterReply) {
     }
   });
   v1::Command outer = Create("outer");
-  const Events told = EventsOf(this->Accept(outer));
-  EXPECT_EQ(told, (Events{{v1::FrameEvent::CREATED, {this->Tree().Find("outer")}},
-                          {v1::FrameEvent::CREATED, {this->Tree().Find("inner")}}}));
+  const Events received = EventsOf(this->Accept(outer));
+  EXPECT_EQ(received, (Events{{v1::FrameEvent::CREATED, {this->Tree().Find("outer")}},
+                              {v1::FrameEvent::CREATED, {this->Tree().Find("inner")}}}));
   EXPECT_EQ(heard, (std::vector<int>{1, 0}));
 }
 
@@ -274,12 +276,12 @@ TEST_F(FrameFollowing, ScenesAreFollowedOneByOneAndLeaveNoListener) {
 }
 
 TEST_F(FrameFollowing, IsNoChangeOfTheScene) {
-  int told = 0;
-  this->Interpreter_.AddListener([&](const v1::Command&, const v1::Reply&) { ++told; });
+  int received = 0;
+  this->Interpreter_.AddListener([&](const v1::Command&, const v1::Reply&) { ++received; });
   const std::uint64_t revision = this->Interpreter_.FindScene("scene")->Revision();
   this->Follow();
   this->Follow(true);
-  EXPECT_EQ(told, 0); // not recorded
+  EXPECT_EQ(received, 0); // not recorded
   EXPECT_EQ(this->Interpreter_.FindScene("scene")->Revision(), revision);
 }
 

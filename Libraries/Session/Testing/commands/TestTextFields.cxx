@@ -23,15 +23,15 @@ TEST_F(TextFields, AreFoundAndMadeUtf8AtAnyDepth) {
   v1::Reply reply;
   reply.mutable_frames()->add_frame()->set_name("plain");
   reply.add_warning("M\xC3\xA4st");
-  EXPECT_EQ(session::FindForeignText(reply), nullptr);
+  EXPECT_EQ(session::FindInvalidText(reply), nullptr);
   EXPECT_TRUE(Arrives(reply));
   reply.mutable_frames()->add_frame()->set_path("a/M\xE4st");
   reply.add_warning("F\xFC\xDF"
                     "e");
-  ASSERT_NE(session::FindForeignText(reply), nullptr);
+  ASSERT_NE(session::FindInvalidText(reply), nullptr);
   EXPECT_FALSE(Arrives(reply));
   session::MakeTextUtf8(reply);
-  EXPECT_EQ(session::FindForeignText(reply), nullptr);
+  EXPECT_EQ(session::FindInvalidText(reply), nullptr);
   EXPECT_TRUE(Arrives(reply));
   EXPECT_EQ(reply.frames().frame(0).name(), "plain");
   EXPECT_EQ(reply.frames().frame(1).path(), "a/M\xC3\xA4st");

@@ -290,9 +290,9 @@ TEST_F(LinkTest, EventsOfViewersReachTheWriter) {
   v1::ViewerEvent event;
   event.mutable_answer()->set_question("deploy?");
   event.mutable_answer()->set_answer("go");
-  EXPECT_FALSE(watcher.Tell(event)); // nobody drives
+  EXPECT_FALSE(watcher.SendEvent(event)); // nobody drives
   RemoteClient client(this->ClientOptions());
-  EXPECT_TRUE(watcher.Tell(event));
+  EXPECT_TRUE(watcher.SendEvent(event));
   std::vector<v1::ViewerEvent> heard;
   client.TakeEvents([&](const v1::ViewerEvent& each) { heard.push_back(each); }, 20);
   ASSERT_EQ(heard.size(), 1u);

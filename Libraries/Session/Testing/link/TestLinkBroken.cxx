@@ -13,7 +13,7 @@ protected:
   // A server of which every step that it carries out is kept, in order.
   void Serve() {
     this->Options.maximumConnections = 200;
-    this->Options.silence_s = 1;
+    this->Options.keepalive_s = 1;
     this->StartServer();
     this->Served->interpreter.AddListener([this](const v1::Command& command, const v1::Reply&) {
       if (command.has_set_time()) {
@@ -24,7 +24,7 @@ protected:
   session::RemoteClientOptions Through(const std::string& socket) const {
     auto options = this->ClientOptions();
     options.address = "unix:" + this->Folder + "/" + socket;
-    options.silence_s = 0.5;
+    options.keepalive_s = 0.5;
     options.timeout_s = 60;
     return options;
   }
@@ -110,7 +110,7 @@ TEST_F(LinkBroken, AViewerEndsUpWithTheServersState) {
   }
   session::WatcherOptions options;
   options.address = "unix:" + this->Folder + "/proxy";
-  options.silence_s = 0.5;
+  options.keepalive_s = 0.5;
   options.timeout_s = 30;
   Watcher watcher(options);
   std::uint64_t sequence = 21;

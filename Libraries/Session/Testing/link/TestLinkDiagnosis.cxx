@@ -12,7 +12,7 @@
 namespace dspace::testing {
 namespace {
 
-using session::WhyNoAnswer;
+using session::DiagnoseConnection;
 
 class LinkDiagnosis : public LinkTest {
 protected:
@@ -53,29 +53,30 @@ protected:
 
 TEST_F(LinkDiagnosis, OfASocket) {
   const std::string path = this->Folder + "/other";
-  ExpectSays(WhyNoAnswer("unix:" + path, false), "there is no such socket");
+  ExpectSays(DiagnoseConnection("unix:" + path, false), "there is no such socket");
   std::ofstream(path) << "a file";
-  ExpectSays(WhyNoAnswer("unix:" + path, false), "the file is no socket");
+  ExpectSays(DiagnoseConnection("unix:" + path, false), "the file is no socket");
   std::filesystem::remove(path);
   this->Listen(path);
-  ExpectSays(WhyNoAnswer("unix:" + path, false), "wants certificates");
-  ExpectSays(WhyNoAnswer("unix:" + path, true), "certificates of one authority");
+  ExpectSays(DiagnoseConnection("unix:" + path, false), "wants certificates");
+  ExpectSays(DiagnoseConnection("unix:" + path, true), "certificates of one authority");
   for (int i = 0; i < 20; ++i) { // none of which it takes in
-    ExpectSays(WhyNoAnswer("unix:" + path, false), "who does not let this client in");
+    ExpectSays(DiagnoseConnection("unix:" + path, false), "who does not let this client in");
   }
   close(this->Descriptor);
   this->Descriptor = -1;
-  ExpectSays(WhyNoAnswer("unix:" + path, false), "nobody listens there"); // the socket is left
+  ExpectSays(DiagnoseConnection("unix:" + path, false),
+             "nobody listens there"); // the socket is left
 }
 
 TEST_F(LinkDiagnosis, OfAPort) {
   const std::string free = std::to_string(this->Port(false));
-  ExpectSays(WhyNoAnswer("127.0.0.1:" + free, false), "nobody listens there");
-  ExpectSays(WhyNoAnswer("localhost:" + free, false), "nobody listens there");
+  ExpectSays(DiagnoseConnection("127.0.0.1:" + free, false), "nobody listens there");
+  ExpectSays(DiagnoseConnection("localhost:" + free, false), "nobody listens there");
   close(this->Descriptor);
   const std::string taken = std::to_string(this->Port(true));
-  ExpectSays(WhyNoAnswer("127.0.0.1:" + taken, false), "who does not let this client in");
-  ExpectSays(WhyNoAnswer("no.such.host.invalid:" + taken, false), "may not be known");
+  ExpectSays(DiagnoseConnection("127.0.0.1:" + taken, false), "who does not let this client in");
+  ExpectSays(DiagnoseConnection("no.such.host.invalid:" + taken, false), "may not be known");
 }
 
 TEST_F(LinkDiagnosis, IsWhatAClientSays) {

@@ -34,7 +34,7 @@ protected:
 
   void Refuse(const v1::ViewerEvent& event, const std::string& text) {
     try {
-      this->Viewer->Tell(event);
+      this->Viewer->SendEvent(event);
       FAIL() << event.ShortDebugString();
     } catch (const Error& error) {
       EXPECT_EQ(error.GetKind(), Error::Kind::InvalidArgument);
@@ -68,7 +68,7 @@ TEST_F(LinkEvents, EveryKindComesInOrderAsItWasSaid) {
   dragged->mutable_pose()->mutable_rotation()->set_x(0.8);
   dragged->set_done(true);
   for (const v1::ViewerEvent& event : said) {
-    EXPECT_TRUE(this->Viewer->Tell(event));
+    EXPECT_TRUE(this->Viewer->SendEvent(event));
   }
   const std::vector<v1::ViewerEvent> heard = this->Take(client, said.size());
   ASSERT_EQ(heard.size(), said.size());
@@ -84,7 +84,7 @@ TEST_F(LinkEvents, ACallbackMayGiveCommands) {
   v1::ViewerEvent event;
   event.mutable_dragged()->set_goal("arm");
   event.mutable_dragged()->mutable_pose()->mutable_position()->set_x(2);
-  EXPECT_TRUE(this->Viewer->Tell(event));
+  EXPECT_TRUE(this->Viewer->SendEvent(event));
   std::size_t count = 0;
   client.TakeEvents(
       [&](const v1::ViewerEvent& each) {
@@ -102,20 +102,20 @@ TEST_F(LinkEvents, AreSaidInPartsAndDropped) {
   RemoteClient client(this->ClientOptions());
   v1::ViewerEvent event;
   event.mutable_answer()->set_question("deploy?");
-  EXPECT_TRUE(this->Viewer->WaitToTell(20)); // nothing is under way,
-  EXPECT_THROW(this->Viewer->TakeTold(), Error);
+  EXPECT_TRUE(this->Viewer->WaitForSendEvent(20)); // nothing is under way,
+  EXPECT_THROW(this->Viewer->TakeSendEventResult(), Error);
   for (const bool dropped : {true, false}) {
     event.mutable_answer()->set_answer(dropped ? "no" : "go");
-    this->Viewer->BeginTell(event, 20);
+    this->Viewer->BeginSendEvent(event, 20);
     if (dropped) {
-      this->Viewer->DropTell();
-      EXPECT_THROW(this->Viewer->TakeTold(), Error); // nor is it any more
+      this->Viewer->CancelSendEvent();
+      EXPECT_THROW(this->Viewer->TakeSendEventResult(), Error); // nor is it any more
     }
   }
-  while (!this->Viewer->WaitToTell(0.01)) {
+  while (!this->Viewer->WaitForSendEvent(0.01)) {
   }
-  EXPECT_TRUE(this->Viewer->TakeTold());
-  EXPECT_THROW(this->Viewer->TakeTold(), Error); // taken once
+  EXPECT_TRUE(this->Viewer->TakeSendEventResult());
+  EXPECT_THROW(this->Viewer->TakeSendEventResult(), Error); // taken once
   // What was dropped may have been heard.
   const std::vector<v1::ViewerEvent> heard = this->Take(client, 1);
   ASSERT_FALSE(heard.empty());
@@ -144,7 +144,7 @@ TEST_F(LinkEvents, WhatIsNoWishIsRefusedByTheServer) {
   // One that the server does not know, of a newer viewer, goes through whole.
   event.Clear();
   event.GetReflection()->MutableUnknownFields(&event)->AddVarint(100, 42);
-  EXPECT_TRUE(this->Viewer->Tell(event));
+  EXPECT_TRUE(this->Viewer->SendEvent(event));
   const std::vector<v1::ViewerEvent> heard = this->Take(client, 1);
   ASSERT_EQ(heard.size(), 1u);
   EXPECT_EQ(heard[0].GetReflection()->GetUnknownFields(heard[0]).field_count(), 1);

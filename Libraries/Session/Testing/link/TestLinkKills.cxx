@@ -32,9 +32,9 @@ int Kills() {
 }
 
 // LinkProcess, which makes the processes that are to be killed.
-class Nursery {
+class ChildProcesses {
 public:
-  Nursery() {
+  ChildProcesses() {
     int in[2];
     int out[2];
     EXPECT_EQ(pipe(in), 0);
@@ -55,13 +55,13 @@ public:
     this->To_ = fdopen(in[1], "w");
     this->From_ = fdopen(out[0], "r");
   }
-  ~Nursery() {
+  ~ChildProcesses() {
     std::fclose(this->To_);
     std::fclose(this->From_);
     waitpid(this->Id_, nullptr, 0);
   }
-  Nursery(const Nursery&) = delete;
-  Nursery& operator=(const Nursery&) = delete;
+  ChildProcesses(const ChildProcesses&) = delete;
+  ChildProcesses& operator=(const ChildProcesses&) = delete;
 
   // The id of a process that is ready; 0: it failed.
   pid_t Make(const std::string& line) {
@@ -134,7 +134,7 @@ std::chrono::microseconds Moment(std::mt19937& random) {
 }
 
 TEST_F(LinkKills, WritersDieAndNothingIsLostRepeatedOrHalf) {
-  Nursery nursery;
+  ChildProcesses children;
   this->StartServer();
   std::vector<double> seen; // by the server, of all writers
   this->Served->interpreter.AddListener([&](const v1::Command& command, const v1::Reply&) {
@@ -149,7 +149,7 @@ TEST_F(LinkKills, WritersDieAndNothingIsLostRepeatedOrHalf) {
   std::mt19937 random(11);
   const int kills = Kills();
   for (int i = 0; i < kills; ++i) {
-    const pid_t driver = nursery.Make("drive " + this->Server->Address());
+    const pid_t driver = children.Make("drive " + this->Server->Address());
     std::this_thread::sleep_for(Moment(random));
     Kill(driver);
   }
@@ -183,15 +183,15 @@ TEST_F(LinkKills, WritersDieAndNothingIsLostRepeatedOrHalf) {
   }
 }
 
-TEST_F(LinkKills, ServersDieAndClientsAreToldAndRecordingsAreSound) {
-  Nursery nursery;
+TEST_F(LinkKills, ServersDieAndClientsReportItAndRecordingsAreSound) {
+  ChildProcesses children;
   std::mt19937 random(12);
   const std::string listen = this->Options.listen;
   std::size_t recorded = 0;
   const int kills = Kills();
   for (int i = 0; i < kills; ++i) {
     const std::string file = this->Folder + "/run" + std::to_string(i) + ".dspace";
-    const pid_t server = nursery.Make("serve " + listen + " " + file);
+    const pid_t server = children.Make("serve " + listen + " " + file);
     ASSERT_GT(server, 0);
     auto options = this->ClientOptions();
     options.timeout_s = 20;
@@ -205,7 +205,7 @@ TEST_F(LinkKills, ServersDieAndClientsAreToldAndRecordingsAreSound) {
     std::thread killer([&] {
       std::this_thread::sleep_for(Moment(random));
       Kill(server);
-      next = nursery.Make("serve " + listen + " " + file + "2");
+      next = children.Make("serve " + listen + " " + file + "2");
     });
     v1::Reply reply;
     int step = 0;
@@ -249,7 +249,7 @@ TEST_F(LinkKills, ServersDieAndClientsAreToldAndRecordingsAreSound) {
 }
 
 TEST_F(LinkKills, ViewersDieAndNobodyNotices) {
-  Nursery nursery;
+  ChildProcesses children;
   this->StartServer();
   RemoteClient client(this->ClientOptions());
   Accept(client.Execute(MakeScene()));
@@ -259,7 +259,7 @@ TEST_F(LinkKills, ViewersDieAndNobodyNotices) {
   std::uint64_t reconnections = 0;
   const int kills = Kills();
   for (int i = 0; i < kills; ++i) {
-    const pid_t viewer = nursery.Make("watch " + this->Server->Address());
+    const pid_t viewer = children.Make("watch " + this->Server->Address());
     const auto end = std::chrono::steady_clock::now() + Moment(random);
     while (std::chrono::steady_clock::now() < end) {
       const v1::Reply reply =

@@ -34,7 +34,7 @@ TEST_F(LinkLimits, EventsThatNobodyReadsTakeBoundedMemoryAndCutNobodyOff) {
   ASSERT_TRUE(writer.IsOpen);
   int delivered = 0;
   for (int i = 0; i < 60; ++i) {
-    delivered += watcher.Tell(MakeEvent(i, 1000000));
+    delivered += watcher.SendEvent(MakeEvent(i, 1000000));
   }
   // 8 MiB wait in the server, some on the way.
   EXPECT_GE(delivered, 8);
@@ -42,7 +42,7 @@ TEST_F(LinkLimits, EventsThatNobodyReadsTakeBoundedMemoryAndCutNobodyOff) {
   EXPECT_LT(this->Server->GetCounts().waitingBytes, std::size_t(9) << 20);
   writer.Send(1, MakeScene());
   EXPECT_EQ(writer.WaitFor(1), delivered);
-  EXPECT_THROW(watcher.Tell(MakeEvent(0, 2 << 20)), Error);
+  EXPECT_THROW(watcher.SendEvent(MakeEvent(0, 2 << 20)), Error);
 }
 
 TEST_F(LinkLimits, EventsThatASimulationDoesNotTakeAreTheNewestOfBoundedSize) {
@@ -51,7 +51,7 @@ TEST_F(LinkLimits, EventsThatASimulationDoesNotTakeAreTheNewestOfBoundedSize) {
   RemoteClient client(this->ClientOptions());
   constexpr int Events = 40;
   for (int i = 0; i < Events; ++i) {
-    ASSERT_TRUE(Within20s([&] { return watcher.Tell(MakeEvent(i, 1000000)); }));
+    ASSERT_TRUE(Within20s([&] { return watcher.SendEvent(MakeEvent(i, 1000000)); }));
   }
   Accept(client.Execute(MakeScene())); // comes after them
   std::vector<std::string> heard;
@@ -201,7 +201,7 @@ TEST_F(LinkLimits, AChildProcessIsToldAndMayCloseWhatItsParentOpened) {
         reply.error().message().find("accepted: a connection of its own") != std::string::npos;
     bool refused = false;
     try {
-      watcher->Tell(MakeEvent(0, 1));
+      watcher->SendEvent(MakeEvent(0, 1));
     } catch (const Error& error) {
       refused = error.GetKind() == Error::Kind::Unsupported;
     }
@@ -220,7 +220,7 @@ TEST_F(LinkLimits, AChildProcessIsToldAndMayCloseWhatItsParentOpened) {
   EXPECT_TRUE(ended);
   EXPECT_EQ(status, 0);
   Accept(client->Execute(MakeFrame(2))); // and the parent goes on
-  EXPECT_TRUE(watcher->Tell(MakeEvent(0, 1)));
+  EXPECT_TRUE(watcher->SendEvent(MakeEvent(0, 1)));
 }
 
 // Whatever the process's mask; and what its other threads make meanwhile is not closed to others.

@@ -14,9 +14,9 @@ namespace {
 using session::RemoteClient;
 using session::Watcher;
 
-using LinkPlaces = RawLinkTest;
+using LinkReservations = RawLinkTest;
 
-TEST_F(LinkPlaces, ASimulationComesBackWhereAllPlacesAreTaken) {
+TEST_F(LinkReservations, ASimulationComesBackWhereAllPlacesAreTaken) {
   this->Options.maximumConnections = 2;
   this->StartServer();
   Watcher watcher(this->ToWatch());
@@ -61,7 +61,7 @@ public:
   std::atomic<int> Calls = 0;
 };
 
-TEST_F(LinkPlaces, AClientThatWasLetInTriesAgainWhereThereIsNoRoom) {
+TEST_F(LinkReservations, AClientThatWasLetInTriesAgainWhereThereIsNoRoom) {
   CrowdedServer service;
   grpc::ServerBuilder builder;
   builder.AddListeningPort(this->Options.listen, grpc::InsecureServerCredentials());
@@ -79,7 +79,7 @@ TEST_F(LinkPlaces, AClientThatWasLetInTriesAgainWhereThereIsNoRoom) {
   server->Shutdown(std::chrono::system_clock::now());
 }
 
-TEST_F(LinkPlaces, WhoLostItsConnectionKeepsItsPlace) {
+TEST_F(LinkReservations, WhoLostItsConnectionKeepsItsPlace) {
   this->StartServer();
   {
     RawDrive first(this->Address(), KeyA, session::ProcessName());
@@ -112,7 +112,7 @@ TEST_F(LinkPlaces, WhoLostItsConnectionKeepsItsPlace) {
   Accept(second.Execute(MakeFrame(3)));
 }
 
-TEST_F(LinkPlaces, WhoLeavesOrHasDiedKeepsNoPlace) {
+TEST_F(LinkReservations, WhoLeavesOrHasDiedKeepsNoPlace) {
   this->StartServer();
   for (std::uint64_t i = 1; i < 4; ++i) {
     RemoteClient client(this->ClientOptions());
@@ -143,20 +143,20 @@ TEST_F(LinkPlaces, WhoLeavesOrHasDiedKeepsNoPlace) {
   Accept(next.Execute(MakeFrame(9)));
 }
 
-TEST_F(LinkPlaces, APlaceIsKeptForAWhile) {
-  this->Options.seat_s = 0.2;
+TEST_F(LinkReservations, APlaceIsKeptForAWhile) {
+  this->Options.reservation_s = 0.2;
   this->StartServer();
   RawDrive(this->Address(), KeyA).Break();
   EXPECT_TRUE(Within20s([&] { return RawDrive(this->Address(), KeyB).IsOpen; }));
   this->StopServer();
   for (const double wrong : {-1.0, 2e6, std::nan("")}) {
-    this->Options.seat_s = wrong;
+    this->Options.reservation_s = wrong;
     EXPECT_THROW(session::Server server(this->Options), Error) << wrong;
   }
 }
 
-TEST_F(LinkPlaces, WhatAFormerWriterLeftBehindIsNotCarriedOut) {
-  this->Options.seat_s = 0;
+TEST_F(LinkReservations, WhatAFormerWriterLeftBehindIsNotCarriedOut) {
+  this->Options.reservation_s = 0;
   this->StartIdleServer();
   {
     RawDrive first(this->Address(), KeyA);
@@ -188,7 +188,7 @@ TEST_F(LinkPlaces, WhatAFormerWriterLeftBehindIsNotCarriedOut) {
 
 // A simulation that comes back to a server that was started anew does not keep others out while it
 // finds out.
-TEST_F(LinkPlaces, WhoIsNotKnownAnyMoreTakesNoPlace) {
+TEST_F(LinkReservations, WhoIsNotKnownAnyMoreTakesNoPlace) {
   this->StartServer();
   RawDrive former(this->Address(), KeyA, {}, true);
   EXPECT_FALSE(former.IsOpen);
@@ -205,8 +205,8 @@ TEST_F(LinkPlaces, WhoIsNotKnownAnyMoreTakesNoPlace) {
 }
 
 // More streams than may be there at once end with replies that nobody reads.
-TEST_F(LinkPlaces, WhoDoesNotTakeItsLastRepliesIsCutOff) {
-  this->Options.seat_s = 0.5;
+TEST_F(LinkReservations, WhoDoesNotTakeItsLastRepliesIsCutOff) {
+  this->Options.reservation_s = 0.5;
   this->StartServer();
   constexpr std::uint64_t Frames = 1000;
   {

@@ -201,7 +201,7 @@ TEST_F(SnapshotTest, AViewerSaysWhyItIsRefused) {
   auto options = this->WatchOptions();
   options.waitingBytes = 1;
   Watcher watcher(options);
-  EXPECT_EQ(watcher.Refusal(), "");
+  EXPECT_EQ(watcher.Rejection(), "");
   fails = true;
   v1::WatchReply message;
   std::string why;
@@ -214,7 +214,7 @@ TEST_F(SnapshotTest, AViewerSaysWhyItIsRefused) {
       while (watcher.Take(message, 0.0)) { // until it begins anew
       }
     }
-    why = watcher.Refusal();
+    why = watcher.Rejection();
   }
   EXPECT_NE(why.find("it has no end"), std::string::npos) << why;
   EXPECT_FALSE(watcher.Connected());
@@ -224,7 +224,7 @@ TEST_F(SnapshotTest, AViewerSaysWhyItIsRefused) {
     again = watcher.Take(message, 1.0) && message.has_snapshot();
   }
   EXPECT_TRUE(again);
-  EXPECT_EQ(watcher.Refusal(), "");
+  EXPECT_EQ(watcher.Rejection(), "");
   this->StopServer(); // whose thread has references to what is above
 }
 

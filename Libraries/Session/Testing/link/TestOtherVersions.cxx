@@ -176,7 +176,7 @@ TEST_F(WireCommands, UnknownOnesAreRefusedByNumber) {
   this->Refuse(v1::Command(), Kind::UNSUPPORTED, "command none");
 }
 
-TEST_F(WireCommands, LaterOnesAreTypedAndSayThatTheyAreNotCarriedOut) {
+TEST_F(WireCommands, UnimplementedCommandsAreRejected) {
   int told = 0;
   this->Interpreter_.AddListener([&told](const v1::Command&, const v1::Reply&) { ++told; });
   const Descriptor* commands = v1::Command::descriptor();
@@ -184,7 +184,7 @@ TEST_F(WireCommands, LaterOnesAreTypedAndSayThatTheyAreNotCarriedOut) {
   for (int i = 0; i < commands->field_count(); ++i) {
     const FieldDescriptor* field = commands->field(i);
     const session::CommandTraits* traits = session::CommandTraits::Find(field->number());
-    if (!traits || traits->GetEffect() != session::Effect::Later) {
+    if (!traits || traits->GetEffect() != session::Effect::Unimplemented) {
       continue;
     }
     v1::Command command;

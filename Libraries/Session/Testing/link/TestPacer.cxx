@@ -80,8 +80,8 @@ TEST_F(LinkTest, WaitsInPartsAndWhatWasAbandoned) {
   this->StartServer();
   auto options = this->ClientOptions();
   options.pace = 1e-3; // a second lasts a quarter of an hour
-  session::RemoteClient client(options, session::RemoteClient::Later());
-  while (!client.WaitToOpen(0.001)) {
+  session::RemoteClient client(options, session::RemoteClient::NonBlocking());
+  while (!client.WaitForConnect(0.001)) {
   }
   EXPECT_EQ(client.GetServer().commandSet, unsigned(v1::COMMAND_SET_VERSION));
   EXPECT_EQ(client.Take().error().kind(), v1::Error::INTERNAL); // nothing was begun

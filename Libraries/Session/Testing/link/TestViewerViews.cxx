@@ -12,7 +12,7 @@ namespace dspace::testing {
 namespace {
 
 using session::Interpreter;
-using session::OwnViews;
+using session::ViewerViews;
 
 constexpr const char* Mine = "viewer:mine";
 
@@ -86,12 +86,12 @@ protected:
   }
 
   FrameId Parent = 0, Child = 0;
-  OwnViews Own;
+  ViewerViews Own;
 };
 
 // What a snapshot's command is refused for is no matter of views that are not there yet.
 TEST_F(OwnViewsTest, MakesNoRoomWhileASnapshotIsApplied) {
-  this->Own.Leave(this->Interpreter_);
+  this->Own.BeforeSnapshot(this->Interpreter_);
   Interpreter next;
   v1::Command command;
   command.mutable_create_scene();
@@ -110,7 +110,7 @@ TEST_F(OwnViewsTest, MakesNoRoomWhileASnapshotIsApplied) {
       refused.mutable_import_object()->add_level()->set_path("/nowhere/at/all.obj");
     }
     ASSERT_TRUE(next.Execute(refused).has_error());
-    EXPECT_NO_THROW(EXPECT_FALSE(this->Own.MakeRoom(next, refused))) << i;
+    EXPECT_NO_THROW(EXPECT_FALSE(this->Own.RemoveConflicting(next, refused))) << i;
   }
 }
 
@@ -138,11 +138,11 @@ TEST_F(OwnViewsTest, OutlastASnapshotAndLoseNothingOfTheCamera) {
   project.mutable_set_camera()->mutable_projection()->mutable_perspective()->set_vertical_fov_deg(
       20);
   ASSERT_FALSE(this->Own.Execute(this->Interpreter_, project).has_error());
-  this->Own.Leave(this->Interpreter_);
+  this->Own.BeforeSnapshot(this->Interpreter_);
   Interpreter next;
   this->Build(next, 100);
-  this->Own.Enter(next);
-  this->Own.Wake(next, false);
+  this->Own.AfterSnapshot(next);
+  this->Own.Resume(next, false);
   const Camera& camera = next.FindScene("scene")->Vantage(Mine).GetCamera("camera");
   EXPECT_EQ(camera.mount.frame, 101u); // it follows on the frame of that path
   EXPECT_EQ(camera.mount.X_FC.position.x(), 5);
@@ -150,20 +150,20 @@ TEST_F(OwnViewsTest, OutlastASnapshotAndLoseNothingOfTheCamera) {
 }
 
 TEST_F(OwnViewsTest, WithoutItsFrameACameraStaysWhereItWas) {
-  this->Own.Leave(this->Interpreter_);
+  this->Own.BeforeSnapshot(this->Interpreter_);
   for (const bool alone : {true, false}) {
     Interpreter next;
-    OwnViews own = this->Own;
+    ViewerViews own = this->Own;
     v1::Command command;
     command.mutable_create_scene();
     next.Execute(command);
-    own.Enter(next);
-    own.Wake(next, alone);
+    own.AfterSnapshot(next);
+    own.Resume(next, alone);
     if (!alone) { // whoever drives may be about to build the scene,
       EXPECT_EQ(next.FindScene("scene")->VantageNames().size(), 1u);
       command.mutable_set_time()->set_time_s(0.1);
       next.Execute(command);
-      own.Wake(next, false); // and has gone on without
+      own.Resume(next, false); // and has gone on without
     }
     this->ExpectInRoot(next);
   }
@@ -173,29 +173,30 @@ TEST_F(OwnViewsTest, AFrameThatTheSimulationRemovesGoes) {
   v1::Command remove;
   remove.mutable_remove_frame()->set_frame(this->Parent);
   ASSERT_TRUE(this->Interpreter_.Execute(remove).has_error());
-  ASSERT_TRUE(this->Own.MakeRoom(this->Interpreter_, remove));
+  ASSERT_TRUE(this->Own.RemoveConflicting(this->Interpreter_, remove));
   EXPECT_FALSE(this->Interpreter_.Execute(remove).has_error());
   this->ExpectInRoot(this->Interpreter_);
-  EXPECT_FALSE(this->Own.MakeRoom(this->Interpreter_, remove)); // nothing is in the way any more
+  EXPECT_FALSE(
+      this->Own.RemoveConflicting(this->Interpreter_, remove)); // nothing is in the way any more
 }
 
 TEST_F(OwnViewsTest, ViewsSleepWhileThereIsNoScene) {
   v1::Command remove;
   remove.mutable_remove_scene();
-  this->Own.MakeRoom(this->Interpreter_, remove);
+  this->Own.RemoveConflicting(this->Interpreter_, remove);
   EXPECT_FALSE(this->Interpreter_.Execute(remove).has_error());
   EXPECT_FALSE(this->Own.Owns(SetCamera(Mine, 1, 0)));
-  this->Own.Leave(this->Interpreter_);
+  this->Own.BeforeSnapshot(this->Interpreter_);
   Interpreter next; // two snapshots without it
-  this->Own.Enter(next);
-  this->Own.Wake(next, true);
-  this->Own.Leave(next);
+  this->Own.AfterSnapshot(next);
+  this->Own.Resume(next, true);
+  this->Own.BeforeSnapshot(next);
   Interpreter last;
-  this->Own.Enter(last);
-  this->Own.Wake(last, false);
+  this->Own.AfterSnapshot(last);
+  this->Own.Resume(last, false);
   EXPECT_TRUE(last.GetState().scenes.empty());
   this->Build(last, 200);
-  this->Own.Wake(last, false);
+  this->Own.Resume(last, false);
   EXPECT_EQ(last.FindScene("scene")->Vantage(Mine).GetCamera("camera").mount.frame, 201u);
   EXPECT_TRUE(this->Own.Owns(SetCamera(Mine, 1, 0)));
 }
@@ -203,18 +204,18 @@ TEST_F(OwnViewsTest, ViewsSleepWhileThereIsNoScene) {
 TEST_F(OwnViewsTest, ASceneThatIsGoneOrAnotherIsLeft) {
   v1::Command remove;
   remove.mutable_remove_scene();
-  this->Accept(remove); // MakeRoom has not been told
-  EXPECT_NO_THROW(this->Own.Leave(this->Interpreter_));
+  this->Accept(remove); // RemoveConflicting has not been told
+  EXPECT_NO_THROW(this->Own.BeforeSnapshot(this->Interpreter_));
   v1::Command scene;
   scene.mutable_create_scene();
   this->Accept(scene);
-  EXPECT_NO_THROW(this->Own.Leave(this->Interpreter_));
+  EXPECT_NO_THROW(this->Own.BeforeSnapshot(this->Interpreter_));
 }
 
 TEST_F(OwnViewsTest, ANewOneTakesTheNameOfOneThatSleeps) {
   v1::Command remove;
   remove.mutable_remove_scene();
-  this->Own.MakeRoom(this->Interpreter_, remove);
+  this->Own.RemoveConflicting(this->Interpreter_, remove);
   this->Interpreter_.Execute(remove);
   v1::Command scene;
   scene.mutable_create_scene();
@@ -223,7 +224,7 @@ TEST_F(OwnViewsTest, ANewOneTakesTheNameOfOneThatSleeps) {
   ASSERT_FALSE(this->Own.Execute(this->Interpreter_, create).has_error());
   v1::Command set = SetCamera(Mine, 1, 7);
   ASSERT_FALSE(this->Own.Execute(this->Interpreter_, set).has_error());
-  this->Own.Wake(this->Interpreter_, true);
+  this->Own.Resume(this->Interpreter_, true);
   const Camera& camera = this->Interpreter_.FindScene("scene")->Vantage(Mine).GetCamera("camera");
   EXPECT_EQ(camera.mount.X_FC.position.x(), 7);
 }

@@ -25,7 +25,7 @@ using google::protobuf::SourceLocation;
 // --- The wire ---------------------------------------------------------------------------------
 
 // A command that is typed only, or the reply to one: no other program relies on it yet.
-bool IsLater(const FieldDescriptor& field) {
+bool IsUnimplemented(const FieldDescriptor& field) {
   return field.message_type() &&
          field.message_type()->file()->name().find("measurements.proto") != std::string::npos;
 }
@@ -41,7 +41,7 @@ void Describe(const EnumDescriptor& type, std::set<std::string>& lines) {
 void Describe(const Descriptor& message, std::set<std::string>& lines) {
   for (int i = 0; i < message.field_count(); ++i) {
     const FieldDescriptor& field = *message.field(i);
-    if (IsLater(field)) {
+    if (IsUnimplemented(field)) {
       continue;
     }
     std::string type = field.message_type() ? field.message_type()->full_name()
@@ -76,10 +76,11 @@ void Files(const FileDescriptor& file, std::map<std::string, const FileDescripto
 }
 
 // What is typed only stands apart, so that it can be told from what is locked.
-TEST(Wire, LaterCommandsAreTypedInAFileOfTheirOwn) {
+TEST(Wire, UnimplementedCommandsHaveAFileOfTheirOwn) {
   for (const session::CommandTraits& traits : session::CommandTraits::All()) {
     const FieldDescriptor* field = v1::Command::descriptor()->FindFieldByNumber(traits.Number());
-    EXPECT_EQ(IsLater(*field), traits.GetEffect() == session::Effect::Later) << traits.Name();
+    EXPECT_EQ(IsUnimplemented(*field), traits.GetEffect() == session::Effect::Unimplemented)
+        << traits.Name();
   }
 }
 

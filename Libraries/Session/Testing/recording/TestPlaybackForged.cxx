@@ -157,7 +157,7 @@ TEST(RecordedNames, AreWholeValuesOfXmlOnly) {
       {"\"", "\""},
       {"\"/d/a", "\"/d/a"}};
   for (const auto& [text, mended] : cases) {
-    EXPECT_EQ(names.Mended(text), mended);
+    EXPECT_EQ(names.Rewritten(text), mended);
   }
 }
 

@@ -21,9 +21,9 @@ TEST_F(PlaybackPacked, ReplaysWhereNoneOfItsFilesAre) {
     ASSERT_EQ(stat(files.Folder().c_str(), &state), 0);
     EXPECT_EQ(state.st_mode & 0777, 0700u);
     for (const char* name : {"part.obj", "part.mtl", "a&b.asc"}) {
-      EXPECT_EQ(Content(files.Place(this->Here_ / name)), Content(this->Root_ / "away" / name));
+      EXPECT_EQ(Content(files.Locate(this->Here_ / name)), Content(this->Root_ / "away" / name));
     }
-    EXPECT_NE(Content(files.Place(this->Here_ / "ground.vrt")),
+    EXPECT_NE(Content(files.Locate(this->Here_ / "ground.vrt")),
               Content(this->Root_ / "away/ground.vrt")); // its absolute name is another
   }
   EXPECT_TRUE(fs::is_empty(this->Root_ / "scratch"));
@@ -43,7 +43,7 @@ TEST_F(PlaybackPacked, WithoutPackingFilesMustBeWhatTheyWere) {
     session::Playback unchecked(reader, shown, false);
     EXPECT_NE(this->Seen(shown, {}), live);
     EXPECT_EQ(unchecked.Files().Folder(), "");
-    EXPECT_EQ(unchecked.Files().Place("/a"), "/a");
+    EXPECT_EQ(unchecked.Files().Locate("/a"), "/a");
   }
   fs::remove(material);
   this->Refuses(Error::Kind::NotFound, {material.string(), "is not there"});

@@ -197,9 +197,9 @@ TEST_F(Recording, AJumpLeavesAGap) {
     RecordingWriter writer(this->Path_, Ledger(), 0.0);
     writer.Add(Numbered(1), {}, Ledger());
     writer.Add(Numbered(2), {}, Ledger());
-    writer.Jump(later, 9.0, nullptr);
+    writer.Resync(later, 9.0, nullptr);
     writer.Add(Numbered(4), {}, later);
-    writer.Jump(later, 8.0, nullptr);
+    writer.Resync(later, 8.0, nullptr);
   }
   const std::vector<RecordingRow> rows = ReadRows(this->Path_);
   ASSERT_EQ(rows.size(), 3u);
@@ -238,7 +238,7 @@ TEST_F(Recording, WallTimeNeverGoesBack) {
     RecordingWriter writer(this->Path_, Ledger(), 0.0, options); // its first snapshot
     writer.Add(Numbered(1), {}, Ledger());
     writer.Add(Numbered(2), {}, Ledger());
-    writer.Jump(Ledger(), 0.0, nullptr); // 3, a snapshot
+    writer.Resync(Ledger(), 0.0, nullptr); // 3, a snapshot
     writer.Add(Numbered(4), {}, Ledger());
     writer.Add(Numbered(5), {}, Ledger());
   }

@@ -23,7 +23,7 @@ using session::RecordingRow;
 using session::SalvageReport;
 
 constexpr std::size_t Page = 65536;
-const session::KeepGoing On = [] {};
+const session::CancelCheck On = [] {};
 
 std::string Content(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

@@ -48,7 +48,7 @@ Interpreter::Interpreter() {
   AddTerrainCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);
   AddMessageCommands(this->Registry_);
-  this->Registry_.AddLater();
+  this->Registry_.AddUnimplemented();
 }
 
 v1::Reply Interpreter::Execute(v1::Command& command) {
@@ -66,7 +66,7 @@ v1::Reply Interpreter::Execute(v1::Command& command) {
     reply = ErrorReply(v1::Error::INTERNAL, "command " + CommandName(command), error.what());
   }
   if (reply.has_error()) {
-    events.ForgetUndone(before);
+    events.DiscardSince(before);
   } else if (this->Depth_ == 0) {
     events.MoveTo(reply); // what listeners caused
   }
@@ -80,7 +80,7 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
     throw Error(Error::Kind::Unsupported, "command " + CommandName(command),
                 "this session does not carry out such a command");
   }
-  if (FindForeignText(command)) {
+  if (FindInvalidText(command)) {
     RequireUtf8(command, "command " + CommandName(command));
   }
   const std::string name = SceneName(command);
@@ -95,11 +95,11 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   if (entry->effect == Effect::Change) {
     MakeTextUtf8(command); // listeners send and record both
     MakeTextUtf8(reply);
-    this->Tell(command, reply);
+    this->NotifyListeners(command, reply);
   }
 }
 
-void Interpreter::Tell(const v1::Command& command, v1::Reply& reply) {
+void Interpreter::NotifyListeners(const v1::Command& command, v1::Reply& reply) {
   const auto listeners = this->Listeners_; // they may come and go meanwhile
   for (const auto& [token, listener] : listeners) {
     try {

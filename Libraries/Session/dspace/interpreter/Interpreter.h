@@ -42,7 +42,7 @@ public:
 
 private:
   void Run(v1::Command& command, v1::Reply& reply);
-  void Tell(const v1::Command& command, v1::Reply& reply);
+  void NotifyListeners(const v1::Command& command, v1::Reply& reply);
   State State_;
   Registry Registry_;
   std::vector<std::pair<Token, Listener>> Listeners_;

@@ -18,7 +18,7 @@ struct Context {
   const std::string& sceneName;
   v1::Reply& reply;
 
-  Scene& TheScene() const { return *this->scene->scene; }
+  Scene& GetScene() const { return *this->scene->scene; }
   FrameTree& Frames() const { return this->scene->scene->Frames(); }
 };
 
@@ -45,7 +45,7 @@ public:
                             }};
   }
   // The commands that are typed only: they are answered with Error.UNIMPLEMENTED, which names them.
-  void AddLater();
+  void AddUnimplemented();
   const Entry* Find(v1::Command::CommandCase kind) const {
     const auto found = this->Entries_.find(kind);
     return found == this->Entries_.end() ? nullptr : &found->second;

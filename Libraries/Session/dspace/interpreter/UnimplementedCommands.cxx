@@ -4,13 +4,13 @@
 
 namespace dspace::session {
 
-void Registry::AddLater() {
+void Registry::AddUnimplemented() {
   for (const CommandTraits& traits : CommandTraits::All()) {
-    if (traits.GetEffect() != Effect::Later) {
+    if (traits.GetEffect() != Effect::Unimplemented) {
       continue;
     }
     this->Entries_[v1::Command::CommandCase(traits.Number())] = {
-        Effect::Later, Needs::Nothing, [](const Context& context, v1::Command& command) {
+        Effect::Unimplemented, Needs::Nothing, [](const Context& context, v1::Command& command) {
           const std::string name = "command " + CommandName(command);
           PutError(context.reply.mutable_error(), v1::Error::UNIMPLEMENTED, name,
                    name + ": it is typed, and this version does not carry it out yet; "

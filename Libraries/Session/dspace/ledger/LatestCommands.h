@@ -14,7 +14,7 @@ namespace dspace::session {
 // Not a public header.
 class LatestCommands {
 public:
-  void Keep(const v1::Command& command) { this->ByNumber_[command.command_case()] = command; }
+  void Set(const v1::Command& command) { this->ByNumber_[command.command_case()] = command; }
   // In the order of the commands' numbers, for the scene of this name.
   void Put(const std::string& scene, std::vector<v1::Command>& out) const {
     for (const auto& [number, command] : this->ByNumber_) {

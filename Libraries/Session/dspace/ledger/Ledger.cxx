@@ -6,8 +6,9 @@
 #include <dspace/Error.h>
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/ledger/LedgerFrames.h>
-#include <dspace/ledger/LedgerObjects.h>
 #include <dspace/ledger/LedgerNames.h>
+#include <dspace/ledger/LedgerObjects.h>
+#include <dspace/ledger/LedgerViewports.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/state/MessageLog.h>
@@ -133,7 +134,7 @@ struct LedgerScene {
   void Put(const std::string& name, const State* state, std::vector<v1::Command>& out) const {
     this->names.PutFirst(name, out);
     const std::vector<std::string> fragments = this->names.Fragments();
-    this->objects.PutOrphans(name, fragments, out);
+    this->objects.PutOrphanedVisuals(name, fragments, out);
     this->frames.Put(name, fragments, out);
     this->objects.Put(name, this->frames, fragments, state, out);
     this->names.PutLast(name, out);
@@ -154,7 +155,7 @@ struct Ledger::Impl {
   std::map<std::string, std::string> faults;
   bool unnamed = false; // there was no memory to say which
 
-  void Take(const v1::Command& accepted, const v1::Reply& reply, const std::string& name);
+  void Apply(const v1::Command& accepted, const v1::Reply& reply, const std::string& name);
   void Fail(const v1::Command& command, const std::string& name, const std::string& why);
   // Of the scene that the command changes; empty for viewports, which are the session's.
   static std::string FaultKey(const v1::Command& command) {
@@ -171,8 +172,8 @@ Ledger::~Ledger() = default;
 Ledger::Ledger(Ledger&&) noexcept = default;
 Ledger& Ledger::operator=(Ledger&&) noexcept = default;
 
-void Ledger::Impl::Take(const v1::Command& accepted, const v1::Reply& reply,
-                        const std::string& name) {
+void Ledger::Impl::Apply(const v1::Command& accepted, const v1::Reply& reply,
+                         const std::string& name) {
   if (accepted.has_create_scene()) {
     this->scenes.erase(name);
     this->scenes.emplace(name, accepted.create_scene());
@@ -223,19 +224,19 @@ void Ledger::Add(const v1::Command& accepted, const v1::Reply& reply) {
   Impl& impl = *this->Impl_;
   const std::string& scene = SceneName(accepted);
   const std::string name = Impl::FaultKey(accepted);
-  const bool anew = accepted.has_create_scene() || accepted.has_remove_scene();
-  if (!impl.faults.empty() && !anew && impl.faults.count(name)) {
+  const bool resets = accepted.has_create_scene() || accepted.has_remove_scene();
+  if (!impl.faults.empty() && !resets && impl.faults.count(name)) {
     return;
   }
   try {
-    impl.Take(accepted, reply, scene);
+    impl.Apply(accepted, reply, scene);
   } catch (const std::exception& error) {
     impl.Fail(accepted, name, error.what());
     throw Error(Error::Kind::Internal, "state", impl.faults.at(name));
   }
 }
 
-void Ledger::Miss(const v1::Command& accepted, const std::string& why) {
+void Ledger::AddFailed(const v1::Command& accepted, const std::string& why) {
   this->Impl_->Fail(accepted, Impl::FaultKey(accepted), why);
 }
 

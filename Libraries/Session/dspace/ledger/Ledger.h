@@ -40,7 +40,7 @@ public:
   // be known any more. Nothing more of it is taken in, without a word, until it is removed.
   void Add(const v1::Command& accepted, const v1::Reply& reply);
   // The same of a command that the state should have and has not, for the reason given.
-  void Miss(const v1::Command& accepted, const std::string& why);
+  void AddFailed(const v1::Command& accepted, const std::string& why);
   // Throws Error(Internal) while anything is not known, naming it.
   std::vector<v1::Command> Commands() const;
 

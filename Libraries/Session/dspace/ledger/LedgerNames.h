@@ -1,21 +1,19 @@
-// Fragments, lights, time and vantages of one scene, and viewports, for the ledger.
-#ifndef DSPACE_SESSION_LEDGER_VIEWS_H
-#define DSPACE_SESSION_LEDGER_VIEWS_H
+// The time, fragments, lights, vantages and cameras of one scene, for the ledger.
+#ifndef DSPACE_SESSION_LEDGER_NAMES_H
+#define DSPACE_SESSION_LEDGER_NAMES_H
 
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
-#include <dspace/ledger/LatestCommands.h>
 #include <dspace/proto/commands.pb.h>
 
 namespace dspace::session {
 
-// What is named by name in a scene.
+// Not a public header.
 class LedgerNames {
 public:
   using Emit = std::vector<v1::Command>&;
@@ -59,35 +57,6 @@ private:
   std::vector<Light> Lights_;
   std::vector<Vantage> Vantages_;
   std::map<std::pair<std::string, std::string>, v1::CameraLag> Lags_;
-};
-
-// The session's viewports.
-class LedgerViewports {
-public:
-  using Emit = std::vector<v1::Command>&;
-  bool Add(const v1::Command& command);
-  // `fragments` gives those that a scene has.
-  template<class Fragments> void Put(const Fragments& fragments, Emit out) const {
-    for (const auto& [name, viewport] : this->Viewports_) {
-      PutOne(name, viewport, fragments(viewport.create.scene()), out);
-    }
-  }
-
-private:
-  struct Viewport {
-    v1::Command create;
-    v1::SetViewport set; // background, ornaments, corner axes; all else goes into `create`
-    LatestCommands latest;
-    std::set<std::string> hidden;
-    std::vector<v1::SetTextTable> tables;
-    std::vector<v1::SetColorBar> bars;
-  };
-  static void Set(Viewport& viewport, const v1::SetViewport& command);
-  static void PutOne(const std::string& name, const Viewport& viewport,
-                     const std::vector<std::string>& fragments, Emit out);
-  Viewport& Find(const std::string& name) { return this->Viewports_[name]; }
-
-  std::map<std::string, Viewport> Viewports_;
 };
 
 } // namespace dspace::session

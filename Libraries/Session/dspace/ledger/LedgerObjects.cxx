@@ -48,61 +48,49 @@ v1::ObjectSettings* SettingsOf(v1::Command& command) {
 
 } // namespace
 
-LedgerObjects::Thing* LedgerObjects::Find(std::uint32_t id) {
-  const auto found = this->Things_.find(id);
-  return found == this->Things_.end() ? nullptr : &found->second;
+LedgerObjects::ObjectEntry* LedgerObjects::Find(std::uint32_t id) {
+  const auto found = this->Objects_.find(id);
+  return found == this->Objects_.end() ? nullptr : &found->second;
 }
 
 void LedgerObjects::Create(const v1::Command& command, v1::ObjectSettings settings) {
-  Thing& thing = this->Things_[settings.id()];
-  thing.create = command;
-  thing.frame = OrRoot(settings.frame());
-  thing.nature = settings.nature();
-  thing.fragment = DefaultFragment(settings.fragment(), settings.nature());
+  ObjectEntry& entry = this->Objects_[settings.id()];
+  entry.create = command;
+  entry.frame = OrRoot(settings.frame());
+  entry.nature = settings.nature();
+  entry.fragment = DefaultFragment(settings.fragment(), settings.nature());
   if (command.has_create_trail()) {
     const v1::CreateTrail& trail = command.create_trail();
-    thing.trail.emplace(trail.capacity(), trail.minimum_spacing(), trail.fade());
+    entry.trail.emplace(trail.capacity(), trail.minimum_spacing(), trail.fade());
   }
 }
 
 void LedgerObjects::Load(const v1::LoadRobot& load, const v1::RobotReply& reply) {
   for (const v1::LinkInfo& link : reply.link()) {
     for (const std::uint32_t id : link.object()) {
-      Thing& thing = this->Things_[id];
-      thing.robot = load.name();
-      thing.asked = load.fragment();
-      thing.frame = thing.madeOn = link.frame();
-      thing.nature = load.nature();
-      thing.fragment = DefaultFragment(load.fragment(), load.nature());
+      ObjectEntry& entry = this->Objects_[id];
+      entry.robot = load.name();
+      entry.askedFragment = load.fragment();
+      entry.frame = entry.createdOn = link.frame();
+      entry.nature = load.nature();
+      entry.fragment = DefaultFragment(load.fragment(), load.nature());
     }
   }
 }
 
 void LedgerObjects::Open(const v1::Command& command) {
   const v1::OpenTerrain& open = command.open_terrain();
-  Ground& ground = this->Grounds_[open.name()];
-  ground.open = command;
-  if (open.mode() == v1::OpenTerrain::CLIPMAP) {
-    if (open.has_drape()) {
-      ground.opened.emplace_back("drape");
-    }
-    if (open.has_fill_holes()) {
-      ground.opened.emplace_back("filled");
-    }
-  }
-  for (const std::string& name : ground.opened) {
-    ground.layers.emplace_back().set_name(name);
-  }
-  Thing& thing = this->Things_[open.object_id()];
-  thing.terrain = open.name();
-  thing.frame = OrRoot(open.frame());
-  thing.fragment = DefaultFragment(open.fragment(), v1::PHYSICAL);
+  this->Terrains_.Open(command);
+  ObjectEntry& entry = this->Objects_[open.object_id()];
+  entry.terrain = open.name();
+  entry.frame = OrRoot(open.frame());
+  entry.fragment = DefaultFragment(open.fragment(), v1::PHYSICAL);
 }
 
 void LedgerObjects::RemoveObject(std::uint32_t id) {
-  if (const Thing* thing = this->Find(id)) {
-    this->Grounds_.erase(thing->terrain);
-    this->Things_.erase(id);
+  if (const ObjectEntry* entry = this->Find(id)) {
+    this->Terrains_.Remove(entry->terrain);
+    this->Objects_.erase(id);
   }
   for (auto it = this->Orphans_.begin(); it != this->Orphans_.end();) {
     it->ids.erase(id);
@@ -111,31 +99,30 @@ void LedgerObjects::RemoveObject(std::uint32_t id) {
 }
 
 void LedgerObjects::RemoveTerrain(const std::string& name) {
-  const auto found = this->Grounds_.find(name);
-  if (found != this->Grounds_.end()) {
-    this->RemoveObject(found->second.open.open_terrain().object_id());
+  if (const auto object = this->Terrains_.ObjectOf(name)) {
+    this->RemoveObject(*object);
   }
 }
 
 void LedgerObjects::RemoveOn(const LedgerFrames::Removed& removed) {
-  for (auto it = this->Things_.begin(); it != this->Things_.end();) {
+  for (auto it = this->Objects_.begin(); it != this->Objects_.end();) {
     const std::uint32_t id = it->first;
-    const Thing& thing = it->second;
+    const ObjectEntry& entry = it->second;
     ++it;
-    if (removed.frames.count(thing.frame)) {
-      if (!thing.robot.empty()) {
-        this->Lost_.emplace(thing.robot, std::make_pair(id, thing.frame));
+    if (removed.frames.count(entry.frame)) {
+      if (!entry.robot.empty()) {
+        this->LostVisuals_.emplace(entry.robot, std::make_pair(id, entry.frame));
       }
       this->RemoveObject(id);
     }
   }
   for (const v1::Command& load : removed.robots) {
-    this->Lost_.erase(load.load_robot().name());
-    Orphans orphans{load, {}};
-    for (auto& [id, thing] : this->Things_) {
-      if (thing.robot == load.load_robot().name()) {
-        thing.robot.clear();
-        thing.madeOn = RootFrame;
+    this->LostVisuals_.erase(load.load_robot().name());
+    OrphanedVisuals orphans{load, {}};
+    for (auto& [id, entry] : this->Objects_) {
+      if (entry.robot == load.load_robot().name()) {
+        entry.robot.clear();
+        entry.createdOn = RootFrame;
         orphans.ids.insert(id);
       }
     }
@@ -148,47 +135,47 @@ void LedgerObjects::RemoveOn(const LedgerFrames::Removed& removed) {
 bool LedgerObjects::Change(const v1::Command& command, const v1::Reply& reply) {
   const CommandTraits* traits = CommandTraits::Find(command.command_case());
   if (!traits || traits->GetOwner() != CommandTraits::Owner::Object) {
-    return this->ChangeTerrain(command, reply);
+    return this->Terrains_.Change(command, reply);
   }
-  Thing* thing = this->Find(traits->OwnerId(command));
-  if (thing && traits->LatestIsKept()) {
-    thing->latest.Keep(command);
+  ObjectEntry* entry = this->Find(traits->OwnerId(command));
+  if (entry && traits->LatestIsKept()) {
+    entry->latest.Set(command);
     return true;
   }
-  return thing && this->ChangeLook(*thing, command);
+  return entry && this->ChangeLook(*entry, command);
 }
 
-bool LedgerObjects::ChangeLook(Thing& thing, const v1::Command& command) {
+bool LedgerObjects::ChangeLook(ObjectEntry& entry, const v1::Command& command) {
   using C = v1::Command;
   switch (command.command_case()) {
   case C::kSetMaterial: {
     const v1::SetMaterial& set = command.set_material();
     if (set.replace() || set.material().has_color()) {
-      thing.tilt.reset(); // its colour is overwritten
+      entry.tilt.reset(); // its colour is overwritten
     }
-    if (set.replace() || !thing.material) {
-      thing.material = set;
+    if (set.replace() || !entry.material) {
+      entry.material = set;
     } else {
-      Overlay(set.material(), thing.material->mutable_material());
+      Overlay(set.material(), entry.material->mutable_material());
     }
     break;
   }
   case C::kSetTilt:
-    thing.tilt = command.set_tilt();
+    entry.tilt = command.set_tilt();
     break;
   case C::kAttachObject:
-    thing.frame = OrRoot(command.attach_object().frame());
+    entry.frame = OrRoot(command.attach_object().frame());
     break;
   case C::kMoveToFragment:
-    thing.fragment = command.move_to_fragment().fragment();
+    entry.fragment = command.move_to_fragment().fragment();
     break;
   case C::kAppendTrail:
     for (int i = 0; i + 2 < command.append_trail().point_size(); i += 3) {
-      thing.trail->Add(Eigen::Vector3d(command.append_trail().point().data() + i));
+      entry.trail->Add(Eigen::Vector3d(command.append_trail().point().data() + i));
     }
     break;
   case C::kClearTrail:
-    thing.trail->Clear();
+    entry.trail->Clear();
     break;
   default:
     return false;
@@ -196,53 +183,54 @@ bool LedgerObjects::ChangeLook(Thing& thing, const v1::Command& command) {
   return true;
 }
 
-void LedgerObjects::PutThing(const std::string& scene, std::uint32_t id, const Thing& thing,
-                             Emit out) const {
+void LedgerObjects::PutObject(const std::string& scene, std::uint32_t id, const ObjectEntry& entry,
+                              Emit out) const {
   const auto add = [&]() -> v1::Command& {
     out.emplace_back().set_scene(scene);
     return out.back();
   };
-  if (thing.create) {
-    out.push_back(*thing.create);
-    SettingsOf(out.back())->set_frame(thing.frame);
-    SettingsOf(out.back())->set_fragment(thing.fragment);
+  if (entry.create) {
+    out.push_back(*entry.create);
+    SettingsOf(out.back())->set_frame(entry.frame);
+    SettingsOf(out.back())->set_fragment(entry.fragment);
   }
-  if (thing.madeOn != NoFrame && thing.frame != thing.madeOn) {
+  if (entry.createdOn != NoFrame && entry.frame != entry.createdOn) {
     add().mutable_attach_object()->set_object(id);
-    out.back().mutable_attach_object()->set_frame(thing.frame);
+    out.back().mutable_attach_object()->set_frame(entry.frame);
   }
-  if (thing.trail && thing.trail->Size() > 0) {
+  if (entry.trail && entry.trail->Size() > 0) {
     v1::AppendTrail* append = nullptr;
-    for (std::size_t i = 0; i < thing.trail->Size(); ++i) {
+    for (std::size_t i = 0; i < entry.trail->Size(); ++i) {
       if (i % MostPoints == 0) {
         append = add().mutable_append_trail();
         append->set_object(id);
       }
-      const Eigen::Vector3d& p = thing.trail->Position(i);
+      const Eigen::Vector3d& p = entry.trail->Position(i);
       append->mutable_point()->Add(p.data(), p.data() + 3);
     }
-    const Eigen::Vector3d& end = thing.trail->End();
-    if (end != thing.trail->Position(thing.trail->Size() - 1)) {
+    const Eigen::Vector3d& end = entry.trail->End();
+    if (end != entry.trail->Position(entry.trail->Size() - 1)) {
       append->mutable_point()->Add(end.data(), end.data() + 3);
     }
   }
-  thing.latest.Put(scene, out);
-  if (thing.material) {
-    *add().mutable_set_material() = *thing.material;
+  entry.latest.Put(scene, out);
+  if (entry.material) {
+    *add().mutable_set_material() = *entry.material;
   }
-  if (thing.tilt) {
-    *add().mutable_set_tilt() = *thing.tilt;
+  if (entry.tilt) {
+    *add().mutable_set_tilt() = *entry.tilt;
   }
 }
 
 // A robot's visual cannot be removed by itself, but goes with a frame that it was attached to.
-void LedgerObjects::PutLost(const std::string& scene, const LedgerFrames& frames, Emit out) const {
+void LedgerObjects::PutLostVisuals(const std::string& scene, const LedgerFrames& frames,
+                                   Emit out) const {
   const auto add = [&]() -> v1::Command& {
     out.emplace_back().set_scene(scene);
     return out.back();
   };
   std::map<LedgerId, std::vector<std::uint32_t>> byFrame;
-  for (const auto& [robot, lost] : this->Lost_) {
+  for (const auto& [robot, lost] : this->LostVisuals_) {
     byFrame[lost.second].push_back(lost.first);
   }
   for (const auto& [frame, ids] : byFrame) {
@@ -258,9 +246,9 @@ void LedgerObjects::PutLost(const std::string& scene, const LedgerFrames& frames
 }
 
 // Loaded, and removed again with all that does not stay. A robot of that name may come after it.
-void LedgerObjects::PutOrphans(const std::string& scene, const std::vector<std::string>& fragments,
-                               Emit out) const {
-  for (const Orphans& orphans : this->Orphans_) {
+void LedgerObjects::PutOrphanedVisuals(const std::string& scene,
+                                       const std::vector<std::string>& fragments, Emit out) const {
+  for (const OrphanedVisuals& orphans : this->Orphans_) {
     v1::LoadRobot* load = out.emplace_back(orphans.load).mutable_load_robot();
     load->set_frame(RootFrame);
     load->set_fragment(Existing(load->fragment(), fragments));
@@ -280,16 +268,22 @@ void LedgerObjects::PutOrphans(const std::string& scene, const std::vector<std::
 void LedgerObjects::Put(const std::string& scene, const LedgerFrames& frames,
                         const std::vector<std::string>& fragments, const State* state,
                         Emit out) const {
-  this->PutLost(scene, frames, out);
-  this->PutTerrains(scene, state, out);
-  for (const auto& [id, thing] : this->Things_) {
-    this->PutThing(scene, id, thing, out);
-    if (thing.madeOn != NoFrame &&
-        thing.fragment != DefaultFragment(Existing(thing.asked, fragments), thing.nature)) {
+  this->PutLostVisuals(scene, frames, out);
+  this->Terrains_.Put(
+      scene, state,
+      [this](std::uint32_t id) {
+        const ObjectEntry& entry = this->Objects_.at(id);
+        return LedgerTerrains::Placement{entry.frame, entry.fragment};
+      },
+      out);
+  for (const auto& [id, entry] : this->Objects_) {
+    this->PutObject(scene, id, entry, out);
+    if (entry.createdOn != NoFrame &&
+        entry.fragment != DefaultFragment(Existing(entry.askedFragment, fragments), entry.nature)) {
       v1::Command& command = out.emplace_back();
       command.set_scene(scene);
       command.mutable_move_to_fragment()->set_object(id);
-      command.mutable_move_to_fragment()->set_fragment(thing.fragment);
+      command.mutable_move_to_fragment()->set_fragment(entry.fragment);
     }
   }
 }

@@ -1,4 +1,4 @@
-// The objects and terrains of one scene, for the ledger.
+// The objects of one scene, for the ledger.
 #ifndef DSPACE_SESSION_LEDGER_OBJECTS_H
 #define DSPACE_SESSION_LEDGER_OBJECTS_H
 
@@ -11,6 +11,7 @@
 
 #include <dspace/ledger/LatestCommands.h>
 #include <dspace/ledger/LedgerFrames.h>
+#include <dspace/ledger/LedgerTerrains.h>
 #include <dspace/scene/Trail.h>
 
 namespace dspace::session {
@@ -32,20 +33,20 @@ public:
   bool Change(const v1::Command& command, const v1::Reply& reply);
 
   // Before there are frames.
-  void PutOrphans(const std::string& scene, const std::vector<std::string>& fragments,
-                  Emit out) const;
+  void PutOrphanedVisuals(const std::string& scene, const std::vector<std::string>& fragments,
+                          Emit out) const;
   // `state`: as the ledger's.
   void Put(const std::string& scene, const LedgerFrames& frames,
            const std::vector<std::string>& fragments, const State* state, Emit out) const;
 
 private:
-  struct Thing {
+  struct ObjectEntry {
     std::optional<v1::Command> create; // absent: a robot or a terrain made it
     std::string robot;
     std::string terrain;
     LedgerId frame = 0;
-    LedgerId madeOn = 0; // a robot's
-    std::string asked;   // fragment that a robot's command names
+    LedgerId createdOn = 0;    // a robot's
+    std::string askedFragment; // fragment that a robot's command names
     v1::Nature nature = v1::PHYSICAL;
     std::string fragment;
     LatestCommands latest;
@@ -53,30 +54,22 @@ private:
     std::optional<v1::SetTilt> tilt; // after the material
     std::optional<Trail> trail;
   };
-  struct Ground {
-    v1::Command open;
-    LatestCommands latest;
-    bool tracked = false;                    // wheels have rolled there
-    std::vector<v1::AddTerrainLayer> layers; // bottom first; of no kind: those that it opens with
-    std::vector<std::string> opened;         // names of these: "drape", "filled"
-  };
   // A robot that is gone, with visuals that stay since they hang on other frames.
-  struct Orphans {
+  struct OrphanedVisuals {
     v1::Command load;
     std::set<std::uint32_t> ids;
   };
-  bool ChangeLook(Thing& thing, const v1::Command& command);
-  bool ChangeTerrain(const v1::Command& command, const v1::Reply& reply);
-  void PutTerrains(const std::string& scene, const State* state, Emit out) const;
-  void PutThing(const std::string& scene, std::uint32_t id, const Thing& thing, Emit out) const;
-  void PutLost(const std::string& scene, const LedgerFrames& frames, Emit out) const;
-  Thing* Find(std::uint32_t id);
+  bool ChangeLook(ObjectEntry& entry, const v1::Command& command);
+  void PutObject(const std::string& scene, std::uint32_t id, const ObjectEntry& entry,
+                 Emit out) const;
+  void PutLostVisuals(const std::string& scene, const LedgerFrames& frames, Emit out) const;
+  ObjectEntry* Find(std::uint32_t id);
 
-  std::map<std::uint32_t, Thing> Things_;
-  std::map<std::string, Ground> Grounds_;
-  std::vector<Orphans> Orphans_;
+  std::map<std::uint32_t, ObjectEntry> Objects_;
+  LedgerTerrains Terrains_;
+  std::vector<OrphanedVisuals> Orphans_;
   // Visuals that went with another frame than their robot's: by robot, with that frame.
-  std::multimap<std::string, std::pair<std::uint32_t, LedgerId>> Lost_;
+  std::multimap<std::string, std::pair<std::uint32_t, LedgerId>> LostVisuals_;
 };
 
 } // namespace dspace::session

@@ -1,9 +1,9 @@
-// The terrains among the ledger's objects.
+#include <dspace/ledger/LedgerTerrains.h>
+
 #include <algorithm>
 
 #include <dspace/Error.h>
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
-#include <dspace/ledger/LedgerObjects.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/messages/TrackMessages.h>
 #include <dspace/state/State.h>
@@ -31,12 +31,37 @@ const WheelTracks& TracksOf(const State* state, const std::string& scene,
 
 } // namespace
 
-bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& reply) {
+void LedgerTerrains::Open(const v1::Command& command) {
+  const v1::OpenTerrain& open = command.open_terrain();
+  Terrain& terrain = this->Terrains_[open.name()];
+  terrain.open = command;
+  if (open.mode() == v1::OpenTerrain::CLIPMAP) {
+    if (open.has_drape()) {
+      terrain.opened.emplace_back("drape");
+    }
+    if (open.has_fill_holes()) {
+      terrain.opened.emplace_back("filled");
+    }
+  }
+  for (const std::string& name : terrain.opened) {
+    terrain.layers.emplace_back().set_name(name);
+  }
+}
+
+std::optional<std::uint32_t> LedgerTerrains::ObjectOf(const std::string& name) const {
+  const auto found = this->Terrains_.find(name);
+  if (found == this->Terrains_.end()) {
+    return std::nullopt;
+  }
+  return found->second.open.open_terrain().object_id();
+}
+
+bool LedgerTerrains::Change(const v1::Command& command, const v1::Reply& reply) {
   using C = v1::Command;
-  const auto ground = [this](const std::string& name) -> Ground& {
-    return this->Grounds_.at(name);
+  const auto terrain = [this](const std::string& name) -> Terrain& {
+    return this->Terrains_.at(name);
   };
-  const auto layerOf = [](Ground& of, const std::string& name) {
+  const auto layerOf = [](Terrain& of, const std::string& name) {
     const auto found =
         std::find_if(of.layers.begin(), of.layers.end(),
                      [&](const v1::AddTerrainLayer& layer) { return layer.name() == name; });
@@ -45,7 +70,7 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
     }
     return found;
   };
-  const auto insert = [&reply](Ground& into, const v1::AddTerrainLayer& layer) {
+  const auto insert = [&reply](Terrain& into, const v1::AddTerrainLayer& layer) {
     const std::size_t at =
         std::min<std::size_t>(reply.terrain_layer().position(), into.layers.size());
     v1::AddTerrainLayer& added =
@@ -56,27 +81,27 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
   };
   const CommandTraits* traits = CommandTraits::Find(command.command_case());
   if (traits && traits->GetOwner() == CommandTraits::Owner::Terrain && traits->LatestIsKept()) {
-    ground(traits->OwnerName(command)).latest.Keep(command);
+    terrain(traits->OwnerName(command)).latest.Set(command);
     return true;
   }
   switch (command.command_case()) {
   case C::kTrackWheels:
-    ground(command.track_wheels().terrain()).tracked = true;
+    terrain(command.track_wheels().terrain()).tracked = true;
     return true;
   case C::kLoadTracks:
-    ground(command.load_tracks().terrain()).tracked = true;
+    terrain(command.load_tracks().terrain()).tracked = true;
     return true;
   case C::kRestoreTracks:
-    ground(command.restore_tracks().terrain()).tracked = true;
+    terrain(command.restore_tracks().terrain()).tracked = true;
     return true;
   case C::kClearTracks:
-    ground(command.clear_tracks().terrain()).tracked = false;
+    terrain(command.clear_tracks().terrain()).tracked = false;
     return true;
   case C::kAddTerrainLayer:
-    insert(ground(command.add_terrain_layer().terrain()), command.add_terrain_layer());
+    insert(terrain(command.add_terrain_layer().terrain()), command.add_terrain_layer());
     return true;
   case C::kChangeTerrainLayer: {
-    Ground& of = ground(command.change_terrain_layer().terrain());
+    Terrain& of = terrain(command.change_terrain_layer().terrain());
     const auto found = layerOf(of, command.change_terrain_layer().name());
     const v1::AddTerrainLayer layer = *found;
     of.layers.erase(found);
@@ -84,7 +109,7 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
     return true;
   }
   case C::kRemoveTerrainLayer: {
-    Ground& of = ground(command.remove_terrain_layer().terrain());
+    Terrain& of = terrain(command.remove_terrain_layer().terrain());
     of.layers.erase(layerOf(of, command.remove_terrain_layer().name()));
     return true;
   }
@@ -93,19 +118,20 @@ bool LedgerObjects::ChangeTerrain(const v1::Command& command, const v1::Reply& r
   }
 }
 
-void LedgerObjects::PutTerrains(const std::string& scene, const State* state, Emit out) const {
+void LedgerTerrains::Put(const std::string& scene, const State* state,
+                         const PlacementOf& placementOf, Emit out) const {
   const auto add = [&]() -> v1::Command& {
     out.emplace_back().set_scene(scene);
     return out.back();
   };
-  for (const auto& [name, ground] : this->Grounds_) {
-    v1::Command open = ground.open;
-    const Thing& thing = this->Things_.at(open.open_terrain().object_id());
-    open.mutable_open_terrain()->set_frame(thing.frame);
-    open.mutable_open_terrain()->set_fragment(thing.fragment);
+  for (const auto& [name, terrain] : this->Terrains_) {
+    v1::Command open = terrain.open;
+    const Placement placement = placementOf(open.open_terrain().object_id());
+    open.mutable_open_terrain()->set_frame(placement.frame);
+    open.mutable_open_terrain()->set_fragment(placement.fragment);
     out.push_back(open);
-    for (const std::string& opened : ground.opened) { // unless it has been removed
-      if (std::none_of(ground.layers.begin(), ground.layers.end(),
+    for (const std::string& opened : terrain.opened) { // unless it has been removed
+      if (std::none_of(terrain.layers.begin(), terrain.layers.end(),
                        [&opened](const v1::AddTerrainLayer& layer) {
                          return layer.name() == opened &&
                                 layer.kind_case() == v1::AddTerrainLayer::KIND_NOT_SET;
@@ -114,8 +140,8 @@ void LedgerObjects::PutTerrains(const std::string& scene, const State* state, Em
         out.back().mutable_remove_terrain_layer()->set_name(opened);
       }
     }
-    for (std::size_t i = 0; i < ground.layers.size(); ++i) {
-      const v1::AddTerrainLayer& layer = ground.layers[i];
+    for (std::size_t i = 0; i < terrain.layers.size(); ++i) {
+      const v1::AddTerrainLayer& layer = terrain.layers[i];
       if (layer.kind_case() != v1::AddTerrainLayer::KIND_NOT_SET) {
         v1::AddTerrainLayer* added = add().mutable_add_terrain_layer();
         *added = layer;
@@ -129,8 +155,8 @@ void LedgerObjects::PutTerrains(const std::string& scene, const State* state, Em
         change->set_visible(!layer.hidden());
       }
     }
-    ground.latest.Put(scene, out);
-    if (ground.tracked) {
+    terrain.latest.Put(scene, out);
+    if (terrain.tracked) {
       PutTracks(TracksOf(state, scene, name), scene, name, out);
     }
   }

@@ -1,7 +1,7 @@
-// The viewports of the ledger.
+#include <dspace/ledger/LedgerViewports.h>
+
 #include <algorithm>
 
-#include <dspace/ledger/LedgerNames.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/state/State.h>
 
@@ -33,7 +33,7 @@ bool LedgerViewports::Add(const v1::Command& command) {
     return false;
   }
   if (traits->LatestIsKept()) {
-    this->Find(traits->OwnerName(command)).latest.Keep(command);
+    this->Find(traits->OwnerName(command)).latest.Set(command);
     return true;
   }
   switch (command.command_case()) {

@@ -15,7 +15,7 @@
 namespace dspace::session {
 namespace {
 
-[[noreturn]] void RefuseAddress(const std::string& text, const std::string& why) {
+[[noreturn]] void RejectAddress(const std::string& text, const std::string& why) {
   throw Error(Error::Kind::InvalidArgument, "address '" + text + "'",
               why + "; accepted: host:port with a port from 0 to 65535, or unix:PATH");
 }
@@ -73,11 +73,11 @@ LinkAddress LinkAddress::Parse(const std::string& text) {
   LinkAddress address;
   if (text.rfind("unix:", 0) == 0) {
     if (text.size() == 5 || text.find('\0') != std::string::npos) {
-      RefuseAddress(text, "there is no path");
+      RejectAddress(text, "there is no path");
     }
     address.path = std::filesystem::absolute(text.substr(5)).lexically_normal();
     if (address.path.size() >= sizeof(sockaddr_un::sun_path)) {
-      RefuseAddress(text, "a socket's path is shorter than " +
+      RejectAddress(text, "a socket's path is shorter than " +
                               std::to_string(sizeof(sockaddr_un::sun_path)) + " bytes");
     }
     address.target = "unix:" + address.path;
@@ -89,11 +89,11 @@ LinkAddress LinkAddress::Parse(const std::string& text) {
   const std::string port = colon == std::string::npos ? "" : text.substr(colon + 1);
   if (host.empty() || port.empty() || port.size() > 5 ||
       port.find_first_not_of("0123456789") != std::string::npos || std::stoi(port) > 65535) {
-    RefuseAddress(text, "it has no host or no port");
+    RejectAddress(text, "it has no host or no port");
   }
   const bool bracketed = host.front() == '[' && host.back() == ']';
   if (!bracketed && host.find_first_of(":/[] ,%") != std::string::npos) {
-    RefuseAddress(text, "its host is none (an IPv6 address stands in brackets)");
+    RejectAddress(text, "its host is none (an IPv6 address stands in brackets)");
   }
   address.target = text;
   address.loopback = IsLoopback(host);

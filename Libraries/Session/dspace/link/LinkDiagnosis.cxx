@@ -68,7 +68,7 @@ int ConnectToPort(const std::string& target) {
 
 } // namespace
 
-std::string WhyNoAnswer(const std::string& address, bool encrypted) {
+std::string DiagnoseConnection(const std::string& address, bool encrypted) {
   const LinkAddress parsed = LinkAddress::Parse(address);
   const std::string accepted = "; accepted: the address of a `dspace serve`";
   struct stat state {};

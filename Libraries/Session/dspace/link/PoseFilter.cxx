@@ -22,7 +22,7 @@ template<class Message> bool HasUnknown(const Message& message) {
 
 } // namespace
 
-bool LeavesPoses(const v1::Command& command) {
+bool KeepsPoses(const v1::Command& command) {
   const CommandTraits* traits = CommandTraits::Find(command.command_case());
   return traits && traits->KeepsPoses();
 }
@@ -50,7 +50,7 @@ bool PoseFilter::Pass(v1::Command& command) {
     return this->PassRows(this->Scenes_[KeyOf(command)], *set.mutable_id(), *set.mutable_value(),
                           1);
   }
-  if (!LeavesPoses(command)) {
+  if (!KeepsPoses(command)) {
     this->Forget();
   }
   return true;

@@ -56,7 +56,7 @@ private:
 };
 
 // Whether the command leaves all local poses and values of telemetry as they are, for certain.
-bool LeavesPoses(const v1::Command& command);
+bool KeepsPoses(const v1::Command& command);
 
 } // namespace dspace::session
 

@@ -51,8 +51,8 @@ private:
     case Options::REQUEST:
       traits.Effect_ = Effect::Request;
       break;
-    case Options::LATER:
-      traits.Effect_ = Effect::Later;
+    case Options::UNIMPLEMENTED:
+      traits.Effect_ = Effect::Unimplemented;
       break;
     default:
       Fail(field, "the option `effect` is missing");

@@ -15,8 +15,8 @@ class Command;
 
 namespace dspace::session {
 
-// `Later`: typed only, answered with Error.UNIMPLEMENTED.
-enum class Effect { Change, Request, Later };
+// `Unimplemented`: typed only, answered with Error.UNIMPLEMENTED.
+enum class Effect { Change, Request, Unimplemented };
 
 // The options of one command. All commands are read once, when the first is asked for.
 class CommandTraits {

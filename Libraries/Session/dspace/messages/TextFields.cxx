@@ -20,7 +20,7 @@ std::vector<const Field*> SetFields(const Message& message) {
 
 } // namespace
 
-const Field* FindForeignText(const Message& message) {
+const Field* FindInvalidText(const Message& message) {
   const Reflection& of = *message.GetReflection();
   std::string scratch;
   for (const Field* field : SetFields(message)) {
@@ -37,7 +37,7 @@ const Field* FindForeignText(const Message& message) {
           return field;
         }
       } else if (const Field* below =
-                     FindForeignText(field->is_repeated() ? of.GetRepeatedMessage(message, field, i)
+                     FindInvalidText(field->is_repeated() ? of.GetRepeatedMessage(message, field, i)
                                                           : of.GetMessage(message, field))) {
         return below;
       }
@@ -47,14 +47,14 @@ const Field* FindForeignText(const Message& message) {
 }
 
 void RequireUtf8(const Message& message, const std::string& object) {
-  if (const Field* field = FindForeignText(message)) {
+  if (const Field* field = FindInvalidText(message)) {
     throw Error(Error::Kind::InvalidArgument, object,
                 "its field '" + field->name() + "' is not UTF-8; accepted: text of UTF-8");
   }
 }
 
 void MakeTextUtf8(Message& message) {
-  if (!FindForeignText(message)) {
+  if (!FindInvalidText(message)) {
     return;
   }
   const Reflection& of = *message.GetReflection();

@@ -11,7 +11,7 @@ namespace dspace::session {
 
 // The first field of text, at any depth, that is not UTF-8; null where all are. Unknown fields and
 // fields of bytes hold no text.
-const google::protobuf::FieldDescriptor* FindForeignText(const google::protobuf::Message& message);
+const google::protobuf::FieldDescriptor* FindInvalidText(const google::protobuf::Message& message);
 
 // Throws Error(InvalidArgument) naming `object` and that field, if there is one.
 void RequireUtf8(const google::protobuf::Message& message, const std::string& object);

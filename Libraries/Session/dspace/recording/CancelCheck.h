@@ -1,6 +1,6 @@
 // What long work calls now and then.
-#ifndef DSPACE_SESSION_KEEP_GOING_H
-#define DSPACE_SESSION_KEEP_GOING_H
+#ifndef DSPACE_SESSION_CANCEL_CHECK_H
+#define DSPACE_SESSION_CANCEL_CHECK_H
 
 #include <functional>
 
@@ -8,7 +8,7 @@ namespace dspace::session {
 
 // Called at least once for each row or page. What it throws ends the work, which leaves nothing
 // behind.
-using KeepGoing = std::function<void()>;
+using CancelCheck = std::function<void()>;
 
 } // namespace dspace::session
 

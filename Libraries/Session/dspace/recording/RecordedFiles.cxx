@@ -209,7 +209,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
     }
   }
   for (const RecordingAsset* asset : packed) {
-    this->Places_[asset->path] = this->Place(asset->path);
+    this->Places_[asset->path] = this->Locate(asset->path);
   }
   const RecordingReader::PartNumbers numbers = this->Reader_.Parts();
   for (const RecordingAsset* asset : packed) {
@@ -238,7 +238,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
   }
   const RecordedNames names(this->Places_);
   for (const auto& entry : this->Places_) { // one that came before may name one that has come now
-    names.Mend(entry.second);
+    names.RewriteFile(entry.second);
   }
 }
 
@@ -255,7 +255,7 @@ void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std
     }
     throw Error(Error::Kind::Io, object, named + " cannot be unpacked: " + std::strerror(reason));
   };
-  const std::string target = this->Place(asset.path);
+  const std::string target = this->Locate(asset.path);
   std::error_code error;
   fs::create_directories(fs::path(target).parent_path(), error);
   if (error) {
@@ -287,7 +287,7 @@ void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std
   }
 }
 
-std::string RecordedFiles::Place(const std::string& path) const {
+std::string RecordedFiles::Locate(const std::string& path) const {
   return this->Folder_.empty() ? path : this->Folder_ + Below(path);
 }
 
@@ -316,7 +316,7 @@ void RecordedFiles::Map(v1::Command& command) const {
 
 std::string RecordedFiles::MapPath(const std::string& path) const {
   if (path[0] == '/' && path.compare(0, 4, "/vsi") != 0) {
-    return this->Place(path);
+    return this->Locate(path);
   }
   const std::pair<const std::string, std::string>* longest = nullptr;
   for (const auto& entry : this->Places_) { // a part of a file: "/vsizip/...", NETCDF:"..."

@@ -47,7 +47,7 @@ public:
 
   // Where a path of the recording's is: below the folder, whatever it holds, and whether anything
   // was packed there or not. The path itself without a folder.
-  std::string Place(const std::string& path) const;
+  std::string Locate(const std::string& path) const;
 
   // For a FilesGuard around the recording's commands, valid also after this object is gone. Of
   // packed files only those in the folder are accepted. Of others any is: they were checked, and

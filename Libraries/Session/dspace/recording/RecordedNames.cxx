@@ -38,7 +38,7 @@ RecordedNames::RecordedNames(const std::map<std::string, std::string>& places) {
   }
 }
 
-std::string RecordedNames::Mended(const std::string& text) const {
+std::string RecordedNames::Rewritten(const std::string& text) const {
   std::string out;
   std::size_t kept = 0; // up to here it is in `out`
   for (std::size_t i = 0; i + 1 < text.size(); ++i) {
@@ -69,7 +69,7 @@ std::string RecordedNames::Mended(const std::string& text) const {
   return out.append(text, kept, std::string::npos);
 }
 
-void RecordedNames::Mend(const std::string& path) const {
+void RecordedNames::RewriteFile(const std::string& path) const {
   std::ifstream in(path, std::ios::binary);
   std::string start(Head, '\0');
   in.read(start.data(), std::streamsize(Head));
@@ -84,7 +84,7 @@ void RecordedNames::Mend(const std::string& path) const {
   }
   in.close();
   // UTF-8, as the names are: a robot description in Latin-1 is read as its text in UTF-8 is.
-  const std::string mended = this->Mended(ToUtf8(start + rest.str()));
+  const std::string mended = this->Rewritten(ToUtf8(start + rest.str()));
   AtomicFile::Save(path, mended.data(), mended.size());
 }
 

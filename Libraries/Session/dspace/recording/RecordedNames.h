@@ -15,10 +15,10 @@ public:
   explicit RecordedNames(const std::map<std::string, std::string>& places);
 
   // Rewrites a file that is one of these sorts; any other is left as it is. Throws Error(Io).
-  void Mend(const std::string& path) const;
+  void RewriteFile(const std::string& path) const;
 
   // Whole names only, perhaps after "file://": what stands around one ends a value of XML.
-  std::string Mended(const std::string& text) const;
+  std::string Rewritten(const std::string& text) const;
 
 private:
   std::map<std::string, std::string> Names_; // as they stand in XML

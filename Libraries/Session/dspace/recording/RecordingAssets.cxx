@@ -82,13 +82,13 @@ void RecordingAssets::PutOne(const std::string& path, const FileStamp& stamp) {
   this->File_.Put(asset);
 }
 
-bool RecordingAssets::Pack(const RecordingAsset& noted, const KeepGoing& keepGoing) {
+bool RecordingAssets::Pack(const RecordingAsset& noted, const CancelCheck& checkCancel) {
   this->File_.RemoveContent(noted.id); // of a run that was broken off
   this->Parts_ = this->File_.LastContent();
   RecordingAsset found = noted;
   found.size = 0;
   found.packed = true;
-  if (!this->Read(found, keepGoing) || found.size != noted.size || found.sha256 != noted.sha256) {
+  if (!this->Read(found, checkCancel) || found.size != noted.size || found.sha256 != noted.sha256) {
     this->File_.RemoveContent(noted.id);
     return false;
   }
@@ -96,14 +96,14 @@ bool RecordingAssets::Pack(const RecordingAsset& noted, const KeepGoing& keepGoi
   return true;
 }
 
-bool RecordingAssets::Read(RecordingAsset& asset, const KeepGoing& keepGoing) {
+bool RecordingAssets::Read(RecordingAsset& asset, const CancelCheck& checkCancel) {
   std::ifstream file(asset.path, std::ios::binary);
   std::string part(PartBytes, '\0');
   Sha256 sum;
   this->Incompressible_ = 0;
   while (file.read(part.data(), std::streamsize(PartBytes)), file.gcount() > 0) {
-    if (keepGoing) {
-      keepGoing();
+    if (checkCancel) {
+      checkCancel();
     }
     part.resize(std::size_t(file.gcount()));
     sum.Add(part.data(), part.size());

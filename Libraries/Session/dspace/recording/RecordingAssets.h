@@ -26,7 +26,7 @@ public:
 
   // Takes the content of a file into a recording that has noted the file. Within a transaction, as
   // above. False, and nothing of it stays, where it is not what it was.
-  bool Pack(const RecordingAsset& noted, const KeepGoing& keepGoing);
+  bool Pack(const RecordingAsset& noted, const CancelCheck& checkCancel);
 
   // Files that were to be packed and could not be read.
   const std::vector<std::string>& Missing() const { return this->Missing_; }
@@ -35,7 +35,7 @@ private:
   void PutOne(const std::string& path, const FileStamp& stamp);
   void PutRow(const std::string& path, const char* state);
   // False where it cannot be read to its end.
-  bool Read(RecordingAsset& asset, const KeepGoing& keepGoing = {});
+  bool Read(RecordingAsset& asset, const CancelCheck& checkCancel = {});
   void PutPart(RecordingAsset& asset, const std::string& part);
 
   RecordingFile& File_;

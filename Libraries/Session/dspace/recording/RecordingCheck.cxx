@@ -7,10 +7,10 @@
 
 namespace dspace::session {
 
-void CheckRecording(RecordingReader& reader, const KeepGoing& keepGoing) {
+void CheckRecording(RecordingReader& reader, const CancelCheck& checkCancel) {
   const RecordingDatabase::View view(reader.Database());
   const auto seen = [&](const RecordingRow&) {
-    keepGoing();
+    checkCancel();
     return true;
   };
   std::uint64_t first = reader.First();
@@ -26,7 +26,7 @@ void CheckRecording(RecordingReader& reader, const KeepGoing& keepGoing) {
       const auto parts = numbers.find(asset.id);
       reader.ReadContent(asset,
                          parts == numbers.end() ? std::vector<std::int64_t>() : parts->second,
-                         [&](const std::string&) { keepGoing(); });
+                         [&](const std::string&) { checkCancel(); });
     }
   }
   RecordingDatabase::Statement sound(reader.Database(), "PRAGMA integrity_check(1)");

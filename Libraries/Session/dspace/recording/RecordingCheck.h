@@ -10,7 +10,7 @@ namespace dspace::session {
 // Reads all of a recording: commands, snapshots, files, packed content, SQLite's own structure.
 // Throws Error at the first damage, as RecordingReader. Commands that the recording itself says are
 // lost are no damage.
-void CheckRecording(RecordingReader& reader, const KeepGoing& keepGoing);
+void CheckRecording(RecordingReader& reader, const CancelCheck& checkCancel);
 
 } // namespace dspace::session
 

@@ -19,7 +19,7 @@ RecordingCheckpoints::~RecordingCheckpoints() {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
     this->Stop_ = true;
   }
-  this->News_.notify_all();
+  this->Changed_.notify_all();
   this->Thread_.join();
 }
 
@@ -27,10 +27,10 @@ void RecordingCheckpoints::After(sqlite3* writer, int pagesInLog) {
   std::unique_lock<std::mutex> lock(this->Mutex_);
   if (this->Step_ == Step::Idle && pagesInLog >= this->Pages_) {
     this->Step_ = Step::Asked;
-    this->News_.notify_all();
+    this->Changed_.notify_all();
   }
   if (pagesInLog >= Most * this->Pages_) { // the disk is behind: it is waited for
-    this->News_.wait(lock, [this] { return this->Step_ != Step::Asked; });
+    this->Changed_.wait(lock, [this] { return this->Step_ != Step::Asked; });
   }
   if (this->Step_ == Step::Done) {
     this->Step_ = Step::Idle;
@@ -43,7 +43,7 @@ void RecordingCheckpoints::Run() {
   sqlite3* database = nullptr;
   std::unique_lock<std::mutex> lock(this->Mutex_);
   for (;;) {
-    this->News_.wait(lock, [this] { return this->Stop_ || this->Step_ == Step::Asked; });
+    this->Changed_.wait(lock, [this] { return this->Stop_ || this->Step_ == Step::Asked; });
     if (this->Stop_) {
       break;
     }
@@ -55,7 +55,7 @@ void RecordingCheckpoints::Run() {
     sqlite3_wal_checkpoint_v2(database, nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
     lock.lock();
     this->Step_ = Step::Done;
-    this->News_.notify_all();
+    this->Changed_.notify_all();
   }
   sqlite3_close(database);
 }

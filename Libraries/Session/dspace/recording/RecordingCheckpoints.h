@@ -31,7 +31,7 @@ private:
   const std::string Path_;
   const int Pages_;
   std::mutex Mutex_;
-  std::condition_variable News_;
+  std::condition_variable Changed_;
   enum class Step { Idle, Asked, Done } Step_ = Step::Idle;
   bool Stop_ = false;
   std::thread Thread_;

@@ -7,7 +7,7 @@
 namespace dspace::session {
 
 std::uint64_t CutRecording(RecordingReader& reader, const std::string& out, std::uint64_t first,
-                           std::uint64_t last, const KeepGoing& keepGoing) {
+                           std::uint64_t last, const CancelCheck& checkCancel) {
   const RecordingDatabase::View view(reader.Database());
   NewRecording made(out);
   std::uint64_t begin = 0;
@@ -15,7 +15,7 @@ std::uint64_t CutRecording(RecordingReader& reader, const std::string& out, std:
     RecordingFile file(made);
     Sha256 sum;
     const auto put = [&](const RecordingRow& row) {
-      keepGoing();
+      checkCancel();
       file.Put(row, RecordingChecksum(sum, row));
       file.CommitEach(row.payload.size());
       return true;
@@ -33,7 +33,7 @@ std::uint64_t CutRecording(RecordingReader& reader, const std::string& out, std:
     }
     reader.ReadAssets(0, [&](RecordingAsset&& asset) { file.Put(asset); });
     reader.ReadParts([&](RecordingContent&& part) {
-      keepGoing();
+      checkCancel();
       file.Put(part);
       file.CommitEach(part.data.size());
     });

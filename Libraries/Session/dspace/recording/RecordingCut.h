@@ -15,7 +15,7 @@ namespace dspace::session {
 // Throws Error, and leaves no new file: those of RecordingReader; AlreadyExists, NotFound and Io
 // for the new file.
 std::uint64_t CutRecording(RecordingReader& reader, const std::string& out, std::uint64_t first,
-                           std::uint64_t last, const KeepGoing& keepGoing);
+                           std::uint64_t last, const CancelCheck& checkCancel);
 
 } // namespace dspace::session
 

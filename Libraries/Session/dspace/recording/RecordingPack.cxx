@@ -45,7 +45,7 @@ void RequireFiles(const std::string& name, const std::vector<RecordingAsset>& as
 }
 
 // All of a recording, which may be being written, into an empty file.
-void Copy(const RecordingReader& reader, const NewRecording& out, const KeepGoing& keepGoing) {
+void Copy(const RecordingReader& reader, const NewRecording& out, const CancelCheck& checkCancel) {
   const RecordingDatabase::View view(reader.Database());
   sqlite3* opened = nullptr;
   int result = sqlite3_open_v2(out.Path().c_str(), &opened, SQLITE_OPEN_READWRITE, nullptr);
@@ -55,7 +55,7 @@ void Copy(const RecordingReader& reader, const NewRecording& out, const KeepGoin
         sqlite3_backup_init(target.get(), "main", reader.Database().Handle(), "main"),
         sqlite3_backup_finish);
     do {
-      keepGoing();
+      checkCancel();
       result =
           backup ? sqlite3_backup_step(backup.get(), PagesAtOnce) : sqlite3_errcode(target.get());
     } while (result == SQLITE_OK);
@@ -71,9 +71,9 @@ void Copy(const RecordingReader& reader, const NewRecording& out, const KeepGoin
 }
 
 void PackOne(RecordingFile& file, RecordingAssets& packer, const std::string& name,
-             const RecordingAsset& asset, const KeepGoing& keepGoing) {
+             const RecordingAsset& asset, const CancelCheck& checkCancel) {
   file.Begin();
-  if (packer.Pack(asset, keepGoing)) {
+  if (packer.Pack(asset, checkCancel)) {
     file.Commit();
     return;
   }
@@ -86,7 +86,7 @@ void PackOne(RecordingFile& file, RecordingAssets& packer, const std::string& na
 } // namespace
 
 PackReport PackRecording(const std::string& path, const std::optional<std::string>& out,
-                         const KeepGoing& keepGoing) {
+                         const CancelCheck& checkCancel) {
   std::vector<RecordingAsset> assets;
   std::string target, name;
   std::unique_ptr<NewRecording> made;
@@ -100,7 +100,7 @@ PackReport PackRecording(const std::string& path, const std::optional<std::strin
       made = std::make_unique<NewRecording>(*out);
       target = made->Path();
       name = made->Name();
-      Copy(reader, *made, keepGoing);
+      Copy(reader, *made, checkCancel);
     }
   }
   PackReport report;
@@ -110,7 +110,7 @@ PackReport PackRecording(const std::string& path, const std::optional<std::strin
     for (const RecordingAsset& asset : assets) {
       if (IsNeeded(asset)) {
         RequireFiles(name, {asset}); // it may have gone meanwhile
-        PackOne(file, packer, name, asset, keepGoing);
+        PackOne(file, packer, name, asset, checkCancel);
       } else if (asset.state != "absent" && !asset.packed) {
         report.missing.push_back(asset.path);
       }

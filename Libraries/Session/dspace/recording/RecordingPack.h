@@ -22,7 +22,7 @@ struct PackReport {
 // has changed; Io where a process has the recording open. Then there is no copy; in the recording
 // itself files that came before the changed one stay packed.
 PackReport PackRecording(const std::string& path, const std::optional<std::string>& out,
-                         const KeepGoing& keepGoing);
+                         const CancelCheck& checkCancel);
 
 } // namespace dspace::session
 

@@ -240,11 +240,11 @@ public:
     this->FindTurns();
   }
 
-  bool Find(const std::function<void(FoundRow&&)>& take, const KeepGoing& keepGoing) {
+  bool Find(const std::function<void(FoundRow&&)>& take, const CancelCheck& checkCancel) {
     bool any = false;
     const auto look = [&](const std::string& page) {
       for (const std::size_t start : {0, 100}) { // the first page begins with the file's head
-        any = this->FindInPage(page, start, take, keepGoing) || any;
+        any = this->FindInPage(page, start, take, checkCancel) || any;
       }
     };
     for (std::size_t place = 0; place < this->Data_.Size(); place += this->Size_) {
@@ -293,8 +293,8 @@ private:
   }
 
   bool FindInPage(const std::string& page, std::size_t start,
-                  const std::function<void(FoundRow&&)>& take, const KeepGoing& keepGoing) {
-    keepGoing();
+                  const std::function<void(FoundRow&&)>& take, const CancelCheck& checkCancel) {
+    checkCancel();
     if (page.size() < start + 8 || static_cast<unsigned char>(page[start]) != Leaf) {
       return false;
     }
@@ -308,7 +308,7 @@ private:
       if (!seen.insert(place).second) {
         continue;
       }
-      keepGoing();
+      checkCancel();
       for (const Turn& turn : this->Turns_) {
         bool chained = false;
         std::optional<FoundRow> row = this->RowAt(page, std::size_t(place), turn, chained);
@@ -410,11 +410,11 @@ std::vector<std::size_t> SizesOf(const Source& data) {
 } // namespace
 
 void FindRows(const std::string& path, const std::function<void(FoundRow&&)>& take,
-              const KeepGoing& keepGoing) {
+              const CancelCheck& checkCancel) {
   const Source data(path);
   const Source log(path + "-wal");
   for (const std::size_t size : SizesOf(data)) {
-    if (Pages(data, log, size).Find(take, keepGoing)) {
+    if (Pages(data, log, size).Find(take, checkCancel)) {
       return;
     }
   }

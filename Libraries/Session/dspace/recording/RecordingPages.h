@@ -17,7 +17,7 @@ using FoundRow = std::variant<RecordingRow, RecordingAsset, RecordingContent>;
 // checksum holds. A row that is there several times may come as often. Throws Error(Io) where the
 // file cannot be read.
 void FindRows(const std::string& path, const std::function<void(FoundRow&&)>& take,
-              const KeepGoing& keepGoing);
+              const CancelCheck& checkCancel);
 
 } // namespace dspace::session
 

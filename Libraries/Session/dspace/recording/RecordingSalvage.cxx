@@ -34,7 +34,7 @@ void Put(RecordingFile& file, RecordingRow& row, Sha256& sum) {
   file.CommitEach(row.payload.size());
 }
 
-void PutAll(const std::string& path, RecordingFile& file, const KeepGoing& keepGoing) {
+void PutAll(const std::string& path, RecordingFile& file, const CancelCheck& checkCancel) {
   Sha256 sum;
   file.Begin();
   FindRows(
@@ -52,7 +52,7 @@ void PutAll(const std::string& path, RecordingFile& file, const KeepGoing& keepG
           file.CommitEach(content.data.size());
         }
       },
-      keepGoing);
+      checkCancel);
   file.Commit();
 }
 
@@ -76,7 +76,7 @@ LostIn(const RecordingDatabase& found, std::uint64_t begin, std::uint64_t last) 
 }
 
 // Packed files whose content is not whole.
-std::vector<RecordingAsset> BrokenIn(RecordingReader& found, const KeepGoing& keepGoing) {
+std::vector<RecordingAsset> BrokenIn(RecordingReader& found, const CancelCheck& checkCancel) {
   const RecordingReader::PartNumbers numbers = found.Parts();
   std::vector<RecordingAsset> broken;
   found.ReadAssets(0, [&](RecordingAsset&& asset) {
@@ -86,7 +86,7 @@ std::vector<RecordingAsset> BrokenIn(RecordingReader& found, const KeepGoing& ke
     const auto parts = numbers.find(asset.id);
     try {
       found.ReadContent(asset, parts == numbers.end() ? std::vector<std::int64_t>() : parts->second,
-                        [&](const std::string&) { keepGoing(); });
+                        [&](const std::string&) { checkCancel(); });
     } catch (const Error& error) {
       if (error.GetKind() != Error::Kind::Corrupt) {
         throw;
@@ -135,7 +135,7 @@ bool SalvageReport::IsWhole() const {
 }
 
 SalvageReport SalvageRecording(const std::string& path, const std::string& out,
-                               const KeepGoing& keepGoing) {
+                               const CancelCheck& checkCancel) {
   const std::string whole = std::filesystem::absolute(path).string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(whole, error)) {
@@ -147,12 +147,12 @@ SalvageReport SalvageRecording(const std::string& path, const std::string& out,
   SalvageReport report;
   {
     RecordingFile file(made);
-    PutAll(whole, file, keepGoing);
+    PutAll(whole, file, checkCancel);
     std::vector<RecordingAsset> broken;
     {
       RecordingReader found(made.Path());
       report = ReportOf(found.Database(), begin);
-      broken = BrokenIn(found, keepGoing);
+      broken = BrokenIn(found, checkCancel);
     }
     if (report.commands + report.snapshots + report.assets == 0) {
       throw Error(Error::Kind::Corrupt, RecordingName(whole), "nothing in it survives");

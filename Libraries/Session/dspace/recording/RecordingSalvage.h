@@ -33,7 +33,7 @@ struct SalvageReport {
 // Dspace wrote it), Corrupt (nothing in it survives), AlreadyExists and NotFound for the new file,
 // Io. Then there is no new file.
 SalvageReport SalvageRecording(const std::string& path, const std::string& out,
-                               const KeepGoing& keepGoing);
+                               const CancelCheck& checkCancel);
 
 } // namespace dspace::session
 

@@ -351,7 +351,7 @@ std::string RecordingWriter::Flush() {
   return impl.counts.failure;
 }
 
-void RecordingWriter::Jump(const Ledger& ledger, double time_s, const CommandFiles* files) {
+void RecordingWriter::Resync(const Ledger& ledger, double time_s, const CommandFiles* files) {
   Impl& impl = *this->Impl_;
   if (impl.Forked()) {
     return;

@@ -76,7 +76,7 @@ public:
   std::string Flush();
   // What comes next is not what came after the last command: the state is now that of `ledger`, at
   // `time_s`, and `files` has what was read for it. The recording says that a command is lost here.
-  void Jump(const Ledger& ledger, double time_s, const CommandFiles* files);
+  void Resync(const Ledger& ledger, double time_s, const CommandFiles* files);
   RecordingCounts Counts() const;
   const std::string& Path() const;
 

@@ -66,7 +66,7 @@ void FrameEventLog::Add(const std::string& scene, const FrameEvent& event) {
   this->Events_.push_back(std::move(message));
 }
 
-void FrameEventLog::ForgetUndone(std::size_t first) {
+void FrameEventLog::DiscardSince(std::size_t first) {
   using Key = std::pair<std::string, FrameId>; // ids are a scene's own
   std::set<Key> made;
   std::set<Key> undone;

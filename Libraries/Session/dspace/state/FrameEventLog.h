@@ -33,7 +33,7 @@ public:
   std::size_t Size() const { return this->Events_.size(); }
   // A refused command may have made frames and taken them away again: nobody hears of them. Looks
   // at the events from `first` on; what else happened is still told.
-  void ForgetUndone(std::size_t first);
+  void DiscardSince(std::size_t first);
   // Appends all to the reply's and is empty then.
   void MoveTo(v1::Reply& reply);
 

@@ -42,7 +42,7 @@ struct SceneState {
 };
 
 // A viewport as the interpreter knows it, whoever draws it.
-struct ViewportPlace {
+struct ViewportState {
   std::string scene;
   std::string vantage;
   std::string camera; // empty: the vantage's active one
@@ -58,7 +58,7 @@ struct ViewportPlace {
 struct State {
   FrameEventLog frameEvents; // before the scenes, whose followers write into it
   std::map<std::string, SceneState> scenes;
-  std::map<std::string, ViewportPlace> viewports;
+  std::map<std::string, ViewportState> viewports;
   ModelCache models;
   std::uint64_t lastTelemetryId = 0; // of all scenes that there were
   CommandFiles files;

@@ -65,7 +65,7 @@ class LocalClient:
             listeners.deliver()
         return reply
 
-    def tell(self, event):
+    def send_event(self, event):
         """A ViewerEvent for who drives: in a session of one's own, for oneself."""
         self.local()
         self.events.put(event)

@@ -149,8 +149,8 @@ def run(options):
         began = time.monotonic()
         while not stop and pictures.count != options.count:
             watcher.update(min(0.2, max(0.0, due - time.monotonic())))
-            if watcher.trouble != told:
-                told = watcher.trouble
+            if watcher.error != told:
+                told = watcher.error
                 if told:
                     print(f"dspace: note: the pictures lack what could not be done here: {told}", file=sys.stderr)
             why = presence.disconnected()

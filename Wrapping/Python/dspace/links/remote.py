@@ -62,8 +62,8 @@ class RemoteClient(LocalClient):
         self.later = self.later or not asks
         link.Begin(encode(command), asks)
         reply = self._take(link, asks)
-        for news in self.recording.take_news() if self.recording is not None else ():
-            warn(news) if reply.HasField("error") else reply.warning.append(news)
+        for warning in self.recording.take_warnings() if self.recording is not None else ():
+            warn(warning) if reply.HasField("error") else reply.warning.append(news)
         return reply
 
     def _take(self, link, asks=False, end=None):
@@ -100,7 +100,7 @@ class RemoteClient(LocalClient):
         """Whether the connection is broken and cannot be restored."""
         return to_reply(self._open().GetBroken()).HasField("error")
 
-    def tell(self, event):
+    def send_event(self, event):
         self._open()
         self.events.put(event)
 

@@ -28,7 +28,7 @@ class RecordedFiles:
 
     def place(self, path):
         """Where a path of the recording's is: below the folder, whatever it holds."""
-        return self._path(self.vtk.Place(os.fsencode(path)))
+        return self._path(self.vtk.Locate(os.fsencode(path)))
 
     def map(self, payload):
         """A serialized command with its paths made those of the folder."""

@@ -74,7 +74,7 @@ def carry_out(name, *arguments):
     """The RecordingReply of long work on recordings, such as "Salvage" (vtkDspaceRecordingTask). Ctrl-C ends it, and
     leaves no new file behind."""
     task = _vtk.vtkDspaceRecordingTask()
-    getattr(task, name + "Later")(*arguments)
+    getattr(task, "Begin" + name)(*arguments)
     try:
         while not task.Wait(SLICE):
             check_signals()

@@ -139,19 +139,19 @@ class Viewport(Strict):
         """Draws it if something changed; returns whether it did."""
         return bool(self._do("render").render.drawn)
 
-    def pick(self, x, y, radius=0, frame=None, tell=False):
+    def pick(self, x, y, radius=0, frame=None, send=False):
         """What lies under a pixel, or the nearest object within `radius` (0 to 256) pixels: a Pick, or
         None where nothing pickable is drawn (the sky), so that it is asked for before it is used.
 
         Ornaments that are drawn are picked, too. frame: a frame in which the point is given as well
-        (Pick.in_given). tell: what was hit is also said to the simulation (Session.on_event)."""
+        (Pick.in_given). send: what was hit is also said to the simulation (Session.on_event)."""
         scene = self.scene
         in_frame = 0 if frame is None else scene._frame_id(frame)
         reply = self._do("pick", x=x, y=y, radius=radius, in_frame=in_frame).pick
         if not reply.object:
             return None
-        if flag(tell, "tell", self._label):
-            self._client.tell(service_pb2.ViewerEvent(picked=service_pb2.ViewerEvent.Picked(
+        if flag(send, "send", self._label):
+            self._client.send_event(service_pb2.ViewerEvent(picked=service_pb2.ViewerEvent.Picked(
                 scene=scene.name, viewport=self._name, pick=reply)))
         terrain = scene.terrains.get(reply.terrain) if reply.terrain else None
         return Pick(scene._object(reply.object), scene._frame_of(reply.frame), reply.depth,

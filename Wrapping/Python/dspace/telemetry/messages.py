@@ -177,7 +177,7 @@ class Question(Strict):
             refuse(label, "the answer", answer, ", ".join(map(repr, self.choices)))
         event = service_pb2.ViewerEvent()
         event.answer.question, event.answer.answer = self.name, answer
-        self._scene._client.tell(event)
+        self._scene._client.send_event(event)
 
     def __repr__(self):
         return f"<dspace.Question {self.name!r}: {shown(self.text)}, answer {self._answer!r}>"

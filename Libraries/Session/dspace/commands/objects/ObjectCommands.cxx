@@ -78,11 +78,11 @@ void RemoveObject(const Context& context, v1::RemoveObject& command) {
 }
 
 void SetObjectVisible(const Context& context, v1::SetObjectVisible& command) {
-  context.TheScene().SetObjectVisible(command.object(), command.visible());
+  context.GetScene().SetObjectVisible(command.object(), command.visible());
 }
 
 void SetMaterial(const Context& context, v1::SetMaterial& command) {
-  Scene& scene = context.TheScene();
+  Scene& scene = context.GetScene();
   const MaterialOverride imported;
   const MaterialOverride& old = scene.Object(command.object()).material;
   const MaterialOverride& base = command.replace() ? imported : old;
@@ -92,7 +92,7 @@ void SetMaterial(const Context& context, v1::SetMaterial& command) {
 }
 
 void SetObjectOffset(const Context& context, v1::SetObjectOffset& command) {
-  Scene& scene = context.TheScene();
+  Scene& scene = context.GetScene();
   for (const auto& [name, terrain] : context.scene->terrains) {
     if (terrain->Object() == command.object()) {
       Refuse(ObjectLabel(scene, command.object()),
@@ -104,11 +104,11 @@ void SetObjectOffset(const Context& context, v1::SetObjectOffset& command) {
 }
 
 void AttachObject(const Context& context, v1::AttachObject& command) {
-  context.TheScene().AttachObject(command.object(), ToFrame(command.frame()));
+  context.GetScene().AttachObject(command.object(), ToFrame(command.frame()));
 }
 
 void MoveToFragment(const Context& context, v1::MoveToFragment& command) {
-  context.TheScene().MoveToFragment(command.object(), command.fragment());
+  context.GetScene().MoveToFragment(command.object(), command.fragment());
 }
 
 } // namespace

@@ -53,7 +53,7 @@ void Describe(const GraphicsObject& object, v1::ObjectInfo* info) {
 }
 
 void FindObject(const Context& context, v1::FindObject& command) {
-  const ObjectId id = context.TheScene().FindObject(command.name());
+  const ObjectId id = context.GetScene().FindObject(command.name());
   if (id == 0) {
     throw Error(Error::Kind::NotFound, "object '" + command.name() + "'",
                 "there is no such object in scene '" + context.sceneName + "'");
@@ -63,12 +63,12 @@ void FindObject(const Context& context, v1::FindObject& command) {
 }
 
 void DescribeObject(const Context& context, v1::DescribeObject& command) {
-  Describe(context.TheScene().Object(command.object()), context.reply.mutable_object_info());
+  Describe(context.GetScene().Object(command.object()), context.reply.mutable_object_info());
 }
 
 void ListObjects(const Context& context, v1::ListObjects&) {
   v1::ObjectList* list = context.reply.mutable_objects();
-  for (const auto& [id, object] : context.TheScene().Objects()) {
+  for (const auto& [id, object] : context.GetScene().Objects()) {
     Describe(object, list->add_object());
   }
 }

@@ -78,7 +78,7 @@ void PutMaterial(const MaterialOverride& from, v1::Material* to) {
 
 ObjectId AddObject(const Context& context, v1::ObjectSettings& settings, const std::string& what,
                    std::vector<DetailLevel> levels, bool billboard) {
-  Scene& scene = context.TheScene();
+  Scene& scene = context.GetScene();
   GraphicsObject object;
   object.id = settings.id();
   object.name = settings.name().empty() ? FreeObjectName(scene, what) : settings.name();

@@ -32,7 +32,7 @@ void CreatePrimitive(const Context& context, v1::CreatePrimitive& command) {
 }
 
 void SetPrimitive(const Context& context, v1::SetPrimitive& command) {
-  Scene& scene = context.TheScene();
+  Scene& scene = context.GetScene();
   scene.Object(command.object()); // throws where there is none
   const std::string label = ObjectLabel(scene, command.object());
   if (!context.scene->primitives.count(command.object())) {
@@ -48,7 +48,7 @@ void SetPrimitive(const Context& context, v1::SetPrimitive& command) {
 }
 
 void SetTilt(const Context& context, v1::SetTilt& command) {
-  Scene& scene = context.TheScene();
+  Scene& scene = context.GetScene();
   MaterialOverride material = scene.Object(command.object()).material;
   const auto found = context.scene->tilts.find(command.object());
   if (found == context.scene->tilts.end()) {

@@ -123,7 +123,7 @@ public:
       this->RecordIds(base);
       return robot;
     } catch (...) {
-      this->Context_.TheScene().RemoveFrame(base); // its links and their objects go with it
+      this->Context_.GetScene().RemoveFrame(base); // its links and their objects go with it
       throw;
     }
   }
@@ -144,7 +144,7 @@ private:
   }
 
   ObjectId AddVisual(std::size_t link, UrdfGeometry geometry) {
-    Scene& scene = this->Context_.TheScene();
+    Scene& scene = this->Context_.GetScene();
     GraphicsObject object;
     object.id = this->NextVisual_ < this->Command_.object_id_size()
                     ? this->Command_.object_id(this->NextVisual_)
@@ -171,7 +171,7 @@ private:
       this->Command_.add_link_id(this->LinkFrames_[i]);
       for (const ObjectId id : this->LinkObjects_[i]) {
         this->Command_.add_object_id(id);
-        this->Command_.add_object_name(this->Context_.TheScene().Object(id).name);
+        this->Command_.add_object_name(this->Context_.GetScene().Object(id).name);
       }
     }
   }
@@ -218,7 +218,7 @@ void LoadRobot(const Context& context, v1::LoadRobot& command) {
 
 void RemoveRobot(const Context& context, v1::RemoveRobot& command) {
   const FrameId base = FindRobot(context, command.robot()).Base();
-  context.TheScene().RemoveFrame(base);
+  context.GetScene().RemoveFrame(base);
   context.scene->ForgetRemoved();
 }
 

@@ -8,10 +8,10 @@ namespace dspace::session {
 namespace {
 
 Trail& FindTrail(const Context& context, ObjectId id) {
-  context.TheScene().Object(id); // throws where there is none
+  context.GetScene().Object(id); // throws where there is none
   const auto found = context.scene->trails.find(id);
   if (found == context.scene->trails.end()) {
-    Refuse(ObjectLabel(context.TheScene(), id), "it is no trail");
+    Refuse(ObjectLabel(context.GetScene(), id), "it is no trail");
   }
   return found->second;
 }
@@ -37,7 +37,7 @@ void CreateTrail(const Context& context, v1::CreateTrail& command) {
 
 void AppendTrail(const Context& context, v1::AppendTrail& command) {
   Trail& trail = FindTrail(context, command.object());
-  const std::string label = ObjectLabel(context.TheScene(), command.object());
+  const std::string label = ObjectLabel(context.GetScene(), command.object());
   const std::size_t n = RowsOf(command.point_size(), 3, label, "point");
   for (std::size_t i = 0; i < n; ++i) {
     RequirePosition(label, "a point", Eigen::Vector3d(command.point().data() + 3 * i));
@@ -45,13 +45,13 @@ void AppendTrail(const Context& context, v1::AppendTrail& command) {
   for (std::size_t i = 0; i < n; ++i) {
     trail.Add(Eigen::Vector3d(command.point().data() + 3 * i));
   }
-  context.TheScene().SetObjectLevels(command.object(), LevelsOf(trail));
+  context.GetScene().SetObjectLevels(command.object(), LevelsOf(trail));
 }
 
 void ClearTrail(const Context& context, v1::ClearTrail& command) {
   Trail& trail = FindTrail(context, command.object());
   trail.Clear();
-  context.TheScene().SetObjectLevels(command.object(), LevelsOf(trail));
+  context.GetScene().SetObjectLevels(command.object(), LevelsOf(trail));
 }
 
 } // namespace

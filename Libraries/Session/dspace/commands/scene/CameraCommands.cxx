@@ -15,7 +15,7 @@ std::string VantageName(const std::string& name) {
 }
 
 void CreateVantage(const Context& context, v1::CreateVantage& command) {
-  context.TheScene().CreateVantage(command.name());
+  context.GetScene().CreateVantage(command.name());
 }
 
 void RemoveVantage(const Context& context, v1::RemoveVantage& command) {
@@ -25,13 +25,13 @@ void RemoveVantage(const Context& context, v1::RemoveVantage& command) {
              "viewport '" + name + "' shows it; remove the viewport or show another vantage first");
     }
   }
-  context.TheScene().RemoveVantage(command.name());
+  context.GetScene().RemoveVantage(command.name());
 }
 
 void ListVantages(const Context& context, v1::ListVantages&) {
   v1::VantageList* list = context.reply.mutable_vantages();
-  for (const std::string& name : context.TheScene().VantageNames()) {
-    const SceneVantage& vantage = context.TheScene().Vantage(name);
+  for (const std::string& name : context.GetScene().VantageNames()) {
+    const SceneVantage& vantage = context.GetScene().Vantage(name);
     v1::VantageInfo* info = list->add_vantage();
     info->set_name(name);
     for (const std::string& camera : vantage.CameraNames()) {
@@ -91,7 +91,7 @@ CameraMount ToMount(const v1::Mount& from, const std::string& name) {
 }
 
 void SetCamera(const Context& context, v1::SetCamera& command) {
-  Scene& scene = context.TheScene();
+  Scene& scene = context.GetScene();
   const std::string vantage = VantageName(command.vantage());
   const std::vector<std::string> names = scene.Vantage(vantage).CameraNames();
   Camera camera;
@@ -118,20 +118,20 @@ void RemoveCamera(const Context& context, v1::RemoveCamera& command) {
              "viewport '" + name + "' looks through it; give the viewport another camera first");
     }
   }
-  context.TheScene().RemoveCamera(vantage, command.name());
+  context.GetScene().RemoveCamera(vantage, command.name());
 }
 
 void SetActiveCamera(const Context& context, v1::SetActiveCamera& command) {
-  context.TheScene().SetActiveCamera(VantageName(command.vantage()), command.name());
+  context.GetScene().SetActiveCamera(VantageName(command.vantage()), command.name());
 }
 
 void AnswerCamera(const Context& context, v1::DescribeCamera& command) {
-  DescribeCamera(context.sceneName, context.TheScene(), VantageName(command.vantage()),
+  DescribeCamera(context.sceneName, context.GetScene(), VantageName(command.vantage()),
                  command.name(), context.reply.mutable_camera());
 }
 
 void GetCameraPose(const Context& context, v1::GetCameraPose& command) {
-  Put(CameraPoseIn(context.TheScene(), VantageName(command.vantage()), command.name(),
+  Put(CameraPoseIn(context.GetScene(), VantageName(command.vantage()), command.name(),
                    ToFrame(command.relative_to())),
       context.reply.mutable_camera_pose()->mutable_pose());
 }

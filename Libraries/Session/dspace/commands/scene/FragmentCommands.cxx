@@ -9,21 +9,21 @@ namespace dspace::session {
 namespace {
 
 void CreateFragment(const Context& context, v1::CreateFragment& command) {
-  context.TheScene().CreateFragment(
+  context.GetScene().CreateFragment(
       command.name(), ToNature(command.nature(), "fragment '" + command.name() + "'"));
 }
 
 void RemoveFragment(const Context& context, v1::RemoveFragment& command) {
-  context.TheScene().RemoveFragment(command.name());
+  context.GetScene().RemoveFragment(command.name());
 }
 
 void SetFragmentVisible(const Context& context, v1::SetFragmentVisible& command) {
-  context.TheScene().SetFragmentVisible(command.name(), command.visible());
+  context.GetScene().SetFragmentVisible(command.name(), command.visible());
 }
 
 void ListFragments(const Context& context, v1::ListFragments&) {
   v1::FragmentList* list = context.reply.mutable_fragments();
-  const SceneFragmentManager& fragments = context.TheScene().Fragments();
+  const SceneFragmentManager& fragments = context.GetScene().Fragments();
   for (const std::string& name : fragments.Names()) {
     const SceneFragment& fragment = fragments.Get(name);
     v1::FragmentInfo* info = list->add_fragment();
@@ -96,16 +96,16 @@ void SetLight(const Context& context, v1::SetLight& command) {
     light.attenuation = {a.x(), a.y(), a.z()};
   }
   light.enabled = !command.disabled();
-  context.TheScene().SetLight(light);
+  context.GetScene().SetLight(light);
 }
 
 void RemoveLight(const Context& context, v1::RemoveLight& command) {
-  context.TheScene().RemoveLight(command.name());
+  context.GetScene().RemoveLight(command.name());
 }
 
 void ListLights(const Context& context, v1::ListLights&) {
   v1::LightList* list = context.reply.mutable_lights();
-  for (const Light& light : context.TheScene().Fragments().Lights()) {
+  for (const Light& light : context.GetScene().Fragments().Lights()) {
     v1::SetLight* out = list->add_light();
     out->set_name(light.name);
     out->set_kind(FromLightKind(light.kind));

@@ -45,7 +45,7 @@ void RemoveFrame(const Context& context, v1::RemoveFrame& command) {
       open.insert(open.end(), children.begin(), children.end());
     }
   }
-  context.TheScene().RemoveFrame(command.frame());
+  context.GetScene().RemoveFrame(command.frame());
   context.scene->ForgetRemoved();
   v1::RemovedFrames* reply = context.reply.mutable_removed_frames();
   for (auto it = removed.rbegin(); it != removed.rend(); ++it) {

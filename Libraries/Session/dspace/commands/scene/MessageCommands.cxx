@@ -21,7 +21,7 @@ void LogEvent(const Context& context, v1::LogEvent& command) {
                                                        : path);
     }
   }
-  context.scene->messages.Log(event, context.TheScene().Time());
+  context.scene->messages.Log(event, context.GetScene().Time());
   command = event;
   *context.reply.mutable_event() = event;
 }
@@ -64,7 +64,7 @@ void AskOperator(const Context& context, v1::AskOperator& command) {
                       "it is closed");
     }
   }
-  context.scene->messages.Ask(command, context.TheScene().Time());
+  context.scene->messages.Ask(command, context.GetScene().Time());
 }
 
 void ListQuestions(const Context& context, v1::ListQuestions&) {

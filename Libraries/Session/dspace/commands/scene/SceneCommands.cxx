@@ -61,7 +61,7 @@ void ListScenes(const Context& context, v1::ListScenes&) {
 
 void SetTime(const Context& context, v1::SetTime& command) {
   RequireFinite("scene '" + context.sceneName + "'", "the time", command.time_s());
-  Scene& scene = context.TheScene();
+  Scene& scene = context.GetScene();
   Scene::Lags lags;
   for (const v1::CameraLag& lag : command.lag()) {
     const Camera& camera = scene.Vantage(lag.vantage()).GetCamera(lag.camera());
@@ -81,7 +81,7 @@ void SetTime(const Context& context, v1::SetTime& command) {
 }
 
 void GetTime(const Context& context, v1::GetTime&) {
-  context.reply.mutable_time()->set_time_s(context.TheScene().Time());
+  context.reply.mutable_time()->set_time_s(context.GetScene().Time());
 }
 
 } // namespace

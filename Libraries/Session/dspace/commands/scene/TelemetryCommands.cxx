@@ -59,11 +59,11 @@ void AddTelemetryCommands(Registry& registry) {
                });
   registry.Add(C::kSetTelemetry, &C::mutable_set_telemetry,
                [](const Context& context, v1::SetTelemetry& command) {
-                 context.scene->telemetry.Set(command, context.TheScene().Time());
+                 context.scene->telemetry.Set(command, context.GetScene().Time());
                });
   registry.Add(C::kSetTelemetryTexts, &C::mutable_set_telemetry_texts,
                [](const Context& context, v1::SetTelemetryTexts& command) {
-                 context.scene->telemetry.SetTexts(command, context.TheScene().Time());
+                 context.scene->telemetry.SetTexts(command, context.GetScene().Time());
                });
   registry.Add(C::kRemoveTelemetry, &C::mutable_remove_telemetry,
                [](const Context& context, v1::RemoveTelemetry& command) {

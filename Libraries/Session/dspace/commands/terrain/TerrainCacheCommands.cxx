@@ -29,7 +29,7 @@ Entries Sorted(const ElevationCache& cache) {
   return entries;
 }
 
-v1::TerrainCacheReply::Entry* Tell(const Context& context, const ElevationCacheEntry& from) {
+v1::TerrainCacheReply::Entry* AddEntry(const Context& context, const ElevationCacheEntry& from) {
   v1::TerrainCacheReply::Entry* entry = context.reply.mutable_terrain_cache()->add_entry();
   entry->set_file(from.file);
   entry->set_path(from.path);
@@ -56,14 +56,14 @@ void BuildTerrainCache(const Context& context, v1::BuildTerrainCache& command) {
   const auto file = cache.Build(AbsoluteRaster(command.path()), options);
   for (const ElevationCacheEntry& entry : file ? Sorted(cache) : Entries()) {
     if (entry.file == *file) {
-      Tell(context, entry);
+      AddEntry(context, entry);
     }
   }
 }
 
 void ListTerrainCache(const Context& context, v1::ListTerrainCache& command) {
   for (const ElevationCacheEntry& entry : Sorted(CacheIn(context, command.folder()))) {
-    Tell(context, entry);
+    AddEntry(context, entry);
   }
 }
 
@@ -94,17 +94,17 @@ void ClearTerrainCache(const Context& context, v1::ClearTerrainCache& command) {
         }
       }
     }
-    Tell(context, entry);
+    AddEntry(context, entry);
   }
 }
 
 void VerifyTerrainCache(const Context& context, v1::VerifyTerrainCache& command) {
   for (const ElevationCacheEntry& entry : Sorted(CacheIn(context, command.folder()))) {
-    v1::TerrainCacheReply::Entry* told = Tell(context, entry);
+    v1::TerrainCacheReply::Entry* added = AddEntry(context, entry);
     try {
       ElevationCache::Verify(entry);
     } catch (const Error& error) {
-      told->set_problem(error.what());
+      added->set_problem(error.what());
     }
   }
 }

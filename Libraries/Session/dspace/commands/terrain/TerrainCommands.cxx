@@ -256,12 +256,12 @@ ObjectId AddTerrainObject(const Context& context, const v1::OpenTerrain& command
                           const TerrainObject& terrain) {
   GraphicsObject object;
   object.id = command.object_id();
-  object.name = command.object_name().empty() ? FreeObjectName(context.TheScene(), terrain.Name())
+  object.name = command.object_name().empty() ? FreeObjectName(context.GetScene(), terrain.Name())
                                               : command.object_name();
   object.frame = ToFrame(command.frame());
   object.fragment = command.fragment();
   terrain.Draw(object);
-  return context.TheScene().AddObject(std::move(object));
+  return context.GetScene().AddObject(std::move(object));
 }
 
 void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
@@ -285,13 +285,13 @@ void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
   command.set_path(path);
   command.set_name(name);
   command.set_object_id(terrain->Object());
-  command.set_object_name(context.TheScene().Object(terrain->Object()).name);
+  command.set_object_name(context.GetScene().Object(terrain->Object()).name);
   DescribeTo(context, *terrain, context.reply.mutable_terrain());
   context.scene->terrains[name] = std::move(terrain);
 }
 
 void RemoveTerrain(const Context& context, v1::RemoveTerrain& command) {
-  context.TheScene().RemoveObject(FindTerrain(context, command.terrain()).Object());
+  context.GetScene().RemoveObject(FindTerrain(context, command.terrain()).Object());
   context.scene->ForgetRemoved();
 }
 
@@ -309,7 +309,7 @@ void FocusTerrain(const Context& context, v1::FocusTerrain& command) {
   if (terrain.Focus(points, command.radius())) {
     GraphicsObject drawn;
     terrain.Draw(drawn);
-    context.TheScene().SetObjectLevels(terrain.Object(), std::move(drawn.levels));
+    context.GetScene().SetObjectLevels(terrain.Object(), std::move(drawn.levels));
   }
 }
 

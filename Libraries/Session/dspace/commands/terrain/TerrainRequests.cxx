@@ -14,7 +14,7 @@ void DescribeTo(const Context& context, const TerrainObject& terrain, v1::Terrai
   terrain.Describe(*reply);
   reply->set_name(terrain.Name());
   reply->set_object(terrain.Object());
-  reply->set_frame(context.TheScene().Object(terrain.Object()).frame);
+  reply->set_frame(context.GetScene().Object(terrain.Object()).frame);
 }
 
 void RequireFinitePoints(const std::string& label, const double* values, int size, std::size_t n) {

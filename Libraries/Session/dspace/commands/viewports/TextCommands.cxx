@@ -55,7 +55,7 @@ void CreateText(const Context& context, v1::CreateText& command) {
 }
 
 void SetText(const Context& context, v1::SetText& command) {
-  Scene& scene = context.TheScene();
+  Scene& scene = context.GetScene();
   scene.Object(command.object()); // throws where there is none
   const auto found = context.scene->texts.find(command.object());
   if (found == context.scene->texts.end()) {

@@ -16,7 +16,7 @@ std::string Label(const std::string& name) {
   return "viewport '" + name + "'";
 }
 
-std::string FreeName(const std::map<std::string, ViewportPlace>& viewports) {
+std::string FreeName(const std::map<std::string, ViewportState>& viewports) {
   std::string name = "viewport";
   for (int n = 2; viewports.count(name); ++n) {
     name = "viewport " + std::to_string(n);
@@ -82,7 +82,7 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
     throw Error(Error::Kind::AlreadyExists, Label(name),
                 "there is a viewport of this name already");
   }
-  RequireCamera(context.TheScene(), vantage, command.camera());
+  RequireCamera(context.GetScene(), vantage, command.camera());
   auto viewport = vtkSmartPointer<vtkDspaceViewport>::New();
   const int samples = command.has_samples() ? ToInt(command.samples()) : viewport->GetSamples();
   viewport->Initialize(this->GetRenderContext(), context.scene->scene, name, vantage,
@@ -101,7 +101,7 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
       });
   command.set_name(name);
   this->Viewports_[name] = viewport;
-  ViewportPlace& place = context.state.viewports[name];
+  ViewportState& place = context.state.viewports[name];
   place.scene = context.sceneName;
   place.vantage = vantage;
   place.camera = command.camera();
@@ -122,14 +122,14 @@ void ViewportCommands::Resize(const Context&, v1::ResizeViewport& command) {
 
 void ViewportCommands::Move(const Context& context, v1::MoveViewport& command) {
   this->Get(command.viewport());
-  ViewportPlace& place = context.state.viewports[command.viewport()];
+  ViewportState& place = context.state.viewports[command.viewport()];
   place.x = command.x();
   place.y = command.y();
 }
 
 void ViewportCommands::Set(const Context& context, v1::SetViewport& command) {
   vtkDspaceViewport& viewport = this->Get(command.viewport());
-  ViewportPlace& place = context.state.viewports[command.viewport()];
+  ViewportState& place = context.state.viewports[command.viewport()];
   const std::string label = Label(command.viewport());
   // All checks first.
   const std::string vantage = command.has_vantage() ? command.vantage() : place.vantage;
@@ -201,7 +201,7 @@ void ViewportCommands::RemoveTable(const Context&, v1::RemoveTextTable& command)
 
 void ViewportCommands::Describe(const Context& context, v1::DescribeViewport& command) {
   vtkDspaceViewport& viewport = this->Get(command.viewport());
-  const ViewportPlace& place = context.state.viewports[command.viewport()];
+  const ViewportState& place = context.state.viewports[command.viewport()];
   v1::ViewportInfo* info = context.reply.mutable_viewport_info();
   info->set_name(command.viewport());
   info->set_scene(place.scene);

@@ -75,7 +75,7 @@ std::optional<BoundingSphere> SceneBounds(const Scene& scene, FrameId F) {
 
 void ViewportCommands::Event(const Context& context, v1::ViewportEvent& command) {
   vtkDspaceViewport& viewport = this->Get(command.viewport());
-  const ViewportPlace& place = context.state.viewports[command.viewport()];
+  const ViewportState& place = context.state.viewports[command.viewport()];
   const InputEvent event = ToEvent(command);
   Scene& scene = *viewport.GetScene();
   OrbitView view;

@@ -62,7 +62,7 @@ struct RemoteClient::Link {
   std::set<std::uint64_t> abandoned; // by it: their replies, which may yet come, are dropped
   v1::Reply reply;                   // to `awaited`, or whatever Take is to return
   v1::Reply failure;                 // the first error of what nobody waited for
-  v1::Reply unasked;                 // warnings and frame events of the same
+  v1::Reply unawaitedReplies;        // warnings and frame events of the same
   std::deque<v1::ViewerEvent> events;
   std::size_t eventBytes = 0; // of them
   PoseFilter filter;
@@ -78,9 +78,9 @@ struct RemoteClient::Link {
   bool ending = false;
 
   // What the user's thread is about, and its own.
-  enum class Doing { Nothing, Pace, Settle, Room, Reply, Flush, Done };
-  Doing doing = Doing::Nothing;
-  v1::Command command; // of Pace, Settle and Room
+  enum class Activity { Nothing, Pace, Earlier, Window, Reply, Flush, Done };
+  Activity activity = Activity::Nothing;
+  v1::Command command; // of Pace, BeginWaitForEarlier and Room
   std::size_t bytes = 0;
   bool noReply = false;
   LinkClock::time_point due;      // of Pace
@@ -91,24 +91,24 @@ struct RemoteClient::Link {
   // For the user's thread, with the mutex held.
   v1::Reply Fault(v1::Error::Kind kind, const std::string& message);
   void Finish(v1::Reply&& with);
-  void Settle();
-  bool WaitToSettle(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
+  void BeginWaitForEarlier();
+  bool WaitForEarlier(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
   void Admit();
   void Put();
-  bool WaitForRoom(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
+  bool WaitForWindow(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
   bool WaitForReply(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
   bool WaitForFlush(std::unique_lock<std::mutex>& lock, LinkClock::time_point until);
-  void MoveUnasked(v1::Reply& reply);
+  void MoveUnawaitedReplies(v1::Reply& reply);
   void Break(v1::Error::Kind kind, const std::string& message);
 
   // Whether this is a child of the process that connects; then nothing else is to be touched.
   bool Forked() const;
-  v1::Reply Foreign(); // what it is told
+  v1::Reply ForkedError(); // what it is told
 
   void End(); // of everything, without the mutex
 
   // The thread: connects, again and again.
-  void Keep();
+  void RunConnection();
   bool Drive(grpc::Status& status); // one stream; whether it was opened
   std::unique_ptr<Stream> Call(grpc::ClientContext& context);
   void Write(Stream& stream);
@@ -116,7 +116,7 @@ struct RemoteClient::Link {
   // the number `last`.
   grpc::ByteBuffer TakeNext();
   void Rewind(std::uint64_t last);
-  void Hear(v1::DriveReply& message);
+  void HandleReply(v1::DriveReply& message);
   void TakeReply(std::uint64_t number, v1::Reply& reply);
   v1::Reply Resume(const v1::Opened& opened); // an error: it cannot go on
 };
@@ -125,7 +125,7 @@ struct RemoteClient::Link {
 [[noreturn]] void Raise(const v1::Error& error);
 // Channels of both kinds of clients.
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const LinkSecurity& security,
-                                           double silence_s = 20);
+                                           double keepalive_s = 20);
 // What a status means to a user. Sets `final` where trying again is of no use.
 v1::Error ToError(const std::string& address, const grpc::Status& status, bool& final);
 std::string RandomKey();

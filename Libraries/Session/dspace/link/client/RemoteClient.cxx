@@ -18,14 +18,16 @@ constexpr double LongWait = 1e6; // [s]: longer than any timeout
 
 } // namespace
 
-RemoteClient::RemoteClient(const RemoteClientOptions& options) : RemoteClient(options, Later()) {
-  while (!this->WaitToOpen(options.timeout_s)) {
+RemoteClient::RemoteClient(const RemoteClientOptions& options)
+    : RemoteClient(options, NonBlocking()) {
+  while (!this->WaitForConnect(options.timeout_s)) {
   }
 }
 
-RemoteClient::RemoteClient(const RemoteClientOptions& options, Later) : Link_(new Link(options)) {
+RemoteClient::RemoteClient(const RemoteClientOptions& options, NonBlocking)
+    : Link_(new Link(options)) {
   this->Link_->deadline = After(options.timeout_s);
-  this->Link_->thread = std::thread([this] { this->Link_->Keep(); });
+  this->Link_->thread = std::thread([this] { this->Link_->RunConnection(); });
 }
 
 RemoteClient::~RemoteClient() {
@@ -36,10 +38,10 @@ RemoteClient::~RemoteClient() {
   this->Link_->End();
 }
 
-bool RemoteClient::WaitToOpen(double seconds) {
+bool RemoteClient::WaitForConnect(double seconds) {
   Link& link = *this->Link_;
   if (link.Forked()) {
-    Raise(link.Foreign().error());
+    Raise(link.ForkedError().error());
   }
   std::unique_lock lock(link.mutex);
   if (link.changed.wait_until(lock, std::min(link.deadline, After(seconds)),
@@ -52,7 +54,7 @@ bool RemoteClient::WaitToOpen(double seconds) {
   } else {
     lock.unlock(); // to look takes a moment
     const std::string why =
-        WhyNoAnswer(link.options.address, link.options.security.HasCertificates());
+        DiagnoseConnection(link.options.address, link.options.security.HasCertificates());
     lock.lock();
     if (link.opened && !link.broken) {
       return true;
@@ -93,14 +95,14 @@ v1::Reply RemoteClient::Flush() {
 void RemoteClient::Begin(v1::Command command, bool reply) {
   Link& link = *this->Link_;
   if (link.Forked()) {
-    link.Finish(link.Foreign());
+    link.Finish(link.ForkedError());
     return;
   }
   MakePathsAbsolute(command);
   this->Abandon();
   link.noReply = !reply;
   link.command = std::move(command);
-  link.doing = Link::Doing::Pace;
+  link.activity = Link::Activity::Pace;
   const double ahead =
       link.command.has_set_time()
           ? link.pacer.Ahead(
@@ -112,11 +114,11 @@ void RemoteClient::Begin(v1::Command command, bool reply) {
 
 void RemoteClient::BeginFlush() {
   if (this->Link_->Forked()) {
-    this->Link_->Finish(this->Link_->Foreign());
+    this->Link_->Finish(this->Link_->ForkedError());
     return;
   }
   this->Abandon();
-  this->Link_->doing = Link::Doing::Flush;
+  this->Link_->activity = Link::Activity::Flush;
   this->Link_->deadline = After(this->Link_->options.timeout_s);
 }
 
@@ -127,7 +129,7 @@ bool RemoteClient::Wait(double seconds) {
   }
   const auto until = After(std::clamp(seconds, 0.0, LongWait));
   std::unique_lock lock(link.mutex);
-  if (link.doing == Link::Doing::Pace) {
+  if (link.activity == Link::Activity::Pace) {
     const auto wake = std::min(link.due, until);
     if (link.due >
         LinkClock::time_point()) { // not cut short by a broken link: it is due when it is
@@ -138,56 +140,56 @@ bool RemoteClient::Wait(double seconds) {
         return false;
       }
     }
-    link.Settle();
+    link.BeginWaitForEarlier();
   }
-  if (link.doing == Link::Doing::Settle && !link.WaitToSettle(lock, until)) {
+  if (link.activity == Link::Activity::Earlier && !link.WaitForEarlier(lock, until)) {
     return false;
   }
-  if (link.doing == Link::Doing::Room && !link.WaitForRoom(lock, until)) {
+  if (link.activity == Link::Activity::Window && !link.WaitForWindow(lock, until)) {
     return false;
   }
-  if (link.doing == Link::Doing::Reply) {
+  if (link.activity == Link::Activity::Reply) {
     return link.WaitForReply(lock, until);
   }
-  return link.doing != Link::Doing::Flush || link.WaitForFlush(lock, until);
+  return link.activity != Link::Activity::Flush || link.WaitForFlush(lock, until);
 }
 
 v1::Reply RemoteClient::Take() {
   Link& link = *this->Link_;
   if (link.Forked()) {
-    return link.Foreign();
+    return link.ForkedError();
   }
-  if (link.doing != Link::Doing::Done) {
+  if (link.activity != Link::Activity::Done) {
     return link.Fault(v1::Error::INTERNAL, "nothing is there to take; accepted: Begin and Wait");
   }
   const std::lock_guard lock(link.mutex);
-  link.doing = Link::Doing::Nothing;
+  link.activity = Link::Activity::Nothing;
   v1::Reply reply = std::exchange(link.reply, {});
-  link.MoveUnasked(reply);
+  link.MoveUnawaitedReplies(reply);
   return reply;
 }
 
 void RemoteClient::Abandon() {
   Link& link = *this->Link_;
-  if (link.doing == Link::Doing::Nothing || link.Forked()) {
+  if (link.activity == Link::Activity::Nothing || link.Forked()) {
     return;
   }
   const std::lock_guard lock(link.mutex);
-  if (link.doing == Link::Doing::Reply) {
+  if (link.activity == Link::Activity::Reply) {
     if (link.awaited != 0) { // its reply has not come
       link.abandoned.insert(std::exchange(link.awaited, 0));
     }
     link.filter.Forget(); // whether it was carried out will not be known
   }
   link.reply.Clear();
-  link.doing = Link::Doing::Nothing;
+  link.activity = Link::Activity::Nothing;
 }
 
 void RemoteClient::SetPace(double rate) {
   this->Link_->pacer.SetRate(rate);
 }
 
-std::size_t RemoteClient::TakeEvents(const std::function<void(const v1::ViewerEvent&)>& hear,
+std::size_t RemoteClient::TakeEvents(const std::function<void(const v1::ViewerEvent&)>& handle,
                                      double wait_s) {
   Link& link = *this->Link_;
   if (link.Forked()) {
@@ -200,14 +202,14 @@ std::size_t RemoteClient::TakeEvents(const std::function<void(const v1::ViewerEv
   link.eventBytes = 0;
   lock.unlock(); // whoever hears may give commands
   for (const v1::ViewerEvent& event : events) {
-    hear(event);
+    handle(event);
   }
   return events.size();
 }
 
 v1::Reply RemoteClient::Broken() const {
   if (this->Link_->Forked()) {
-    return this->Link_->Foreign();
+    return this->Link_->ForkedError();
   }
   const std::lock_guard lock(this->Link_->mutex);
   v1::Reply reply;

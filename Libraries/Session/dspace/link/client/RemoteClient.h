@@ -24,7 +24,7 @@ struct RemoteClientOptions {
   // Simulation seconds a wall second: a command that sets a scene's time is sent once it is due,
   // counted from the first one (and anew from one that goes back). 0: as fast as it goes.
   double pace = 0;
-  double silence_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
+  double keepalive_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
   // What may be on its way without an answer; a sender that is ahead of either waits.
   std::size_t windowCommands = 1024;
   std::size_t windowBytes = 16 << 20;
@@ -41,10 +41,10 @@ public:
   // DeadlineExceeded.
   explicit RemoteClient(const RemoteClientOptions& options);
   // The same for whoever must do other things meanwhile: it throws what is wrong with the options,
-  // and WaitToOpen the rest. WaitToOpen waits so many seconds; true once it is connected.
-  struct Later {};
-  RemoteClient(const RemoteClientOptions& options, Later);
-  bool WaitToOpen(double seconds);
+  // and WaitForConnect the rest. WaitForConnect waits so many seconds; true once it is connected.
+  struct NonBlocking {};
+  RemoteClient(const RemoteClientOptions& options, NonBlocking);
+  bool WaitForConnect(double seconds);
   // Says goodbye to the server, so that another one may drive at once, for up to 3 s. What was sent
   // without waiting may be lost: Flush before.
   ~RemoteClient();

@@ -14,7 +14,7 @@
 #include <grpcpp/resource_quota.h>
 
 #include <dspace/Error.h>
-#include <dspace/link/server/ServerHub.h>
+#include <dspace/link/server/ServerService.h>
 #include <dspace/scene/Checks.h>
 
 namespace dspace::session {
@@ -23,7 +23,7 @@ namespace {
 // Room for a message's own fields around a command.
 constexpr int Slack = 4096;
 // How long a client whose commands want no reply waits to hear that the last one is done.
-constexpr std::chrono::microseconds ToTell{500};
+constexpr std::chrono::microseconds DoneDelay{500};
 
 void Check(const ServerOptions& options) {
   const auto refuse = [](const char* what, const std::string& value, const char* accepted) {
@@ -39,16 +39,16 @@ void Check(const ServerOptions& options) {
   if (!(options.maximumRate > 0)) {
     refuse("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
   }
-  if (!(options.seat_s >= 0 && options.seat_s <= 1e6)) {
-    refuse("the time that a place is kept", NumberText(options.seat_s) + " s", "0 to 1e6");
+  if (!(options.reservation_s >= 0 && options.reservation_s <= 1e6)) {
+    refuse("the time that a place is kept", NumberText(options.reservation_s) + " s", "0 to 1e6");
   }
-  if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
-    refuse("the silence", NumberText(options.silence_s) + " s", "above 0, up to 1e6");
+  if (!(options.keepalive_s > 0 && options.keepalive_s <= 1e6)) {
+    refuse("the silence", NumberText(options.keepalive_s) + " s", "above 0, up to 1e6");
   }
 }
 
 // gRPC would take a living server's socket away from it.
-void RefuseTakenSocket(const LinkAddress& address) {
+void RejectTakenSocket(const LinkAddress& address) {
   if (address.path.empty()) {
     return;
   }
@@ -81,7 +81,7 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   hub.options = options;
   const LinkAddress address = LinkAddress::Parse(options.listen);
   const auto credentials = MakeServerCredentials(address, options.security);
-  RefuseTakenSocket(address);
+  RejectTakenSocket(address);
   hub.service = std::make_unique<Service>(hub);
   grpc::ServerBuilder builder;
   // Half of what there is stays for files and for answers.
@@ -100,9 +100,9 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   // Who connects and says nothing takes nobody's place for long.
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 5000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 60000);
-  const int silence_ms = int(std::max(1.0, 1e3 * options.silence_s));
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, silence_ms);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(silence_ms, 10000));
+  const int keepalive_ms = int(std::max(1.0, 1e3 * options.keepalive_s));
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, keepalive_ms);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(keepalive_ms, 10000));
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 200);
   builder.AddChannelArgument(GRPC_ARG_TCP_READ_CHUNK_SIZE, LinkReadBytes);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, LinkFrameBytes);
@@ -134,7 +134,7 @@ Server::~Server() {
     std::unique_lock lock(mutex);
     auto pause = std::chrono::milliseconds(700);
     while (!ended.wait_for(lock, pause, [&] { return over; })) {
-      hub.listener->CutOff();
+      hub.listener->CloseConnections();
       pause = std::chrono::milliseconds(100);
     }
   });
@@ -191,11 +191,11 @@ bool Server::Run(const SessionWork& work, double seconds) {
   std::unique_lock lock(hub.mutex);
   while (!hub.stopping) {
     hub.PutSnapshots(work, lock);
-    hub.CutOffLate();
-    if (hub.tasks.empty() && hub.writer.untold > 0) {
-      hub.work.wait_for(lock, ToTell, [&] { return hub.stopping || !hub.tasks.empty(); });
-      if (hub.tasks.empty() && hub.writer.untold > 0) {
-        hub.TellDone();
+    hub.DisconnectLate();
+    if (hub.tasks.empty() && hub.writer.unacknowledgedDone > 0) {
+      hub.work.wait_for(lock, DoneDelay, [&] { return hub.stopping || !hub.tasks.empty(); });
+      if (hub.tasks.empty() && hub.writer.unacknowledgedDone > 0) {
+        hub.SendDone();
       }
     }
     if (hub.tasks.empty()) {
@@ -220,7 +220,7 @@ bool Server::Run(const SessionWork& work, double seconds) {
     v1::Reply reply = work.execute(task.command);
     lock.lock();
     ++hub.counts.commands;
-    hub.Keep(std::move(task.command), task.bytes);
+    hub.Recycle(std::move(task.command), task.bytes);
     if (task.generation == hub.writer.generation) {
       hub.writer.done = task.number;
       hub.Answer(task.number, task.noReply, std::move(reply));

@@ -30,8 +30,8 @@ struct ServerOptions {
   // A writer whose connection broke, and whose process is not known to have died, keeps its place
   // for so long: others must take over explicitly. One that has ended its side has so long, and a
   // second, to take its last replies. 0 to 1e6.
-  double seat_s = 30;
-  double silence_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
+  double reservation_s = 30;
+  double keepalive_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
 };
 
 // Serves one session to one writer and many viewers. What the session does, it does in the thread

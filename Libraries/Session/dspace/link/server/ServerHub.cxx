@@ -12,27 +12,13 @@ namespace dspace::session {
 namespace {
 
 constexpr std::size_t KeptReplies = 1024;
-constexpr std::size_t SpentCommands = 16;
-constexpr std::size_t SpentBytes = 1 << 20;                   // of each at most
+constexpr std::size_t RecycledCommands = 16;
+constexpr std::size_t RecycledBytes = 1 << 20;                // of each at most
 constexpr std::chrono::milliseconds SnapshotPause{100};       // between two of them, at least
-constexpr std::uint64_t TellEvery = 32;                       // commands without replies, at least
+constexpr std::uint64_t DoneEvery = 32;                       // commands without replies, at least
 constexpr std::size_t LargestReply = std::size_t(2000) << 20; // protobuf's own limit is 2 GiB
 
 } // namespace
-
-grpc::Status CheckClient(const std::string& protocol, const std::string& name) {
-  if (protocol != LinkProtocol) {
-    return {grpc::StatusCode::FAILED_PRECONDITION, "the client speaks protocol '" +
-                                                       protocol.substr(0, 64) + "'; accepted: '" +
-                                                       LinkProtocol + "'"};
-  }
-  if (name.size() > 256) {
-    return {grpc::StatusCode::INVALID_ARGUMENT, "the client's name is " +
-                                                    std::to_string(name.size()) +
-                                                    " bytes long; accepted: up to 256"};
-  }
-  return grpc::Status::OK;
-}
 
 void Server::Hub::Acknowledge(std::uint64_t number) {
   Writer& to = this->writer;
@@ -42,9 +28,9 @@ void Server::Hub::Acknowledge(std::uint64_t number) {
   }
 }
 
-void Server::Hub::Keep(v1::Command&& command, std::size_t bytes) {
-  if (this->spent.size() < SpentCommands && bytes <= SpentBytes) {
-    this->spent.push_back(std::move(command));
+void Server::Hub::Recycle(v1::Command&& command, std::size_t bytes) {
+  if (this->recycled.size() < RecycledCommands && bytes <= RecycledBytes) {
+    this->recycled.push_back(std::move(command));
   }
 }
 
@@ -52,13 +38,13 @@ void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply) {
   const bool silent =
       noReply && !reply.has_error() && reply.warning().empty() && reply.frame_event().empty();
   if (silent) {
-    this->writer.untold = number; // a later one tells of this one too
-    if (number % TellEvery == 0) {
-      this->TellDone();
+    this->writer.unacknowledgedDone = number; // a later one tells of this one too
+    if (number % DoneEvery == 0) {
+      this->SendDone();
     }
     return;
   }
-  this->writer.untold = 0;
+  this->writer.unacknowledgedDone = 0;
   auto message = std::make_shared<v1::DriveReply>();
   message->mutable_done()->set_number(number);
   std::size_t size = reply.ByteSizeLong() + 64;
@@ -80,9 +66,9 @@ void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply) {
   this->PutToWriter(std::move(message), size);
 }
 
-void Server::Hub::TellDone() {
+void Server::Hub::SendDone() {
   auto message = std::make_shared<v1::DriveReply>();
-  message->mutable_done()->set_number(std::exchange(this->writer.untold, 0));
+  message->mutable_done()->set_number(std::exchange(this->writer.unacknowledgedDone, 0));
   this->PutToWriter(std::move(message), 64);
 }
 
@@ -108,7 +94,7 @@ void Server::Hub::PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::
   out.Put(std::move(reply), size);
 }
 
-void Server::Hub::TellWriterName() {
+void Server::Hub::SendWriterName() {
   auto message = std::make_shared<v1::WatchReply>();
   message->set_sequence(this->sequence);
   message->mutable_writer()->set_name(this->writer.name);
@@ -126,17 +112,17 @@ void Server::Hub::TellWriterName() {
   }
 }
 
-std::string Server::Hub::WhoDrives() const {
+std::string Server::Hub::DriverConflict() const {
   const Writer& who = this->writer;
   if (who.stream && !who.left) {
     return "'" + who.name + "' drives; accepted: to watch, or to take over explicitly";
   }
   const double gone = std::chrono::duration<double>(LinkClock::now() - who.lost).count();
-  if (who.key.empty() || who.left || gone >= this->options.seat_s || HasDied(who.process)) {
+  if (who.key.empty() || who.left || gone >= this->options.reservation_s || HasDied(who.process)) {
     return {};
   }
   return "'" + who.name + "' drives and has lost its connection, " +
-         std::to_string(long(std::ceil(this->options.seat_s - gone))) +
+         std::to_string(long(std::ceil(this->options.reservation_s - gone))) +
          " s more are kept for it to come back; accepted: to watch, to wait, or to take over "
          "explicitly";
 }
@@ -195,10 +181,10 @@ void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mu
       viewer->out.ready.notify_one();
     }
   }
-  this->TellWriterName();
+  this->SendWriterName();
 }
 
-void Server::Hub::CutOffLate() {
+void Server::Hub::DisconnectLate() {
   if (this->deadlines.empty()) {
     return;
   }

@@ -95,11 +95,11 @@ struct ViewerStream {
 struct Writer {
   std::string key;
   std::string name;
-  std::string process;          // see ProcessName.h
-  std::uint64_t generation = 0; // of keys; what older ones sent is not carried out
-  std::uint64_t queued = 0;     // the last number that has come
-  std::uint64_t done = 0;       // the last one carried out
-  std::uint64_t untold = 0;     // the same, if its client does not know yet; else 0
+  std::string process;                  // see ProcessName.h
+  std::uint64_t generation = 0;         // of keys; what older ones sent is not carried out
+  std::uint64_t queued = 0;             // the last number that has come
+  std::uint64_t done = 0;               // the last one carried out
+  std::uint64_t unacknowledgedDone = 0; // the same, if its client does not know yet; else 0
   std::map<std::uint64_t, std::pair<std::shared_ptr<const v1::DriveReply>, std::size_t>> kept;
   std::size_t keptBytes = 0;           // of `kept`: replies that the client has not said it has
   std::shared_ptr<DriveStream> stream; // null while disconnected
@@ -125,7 +125,7 @@ struct Server::Hub {
   std::condition_variable space; // for whoever queues
   std::deque<Task> tasks;
   std::size_t taskBytes = 0;
-  std::vector<v1::Command> spent; // carried out: their memory serves the next ones
+  std::vector<v1::Command> recycled; // carried out: their memory serves the next ones
   Writer writer;
   std::set<ViewerStream*> viewers;
   std::uint64_t sequence = 0; // of published commands
@@ -145,63 +145,17 @@ struct Server::Hub {
 
   // All of these with the mutex held.
   void Acknowledge(std::uint64_t number);
-  void Keep(v1::Command&& command, std::size_t bytes);
+  void Recycle(v1::Command&& command, std::size_t bytes);
   void Answer(std::uint64_t number, bool noReply, v1::Reply reply);
-  void TellDone();
+  void SendDone();
   void PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size);
-  void TellWriterName();
+  void SendWriterName();
   // Who drives or may come back, and what is accepted instead of driving; empty: nobody.
-  std::string WhoDrives() const;
+  std::string DriverConflict() const;
   void PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock);
   // The earlier of `otherwise` and when a snapshot that somebody waits for may be made.
   LinkClock::time_point SnapshotDue(LinkClock::time_point otherwise) const;
-  void CutOffLate();
-};
-
-class Server::Service : public v1::Dspace::Service {
-public:
-  explicit Service(Hub& hub) : Hub_(hub) {}
-  grpc::Status Hello(grpc::ServerContext*, const v1::HelloRequest*, v1::HelloReply*) override;
-  grpc::Status Drive(grpc::ServerContext*,
-                     grpc::ServerReaderWriter<v1::DriveReply, v1::DriveRequest>* stream) override;
-  grpc::Status Watch(grpc::ServerContext*, const v1::WatchRequest*,
-                     grpc::ServerWriter<v1::WatchReply>* stream) override;
-  grpc::Status Tell(grpc::ServerContext*, const v1::TellRequest*, v1::TellReply*) override;
-
-private:
-  using Stream = grpc::ServerReaderWriter<v1::DriveReply, v1::DriveRequest>;
-  grpc::Status Open(const v1::OpenDrive& open, const std::shared_ptr<DriveStream>& me);
-  grpc::Status Read(Stream& stream, DriveStream& me, std::uint64_t generation);
-  void SendTo(Stream& stream, DriveStream& me);
-  struct Driving;
-  Hub& Hub_;
-};
-
-// OK, or what is wrong with the protocol and the name of a client.
-grpc::Status CheckClient(const std::string& protocol, const std::string& name);
-
-// Counts a connection as long as it lives.
-class Connection {
-public:
-  Connection(unsigned& count, std::mutex& mutex, unsigned maximum) : Count_(count), Mutex_(mutex) {
-    const std::lock_guard lock(mutex);
-    this->Good_ = count < maximum;
-    count += this->Good_ ? 1 : 0;
-  }
-  ~Connection() {
-    if (this->Good_) {
-      const std::lock_guard lock(this->Mutex_);
-      --this->Count_;
-    }
-  }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  bool Good() const { return this->Good_; }
-
-private:
-  unsigned& Count_;
-  std::mutex& Mutex_;
-  bool Good_ = false;
+  void DisconnectLate();
 };
 
 } // namespace dspace::session

@@ -112,7 +112,7 @@ void ServerListener::Stop() {
   this->Path_.clear();
 }
 
-void ServerListener::CutOff() {
+void ServerListener::CloseConnections() {
   for (const auto& [connection, inode] : this->Open_) {
     if (InodeOf(connection) == inode) {
       shutdown(connection, SHUT_RDWR);

@@ -32,7 +32,7 @@ public:
   void Stop(); // accepts no more, its place is free; those that are open stay so
   // Ends all that are open, also where something waits to be written: gRPC's own shutdown waits for
   // that, however long the other side does not read. After Stop().
-  void CutOff();
+  void CloseConnections();
 
 private:
   void ListenAtPath(const std::string& path);

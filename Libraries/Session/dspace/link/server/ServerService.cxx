@@ -1,8 +1,8 @@
-// The calls of the service, each in a thread of gRPC's.
+#include <dspace/link/server/ServerService.h>
+
 #include <algorithm>
 #include <thread>
 
-#include <dspace/link/server/ServerHub.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/scene/Checks.h>
@@ -20,9 +20,47 @@ constexpr seconds ToSayGoodbye{10};
 constexpr std::size_t LargestEvent = 1 << 20;  // of viewers, bytes
 constexpr std::size_t WaitingEvents = 8 << 20; // for one simulation, bytes
 
+// Counts a connection while it exists. Not Good() if there are `maximum` already.
+class Connection {
+public:
+  Connection(unsigned& count, std::mutex& mutex, unsigned maximum) : Count_(count), Mutex_(mutex) {
+    const std::lock_guard lock(mutex);
+    this->Good_ = count < maximum;
+    count += this->Good_ ? 1 : 0;
+  }
+  ~Connection() {
+    if (this->Good_) {
+      const std::lock_guard lock(this->Mutex_);
+      --this->Count_;
+    }
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  bool Good() const { return this->Good_; }
+
+private:
+  unsigned& Count_;
+  std::mutex& Mutex_;
+  bool Good_ = false;
+};
+
 Status TooMany(unsigned maximum, const char* what) {
   return {StatusCode::RESOURCE_EXHAUSTED,
           "there are " + std::to_string(maximum) + " " + what + " already; accepted: no more"};
+}
+
+// OK, or what is wrong with the protocol version or the name of a client.
+Status CheckClient(const std::string& protocol, const std::string& name) {
+  if (protocol != LinkProtocol) {
+    return {StatusCode::FAILED_PRECONDITION, "the client speaks protocol '" +
+                                                 protocol.substr(0, 64) + "'; accepted: '" +
+                                                 LinkProtocol + "'"};
+  }
+  if (name.size() > 256) {
+    return {StatusCode::INVALID_ARGUMENT, "the client's name is " + std::to_string(name.size()) +
+                                              " bytes long; accepted: up to 256"};
+  }
+  return Status::OK;
 }
 
 // Whether the client ended its side, rather than that the connection broke: what says the latter
@@ -83,13 +121,13 @@ struct Server::Service::Driving {
     this->me->out.ready.notify_all();
     // Whoever does not read what is still sent to it is not waited for longer than one who is lost.
     const auto seat = std::chrono::duration_cast<LinkClock::duration>(
-        std::chrono::duration<double>(this->hub.options.seat_s));
+        std::chrono::duration<double>(this->hub.options.reservation_s));
     auto& deadline = this->hub.deadlines[this->context];
     deadline = std::min(deadline, LinkClock::now() + seconds(1) + seat);
     if (this->hub.writer.stream == this->me) {
       this->hub.writer.stream.reset();
       this->hub.writer.lost = LinkClock::now();
-      this->hub.TellWriterName();
+      this->hub.SendWriterName();
     }
     lock.unlock();
     if (this->sender.joinable()) {
@@ -127,7 +165,7 @@ Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
       return good;
     }
     generation = hub.writer.generation;
-    hub.TellWriterName();
+    hub.SendWriterName();
   }
   const Status result = this->Read(*stream, *me, generation);
   const bool left = !result.ok() || HasLeft(*context); // whom it sends away is not waited for
@@ -180,7 +218,7 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
   }
   Writer& writer = hub.writer;
   const bool resumed = writer.key == open.key();
-  const std::string taken = resumed || open.take_over() ? std::string() : hub.WhoDrives();
+  const std::string taken = resumed || open.take_over() ? std::string() : hub.DriverConflict();
   if (!taken.empty()) {
     return {StatusCode::ALREADY_EXISTS, taken};
   }
@@ -289,9 +327,9 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
     hub.writer.queued = send.number();
     Task task{generation, send.number(), send.no_reply(), bytes, {}};
     task.command.Swap(send.mutable_command());
-    if (!hub.spent.empty()) {
-      send.mutable_command()->Swap(&hub.spent.back());
-      hub.spent.pop_back();
+    if (!hub.recycled.empty()) {
+      send.mutable_command()->Swap(&hub.recycled.back());
+      hub.recycled.pop_back();
     }
     hub.tasks.push_back(std::move(task));
     hub.taskBytes += bytes;

@@ -43,10 +43,10 @@ LinkBanner::Text LinkBanner::SimulationGone(const std::string& name) {
 }
 
 LinkBanner::~LinkBanner() {
-  this->Leave();
+  this->Detach();
 }
 
-void LinkBanner::Leave() {
+void LinkBanner::Detach() {
   if (this->Followed_) {
     this->Followed_->RemoveListener(this->Token_);
     this->Followed_ = nullptr;
@@ -54,14 +54,14 @@ void LinkBanner::Leave() {
 }
 
 void LinkBanner::Follow(Interpreter& interpreter) {
-  this->Leave();
+  this->Detach();
   this->Views_.clear();
   this->Followed_ = &interpreter;
   this->Token_ = interpreter.AddListener(
-      [this](const v1::Command& command, const v1::Reply&) { this->Hear(command); });
+      [this](const v1::Command& command, const v1::Reply&) { this->OnCommand(command); });
 }
 
-void LinkBanner::Hear(const v1::Command& command) {
+void LinkBanner::OnCommand(const v1::Command& command) {
   const auto corner = [](const auto& set) {
     return set.has_anchor() ? int(set.anchor()) : int(v1::SetTextTable::BOTTOM_RIGHT);
   };

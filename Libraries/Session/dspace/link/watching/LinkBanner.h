@@ -37,8 +37,8 @@ private:
     std::map<std::string, int> corners; // of tables and colour bars, by kind and name
     std::string shown;                  // the table, serialized; empty: none
   };
-  void Hear(const v1::Command& command);
-  void Leave();
+  void OnCommand(const v1::Command& command);
+  void Detach();
   static v1::SetTextTable Make(const View& view, int width, const Text& text);
 
   std::map<std::string, View> Views_;

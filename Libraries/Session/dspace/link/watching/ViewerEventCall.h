@@ -1,6 +1,6 @@
 // An event of a viewer on its way to whoever drives. Inside the library only.
-#ifndef DSPACE_SESSION_TELLING_H
-#define DSPACE_SESSION_TELLING_H
+#ifndef DSPACE_SESSION_VIEWER_EVENT_CALL_H
+#define DSPACE_SESSION_VIEWER_EVENT_CALL_H
 
 #include <algorithm>
 #include <chrono>
@@ -14,16 +14,16 @@ namespace dspace::session {
 
 // One call of Tell, under way from its beginning on: so that whoever waits may do so in parts. It
 // ends by itself after `timeout_s` seconds, at the latest; being destroyed cancels it.
-class Telling {
+class ViewerEventCall {
 public:
-  Telling(v1::Dspace::Stub& stub, const v1::TellRequest& request, double timeout_s) {
+  ViewerEventCall(v1::Dspace::Stub& stub, const v1::TellRequest& request, double timeout_s) {
     this->Context_.set_deadline(In(timeout_s));
     this->Call_ = stub.AsyncTell(&this->Context_, request, &this->Queue_);
     this->Call_->Finish(&this->Reply_, &this->Status_, nullptr);
   }
-  Telling(const Telling&) = delete;
-  Telling& operator=(const Telling&) = delete;
-  ~Telling() {
+  ViewerEventCall(const ViewerEventCall&) = delete;
+  ViewerEventCall& operator=(const ViewerEventCall&) = delete;
+  ~ViewerEventCall() {
     if (!this->Done_) {
       this->Context_.TryCancel();
     }

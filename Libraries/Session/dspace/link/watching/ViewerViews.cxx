@@ -1,16 +1,19 @@
 #include <dspace/link/watching/ViewerViews.h>
 
 #include <algorithm>
+#include <set>
 
+#include <dspace/commands/scene/CameraTools.h>
 #include <dspace/ledger/Ledger.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/CommandTraits.h>
+#include <dspace/messages/Convert.h>
 
 namespace dspace::session {
 namespace {
 
-bool Begins(const std::string& name) {
-  return name.rfind(OwnViews::Prefix, 0) == 0;
+bool HasPrefix(const std::string& name) {
+  return name.rfind(ViewerViews::Prefix, 0) == 0;
 }
 
 // The viewport that the command is about, if it is about one.
@@ -36,16 +39,16 @@ bool IsBelow(const FrameTree& frames, FrameId frame, FrameId top) {
 
 } // namespace
 
-bool OwnViews::OwnsVantage(const std::string& scene, const std::string& vantage) const {
+bool ViewerViews::OwnsVantage(const std::string& scene, const std::string& vantage) const {
   return this->Vantages_.count({scene, vantage}) != 0;
 }
 
-bool OwnViews::Owns(const v1::Command& command) const {
+bool ViewerViews::Owns(const v1::Command& command) const {
   if (command.has_create_viewport()) {
-    return command.create_viewport().name().empty() || Begins(command.create_viewport().name());
+    return command.create_viewport().name().empty() || HasPrefix(command.create_viewport().name());
   }
   if (command.has_create_vantage()) {
-    return Begins(command.create_vantage().name());
+    return HasPrefix(command.create_vantage().name());
   }
   if (const auto viewport = ViewportOf(command)) {
     return this->Viewports_.count(*viewport) != 0;
@@ -54,7 +57,7 @@ bool OwnViews::Owns(const v1::Command& command) const {
   return vantage && this->OwnsVantage(SceneName(command), *vantage);
 }
 
-v1::Reply OwnViews::Execute(Interpreter& interpreter, v1::Command& command) {
+v1::Reply ViewerViews::Execute(Interpreter& interpreter, v1::Command& command) {
   if (command.has_viewport_event()) {
     return this->ExecuteEvent(interpreter, command);
   }
@@ -68,21 +71,21 @@ v1::Reply OwnViews::Execute(Interpreter& interpreter, v1::Command& command) {
   v1::Reply reply = interpreter.Execute(command);
   if (!reply.has_error()) {
     if (command.has_create_viewport()) {
-      for (const auto& [scene, views] : this->Sleeping_) { // of whatever scene
+      for (const auto& [scene, views] : this->Suspended_) { // of whatever scene
         this->Forget(scene, command.create_viewport().name());
       }
     } else if (command.has_create_vantage()) {
       this->Forget(SceneName(command), command.create_vantage().name());
     }
-    this->Keep(command, reply);
+    this->Track(command, reply);
   }
   return reply;
 }
 
 // Another one has taken the name of one that sleeps.
-void OwnViews::Forget(const std::string& scene, const std::string& name) {
-  const auto found = this->Sleeping_.find(scene);
-  if (found == this->Sleeping_.end()) {
+void ViewerViews::Forget(const std::string& scene, const std::string& name) {
+  const auto found = this->Suspended_.find(scene);
+  if (found == this->Suspended_.end()) {
     return;
   }
   std::vector<v1::Command>& commands = found->second.commands;
@@ -93,7 +96,7 @@ void OwnViews::Forget(const std::string& scene, const std::string& name) {
                  commands.end());
 }
 
-void OwnViews::Keep(const v1::Command& command, const v1::Reply& reply) {
+void ViewerViews::Track(const v1::Command& command, const v1::Reply& reply) {
   if (command.has_create_viewport()) {
     this->Viewports_.insert(command.create_viewport().name());
   } else if (command.has_remove_viewport()) {
@@ -114,7 +117,7 @@ void OwnViews::Keep(const v1::Command& command, const v1::Reply& reply) {
   this->Names_.emplace(scene, bare).first->second.Add(command, reply);
 }
 
-v1::Reply OwnViews::ExecuteEvent(Interpreter& interpreter, v1::Command& command) {
+v1::Reply ViewerViews::ExecuteEvent(Interpreter& interpreter, v1::Command& command) {
   const v1::ViewportEvent& event = command.viewport_event();
   const std::string name = event.viewport();
   if (event.type() == v1::ViewportEvent::PRESS) {
@@ -122,7 +125,7 @@ v1::Reply OwnViews::ExecuteEvent(Interpreter& interpreter, v1::Command& command)
   } else if (event.type() == v1::ViewportEvent::RELEASE) {
     this->Pressed_.erase(name);
   }
-  const ViewportPlace before = interpreter.GetState().viewports[name];
+  const ViewportState before = interpreter.GetState().viewports[name];
   const bool moves = event.type() == v1::ViewportEvent::WHEEL ||
                      event.type() == v1::ViewportEvent::KEY || this->Pressed_.count(name);
   bool given = false;
@@ -136,7 +139,7 @@ v1::Reply OwnViews::ExecuteEvent(Interpreter& interpreter, v1::Command& command)
   const v1::Reply reply = interpreter.Execute(command);
   v1::Command recorded;
   if (ToRecorded(command, reply, recorded)) {
-    this->Keep(recorded, reply);
+    this->Track(recorded, reply);
   } else if (given) { // nothing has moved: it goes on looking through the scene's camera
     v1::Command back;
     back.mutable_set_viewport()->set_viewport(name);
@@ -154,8 +157,8 @@ v1::Reply OwnViews::ExecuteEvent(Interpreter& interpreter, v1::Command& command)
 }
 
 // The viewport looks through a camera like `to`, in a vantage of its own name.
-bool OwnViews::GiveCamera(Interpreter& interpreter, const std::string& viewport,
-                          const v1::SetCamera& to) {
+bool ViewerViews::GiveCamera(Interpreter& interpreter, const std::string& viewport,
+                             const v1::SetCamera& to) {
   const std::string scene = interpreter.GetState().viewports[viewport].scene;
   v1::Command command;
   command.set_scene(scene);
@@ -178,8 +181,8 @@ bool OwnViews::GiveCamera(Interpreter& interpreter, const std::string& viewport,
 
 // --- What the simulation does goes before ------------------------------------------------------
 
-std::vector<std::string> OwnViews::ViewportsIn(Interpreter& interpreter,
-                                               const std::string& scene) const {
+std::vector<std::string> ViewerViews::ViewportsIn(Interpreter& interpreter,
+                                                  const std::string& scene) const {
   std::vector<std::string> names;
   for (const std::string& name : this->Viewports_) {
     const auto found = interpreter.GetState().viewports.find(name);
@@ -190,14 +193,14 @@ std::vector<std::string> OwnViews::ViewportsIn(Interpreter& interpreter,
   return names;
 }
 
-bool OwnViews::MakeRoom(Interpreter& interpreter, const v1::Command& refused) {
+bool ViewerViews::RemoveConflicting(Interpreter& interpreter, const v1::Command& refused) {
   const std::string scene = SceneName(refused);
   if (!interpreter.FindScene(scene)) {
     return false;
   }
   if (refused.has_remove_scene()) {
-    this->Leave(interpreter);
-    this->Sleep(interpreter, scene);
+    this->BeforeSnapshot(interpreter);
+    this->Suspend(interpreter, scene);
     const std::vector<std::string> names = this->ViewportsIn(interpreter, scene);
     for (const std::string& name : names) {
       v1::Command remove;
@@ -210,28 +213,29 @@ bool OwnViews::MakeRoom(Interpreter& interpreter, const v1::Command& refused) {
     return !names.empty();
   }
   if (refused.has_remove_frame()) {
-    return this->FreeCameras(interpreter, scene, refused.remove_frame().frame());
+    return this->DetachCameras(interpreter, scene, refused.remove_frame().frame());
   }
   if (refused.has_remove_robot()) {
     v1::Command ask;
     ask.set_scene(scene);
     ask.mutable_describe_robot()->set_robot(refused.remove_robot().robot());
     const v1::Reply reply = interpreter.Execute(ask);
-    return reply.has_robot() && this->FreeCameras(interpreter, scene, reply.robot().base());
+    return reply.has_robot() && this->DetachCameras(interpreter, scene, reply.robot().base());
   }
   if (refused.has_remove_vantage()) {
-    return this->FreeViewports(interpreter, scene, refused.remove_vantage().name(), "");
+    return this->DetachViewports(interpreter, scene, refused.remove_vantage().name(), "");
   }
   if (refused.has_remove_camera()) {
     const std::string& vantage = refused.remove_camera().vantage();
-    return this->FreeViewports(interpreter, scene, vantage.empty() ? DefaultVantage : vantage,
-                               refused.remove_camera().name());
+    return this->DetachViewports(interpreter, scene, vantage.empty() ? DefaultVantage : vantage,
+                                 refused.remove_camera().name());
   }
   return false;
 }
 
 // Cameras on a frame that is to go stay where they are, in the root.
-bool OwnViews::FreeCameras(Interpreter& interpreter, const std::string& name, std::uint64_t frame) {
+bool ViewerViews::DetachCameras(Interpreter& interpreter, const std::string& name,
+                                std::uint64_t frame) {
   bool any = false;
   const std::shared_ptr<Scene> scene = interpreter.FindScene(name);
   for (const auto& [in, vantage] : this->Vantages_) {
@@ -256,17 +260,223 @@ bool OwnViews::FreeCameras(Interpreter& interpreter, const std::string& name, st
 }
 
 // Viewports that look through a camera that is to go look through a copy; empty: any camera.
-bool OwnViews::FreeViewports(Interpreter& interpreter, const std::string& scene,
-                             const std::string& vantage, const std::string& camera) {
+bool ViewerViews::DetachViewports(Interpreter& interpreter, const std::string& scene,
+                                  const std::string& vantage, const std::string& camera) {
   bool any = false;
   for (const std::string& name : this->ViewportsIn(interpreter, scene)) {
-    const ViewportPlace place = interpreter.GetState().viewports[name];
+    const ViewportState place = interpreter.GetState().viewports[name];
     if (place.vantage == vantage && (camera.empty() || place.camera == camera)) {
       const auto copy = CameraOf(interpreter, scene, vantage, place.camera);
       any = (copy && this->GiveCamera(interpreter, name, *copy)) || any;
     }
   }
   return any;
+}
+
+// --- Snapshots ---------------------------------------------------------------------------------
+
+std::optional<v1::SetCamera> ViewerViews::CameraOf(Interpreter& interpreter,
+                                                   const std::string& scene,
+                                                   const std::string& vantage,
+                                                   const std::string& camera) {
+  v1::Command command;
+  command.set_scene(scene);
+  command.mutable_describe_camera()->set_vantage(vantage);
+  command.mutable_describe_camera()->set_name(camera);
+  const v1::Reply reply = interpreter.Execute(command);
+  if (!reply.has_camera()) {
+    return std::nullopt;
+  }
+  v1::SetCamera set;
+  set.set_vantage(vantage);
+  set.set_name(reply.camera().name());
+  *set.mutable_projection() = reply.camera().projection();
+  *set.mutable_mount() = reply.camera().mount();
+  return set;
+}
+
+v1::Mount ViewerViews::RootMount(const Scene& scene, const std::string& vantage,
+                                 const std::string& camera) {
+  v1::Mount mount;
+  mount.set_frame(RootFrame);
+  Put(CameraPoseIn(scene, vantage, camera, RootFrame), mount.mutable_pose());
+  return mount;
+}
+
+void ViewerViews::BeforeSnapshot(Interpreter& interpreter) {
+  const auto place = [&](const std::string& scene, const std::string& vantage,
+                         const std::string& camera) -> std::optional<LastPose> {
+    const auto set = CameraOf(interpreter, scene, vantage, camera);
+    if (!set) {
+      return std::nullopt;
+    }
+    const std::shared_ptr<Scene> at = interpreter.FindScene(scene);
+    const FrameId frame = ToFrame(set->mount().frame());
+    return LastPose{set->projection(), RootMount(*at, vantage, set->name()),
+                    frame == RootFrame ? std::string() : at->Frames().Path(frame)};
+  };
+  for (const auto& [scene, vantage] : this->Vantages_) {
+    // A scene may be gone, and another one of its name have come.
+    const std::shared_ptr<Scene> at = interpreter.FindScene(scene);
+    const std::vector<std::string> there = at ? at->VantageNames() : std::vector<std::string>();
+    if (std::find(there.begin(), there.end(), vantage) == there.end()) {
+      continue;
+    }
+    for (const std::string& camera : at->Vantage(vantage).CameraNames()) {
+      if (const auto stands = place(scene, vantage, camera)) {
+        this->Cameras_[{{scene, vantage}, camera}] = *stands;
+      }
+    }
+  }
+  for (const std::string& name : this->Viewports_) {
+    const auto view = interpreter.GetState().viewports.find(name);
+    if (view == interpreter.GetState().viewports.end()) {
+      continue;
+    }
+    const ViewportState& looks = view->second;
+    if (const auto at = place(looks.scene, looks.vantage, looks.camera)) {
+      this->Views_[name] = *at;
+    }
+  }
+}
+
+std::vector<v1::Command> ViewerViews::Commands(Interpreter& interpreter) const {
+  std::vector<v1::Command> commands;
+  for (const auto& [scene, names] : this->Names_) {
+    names.PutLast(scene, commands);
+  }
+  this->Ledger_.Put(
+      [&](const std::string& scene) {
+        const auto found = interpreter.FindScene(scene.empty() ? DefaultScene() : scene);
+        return found ? found->Fragments().Names() : std::vector<std::string>();
+      },
+      commands);
+  return commands;
+}
+
+// The scene goes, or has gone: keeps what makes its views.
+void ViewerViews::Suspend(Interpreter& interpreter, const std::string& scene) {
+  Suspended& views = this->Suspended_[scene];
+  for (v1::Command& command : this->Commands(interpreter)) {
+    // Time is the simulation's, and so are fragments: one that is hidden and gone is hidden no
+    // more.
+    if (SceneName(command) == scene && !command.has_set_time() && !command.has_create_fragment() &&
+        !command.has_remove_fragment()) {
+      views.commands.push_back(std::move(command));
+    }
+  }
+  views.time_s.reset();
+}
+
+void ViewerViews::AfterSnapshot(Interpreter& interpreter) {
+  std::set<std::string> scenes;
+  for (const v1::Command& command : this->Commands(interpreter)) {
+    scenes.insert(SceneName(command));
+  }
+  for (const std::string& scene : scenes) {
+    this->Suspend(interpreter, scene);
+  }
+  this->Viewports_.clear();
+  this->Pressed_.clear();
+  this->Vantages_.clear();
+  this->Names_.clear();
+  this->Ledger_ = {};
+}
+
+void ViewerViews::Resume(Interpreter& interpreter, bool alone) {
+  for (auto it = this->Suspended_.begin(); it != this->Suspended_.end();) {
+    Suspended& views = it->second;
+    const std::shared_ptr<Scene> scene = interpreter.FindScene(it->first);
+    if (!scene) {
+      views.time_s.reset();
+      ++it;
+      continue;
+    }
+    if (!views.time_s) {
+      views.time_s = scene->Time();
+    }
+    if (!alone && scene->Time() == *views.time_s && !this->IsReady(*scene, views)) {
+      ++it; // it may be about to be built
+      continue;
+    }
+    std::vector<v1::Command> commands = std::move(views.commands);
+    it = this->Suspended_.erase(it);
+    for (v1::Command& command : commands) {
+      this->Restore(interpreter, command);
+    }
+  }
+}
+
+bool ViewerViews::IsReady(const Scene& scene, const Suspended& views) const {
+  const std::vector<std::string> vantages = scene.VantageNames();
+  const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const v1::Command& command : views.commands) {
+    if (command.has_set_camera()) {
+      const v1::SetCamera& set = command.set_camera();
+      const auto at = this->Cameras_.find({{SceneName(command), set.vantage()}, set.name()});
+      if (at != this->Cameras_.end() && !at->second.path.empty() &&
+          scene.Frames().Find(at->second.path) == NoFrame) {
+        return false;
+      }
+    } else if (command.has_create_viewport()) {
+      const v1::CreateViewport& create = command.create_viewport();
+      const std::string vantage = create.vantage().empty() ? DefaultVantage : create.vantage();
+      if (vantage.rfind(Prefix, 0) == 0) {
+        continue;
+      }
+      if (!has(vantages, vantage)) {
+        return false;
+      }
+      const std::vector<std::string> cameras = scene.Vantage(vantage).CameraNames();
+      if (create.camera().empty() ? cameras.empty() : !has(cameras, create.camera())) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+void ViewerViews::Restore(Interpreter& interpreter, v1::Command& command) {
+  if (!this->Owns(command)) { // of a viewport or vantage that could not be made
+    return;
+  }
+  if (command.has_set_camera() && command.set_camera().has_mount()) {
+    v1::SetCamera& set = *command.mutable_set_camera();
+    const auto at = this->Cameras_.find({{SceneName(command), set.vantage()}, set.name()});
+    if (at != this->Cameras_.end() && !at->second.path.empty()) {
+      const FrameTree& frames = interpreter.FindScene(SceneName(command))->Frames();
+      const FrameId frame = frames.Find(at->second.path); // ids may be others than they were
+      if (frame == NoFrame) {
+        *set.mutable_mount() = at->second.mount;
+      } else {
+        set.mutable_mount()->set_frame(frame);
+      }
+    }
+  }
+  if (!this->Execute(interpreter, command).has_error()) {
+    return;
+  }
+  if (command.has_create_viewport()) { // what it looked through is gone
+    v1::CreateViewport& create = *command.mutable_create_viewport();
+    const auto at = this->Views_.find(create.name());
+    if (at == this->Views_.end()) {
+      return;
+    }
+    v1::Command camera;
+    camera.set_scene(command.scene());
+    camera.mutable_create_vantage()->set_name(create.name());
+    this->Execute(interpreter, camera);
+    camera.mutable_set_camera()->set_vantage(create.name());
+    camera.mutable_set_camera()->set_name("camera");
+    *camera.mutable_set_camera()->mutable_projection() = at->second.projection;
+    *camera.mutable_set_camera()->mutable_mount() = at->second.mount;
+    this->Execute(interpreter, camera);
+    create.set_vantage(create.name());
+    create.set_camera("camera");
+    this->Execute(interpreter, command);
+  }
 }
 
 } // namespace dspace::session

@@ -1,6 +1,6 @@
 // What somebody who watches has for himself beside the scenes that he follows.
-#ifndef DSPACE_SESSION_OWN_VIEWS_H
-#define DSPACE_SESSION_OWN_VIEWS_H
+#ifndef DSPACE_SESSION_VIEWER_VIEWS_H
+#define DSPACE_SESSION_VIEWER_VIEWS_H
 
 #include <map>
 #include <optional>
@@ -11,6 +11,7 @@
 
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/ledger/LedgerNames.h>
+#include <dspace/ledger/LedgerViewports.h>
 
 namespace dspace::session {
 
@@ -20,7 +21,7 @@ namespace dspace::session {
 // that is removed, or not in a snapshot, sleep until there is a scene of that name again with the
 // frames (by path) and cameras that they look from; where it has gone on without these, they are
 // made where they were. The lag of a chase camera begins anew.
-class OwnViews {
+class ViewerViews {
 public:
   static constexpr const char* Prefix = "viewer:";
 
@@ -34,26 +35,26 @@ public:
 
   // The interpreter that was followed is about to be replaced by one made from a snapshot: notes
   // where cameras stand.
-  void Leave(Interpreter& interpreter);
+  void BeforeSnapshot(Interpreter& interpreter);
   // The new one is as the snapshot says.
-  void Enter(Interpreter& interpreter);
+  void AfterSnapshot(Interpreter& interpreter);
   // Makes those again that sleep, and whose time has come. `alone`: nobody drives, so that nothing
   // is to be waited for.
-  void Wake(Interpreter& interpreter, bool alone);
+  void Resume(Interpreter& interpreter, bool alone);
 
   // A command of the simulation was refused. Gets views of one's own out of its way; true: another
   // try is worth while. One that removes a scene is to be given before it is carried out, for it is
   // refused for viewports alone, and vantages would go without a word.
-  bool MakeRoom(Interpreter& interpreter, const v1::Command& refused);
+  bool RemoveConflicting(Interpreter& interpreter, const v1::Command& refused);
 
 private:
   using Name = std::pair<std::string, std::string>; // scene and vantage
-  struct Place {
+  struct LastPose {
     v1::Projection projection;
     v1::Mount mount;  // in the root
     std::string path; // of the frame that it was on; empty: the root
   };
-  struct Sleeping {
+  struct Suspended {
     std::vector<v1::Command> commands;
     std::optional<double> time_s; // of the scene when it was seen first
   };
@@ -66,29 +67,29 @@ private:
   static v1::Mount RootMount(const Scene& scene, const std::string& vantage,
                              const std::string& camera);
   bool OwnsVantage(const std::string& scene, const std::string& vantage) const;
-  void Keep(const v1::Command& command, const v1::Reply& reply);
+  void Track(const v1::Command& command, const v1::Reply& reply);
   v1::Reply ExecuteEvent(Interpreter& interpreter, v1::Command& command);
   bool GiveCamera(Interpreter& interpreter, const std::string& viewport, const v1::SetCamera& to);
-  bool IsReady(const Scene& scene, const Sleeping& views) const;
-  void MakeAgain(Interpreter& interpreter, v1::Command& command);
+  bool IsReady(const Scene& scene, const Suspended& views) const;
+  void Restore(Interpreter& interpreter, v1::Command& command);
   void Forget(const std::string& scene, const std::string& name);
-  void Sleep(Interpreter& interpreter, const std::string& scene);
+  void Suspend(Interpreter& interpreter, const std::string& scene);
   std::vector<v1::Command> Commands(Interpreter& interpreter) const;
   std::vector<std::string> ViewportsIn(Interpreter& interpreter, const std::string& scene) const;
-  bool FreeCameras(Interpreter& interpreter, const std::string& scene, std::uint64_t frame);
-  bool FreeViewports(Interpreter& interpreter, const std::string& scene, const std::string& vantage,
-                     const std::string& camera);
+  bool DetachCameras(Interpreter& interpreter, const std::string& scene, std::uint64_t frame);
+  bool DetachViewports(Interpreter& interpreter, const std::string& scene,
+                       const std::string& vantage, const std::string& camera);
 
   std::set<std::string> Viewports_;
   std::set<std::string> Pressed_; // viewports in which a button is down
   std::set<Name> Vantages_;
   std::map<std::string, LedgerNames> Names_; // of vantages alone, by scene
   LedgerViewports Ledger_;
-  std::map<std::string, Sleeping> Sleeping_; // by scene
-  int Last_ = 0;                             // number of the last viewport that was named here
+  std::map<std::string, Suspended> Suspended_; // by scene
+  int Last_ = 0;                               // number of the last viewport that was named here
   // Noted when they were last there.
-  std::map<std::pair<Name, std::string>, Place> Cameras_;
-  std::map<std::string, Place> Views_; // by viewport
+  std::map<std::pair<Name, std::string>, LastPose> Cameras_;
+  std::map<std::string, LastPose> Views_; // by viewport
 };
 
 } // namespace dspace::session

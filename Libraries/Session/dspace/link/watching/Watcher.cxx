@@ -6,10 +6,10 @@
 #include <unistd.h>
 
 #include <dspace/Error.h>
-#include <dspace/link/watching/ViewerEventCall.h>
 #include <dspace/link/LinkDiagnosis.h>
 #include <dspace/link/SnapshotMessages.h>
 #include <dspace/link/client/ClientLink.h>
+#include <dspace/link/watching/ViewerEventCall.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/messages/TextFields.h>
 #include <dspace/scene/Checks.h>
@@ -30,9 +30,9 @@ struct Watcher::Link {
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::Dspace::Stub> stub;
   std::thread thread;
-  LinkClock::time_point deadline;   // of the first connection
-  const pid_t process = getpid();   // that watches: a child has no such thread
-  std::unique_ptr<Telling> telling; // the user's thread's
+  LinkClock::time_point deadline;             // of the first connection
+  const pid_t process = getpid();             // that watches: a child has no such thread
+  std::unique_ptr<ViewerEventCall> eventCall; // the user's thread's
 
   mutable std::mutex mutex; // of all below
   std::condition_variable changed;
@@ -43,11 +43,11 @@ struct Watcher::Link {
   bool once = false;  // connected
   bool final = false; // never will be
   bool ending = false;
-  v1::Error error;     // why it is not connected
-  std::string refusal; // the same, if it is what the server says
+  v1::Error error;       // why it is not connected
+  std::string rejection; // the same, if it is what the server says
 
   bool Forked() const { return getpid() != this->process; }
-  v1::Error Foreign() const {
+  v1::Error ForkedError() const {
     v1::Error told;
     const std::string object = "server '" + this->options.address + "'";
     PutError(&told, v1::Error::UNSUPPORTED, object,
@@ -81,7 +81,7 @@ struct Watcher::Link {
         {
           const std::lock_guard lock(this->mutex);
           this->connected = this->once = true;
-          this->refusal.clear();
+          this->rejection.clear();
           this->changed.notify_all();
         }
         try {
@@ -118,17 +118,17 @@ struct Watcher::Link {
     bool useless = false;
     this->error = ToError(this->options.address, status, useless);
     this->final = useless && !this->once;
-    this->refusal = useless ? this->error.message() : std::string();
+    this->rejection = useless ? this->error.message() : std::string();
     this->changed.notify_all();
   }
 
-  void Keep() {
+  void RunConnection() {
     std::unique_lock lock(this->mutex);
     while (!this->ending && !this->final) {
       lock.unlock();
       this->Watch();
       lock.lock();
-      const milliseconds pause(this->refusal.empty() ? 100 : 1000);
+      const milliseconds pause(this->rejection.empty() ? 100 : 1000);
       this->changed.wait_for(lock, pause, [this] { return this->ending; });
     }
   }
@@ -165,12 +165,12 @@ struct Watcher::Link {
   }
 };
 
-Watcher::Watcher(const WatcherOptions& options) : Watcher(options, Later()) {
-  while (!this->WaitToOpen(options.timeout_s)) {
+Watcher::Watcher(const WatcherOptions& options) : Watcher(options, NonBlocking()) {
+  while (!this->WaitForConnect(options.timeout_s)) {
   }
 }
 
-Watcher::Watcher(const WatcherOptions& options, Later) : Link_(new Link) {
+Watcher::Watcher(const WatcherOptions& options, NonBlocking) : Link_(new Link) {
   Link& link = *this->Link_;
   if (!(options.timeout_s > 0 && options.timeout_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + options.address + "'",
@@ -178,21 +178,21 @@ Watcher::Watcher(const WatcherOptions& options, Later) : Link_(new Link) {
                     " s; accepted: above 0, up to 1e6");
   }
   link.options = options;
-  if (!(options.silence_s > 0 && options.silence_s <= 1e6)) {
+  if (!(options.keepalive_s > 0 && options.keepalive_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + options.address + "'",
-                "the silence is " + NumberText(options.silence_s) +
+                "the silence is " + NumberText(options.keepalive_s) +
                     " s; accepted: above 0, up to 1e6");
   }
-  link.channel = MakeChannel(options.address, options.security, options.silence_s);
+  link.channel = MakeChannel(options.address, options.security, options.keepalive_s);
   link.stub = v1::Dspace::NewStub(link.channel);
   link.deadline = After(options.timeout_s);
-  link.thread = std::thread([&link] { link.Keep(); });
+  link.thread = std::thread([&link] { link.RunConnection(); });
 }
 
-bool Watcher::WaitToOpen(double seconds) {
+bool Watcher::WaitForConnect(double seconds) {
   Link& link = *this->Link_;
   if (link.Forked()) {
-    Raise(link.Foreign());
+    Raise(link.ForkedError());
   }
   std::unique_lock lock(link.mutex);
   link.changed.wait_until(lock, std::min(link.deadline, After(std::clamp(seconds, 0.0, 1e6))),
@@ -207,7 +207,7 @@ bool Watcher::WaitToOpen(double seconds) {
   std::string why;
   if (late) {
     lock.unlock(); // to look takes a moment
-    why = WhyNoAnswer(link.options.address, link.options.security.HasCertificates());
+    why = DiagnoseConnection(link.options.address, link.options.security.HasCertificates());
     lock.lock();
     if (link.once) {
       return true;
@@ -256,7 +256,7 @@ bool Watcher::TakeAll(std::vector<v1::WatchReply>& messages, double wait_s) {
 bool Watcher::Connected(std::string* why) const {
   if (this->Link_->Forked()) {
     if (why) {
-      *why = this->Link_->Foreign().message();
+      *why = this->Link_->ForkedError().message();
     }
     return false;
   }
@@ -267,58 +267,58 @@ bool Watcher::Connected(std::string* why) const {
   return this->Link_->connected;
 }
 
-std::string Watcher::Refusal() const {
+std::string Watcher::Rejection() const {
   if (this->Link_->Forked()) {
     return {};
   }
   const std::lock_guard lock(this->Link_->mutex);
-  return this->Link_->refusal;
+  return this->Link_->rejection;
 }
 
-bool Watcher::Tell(const v1::ViewerEvent& event) {
-  return this->Tell(event, this->Link_->options.timeout_s);
+bool Watcher::SendEvent(const v1::ViewerEvent& event) {
+  return this->SendEvent(event, this->Link_->options.timeout_s);
 }
 
-bool Watcher::Tell(const v1::ViewerEvent& event, double timeout_s) {
-  this->BeginTell(event, timeout_s);
-  while (!this->WaitToTell(1e6)) {
+bool Watcher::SendEvent(const v1::ViewerEvent& event, double timeout_s) {
+  this->BeginSendEvent(event, timeout_s);
+  while (!this->WaitForSendEvent(1e6)) {
   }
-  return this->TakeTold();
+  return this->TakeSendEventResult();
 }
 
-void Watcher::BeginTell(const v1::ViewerEvent& event, double timeout_s) {
+void Watcher::BeginSendEvent(const v1::ViewerEvent& event, double timeout_s) {
   Link& link = *this->Link_;
   if (link.Forked()) {
-    Raise(link.Foreign());
+    Raise(link.ForkedError());
   }
-  this->DropTell();
+  this->CancelSendEvent();
   v1::TellRequest request;
   request.set_protocol(LinkProtocol);
   *request.mutable_event() = event;
   request.mutable_event()->set_from(ToUtf8(link.options.name));
   RequireUtf8(request, "event");
-  link.telling = std::make_unique<Telling>(*link.stub, request,
-                                           std::clamp(timeout_s, 0.0, link.options.timeout_s));
+  link.eventCall = std::make_unique<ViewerEventCall>(
+      *link.stub, request, std::clamp(timeout_s, 0.0, link.options.timeout_s));
 }
 
-bool Watcher::WaitToTell(double seconds) {
+bool Watcher::WaitForSendEvent(double seconds) {
   Link& link = *this->Link_;
-  if (link.Forked() || !link.telling) {
+  if (link.Forked() || !link.eventCall) {
     return true;
   }
-  return link.telling->Wait(seconds);
+  return link.eventCall->Wait(seconds);
 }
 
-bool Watcher::TakeTold() {
+bool Watcher::TakeSendEventResult() {
   Link& link = *this->Link_;
   if (link.Forked()) {
-    Raise(link.Foreign());
+    Raise(link.ForkedError());
   }
-  if (!link.telling || !link.telling->Done()) {
+  if (!link.eventCall || !link.eventCall->Done()) {
     throw Error(Error::Kind::Internal, "event",
-                "nothing is there to take; accepted: BeginTell and WaitToTell before");
+                "nothing is there to take; accepted: BeginSendEvent and WaitForSendEvent before");
   }
-  const std::unique_ptr<Telling> told = std::move(link.telling);
+  const std::unique_ptr<ViewerEventCall> told = std::move(link.eventCall);
   if (!told->Status().ok()) {
     bool final = false;
     v1::Error error = ToError(link.options.address, told->Status(), final);
@@ -330,9 +330,9 @@ bool Watcher::TakeTold() {
   return told->Delivered();
 }
 
-void Watcher::DropTell() {
+void Watcher::CancelSendEvent() {
   if (!this->Link_->Forked()) { // else it is the parent's
-    this->Link_->telling.reset();
+    this->Link_->eventCall.reset();
   }
 }
 

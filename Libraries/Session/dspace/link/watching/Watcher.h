@@ -17,7 +17,7 @@ struct WatcherOptions {
   LinkSecurity security;
   std::string name = "viewer"; // told to the server, for people; up to 256 bytes
   double timeout_s = 30;       // for the first connection; > 0, to 1e6
-  double silence_s = 20;       // a connection that says nothing for so long is asked; > 0, to 1e6
+  double keepalive_s = 20;     // a connection that says nothing for so long is asked; > 0, to 1e6
   std::size_t waitingBytes = 64 << 20; // of messages not taken yet; beyond, the server keeps them
 };
 
@@ -28,10 +28,10 @@ public:
   // Throws Error as RemoteClient does.
   explicit Watcher(const WatcherOptions& options);
   // The same for whoever must do other things meanwhile: it throws what is wrong with the options,
-  // and WaitToOpen the rest. WaitToOpen waits so many seconds; true once it is connected.
-  struct Later {};
-  Watcher(const WatcherOptions& options, Later);
-  bool WaitToOpen(double seconds);
+  // and WaitForConnect the rest. WaitForConnect waits so many seconds; true once it is connected.
+  struct NonBlocking {};
+  Watcher(const WatcherOptions& options, NonBlocking);
+  bool WaitForConnect(double seconds);
   ~Watcher();
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
@@ -44,19 +44,19 @@ public:
   bool Connected(std::string* why = nullptr) const;
   // Why the server refuses what it did not refuse before: a state that is too large to be sent, too
   // many viewers. Empty: it does not, or nobody answers. It is asked again each second.
-  std::string Refusal() const;
+  std::string Rejection() const;
   // Sends an event to whoever drives, waiting up to timeout_s (of the options, or a shorter one);
   // false when nobody does. Throws Error.
-  bool Tell(const v1::ViewerEvent& event);
-  bool Tell(const v1::ViewerEvent& event, double timeout_s);
-  // The same in parts, for whoever must do other things meanwhile: BeginTell, then WaitToTell, up
-  // to so many seconds each time, until it is true, then TakeTold, which returns and throws what
-  // Tell does. DropTell waits no longer: the event may yet be heard. BeginTell drops one that has
-  // not been taken.
-  void BeginTell(const v1::ViewerEvent& event, double timeout_s);
-  bool WaitToTell(double seconds);
-  bool TakeTold();
-  void DropTell();
+  bool SendEvent(const v1::ViewerEvent& event);
+  bool SendEvent(const v1::ViewerEvent& event, double timeout_s);
+  // The same in parts, for whoever must do other things meanwhile: BeginSendEvent, then
+  // WaitForSendEvent, up to so many seconds each time, until it is true, then TakeSendEventResult,
+  // which returns and throws what Tell does. CancelSendEvent waits no longer: the event may yet be
+  // heard. BeginSendEvent drops one that has not been taken.
+  void BeginSendEvent(const v1::ViewerEvent& event, double timeout_s);
+  bool WaitForSendEvent(double seconds);
+  bool TakeSendEventResult();
+  void CancelSendEvent();
 
 private:
   struct Link;
