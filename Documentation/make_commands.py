@@ -1,6 +1,6 @@
-"""Makes Commands.md anew from the comments of the .proto files: python3 Documentation/make_commands.py
+"""Generates Commands.md from the comments of the .proto files: python3 Documentation/make_commands.py
 
-protoc reads the files; nothing of Dspace need be built. --check: exit code 1 where Commands.md is out of date.
+It needs protoc, but no build of Dspace. --check: exit code 1 if Commands.md is out of date.
 """
 import pathlib
 import re
@@ -19,15 +19,15 @@ FILES = ("commands", "frames", "objects", "robots", "cameras", "viewports", "ter
 TYPES = {getattr(Field, name): name[5:].lower() for name in dir(Field) if name.startswith("TYPE_")}
 HEAD = """# The commands
 
-Made by `Documentation/make_commands.py` from the comments of `Libraries/Session/dspace/proto/*.proto`, which say the
-same: change those. [Wire.md](Wire.md) says how commands are sent.
+`Documentation/make_commands.py` generates this page from the comments of `Libraries/Session/dspace/proto/*.proto`. Edit
+the comments, not this page. [Wire.md](Wire.md) describes how commands are sent.
 
-Units are in the comments: metres [m], seconds [s], degrees where the name ends in `_deg`, pixels. "absent" is what is
-meant by a field that is left out. The number of a command or field is what stands for it on the wire; none is ever used
-twice.
+The comments state the units: metres [m], seconds [s], degrees if the name ends in `_deg`, pixels. "absent" and "empty"
+state the meaning of a field that is not set. Each command and field has a number that identifies it on the wire.
+Numbers are never reused.
 """
 
-EFFECTS = {"CHANGE": "changes the scene", "REQUEST": "a request", "UNIMPLEMENTED": "not carried out yet"}
+EFFECTS = {"CHANGE": "changes the scene", "REQUEST": "a request", "UNIMPLEMENTED": "not implemented yet"}
 
 
 def read_protos():
