@@ -94,12 +94,12 @@ class Driver:
                 break
             except grpc.RpcError as error:  # refused for good, or not there (yet)
                 if error.code() == grpc.StatusCode.ABORTED:
-                    raise ConnectionError("the server was started anew: the scene is gone") from None
+                    raise ConnectionError("the server was restarted: the scene is lost") from None
                 if error.code() in FINAL or time.monotonic() > end:
                     raise
                 time.sleep(0.1)
         if self.number and not opened.resumed:
-            raise ConnectionError("the server was started anew: the scene is gone")
+            raise ConnectionError("the server was restarted: the scene is lost")
         for number, request in self.pending.items():
             if number > opened.last:
                 self.requests.put(request)

@@ -58,7 +58,7 @@ def main():
                 follower.apply(message.command)
             elif kind == "writer":
                 state = "drives" if message.writer.connected else "has gone"
-                print(f"simulation {message.writer.name!r} {state}" if message.writer.name else "nobody drives",
+                print(f"simulation {message.writer.name!r} {state}" if message.writer.name else "no driver",
                       flush=True)
                 if message.writer.name and not message.writer.connected:
                     break

@@ -122,8 +122,8 @@ void RecorderThread::CarryOut(v1::Command& command) {
   if (reply.has_error()) {
     this->session->AddFailed(command, reply.error().message());
     if (!std::exchange(this->diverged, true)) {
-      this->Warn(this->Name() + "what the server has done cannot be done here (" +
-                 reply.error().message() + "): it is recorded, without snapshots from here on");
+      this->Warn(this->Name() + "a command of the server failed here (" + reply.error().message() +
+                 "); it is recorded, but the recording has no snapshots from here on");
     }
   }
 }
@@ -138,7 +138,7 @@ void RecorderThread::Begin(v1::WatchReply& message) {
   }
   if (!first && message.sequence() < before) {
     this->Fail(this->Name() + "the server at '" + this->options.address +
-               "' was started anew: its scenes are others");
+               "' was restarted and has other scenes");
     return;
   }
   const vtkSmartPointer<vtkDspaceSession> old = this->session;
@@ -152,10 +152,11 @@ void RecorderThread::Begin(v1::WatchReply& message) {
   }
   if (!first) {
     this->session->TakeRecording(old);
-    this->Warn(this->Name() + "it was cut off from the server, or too slow for it: " +
+    this->Warn(this->Name() +
+               "the connection to the server was lost, or this process was too slow: " +
                std::to_string(message.sequence() - before) +
                " commands are missing before simulation time " + Number(this->time_s) +
-               " s, and it has a gap there");
+               " s; the recording has a gap there");
     return;
   }
   const std::string failure = this->session->Record(this->path, this->commitEvery_s, this->pack);
@@ -179,12 +180,13 @@ void RecorderThread::CheckLink() {
     this->lastContact = Clock::now();
     if (said != this->rejection) {
       this->rejection = said;
-      this->Warn(this->Name() + "nothing is recorded while the server refuses it: " + said);
+      this->Warn(this->Name() +
+                 "nothing is recorded while the server rejects the connection: " + said);
     }
   } else if (Clock::now() - this->lastContact >
              std::chrono::duration<double>(this->options.timeout_s)) {
     this->Fail(this->Name() + "the server at '" + this->options.address +
-               "' is gone: nobody answers within " + Number(this->options.timeout_s) + " s");
+               "' has not responded for " + Number(this->options.timeout_s) + " s");
   }
 }
 

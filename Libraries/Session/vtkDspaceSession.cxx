@@ -252,9 +252,9 @@ std::string vtkDspaceSession::Replay(const std::string& bytes, vtkDspaceRecorded
                           : nullptr;
   if (entry && entry->effect != dspace::session::Effect::Change) {
     const std::string name = dspace::session::CommandName(command);
-    return dspace::session::ErrorReply(
-               dspace::v1::Error::CORRUPT, "command " + name,
-               "command " + name + ": it changes nothing, and no recording holds such a one")
+    return dspace::session::ErrorReply(dspace::v1::Error::CORRUPT, "command " + name,
+                                       "command " + name +
+                                           ": it changes nothing; recordings contain only changes")
         .SerializeAsString();
   }
   return this->Execute(bytes);

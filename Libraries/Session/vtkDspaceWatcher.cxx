@@ -165,8 +165,9 @@ struct vtkDspaceWatcher::Internals {
       return dspace::session::ErrorReply(
           dspace::v1::Error::UNSUPPORTED, "command " + name,
           "command " + name +
-              ": who watches changes nothing; accepted: requests, and viewports, vantages and "
-              "cameras of one's own, whose names begin with '" +
+              ": a viewer cannot change the scene; accepted: requests, and changes of the viewer's "
+              "own "
+              "viewports, vantages and cameras, whose names begin with '" +
               std::string(dspace::session::ViewerViews::Prefix) + "'");
     }
     const dspace::v1::Reply reply = this->views.Execute(this->Interpreter(), command);
@@ -241,7 +242,7 @@ int vtkDspaceWatcher::WaitForConnect(double seconds) {
   const dspace::v1::Reply reply = dspace::session::Catch([&] {
     if (!this->Impl->watcher) {
       throw dspace::Error(dspace::Error::Kind::Io, "watcher",
-                          "nothing is being connected; accepted: BeginConnect before");
+                          "no connection was started; accepted: BeginConnect first");
     }
     connected = this->Impl->watcher->WaitForConnect(seconds);
     return dspace::v1::Reply();
@@ -334,7 +335,7 @@ int vtkDspaceWatcher::WaitForSendEvent(double seconds) {
     told = this->Impl->watcher->WaitForSendEvent(seconds);
     if (told && !this->Impl->watcher->TakeSendEventResult()) {
       throw dspace::Error(dspace::Error::Kind::NotFound, "simulation",
-                          "nobody drives the server now; the event is dropped");
+                          "the server has no driver; the event is dropped");
     }
     return dspace::v1::Reply();
   });

@@ -191,7 +191,7 @@ def test_a_kill_of_the_server_leaves_a_recording_and_an_error(tmp_path, folder):
                         scene.time = 51.0
             said = [str(each.message) for each in told]
             assert len(said) == 1 and "a.dspace" in said[0] and "is gone" in said[0] and "what was written stays" in said[0]
-            assert "nobody answers within 5 s" in recording.failure and session.recording is None
+            assert "has not responded for 5 s" in recording.failure and session.recording is None
             with pytest.raises(dspace.Io, match="is gone"):
                 recording.stop()
     with RecordingFile(path) as file:

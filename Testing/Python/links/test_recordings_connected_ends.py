@@ -118,7 +118,7 @@ def test_what_cannot_be_done_here_is_recorded_all_the_same(tmp_path, folder):
                 drive(scene, rover, number, number + 5)
             live = session.viewports["view"].image()
             recording.stop()
-    assert len(told) == 1 and "cannot be done here" in str(told[0].message) and "late.obj" in str(told[0].message)
+    assert len(told) == 1 and "a command of the server failed here" in str(told[0].message) and "late.obj" in str(told[0].message)
     late.write_text(BOX.replace("v 0 2 0", "v 0 3 0"))
     with dspace.Playback(path, check_assets=False) as run:
         run.seek(number + 4.0)

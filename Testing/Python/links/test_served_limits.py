@@ -44,10 +44,10 @@ def test_a_document_in_the_place_of_a_name_reads_nothing(tmp_path):
             command.open_terrain.path = "here" if patch else name
             if patch:
                 command.open_terrain.patch.add().path = name
-            commands.append((command, "outside of what|holds '<' or '>'|no such file"))
+            commands.append((command, "outside of the folders|contains '<' or '>'|no existing file"))
         command = pb.Command()
         command.add_terrain_layer.image.path = name
-        commands.append((command, "outside of what|holds '<' or '>'"))
+        commands.append((command, "outside of the folders|contains '<' or '>'"))
     command = pb.Command()
     command.open_terrain.path = str(root / "absent.tif")
     commands.append((command, "there is no such file"))

@@ -306,7 +306,7 @@ def test_what_is_no_event_is_refused(tmp_path):
         session.close()
         while watcher.simulation is not None:
             watcher.update(5.0)
-        with pytest.raises(dspace.NotFound, match="nobody drives"):
+        with pytest.raises(dspace.NotFound, match="has no driver"):
             watcher.answer("deploy?", "go")
 
 

@@ -196,7 +196,7 @@ def test_files_that_files_name_are_checked(packed, tmp_path):
         session.scene().load(str(tmp_path / "here/models/tetra.obj"))
     dspace.Playback(tmp_path / "less.dspace").close()
     (tmp_path / "here/models/tetra.mtl").write_text("newmtl m\nKd 1 1 1\n")
-    with pytest.raises(dspace.Corrupt, match="tetra.mtl.*was not there"):
+    with pytest.raises(dspace.Corrupt, match="tetra.mtl.*did not exist"):
         dspace.Playback(tmp_path / "less.dspace")
 
 
@@ -290,7 +290,7 @@ def test_no_more_is_unpacked_than_is_said(tmp_path, monkeypatch):
 def test_nothing_stands_in_for_projs_own(tmp_path):
     for number, names in enumerate((["/x/a.gsb", "/x/proj.db"], ["/x/proj/proj.ini"], ["/proj/a.tif", "/proj/proj.db"])):
         forged(tmp_path / f"{number}.dspace", [(name, b"harm") for name in names])
-        with pytest.raises(dspace.Corrupt, match="stand in for PROJ's own"), \
+        with pytest.raises(dspace.Corrupt, match="replace PROJ's own"), \
                 RecordingFile(tmp_path / f"{number}.dspace") as file:
             RecordedFiles(file)
     forged(tmp_path / "other.dspace", [("/x/a.gsb", b"a grid"), ("/y/proj.db", b"whose folder PROJ never sees")])

@@ -174,12 +174,12 @@ def test_a_pack_lacks_no_file_that_was_read(tmp_path, capsys):
             each.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
             session.scene().load(str(each))
     before, content = path.read_bytes(), names[1].read_bytes()
-    for gone, more in ((names[1:2], ""), (names[1:], ", nor is 1 other")):
+    for gone, more in ((names[1:2], ""), (names[1:], ", and so is 1 other")):
         for each in gone:
             each.unlink()
         for words in (["--out", str(out)], []):
             assert main(["log", "pack", str(path), *words]) == 1
-            assert f"its file '{names[1]}' is not there{more}; accepted: " in capsys.readouterr().err
+            assert f"its file '{names[1]}' is missing{more}; accepted: " in capsys.readouterr().err
             assert sorted(os.listdir(tmp_path)) == sorted(["a.dspace", *(each.name for each in names if each.exists())])
             assert path.read_bytes() == before
         for each in gone:

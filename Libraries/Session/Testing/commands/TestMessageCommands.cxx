@@ -200,13 +200,13 @@ TEST_F(MessageTest, QuestionsAreOpenUntilTheyAreClosed) {
   ASSERT_EQ(this->Questions().question_size(), 2);
   EXPECT_EQ(this->Questions().question(0).choice(1), "no");
 
-  this->Refuse(Question("go"), Kind::ALREADY_EXISTS, "'go': it is open already");
+  this->Refuse(Question("go"), Kind::ALREADY_EXISTS, "'go': it is already open");
   this->Refuse(Question(""), Kind::INVALID_ARGUMENT, "its name is empty");
   this->Refuse(Question("a", ""), Kind::INVALID_ARGUMENT, "its text is empty");
   v1::Command twice = Question("a");
   twice.mutable_ask_operator()->add_choice("yes");
   twice.mutable_ask_operator()->add_choice("yes");
-  this->Refuse(twice, Kind::INVALID_ARGUMENT, "its choice 'yes' is there twice");
+  this->Refuse(twice, Kind::INVALID_ARGUMENT, "its choice 'yes' occurs twice");
 
   v1::Command other; // names are the session's: answers do not say of which scene
   other.set_scene("other");

@@ -142,7 +142,7 @@ TEST_F(ObjectCommands, TiltMarkersTurnRed) {
   this->Refuse(tilt, v1::Error::INVALID_ARGUMENT, "-1");
   tilt.mutable_set_tilt()->set_tilt_deg(40);
   tilt.mutable_set_tilt()->set_object(this->AddBox());
-  this->Refuse(tilt, v1::Error::INVALID_ARGUMENT, "no tilt marker");
+  this->Refuse(tilt, v1::Error::INVALID_ARGUMENT, "not a tilt marker");
 }
 
 TEST_F(ObjectCommands, TrailsGrowAndAreCleared) {

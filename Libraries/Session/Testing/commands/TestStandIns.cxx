@@ -76,8 +76,8 @@ TEST_F(StandIns, HaveTheBoundsThatTheFileStates) {
   // -0.5 0 -3 to 5 4 4; its turn and origin follow.
   ExpectBox(this->Boxes()["body"], {1 - 4, 2 - 0.5, 3 - 3}, {1 - 0, 2 + 5, 3 + 4});
   ASSERT_EQ(reply.warning_size(), 1);
-  for (const char* part : {"absent.bin", "the edges of an orange box of 5.5 x 4 x 7 m",
-                           "stand in for it", "part.gltf"}) {
+  for (const char* part :
+       {"absent.bin", "the edges of an orange box of 5.5 x 4 x 7 m", "replace it", "part.gltf"}) {
     EXPECT_NE(reply.warning(0).find(part), std::string::npos) << reply.warning(0);
   }
 }
@@ -88,7 +88,7 @@ TEST_F(StandIns, AreSmallCubesWhereNothingIsStated) {
     const TemporaryFile file("small.urdf", UrdfOf(name));
     const v1::Reply reply = this->Load(file.Path());
     ASSERT_EQ(reply.warning_size(), 1) << reply.error().message();
-    EXPECT_NE(reply.warning(0).find("a cube of 0.1 m stands in for it"), std::string::npos)
+    EXPECT_NE(reply.warning(0).find("a cube of 0.1 m replaces it"), std::string::npos)
         << reply.warning(0);
     ExpectBox(this->Boxes()["body"], {0.95, 1.95, 2.95}, {1.05, 2.05, 3.05});
     v1::Command remove;

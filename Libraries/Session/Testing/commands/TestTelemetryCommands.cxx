@@ -110,7 +110,7 @@ TEST_F(TelemetryTest, AStepIsSetWholeOrNotAtAll) {
   this->Set({{a, 1.0}, {b, 2.0}});
   this->Refuse(Values({{a, 3.0}, {b, Infinite}}), Kind::INVALID_ARGUMENT, "'b': its value is inf");
   this->Refuse(Values({{a, 3.0}, {b, -Infinite}}), Kind::INVALID_ARGUMENT, "-inf");
-  this->Refuse(Values({{a, 3.0}, {a, 4.0}}), Kind::INVALID_ARGUMENT, "'a': it is there twice");
+  this->Refuse(Values({{a, 3.0}, {a, 4.0}}), Kind::INVALID_ARGUMENT, "'a': it occurs twice");
   this->Refuse(Values({{a, 3.0}, {b + 100, 4.0}}), Kind::NOT_FOUND, "no such channel");
   this->Refuse(Values({{a, 3.0}, {text, 4.0}}), Kind::INVALID_ARGUMENT, "set_telemetry_texts");
   v1::Command uneven = Values({{a, 3.0}, {b, 4.0}});

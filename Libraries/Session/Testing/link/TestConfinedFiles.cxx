@@ -87,7 +87,7 @@ protected:
   }
   static void ExpectRefused(const v1::Reply& reply) {
     EXPECT_EQ(reply.error().kind(), v1::Error::INVALID_ARGUMENT) << reply.ShortDebugString();
-    EXPECT_TRUE(reply.error().message().find("outside of what the server allows") !=
+    EXPECT_TRUE(reply.error().message().find("outside of the folders that the server allows") !=
                     std::string::npos ||
                 reply.error().message().find("mosaic (VRT) of plain files") != std::string::npos)
         << reply.error().message();

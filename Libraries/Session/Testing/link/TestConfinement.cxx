@@ -72,8 +72,10 @@ TEST_F(ConfinementTest, WhatIsReadIsThereAndAFile) {
   EXPECT_EQ(open(root + "/inner"), ""); // some rasters are folders
   EXPECT_NE(open(root + "/absent").find("there is no such file"), std::string::npos);
   // Whether a file outside is there is nobody's business.
-  EXPECT_NE(open("/etc/absent").find("outside of what the server allows"), std::string::npos);
-  EXPECT_NE(open("/etc/passwd").find("outside of what the server allows"), std::string::npos);
+  EXPECT_NE(open("/etc/absent").find("outside of the folders that the server allows"),
+            std::string::npos);
+  EXPECT_NE(open("/etc/passwd").find("outside of the folders that the server allows"),
+            std::string::npos);
   ASSERT_EQ(mkfifo((root + "/fifo").c_str(), 0600), 0);
   EXPECT_NE(open(root + "/fifo").find("neither a file nor a folder"), std::string::npos);
   // What is written need not be there.

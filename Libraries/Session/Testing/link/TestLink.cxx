@@ -60,7 +60,8 @@ TEST_F(LinkTest, ASecondWriterIsRefusedByNameOrTakesOver) {
     FAIL() << "a second writer was let in";
   } catch (const Error& error) {
     EXPECT_EQ(error.GetKind(), Error::Kind::AlreadyExists);
-    EXPECT_NE(std::string(error.what()).find("'first' drives"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("'first' is the driver"), std::string::npos)
+        << error.what();
   }
   Accept(first.Execute(MakeFrame(2)));
   auto options = this->ClientOptions("second");

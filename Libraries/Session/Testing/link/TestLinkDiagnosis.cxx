@@ -1,4 +1,4 @@
-// What is said where nobody answers, against sockets that are made for it.
+// The diagnoses of failed connections, compared with sockets in known states.
 #include <fstream>
 
 #include <netinet/in.h>
@@ -53,30 +53,30 @@ protected:
 
 TEST_F(LinkDiagnosis, OfASocket) {
   const std::string path = this->Folder + "/other";
-  ExpectSays(DiagnoseConnection("unix:" + path, false), "there is no such socket");
+  ExpectSays(DiagnoseConnection("unix:" + path, false), "the socket does not exist");
   std::ofstream(path) << "a file";
-  ExpectSays(DiagnoseConnection("unix:" + path, false), "the file is no socket");
+  ExpectSays(DiagnoseConnection("unix:" + path, false), "the file is not a socket");
   std::filesystem::remove(path);
   this->Listen(path);
-  ExpectSays(DiagnoseConnection("unix:" + path, false), "wants certificates");
+  ExpectSays(DiagnoseConnection("unix:" + path, false), "requires certificates");
   ExpectSays(DiagnoseConnection("unix:" + path, true), "certificates of one authority");
   for (int i = 0; i < 20; ++i) { // none of which it takes in
-    ExpectSays(DiagnoseConnection("unix:" + path, false), "who does not let this client in");
+    ExpectSays(DiagnoseConnection("unix:" + path, false), "does not accept this client");
   }
   close(this->Descriptor);
   this->Descriptor = -1;
   ExpectSays(DiagnoseConnection("unix:" + path, false),
-             "nobody listens there"); // the socket is left
+             "no process listens there"); // the socket is left
 }
 
 TEST_F(LinkDiagnosis, OfAPort) {
   const std::string free = std::to_string(this->Port(false));
-  ExpectSays(DiagnoseConnection("127.0.0.1:" + free, false), "nobody listens there");
-  ExpectSays(DiagnoseConnection("localhost:" + free, false), "nobody listens there");
+  ExpectSays(DiagnoseConnection("127.0.0.1:" + free, false), "no process listens there");
+  ExpectSays(DiagnoseConnection("localhost:" + free, false), "no process listens there");
   close(this->Descriptor);
   const std::string taken = std::to_string(this->Port(true));
-  ExpectSays(DiagnoseConnection("127.0.0.1:" + taken, false), "who does not let this client in");
-  ExpectSays(DiagnoseConnection("no.such.host.invalid:" + taken, false), "may not be known");
+  ExpectSays(DiagnoseConnection("127.0.0.1:" + taken, false), "does not accept this client");
+  ExpectSays(DiagnoseConnection("no.such.host.invalid:" + taken, false), "may be unknown");
 }
 
 TEST_F(LinkDiagnosis, IsWhatAClientSays) {
@@ -97,7 +97,7 @@ TEST_F(LinkDiagnosis, IsWhatAClientSays) {
   };
   for (const std::string& text : {said([&] { session::RemoteClient client(options); }),
                                   said([&] { session::Watcher watcher(watch); })}) {
-    ExpectSays(text, "within 0.5 s: there is no such socket");
+    ExpectSays(text, "within 0.5 s: the socket does not exist");
   }
 }
 

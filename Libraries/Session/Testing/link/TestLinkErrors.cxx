@@ -124,7 +124,8 @@ TEST_F(LinkTest, WhatIsBeforeACommandMustBeDoneWithinItsTimeout) {
   Accept(client.Send(hold));
   const v1::Reply late = client.Execute(MakeFrame(7));
   EXPECT_EQ(late.error().kind(), v1::Error::DEADLINE_EXCEEDED);
-  EXPECT_NE(late.error().message().find("not done within 5 s; it was not sent"), std::string::npos)
+  EXPECT_NE(late.error().message().find("not completed within 5 s; this command was not sent"),
+            std::string::npos)
       << late.ShortDebugString();
   go.set_value();
   Accept(client.Flush());

@@ -177,7 +177,7 @@ TEST_F(LinkLimits, ASnapshotThatFailsIsToldAndEndsNothing) {
     Watcher watcher(this->ToWatch());
     FAIL() << "a viewer has something to show";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("there is no snapshot: as it happens"),
+    EXPECT_NE(std::string(error.what()).find("the snapshot failed: as it happens"),
               std::string::npos)
         << error.what();
   }

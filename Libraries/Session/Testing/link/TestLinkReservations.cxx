@@ -93,7 +93,7 @@ TEST_F(LinkReservations, WhoLostItsConnectionKeepsItsPlace) {
     FAIL() << "another one was let in";
   } catch (const Error& error) {
     EXPECT_EQ(error.GetKind(), Error::Kind::AlreadyExists);
-    EXPECT_NE(std::string(error.what()).find("'raw' drives and has lost its connection"),
+    EXPECT_NE(std::string(error.what()).find("'raw' is the driver and has lost its connection"),
               std::string::npos)
         << error.what();
   }
@@ -194,8 +194,7 @@ TEST_F(LinkReservations, WhoIsNotKnownAnyMoreTakesNoPlace) {
   EXPECT_FALSE(former.IsOpen);
   const grpc::Status status = former.Finish();
   EXPECT_EQ(status.error_code(), grpc::StatusCode::ABORTED);
-  EXPECT_NE(status.error_message().find("started anew"), std::string::npos)
-      << status.error_message();
+  EXPECT_NE(status.error_message().find("restarted"), std::string::npos) << status.error_message();
   RemoteClient next(this->ClientOptions("next")); // at once, although no place was given up
   Accept(next.Execute(MakeScene()));
   RawDrive later(this->Address(), KeyB, {}, true);

@@ -300,9 +300,9 @@ TEST_F(Salvage, APartBeginsWithItsState) {
 TEST_F(Salvage, WhatCannotBeSalvagedLeavesNothingBehind) {
   this->Refuses(Error::Kind::NotFound, "no such file");
   Write(this->Of("bad"), std::string(3 * Page, '\0'));
-  this->Refuses(Error::Kind::Corrupt, "nothing in it survives");
+  this->Refuses(Error::Kind::Corrupt, "nothing in it can be recovered");
   Write(this->Of("bad"), "");
-  this->Refuses(Error::Kind::Corrupt, "nothing in it survives");
+  this->Refuses(Error::Kind::Corrupt, "nothing in it can be recovered");
   this->Make(this->Of("whole"));
   std::filesystem::copy_file(this->Of("whole"), this->Of("bad"),
                              std::filesystem::copy_options::overwrite_existing);

@@ -78,7 +78,7 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   const Registry::Entry* entry = this->Registry_.Find(command.command_case());
   if (!entry) {
     throw Error(Error::Kind::Unsupported, "command " + CommandName(command),
-                "this session does not carry out such a command");
+                "this session does not support the command");
   }
   if (FindInvalidText(command)) {
     RequireUtf8(command, "command " + CommandName(command));
@@ -105,7 +105,8 @@ void Interpreter::NotifyListeners(const v1::Command& command, v1::Reply& reply) 
     try {
       listener(command, reply);
     } catch (const std::exception& error) {
-      reply.add_warning(std::string("done, but a listener failed: ") + error.what());
+      reply.add_warning(std::string("the command was executed, but a listener failed: ") +
+                        error.what());
     }
   }
 }

@@ -14,30 +14,30 @@
 
 namespace dspace::session {
 
-// The one interpreter: local sessions, servers and playback all feed it. It draws nothing itself;
-// whoever does adds the viewport commands to Commands(). Used from one thread at a time.
+// Executes commands for local sessions, servers and playback. It does not draw: a session that
+// draws adds the viewport commands to Commands(). Use it from one thread at a time.
 class Interpreter {
 public:
   Interpreter();
   Interpreter(const Interpreter&) = delete;
   Interpreter& operator=(const Interpreter&) = delete;
 
-  // Carries out one command, whole or not at all, and never throws for what is in it: the reply
-  // holds the error. Ids and names that the interpreter chose, and paths made absolute, are written
-  // into `command`, so that executing it again on a copy of the earlier state gives the same state.
+  // Executes one command as a whole or not at all. It never throws because of the command's
+  // content: the reply contains the error. It writes chosen ids and names, and absolute paths, into
+  // `command`, so that executing it again on a copy of the earlier state gives the same state.
   v1::Reply Execute(v1::Command& command);
 
-  // Hears every accepted command that changes something, in order, with its reply. A listener that
-  // throws becomes a warning in the reply; the change stays made.
+  // An observer of every accepted command that changes the state, in order, with its reply. An
+  // exception of a listener becomes a warning in the reply; the change stays.
   using Listener = std::function<void(const v1::Command&, const v1::Reply&)>;
   using Token = std::uint64_t;
   Token AddListener(Listener listener);
   bool RemoveListener(Token token);
 
-  // Where further commands are added.
+  // The registry, to which a session may add commands.
   Registry& Commands() { return this->Registry_; }
   State& GetState() { return this->State_; }
-  // Null when there is none of that name.
+  // Null if there is no scene of this name.
   std::shared_ptr<Scene> FindScene(const std::string& name) const;
 
 private:
@@ -47,7 +47,7 @@ private:
   Registry Registry_;
   std::vector<std::pair<Token, Listener>> Listeners_;
   Token LastToken_ = 0;
-  int Depth_ = 0; // commands under way: listeners may give some too
+  int Depth_ = 0; // number of nested calls of Execute: listeners may execute commands
 };
 
 // "create_frame": the name of the command in the .proto, or "number 999" for one that is unknown.

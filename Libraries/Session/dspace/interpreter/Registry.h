@@ -1,4 +1,4 @@
-// Which function carries out which command.
+// The handlers of all commands.
 #ifndef DSPACE_SESSION_REGISTRY_H
 #define DSPACE_SESSION_REGISTRY_H
 
@@ -11,7 +11,7 @@
 
 namespace dspace::session {
 
-// What a handler works on. `scene` is null for the commands that need none.
+// The arguments of a handler. `scene` is null for commands that need no scene.
 struct Context {
   State& state;
   SceneState* scene;
@@ -24,8 +24,9 @@ struct Context {
 
 enum class Needs { Scene, Nothing };
 
-// A handler checks all that it is given before it changes anything, throws dspace::Error, and
-// writes ids and names that it chose into the command, so that the command as recorded replays.
+// The handlers by command. A handler checks all input before it changes anything and throws
+// dspace::Error. It writes ids and names that it chooses into the command, so that the recorded
+// command gives the same result.
 class Registry {
 public:
   struct Entry {
@@ -34,7 +35,7 @@ public:
     std::function<void(const Context&, v1::Command&)> run;
   };
 
-  // `get` is v1::Command::mutable_..., which names the command. Throws Error(Internal) where the
+  // `get` is v1::Command::mutable_..., which selects the command. Throws Error(Internal) if the
   // command's .proto lacks an option (CommandTraits).
   template<class Message, class Handler>
   void Add(v1::Command::CommandCase kind, Message* (v1::Command::*get)(), Handler handler,
@@ -44,7 +45,7 @@ public:
                               handler(context, *(command.*get)());
                             }};
   }
-  // The commands that are typed only: they are answered with Error.UNIMPLEMENTED, which names them.
+  // Adds the unimplemented commands, which are rejected with Error.UNIMPLEMENTED.
   void AddUnimplemented();
   const Entry* Find(v1::Command::CommandCase kind) const {
     const auto found = this->Entries_.find(kind);
@@ -55,7 +56,7 @@ private:
   std::map<v1::Command::CommandCase, Entry> Entries_;
 };
 
-// One for each subject.
+// One function for each subject.
 void AddSceneCommands(Registry& registry);
 void AddFrameCommands(Registry& registry);
 void AddObjectCommands(Registry& registry);
@@ -68,7 +69,7 @@ void AddCameraCommands(Registry& registry);
 void AddTerrainCommands(Registry& registry);
 void AddTelemetryCommands(Registry& registry);
 void AddMessageCommands(Registry& registry);
-void AddTextCommands(Registry& registry); // needs VTK: in the module, not in the plain library
+void AddTextCommands(Registry& registry); // needs VTK: in the VTK module, not in the plain library
 
 } // namespace dspace::session
 

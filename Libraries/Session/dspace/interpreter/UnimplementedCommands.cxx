@@ -1,4 +1,4 @@
-// Commands that are typed, and that this version does not carry out.
+// Commands that this version does not implement.
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/messages/ErrorReply.h>
 
@@ -13,8 +13,7 @@ void Registry::AddUnimplemented() {
         Effect::Unimplemented, Needs::Nothing, [](const Context& context, v1::Command& command) {
           const std::string name = "command " + CommandName(command);
           PutError(context.reply.mutable_error(), v1::Error::UNIMPLEMENTED, name,
-                   name + ": it is typed, and this version does not carry it out yet; "
-                          "accepted: a later version");
+                   name + ": this version does not implement it; accepted: a later version");
         }};
   }
 }

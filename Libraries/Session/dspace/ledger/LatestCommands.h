@@ -1,4 +1,4 @@
-// The last command of each kind for one owner: what a snapshot keeps of commands whose option
+// The last command of each kind for one owner. Snapshots contain it for commands whose option
 // `kept` is LATEST.
 #ifndef DSPACE_SESSION_LATEST_COMMANDS_H
 #define DSPACE_SESSION_LATEST_COMMANDS_H
@@ -15,7 +15,7 @@ namespace dspace::session {
 class LatestCommands {
 public:
   void Set(const v1::Command& command) { this->ByNumber_[command.command_case()] = command; }
-  // In the order of the commands' numbers, for the scene of this name.
+  // Appends the commands, ordered by number, for the scene of this name.
   void Put(const std::string& scene, std::vector<v1::Command>& out) const {
     for (const auto& [number, command] : this->ByNumber_) {
       out.push_back(command);

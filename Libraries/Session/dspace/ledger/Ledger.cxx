@@ -194,21 +194,21 @@ void Ledger::Impl::Apply(const v1::Command& accepted, const v1::Reply& reply,
   }
   const auto found = this->scenes.find(name);
   if (found == this->scenes.end()) {
-    throw Error(Error::Kind::Internal, "ledger", "it knows no scene '" + name + "'");
+    throw Error(Error::Kind::Internal, "ledger", "there is no scene '" + name + "'");
   }
   if (!(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
         found->second.AddMessages(accepted) || found->second.names.Add(accepted, reply))) {
     throw Error(Error::Kind::Internal, "ledger",
-                "its .proto says that the ledger keeps it, and the ledger has no code for it");
+                "its .proto states `kept: LEDGER`, but the ledger has no code for it");
   }
 }
 
 void Ledger::Impl::Fail(const v1::Command& command, const std::string& name,
                         const std::string& why) {
   this->unnamed = true;
-  std::string text = "command " + CommandName(command) + " is not in it (" + why +
-                     "); there is no snapshot " +
-                     (name.empty() ? "any more" : "until scene '" + name + "' is removed");
+  std::string text = "command " + CommandName(command) + " is missing from it (" + why +
+                     "); there are no more snapshots" +
+                     (name.empty() ? "" : " until scene '" + name + "' is removed");
   this->faults.emplace(name, std::move(text));
   this->unnamed = false;
 }

@@ -1,4 +1,4 @@
-// The shortest list of commands that brings a new interpreter to the present state.
+// The shortest list of commands that recreates the present state in a new interpreter.
 #ifndef DSPACE_SESSION_LEDGER_H
 #define DSPACE_SESSION_LEDGER_H
 
@@ -12,36 +12,37 @@ namespace dspace::session {
 
 struct State;
 
-// Hears every accepted command (Interpreter::AddListener) from an empty interpreter on, and keeps
-// of it what the present state is made of: what is superseded or removed is forgotten. Snapshots of
-// recordings and of servers are its Commands().
+// An observer of every accepted command (Interpreter::AddListener), starting with an empty
+// interpreter. It stores what the present state consists of and drops what later commands supersede
+// or remove. The snapshots of recordings and servers are its Commands().
 //
-// The state is the same in everything that requests answer and pictures show, poses to the bit.
-// Three things are not part of it: the order of the objects within a fragment; that ids of what was
-// removed are taken; a drag that is under way in a viewport.
+// The recreated state gives the same replies to requests and the same pictures; poses are equal to
+// the bit. It does not include the order of objects within a fragment, the ids of removed entities,
+// and an unfinished drag in a viewport.
 //
-// Fields that are not known here are kept where a message is kept whole (objects, lights, tables,
-// terrains, channels of telemetry, events, questions), not in frames, poses, values and times.
+// Unknown fields are preserved in messages that are stored whole (objects, lights, tables,
+// terrains, telemetry channels, events, questions), but not in frames, poses, values and times.
 //
 // A command whose option `kept` is LATEST (options.proto) needs no code here: the last one for its
-// owner is kept as it is. Add throws for any other change that it has no code for. Commands of a
-// later version, whose numbers no command here has, are kept all, in their order, at the end. Of
-// wheel tracks it keeps nothing: Commands() asks the terrain for them. Not synchronised.
+// owner is stored unchanged. Add throws for any other change without code. Commands of a later
+// version, with unknown numbers, are all stored and come last in their order. Wheel tracks are not
+// stored: Commands() reads them from the terrain. Not thread-safe.
 class Ledger {
 public:
-  // `state` is the interpreter's, which must outlive this; without one Commands() throws
-  // Error(Internal) where wheels have rolled.
+  // `state` is the interpreter's and must outlive the ledger. Without it, Commands() throws
+  // Error(Internal) if a terrain has wheel tracks.
   explicit Ledger(const State* state = nullptr);
   ~Ledger();
   Ledger(Ledger&&) noexcept;
   Ledger& operator=(Ledger&&) noexcept;
 
-  // What it throws leaves the scene of the command (or, of a viewport's command, everything) not to
-  // be known any more. Nothing more of it is taken in, without a word, until it is removed.
+  // If it throws, the ledger no longer knows the scene of the command (for a viewport command: the
+  // whole session). Later commands of this scene are then ignored until the scene is removed.
   void Add(const v1::Command& accepted, const v1::Reply& reply);
-  // The same of a command that the state should have and has not, for the reason given.
+  // Reports a command that the state lacks for the reason `why`. The effect is that of a failed
+  // Add.
   void AddFailed(const v1::Command& accepted, const std::string& why);
-  // Throws Error(Internal) while anything is not known, naming it.
+  // Throws Error(Internal), naming the reason, while a scene is unknown.
   std::vector<v1::Command> Commands() const;
 
 private:
@@ -49,8 +50,8 @@ private:
   std::unique_ptr<Impl> Impl_;
 };
 
-// The command that has the same effect, whatever was drawn and whoever drags: a viewport's event
-// becomes the camera that it led to. False for an event that led to nothing: nothing is to be kept.
+// Converts an accepted command into a command with the same effect that does not depend on drawing:
+// an event of a viewport becomes the resulting camera. False if an event had no effect.
 bool ToRecorded(const v1::Command& accepted, const v1::Reply& reply, v1::Command& recorded);
 
 } // namespace dspace::session

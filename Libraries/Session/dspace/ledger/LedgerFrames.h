@@ -31,9 +31,9 @@ public:
   void Create(const v1::Command& command);
   struct Removed {
     std::unordered_set<LedgerId> frames;
-    std::vector<v1::Command> robots; // that loaded them
+    std::vector<v1::Command> robots; // the commands that loaded them
   };
-  // The frame with its subtree.
+  // Removes the frame with its subtree.
   Removed Remove(LedgerId frame);
   void Reparent(const v1::ReparentFrame& command, const v1::Reply& reply);
   void Rename(const v1::RenameFrame& command);
@@ -43,11 +43,11 @@ public:
 
   const std::map<std::string, LedgerRobot>& Robots() const { return this->Robots_; }
   std::map<std::string, LedgerRobot>& Robots() { return this->Robots_; }
-  // Frames, robots, joints, poses. `scene` is the name that commands bear, `fragments` those that
-  // there are: where a robot's is gone its visuals are moved later.
+  // Appends the commands for frames, robots, joints and poses of the scene. `fragments` are the
+  // existing fragments: if a robot's fragment was removed, later commands move its visuals.
   void Put(const std::string& scene, const std::vector<std::string>& fragments, Emit out) const;
   bool Contains(LedgerId frame) const { return this->Nodes_.count(frame) > 0; }
-  // A name that no child of the root has.
+  // A name that no child of the root uses.
   std::string FreeName() const;
 
 private:
@@ -69,7 +69,7 @@ private:
 
   std::unordered_map<LedgerId, Node> Nodes_; // stay where they are until removed
   std::map<std::string, LedgerRobot> Robots_;
-  // A simulation's steps mostly name the same frames: their nodes need not be found again.
+  // The frames and nodes of the last step: most steps of a simulation name the same frames.
   std::vector<LedgerId> LastIds_;
   std::vector<Node*> LastNodes_;
 };

@@ -19,10 +19,10 @@ public:
   using Emit = std::vector<v1::Command>&;
 
   explicit LedgerNames(v1::CreateScene create);
-  // False for a command that is about none of them.
+  // Applies a command on these entities. False for other commands.
   bool Add(const v1::Command& command, const v1::Reply& reply);
   void RemoveLightsOn(const std::unordered_set<std::uint64_t>& frames);
-  std::vector<std::string> Fragments() const; // that there are
+  std::vector<std::string> Fragments() const; // the existing ones
   double Time() const { return this->Time_.value_or(0.0); }
 
   void PutFirst(const std::string& scene, Emit out) const; // the scene, its time, fragments
@@ -32,17 +32,17 @@ private:
   struct Fragment {
     std::string name;
     v1::Nature nature;
-    bool made; // else one of the two that always exist
+    bool made; // false: one of the two default fragments
     std::optional<bool> visible;
   };
   struct Light {
     std::string name;
-    bool first;                      // one that the scene begins with, in its place
-    std::optional<v1::SetLight> set; // absent: as it began
+    bool first;                      // a default light, in its original position
+    std::optional<v1::SetLight> set; // absent: the default light
   };
   struct Vantage {
     std::string name;
-    bool first; // the one that the scene begins with
+    bool first; // the default vantage
     std::vector<v1::SetCamera> cameras;
     std::string active;
   };

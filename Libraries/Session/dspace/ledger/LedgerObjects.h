@@ -22,26 +22,26 @@ class LedgerObjects {
 public:
   using Emit = std::vector<v1::Command>&;
 
-  // Import, primitive, text, trail.
+  // Adds an import, primitive, text or trail.
   void Create(const v1::Command& command, v1::ObjectSettings settings);
   void Load(const v1::LoadRobot& load, const v1::RobotReply& reply);
   void Open(const v1::Command& command);
   void RemoveObject(std::uint32_t id);
   void RemoveTerrain(const std::string& name);
   void RemoveOn(const LedgerFrames::Removed& removed);
-  // Any command that changes one object or terrain; false for others.
+  // Applies a command that changes one object or terrain. False for other commands.
   bool Change(const v1::Command& command, const v1::Reply& reply);
 
-  // Before there are frames.
+  // Appends the commands for visuals of removed robots. They come before those for frames.
   void PutOrphanedVisuals(const std::string& scene, const std::vector<std::string>& fragments,
                           Emit out) const;
-  // `state`: as the ledger's.
+  // `state`: the ledger's.
   void Put(const std::string& scene, const LedgerFrames& frames,
            const std::vector<std::string>& fragments, const State* state, Emit out) const;
 
 private:
   struct ObjectEntry {
-    std::optional<v1::Command> create; // absent: a robot or a terrain made it
+    std::optional<v1::Command> create; // absent: a robot or a terrain created it
     std::string robot;
     std::string terrain;
     LedgerId frame = 0;
@@ -54,7 +54,7 @@ private:
     std::optional<v1::SetTilt> tilt; // after the material
     std::optional<Trail> trail;
   };
-  // A robot that is gone, with visuals that stay since they hang on other frames.
+  // A removed robot whose visuals stay because they are attached to other frames.
   struct OrphanedVisuals {
     v1::Command load;
     std::set<std::uint32_t> ids;
@@ -68,7 +68,7 @@ private:
   std::map<std::uint32_t, ObjectEntry> Objects_;
   LedgerTerrains Terrains_;
   std::vector<OrphanedVisuals> Orphans_;
-  // Visuals that went with another frame than their robot's: by robot, with that frame.
+  // By robot: visuals that were removed with a frame outside their robot, and that frame.
   std::multimap<std::string, std::pair<std::uint32_t, LedgerId>> LostVisuals_;
 };
 

@@ -26,7 +26,7 @@ const WheelTracks& TracksOf(const State* state, const std::string& scene,
   }
   throw Error(Error::Kind::Internal, "ledger",
               "terrain '" + terrain + "' of scene '" + scene +
-                  "' has wheel tracks, and there is no state that holds them");
+                  "' has wheel tracks, but there is no state to read them from");
 }
 
 } // namespace
@@ -66,7 +66,7 @@ bool LedgerTerrains::Change(const v1::Command& command, const v1::Reply& reply) 
         std::find_if(of.layers.begin(), of.layers.end(),
                      [&](const v1::AddTerrainLayer& layer) { return layer.name() == name; });
     if (found == of.layers.end()) {
-      throw Error(Error::Kind::Internal, "ledger", "it knows no layer '" + name + "'");
+      throw Error(Error::Kind::Internal, "ledger", "there is no layer '" + name + "'");
     }
     return found;
   };

@@ -17,7 +17,7 @@ class LedgerViewports {
 public:
   using Emit = std::vector<v1::Command>&;
   bool Add(const v1::Command& command);
-  // `fragments` gives those that a scene has.
+  // `fragments` returns the fragments of a scene.
   template<class Fragments> void Put(const Fragments& fragments, Emit out) const {
     for (const auto& [name, viewport] : this->Viewports_) {
       PutOne(name, viewport, fragments(viewport.create.scene()), out);

@@ -61,9 +61,9 @@ void CheckSecurity(const LinkAddress& address, const LinkSecurity& security) {
   }
   if (none && !address.loopback && !security.insecure) {
     throw Error(Error::Kind::InvalidArgument, "address '" + address.target + "'",
-                "it reaches beyond this machine and there are no certificates; accepted: a "
+                "it is not limited to this machine, and there are no certificates; accepted: a "
                 "certificate, its key and an authority, a loopback address, a Unix socket, or "
-                "'insecure' spelled out");
+                "an explicit 'insecure'");
   }
 }
 
@@ -93,7 +93,7 @@ LinkAddress LinkAddress::Parse(const std::string& text) {
   }
   const bool bracketed = host.front() == '[' && host.back() == ']';
   if (!bracketed && host.find_first_of(":/[] ,%") != std::string::npos) {
-    RejectAddress(text, "its host is none (an IPv6 address stands in brackets)");
+    RejectAddress(text, "its host is invalid (an IPv6 address needs brackets)");
   }
   address.target = text;
   address.loopback = IsLoopback(host);

@@ -73,24 +73,24 @@ std::string DiagnoseConnection(const std::string& address, bool encrypted) {
   const std::string accepted = "; accepted: the address of a `dspace serve`";
   struct stat state {};
   if (!parsed.path.empty() && stat(parsed.path.c_str(), &state) == 0 && !S_ISSOCK(state.st_mode)) {
-    return "the file is no socket" + accepted;
+    return "the file is not a socket" + accepted;
   }
   const int result =
       parsed.path.empty() ? ConnectToPort(parsed.target) : ConnectToPath(parsed.path);
   if (result == ENOENT) {
-    return "there is no such socket" + accepted;
+    return "the socket does not exist" + accepted;
   }
   if (result == ECONNREFUSED) {
-    return "nobody listens there" + accepted;
+    return "no process listens there" + accepted;
   }
   if (result == 0 || result == EAGAIN) { // the latter: of a Unix socket whose server stands still
-    return std::string("somebody listens there who does not let this client in: it stands still, "
-                       "is no `dspace serve`, ") +
-           (encrypted ? "uses no certificates, or its authority or this client's certificate, key "
-                        "or authority is another; accepted: certificates of one authority"
-                      : "or wants certificates; accepted: those of its authority");
+    return std::string("a process listens there but does not accept this client: it hangs, is not "
+                       "`dspace serve`, ") +
+           (encrypted ? "does not use certificates, or uses those of another authority; accepted: "
+                        "certificates of one authority"
+                      : "or requires certificates; accepted: those of its authority");
   }
-  return (result < 0 ? std::string("its host may not be known or not be reached")
+  return (result < 0 ? std::string("its host may be unknown or unreachable")
                      : std::string(std::strerror(result))) +
          accepted;
 }

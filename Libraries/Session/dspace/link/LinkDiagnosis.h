@@ -1,4 +1,4 @@
-// Why nobody answers.
+// Diagnosis of a failed connection.
 #ifndef DSPACE_SESSION_LINK_DIAGNOSIS_H
 #define DSPACE_SESSION_LINK_DIAGNOSIS_H
 
@@ -6,9 +6,9 @@
 
 namespace dspace::session {
 
-// What a plain connection to an address (of which LinkAddress::Parse takes in the text) tells of
-// why no server has answered there, and what is accepted, for an error's end; takes up to a second.
-// encrypted: certificates were used. A host that has only a name is not looked up.
+// Opens a plain socket to the address (valid for LinkAddress::Parse) and returns the reason why the
+// server does not respond, and what is accepted, as the end of an error message. Takes up to 1 s.
+// `encrypted`: the client used certificates. Host names are not resolved.
 std::string DiagnoseConnection(const std::string& address, bool encrypted);
 
 } // namespace dspace::session

@@ -1,4 +1,4 @@
-// Leaves out of steps what the other side has already.
+// Removes values from steps that the other side already has.
 #ifndef DSPACE_SESSION_POSE_FILTER_H
 #define DSPACE_SESSION_POSE_FILTER_H
 
@@ -13,18 +13,18 @@
 
 namespace dspace::session {
 
-// Remembers the poses and values of telemetry that were sent, and when. One is left out only if the
-// very same bytes were sent in a step that is known to be accepted and nothing since can have moved
-// the frame, so that the other side's state is the same to the byte as if everything were sent.
+// Stores the poses and telemetry values that were sent. A value is omitted only if the same bytes
+// were sent in an accepted step and no later command can have changed it. The other side's state is
+// then the same to the byte as if every value had been sent.
 class PoseFilter {
 public:
-  // Takes what need not be sent out of a set_poses or set_telemetry; of other commands it notes
-  // what they may move. False when nothing is left to send.
+  // Removes redundant values from a set_poses or set_telemetry command. Other commands clear the
+  // stored values that they may change. False if nothing is left to send.
   bool Pass(v1::Command& command);
-  // The command was sent with this number: its poses count once Accepted reaches it.
+  // The command was sent with this number. Its values become valid when Accepted reaches it.
   void Sent(const v1::Command& command, std::uint64_t number);
   void Accepted(std::uint64_t number) { this->Accepted_ = number; }
-  // Something went wrong, or somebody else may have changed things.
+  // Drops all stored values: after an error, or if another client may have changed the state.
   void Forget() { this->Scenes_.clear(); }
 
   std::uint64_t LeftOut() const { return this->LeftOut_; }
@@ -32,16 +32,16 @@ public:
 private:
   struct Entry {
     std::array<double, 8> row; // a pose, or one value
-    std::uint64_t number = 0;  // of the command that set it; 0: none did
-    std::uint64_t step = 0;    // in which it was seen last
+    std::uint64_t number = 0;  // of the command that set it; 0: none
+    std::uint64_t step = 0;    // the last step that contained it
   };
   struct Frames {
     std::vector<Entry> entries;
     std::unordered_map<std::uint64_t, std::uint32_t> places; // of ids in `entries`
-    // Of the step that Pass saw last: a simulation sends the same frames again and again.
+    // The ids of the last step: most steps of a simulation name the same frames.
     std::vector<std::uint64_t> ids;
     std::vector<std::uint32_t> order;
-    bool unique = false; // no frame stands twice in it
+    bool unique = false; // each id occurs once
   };
   using Ids = google::protobuf::RepeatedField<std::uint64_t>;
   using Numbers = google::protobuf::RepeatedField<double>;
@@ -55,7 +55,7 @@ private:
   std::uint64_t LeftOut_ = 0;
 };
 
-// Whether the command leaves all local poses and values of telemetry as they are, for certain.
+// Whether the command certainly changes no local pose and no telemetry value.
 bool KeepsPoses(const v1::Command& command);
 
 } // namespace dspace::session

@@ -1,4 +1,5 @@
-// Which process a client is, so that a server on the same machine knows once it has died.
+// A unique name of a process, with which a server on the same machine detects that a client has
+// died.
 #ifndef DSPACE_SESSION_PROCESS_NAME_H
 #define DSPACE_SESSION_PROCESS_NAME_H
 
@@ -6,12 +7,11 @@
 
 namespace dspace::session {
 
-// This process: the machine's boot, the namespace of its number, its number, when it began. Empty
-// where the system does not say (/proc is not there).
+// The name of this process: boot id, pid namespace, pid, start time. Empty without /proc.
 std::string ProcessName();
 
-// Whether the process that has this name is known to have died. False for one that lives, for one
-// of another machine, boot or container, and for what is no such name.
+// Whether the process of this name has certainly died. False for a running process, for a process
+// of another machine, boot or container, and for an invalid name.
 bool HasDied(const std::string& name);
 
 } // namespace dspace::session

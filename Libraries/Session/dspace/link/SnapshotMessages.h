@@ -1,4 +1,4 @@
-// A snapshot in messages: cut by the server, put together by viewers. Inside the library only.
+// Snapshots as messages: the server splits them, viewers join them. Inside the library only.
 #ifndef DSPACE_SESSION_SNAPSHOT_MESSAGES_H
 #define DSPACE_SESSION_SNAPSHOT_MESSAGES_H
 
@@ -12,8 +12,8 @@
 namespace dspace::session {
 
 struct SnapshotLimits {
-  std::size_t part = 2 << 20; // bytes; a command that has more by itself is a part of its own
-  std::size_t largest = std::size_t(2000) << 20; // of any message; protobuf's own limit is 2 GiB
+  std::size_t part = 2 << 20;                    // bytes; a larger command is a part of its own
+  std::size_t largest = std::size_t(2000) << 20; // of a message [bytes]; protobuf's limit is 2 GiB
 };
 
 class SnapshotMessages {
@@ -26,21 +26,21 @@ public:
   SnapshotMessages(std::vector<v1::Command> commands, std::uint64_t sequence,
                    const SnapshotLimits& limits);
 
-  // For a viewer that takes parts, or one message for one that does not. Throws Error(Resource)
-  // where a message would be larger than the largest.
+  // The messages for a viewer that accepts parts; else one message. Throws Error(Resource) if a
+  // message exceeds the limit.
   const std::vector<Message>& For(bool parts);
 
 private:
   SnapshotLimits Limits_;
   std::vector<Message> Parts_;
-  std::vector<Message> Whole_; // empty until somebody asks
+  std::vector<Message> Whole_; // created on demand
 };
 
-// What a viewer hears of snapshots, one message after the other.
+// Joins the parts of a snapshot in a viewer.
 class SnapshotJoin {
 public:
-  // False where more parts follow; else `message` is a whole snapshot, or none. Throws
-  // Error(Corrupt) for a part that is not the next one.
+  // False if more parts follow. Otherwise `message` is a complete snapshot or another message.
+  // Throws Error(Corrupt) for a part out of order.
   bool Take(v1::WatchReply& message);
 
 private:

@@ -1,4 +1,4 @@
-// The files that commands need: those that they name, and those that these name in turn.
+// The files that commands need: those that they name, and those that these files refer to.
 #ifndef DSPACE_SESSION_COMMAND_FILES_H
 #define DSPACE_SESSION_COMMAND_FILES_H
 
@@ -16,17 +16,15 @@ namespace dspace::session {
 // options.proto).
 std::set<std::string> PathsIn(const v1::Command& command);
 
-// Replaces each text in such a field that is not empty, absolute or not, by what `map` returns for
-// it.
+// Replaces each non-empty path, absolute or relative, by the result of `map`.
 void MapPaths(v1::Command& command, const std::function<std::string(const std::string&)>& map);
 
-// What was read when each path was last named: filled by the interpreter, asked by recordings.
-// Files are remembered by the path of the command that led to them, as long as the interpreter
-// lives.
+// The files that were read when each path was last used. The interpreter fills it and recordings
+// query it. Files are stored by the path in the command, for the lifetime of the interpreter.
 class CommandFiles {
 public:
   void Note(const v1::Command& accepted, const FilesRead& files);
-  // All that carrying it out read, and the paths that it names itself.
+  // All files that the command read, and the paths that it names.
   FilesRead Of(const v1::Command& command) const;
 
 private:

@@ -1,5 +1,5 @@
-// The texts in commands, and what each holds: a file, a coordinate system, or neither. Not a public
-// header.
+// The text fields of commands and their content: a file, a coordinate system, or neither. Not a
+// public header.
 #ifndef DSPACE_SESSION_COMMAND_TEXTS_H
 #define DSPACE_SESSION_COMMAND_TEXTS_H
 
@@ -21,13 +21,12 @@ enum class TextKind { Plain, ReadFile, NewFile, Crs };
 // field without the option `(holds)`, naming it.
 bool HoldsText(const google::protobuf::Descriptor& message, TextKind kind);
 
-// Calls `visit` with every text that is there, at any depth. The message is a command, or part of
-// one.
+// Calls `visit` with every present text, at any depth. The message is a command or a part of one.
 using VisitText = std::function<void(
     const std::string& text, const google::protobuf::FieldDescriptor& field, TextKind kind)>;
 void ForEachText(const google::protobuf::Message& message, const VisitText& visit);
 
-// Replaces every text that is there by what `change` returns.
+// Replaces every present text by the result of `change`.
 using ChangeText = std::function<std::string(
     const std::string& text, const google::protobuf::FieldDescriptor& field, TextKind kind)>;
 void ChangeTexts(google::protobuf::Message& message, const ChangeText& change);

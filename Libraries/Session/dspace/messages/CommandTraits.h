@@ -1,4 +1,4 @@
-// What is true of each command, as its .proto file states it (options.proto).
+// The traits of commands, as their .proto files state them (options.proto).
 #ifndef DSPACE_SESSION_COMMAND_TRAITS_H
 #define DSPACE_SESSION_COMMAND_TRAITS_H
 
@@ -15,18 +15,18 @@ class Command;
 
 namespace dspace::session {
 
-// `Unimplemented`: typed only, answered with Error.UNIMPLEMENTED.
+// `Unimplemented`: rejected with Error.UNIMPLEMENTED.
 enum class Effect { Change, Request, Unimplemented };
 
-// The options of one command. All commands are read once, when the first is asked for.
+// The options of one command. The options of all commands are read once, on first use.
 class CommandTraits {
 public:
-  // What a change belongs to. `None`: the command is no change.
+  // The kind of entity that a change applies to. `None`: the command is not a change.
   enum class Owner { None, Scene, Object, Terrain, Vantage, Viewport };
 
-  // The traits of the command with this number (v1::Command::CommandCase); null for a number that
-  // no command has. Throws Error(Internal) that names the command or field and the option, where
-  // any command lacks one.
+  // The traits of the command with this number (v1::Command::CommandCase); null for an unknown
+  // number. Throws Error(Internal), naming the command or field and the option, if any command
+  // lacks an option.
   static const CommandTraits* Find(int number);
   // In the order of their numbers. Throws as Find does.
   static const std::vector<CommandTraits>& All();
@@ -34,18 +34,18 @@ public:
   int Number() const { return this->Number_; }
   const std::string& Name() const { return this->Name_; } // "create_frame"
   Effect GetEffect() const { return this->Effect_; }
-  // Names of the results in v1::Reply of which the command gives one; none: it gives no result.
+  // Names of the possible results in v1::Reply; empty: the command has no result.
   const std::vector<std::string>& Results() const { return this->Results_; }
 
   Owner GetOwner() const { return this->Owner_; }
-  // A snapshot restores it by the last command of its kind for each owner, without code for the
-  // command.
+  // A snapshot restores the change with the last command of its kind for each owner, without code
+  // for this command.
   bool LatestIsKept() const { return this->LatestIsKept_; }
-  // All local poses and values of telemetry that were set before are the same after it.
+  // The command changes no local pose and no telemetry value that was set before.
   bool KeepsPoses() const { return this->KeepsPoses_; }
-  // A client that does not wait goes on without the reply.
+  // A client that does not wait continues without the reply.
   bool MayGoUnawaited() const { return this->MayGoUnawaited_; }
-  // It has a field, at any depth, that names a file which is read, or any file.
+  // It has a field, at any depth, with a file to read (ReadsFiles) or with any file (NamesFiles).
   bool ReadsFiles() const { return this->ReadsFiles_; }
   bool NamesFiles() const { return this->NamesFiles_; }
 

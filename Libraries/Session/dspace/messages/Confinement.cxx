@@ -49,7 +49,7 @@ bool NamesFile(const std::string& crs) {
 [[noreturn]] void RefusePath(const std::string& value, const std::string& field,
                              const std::string& why) {
   throw Error(Error::Kind::InvalidArgument, "file '" + value.substr(0, 1000) + "'",
-              "as " + field + " it " + why);
+              field + " " + why);
 }
 
 } // namespace
@@ -75,7 +75,7 @@ Confinement::Confinement(const std::vector<std::string>& roots, std::string who)
     const fs::path path = fs::canonical(root, error);
     if (error || !fs::is_directory(path)) {
       throw Error(Error::Kind::NotFound, "folder '" + root + "'",
-                  "there is no such folder; accepted as a root: one that there is");
+                  "there is no such folder; accepted: existing folders as roots");
     }
     this->Roots_.push_back(path);
   }
@@ -111,7 +111,7 @@ void Confinement::RequireWithin(const std::string& path) const {
     }
   }
   throw Error(Error::Kind::InvalidArgument, "file '" + path.substr(0, 1000) + "'",
-              "a file that the command names leads to it, and it lies outside of what " +
+              "a file of the command refers to it, and it is outside of the folders that " +
                   this->Who_ + " allows");
 }
 
@@ -123,7 +123,7 @@ void Confinement::RequireThere(const std::string& real, const std::string& text,
   const fs::file_status status = fs::status(real, error);
   if (!fs::exists(status)) {
     throw Error(Error::Kind::NotFound, "file '" + text.substr(0, 1000) + "'",
-                "as " + field + " there is no such file; accepted: one that there is");
+                field + " names no existing file; accepted: an existing file");
   }
   if (!fs::is_regular_file(status) && !fs::is_directory(status)) {
     RefusePath(text, field, "is neither a file nor a folder");
@@ -133,11 +133,11 @@ void Confinement::RequireThere(const std::string& real, const std::string& text,
 std::string Confinement::Check(const std::string& text, const std::string& field,
                                bool isRead) const {
   if (text.find('\0') != std::string::npos) {
-    RefusePath(text, field, "holds a zero byte");
+    RefusePath(text, field, "contains a zero byte");
   }
   // GDAL takes a name with "<VRTDataset" anywhere in it for that document itself.
   if (text.find_first_of("<>") != std::string::npos) {
-    RefusePath(text, field, "holds '<' or '>'; accepted: names without");
+    RefusePath(text, field, "contains '<' or '>'; accepted: names without them");
   }
   // What is opened is what was looked at: the same absolute path.
   const fs::path path = fs::absolute(text).lexically_normal();
@@ -157,7 +157,7 @@ std::string Confinement::Check(const std::string& text, const std::string& field
     accepted += (accepted.empty() ? "" : ", ") + root;
   }
   RefusePath(text, field,
-             "lies outside of what " + this->Who_ + " allows; accepted: files in " +
+             "is outside of the folders that " + this->Who_ + " allows; accepted: files in " +
                  (accepted.empty() ? "no folder" : accepted));
 }
 

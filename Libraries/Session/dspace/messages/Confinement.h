@@ -1,7 +1,7 @@
-// Which files commands that come from elsewhere may name. The option `(holds)` of a text field
-// (options.proto) says whether it names a file to be read or written, or states a coordinate
-// system, for which libraries take names of files and URLs as well. No command is carried out while
-// any text field lacks the option.
+// Restricts the files that commands of other processes may name. The option `(holds)` of a text
+// field (options.proto) states whether it contains a file to read or write, or a coordinate system,
+// which a library may interpret as a file name or URL. No command is executed if any text field
+// lacks the option.
 #ifndef DSPACE_SESSION_CONFINEMENT_H
 #define DSPACE_SESSION_CONFINEMENT_H
 
@@ -12,29 +12,28 @@
 
 namespace dspace::session {
 
-// Paths that are relative become those of this process's working folder. What is no path of a file
-// that there is ("/vsicurl/...", a GDAL connection) stays as it is where a field may hold such a
-// thing.
+// Makes relative paths absolute, relative to this process's working folder. Text that is not the
+// path of an existing file ("/vsicurl/...", a GDAL connection) is unchanged in fields that accept
+// it.
 void MakePathsAbsolute(v1::Command& command);
 
-// Folders that files must lie in.
+// The folders that may contain the files.
 class Confinement {
 public:
-  // Each root is a folder that there is; with links resolved. Throws Error(NotFound). Without roots
-  // no path is accepted. `who` allows them, for messages.
+  // Each root is an existing folder; links are resolved. Throws Error(NotFound). Without roots no
+  // path is accepted. `who` names the owner of the roots in messages.
   explicit Confinement(const std::vector<std::string>& roots, std::string who = "the server");
 
-  // Makes every path of the command absolute, and throws Error(InvalidArgument) for one that leads
-  // out of the roots: by "..", by a link, or because it is no plain path (URLs, GDAL's "/vsi...", a
-  // document in the place of a name); for one to be read that is neither a file nor a folder; and
-  // for a coordinate system that is or names a file or a URL (grids of shifts, parameter files).
-  // Throws Error(NotFound) for one to be read that is not there. An empty path is left to the
-  // command. A link that is changed meanwhile by somebody who may write into a root is not guarded
-  // against.
+  // Makes every path of the command absolute. Throws Error(InvalidArgument) for a path outside the
+  // roots (by "..", by a link, or as a URL, GDAL's "/vsi..." or a document instead of a name), for
+  // input that is neither a file nor a folder, and for a coordinate system that is or names a file
+  // or a URL (shift grids, parameter files). Throws Error(NotFound) for missing input. Empty paths
+  // are left to the command. It does not protect against a user with write access to a root who
+  // changes a link during the check.
   void Apply(v1::Command& command) const;
 
-  // Throws Error(InvalidArgument) for a file that a command's files lead to (FilesGuard), and that
-  // lies outside of the roots.
+  // Throws Error(InvalidArgument) for a file outside the roots that a command's files refer to
+  // (FilesGuard).
   void RequireWithin(const std::string& path) const;
 
   const std::vector<std::string>& Roots() const { return this->Roots_; }

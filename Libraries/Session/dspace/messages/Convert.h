@@ -1,4 +1,4 @@
-// Wire types to the core's and back. What is absent on the wire takes its documented default.
+// Converts wire types to types of the core and back. Absent fields take their documented defaults.
 #ifndef DSPACE_SESSION_CONVERT_H
 #define DSPACE_SESSION_CONVERT_H
 
@@ -20,7 +20,7 @@
 
 namespace dspace::session {
 
-// `object` names what the value belongs to, for the message of Error(InvalidArgument).
+// `object` names the owner of the value in the message of Error(InvalidArgument).
 Eigen::Vector3d ToVector(const v1::Vector3& v);
 Eigen::Quaterniond ToRotation(const v1::Quaternion& q, const std::string& object); // checked
 Pose ToPose(const v1::Pose& pose, const std::string& object);                      // checked
@@ -31,7 +31,7 @@ inline FrameId ToFrame(FrameId frame) {
   return frame == NoFrame ? RootFrame : frame;
 }
 Projection ToProjection(const v1::Projection& from); // not checked: Projection::Check is
-// Takes a file's `up` axis to Z.
+// Rotates a file's `up` axis to Z.
 Eigen::Quaterniond RotationToZUp(v1::UpAxis up, const std::string& object);
 
 void Put(const Eigen::Vector3d& from, v1::Vector3* to);
@@ -42,10 +42,11 @@ void Put(const CameraMount& from, v1::Mount* to);
 v1::Nature FromNature(Nature nature);
 v1::Error::Kind FromKind(Error::Kind kind);
 
-// `values` as rows of `size`; throws Error(InvalidArgument) when their number is no multiple.
+// The number of rows of `size` values; throws Error(InvalidArgument) if `values` is not a multiple
+// of `size`.
 std::size_t RowsOf(int values, int size, const std::string& object, const char* what);
 
-// The value as an int; the greatest int where it is greater. Checks of ranges then reject it.
+// The value as an int, limited to the largest int. Range checks then reject it.
 inline int ToInt(std::uint32_t value) {
   return int(std::min<std::uint32_t>(value, 0x7fffffffu));
 }

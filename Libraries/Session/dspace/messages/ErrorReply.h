@@ -1,5 +1,4 @@
-// Errors as messages, and as replies for classes that let no exception out. Inside the library
-// only.
+// Errors as messages, and as replies of classes that must not throw. Inside the library only.
 #ifndef DSPACE_SESSION_ERROR_REPLY_H
 #define DSPACE_SESSION_ERROR_REPLY_H
 
@@ -13,7 +12,7 @@
 
 namespace dspace::session {
 
-// Both texts may quote a file, a library or another process: they are made UTF-8 here.
+// Both texts may quote a file, a library or another process, and are converted to UTF-8.
 inline void PutError(v1::Error* error, v1::Error::Kind kind, const std::string& object,
                      const std::string& message) {
   error->set_kind(kind);
@@ -28,7 +27,7 @@ inline v1::Reply ErrorReply(v1::Error::Kind kind, const std::string& object,
   return reply;
 }
 
-// What `work` returns, or the error that it throws.
+// The result of `work`, or the error that it throws.
 template<class Work> v1::Reply Catch(Work work) {
   try {
     return work();

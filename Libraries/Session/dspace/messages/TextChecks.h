@@ -1,5 +1,4 @@
-// Texts of commands, refused where they are too long or hold what a line cannot. Inside the library
-// only.
+// Checks of text in commands: length and control characters. Inside the library only.
 #ifndef DSPACE_SESSION_TEXT_CHECKS_H
 #define DSPACE_SESSION_TEXT_CHECKS_H
 
@@ -10,7 +9,7 @@
 
 namespace dspace::session {
 
-// Up to `most` bytes; line breaks where `lines` says so, no other control characters.
+// Requires up to `most` bytes without control characters; `lines` allows line breaks.
 inline void RequireShortText(const std::string& object, const char* what, const std::string& text,
                              std::size_t most, bool lines) {
   if (text.size() > most) {
@@ -30,7 +29,7 @@ inline void RequireLines(const std::string& object, const char* what, const std:
   RequireShortText(object, what, text, most, true);
 }
 
-// A line that is not empty.
+// Requires a non-empty line.
 inline void RequireWord(const std::string& object, const char* what, const std::string& text,
                         std::size_t most) {
   if (text.empty()) {

@@ -1,4 +1,4 @@
-// Wheel tracks as a terrain keeps them, in messages.
+// Converts wheel tracks of a terrain to messages and back.
 #ifndef DSPACE_SESSION_TRACK_MESSAGES_H
 #define DSPACE_SESSION_TRACK_MESSAGES_H
 
@@ -10,11 +10,11 @@
 
 namespace dspace::session {
 
-// To the bit. Throws Error(InvalidArgument) where the lists of a stroke differ in length.
+// Exact to the bit. Throws Error(InvalidArgument) if the lists of a stroke differ in length.
 std::vector<TrackStroke> ToStrokes(const v1::RestoreTracks& message);
 void Put(const std::vector<TrackStroke>& strokes, v1::RestoreTracks* message);
 
-// Restores the tracks on a terrain that has none, in commands of at most a megabyte.
+// Appends commands that restore the tracks on a terrain without tracks, of at most 1 MB each.
 void PutTracks(const WheelTracks& tracks, const std::string& scene, const std::string& terrain,
                std::vector<v1::Command>& out);
 

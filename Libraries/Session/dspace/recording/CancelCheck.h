@@ -1,4 +1,4 @@
-// What long work calls now and then.
+// A callback with which long work can be cancelled.
 #ifndef DSPACE_SESSION_CANCEL_CHECK_H
 #define DSPACE_SESSION_CANCEL_CHECK_H
 
@@ -6,8 +6,8 @@
 
 namespace dspace::session {
 
-// Called at least once for each row or page. What it throws ends the work, which leaves nothing
-// behind.
+// Called at least once for each row or page. An exception cancels the work, which then removes its
+// partial result.
 using CancelCheck = std::function<void()>;
 
 } // namespace dspace::session

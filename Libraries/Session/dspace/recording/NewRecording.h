@@ -1,4 +1,4 @@
-// The place of a recording that is being made from another one. Not a public header.
+// The file of a recording that is created from another one. Not a public header.
 #ifndef DSPACE_RECORDING_NEW_RECORDING_H
 #define DSPACE_RECORDING_NEW_RECORDING_H
 
@@ -9,7 +9,7 @@
 
 namespace dspace::session {
 
-// A file that appears as a whole or not at all: it is written under another name until it is kept.
+// A file that appears complete or not at all: it has a temporary name until Keep().
 class NewRecording {
 public:
   // Throws Error: AlreadyExists (there is such a file), NotFound (there is no such folder), Io.
@@ -18,11 +18,11 @@ public:
   NewRecording(const NewRecording&) = delete;
   NewRecording& operator=(const NewRecording&) = delete;
 
-  // Where it is written: an empty file, beside the target.
+  // The temporary path, beside the target: an empty file at first.
   const std::string& Path() const;
-  // What it is called in messages.
+  // Its name in messages.
   const std::string& Name() const { return this->Name_; }
-  // Gives the file its own name, once it is whole and closed. Throws as the constructor.
+  // Gives the complete and closed file its final name. Throws as the constructor does.
   void Keep();
 
 private:

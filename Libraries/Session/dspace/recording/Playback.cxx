@@ -23,7 +23,7 @@ Playback::Playback(RecordingReader& reader, Interpreter& interpreter, bool check
     : Reader_(reader), Interpreter_(interpreter), Steps_(StepsOf(reader)),
       Files_(reader, checkFiles) {
   if (this->Steps_.steps.empty()) {
-    throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()), "no step of it is whole");
+    throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()), "it has no complete step");
   }
   this->SetSteps();
   this->Go(0);
@@ -155,17 +155,17 @@ void Playback::Begin(const RecordedSnapshot& snapshot) {
 void Playback::CarryOut(v1::Command command, const char* table, std::uint64_t seq) {
   const Registry::Entry* entry = this->Interpreter_.Commands().Find(command.command_case());
   const FilesGuard guard(this->Files_.Look());
-  std::string refused;
+  std::string rejected;
   if (entry && entry->effect != Effect::Change) {
-    refused = "command " + CommandName(command) +
-              ": it changes nothing, and no recording holds such a one";
+    rejected =
+        "command " + CommandName(command) + ": it changes nothing; recordings contain only changes";
   } else {
     this->Files_.Map(command);
-    refused = this->Interpreter_.Execute(command).error().message();
+    rejected = this->Interpreter_.Execute(command).error().message();
   }
-  if (!refused.empty()) {
+  if (!rejected.empty()) {
     throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),
-                table + std::to_string(seq) + " is refused: " + refused);
+                table + std::to_string(seq) + " is rejected: " + rejected);
   }
   if (command.has_open_terrain() && !this->Files_.Folder().empty()) {
     this->WaitForOverviews(command);

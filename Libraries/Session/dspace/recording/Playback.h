@@ -1,4 +1,4 @@
-// A recording carried out again, with no simulation.
+// Playback of a recording without a simulation.
 #ifndef DSPACE_SESSION_PLAYBACK_H
 #define DSPACE_SESSION_PLAYBACK_H
 
@@ -15,20 +15,20 @@
 
 namespace dspace::session {
 
-// Its commands are carried out under a FilesGuard (RecordedFiles::Look): rasters and shapes are
-// opened in formats that read a file by itself only, and with packed files nothing else is read.
-// The guard holds for this recording's commands alone, also in the threads that read on; what else
-// the program does with rasters stays as it is (ConfinedDrivers.h).
+// Executes the commands under a FilesGuard (RecordedFiles::Look): rasters and shapes are opened
+// only in self-contained formats, and a packed recording reads nothing but its packed files. The
+// guard applies to this recording's commands only, including their background threads
+// (ConfinedDrivers.h).
 //
-// Gives a recording's commands to an interpreter, whose scenes and viewports are the recording's
-// from then on: what else is in it is removed with the next seek that begins from a snapshot.
-// Throws Error: those of RecordingReader and of RecordedFiles; Corrupt where a command is refused,
-// where no step is whole, and in a gap.
+// Executes a recording's commands in an interpreter. The interpreter's scenes and viewports then
+// belong to the recording: a seek that starts from a snapshot removes all others. Throws Error:
+// those of RecordingReader and RecordedFiles; Corrupt if a command is rejected, if there is no
+// complete step, and in a gap.
 class Playback {
 public:
-  // Both must outlive it. It is at the first step then. Packed files are unpacked, and gone with
-  // it: what it has shown of them stays in the interpreter, but no terrain reads on. Of others each
-  // must be what it was, unless checkFiles is false.
+  // Starts at the first step. Both arguments must outlive it. Packed files are unpacked, and
+  // removed by the destructor; the interpreter keeps what it has loaded, but terrains can read no
+  // more tiles. Files that are not packed must be unchanged, unless checkFiles is false.
   Playback(RecordingReader& reader, Interpreter& interpreter, bool checkFiles = true);
 
   const std::vector<PlaybackStep>& Steps() const { return this->Steps_.steps; }
@@ -36,14 +36,16 @@ public:
   std::size_t Index() const { return this->Index_; }
   double Time() const { return this->Steps_.steps[this->Index_].time_s; }
 
-  // To a time [s], as StepTimes::IndexAt says; InvalidArgument before the first step. Returns the
-  // step's own recorded time.
+  // Moves to a time [s] by the rule of StepTimes::IndexAt; InvalidArgument before the first step.
+  // Returns the recorded time of the step.
   double Seek(double time_s);
-  // So many steps on, or back; stops at the ends. Returns how many were made.
+  // Moves n steps forward, or back if n is negative; stops at the ends. Returns the number of steps
+  // moved.
   std::int64_t Step(std::int64_t n);
-  // Where packed files are, and their paths there.
+  // The packed files and their present paths.
   const RecordedFiles& Files() const { return this->Files_; }
-  // Takes in what has been recorded since; returns how many steps came. The last may have grown.
+  // Reads what has been recorded since; returns the number of new steps. The last step may have
+  // grown.
   std::size_t Update();
 
 private:
@@ -56,11 +58,11 @@ private:
 
   RecordingReader& Reader_;
   Interpreter& Interpreter_;
-  PlaybackSteps Steps_; // before the files: a command's are noted before it
+  PlaybackSteps Steps_; // before the files, which are recorded before their commands
   StepTimes Times_;
   RecordedFiles Files_;
   std::size_t Index_ = 0;
-  std::optional<std::uint64_t> At_; // the command after which the state is; none: unknown
+  std::optional<std::uint64_t> At_; // the last executed command; none: unknown
 };
 
 } // namespace dspace::session

@@ -1,4 +1,4 @@
-// Which steps of a recording can be shown whole, and what is lost between them.
+// The complete steps of a recording, and the gaps between them.
 #ifndef DSPACE_SESSION_PLAYBACK_STEPS_H
 #define DSPACE_SESSION_PLAYBACK_STEPS_H
 
@@ -13,19 +13,20 @@
 
 namespace dspace::session {
 
-// The state after command `end`: a time that the simulation set, and all that came until the next.
+// A step: a time that the simulation set, and all commands until the next one. `end` is its last
+// command.
 struct PlaybackStep {
   double time_s = 0.0;
   std::uint64_t end = 0;
 };
 
-// A span of which nothing can be shown, since commands first..last are lost or of no use.
+// A time span that cannot be played: commands first..last are lost or unusable.
 struct PlaybackGap {
   std::uint64_t first = 0;
   std::uint64_t last = 0;
-  std::optional<double> begin_s; // of the first step that may lack a command; none: from the start
-  std::optional<double> end_s;   // of the next step that is whole; none: to the end
-  std::size_t before = 0;        // whole steps before it
+  std::optional<double> begin_s; // of the first step that may lack a command; none: the start
+  std::optional<double> end_s;   // of the next complete step; none: the end
+  std::size_t before = 0;        // number of complete steps before it
 };
 
 struct PlaybackSteps {
@@ -33,7 +34,7 @@ struct PlaybackSteps {
   std::vector<PlaybackGap> gaps;
 };
 
-// Commands first..last, none of which is missing.
+// Commands first..last without a gap.
 struct PlaybackBlock {
   std::uint64_t first = 0;
   std::uint64_t last = 0;                // first - 1: a state and nothing after it
@@ -41,16 +42,16 @@ struct PlaybackBlock {
                                          // cannot be
 };
 
-// All of a recording; never empty.
+// All blocks of a recording; never empty.
 std::vector<PlaybackBlock> BlocksOf(RecordingReader& reader);
 
-// The steps of one scene, or of all where there is no name. After lost commands the next snapshot
-// goes on. Of a recording that is being written all of it is as of one moment.
+// The steps of one scene, or of all scenes without a name. After lost commands, playback continues
+// at the next snapshot. A recording that is being written is read in one consistent view.
 PlaybackSteps StepsOf(RecordingReader& reader,
                       const std::optional<std::string>& scene = std::nullopt);
 
-// The number of the first command and the time [s] of every step, in whatever scene, that follows
-// the first snapshot: first a step for what was there and done before time was first set.
+// The number of the first command and the time [s] of every step of any scene after the first
+// snapshot. The first entry is for the state before time was first set.
 std::vector<std::pair<std::uint64_t, double>> StepBegins(RecordingReader& reader);
 
 } // namespace dspace::session

@@ -40,15 +40,14 @@ bool IsPacked(const std::vector<RecordingAsset>& assets) {
 [[noreturn]] void HadChanged(const RecordingReader& reader, const RecordingAsset& asset,
                              const std::string& accepted) {
   throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()),
-              "file '" + asset.path + "' had changed between its reading and its recording" +
-                  accepted);
+              "file '" + asset.path + "' changed between being read and being recorded" + accepted);
 }
 
 void RequireAbsent(const RecordingReader& reader, const RecordingAsset& asset) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(asset.path, error))) {
     throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()),
-                "file '" + asset.path + "' was not there when it was recorded, and now is");
+                "file '" + asset.path + "' did not exist when it was recorded, and exists now");
   }
 }
 
@@ -158,8 +157,7 @@ void RecordedFiles::Check(const std::vector<RecordingAsset>& assets) const {
     std::error_code error;
     if (asset.state == "changed") {
       HadChanged(this->Reader_, asset,
-                 "; accepted: only without a look at files (check_assets=False), where its present "
-                 "content will do");
+                 "; accepted: only with check_assets=False, which uses its present content");
     }
     if (asset.state == "absent") {
       RequireAbsent(this->Reader_, asset);
@@ -168,7 +166,7 @@ void RecordedFiles::Check(const std::vector<RecordingAsset>& assets) const {
       continue;
     }
     if (!fs::is_regular_file(asset.path, error)) {
-      throw Error(Error::Kind::NotFound, object, named + ", which it needs, is not there");
+      throw Error(Error::Kind::NotFound, object, named + ", which it needs, is missing");
     }
     if (HashOf(asset.path, asset.size, object) != asset.sha256) {
       throw Error(Error::Kind::Corrupt, object,
@@ -228,7 +226,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
     if ((place.filename() == "proj.db" || place.filename() == "proj.ini") &&
         folders.count(place.parent_path().string()) != 0) {
       throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),
-                  "'" + entry.first + "', packed beside a grid, would stand in for PROJ's own; " +
+                  "'" + entry.first + "', packed beside a grid, would replace PROJ's own file; " +
                       "accepted: grids without it");
     }
   }
@@ -246,12 +244,12 @@ void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std
   const std::string object = RecordingName(this->Reader_.Path());
   const std::string named = "'" + asset.path + "'";
   if (asset.path.empty() || asset.path[0] != '/' || asset.path.find('\0') != std::string::npos) {
-    throw Error(Error::Kind::Corrupt, object, named + " is no path of a file");
+    throw Error(Error::Kind::Corrupt, object, named + " is not the path of a file");
   }
   const auto fail = [&](int reason) {
     if (reason == EEXIST || reason == ENOTDIR || reason == EISDIR) {
       throw Error(Error::Kind::Corrupt, object,
-                  named + " is there twice, or is a file and a folder");
+                  named + " occurs twice, or is both a file and a folder");
     }
     throw Error(Error::Kind::Io, object, named + " cannot be unpacked: " + std::strerror(reason));
   };
@@ -282,7 +280,7 @@ void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std
   if (sum.Finish() != asset.sha256) {
     throw Error(Error::Kind::Corrupt, object,
                 "the content of " + named +
-                    " is not what it was; `dspace log salvage` recovers "
+                    " has changed; `dspace log salvage` recovers "
                     "what survives");
   }
 }

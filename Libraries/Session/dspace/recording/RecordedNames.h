@@ -1,4 +1,4 @@
-// Names of packed files within other packed files. Not a public header.
+// Rewrites the names of packed files within other packed files. Not a public header.
 #ifndef DSPACE_SESSION_RECORDED_NAMES_H
 #define DSPACE_SESSION_RECORDED_NAMES_H
 
@@ -8,20 +8,22 @@
 
 namespace dspace::session {
 
-// Absolute names in a mosaic or a robot's description, which are XML, made those of unpacked files.
+// Replaces absolute names in mosaics and robot descriptions (both XML) by the paths of the unpacked
+// files.
 class RecordedNames {
 public:
-  // The places of paths.
+  // `places`: present paths by recorded path.
   explicit RecordedNames(const std::map<std::string, std::string>& places);
 
-  // Rewrites a file that is one of these sorts; any other is left as it is. Throws Error(Io).
+  // Rewrites a file of one of these formats. Does nothing for others. Throws Error(Io).
   void RewriteFile(const std::string& path) const;
 
-  // Whole names only, perhaps after "file://": what stands around one ends a value of XML.
+  // Replaces whole names only, with or without "file://": names that are delimited as a value in
+  // XML.
   std::string Rewritten(const std::string& text) const;
 
 private:
-  std::map<std::string, std::string> Names_; // as they stand in XML
+  std::map<std::string, std::string> Names_; // as written in XML
   std::size_t Longest_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// A file that a recording notes.
+// A file that a recording refers to.
 #ifndef DSPACE_SESSION_RECORDING_ASSET_H
 #define DSPACE_SESSION_RECORDING_ASSET_H
 
@@ -7,7 +7,7 @@
 
 namespace dspace::session {
 
-// A file that commands need, before its checksum.
+// A file that commands need. The checksum is not included.
 struct RecordingAsset {
   std::int64_t id = 0;
   std::string path;  // absolute, as it was opened
@@ -18,10 +18,10 @@ struct RecordingAsset {
   bool packed = false;   // its content is in the recording
 };
 
-// Of a packed file's content a row has so many bytes at most.
+// Maximum number of bytes of a packed file per row.
 constexpr std::int64_t RecordingPartBytes = 4 << 20;
 
-// A hash in messages.
+// A hash as text, for messages.
 std::string Hexadecimal(const std::string& bytes);
 
 } // namespace dspace::session

@@ -1,4 +1,4 @@
-// Whether all of a recording is sound.
+// Checks the integrity of a recording.
 #ifndef DSPACE_SESSION_RECORDING_CHECK_H
 #define DSPACE_SESSION_RECORDING_CHECK_H
 
@@ -7,9 +7,9 @@
 
 namespace dspace::session {
 
-// Reads all of a recording: commands, snapshots, files, packed content, SQLite's own structure.
-// Throws Error at the first damage, as RecordingReader. Commands that the recording itself says are
-// lost are no damage.
+// Reads a whole recording: commands, snapshots, files, packed content, and SQLite's own structure.
+// Throws Error at the first damage, as RecordingReader does. Commands that the recording reports as
+// lost are not damage.
 void CheckRecording(RecordingReader& reader, const CancelCheck& checkCancel);
 
 } // namespace dspace::session

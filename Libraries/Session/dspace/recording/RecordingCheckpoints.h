@@ -1,4 +1,4 @@
-// Moves what a recording's log holds into the file itself, beside the writing.
+// Moves the content of a recording's write-ahead log into the file in the background.
 #ifndef DSPACE_SESSION_RECORDING_CHECKPOINTS_H
 #define DSPACE_SESSION_RECORDING_CHECKPOINTS_H
 
@@ -11,19 +11,19 @@ struct sqlite3;
 
 namespace dspace::session {
 
-// SQLite does this within a commit, which then waits for the disk twice. Here a thread with a
-// connection of its own does it; what was written meanwhile, which is less, the writer moves itself
-// (After), so that the log begins anew. It never grows beyond four times `pages` and a transaction:
-// then the writer waits. A failure loses nothing: all is in the log.
+// SQLite does this within a commit, which then waits for the disk twice. Here a thread with its own
+// connection does it. The writer itself moves the smaller rest that was written during this time
+// (After), so that the log restarts. The log never exceeds four times `pages` plus one transaction:
+// the writer waits then. A failure loses nothing, because the log still contains everything.
 class RecordingCheckpoints {
 public:
-  // pages: of the log, from which on it is worth it.
+  // pages: number of pages in the log that starts a checkpoint.
   RecordingCheckpoints(std::string path, int pages);
   ~RecordingCheckpoints();
   RecordingCheckpoints(const RecordingCheckpoints&) = delete;
   RecordingCheckpoints& operator=(const RecordingCheckpoints&) = delete;
 
-  // After a commit, in the writer's thread and with its connection.
+  // Call it after a commit, in the writer's thread and with its connection.
   void After(sqlite3* writer, int pagesInLog);
 
 private:

@@ -13,8 +13,8 @@
 
 namespace dspace::session {
 
-// Checksums of a transaction's rows, worked out by a thread that is ahead of their writing: they
-// take a third of the time.
+// Checksums of a transaction's rows. A thread computes them ahead of the writing, because they take
+// a third of the time.
 class RecordingChecksums {
 public:
   explicit RecordingChecksums(const std::deque<RecordingRow>& rows)
@@ -41,7 +41,7 @@ public:
   RecordingChecksums(const RecordingChecksums&) = delete;
   RecordingChecksums& operator=(const RecordingChecksums&) = delete;
 
-  // Of row i, asked for in their order.
+  // The checksum of row i. Call it in ascending order.
   const std::string& Of(std::size_t i) {
     if (!this->Thread_.joinable()) {
       this->Sums_[i] = RecordingChecksum(this->Sum_, this->Rows_[i]);

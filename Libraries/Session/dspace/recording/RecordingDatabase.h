@@ -1,4 +1,4 @@
-// SQLite as recordings use it. Not a public header.
+// SQLite access for recordings. Not a public header.
 #ifndef DSPACE_SESSION_RECORDING_DATABASE_H
 #define DSPACE_SESSION_RECORDING_DATABASE_H
 
@@ -14,11 +14,11 @@ namespace dspace::session {
 // The name of a recording in messages, of an absolute path.
 std::string RecordingName(const std::string& path);
 
-// A recording's tables, open for reading. Throws Error: Io where the operating system or another
-// process stands in the way, Corrupt for anything else that SQLite reports.
+// A recording's tables, open for reading. Throws Error: Io for errors of the operating system and
+// locks of other processes, Corrupt for all other errors of SQLite.
 class RecordingDatabase {
 public:
-  // A statement that is reset when this goes. Columns and parameters count from 0 and from 1.
+  // A statement that the destructor resets. Columns are numbered from 0, parameters from 1.
   class Statement {
   public:
     Statement(const RecordingDatabase& database, const char* sql);
@@ -36,8 +36,8 @@ public:
     std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> Statement_;
   };
 
-  // All that is read while this lives is the file as it was at the first read, though another
-  // process writes. One within another has no effect.
+  // A consistent view: all reads during its lifetime see the file as of the first read, even if
+  // another process writes. A nested view has no effect.
   class View {
   public:
     explicit View(const RecordingDatabase& database);
@@ -55,21 +55,21 @@ public:
   RecordingDatabase(const RecordingDatabase&) = delete;
   RecordingDatabase& operator=(const RecordingDatabase&) = delete;
 
-  // How long a read waits for a process that has locked the file [s], up to 1e6; 10 at first.
+  // How long a read waits for a process that has locked the file [s], up to 1e6; default 10.
   void SetTimeout(double seconds);
 
-  // The first column of the first row; `otherwise` where there is none.
+  // The first column of the first row; `otherwise` if there is no row.
   std::int64_t Number(const char* sql, std::int64_t otherwise) const;
   // Throws Corrupt.
   [[noreturn]] void Damaged(const std::string& what) const;
 
-  // Whether the last error was that the file is not one of SQLite's.
+  // Whether the last error was that the file is not an SQLite file.
   bool IsNoDatabase() const;
 
   const std::string& Path() const { return this->Path_; }
   sqlite3* Handle() const { return this->Handle_; }
 
-  // The name by which SQLite opens a file for reading only.
+  // The URI with which SQLite opens a file read-only.
   static std::string UriOf(const std::string& path);
 
 private:

@@ -1,4 +1,4 @@
-// The tables of a recording: made and filled. Used from one thread at a time.
+// Creates and fills the tables of a recording. Use it from one thread at a time.
 #ifndef DSPACE_SESSION_RECORDING_FILE_H
 #define DSPACE_SESSION_RECORDING_FILE_H
 
@@ -40,7 +40,7 @@ struct RecordingRow {
 // The first 16 bytes of the SHA-256 of the letter C (a command) or S (a snapshot), seq (8 bytes),
 // time_s, wall_s (doubles) and kind (4 bytes), all little-endian, and the payload.
 std::string RecordingChecksum(const RecordingRow& row);
-// As above; `sum` is kept, since making one takes longer than a small row.
+// As above; reuses `sum`, because its creation takes longer than a small row.
 std::string RecordingChecksum(Sha256& sum, const RecordingRow& row);
 
 // A part of a packed file's content.
@@ -59,17 +59,17 @@ std::string RecordingChecksum(const RecordingContent& content);
 
 class NewRecording;
 
-// Throws Error(Io) with SQLite's words.
+// The tables of a recording. Throws Error(Io) with SQLite's message.
 class RecordingFile {
 public:
-  // Makes a recording that a session writes into. Throws Error(AlreadyExists) where there is a file
-  // of this name. maximumPages: 0: as the disk has.
+  // Creates a recording for a session. Throws Error(AlreadyExists) if the file exists.
+  // maximumPages: 0: no limit.
   RecordingFile(const std::string& path, std::int64_t maximumPages, int checkpointPages);
-  // Makes a recording from the rows of another one. Of several rows of one number the first one is
-  // kept; of several rows of a file the one that is packed.
+  // Creates a recording from the rows of another one. If a number occurs more than once, the first
+  // row is stored; for a file, the packed row.
   explicit RecordingFile(const NewRecording& made);
-  // Opens a recording, to change the rows of its files. Throws Error(Io) where any process has it
-  // open. `name`: what messages call it.
+  // Opens a recording to change the rows of its files. Throws Error(Io) if any process has it open.
+  // `name`: its name in messages.
   struct Existing {};
   RecordingFile(const std::string& path, const std::string& name, Existing);
   ~RecordingFile();
@@ -79,18 +79,18 @@ public:
   void Begin();
   // `checksum`: RecordingChecksum(row).
   void Put(const RecordingRow& row, const std::string& checksum);
-  // Commands that are lost: "3-5 9-9".
+  // Records ranges of lost commands: "3-5 9-9".
   void PutLost(const std::string& ranges);
-  // The snapshot that the recording begins with, where it is not that before any command.
+  // Records the number of the first snapshot, if it is not the one before any command.
   void PutBegin(std::uint64_t seq);
   void Put(const RecordingAsset& asset);
-  // In the place of a row of this id.
+  // Replaces the row of this id.
   void Replace(const RecordingAsset& asset);
   void Put(const RecordingContent& content);
   void RemoveContent(std::int64_t asset);
   std::int64_t LastContent(); // the highest id; 0 without any
   void Commit();
-  // So many bytes were put. Commits and begins anew after each 64 MiB.
+  // Counts the written bytes, and commits and restarts the transaction after each 64 MiB.
   void CommitEach(std::size_t bytes);
   void Rollback() noexcept;
 

@@ -35,11 +35,11 @@ void RequireFiles(const std::string& name, const std::vector<RecordingAsset>& as
   }
   if (!gone.empty()) {
     const std::string more = gone.size() > 2
-                                 ? ", nor are " + std::to_string(gone.size() - 1) + " others"
-                             : gone.size() == 2 ? ", nor is 1 other"
+                                 ? ", and so are " + std::to_string(gone.size() - 1) + " others"
+                             : gone.size() == 2 ? ", and so is 1 other"
                                                 : "";
     throw Error(Error::Kind::NotFound, name,
-                "its file '" + gone[0] + "' is not there" + more +
+                "its file '" + gone[0] + "' is missing" + more +
                     "; accepted: all of them as they were recorded");
   }
 }

@@ -1,4 +1,4 @@
-// Rows of a damaged recording, found in its raw pages. Not a public header.
+// Finds rows of a damaged recording in its raw pages. Not a public header.
 #ifndef DSPACE_SESSION_RECORDING_PAGES_H
 #define DSPACE_SESSION_RECORDING_PAGES_H
 
@@ -13,9 +13,9 @@ namespace dspace::session {
 
 using FoundRow = std::variant<RecordingRow, RecordingAsset, RecordingContent>;
 
-// Hands over every row in the pages of a recording, and in those of the log beside it, whose own
-// checksum holds. A row that is there several times may come as often. Throws Error(Io) where the
-// file cannot be read.
+// Calls `take` for every row with a valid checksum in the pages of a recording and of its log. A
+// row that occurs more than once may be passed more than once. Throws Error(Io) if the file cannot
+// be read.
 void FindRows(const std::string& path, const std::function<void(FoundRow&&)>& take,
               const CancelCheck& checkCancel);
 

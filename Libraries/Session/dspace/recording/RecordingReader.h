@@ -1,4 +1,5 @@
-// What a recording holds: Documentation/Recording.md describes the file. Nothing is executed here.
+// Reads the content of a recording without executing it. Documentation/Recording.md describes the
+// file.
 #ifndef DSPACE_SESSION_RECORDING_READER_H
 #define DSPACE_SESSION_RECORDING_READER_H
 
@@ -28,7 +29,7 @@ struct RecordedCommand {
   v1::Command command;
 };
 
-// The commands that make the state after command `seq`.
+// The commands that create the state after command `seq`.
 struct RecordedSnapshot {
   std::uint64_t seq = 0; // 0: before any command
   double time_s = 0.0;
@@ -36,8 +37,8 @@ struct RecordedSnapshot {
   std::vector<v1::Command> commands;
 };
 
-// Reads a recording, also while it is written; from one thread at a time. Every row is checked
-// against its checksum when it is read. Throws Error:
+// Reads a recording, also while it is being written. Use it from one thread at a time. Every read
+// verifies the checksum of the row. Throws Error:
 //   NotFound     there is no such file
 //   Unsupported  the file is not a recording, or its format is another one
 //   Corrupt      a row is damaged or missing; the message names it
@@ -53,42 +54,42 @@ public:
   // How long a read waits for a process that has locked the file [s]; default 10.
   void SetTimeout(double seconds);
 
-  // The first and the last command's number; 1 and 0 without any.
+  // The numbers of the first and the last command; 1 and 0 if there are none.
   std::uint64_t First();
   std::uint64_t Last();
-  // The number of the snapshot that the recording begins with: 0, unless it was cut.
+  // The number of the first snapshot: 0, unless the recording was cut.
   std::uint64_t Begin();
-  // Whether a newer Dspace wrote the file; false where that cannot be read.
+  // Whether a newer Dspace wrote the file; false if this cannot be read.
   static bool IsNewer(const std::string& path);
 
-  // The commands first..last in their order, none missing; an empty range is no error. Until
-  // `take` returns false. The rows' payloads are not parsed.
+  // Reads the commands first..last in order, without gaps, until `take` returns false. An empty
+  // range is no error. The payloads are not parsed.
   void ReadRows(std::uint64_t first, std::uint64_t last,
                 const std::function<bool(RecordingRow&&)>& take);
-  // The same, parsed.
+  // Reads the commands as ReadRows does, and parses them.
   void Read(std::uint64_t first, std::uint64_t last,
             const std::function<bool(RecordedCommand&&)>& take);
-  // Only commands of these kinds (field numbers in Command), without a look at any other.
+  // Reads only commands of these kinds (field numbers in Command) and does not check others.
   void ReadOnly(const std::vector<int>& kinds, std::uint64_t first, std::uint64_t last,
                 const std::function<bool(RecordingRow&&)>& take);
 
-  // The last snapshot at or before a command; Corrupt where there is none.
+  // The last snapshot at or before a command; Corrupt if there is none.
   RecordingRow SnapshotRow(std::uint64_t seq);
   RecordedSnapshot SnapshotAt(std::uint64_t seq);
-  // The snapshots first..last. Until `take` returns false.
+  // Reads the snapshots first..last until `take` returns false.
   void ReadSnapshots(std::uint64_t first, std::uint64_t last,
                      const std::function<bool(RecordingRow&&)>& take);
   std::vector<std::uint64_t> Snapshots();
 
-  // Number and time [s] of every command that set the time, in their order; in one scene, or in
-  // any where there is no name.
+  // Number and time [s] of every command that set the time, in order; of one scene, or of all
+  // scenes without a name.
   std::vector<std::pair<std::uint64_t, double>>
   Steps(const std::optional<std::string>& scene = std::nullopt);
 
-  // Ranges of commands that are not there, each with its first and last.
+  // Ranges of missing commands, each with its first and last number.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> Lost();
 
-  // Sizes of a recording; of its commands only the columns are read, not the checksums.
+  // The sizes of a recording. Reads only columns of its commands and does not verify checksums.
   struct Kind {
     int kind = 0;
     std::uint64_t count = 0;
@@ -96,7 +97,7 @@ public:
   };
   struct Counts {
     std::uint64_t snapshots = 0;
-    double firstTime_s = 0.0; // the lowest and the highest time; 0 without commands
+    double firstTime_s = 0.0; // lowest and highest time; 0 without commands
     double lastTime_s = 0.0;
     double firstWall_s = 0.0;
     double lastWall_s = 0.0;
@@ -104,19 +105,19 @@ public:
   };
   Counts Count();
 
-  // The files that its commands need, of the rows after that of id `after`: each path's last row,
-  // by path.
+  // The files that its commands need, from rows with an id above `after`: the last row of each
+  // path, sorted by path.
   std::vector<RecordingAsset> Assets(std::int64_t after = 0);
-  // Every row of a file, and every part of packed content as it is stored.
+  // Reads every row of a file, and every stored part of packed content.
   void ReadAssets(std::int64_t after, const std::function<void(RecordingAsset&&)>& take);
   void ReadParts(const std::function<void(RecordingContent&&)>& take);
 
-  // The rows of packed content in their order, by the file's id.
+  // The row numbers of packed content in order, by the file's id.
   using PartNumbers = std::map<std::int64_t, std::vector<std::int64_t>>;
   PartNumbers Parts();
-  // A packed file's content part by part, RecordingPartBytes at most each. `parts`: its numbers.
-  // Corrupt, naming the file and the byte, at the first part that is damaged or not there. The
-  // caller compares the file's SHA-256.
+  // Reads a packed file's content in parts of at most RecordingPartBytes. `parts`: its row numbers.
+  // Corrupt, naming the file and the byte, for a damaged or missing part. The caller verifies the
+  // file's SHA-256.
   void ReadContent(const RecordingAsset& asset, const std::vector<std::int64_t>& parts,
                    const std::function<void(const std::string&)>& take);
 

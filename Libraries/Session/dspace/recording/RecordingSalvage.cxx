@@ -155,7 +155,7 @@ SalvageReport SalvageRecording(const std::string& path, const std::string& out,
       broken = BrokenIn(found, checkCancel);
     }
     if (report.commands + report.snapshots + report.assets == 0) {
-      throw Error(Error::Kind::Corrupt, RecordingName(whole), "nothing in it survives");
+      throw Error(Error::Kind::Corrupt, RecordingName(whole), "nothing in it can be recovered");
     }
     file.Begin();
     for (RecordingAsset& asset : broken) {

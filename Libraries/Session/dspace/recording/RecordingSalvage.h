@@ -1,4 +1,4 @@
-// What survives of a damaged recording.
+// Recovers the intact rows of a damaged recording.
 #ifndef DSPACE_SESSION_RECORDING_SALVAGE_H
 #define DSPACE_SESSION_RECORDING_SALVAGE_H
 
@@ -11,14 +11,14 @@
 
 namespace dspace::session {
 
-// What came after the last command and the last file nobody can know.
+// The result of a salvage. Rows after the last command and the last file cannot be detected.
 struct SalvageReport {
   std::uint64_t commands = 0;
   std::uint64_t snapshots = 0;
   std::uint64_t assets = 0;
-  std::uint64_t lastCommand = 0; // its number; 0 without any
+  std::uint64_t lastCommand = 0; // its number; 0: none
   std::uint64_t lastAsset = 0;
-  std::uint64_t begin = 0; // the snapshot that the recording begins with: 0, unless it was cut
+  std::uint64_t begin = 0; // the first snapshot: 0, unless the recording was cut
   bool beginLost = false;  // that snapshot is lost
   std::vector<std::pair<std::uint64_t, std::uint64_t>> lost; // ranges of commands
   std::vector<std::string> broken; // paths of packed files whose content is not whole: they are no
@@ -28,10 +28,10 @@ struct SalvageReport {
   bool IsWhole() const;
 };
 
-// Puts every command, snapshot and file of a damaged recording, and of the log beside it, whose own
-// checksum holds into a new recording. Throws Error: NotFound (no such file), Unsupported (a newer
-// Dspace wrote it), Corrupt (nothing in it survives), AlreadyExists and NotFound for the new file,
-// Io. Then there is no new file.
+// Copies every command, snapshot and file with a valid checksum from a damaged recording and its
+// log into a new recording. Throws Error: NotFound (no such file), Unsupported (a newer Dspace
+// wrote it), Corrupt (nothing can be recovered), AlreadyExists and NotFound for the new file, Io.
+// There is no new file then.
 SalvageReport SalvageRecording(const std::string& path, const std::string& out,
                                const CancelCheck& checkCancel);
 

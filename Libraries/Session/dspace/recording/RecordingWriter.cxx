@@ -42,10 +42,11 @@ void Check(const RecordingOptions& options, const std::string& path) {
            " s; accepted: 0.001 to 60");
   }
   if (options.queueBytes < (1u << 20)) {
-    refuse("the queue has " + std::to_string(options.queueBytes) + " bytes; accepted: 1 MiB on");
+    refuse("the queue has " + std::to_string(options.queueBytes) +
+           " bytes; accepted: 1 MiB or more");
   }
   if (options.snapshotBytes == 0 || options.snapshotCommands == 0) {
-    refuse("a snapshot after nothing; accepted: 1 byte and 1 command on");
+    refuse("the distance between snapshots is 0; accepted: 1 byte and 1 command or more");
   }
 }
 
@@ -57,8 +58,8 @@ void CheckSize(const std::vector<v1::Command>& commands, const RecordingOptions&
   }
   if (bytes > options.largestSnapshot) {
     throw Error(Error::Kind::Resource, "recording '" + path + "'",
-                "the state that it would begin with has " + std::to_string(bytes) +
-                    " bytes; accepted: up to " + std::to_string(options.largestSnapshot));
+                "the initial state has " + std::to_string(bytes) + " bytes; accepted: up to " +
+                    std::to_string(options.largestSnapshot));
   }
 }
 
@@ -332,7 +333,7 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
     impl.Put(accepted, reply, ledger);
   } catch (const std::exception& error) { // out of memory, say: what follows is not to be used
     impl.told = true;
-    return impl.Fail(std::string("a command could not be kept: ") + error.what());
+    return impl.Fail(std::string("a command could not be stored: ") + error.what());
   }
   return {};
 }

@@ -1,4 +1,4 @@
-// Change events of followed scenes, on their way into replies.
+// Frame events of followed scenes that are not yet in a reply.
 #ifndef DSPACE_SESSION_FRAME_EVENT_LOG_H
 #define DSPACE_SESSION_FRAME_EVENT_LOG_H
 
@@ -17,35 +17,34 @@ class Reply;
 
 namespace dspace::session {
 
-// What happened to the frames of followed scenes and no reply has told yet, in order.
+// The pending frame events of followed scenes, in order.
 //
-// C++ code may drive a scene for hours before the next command asks: from the MaximumWaiting-th
-// event on, poses of one scene that change again and again are one event, which has each frame once
-// and the last revision. What else waits is not joined: it grows with frames made, removed, moved
-// and renamed.
+// C++ code may change a scene for hours before the next command. From event MaximumWaiting on,
+// repeated pose changes of one scene are merged into one event, which has each frame once and the
+// last revision. Other events are not merged.
 class FrameEventLog {
 public:
   static constexpr std::size_t MaximumWaiting = 1000;
 
   void Add(const std::string& scene, const FrameEvent& event);
-  // Keeps what waits as it is, whatever is added; returns Size().
+  // Prevents later events from being merged with the present ones; returns Size().
   std::size_t Close();
   std::size_t Size() const { return this->Events_.size(); }
-  // A refused command may have made frames and taken them away again: nobody hears of them. Looks
-  // at the events from `first` on; what else happened is still told.
+  // Discards the events from `first` on for frames that were created and removed again, after a
+  // command was rejected. Other events stay.
   void DiscardSince(std::size_t first);
-  // Appends all to the reply's and is empty then.
+  // Moves all events to the reply.
   void MoveTo(v1::Reply& reply);
 
 private:
   bool Joined(const std::string& scene, const FrameEvent& event);
   std::vector<v1::FrameEvent> Events_;
-  std::size_t Closed_ = 0;   // events before this one are not joined with others
-  std::size_t JoinedAt_ = 0; // the event whose frames are:
+  std::size_t Closed_ = 0;   // events before this index are not merged
+  std::size_t JoinedAt_ = 0; // the event that contains JoinedIds_
   std::unordered_set<FrameId> JoinedIds_;
 };
 
-// Writes what happens to a scene's frames into a log, which must outlive it.
+// Records the events of a scene's frames in a log. The log must outlive it.
 class FrameFollower {
 public:
   FrameFollower(std::shared_ptr<Scene> scene, FrameEventLog& log);
@@ -54,7 +53,7 @@ public:
   FrameFollower& operator=(const FrameFollower&) = delete;
 
 private:
-  std::shared_ptr<Scene> Scene_; // others may keep it longer than its follower
+  std::shared_ptr<Scene> Scene_; // shared: it may outlive the follower
   FrameNotifier::Token Token_;
 };
 

@@ -1,4 +1,4 @@
-// What a simulation has said in one scene: events that are kept, questions that are open.
+// The logged events and open questions of one scene.
 #ifndef DSPACE_SESSION_MESSAGE_LOG_H
 #define DSPACE_SESSION_MESSAGE_LOG_H
 
@@ -12,16 +12,16 @@
 
 namespace dspace::session {
 
-// Whatever is refused throws Error and changes nothing. The interpreter keeps one for a scene, and
-// so does the ledger, which writes it out as commands.
+// Invalid input throws Error and changes nothing. The interpreter and the ledger have one for each
+// scene; the ledger converts it to commands.
 class MessageLog {
 public:
-  static constexpr std::size_t MaximumEvents = 10000; // the oldest are forgotten beyond
+  static constexpr std::size_t MaximumEvents = 10000; // older ones are dropped
 
-  // Writes the number and, where it has none, the time `now` into the event; all else of it is
-  // checked, but that its frame is there.
+  // Stores an event. Writes its number and, if absent, the time `now` into it. Checks all fields
+  // except the existence of its frame.
   void Log(v1::LogEvent& event, double now);
-  // Likewise.
+  // Stores a question, in the same way.
   void Ask(v1::AskOperator& question, double now);
   void Close(const v1::CloseQuestion& command);
 
@@ -30,7 +30,8 @@ public:
   const std::vector<v1::AskOperator>& Questions() const { return this->Questions_; }
   bool HasQuestion(const std::string& name) const;
 
-  // The commands that make it, of the scene of that name; `has` says whether a frame is there.
+  // Appends the commands that recreate it in the scene of this name; `has` returns whether a frame
+  // exists.
   void Put(const std::string& scene, const std::function<bool(std::uint64_t)>& has,
            std::vector<v1::Command>& out) const;
 

@@ -1,4 +1,4 @@
-// Files that are loaded once, however many objects show them.
+// A cache of model and image files that several objects share.
 #ifndef DSPACE_SESSION_MODEL_CACHE_H
 #define DSPACE_SESSION_MODEL_CACHE_H
 
@@ -12,9 +12,9 @@
 
 namespace dspace::session {
 
-// A file counts as the same while its path, size, time of change and options do; it is kept for as
-// long as somebody holds what it gave. Errors are those of ReadModel and ReadImage. What was read
-// is noted (FilesRead.h), from the cache too.
+// The key is the path, size, modification time and options. An entry lives as long as its result is
+// in use. Errors are those of ReadModel and ReadImage. The files of an entry are noted as read
+// (FilesRead.h), also on a cache hit.
 class ModelCache {
 public:
   std::shared_ptr<const Model> LoadModel(const std::string& path, const ImportOptions& options);

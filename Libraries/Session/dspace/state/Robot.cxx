@@ -34,7 +34,7 @@ std::vector<std::size_t> OrderOfMimics(const Urdf& urdf) {
       joint = std::size_t(urdf.joints[joint].mimic);
       if (state[joint] == 1) {
         throw Error(Error::Kind::Corrupt, "file '" + urdf.path + "'",
-                    "joint '" + urdf.joints[joint].name + "' mimics itself through others");
+                    "joint '" + urdf.joints[joint].name + "' mimics itself through other joints");
       }
     }
     for (auto it = chain.rbegin(); it != chain.rend(); ++it) {

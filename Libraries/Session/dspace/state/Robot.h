@@ -12,12 +12,12 @@
 
 namespace dspace::session {
 
-// Positions of joints: degrees for revolute and continuous ones, metres for prismatic ones.
+// Joint positions are degrees for revolute and continuous joints, metres for prismatic ones.
 class Robot {
 public:
-  // `linkFrames` holds a frame and `linkObjects` the objects of each link of `urdf`, in its order.
-  // Starts with every joint at zero, or at the limit nearest to zero; call Pose() then.
-  // Throws Error(Corrupt) naming the joint where joints mimic each other in a circle.
+  // `linkFrames` has the frame and `linkObjects` the objects of each link of `urdf`, in its order.
+  // Every joint starts at zero, or at the limit nearest to zero; call Pose() afterwards. Throws
+  // Error(Corrupt), naming the joint, if joints mimic each other in a cycle.
   Robot(std::string name, Urdf urdf, FrameId base, std::vector<FrameId> linkFrames,
         std::vector<std::vector<ObjectId>> linkObjects);
 
@@ -28,21 +28,21 @@ public:
   const std::vector<ObjectId>& LinkObjects(std::size_t link) const {
     return this->LinkObjects_[link];
   }
-  // The base, or a link's frame.
+  // Whether the frame is the base or a link's frame.
   bool HasFrame(FrameId frame) const;
   bool HasObject(ObjectId object) const;
 
   double Position(std::size_t joint) const { return this->Positions_[joint]; }
 
-  // Sets n joints and moves the frames of their child links and of those that mimic them. All are
-  // checked before any moves. Throws Error(InvalidArgument) naming the joint for one that has no
-  // position of its own (fixed, floating, planar, mimic), a value that is not finite, and one
-  // beyond its limits unless `clamp` (by less than 1e-6 rad or m: the limit is taken); NotFound for
-  // an index out of range.
+  // Sets n joints and moves the frames of their child links and of the joints that mimic them. All
+  // values are checked before any joint moves. Throws Error(InvalidArgument), naming the joint, for
+  // by joint without its own position (fixed, floating, planar, mimic), for a value that is not
+  // finite, and for a value beyond the limits unless `clamp` (a value within 1e-6 rad or m of a
+  // limit becomes the limit); NotFound for an index out of range.
   void SetPositions(FrameTree& frames, const std::uint32_t* joints, const double* positions,
                     std::size_t n, bool clamp);
 
-  // Writes the frames of all links as the joints stand.
+  // Sets the frames of all links to the present joint positions.
   void Pose(FrameTree& frames) const;
 
 private:
@@ -55,7 +55,7 @@ private:
   FrameId Base_;
   std::vector<FrameId> LinkFrames_;
   std::vector<std::vector<ObjectId>> LinkObjects_;
-  std::vector<double> Positions_;       // a joint
+  std::vector<double> Positions_;       // by joint
   std::vector<std::size_t> MimicOrder_; // mimic joints, each after the one it follows
 };
 

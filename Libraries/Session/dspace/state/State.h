@@ -1,4 +1,4 @@
-// What an interpreter owns: scenes, and what hangs on them besides what the core keeps.
+// The state of an interpreter: scenes, and the data that the core's scenes do not contain.
 #ifndef DSPACE_SESSION_STATE_H
 #define DSPACE_SESSION_STATE_H
 
@@ -35,13 +35,13 @@ struct SceneState {
   std::map<ObjectId, v1::CreateText> texts;            // with their style
   Telemetry telemetry;
   MessageLog messages;
-  std::unique_ptr<FrameFollower> follower; // null while nobody follows the frames
+  std::unique_ptr<FrameFollower> follower; // null while the frames are not followed
 
-  // Drops the robots, terrains, trails and primitives whose frames or objects are gone.
+  // Removes the robots, terrains, trails and primitives whose frames or objects were removed.
   void ForgetRemoved();
 };
 
-// A viewport as the interpreter knows it, whoever draws it.
+// The state of a viewport without its drawing.
 struct ViewportState {
   std::string scene;
   std::string vantage;
@@ -56,14 +56,14 @@ struct ViewportState {
 };
 
 struct State {
-  FrameEventLog frameEvents; // before the scenes, whose followers write into it
+  FrameEventLog frameEvents; // before the scenes, whose followers write to it
   std::map<std::string, SceneState> scenes;
   std::map<std::string, ViewportState> viewports;
   ModelCache models;
-  std::uint64_t lastTelemetryId = 0; // of all scenes that there were
+  std::uint64_t lastTelemetryId = 0; // of all scenes, including removed ones
   CommandFiles files;
 
-  // Throws Error(NotFound) naming the scenes there are.
+  // Throws Error(NotFound) that names the existing scenes.
   SceneState& FindScene(const std::string& name);
 };
 

@@ -75,7 +75,7 @@ void CheckLabels(const std::string& label, const v1::CreateTelemetry& command) {
   if (choice ? command.label_size() < 1 || command.label_size() > MaximumLabels
              : command.label_size() > 0) {
     Refuse(label, "it has " + std::to_string(command.label_size()) + " labels; accepted: " +
-                      (choice ? "1 to 1,000 of a choice" : "none but of a choice"));
+                      (choice ? "1 to 1,000 for a choice" : "labels of a choice only"));
   }
   std::set<std::int32_t> values;
   std::set<std::string> texts;
@@ -83,7 +83,7 @@ void CheckLabels(const std::string& label, const v1::CreateTelemetry& command) {
     RequireWord(label, "a label", each.label(), MostBytes("CreateTelemetry.Label.label"));
     if (!values.insert(each.value()).second || !texts.insert(each.label()).second) {
       Refuse(label, "its label " + QuotedText(each.label()) + " of value " +
-                        std::to_string(each.value()) + " is there twice; accepted: each once");
+                        std::to_string(each.value()) + " occurs twice; accepted: each once");
     }
   }
 }
@@ -112,7 +112,7 @@ std::uint64_t Telemetry::Create(const v1::CreateTelemetry& command, std::uint64_
   RequireLine(label, "its description", command.description(),
               MostBytes("CreateTelemetry.description"));
   if (!number && (!command.unit().empty() || command.has_limits())) {
-    Refuse(label, "it has a unit or limits; accepted: of numbers only");
+    Refuse(label, "it has a unit or limits; accepted: units and limits of numbers only");
   }
   CheckLabels(label, command);
   CheckLimits(label, command.limits());
@@ -172,7 +172,7 @@ void Telemetry::SetLimits(const v1::SetTelemetryLimits& command) {
   Channel& channel = this->At(command.id());
   const std::string label = Label(channel.about.name());
   if (channel.about.kind() != v1::CreateTelemetry::NUMBER) {
-    Refuse(label, "it is no number; accepted: limits of numbers only");
+    Refuse(label, "it is not a number; accepted: limits of numbers only");
   }
   CheckLimits(label, command.limits());
   v1::CreateTelemetry about = channel.about;
@@ -204,7 +204,7 @@ std::vector<Telemetry::Channel*> Telemetry::Check(const Command& command, const 
     Refuse(label, std::to_string(values.size()) + " values and " +
                       std::to_string(command.time_s_size()) + " times are given for " +
                       std::to_string(command.id_size()) +
-                      " channels; accepted: a value each, and a time each or none");
+                      " channels; accepted: one value each, and one time each or no times");
   }
   std::vector<Channel*> channels;
   channels.reserve(std::size_t(command.id_size()));
@@ -212,7 +212,7 @@ std::vector<Telemetry::Channel*> Telemetry::Check(const Command& command, const 
   for (int i = 0; i < command.id_size(); ++i) {
     Channel& channel = this->At(command.id(i));
     if (channel.step == this->Step_) {
-      Refuse(Label(channel.about.name()), "it is there twice in " + label + "; accepted: once");
+      Refuse(Label(channel.about.name()), "it occurs twice in " + label + "; accepted: once");
     }
     channel.step = this->Step_;
     channels.push_back(&channel);
@@ -238,7 +238,7 @@ void Telemetry::Set(const v1::SetTelemetry& command, double now) {
     if (about.kind() == v1::CreateTelemetry::CHOICE && !std::isnan(value) &&
         !HasLabel(about, value)) {
       Refuse(Label(about.name()), "its value is " + NumberText(value) +
-                                      "; accepted: one that has a label, or NaN for none");
+                                      "; accepted: a value with a label, or NaN for none");
     }
   }
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -281,7 +281,7 @@ void Telemetry::Remove(const v1::RemoveTelemetry& command) {
     const Channel& channel = this->Get(id);
     if (!ids.insert(id).second) {
       Refuse(Label(channel.about.name()),
-             "it is there twice in command remove_telemetry; accepted: once");
+             "it occurs twice in command remove_telemetry; accepted: once");
     }
   }
   for (const std::uint64_t id : ids) {

@@ -1,4 +1,4 @@
-// The telemetry of one scene: named values, as they are now.
+// The telemetry of one scene: named values.
 #ifndef DSPACE_SESSION_TELEMETRY_H
 #define DSPACE_SESSION_TELEMETRY_H
 
@@ -14,20 +14,21 @@
 
 namespace dspace::session {
 
-// Channels by id and by name. Whatever is refused throws Error and changes nothing. The interpreter
-// keeps one for a scene, and so does the ledger, which writes it out as commands.
+// Channels by id and by name. Invalid input throws Error and changes nothing. The interpreter and
+// the ledger have one for each scene; the ledger converts it to commands.
 class Telemetry {
 public:
   struct Channel {
-    v1::CreateTelemetry about; // as it was made, with the present limits
+    v1::CreateTelemetry about; // its definition, with the present limits
     double value = std::numeric_limits<double>::quiet_NaN();
     std::string text;
     std::optional<double> time_s; // of the last change; none: never set
-    std::uint64_t step = 0;       // in which it was set last
+    std::uint64_t step = 0;       // the last step that set it
     std::size_t defined = 0;      // bytes of its definition
   };
 
-  // `id` 0 in the command: `free`, which must be above all ids of this scene. Returns the id.
+  // If the command's id is 0, uses `free`, which must be above all ids of this scene. Returns the
+  // id.
   std::uint64_t Create(const v1::CreateTelemetry& command, std::uint64_t free);
   void SetLimits(const v1::SetTelemetryLimits& command);
   void Set(const v1::SetTelemetry& command, double now);
@@ -35,14 +36,14 @@ public:
   void Remove(const v1::RemoveTelemetry& command);
 
   std::uint64_t LastId() const { return this->LastId_; }
-  // Grows with every change.
+  // Increases with every change.
   std::uint64_t Revision() const { return this->Revision_; }
   const Channel& Get(std::uint64_t id) const;         // throws Error(NotFound)
   const Channel& Get(const std::string& name) const;  // likewise
-  const Channel* Find(const std::string& name) const; // null where there is none
+  const Channel* Find(const std::string& name) const; // null: there is none
   const std::map<std::string, std::uint64_t>& Names() const { return this->Names_; }
 
-  // The commands that make it, of the scene of that name.
+  // Appends the commands that recreate it in the scene of this name.
   void Put(const std::string& scene, std::vector<v1::Command>& out) const;
 
 private:
@@ -60,7 +61,7 @@ private:
 v1::TelemetryInfo::State StateOf(const Telemetry::Channel& channel);
 void PutInfo(const Telemetry::Channel& channel, v1::TelemetryInfo* info);
 
-// What a row of a text table shows of the telemetry that it names. Never empty.
+// The text of a table row that shows telemetry. Never empty.
 std::string ShownTelemetry(const Telemetry& telemetry, const v1::SetTextTable::Row& row);
 
 } // namespace dspace::session

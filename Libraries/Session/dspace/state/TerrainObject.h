@@ -1,4 +1,4 @@
-// Terrain in a scene: a surface that answers, and what of it is drawn.
+// Terrain in a scene: a surface for queries, and its drawing.
 #ifndef DSPACE_SESSION_TERRAIN_OBJECT_H
 #define DSPACE_SESSION_TERRAIN_OBJECT_H
 
@@ -12,7 +12,7 @@
 
 namespace dspace::session {
 
-// Abstract. Its frame S is the frame that its object hangs on.
+// Abstract. Its frame S is the frame that its object is attached to.
 class TerrainObject {
 public:
   virtual ~TerrainObject() = default;
@@ -24,18 +24,18 @@ public:
   void SetObject(ObjectId object) { this->Object_ = object; }
 
   virtual const TerrainSurface& Surface() const = 0;
-  // Its frame is the body-fixed one: points of it need all three coordinates.
+  // Whether S is the body-fixed frame. Points then need three coordinates.
   virtual bool OnBody() const { return false; }
-  // Without wheel tracks.
+  // The surface without wheel tracks.
   virtual const TerrainSurface& Undisturbed() const { return this->Surface(); }
-  // Puts what draws it into `object`.
+  // Adds its drawing to `object`.
   virtual void Draw(GraphicsObject& object) const = 0;
-  // All but name, object and frame.
+  // Fills in all fields except name, object and frame.
   virtual void Describe(v1::TerrainReply& reply) const;
-  // Every post is drawn within `radius` metres of the points (in S). Returns whether the drawing
+  // Draws every post within `radius` metres of the points (in S). Returns whether the drawing
   // changed. Throws Error(InvalidArgument) and changes nothing.
   virtual bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) = 0;
-  // Gives up what is done in the background; nothing half-made stays.
+  // Cancels background work and removes partial results.
   virtual void EndBackgroundWork() {}
 
 protected:

@@ -96,7 +96,7 @@ void SetObjectOffset(const Context& context, v1::SetObjectOffset& command) {
   for (const auto& [name, terrain] : context.scene->terrains) {
     if (terrain->Object() == command.object()) {
       Refuse(ObjectLabel(scene, command.object()),
-             "terrain '" + name + "' answers in its frame; accepted: move the frame");
+             "terrain '" + name + "' is queried in its frame; accepted: move the frame");
     }
   }
   scene.SetObjectOffset(command.object(),

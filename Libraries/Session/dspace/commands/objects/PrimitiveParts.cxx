@@ -38,8 +38,8 @@ std::vector<Part> LineParts(const v1::CreatePrimitive::Lines& lines) {
   std::size_t begin = 0;
   for (const std::uint32_t count : lines.count()) {
     if (count > points.size() - begin) {
-      Refuse("line set", "count asks for more points than the " + std::to_string(points.size()) +
-                             " that point holds");
+      Refuse("line set",
+             "count needs more points than the " + std::to_string(points.size()) + " in point");
     }
     parts.push_back(PartOf(MakeLineSet(
         {points.begin() + std::ptrdiff_t(begin), points.begin() + std::ptrdiff_t(begin + count)},
@@ -47,7 +47,7 @@ std::vector<Part> LineParts(const v1::CreatePrimitive::Lines& lines) {
     begin += count;
   }
   if (begin != points.size()) {
-    Refuse("line set", "count takes " + std::to_string(begin) + " of " +
+    Refuse("line set", "count uses " + std::to_string(begin) + " of " +
                            std::to_string(points.size()) + " points; accepted: all of them");
   }
   return parts;
@@ -107,7 +107,7 @@ std::vector<Part> PartsOfShape(const v1::CreatePrimitive& command) {
   case Shape::SHAPE_NOT_SET:
     break;
   }
-  Refuse("primitive", "it has no shape that is known here; accepted: box, sphere, cylinder, cone, "
+  Refuse("primitive", "its shape is missing or unknown; accepted: box, sphere, cylinder, cone, "
                       "plane, disc, torus, arrow, axes, lines, points, frustum, goal, tilt");
 }
 

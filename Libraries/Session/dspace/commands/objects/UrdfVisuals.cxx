@@ -11,7 +11,7 @@ namespace dspace::session {
 namespace {
 
 constexpr double StandInSize = 0.1; // [m], where nothing says how large the part is
-constexpr const char* CubeStandsIn = "; a cube of 0.1 m stands in for it";
+constexpr const char* CubePlaceholder = "; a cube of 0.1 m replaces it";
 
 Eigen::Affine3d ToAffine(const Pose& X) {
   return Eigen::Affine3d(X.Matrix());
@@ -70,13 +70,13 @@ UrdfGeometry StandInForMesh(const UrdfVisual& visual, std::string& text) {
   }
   // Beyond that no number is a part's, whoever stated it.
   if (!(size.maxCoeff() >= 1e-6 && size.maxCoeff() <= 1e9 && center.norm() <= 1e9)) {
-    text = CubeStandsIn;
+    text = CubePlaceholder;
     return SmallCube(visual);
   }
   std::ostringstream out;
   out.precision(3);
   out << "; the edges of an orange box of " << size.x() << " x " << size.y() << " x " << size.z()
-      << " m, the bounds that it states, stand in for it";
+      << " m, the bounds that it states, replace it";
   text = out.str();
   UrdfGeometry made;
   made.X_LO = ToAffine(visual.X_LV) * Eigen::Translation3d(center);
@@ -149,7 +149,7 @@ std::vector<std::string> UrdfWarnings(const Urdf& urdf) {
   for (const UrdfLink& link : urdf.links) {
     for (const UrdfVisual& visual : link.visuals) {
       if (visual.missing) {
-        warnings[visual.warning] += CubeStandsIn;
+        warnings[visual.warning] += CubePlaceholder;
       }
     }
   }

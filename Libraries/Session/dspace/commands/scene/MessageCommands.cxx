@@ -59,7 +59,7 @@ void AskOperator(const Context& context, v1::AskOperator& command) {
   for (const auto& [name, scene] : context.state.scenes) {
     if (scene.messages.HasQuestion(command.name())) {
       throw Error(Error::Kind::AlreadyExists, "question " + QuotedText(command.name()),
-                  "it is open already, in scene '" + name +
+                  "it is already open, in scene '" + name +
                       "'; accepted: another name, or after "
                       "it is closed");
     }

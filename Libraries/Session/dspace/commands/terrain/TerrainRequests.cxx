@@ -68,24 +68,24 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   const TerrainSurface& surface = command.undisturbed() ? terrain.Undisturbed() : terrain.Surface();
   const std::string label = "terrain '" + command.terrain() + "'";
   if (command.map() && command.spatial()) {
-    Refuse(label, "points are of the map or of space, not both");
+    Refuse(label, "map and spatial are both set; accepted: one of them");
   }
   const bool body = terrain.OnBody();
   if (body && !command.map() && !command.spatial()) {
-    Refuse(label, "it stands on its body; accepted: map coordinates, or x, y and z");
+    Refuse(label, "it is on a body; accepted: map coordinates, or x, y and z");
   }
   const int size = command.spatial() ? 3 : 2;
   const std::size_t n = RowsOf(command.point_size(), size, label, "point");
   if (!command.height() && !command.normal() && !command.slope() && !command.aspect() &&
       !command.has_roughness_radius() && !command.filled()) {
     Refuse(label,
-           "nothing is asked for; accepted: height, normal, slope, aspect, roughness, filled");
+           "no quantity is requested; accepted: height, normal, slope, aspect, roughness, filled");
   }
   RequireFinitePoints(label, command.point().data(), size, n);
   const auto* streamed = dynamic_cast<const StreamedTerrain*>(&surface);
   if (command.has_roughness_radius() && !streamed) {
     throw Error(Error::Kind::Unsupported, label,
-                "roughness is not answered by triangles; accepted: mode clipmap");
+                "triangles have no roughness; accepted: mode clipmap");
   }
   if (command.filled() && !streamed) {
     throw Error(Error::Kind::Unsupported, label,

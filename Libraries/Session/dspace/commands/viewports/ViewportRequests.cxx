@@ -50,7 +50,7 @@ void ViewportCommands::Capture(const Context& context, v1::Capture& command) {
   request.label = command.label();
   if (!request.color && !request.depth && !request.label) {
     Refuse("capture of viewport '" + command.viewport() + "'",
-           "it asks for no plane; accepted: color, depth, label");
+           "it requests no plane; accepted: color, depth, label");
   }
   this->LastCapture_ = viewport.GetCapture(request);
   const dspace::Capture& taken = this->LastCapture_;

@@ -111,7 +111,9 @@ v1::Error ToError(const std::string& address, const grpc::Status& status, bool& 
   case Code::CANCELLED:
   case Code::UNAVAILABLE:
     return say(v1::Error::IO,
-               status.error_message().empty() ? "it has gone" : status.error_message(), false);
+               status.error_message().empty() ? "it has closed the connection"
+                                              : status.error_message(),
+               false);
   default:
     return say(v1::Error::IO, "the connection failed: " + status.error_message(), true);
   }
@@ -144,7 +146,7 @@ RemoteClient::Link::Link(const RemoteClientOptions& from)
   }
   if (!(this->options.keepalive_s > 0 && this->options.keepalive_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + this->options.address + "'",
-                "the silence is " + NumberText(this->options.keepalive_s) +
+                "the keepalive time is " + NumberText(this->options.keepalive_s) +
                     " s; accepted: above 0, up to 1e6");
   }
   this->pacer.SetRate(this->options.pace);
@@ -166,10 +168,11 @@ bool RemoteClient::Link::Forked() const {
 }
 
 v1::Reply RemoteClient::Link::ForkedError() {
-  return this->Fault(v1::Error::UNSUPPORTED,
-                     "process " + std::to_string(this->process) +
-                         " connected to it, and this one is its child; accepted: a connection of "
-                         "its own");
+  return this->Fault(
+      v1::Error::UNSUPPORTED,
+      "process " + std::to_string(this->process) +
+          " opened the connection, and this one is its child; accepted: a connection "
+          "of its own");
 }
 
 void RemoteClient::Link::Break(v1::Error::Kind kind, const std::string& message) {
@@ -229,9 +232,10 @@ bool RemoteClient::Link::WaitForEarlier(std::unique_lock<std::mutex>& lock,
   } else if (LinkClock::now() < this->deadline) {
     return false;
   } else {
-    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED,
-                             "commands before this one are not done within " +
-                                 NumberText(this->options.timeout_s) + " s; it was not sent"));
+    this->Finish(
+        this->Fault(v1::Error::DEADLINE_EXCEEDED, "earlier commands were not completed within " +
+                                                      NumberText(this->options.timeout_s) +
+                                                      " s; this command was not sent"));
   }
   return true;
 }
@@ -292,7 +296,7 @@ bool RemoteClient::Link::WaitForWindow(std::unique_lock<std::mutex>& lock,
       return false;
     }
     this->filter.Forget();
-    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED, "no room to send within " +
+    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED, "the send window stayed full for " +
                                                                NumberText(this->options.timeout_s) +
                                                                " s; the command was not sent"));
   } else if (this->broken) {
@@ -351,7 +355,7 @@ bool RemoteClient::Link::WaitForReply(std::unique_lock<std::mutex>& lock,
   } else {
     lost = this->Fault(v1::Error::DEADLINE_EXCEEDED,
                        "no reply within " + NumberText(this->options.timeout_s) +
-                           " s; whether the command was carried out is not known");
+                           " s; it is unknown whether the command was executed");
   }
   this->Finish(std::move(lost));
   return true;
@@ -368,10 +372,10 @@ bool RemoteClient::Link::WaitForFlush(std::unique_lock<std::mutex>& lock,
   } else if (!come && LinkClock::now() < this->deadline) {
     return false;
   } else if (!come) {
-    this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED, std::to_string(this->last - this->done) +
-                                                               " commands are not done within " +
-                                                               NumberText(this->options.timeout_s) +
-                                                               " s"));
+    this->Finish(
+        this->Fault(v1::Error::DEADLINE_EXCEEDED, std::to_string(this->last - this->done) +
+                                                      " commands were not completed within " +
+                                                      NumberText(this->options.timeout_s) + " s"));
     return true;
   }
   if (this->failure.has_error()) { // the first thing that went wrong
@@ -428,7 +432,7 @@ void RemoteClient::Link::RunConnection() {
 bool RemoteClient::Link::Drive(grpc::Status& status) {
   const auto soon = std::chrono::system_clock::now() + milliseconds(200);
   if (!this->channel->WaitForConnected(soon)) {
-    status = {grpc::StatusCode::UNAVAILABLE, "nobody answers, or nobody who may"};
+    status = {grpc::StatusCode::UNAVAILABLE, "it does not respond, or rejects the connection"};
     return false;
   }
   grpc::ClientContext drive;
@@ -512,8 +516,8 @@ v1::Reply RemoteClient::Link::Resume(const v1::Opened& message) {
   }
   if (this->opened && !message.resumed()) { // of a server that does not know `again`
     return this->Fault(v1::Error::IO,
-                       "it was started anew, or somebody else has driven it since: what was "
-                       "made there is gone or not known; accepted: to connect again");
+                       "it was restarted, or another client has driven it since: its scenes are "
+                       "lost or unknown; accepted: connect again");
   }
   this->counts.reconnections += this->opened ? 1 : 0;
   this->opened = this->connected = true;

@@ -1,4 +1,4 @@
-// What the threads of a client share. Inside the library only.
+// The state that a client's threads share. Inside the library only.
 #ifndef DSPACE_SESSION_CLIENT_LINK_H
 #define DSPACE_SESSION_CLIENT_LINK_H
 
@@ -27,14 +27,15 @@ inline LinkClock::time_point After(double seconds) {
          std::chrono::duration_cast<LinkClock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// The user's thread puts commands into `pending`; one thread keeps the connection and hears
-// answers, another writes. What is pending stays until it is done, so that it can be sent again.
+// The user's thread puts commands into `pending`. One thread maintains the connection and reads
+// replies, another one writes. A command stays pending until it is completed, so that it can be
+// resent.
 struct RemoteClient::Link {
-  explicit Link(const RemoteClientOptions& options); // throws for what is wrong with them
+  explicit Link(const RemoteClientOptions& options); // throws errors of the options
   struct Pending {
     std::uint64_t number;
     std::size_t bytes;
-    grpc::ByteBuffer request; // a DriveRequest, in bytes: it may be sent more than once
+    grpc::ByteBuffer request; // a serialized DriveRequest: it may be sent more than once
   };
   using Stream = grpc::ClientReaderWriter<grpc::ByteBuffer, v1::DriveReply>;
 
@@ -50,42 +51,42 @@ struct RemoteClient::Link {
   std::condition_variable toSend;
   std::deque<Pending> pending;
   std::size_t pendingBytes = 0;
-  std::size_t next = 0;              // of `pending`, to be sent
-  std::size_t unsentBytes = 0;       // of `pending` from there on
-  bool crowded = false;              // the user's thread waits for less of them
-  bool absorbing = false;            // the other side stalls: `pending` may fill its window
-  std::uint64_t last = 0;            // number given
-  std::uint64_t unawaited = 0;       // the last number that nobody waits for
-  std::uint64_t done = 0;            // by the server
-  std::uint64_t acknowledged = 0;    // the last number whose reply has come
-  std::uint64_t awaited = 0;         // by the user's thread; 0: none
-  std::set<std::uint64_t> abandoned; // by it: their replies, which may yet come, are dropped
-  v1::Reply reply;                   // to `awaited`, or whatever Take is to return
-  v1::Reply failure;                 // the first error of what nobody waited for
-  v1::Reply unawaitedReplies;        // warnings and frame events of the same
+  std::size_t next = 0;              // index in `pending` of the next command to send
+  std::size_t unsentBytes = 0;       // bytes of `pending` from `next` on
+  bool crowded = false;              // the user's thread waits until there are fewer
+  bool absorbing = false;            // the other side stalls: `pending` may fill the window
+  std::uint64_t last = 0;            // the last assigned number
+  std::uint64_t unawaited = 0;       // the last number that was sent without waiting
+  std::uint64_t done = 0;            // the last number that the server completed
+  std::uint64_t acknowledged = 0;    // the last number whose reply was received
+  std::uint64_t awaited = 0;         // the number that the user's thread waits for; 0: none
+  std::set<std::uint64_t> abandoned; // numbers whose replies are dropped
+  v1::Reply reply;                   // the reply that Take returns
+  v1::Reply failure;                 // the first error of commands sent without waiting
+  v1::Reply unawaitedReplies;        // their warnings and frame events
   std::deque<v1::ViewerEvent> events;
   std::size_t eventBytes = 0; // of them
   PoseFilter filter;
-  v1::DriveRequest scratch; // what is put into bytes
+  v1::DriveRequest scratch; // reused for serialization
   Counts counts;
-  grpc::ClientContext* context = nullptr; // of the stream that there is
+  grpc::ClientContext* context = nullptr; // of the present stream; null: none
   ServerInfo server;
   bool opened = false;    // once
   bool connected = false; // now
-  bool leaving = false;   // a place that it cannot use
-  bool broken = false;    // for good, because of
+  bool leaving = false;   // gives up a reservation that it cannot use
+  bool broken = false;    // permanently, because of `error`
   v1::Error error;
   bool ending = false;
 
-  // What the user's thread is about, and its own.
+  // The activity of the user's thread, and its data.
   enum class Activity { Nothing, Pace, Earlier, Window, Reply, Flush, Done };
   Activity activity = Activity::Nothing;
   v1::Command command; // of Pace, BeginWaitForEarlier and Room
   std::size_t bytes = 0;
   bool noReply = false;
   LinkClock::time_point due;      // of Pace
-  LinkClock::time_point deadline; // of all others
-  LinkClock::time_point catchUp;  // of Room: the writing thread has so long to come near
+  LinkClock::time_point deadline; // of all other activities
+  LinkClock::time_point catchUp;  // of Window: until then the writing thread may catch up
   Pacer pacer;
 
   // For the user's thread, with the mutex held.
@@ -101,35 +102,35 @@ struct RemoteClient::Link {
   void MoveUnawaitedReplies(v1::Reply& reply);
   void Break(v1::Error::Kind kind, const std::string& message);
 
-  // Whether this is a child of the process that connects; then nothing else is to be touched.
+  // Whether this process is a child of the one that connected. Then nothing else may be used.
   bool Forked() const;
-  v1::Reply ForkedError(); // what it is told
+  v1::Reply ForkedError(); // the error in that case
 
-  void End(); // of everything, without the mutex
+  void End(); // ends all threads; without the mutex
 
-  // The thread: connects, again and again.
+  // The connection's thread: connects and reconnects.
   void RunConnection();
-  bool Drive(grpc::Status& status); // one stream; whether it was opened
+  bool Drive(grpc::Status& status); // runs one stream; returns whether it was opened
   std::unique_ptr<Stream> Call(grpc::ClientContext& context);
   void Write(Stream& stream);
-  // With the mutex held: the command at `next`, which is sent now; nothing else is to be sent up to
+  // With the mutex held: returns the command at `next` for sending. Rewind(last): continues after
   // the number `last`.
   grpc::ByteBuffer TakeNext();
   void Rewind(std::uint64_t last);
   void HandleReply(v1::DriveReply& message);
   void TakeReply(std::uint64_t number, v1::Reply& reply);
-  v1::Reply Resume(const v1::Opened& opened); // an error: it cannot go on
+  v1::Reply Resume(const v1::Opened& opened); // returns an error if it cannot resume
 };
 
-// Throws the Error that the message holds.
+// Throws the message as an Error.
 [[noreturn]] void Raise(const v1::Error& error);
-// Channels of both kinds of clients.
+// Makes a channel for a client or a viewer.
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const LinkSecurity& security,
                                            double keepalive_s = 20);
-// What a status means to a user. Sets `final` where trying again is of no use.
+// Converts a status to an error. Sets `final` if a retry is useless.
 v1::Error ToError(const std::string& address, const grpc::Status& status, bool& final);
 std::string RandomKey();
-// The message as it goes over the wire, written once.
+// Serializes the message.
 grpc::ByteBuffer ToBytes(const v1::DriveRequest& request);
 
 } // namespace dspace::session

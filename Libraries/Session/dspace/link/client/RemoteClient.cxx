@@ -61,7 +61,7 @@ bool RemoteClient::WaitForConnect(double seconds) {
     }
     if (!link.broken) {
       std::ostringstream text;
-      text << "no answer within " << link.options.timeout_s << " s: " << why;
+      text << "no response within " << link.options.timeout_s << " s: " << why;
       link.Break(v1::Error::DEADLINE_EXCEEDED, text.str());
     }
   }
@@ -160,7 +160,8 @@ v1::Reply RemoteClient::Take() {
     return link.ForkedError();
   }
   if (link.activity != Link::Activity::Done) {
-    return link.Fault(v1::Error::INTERNAL, "nothing is there to take; accepted: Begin and Wait");
+    return link.Fault(v1::Error::INTERNAL,
+                      "there is no reply to take; accepted: Begin and Wait first");
   }
   const std::lock_guard lock(link.mutex);
   link.activity = Link::Activity::Nothing;

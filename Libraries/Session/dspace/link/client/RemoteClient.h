@@ -17,78 +17,77 @@ namespace dspace::session {
 struct RemoteClientOptions {
   std::string address; // see LinkAddress::Parse
   LinkSecurity security;
-  std::string name = "simulation"; // told to the server, for people; up to 256 bytes
-  double timeout_s = 30;   // of every wait: for the connection, a reply, room to send; > 0, to 1e6
-  bool takeOver = false;   // drives even if somebody else does
-  bool onlyChanges = true; // poses that the server has already are not sent again
-  // Simulation seconds a wall second: a command that sets a scene's time is sent once it is due,
-  // counted from the first one (and anew from one that goes back). 0: as fast as it goes.
+  std::string name = "simulation"; // shown to people; up to 256 bytes
+  double timeout_s = 30;           // of the connection, a reply, the send window; > 0, to 1e6
+  bool takeOver = false;           // replaces another driver
+  bool onlyChanges = true;         // does not send poses again that the server already has
+  // Simulation seconds per wall second: a command that sets a scene's time is sent when it is due,
+  // relative to the first one (see Pacer). 0: no pacing.
   double pace = 0;
-  double keepalive_s = 20; // a connection that says nothing for so long is asked; > 0, to 1e6
-  // What may be on its way without an answer; a sender that is ahead of either waits.
+  double keepalive_s = 20; // a connection that is silent for this time is pinged; > 0, to 1e6
+  // The send window: limits of unanswered commands. A sender that reaches either limit waits.
   std::size_t windowCommands = 1024;
   std::size_t windowBytes = 16 << 20;
 };
 
-// For one thread at a time. A connection that is lost is made again while somebody waits, up to the
-// timeout; each command is carried out once, whatever happened to the connection. When the server
-// itself was started anew the scene is gone, and everything answers with an error that says so. So
-// it does in a child of the process that connected (fork), which may only destroy it.
+// Use it from one thread at a time. It reconnects after a lost connection, up to the timeout. Each
+// command is executed exactly once even if the connection was lost. If the server was restarted,
+// its scenes are lost, and every call returns an error. Calls in a child process (fork) return an
+// error too; a child may only destroy the client.
 class RemoteClient {
 public:
-  // Connects. Throws Error: InvalidArgument (address, certificates, timeout), AlreadyExists
-  // (somebody drives), Unsupported (another protocol), Io (nobody there, not let in),
-  // DeadlineExceeded.
+  // Connects. Throws Error: InvalidArgument (address, certificates, timeout), AlreadyExists (there
+  // is another driver), Unsupported (another protocol), Io (no server, or the connection is
+  // rejected), DeadlineExceeded.
   explicit RemoteClient(const RemoteClientOptions& options);
-  // The same for whoever must do other things meanwhile: it throws what is wrong with the options,
-  // and WaitForConnect the rest. WaitForConnect waits so many seconds; true once it is connected.
+  // Non-blocking form. The constructor throws errors of the options, WaitForConnect all others.
+  // WaitForConnect waits up to this time; true when connected.
   struct NonBlocking {};
   RemoteClient(const RemoteClientOptions& options, NonBlocking);
   bool WaitForConnect(double seconds);
-  // Says goodbye to the server, so that another one may drive at once, for up to 3 s. What was sent
-  // without waiting may be lost: Flush before.
+  // Disconnects within 3 s, so that another client may drive at once. Commands that were sent
+  // without waiting may be lost: call Flush first.
   ~RemoteClient();
   RemoteClient(const RemoteClient&) = delete;
   RemoteClient& operator=(const RemoteClient&) = delete;
 
-  // Carries out one command and waits for its reply. Never throws: errors of the link (Io,
-  // DeadlineExceeded) come as an error reply; after a deadline it is not known whether it was done.
-  // Paths in the command that are relative are those of this process's working folder. An error
-  // that a command before it left, which nobody waited for, comes in its stead; it is then not
-  // carried out.
+  // Executes one command and waits for its reply. Never throws: errors of the link (Io,
+  // DeadlineExceeded) are error replies. After a timeout it is unknown whether the command was
+  // executed. Relative paths refer to this process's working folder. If an earlier command that was
+  // sent without waiting has failed, its error is returned and this command is not executed.
   v1::Reply Execute(v1::Command command);
-  // The same without waiting. Empty, or the error of the link or of an earlier command.
+  // Sends a command without waiting for its reply. Returns an empty reply, or the error of the link
+  // or of an earlier command.
   v1::Reply Send(v1::Command command);
-  // Waits until all that was sent is done: with the first error, the warnings and the frame events
-  // of what nobody waited for.
+  // Waits until all sent commands are completed. Returns the first error, the warnings and the
+  // frame events of commands that were sent without waiting.
   v1::Reply Flush();
 
-  // These three in parts, for whoever must do other things while they wait: Begin (or BeginFlush),
-  // then Wait, up to so many seconds each time, until it is true, then Take, which is what Execute,
-  // Send and Flush return. Abandon waits no longer: what was sent may yet be carried out, and its
-  // reply is dropped; Begin does that with what has not been taken.
+  // Non-blocking form of Execute, Send and Flush: call Begin or BeginFlush, then Wait with a
+  // timeout until it returns true, then Take, which returns the reply. Abandon cancels the wait:
+  // the command may still be executed, and its reply is dropped. Begin abandons a command that is
+  // still pending.
   void Begin(v1::Command command, bool reply = true);
   void BeginFlush();
   bool Wait(double seconds);
   v1::Reply Take();
   void Abandon();
 
-  // Simulation seconds a wall second, as in the options. Throws Error(InvalidArgument) for what is
-  // not finite or below 0.
+  // Sets the pace, as in the options. Throws Error(InvalidArgument) if it is not finite or below 0.
   void SetPace(double rate);
 
-  // What viewers said since the last call, in order: each is handed to `hear`. They are there after
-  // any reply; `wait_s` waits for the first, but no longer than until the link is broken for good.
-  // Returns how many. At most 10,000 of 16 MiB in all wait; older ones go.
+  // Calls `handle` for each event of a viewer since the last call, in order. Waits up to `wait_s`
+  // for the first event, or until the link fails permanently. Returns the number of events. The
+  // queue holds at most 10,000 events and 16 MiB; older events are dropped.
   std::size_t TakeEvents(const std::function<void(const v1::ViewerEvent&)>& hear,
                          double wait_s = 0);
-  // The error of a link that is broken for good; empty while it is not.
+  // The error of a permanently failed link; empty if it has not failed.
   v1::Reply Broken() const;
 
   struct Counts {
     std::uint64_t sent = 0;         // commands
     std::uint64_t bytes = 0;        // of them
-    std::uint64_t posesLeftOut = 0; // that had not changed
+    std::uint64_t posesLeftOut = 0; // unchanged poses that were not sent
     std::uint64_t reconnections = 0;
   };
   Counts GetCounts() const;
@@ -96,9 +95,9 @@ public:
   struct ServerInfo {
     std::string name;               // for people
     unsigned commandSet = 0;        // its COMMAND_SET_VERSION (service.proto)
-    std::size_t maximumMessage = 0; // bytes of a command
+    std::size_t maximumMessage = 0; // of a command [bytes]
   };
-  ServerInfo GetServer() const; // of the last time that it was connected
+  ServerInfo GetServer() const; // of the last connection
 
 private:
   struct Link;

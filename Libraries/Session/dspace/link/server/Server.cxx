@@ -37,13 +37,13 @@ void Check(const ServerOptions& options) {
     refuse("the number of connections", std::to_string(options.maximumConnections), "1 to 1000");
   }
   if (!(options.maximumRate > 0)) {
-    refuse("the number of commands a second", std::to_string(options.maximumRate), "any above 0");
+    refuse("the number of commands a second", std::to_string(options.maximumRate), "above 0");
   }
   if (!(options.reservation_s >= 0 && options.reservation_s <= 1e6)) {
-    refuse("the time that a place is kept", NumberText(options.reservation_s) + " s", "0 to 1e6");
+    refuse("the reservation time", NumberText(options.reservation_s) + " s", "0 to 1e6");
   }
   if (!(options.keepalive_s > 0 && options.keepalive_s <= 1e6)) {
-    refuse("the silence", NumberText(options.keepalive_s) + " s", "above 0, up to 1e6");
+    refuse("the keepalive time", NumberText(options.keepalive_s) + " s", "above 0, up to 1e6");
   }
 }
 
@@ -69,7 +69,7 @@ void RejectTakenSocket(const LinkAddress& address) {
   }
   if (taken) {
     throw Error(Error::Kind::Io, "address '" + address.target + "'",
-                "something is there already; accepted: a path that is free");
+                "the path exists already; accepted: a free path");
   }
 }
 
@@ -109,7 +109,7 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, LinkAheadBytes);
   hub.server = builder.BuildAndStart();
   if (!hub.server) {
-    throw Error(Error::Kind::Io, "address '" + address.target + "'", "gRPC does not serve there");
+    throw Error(Error::Kind::Io, "address '" + address.target + "'", "gRPC cannot serve there");
   }
   hub.listener->Start(std::move(acceptor));
   hub.address = address.target;

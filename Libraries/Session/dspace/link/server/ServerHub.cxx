@@ -115,16 +115,15 @@ void Server::Hub::SendWriterName() {
 std::string Server::Hub::DriverConflict() const {
   const Writer& who = this->writer;
   if (who.stream && !who.left) {
-    return "'" + who.name + "' drives; accepted: to watch, or to take over explicitly";
+    return "'" + who.name + "' is the driver; accepted: watch, or take over explicitly";
   }
   const double gone = std::chrono::duration<double>(LinkClock::now() - who.lost).count();
   if (who.key.empty() || who.left || gone >= this->options.reservation_s || HasDied(who.process)) {
     return {};
   }
-  return "'" + who.name + "' drives and has lost its connection, " +
+  return "'" + who.name + "' is the driver and has lost its connection; its reservation ends in " +
          std::to_string(long(std::ceil(this->options.reservation_s - gone))) +
-         " s more are kept for it to come back; accepted: to watch, to wait, or to take over "
-         "explicitly";
+         " s; accepted: watch, wait, or take over explicitly";
 }
 
 LinkClock::time_point Server::Hub::SnapshotDue(LinkClock::time_point otherwise) const {
@@ -151,7 +150,7 @@ void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mu
     try {
       made = std::make_shared<SnapshotMessages>(work.snapshot(), this->sequence, limits);
     } catch (const std::exception& error) {
-      failed = {grpc::StatusCode::INTERNAL, std::string("there is no snapshot: ") + error.what()};
+      failed = {grpc::StatusCode::INTERNAL, std::string("the snapshot failed: ") + error.what()};
     }
     lock.lock();
     this->snapshot = made;

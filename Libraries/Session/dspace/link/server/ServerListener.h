@@ -1,4 +1,4 @@
-// Where a server's connections come in. Inside the library only.
+// Accepts the connections of a server. Inside the library only.
 #ifndef DSPACE_SESSION_SERVER_LISTENER_H
 #define DSPACE_SESSION_SERVER_LISTENER_H
 
@@ -16,12 +16,12 @@
 
 namespace dspace::session {
 
-// Accepts connections and hands them to gRPC, whose own listener gives up for good once the process
-// has no file descriptor left. Here a flood takes no more than `maximum` of them; what comes beyond
-// is closed at once, and when descriptors are short all the same it waits until there are some.
+// Accepts connections and passes them to gRPC. gRPC's own listener stops permanently when the
+// process runs out of file descriptors. This one accepts at most `maximum` connections, closes
+// further ones at once, and waits while there are no descriptors.
 class ServerListener {
 public:
-  // Listens from now on: at all addresses of a host's name. Throws Error(Io).
+  // Starts to listen at all addresses of the host. Throws Error(Io).
   ServerListener(const LinkAddress& address, std::size_t maximum);
   ~ServerListener(); // after Stop()
   ServerListener(const ServerListener&) = delete;
@@ -29,9 +29,9 @@ public:
 
   int Port() const { return this->Port_; } // 0 for a Unix socket
   void Start(std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> to);
-  void Stop(); // accepts no more, its place is free; those that are open stay so
-  // Ends all that are open, also where something waits to be written: gRPC's own shutdown waits for
-  // that, however long the other side does not read. After Stop().
+  void Stop(); // accepts no more connections and frees the address; open ones stay
+  // Closes all open connections, including those with unwritten data, for which gRPC's shutdown
+  // would wait without limit. Call it after Stop().
   void CloseConnections();
 
 private:
@@ -45,13 +45,13 @@ private:
   std::string Path_;
   ino_t PathInode_ = 0;
   int Port_ = 0;
-  int Wake_[2] = {-1, -1};                  // a pipe: closed to end the thread
-  std::vector<std::pair<int, ino_t>> Open_; // connections that were open when last looked at
+  int Wake_[2] = {-1, -1};                  // a pipe; closing it ends the thread
+  std::vector<std::pair<int, ino_t>> Open_; // open connections at the last check
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> To_;
   std::thread Thread_;
 };
 
-// As many file descriptors as this process may have: returns how many.
+// Raises the limit of file descriptors as far as possible and returns it.
 std::size_t RaiseDescriptorLimit();
 
 } // namespace dspace::session

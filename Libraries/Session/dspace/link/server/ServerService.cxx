@@ -214,7 +214,7 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
   }
   Hub& hub = this->Hub_;
   if (hub.stopping) {
-    return {StatusCode::UNAVAILABLE, "the server is ending"};
+    return {StatusCode::UNAVAILABLE, "the server is shutting down"};
   }
   Writer& writer = hub.writer;
   const bool resumed = writer.key == open.key();
@@ -225,8 +225,8 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
   if (open.again() && !resumed) {
     return {
         StatusCode::ABORTED,
-        "it was started anew, or somebody else has driven it since: what was made there is gone "
-        "or not known; accepted: to connect again"};
+        "it was restarted, or another client has driven it since: its scenes are lost or unknown; "
+        "accepted: connect again"};
   }
   if (writer.stream) { // of a lost connection, or of whom it is taken over from
     DriveStream& old = *writer.stream;
@@ -374,7 +374,7 @@ Status Server::Service::Watch(grpc::ServerContext* context, const v1::WatchReque
     }
   }
   hub.viewers.erase(&me);
-  return hub.stopping ? Status(StatusCode::UNAVAILABLE, "the server is ending") : me.failed;
+  return hub.stopping ? Status(StatusCode::UNAVAILABLE, "the server is shutting down") : me.failed;
 }
 
 Status Server::Service::Tell(grpc::ServerContext*, const v1::TellRequest* request,

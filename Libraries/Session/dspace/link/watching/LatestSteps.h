@@ -1,4 +1,4 @@
-// Which steps of a simulation a viewer that is behind need not apply. Not a public header.
+// Finds the steps that a viewer may skip when it is behind. Not a public header.
 #ifndef DSPACE_SESSION_LATESTSTEPS_H
 #define DSPACE_SESSION_LATESTSTEPS_H
 
@@ -11,16 +11,15 @@ namespace dspace::session {
 
 struct State;
 
-// Whether a SetTime (without lags) or a SetPoses, which a later one may make needless.
+// Whether the message is a SetTime (without lags) or a SetPoses, which a later one may supersede.
 bool IsStep(const v1::WatchReply& message);
 
-// Of the run of steps that begins at `first` (an accepted step each): an entry a message, true
-// where a later one of the run sets the time of the same scene, or the poses of the same frames in
-// the same order. Without these the state after the run is the same, to the bit, unless a camera
-// lags.
+// For the run of accepted steps that starts at `first`: one entry per message, true if a later
+// message of the run sets the time of the same scene, or the poses of the same frames in the same
+// order. Skipping these gives the same state to the bit, unless a camera lags.
 std::vector<bool> SupersededSteps(const std::vector<v1::WatchReply>& messages, std::size_t first);
 
-// Whether a camera's place depends on the steps that led to it.
+// Whether the pose of any camera depends on intermediate steps.
 bool HasLaggingCamera(const State& state);
 
 } // namespace dspace::session

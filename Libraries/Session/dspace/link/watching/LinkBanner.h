@@ -1,4 +1,4 @@
-// What the viewports of somebody who watches say while the simulation or the server is gone.
+// The notice in a viewer's viewports while the simulation or the server is disconnected.
 #ifndef DSPACE_SESSION_LINK_BANNER_H
 #define DSPACE_SESSION_LINK_BANNER_H
 
@@ -9,8 +9,8 @@
 
 namespace dspace::session {
 
-// A line of text at the bottom of each viewport, or at the top where tables or colour bars are at
-// the bottom; short where they are at both, and smaller or short where the viewport is narrow.
+// A line of text at the bottom of each viewport, or at the top if tables or colour bars are at the
+// bottom. The text is short if they are at both, and smaller or short in a narrow viewport.
 class LinkBanner {
 public:
   LinkBanner() = default;
@@ -19,17 +19,16 @@ public:
   LinkBanner& operator=(const LinkBanner&) = delete;
 
   struct Text {
-    std::string full; // empty: there is nothing to say
+    std::string full; // empty: no notice
     std::string brief;
   };
   static Text ServerLost();
   static Text SimulationGone(const std::string& name);
 
-  // From now on it is this interpreter's viewports, of which it hears from its beginning on. It
-  // must be there until the next one is followed, or the banner is gone, which then hears no more
-  // of it.
+  // Follows the viewports of a new interpreter. The interpreter must outlive the banner or the next
+  // call of Follow.
   void Follow(Interpreter& interpreter);
-  // In every viewport; where it says so already nothing is done.
+  // Shows the text in every viewport. Does nothing in viewports that show it already.
   void Show(Interpreter& interpreter, const Text& text);
 
 private:

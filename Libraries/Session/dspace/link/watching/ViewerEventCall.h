@@ -1,4 +1,4 @@
-// An event of a viewer on its way to whoever drives. Inside the library only.
+// An asynchronous call that sends a viewer's event to the driver. Inside the library only.
 #ifndef DSPACE_SESSION_VIEWER_EVENT_CALL_H
 #define DSPACE_SESSION_VIEWER_EVENT_CALL_H
 
@@ -12,8 +12,8 @@
 
 namespace dspace::session {
 
-// One call of Tell, under way from its beginning on: so that whoever waits may do so in parts. It
-// ends by itself after `timeout_s` seconds, at the latest; being destroyed cancels it.
+// One asynchronous call of the RPC Tell. It starts in the constructor and ends after `timeout_s` at
+// the latest. The destructor cancels it.
 class ViewerEventCall {
 public:
   ViewerEventCall(v1::Dspace::Stub& stub, const v1::TellRequest& request, double timeout_s) {
@@ -28,13 +28,13 @@ public:
       this->Context_.TryCancel();
     }
     this->Queue_.Shutdown();
-    void* tag = nullptr; // what gRPC still writes to is there until it has done so
+    void* tag = nullptr; // gRPC may write to the members until the queue is drained
     bool good = false;
     while (this->Queue_.Next(&tag, &good)) {
     }
   }
 
-  // Up to so many seconds; whether it is over.
+  // Waits up to this time. Returns whether the call has ended.
   bool Wait(double seconds) {
     void* tag = nullptr;
     bool good = false;
@@ -42,7 +42,7 @@ public:
                                      grpc::CompletionQueue::GOT_EVENT;
     return this->Done_;
   }
-  // These once it is over.
+  // The results, after the call has ended.
   bool Done() const { return this->Done_; }
   const grpc::Status& Status() const { return this->Status_; }
   bool Delivered() const { return this->Reply_.delivered(); }

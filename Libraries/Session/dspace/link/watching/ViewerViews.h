@@ -1,4 +1,4 @@
-// What somebody who watches has for himself beside the scenes that he follows.
+// Viewports, vantages and cameras that belong to one viewer.
 #ifndef DSPACE_SESSION_VIEWER_VIEWS_H
 #define DSPACE_SESSION_VIEWER_VIEWS_H
 
@@ -15,55 +15,54 @@
 
 namespace dspace::session {
 
-// Viewports, vantages and cameras whose names begin with Prefix. They are made in the interpreter
-// that follows a server's, and made again when a snapshot takes its place. What the simulation does
-// goes before: a camera whose frame is removed stays where it was, in the root; views of a scene
-// that is removed, or not in a snapshot, sleep until there is a scene of that name again with the
-// frames (by path) and cameras that they look from; where it has gone on without these, they are
-// made where they were. The lag of a chase camera begins anew.
+// Viewports, vantages and cameras whose names begin with Prefix. They exist in the interpreter that
+// follows a server, and are restored after a snapshot. The simulation has priority: if the frame of
+// a camera is removed, the camera keeps its pose in the root. If a scene is removed or missing in a
+// snapshot, its views are suspended until a scene of this name has the frames (by path) and cameras
+// that they use. If its time advances without these, the views are restored at their last poses.
+// The lag of a chase camera is reset.
 class ViewerViews {
 public:
   static constexpr const char* Prefix = "viewer:";
 
-  // Whether the command changes nothing but views of one's own, or makes one.
+  // Whether the command creates a view of the viewer or changes only such views.
   bool Owns(const v1::Command& command) const;
 
-  // Carries out a command that Owns() and keeps what it leads to; names a viewport that has no
-  // name. An event that moves the camera of a viewport that looks through one of the scene's own
-  // cameras first gives the viewport a vantage of its own name with a copy of that camera.
+  // Executes a command for which Owns() is true and tracks its effect. Chooses a name for an
+  // unnamed viewport. If an event moves a viewport that uses a camera of the scene, the viewport
+  // first gets a vantage of its own name with a copy of that camera.
   v1::Reply Execute(Interpreter& interpreter, v1::Command& command);
 
-  // The interpreter that was followed is about to be replaced by one made from a snapshot: notes
-  // where cameras stand.
+  // Stores the poses of cameras before a snapshot replaces the interpreter.
   void BeforeSnapshot(Interpreter& interpreter);
-  // The new one is as the snapshot says.
+  // Suspends the views after the snapshot was applied to the new interpreter.
   void AfterSnapshot(Interpreter& interpreter);
-  // Makes those again that sleep, and whose time has come. `alone`: nobody drives, so that nothing
-  // is to be waited for.
+  // Restores suspended views that are ready. `alone`: there is no driver, so that views do not wait
+  // for missing frames.
   void Resume(Interpreter& interpreter, bool alone);
 
-  // A command of the simulation was refused. Gets views of one's own out of its way; true: another
-  // try is worth while. One that removes a scene is to be given before it is carried out, for it is
-  // refused for viewports alone, and vantages would go without a word.
+  // Removes views that conflict with a rejected command of the simulation. True: retry the command.
+  // Call it before a command that removes a scene, because only viewports make that command fail,
+  // and vantages would be lost.
   bool RemoveConflicting(Interpreter& interpreter, const v1::Command& refused);
 
 private:
   using Name = std::pair<std::string, std::string>; // scene and vantage
   struct LastPose {
     v1::Projection projection;
-    v1::Mount mount;  // in the root
-    std::string path; // of the frame that it was on; empty: the root
+    v1::Mount mount;  // pose in the root
+    std::string path; // of its frame; empty: the root
   };
   struct Suspended {
     std::vector<v1::Command> commands;
-    std::optional<double> time_s; // of the scene when it was seen first
+    std::optional<double> time_s; // the scene's time when it reappeared
   };
 
-  // The camera as it is; absent where there is none.
+  // The present state of a camera; empty: there is none.
   static std::optional<v1::SetCamera> CameraOf(Interpreter& interpreter, const std::string& scene,
                                                const std::string& vantage,
                                                const std::string& camera);
-  // Where a camera stands now, in the root.
+  // The present pose of a camera in the root.
   static v1::Mount RootMount(const Scene& scene, const std::string& vantage,
                              const std::string& camera);
   bool OwnsVantage(const std::string& scene, const std::string& vantage) const;
@@ -81,13 +80,13 @@ private:
                        const std::string& vantage, const std::string& camera);
 
   std::set<std::string> Viewports_;
-  std::set<std::string> Pressed_; // viewports in which a button is down
+  std::set<std::string> Pressed_; // viewports with a pressed button
   std::set<Name> Vantages_;
-  std::map<std::string, LedgerNames> Names_; // of vantages alone, by scene
+  std::map<std::string, LedgerNames> Names_; // of vantages only, by scene
   LedgerViewports Ledger_;
   std::map<std::string, Suspended> Suspended_; // by scene
-  int Last_ = 0;                               // number of the last viewport that was named here
-  // Noted when they were last there.
+  int Last_ = 0;                               // number in the last chosen viewport name
+  // The last known poses.
   std::map<std::pair<Name, std::string>, LastPose> Cameras_;
   std::map<std::string, LastPose> Views_; // by viewport
 };

@@ -50,16 +50,18 @@ struct Watcher::Link {
   v1::Error ForkedError() const {
     v1::Error told;
     const std::string object = "server '" + this->options.address + "'";
-    PutError(&told, v1::Error::UNSUPPORTED, object,
-             object + ": process " + std::to_string(this->process) +
-                 " watches it, and this one is its child; accepted: a connection of its own");
+    PutError(
+        &told, v1::Error::UNSUPPORTED, object,
+        object + ": process " + std::to_string(this->process) +
+            " opened the connection, and this one is its child; accepted: a connection of its own");
     return told;
   }
 
   // One stream, until it is lost.
   void Watch() {
     const auto soon = std::chrono::system_clock::now() + milliseconds(200);
-    grpc::Status status(grpc::StatusCode::UNAVAILABLE, "nobody answers, or nobody who may");
+    grpc::Status status(grpc::StatusCode::UNAVAILABLE,
+                        "it does not respond, or rejects the connection");
     grpc::ClientContext watch; // outlives `context`, through which End cancels
     if (this->channel->WaitForConnected(soon)) {
       {
@@ -180,7 +182,7 @@ Watcher::Watcher(const WatcherOptions& options, NonBlocking) : Link_(new Link) {
   link.options = options;
   if (!(options.keepalive_s > 0 && options.keepalive_s <= 1e6)) {
     throw Error(Error::Kind::InvalidArgument, "server '" + options.address + "'",
-                "the silence is " + NumberText(options.keepalive_s) +
+                "the keepalive time is " + NumberText(options.keepalive_s) +
                     " s; accepted: above 0, up to 1e6");
   }
   link.channel = MakeChannel(options.address, options.security, options.keepalive_s);
@@ -217,7 +219,7 @@ bool Watcher::WaitForConnect(double seconds) {
   if (late) {
     const std::string object = "server '" + link.options.address + "'";
     std::ostringstream text;
-    text << object << ": nobody answers within " << link.options.timeout_s << " s: " << why;
+    text << object << ": no response within " << link.options.timeout_s << " s: " << why;
     PutError(&error, v1::Error::DEADLINE_EXCEEDED, object, text.str());
   }
   lock.unlock();
@@ -316,7 +318,7 @@ bool Watcher::TakeSendEventResult() {
   }
   if (!link.eventCall || !link.eventCall->Done()) {
     throw Error(Error::Kind::Internal, "event",
-                "nothing is there to take; accepted: BeginSendEvent and WaitForSendEvent before");
+                "there is no result to take; accepted: BeginSendEvent and WaitForSendEvent first");
   }
   const std::unique_ptr<ViewerEventCall> told = std::move(link.eventCall);
   if (!told->Status().ok()) {

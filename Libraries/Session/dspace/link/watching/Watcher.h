@@ -1,4 +1,4 @@
-// Watches a server: what rebuilds its state, and then every accepted command.
+// A viewer's connection to a server: it receives snapshots and every accepted command.
 #ifndef DSPACE_SESSION_WATCHER_H
 #define DSPACE_SESSION_WATCHER_H
 
@@ -15,20 +15,20 @@ namespace dspace::session {
 struct WatcherOptions {
   std::string address; // see LinkAddress::Parse
   LinkSecurity security;
-  std::string name = "viewer"; // told to the server, for people; up to 256 bytes
+  std::string name = "viewer"; // shown to people; up to 256 bytes
   double timeout_s = 30;       // for the first connection; > 0, to 1e6
-  double keepalive_s = 20;     // a connection that says nothing for so long is asked; > 0, to 1e6
-  std::size_t waitingBytes = 64 << 20; // of messages not taken yet; beyond, the server keeps them
+  double keepalive_s = 20;     // a connection that is silent for this time is pinged; > 0, to 1e6
+  std::size_t waitingBytes = 64 << 20; // of queued messages; the server queues further ones
 };
 
-// Connects again by itself, for ever, whenever the connection is lost: the server then sends a new
-// snapshot. For one thread at a time.
+// Reconnects automatically and without limit after a lost connection; the server then sends a new
+// snapshot. Use it from one thread at a time.
 class Watcher {
 public:
   // Throws Error as RemoteClient does.
   explicit Watcher(const WatcherOptions& options);
-  // The same for whoever must do other things meanwhile: it throws what is wrong with the options,
-  // and WaitForConnect the rest. WaitForConnect waits so many seconds; true once it is connected.
+  // Non-blocking form. The constructor throws errors of the options, WaitForConnect all others.
+  // WaitForConnect waits up to this time; true when connected.
   struct NonBlocking {};
   Watcher(const WatcherOptions& options, NonBlocking);
   bool WaitForConnect(double seconds);
@@ -36,23 +36,24 @@ public:
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
 
-  // The next message; waits up to wait_s for it. False when there is none yet.
+  // Takes the next message. Waits up to wait_s for it. False if there is none.
   bool Take(v1::WatchReply& message, double wait_s);
-  // The same of all that have come: up to waitingBytes of them and one.
+  // Takes all queued messages: up to waitingBytes and one more.
   bool TakeAll(std::vector<v1::WatchReply>& messages, double wait_s);
-  // Whether there is a connection, and a word on why not.
+  // Whether it is connected. `why` gets the reason if it is not.
   bool Connected(std::string* why = nullptr) const;
-  // Why the server refuses what it did not refuse before: a state that is too large to be sent, too
-  // many viewers. Empty: it does not, or nobody answers. It is asked again each second.
+  // Why the server rejects the viewer after an earlier connection: a state that is too large to
+  // send, too many viewers. Empty: it does not reject it, or does not respond. The viewer retries
+  // every second.
   std::string Rejection() const;
-  // Sends an event to whoever drives, waiting up to timeout_s (of the options, or a shorter one);
-  // false when nobody does. Throws Error.
+  // Sends an event to the driver and waits up to timeout_s (default: that of the options, which is
+  // also the maximum). False if there is no driver. Throws Error.
   bool SendEvent(const v1::ViewerEvent& event);
   bool SendEvent(const v1::ViewerEvent& event, double timeout_s);
-  // The same in parts, for whoever must do other things meanwhile: BeginSendEvent, then
-  // WaitForSendEvent, up to so many seconds each time, until it is true, then TakeSendEventResult,
-  // which returns and throws what Tell does. CancelSendEvent waits no longer: the event may yet be
-  // heard. BeginSendEvent drops one that has not been taken.
+  // Non-blocking form of SendEvent: call BeginSendEvent, then WaitForSendEvent with a timeout until
+  // it returns true, then TakeSendEventResult, which returns and throws as SendEvent does.
+  // CancelSendEvent cancels the wait; the event may still be delivered. BeginSendEvent cancels a
+  // pending event.
   void BeginSendEvent(const v1::ViewerEvent& event, double timeout_s);
   bool WaitForSendEvent(double seconds);
   bool TakeSendEventResult();
