@@ -1,4 +1,5 @@
-// The thread of vtkDspaceRecorder: follows a server and records what comes. Inside the module only.
+// The thread of vtkDspaceRecorder: follows a server and records its commands. Inside the module
+// only.
 #ifndef DSPACE_SESSION_RECORDER_THREAD_H
 #define DSPACE_SESSION_RECORDER_THREAD_H
 
@@ -22,28 +23,28 @@ namespace dspace::session {
 
 struct RecorderThread {
   WatcherOptions options;
-  std::unique_ptr<Watcher> watcher; // the thread's, once that runs
+  std::unique_ptr<Watcher> watcher; // belongs to the thread while it runs
   std::string path;
   double commitEvery_s = 0.1;
   bool pack = false;
   std::thread thread;
 
-  // Of all below, which both sides use.
+  // Protects all members below, which both threads use.
   std::mutex mutex;
   std::condition_variable changed;
-  bool recording = false; // it has begun
-  bool ending = false;    // it is to end
-  bool over = false;      // the thread has done all that it will
+  bool recording = false; // it has started
+  bool ending = false;    // the thread must end
+  bool over = false;      // the thread has ended
   std::uint64_t sequence = 0;
   std::uint64_t flushesWanted = 0;
   std::uint64_t flushesDone = 0;
   RecordingCounts counts;
   std::deque<std::string> warnings; // for the simulation
 
-  // What went wrong before the thread is told in `counts`, and so is everything later.
+  // Starts the thread. All errors are reported in `counts`.
   void Start();
-  void End(); // and waits for it
-  // Until `test` holds or the thread is over; false where neither is so after that time.
+  void End(); // ends the thread and waits for it
+  // Waits until `test` is true or the thread has ended; false after a timeout.
   template<class Test> bool Wait(double seconds, Test test) {
     std::unique_lock lock(this->mutex);
     return this->changed.wait_for(lock,
@@ -68,8 +69,8 @@ private:
 
   vtkSmartPointer<vtkDspaceSession> session;
   double time_s = 0.0;   // of the last command that set one
-  bool diverged = false; // a command could not be carried out here
-  std::string rejection; // that was told last
+  bool diverged = false; // a command has failed here
+  std::string rejection; // the last one that was reported
   Clock::time_point lastContact;
 };
 

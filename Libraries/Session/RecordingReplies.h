@@ -1,4 +1,4 @@
-// Answers of the classes that read recordings for Python. Inside the module only.
+// Replies of the classes that read recordings for Python. Inside the module only.
 #ifndef DSPACE_SESSION_RECORDING_REPLIES_H
 #define DSPACE_SESSION_RECORDING_REPLIES_H
 
@@ -9,7 +9,7 @@
 
 namespace dspace::session {
 
-// What `work` fills in, or the error that it throws; serialized.
+// The serialized reply that `work` fills in, or the error that it throws.
 template<class Work> std::string RecordingAnswer(Work work) {
   v1::RecordingReply reply;
   const v1::Reply failed = Catch([&] {

@@ -2,8 +2,8 @@
  * @class vtkDspaceFrame
  * @brief A frame of a scene for VTK code: read-only, kept up to date.
  *
- * Made on demand by vtkDspaceScene; changes made on the transform are not recorded and are lost
- * with the frame's next move.
+ * vtkDspaceScene creates it on demand. Changes of the transform are not recorded, and the frame's
+ * next move overwrites them.
  */
 #ifndef vtkDspaceFrame_h
 #define vtkDspaceFrame_h
@@ -25,7 +25,7 @@ public:
   /// Frame to root: the local pose with the parent's transform as its input.
   vtkTransform* GetTransform();
   unsigned long long GetId() const { return this->Id; }
-  /// False once the frame was removed; the transform then stays as it was.
+  /// False after the frame was removed. The transform then keeps its value.
   bool GetAlive() const { return this->Alive; }
 
 protected:

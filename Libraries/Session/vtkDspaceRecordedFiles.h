@@ -1,10 +1,9 @@
 /**
  * @class vtkDspaceRecordedFiles
- * @brief The files that a recording's commands need, where it is played: checked, or unpacked.
+ * @brief The files that a recording's commands need, checked or unpacked for playback.
  *
- * Wraps <dspace/recording/RecordedFiles.h> for Python. What can fail returns a serialized Reply,
- * whose error says what did; no C++ exception leaves a method. Paths are bytes as the system has
- * them.
+ * Wraps <dspace/recording/RecordedFiles.h> for Python. Methods that can fail return a serialized
+ * Reply with the error. No method throws a C++ exception. Paths are bytes in the system's encoding.
  */
 #ifndef vtkDspaceRecordedFiles_h
 #define vtkDspaceRecordedFiles_h
@@ -25,21 +24,22 @@ public:
   vtkTypeMacro(vtkDspaceRecordedFiles, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Unpacks or checks the files of a recording; `check` false: looks at none that is not packed.
+  /// Unpacks or checks the files of a recording. `check` false: does not check files that are not
+  /// packed.
   std::string Open(const std::string& recording, bool check);
-  /// The same for what has been noted since.
+  /// Does the same for files that were recorded since.
   std::string Update();
-  /// Where they were unpacked; empty: nothing was packed.
+  /// The folder of unpacked files; empty: nothing was packed.
   std::string GetFolder();
-  /// Where a path of the recording's is.
+  /// The present path of a recorded path.
   std::string Locate(const std::string& path);
-  /// A serialized Command with its paths made those of the folder.
+  /// Changes the paths of a serialized Command to those in the folder.
   std::string Map(const std::string& command);
 #ifndef __VTK_WRAP__
-  /// See RecordedFiles::Look; empty where nothing is open.
+  /// See RecordedFiles::Look; empty if nothing is open.
   dspace::FilesGuard::Look GetLook() const;
 #endif
-  /// Removes what was unpacked. Twice is no error.
+  /// Removes the unpacked files. Calling it twice is no error.
   void Close();
 
 protected:

@@ -1,15 +1,14 @@
 /**
  * @class vtkDspaceRecorder
- * @brief Records what a server accepts, for the simulation that drives it.
+ * @brief Records the commands that a server accepts, for the simulation that drives it.
  *
- * A watcher of the server and a session of its own, both in a thread: nothing needs to be called
- * for what comes to be recorded. It draws nothing, but carries every command out, so that it reads
- * models and terrain by the paths that the server has, and has a graphics context for the
- * viewports. A command that cannot be carried out here is recorded all the same, and told
- * (TakeWarnings).
+ * A watcher of the server and its own session run in a thread, which records without further calls.
+ * It does not draw, but it executes every command: it reads models and terrain by the server's
+ * paths and has a graphics context for the viewports. A command that fails here is recorded
+ * nevertheless and causes a warning (TakeWarnings).
  *
- * All of this is for one thread. Nothing waits for longer than it is told to; a child of the
- * process (fork) may only destroy it. No C++ exception leaves a method.
+ * Call it from one thread. No method waits longer than its timeout. A child process (fork) may only
+ * destroy it. No method throws a C++ exception.
  */
 #ifndef vtkDspaceRecorder_h
 #define vtkDspaceRecorder_h
@@ -26,42 +25,43 @@ public:
   vtkTypeMacro(vtkDspaceRecorder, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// To be set before BeginConnect, as for vtkDspaceRemoteSession. The timeout [s] (above 0, to
-  /// 1e6; default 30) is also how long a server may not answer before the recording ends.
+  /// Call before BeginConnect, as for vtkDspaceRemoteSession. The timeout [s] (above 0, to 1e6;
+  /// default 30) is also the time after which the recording ends if the server does not respond.
   void SetCertificates(const std::string& certificate, const std::string& key,
                        const std::string& authority);
   void SetInsecure(bool insecure);
   void SetTimeout(double seconds);
-  /// BeginConnect, then WaitForConnect, up to so many seconds each time, until it returns 1
-  /// (connected) or -1 (no: TakeReply, a serialized Reply, says why).
+  /// Call BeginConnect, then WaitForConnect with a timeout until it returns 1 (connected) or -1
+  /// (failed: TakeReply returns a serialized Reply with the error).
   std::string BeginConnect(const std::string& address, const std::string& name);
   int WaitForConnect(double seconds);
   std::string TakeReply();
 
-  /// Then BeginRecord, once, as vtkDspaceSession::Record, and WaitForRecord until it returns 1 (the
-  /// recording is there, and begins with the state that the server had) or -1 (GetRecordingFailure
-  /// says why not).
+  /// Then call BeginRecord once, as vtkDspaceSession::Record, and WaitForRecord until it returns 1
+  /// (the recording exists and starts with the server's state) or -1 (failed: GetRecordingFailure
+  /// returns the reason).
   void BeginRecord(const std::string& path, double commitEvery, bool pack);
   int WaitForRecord(double seconds);
-  /// Until the command of this number (Reply.sequence) is recorded: 1; -1: it never will be.
+  /// Waits until the command of this number (Reply.sequence) is recorded. Returns 1: recorded, 0:
+  /// timeout, -1: it will not be recorded.
   int WaitFor(long long sequence, double seconds);
-  /// The number of the last command that is recorded, or in the state that the recording began
-  /// with.
+  /// The number of the last command that is recorded or included in the first snapshot.
   long long GetSequence();
-  /// BeginFlush, then WaitForFlush until it is true: all that is recorded is written, or failed.
+  /// Call BeginFlush, then WaitForFlush until it returns true: everything recorded is written, or
+  /// writing has failed.
   void BeginFlush();
   bool WaitForFlush(double seconds);
-  /// BeginStop ends the recording with what has been taken in by then; WaitForStop is true once the
-  /// file is closed.
+  /// BeginStop ends the recording with the commands received so far. WaitForStop returns true when
+  /// the file is closed.
   void BeginStop();
   bool WaitForStop(double seconds);
 
-  /// As of vtkDspaceSession, a tenth of a second old at most.
+  /// As in vtkDspaceSession, at most 0.1 s old.
   unsigned long long GetRecordingCount(const std::string& name);
-  /// Why it has ended by itself: the disk, a server that is gone or was started anew.
+  /// Why the recording has failed: the disk, or a server that is unreachable or was restarted.
   std::string GetRecordingFailure();
   std::string GetRecordingMissing();
-  /// What the simulation should know, once: the next of what went wrong; empty: nothing more.
+  /// Takes the next warning for the simulation; empty: none.
   std::string TakeWarnings();
 
 protected:

@@ -1,11 +1,11 @@
 /**
  * @class vtkDspaceRecordingTask
- * @brief Long work on a recording for Python, in a thread of its own.
+ * @brief Long work on a recording for Python, in its own thread.
  *
- * One of the methods that end in Later, once, then Wait until it returns true, then TakeReply: a
- * serialized RecordingReply (recordings.proto), whose error says what failed. Cancel, or the end of
- * this object, ends the work, which leaves no new file behind. No C++ exception leaves a method.
- * Paths are bytes as the system has them.
+ * Call one of the Begin methods once, then Wait until it returns true, then TakeReply, which
+ * returns a serialized RecordingReply (recordings.proto) with the result or the error. Cancel and
+ * the destructor stop the work, which then leaves no new file. No method throws a C++ exception.
+ * Paths are bytes in the system's encoding.
  */
 #ifndef vtkDspaceRecordingTask_h
 #define vtkDspaceRecordingTask_h
@@ -24,21 +24,21 @@ public:
 
   /// Reads all of a recording: <dspace/recording/RecordingCheck.h>.
   void BeginCheck(const std::string& path);
-  /// The commands first..last as a new recording, which begins after the snapshot `number`:
+  /// Copies the commands first..last to a new recording, which starts after the snapshot `number`:
   /// <dspace/recording/RecordingCut.h>.
   void BeginCut(const std::string& path, const std::string& out, unsigned long long first,
                 unsigned long long last);
-  /// Takes the files that a recording needs into it, or where `out` is not empty into a copy:
-  /// `pack`. <dspace/recording/RecordingPack.h>
+  /// Packs the files that a recording needs into it, or into a copy if `out` is not empty: `pack`.
+  /// <dspace/recording/RecordingPack.h>
   void BeginPack(const std::string& path, const std::string& out);
-  /// What survives of a damaged recording as a new one: `salvage`.
+  /// Recovers the intact rows of a damaged recording into a new one: `salvage`.
   /// <dspace/recording/RecordingSalvage.h>
   void BeginSalvage(const std::string& path, const std::string& out);
 
-  /// Up to so many seconds; whether the work has ended.
+  /// Waits up to this time. Returns whether the work has ended.
   bool Wait(double seconds);
   std::string TakeReply();
-  /// Ends the work, and waits for that.
+  /// Cancels the work and waits for its end.
   void Cancel();
 
 protected:

@@ -2,8 +2,8 @@
  * @class vtkDspaceRemoteSession
  * @brief A session in a server process: vtkDspaceSession's Execute over the simulation link.
  *
- * Everything that can fail returns a serialized Reply, whose error says what did; no C++ exception
- * leaves a method. See <dspace/link/client/RemoteClient.h>, which this wraps for Python.
+ * Methods that can fail return a serialized Reply with the error. No method throws a C++ exception.
+ * See <dspace/link/client/RemoteClient.h>, which this wraps for Python.
  */
 #ifndef vtkDspaceRemoteSession_h
 #define vtkDspaceRemoteSession_h
@@ -20,48 +20,48 @@ public:
   vtkTypeMacro(vtkDspaceRemoteSession, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// PEM files; all three empty: neither encrypted nor authenticated. To be set before Connect.
+  /// PEM files; all three empty: no encryption and no authentication. Call before Connect.
   void SetCertificates(const std::string& certificate, const std::string& key,
                        const std::string& authority);
   void SetInsecure(bool insecure);
-  /// Of every wait [s], above 0; default 30.
+  /// Timeout of every wait [s], above 0; default 30.
   void SetTimeout(double seconds);
-  /// Drives even if somebody else does. Default off.
+  /// Replaces another driver. Default off.
   void SetTakeOver(bool takeOver);
-  /// Poses that the server has already are not sent again. Default on.
+  /// Does not send poses again that the server already has. Default on.
   void SetOnlyChanges(bool onlyChanges);
-  /// Simulation seconds a wall second, 0 (the default) for none; also while connected. Returns what
-  /// went wrong, or an empty string.
+  /// Simulation seconds per wall second; 0 (the default): no pacing. May be changed while
+  /// connected. Returns the error, or an empty string.
   std::string SetPace(double rate);
 
-  /// To "host:port" or "unix:PATH", under a name for people.
+  /// Connects to "host:port" or "unix:PATH". `name` is shown to people.
   std::string Connect(const std::string& address, const std::string& name);
-  /// The same in two parts, for whoever must do other things meanwhile: BeginConnect, then
-  /// WaitForConnect, up to so many seconds each time, until it returns 1 (connected) or -1 (no:
-  /// TakeReply says why).
+  /// Non-blocking form of Connect: call BeginConnect, then WaitForConnect with a timeout until it
+  /// returns 1 (connected) or -1 (failed: TakeReply returns the error).
   std::string BeginConnect(const std::string& address, const std::string& name);
   int WaitForConnect(double seconds);
-  /// Carries out a serialized Command and returns the serialized Reply.
+  /// Executes a serialized Command and returns the serialized Reply.
   std::string Execute(const std::string& command);
-  /// The same without waiting: the reply is empty, or an earlier command's error.
+  /// Sends a command without waiting. The reply is empty, or an earlier command's error.
   std::string Send(const std::string& command);
-  /// Waits until everything sent is done.
+  /// Waits until all sent commands are completed.
   std::string Flush();
-  /// These three in parts: Begin (without a reply: Send) or BeginFlush; Wait, up to so many seconds
-  /// each time, until it is true; TakeReply. Abandon waits no longer, see RemoteClient.h.
+  /// Non-blocking form of Execute, Send (`reply` false) and Flush: call Begin or BeginFlush, then
+  /// Wait with a timeout until it returns true, then TakeReply. Abandon cancels the wait, see
+  /// RemoteClient.h.
   void Begin(const std::string& command, bool reply);
   void BeginFlush();
   bool Wait(double seconds);
   std::string TakeReply();
   void Abandon();
-  /// The next ViewerEvent, serialized; waits up to so many seconds, but no longer than until the
-  /// link is broken for good. Empty: there is none.
+  /// Takes the next ViewerEvent, serialized. Waits up to this time, or until the link fails
+  /// permanently. Empty: there is none.
   std::string TakeEvent(double wait);
-  /// A serialized Reply with the error of a link that is broken for good; empty while it is not.
+  /// A serialized Reply with the error of a permanently failed link; empty if it has not failed.
   std::string GetBroken();
-  /// Pose updates that were left out because nothing had changed.
+  /// Number of unchanged poses that were not sent.
   long long GetPosesLeftOut();
-  /// How far the server's command set goes (COMMAND_SET_VERSION in service.proto); 0: not known.
+  /// The version of the server's command set (COMMAND_SET_VERSION in service.proto); 0: unknown.
   int GetServerCommandSet();
   void Close();
 

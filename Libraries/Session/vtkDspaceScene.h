@@ -1,9 +1,9 @@
 /**
  * @class vtkDspaceScene
- * @brief A scene's frames as vtkTransforms, for VTK code that hangs things on them.
+ * @brief A scene's frames as vtkTransforms, for VTK code that attaches props to them.
  *
- * Frames are mirrored when they are first asked for, with their ancestors, and follow every later
- * change of the tree.
+ * A frame is mirrored with its ancestors on first access, and then follows every change of the
+ * tree.
  */
 #ifndef vtkDspaceScene_h
 #define vtkDspaceScene_h
@@ -27,12 +27,12 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   std::string GetName();
-  /// Null when the frame is not in the tree.
+  /// Null if the frame is not in the tree.
   vtkDspaceFrame* GetFrame(unsigned long long id);
   vtkDspaceFrame* GetFrame(const std::string& path);
 
 #ifndef __VTK_WRAP__
-  /// Once, before anything else.
+  /// Call once, before anything else.
   void SetScene(std::shared_ptr<dspace::Scene> scene);
   bool Mirrors(const dspace::Scene& scene) const;
 #endif

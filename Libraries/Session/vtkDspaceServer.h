@@ -1,11 +1,11 @@
 /**
  * @class vtkDspaceServer
- * @brief Serves a session of its own: one writer drives it, viewers watch.
+ * @brief Serves its own session: one writer drives it, viewers watch.
  *
- * Commands are carried out, and pictures drawn, in the thread that calls Run. Paths in commands are
- * confined to the allowed roots. Start takes from the whole process, for the rest of its life, the
- * formats of rasters and shapes that refer to other files (<dspace/raster/ConfinedDrivers.h>). No
- * C++ exception leaves a method. See <dspace/link/server/Server.h>.
+ * The thread that calls Run executes commands and draws pictures. Paths in commands are confined to
+ * the allowed roots. Start removes the formats of rasters and shapes that refer to other files from
+ * the whole process for the rest of its life (<dspace/raster/ConfinedDrivers.h>). No method throws
+ * a C++ exception. See <dspace/link/server/Server.h>.
  */
 #ifndef vtkDspaceServer_h
 #define vtkDspaceServer_h
@@ -24,8 +24,8 @@ public:
   vtkTypeMacro(vtkDspaceServer, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// All of these are to be set before Start.
-  /// "host:port", port 0 for one that the system chooses, or "unix:PATH". Default "127.0.0.1:0".
+  /// Call all of these before Start. "host:port" (port 0: the system chooses) or "unix:PATH".
+  /// Default "127.0.0.1:0".
   void SetListen(const std::string& address);
   void SetName(const std::string& name); // for people
   void SetCertificates(const std::string& certificate, const std::string& key,
@@ -37,17 +37,18 @@ public:
   void SetMaximumRate(double commands);        // a second, > 0; default 100,000
   void SetMaximumFrames(long long frames);     // of one scene, >= 1; default 1,000,000
 
-  /// Listens. Returns what went wrong, or an empty string.
+  /// Starts to listen. Returns the error, or an empty string.
   std::string Start();
-  /// Where, with the port that the system chose.
+  /// The address, with the port that the system chose.
   std::string GetAddress();
-  /// Works for so many seconds; false after Stop.
+  /// Serves for this time. Returns false after Stop.
   bool Run(double seconds);
   void Stop();
 
-  /// What is served; changes made on it directly reach no viewer.
+  /// The served session. Viewers do not receive changes that are made on it directly.
   vtkDspaceSession* GetSession();
-  /// Commands carried out, snapshots made for viewers, connections, viewers, bytes that wait.
+  /// A counter: "commands" (executed), "snapshots" (made for viewers), "connections", "viewers",
+  /// "waiting_bytes"; -1: unknown name.
   long long GetCount(const std::string& what);
 
 protected:

@@ -1,8 +1,8 @@
 /**
  * @class vtkDspaceStepTimes
- * @brief Which of a recording's steps is at a time, for Python.
+ * @brief Selects a recording's step for a time, for Python.
  *
- * Wraps <dspace/recording/StepTimes.h>, which has the rule.
+ * Wraps <dspace/recording/StepTimes.h>, which documents the rule.
  */
 #ifndef vtkDspaceStepTimes_h
 #define vtkDspaceStepTimes_h
@@ -19,11 +19,11 @@ public:
   vtkTypeMacro(vtkDspaceStepTimes, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// The times of all steps [s]: doubles as the machine has them, one after the other.
+  /// Sets the times of all steps [s]: an array of native doubles.
   void SetTimes(const std::string& doubles);
-  /// The step at a time; -1: there is none.
+  /// The index of the step for a time; -1: there is none.
   long long IndexAt(double time);
-  /// False for a step that there is not.
+  /// False for an invalid index.
   bool IsAt(long long index, double time);
   bool IsAfter(long long index, double time);
   static double Rounding(double time, double step);

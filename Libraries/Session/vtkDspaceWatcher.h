@@ -1,12 +1,13 @@
 /**
  * @class vtkDspaceWatcher
- * @brief A read-only session that follows a server's and draws for itself.
+ * @brief A read-only session that follows a server and draws by itself.
  *
- * Update applies what the server has accepted; between two calls nothing changes. Viewports,
- * vantages and cameras of the watcher's own, named "viewer:...", may be made, and outlast snapshots
- * (<dspace/link/watching/ViewerViews.h>); all other changes are refused. Where the simulation or
- * the server is gone the last picture stays, and every viewport says so. No C++ exception leaves a
- * method; what can fail returns a serialized Reply. See <dspace/link/watching/Watcher.h>.
+ * Update applies the commands that the server has accepted; nothing changes between two calls. A
+ * watcher may have its own viewports, vantages and cameras, named "viewer:...", which survive
+ * snapshots (<dspace/link/watching/ViewerViews.h>). All other changes are rejected. If the
+ * simulation or the server disconnects, the last state stays, and every viewport shows a notice.
+ * Methods that can fail return a serialized Reply. No method throws a C++ exception. See
+ * <dspace/link/watching/Watcher.h>.
  */
 #ifndef vtkDspaceWatcher_h
 #define vtkDspaceWatcher_h
@@ -25,48 +26,48 @@ public:
   vtkTypeMacro(vtkDspaceWatcher, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// To be set before Connect, as for vtkDspaceRemoteSession.
+  /// Call before Connect, as for vtkDspaceRemoteSession.
   void SetCertificates(const std::string& certificate, const std::string& key,
                        const std::string& authority);
   void SetInsecure(bool insecure);
   void SetTimeout(double seconds);
   std::string Connect(const std::string& address, const std::string& name);
-  /// The same in two parts, for whoever must do other things meanwhile: BeginConnect, then
-  /// WaitForConnect, up to so many seconds each time, until it returns 1 (connected) or -1 (no:
-  /// TakeReply says why).
+  /// Non-blocking form of Connect: call BeginConnect, then WaitForConnect with a timeout until it
+  /// returns 1 (connected) or -1 (failed: TakeReply returns the error).
   std::string BeginConnect(const std::string& address, const std::string& name);
   int WaitForConnect(double seconds);
   std::string TakeReply();
 
-  /// Applies all that has come; waits up to so many seconds for something. Returns how many
-  /// messages. Times and poses that later ones make needless are left out, unless a camera lags,
-  /// the session is recorded or changes of frames are followed.
+  /// Applies all received messages. Waits up to this time for the first one. Returns the number of
+  /// messages. Skips times and poses that later messages supersede, unless a camera lags, the
+  /// session is recorded, or frame events are followed.
   int Update(double wait);
-  /// The number of the last command that is in the state: it grows by one a command.
+  /// The number of the last applied command. It grows by 1 with each command.
   long long GetSequence();
-  /// Of the server, and of the simulation that drives it.
+  /// The state of the connections of the server and of the simulation that drives it.
   bool GetConnected();
   bool GetWriterConnected();
   std::string GetWriterName();
-  /// Why the server refuses to go on, or what could not be applied since the last snapshot; empty:
-  /// nothing.
+  /// Why the server rejects the viewer, or the first command since the last snapshot that failed
+  /// here; empty: no error.
   std::string GetError();
 
-  /// Carries out a serialized Command: requests, and commands on views of one's own. An event that
-  /// clicks on something in a viewport of one's own also tells the simulation (ViewerEvent.Picked),
-  /// which it waits for up to 1 s.
+  /// Executes a serialized Command: requests, and changes of the viewer's own views. A click on an
+  /// object in an own viewport also sends a ViewerEvent.Picked to the simulation and waits up to 1
+  /// s for its delivery.
   std::string Execute(const std::string& command);
-  /// A serialized Reply with what has happened to the frames of followed scenes (FollowFrames)
-  /// since the last call, in order. A snapshot brings none. At most 100,000 wait; older ones go.
+  /// A serialized Reply with the frame events of followed scenes (FollowFrames) since the last
+  /// call, in order. Snapshots cause no events. The queue holds at most 100,000 events; older ones
+  /// are dropped.
   std::string TakeFrameEvents();
-  /// Sends a serialized ViewerEvent to the simulation: BeginSendEvent, then WaitForSendEvent, up to
-  /// so many seconds each time, until it returns 1 (told) or -1 (no: TakeReply says why; its error
-  /// is NOT_FOUND when nobody drives). CancelSendEvent waits no longer. The timeout is the
-  /// connection's.
+  /// Sends a serialized ViewerEvent to the simulation: call BeginSendEvent, then WaitForSendEvent
+  /// with a timeout until it returns 1 (delivered) or -1 (failed: TakeReply returns the error,
+  /// NOT_FOUND if there is no driver). CancelSendEvent cancels the wait. The connection's timeout
+  /// applies.
   std::string BeginSendEvent(const std::string& event);
   int WaitForSendEvent(double seconds);
   void CancelSendEvent();
-  /// What draws; another one after each snapshot.
+  /// The session that draws; a new one after each snapshot.
   vtkDspaceSession* GetSession();
   void Close();
 

@@ -13,13 +13,13 @@ struct UrdfGeometry {
   Eigen::Affine3d X_LO = Eigen::Affine3d::Identity(); // object in its link's frame
 };
 
-// Of a URDF that is read, and of what stands in for meshes that do not exist.
+// Warnings of a URDF, including those of placeholders for missing meshes.
 std::vector<std::string> UrdfWarnings(const Urdf& urdf);
 
-// A list a link, in the order of its visuals. A mesh that cannot be read becomes the edges, as
-// orange beams, of a box of the bounds that its file states (ReadStatedBounds), and a warning in
-// the reply with the box's size, or an Error when options.strict; without such bounds, or without
-// the file, an orange cube of 0.1 m.
+// One list per link, in the order of its visuals. An unreadable mesh is replaced by the edges
+// (orange beams) of a box with the bounds that its file states (ReadStatedBounds), and the reply
+// has a warning with the box's size; with options.strict it is an Error. Without such bounds, or
+// without the file, the placeholder is an orange cube of 0.1 m.
 std::vector<std::vector<UrdfGeometry>> LoadVisuals(const Context& context, const Urdf& urdf,
                                                    const ImportOptions& options);
 

@@ -1,4 +1,4 @@
-// What several commands say of cameras.
+// Functions that the commands on cameras share.
 #ifndef DSPACE_SESSION_CAMERA_TOOLS_H
 #define DSPACE_SESSION_CAMERA_TOOLS_H
 

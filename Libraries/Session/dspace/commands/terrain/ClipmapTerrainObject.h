@@ -1,4 +1,4 @@
-// Terrain as a clipmap over tiles that are read as they are needed.
+// Terrain as a clipmap over tiles that are read on demand.
 #ifndef DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
 #define DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
 
@@ -27,7 +27,7 @@ public:
   ClipmapTerrain& Clipmap() { return *this->Clipmap_; }
   TerrainLayers& Layers() { return this->Layers_; }
   const std::string& CacheFolder() const { return this->CacheFolder_; }
-  // Its layers, and what their tiles have cost.
+  // Describes its layers and the counters of their tiles.
   void DescribeLayers(v1::TerrainLayerList& list) const;
   bool OnBody() const override { return this->Surface_->Placement().OnBody(); }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
@@ -35,7 +35,7 @@ public:
   const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
   void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }
   void Describe(v1::TerrainReply& reply) const override;
-  // In the background, into `folder`; `options` as for ElevationCache::Build.
+  // Builds overviews in the background into `folder`; `options` as for ElevationCache::Build.
   void BuildOverviews(const std::string& folder, const ElevationOptions& options);
   // Checks its arguments only: a clipmap's posts follow the cameras.
   bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) override;
@@ -46,8 +46,8 @@ private:
   std::shared_ptr<ClipmapTerrain> Clipmap_;
   TerrainLayers Layers_;
   std::string CacheFolder_;
-  std::atomic<int> Overviews_{0};        // that were built since it was opened
-  std::unique_ptr<OverviewBuild> Build_; // ends before what it changes
+  std::atomic<int> Overviews_{0};        // number built since it was opened
+  std::unique_ptr<OverviewBuild> Build_; // destroyed before the members that it changes
 };
 
 } // namespace dspace::session

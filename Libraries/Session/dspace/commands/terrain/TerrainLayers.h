@@ -1,4 +1,4 @@
-// The colour layers of a clipmap as commands know them: what each shows, and from which file.
+// The colour layers of a clipmap with the data for commands: their kind and file.
 #ifndef DSPACE_SESSION_TERRAIN_LAYERS_H
 #define DSPACE_SESSION_TERRAIN_LAYERS_H
 
@@ -24,12 +24,12 @@ public:
   // `wanted`, or with " 2", " 3", ... appended the first name that no layer has.
   std::string FreeName(const std::string& wanted) const;
 
-  // `about` holds what the stack does not know: kind, path, the ramp and its unit. All throw what
-  // LayerStack throws, and change nothing then.
+  // `about` has the data that the stack does not store: kind, path, the ramp and its unit. Both
+  // functions throw what LayerStack throws, and change nothing then.
   void Add(StackedLayer layer, std::optional<std::size_t> position, v1::TerrainLayerReply about);
   void Remove(const std::string& name);
 
-  // Throws Error(NotFound) naming the layers there are.
+  // Throws Error(NotFound) that names the existing layers.
   v1::TerrainLayerReply Describe(const std::string& name) const;
   void Describe(v1::TerrainLayerList& list) const; // bottom first
 

@@ -1,4 +1,4 @@
-// How a terrain that is opened looks: a colour, an image laid on it, shaded relief.
+// The appearance of a terrain: a colour, an image, shaded relief.
 #ifndef DSPACE_SESSION_TERRAIN_LOOK_H
 #define DSPACE_SESSION_TERRAIN_LOOK_H
 
@@ -12,16 +12,17 @@
 
 namespace dspace::session {
 
-// A path of GDAL's need not be a file ("/vsicurl/...", "PDS4:..."): only files are made absolute.
+// Makes the path of a file absolute. Other names of GDAL ("/vsicurl/...", "PDS4:...") are
+// unchanged.
 std::string AbsoluteRaster(const std::string& path);
 
-// Of a mesh: its texture coordinates run over the raster. Paths in the command are made absolute,
-// warnings go to the reply.
+// The material of a mesh, whose texture coordinates cover the raster. Makes paths in the command
+// absolute; warnings go to the reply.
 std::shared_ptr<const Material> MeshMaterial(const Context& context, const GridTerrain& grid,
                                              v1::OpenTerrain& command);
 
-// Of a clipmap: its material, under its colour layers. Relief is the scene's own light on the
-// posts' normals; its sun's angles are refused.
+// The material of a clipmap, under its colour layers. Relief is the scene's own light on the posts'
+// normals; sun angles are rejected.
 ClipmapOptions ClipmapLook(const StreamedTerrain& surface, const v1::OpenTerrain& command);
 
 // A row of pixels: the ramp's colours, evenly spaced, linear between. At least one colour.

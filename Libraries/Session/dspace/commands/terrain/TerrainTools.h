@@ -1,4 +1,4 @@
-// What the terrain commands and requests share.
+// Functions that the terrain commands and requests share.
 #ifndef DSPACE_SESSION_TERRAIN_TOOLS_H
 #define DSPACE_SESSION_TERRAIN_TOOLS_H
 
@@ -23,11 +23,12 @@ void DescribeTo(const Context& context, const TerrainObject& terrain, v1::Terrai
 // not finite.
 void RequireFinitePoints(const std::string& label, const double* values, int size, std::size_t n);
 
-// The layer "drape", at the bottom. Its path is made absolute, warnings go to the reply. Throws
+// Adds the layer "drape" at the bottom. Makes its path absolute; warnings go to the reply. Throws
 // what OpenImageLayer throws.
 void AddDrape(const Context& context, ClipmapTerrainObject& terrain, v1::OpenTerrain::Drape& drape);
 
-// The layer "filled", on top: where the raster has no data. Throws what OpenFilledLayer throws.
+// Adds the layer "filled" on top, which marks ground without data. Throws what OpenFilledLayer
+// throws.
 void AddFilled(const Context& context, ClipmapTerrainObject& terrain,
                const StreamedTerrainOptions& options);
 

@@ -1,4 +1,4 @@
-// Text tables that show telemetry: what they say is written anew when it has changed. Needs VTK.
+// Text tables that show telemetry and are updated when it changes. Needs VTK.
 #ifndef DSPACE_SESSION_LIVE_TABLES_H
 #define DSPACE_SESSION_LIVE_TABLES_H
 
@@ -16,14 +16,14 @@ namespace dspace::session {
 // The tables of all viewports that name channels of telemetry.
 class LiveTables {
 public:
-  // Puts the table into the viewport, without values as yet. Throws Error(InvalidArgument) and
+  // Adds the table to the viewport, without values at first. Throws Error(InvalidArgument) and
   // changes nothing.
   void Set(const v1::SetTextTable& command, vtkDspaceViewport& viewport);
   void Remove(const std::string& viewport, const std::string& table);
   void RemoveViewport(const std::string& viewport) { this->Viewports_.erase(viewport); }
 
-  // Before a viewport is drawn: what its tables say now. A text of telemetry that cannot be drawn
-  // there is shown with '?' for what the font lacks, and cut where it is long. Throws nothing.
+  // Updates the tables of a viewport before it is drawn. Characters that the font lacks are shown
+  // as '?', and long text is truncated. Does not throw.
   void Update(const std::string& name, const Telemetry& telemetry, vtkDspaceViewport& viewport);
 
 private:

@@ -28,18 +28,18 @@ public:
 
   void AddTo(Registry& registry);
 
-  // Null when there is none of that name.
+  // Null if there is none of this name.
   vtkDspaceViewport* Find(const std::string& name) const;
   void SetRenderContext(vtkDspaceRenderContext* context);
   vtkDspaceRenderContext* GetRenderContext(); // made on demand
 
-  // The planes of the last capture command, which the taker may move away.
+  // The planes of the last capture command. The caller may move them.
   dspace::Capture& LastCapture() { return this->LastCapture_; }
   void Clear(); // viewports first, then the context
 
 private:
   vtkDspaceViewport& Get(const std::string& name) const; // throws Error(NotFound)
-  void AddWarnings(v1::Reply& reply);                    // what VTK warned of while it drew
+  void AddWarnings(v1::Reply& reply);                    // warnings of VTK while drawing
 
   void Create(const Context& context, v1::CreateViewport& command);
   void Remove(const Context& context, v1::RemoveViewport& command);
@@ -69,7 +69,7 @@ private:
 
   vtkSmartPointer<vtkDspaceRenderContext> RenderContext_;
   std::map<std::string, vtkSmartPointer<vtkDspaceViewport>> Viewports_;
-  std::map<std::string, OrbitController> Controllers_; // of viewports that events came to
+  std::map<std::string, OrbitController> Controllers_; // of viewports that have received events
   LiveTables LiveTables_;
   dspace::Capture LastCapture_;
 };
