@@ -9,8 +9,8 @@
 namespace dspace::session {
 namespace {
 
-constexpr double Slice = 0.1;             // [s]: so often the thread looks what is wanted of it
-constexpr std::size_t MostWarnings = 100; // that wait to be taken
+constexpr double Slice = 0.1;             // [s] between checks of requests
+constexpr std::size_t MostWarnings = 100; // pending warnings
 
 std::string Number(double value) {
   char text[32];
@@ -73,9 +73,9 @@ void RecorderThread::Run() {
     if (!failure.empty()) {
       this->Fail(failure);
     }
-    this->session = nullptr; // its graphics context is this thread's
+    this->session = nullptr; // its graphics context belongs to this thread
   }
-  this->watcher.reset(); // its place is free again
+  this->watcher.reset(); // frees its connection
   const std::lock_guard lock(this->mutex);
   this->over = true;
   this->changed.notify_all();
@@ -92,7 +92,7 @@ void RecorderThread::Follow() {
         }
         this->Take(message);
       }
-      this->lastContact = Clock::now(); // however long that took
+      this->lastContact = Clock::now(); // regardless of the time that this took
     }
     this->CheckLink();
     this->UpdateCounts();
@@ -143,7 +143,7 @@ void RecorderThread::Begin(v1::WatchReply& message) {
   }
   const vtkSmartPointer<vtkDspaceSession> old = this->session;
   this->session = vtkSmartPointer<vtkDspaceSession>::New();
-  if (old) { // the context goes on, with what is on the GPU already
+  if (old) { // keeps the render context with its GPU resources
     this->session->SetRenderContext(old->GetRenderContext());
   }
   this->diverged = false;
@@ -167,7 +167,7 @@ void RecorderThread::Begin(v1::WatchReply& message) {
   this->changed.notify_all();
 }
 
-// Whether the server is there, and lets this in.
+// Checks the connection to the server.
 void RecorderThread::CheckLink() {
   std::string why;
   if (this->watcher->Connected(&why)) {
@@ -176,7 +176,7 @@ void RecorderThread::CheckLink() {
     return;
   }
   const std::string said = this->watcher->Rejection();
-  if (!said.empty()) { // it may be let in again
+  if (!said.empty()) { // the server may accept it later
     this->lastContact = Clock::now();
     if (said != this->rejection) {
       this->rejection = said;
@@ -190,7 +190,7 @@ void RecorderThread::CheckLink() {
   }
 }
 
-// How far it is; does what is wanted.
+// Executes requests and updates the counters.
 void RecorderThread::UpdateCounts() {
   if (!this->session) {
     return;

@@ -42,20 +42,19 @@ vtkSmartPointer<vtkDataArray> ToArray(const char* name, const std::vector<T>& va
 } // namespace
 
 struct vtkDspaceSession::Internals {
-  // In this order: the viewports go before the scenes that they show.
+  // In this order: viewports are destroyed before the scenes that they show.
   dspace::session::Interpreter interpreter;
   std::map<std::string, vtkSmartPointer<vtkDspaceScene>> scenes;
   dspace::session::ViewportCommands viewports;
   dspace::v1::Command command;
   std::map<std::string, vtkSmartPointer<vtkDataArray>> planes;
   dspace::session::Ledger ledger{&interpreter.GetState()};
-  double time_s = 0.0; // that was set last, in whatever scene
+  double time_s = 0.0; // the last one set, of any scene
   std::unique_ptr<dspace::session::RecordingWriter> recording;
   dspace::session::RecordingCounts counts; // of the last one
 
-  // The command is recorded whatever becomes of the ledger, which only snapshots are made of. What
-  // this throws becomes a warning in the reply; a server's viewers hear of the command from another
-  // listener.
+  // Records the command even if the ledger fails, which only snapshots depend on. An exception
+  // becomes a warning in the reply; another listener sends the command to a server's viewers.
   void OnCommand(const dspace::v1::Command& accepted, const dspace::v1::Reply& reply) {
     std::string failure;
     try {

@@ -20,7 +20,7 @@ vtkStandardNewMacro(vtkDspaceWatcher);
 
 namespace {
 
-constexpr int MostChanges = 100000;   // of frames, that wait to be taken
+constexpr int MostChanges = 100000;   // pending frame events
 constexpr double WriterTimeout = 2.0; // [s] of a snapshot
 constexpr double PickTimeout = 1.0;   // [s]: a click is not to stop the viewer for longer
 
@@ -34,12 +34,12 @@ struct vtkDspaceWatcher::Internals {
   std::uint64_t sequence = 0;
   std::string writer;
   bool writerConnected = false;
-  bool writerPending = false; // since the last snapshot, which is followed by it
+  bool writerPending = false; // not received since the last snapshot
   std::string error;
-  std::string failed; // the reply that says why there is no connection, or no word of an event
+  std::string failed; // the reply with the error of a connection or an event
   dspace::session::LinkBanner banner;
-  std::set<std::string> followed; // scenes whose frames' changes are told
-  dspace::v1::Reply changes;      // of these, that nobody has taken
+  std::set<std::string> followed; // scenes with frame events
+  dspace::v1::Reply changes;      // their pending events
 
   dspace::session::Interpreter& Interpreter() { return this->session->GetInterpreter(); }
 
@@ -57,7 +57,7 @@ struct vtkDspaceWatcher::Internals {
     this->sequence = message.sequence();
   }
 
-  // In their order, without the steps that make no difference any more.
+  // Applies messages in order, without superseded steps.
   void Apply(std::vector<dspace::v1::WatchReply>& messages) {
     std::size_t at = 0;
     while (at < messages.size()) {
@@ -76,7 +76,7 @@ struct vtkDspaceWatcher::Internals {
     }
   }
 
-  // Nobody keeps, hears of, or is moved by each step.
+  // Whether intermediate steps are not recorded, followed or needed by a lagging camera.
   bool OnlyLatest() {
     return this->followed.empty() && this->session->GetRecordingPath().empty() &&
            !dspace::session::HasLaggingCamera(this->Interpreter().GetState());
@@ -84,14 +84,15 @@ struct vtkDspaceWatcher::Internals {
 
   void Begin(dspace::v1::WatchReply::Snapshot& snapshot) {
     this->views.BeforeSnapshot(this->Interpreter());
-    // The context goes on, with what is on the GPU already.
+    // The new session keeps the render context with its GPU resources.
     const vtkSmartPointer<vtkDspaceRenderContext> context = this->session->GetRenderContext();
     const vtkSmartPointer<vtkDspaceSession> before = this->session;
     this->session = vtkSmartPointer<vtkDspaceSession>::New();
     this->session->SetRenderContext(context);
     this->error.clear();
     this->banner.Follow(this->Interpreter());
-    const std::set<std::string> scenes = std::exchange(this->followed, {}); // it is no change
+    const std::set<std::string> scenes =
+        std::exchange(this->followed, {}); // a snapshot causes no events
     for (dspace::v1::Command& command : *snapshot.mutable_command()) {
       this->Apply(command);
     }
@@ -128,7 +129,7 @@ struct vtkDspaceWatcher::Internals {
     dspace::v1::Command command;
     command.set_scene(scene);
     command.mutable_follow_frames();
-    this->Interpreter().Execute(command); // one that there is not yet is followed once it is
+    this->Interpreter().Execute(command); // a missing scene is followed when it is created
   }
 
   void ShowBanner() {
@@ -145,7 +146,7 @@ struct vtkDspaceWatcher::Internals {
   dspace::v1::Reply Execute(dspace::v1::Command& command) {
     using dspace::session::Effect;
     if (command.has_capture()) {
-      command.mutable_capture()->set_inline_data(true); // the session does not see this one
+      command.mutable_capture()->set_inline_data(true); // the planes must be in the reply
     }
     if (command.has_follow_frames()) {
       dspace::v1::Reply reply = this->Interpreter().Execute(command);
@@ -180,7 +181,7 @@ struct vtkDspaceWatcher::Internals {
     return reply;
   }
 
-  // What a person has clicked on. Nobody is there to hear it: then it is for the viewer alone.
+  // Sends a pick to the simulation. Without a driver, only the viewer receives it.
   void SendPick(const std::string& viewport, const dspace::v1::PickReply& pick) {
     if (!this->watcher || !this->watcher->Connected() || !this->writerConnected) {
       return;
@@ -262,7 +263,7 @@ std::string vtkDspaceWatcher::TakeReply() {
 int vtkDspaceWatcher::Update(double wait) {
   std::size_t applied = 0;
   std::vector<dspace::v1::WatchReply> messages;
-  // Not for ever: what comes faster than it is applied is for the next call.
+  // Limited: messages that arrive faster than they are applied wait for the next call.
   const auto longest = [&] {
     return applied == 0                                        ? wait
            : this->Impl->writerPending && this->GetConnected() ? WriterTimeout

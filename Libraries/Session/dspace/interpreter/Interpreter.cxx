@@ -68,7 +68,7 @@ v1::Reply Interpreter::Execute(v1::Command& command) {
   if (reply.has_error()) {
     events.DiscardSince(before);
   } else if (this->Depth_ == 0) {
-    events.MoveTo(reply); // what listeners caused
+    events.MoveTo(reply); // events that listeners caused
   }
   MakeTextUtf8(reply);
   return reply;
@@ -90,7 +90,7 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   entry->run(Context{this->State_, scene, name, reply}, command);
   this->State_.files.Note(command, read.Files());
   if (this->Depth_ == 1) {
-    this->State_.frameEvents.MoveTo(reply); // before it is told: listeners pass the reply on
+    this->State_.frameEvents.MoveTo(reply); // before listeners are notified: they forward the reply
   }
   if (entry->effect == Effect::Change) {
     MakeTextUtf8(command); // listeners send and record both
@@ -100,7 +100,7 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
 }
 
 void Interpreter::NotifyListeners(const v1::Command& command, v1::Reply& reply) {
-  const auto listeners = this->Listeners_; // they may come and go meanwhile
+  const auto listeners = this->Listeners_; // a listener may add or remove listeners
   for (const auto& [token, listener] : listeners) {
     try {
       listener(command, reply);

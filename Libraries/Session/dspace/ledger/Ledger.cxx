@@ -94,7 +94,7 @@ struct LedgerScene {
     }
   }
 
-  // What a simulation says; ids, numbers and times of events stand in the accepted commands.
+  // Telemetry, events and questions. Accepted commands contain the ids, numbers and times.
   bool AddMessages(const v1::Command& command) {
     using C = v1::Command;
     switch (command.command_case()) {
@@ -150,14 +150,14 @@ struct Ledger::Impl {
   const State* state = nullptr;
   std::map<std::string, LedgerScene> scenes;
   LedgerViewports viewports;
-  std::vector<v1::Command> others; // of a later version: numbers that no command here has
-  // What is not known any more, and why: by scene, "" for all that is no scene's.
+  std::vector<v1::Command> others; // of a later version, with unknown numbers
+  // The reasons why scenes are unknown, by scene; "": data that belongs to no scene.
   std::map<std::string, std::string> faults;
-  bool unnamed = false; // there was no memory to say which
+  bool unnamed = false; // there was no memory to store the reason
 
   void Apply(const v1::Command& accepted, const v1::Reply& reply, const std::string& name);
   void Fail(const v1::Command& command, const std::string& name, const std::string& why);
-  // Of the scene that the command changes; empty for viewports, which are the session's.
+  // The scene that the command changes; empty for viewports, which belong to the session.
   static std::string FaultKey(const v1::Command& command) {
     const CommandTraits* traits = CommandTraits::Find(command.command_case());
     const bool viewport = traits && traits->GetOwner() == CommandTraits::Owner::Viewport;

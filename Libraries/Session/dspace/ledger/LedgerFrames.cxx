@@ -23,7 +23,7 @@ void PutRename(const std::string& scene, LedgerId frame, const std::string& name
   rename->set_name(name);
 }
 
-// As Robot does it.
+// Has the effect of Robot::FollowMimics.
 void FollowMimics(const v1::RobotReply& robot, std::vector<double>& positions) {
   std::vector<char> done(positions.size(), 0);
   for (std::size_t left = positions.size(); left > 0;) {
@@ -41,7 +41,7 @@ void FollowMimics(const v1::RobotReply& robot, std::vector<double>& positions) {
       --left;
     }
     if (left == before) {
-      return; // a circle, which no robot that was loaded has
+      return; // a cycle, which no loaded robot has
     }
   }
 }
@@ -162,7 +162,7 @@ void LedgerFrames::SetJoints(const v1::SetJoints& command) {
   }
   FollowMimics(robot.about, next);
   for (std::size_t i = 0; i < next.size(); ++i) {
-    if (next[i] != robot.position[i]) { // the interpreter poses the links of these anew
+    if (next[i] != robot.position[i]) { // the interpreter moves the links of these joints
       const v1::JointInfo& joint = robot.about.joint(int(i));
       this->Nodes_[robot.about.link(int(joint.child_link())).frame()].pose.reset();
     }
@@ -249,7 +249,8 @@ void LedgerFrames::PutTree(const std::string& scene, const std::vector<std::stri
   }
 }
 
-// To the final names: first, whatever bears another one's goes out of its way.
+// Renames frames to their final names. A frame that occupies the final name of another one first
+// gets a temporary name.
 void LedgerFrames::PutRenames(const std::string& scene,
                               std::vector<std::pair<LedgerId, std::string>> present,
                               Emit out) const {

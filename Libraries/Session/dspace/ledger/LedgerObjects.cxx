@@ -8,7 +8,7 @@
 namespace dspace::session {
 namespace {
 
-// Of a trail, in a command: each makes its whole line anew.
+// Points of a trail per command: each command rebuilds the whole line.
 constexpr std::size_t MostPoints = 1 << 20;
 
 LedgerId OrRoot(LedgerId frame) {
@@ -19,13 +19,13 @@ std::string DefaultFragment(const std::string& given, v1::Nature nature) {
   return !given.empty() ? given : nature == v1::ORNAMENTAL ? "ornamental" : "physical";
 }
 
-// The name, or none where there is no such fragment (any more).
+// The name, or an empty one if the fragment does not exist.
 std::string Existing(const std::string& name, const std::vector<std::string>& fragments) {
   const bool there = std::find(fragments.begin(), fragments.end(), name) != fragments.end();
   return there ? name : std::string();
 }
 
-// The later material over the earlier one, field by field as the interpreter does it.
+// Overrides the earlier material with the later one, field by field as the interpreter does.
 void Overlay(const v1::Material& later, v1::Material* material) {
   if (later.has_color()) { // whole: zeros of its channels are values too
     material->clear_color();
@@ -222,7 +222,7 @@ void LedgerObjects::PutObject(const std::string& scene, std::uint32_t id, const 
   }
 }
 
-// A robot's visual cannot be removed by itself, but goes with a frame that it was attached to.
+// A visual of a robot cannot be removed alone: it was removed with a frame that it was attached to.
 void LedgerObjects::PutLostVisuals(const std::string& scene, const LedgerFrames& frames,
                                    Emit out) const {
   const auto add = [&]() -> v1::Command& {
@@ -245,7 +245,8 @@ void LedgerObjects::PutLostVisuals(const std::string& scene, const LedgerFrames&
   }
 }
 
-// Loaded, and removed again with all that does not stay. A robot of that name may come after it.
+// Loads the robot and removes it except for the visuals that stay. Another robot may use its name
+// afterwards.
 void LedgerObjects::PutOrphanedVisuals(const std::string& scene,
                                        const std::vector<std::string>& fragments, Emit out) const {
   for (const OrphanedVisuals& orphans : this->Orphans_) {

@@ -82,7 +82,7 @@ bool LedgerViewports::Add(const v1::Command& command) {
   }
 }
 
-// As ViewportCommands::Set does it.
+// Has the effect of ViewportCommands::Set.
 void LedgerViewports::Set(Viewport& viewport, const v1::SetViewport& command) {
   v1::CreateViewport& create = *viewport.create.mutable_create_viewport();
   const std::string present = create.vantage().empty() ? DefaultVantage : create.vantage();
@@ -131,7 +131,7 @@ void LedgerViewports::PutOne(const std::string& name, const Viewport& viewport,
   }
   viewport.latest.Put(viewport.create.scene(), out);
   for (const std::string& fragment : viewport.hidden) {
-    // A viewport goes on hiding the name of one that was removed.
+    // A viewport continues to hide the name of a removed fragment.
     const bool gone = std::find(fragments.begin(), fragments.end(), fragment) == fragments.end();
     if (gone) {
       add().mutable_create_fragment()->set_name(fragment);

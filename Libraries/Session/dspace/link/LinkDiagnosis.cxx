@@ -18,7 +18,7 @@ namespace {
 
 constexpr int Patience = 1000; // [ms]
 
-// Zero when it connects, else the system's error number.
+// 0 if it connects, else the system's error number.
 int Connect(int family, const sockaddr* to, socklen_t size) {
   const int descriptor = socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor < 0) {
@@ -45,7 +45,7 @@ int ConnectToPath(const std::string& path) {
   return Connect(AF_UNIX, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
 }
 
-// Below zero: it is not known.
+// Below zero: unknown.
 int ConnectToPort(const std::string& target) {
   const std::size_t colon = target.rfind(':');
   std::string host = target.substr(0, colon);
@@ -83,7 +83,7 @@ std::string DiagnoseConnection(const std::string& address, bool encrypted) {
   if (result == ECONNREFUSED) {
     return "no process listens there" + accepted;
   }
-  if (result == 0 || result == EAGAIN) { // the latter: of a Unix socket whose server stands still
+  if (result == 0 || result == EAGAIN) { // EAGAIN: a Unix socket whose server hangs
     return std::string("a process listens there but does not accept this client: it hangs, is not "
                        "`dspace serve`, ") +
            (encrypted ? "does not use certificates, or uses those of another authority; accepted: "

@@ -20,7 +20,7 @@ void Pacer::SetRate(double rate) {
 
 double Pacer::Ahead(const std::string& scene, double time_s, double now_s) {
   if (this->Rate_ == 0 || !std::isfinite(time_s)) {
-    return 0; // such a time is refused by whoever is asked to set it
+    return 0; // the interpreter rejects such a time
   }
   const auto [at, first] = this->Clocks_.insert({scene, {time_s, now_s}});
   Clock& clock = at->second;

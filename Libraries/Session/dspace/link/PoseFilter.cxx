@@ -9,7 +9,8 @@ namespace dspace::session {
 namespace {
 
 constexpr int PoseSize = 8;
-constexpr std::size_t MostFrames = 10000000; // remembered in all scenes; beyond it begins anew
+constexpr std::size_t MostFrames =
+    10000000; // stored in all scenes; the filter is cleared beyond this
 
 // Of a scene's poses, or of its telemetry.
 std::string KeyOf(const v1::Command& command) {
@@ -28,7 +29,7 @@ bool KeepsPoses(const v1::Command& command) {
 }
 
 bool PoseFilter::Pass(v1::Command& command) {
-  if (HasUnknown(command)) { // says more than is known here
+  if (HasUnknown(command)) { // has unknown fields
     this->Forget();
     return true;
   }
@@ -43,7 +44,7 @@ bool PoseFilter::Pass(v1::Command& command) {
   }
   if (command.has_set_telemetry()) {
     v1::SetTelemetry& set = *command.mutable_set_telemetry();
-    if (set.time_s_size() > 0 || HasUnknown(set)) { // says more than values
+    if (set.time_s_size() > 0 || HasUnknown(set)) { // has more than values
       this->Scenes_.erase(KeyOf(command));
       return true;
     }
@@ -56,7 +57,7 @@ bool PoseFilter::Pass(v1::Command& command) {
   return true;
 }
 
-// Finds the places of the ids; false when one stands twice.
+// Finds the entries of the ids; false if an id occurs twice.
 bool PoseFilter::Look(Frames& frames, const Ids& ids) {
   const std::size_t n = std::size_t(ids.size());
   if (frames.ids.size() == n &&
@@ -85,7 +86,7 @@ bool PoseFilter::Look(Frames& frames, const Ids& ids) {
 bool PoseFilter::PassRows(Frames& frames, Ids& ids, Numbers& rows, int size) {
   const int n = ids.size();
   if (n == 0 || rows.size() != n * size) {
-    return true; // to be refused, or judged, by whoever carries it out
+    return true; // the server checks it
   }
   if (frames.entries.size() + std::size_t(n) > MostFrames) {
     frames = {};
@@ -100,7 +101,7 @@ bool PoseFilter::PassRows(Frames& frames, Ids& ids, Numbers& rows, int size) {
     const double* row = rows.data() + i * size;
     if (entry.number > 0 && entry.number <= this->Accepted_ &&
         std::memcmp(entry.row.data(), row, bytes) == 0) {
-      continue; // it is there
+      continue; // the other side has it
     }
     if (to < i) {
       ids.Set(to, ids.Get(i));
@@ -127,7 +128,7 @@ void PoseFilter::Sent(const v1::Command& command, std::uint64_t number) {
 void PoseFilter::SentRows(const v1::Command& command, const Ids& ids, const Numbers& rows, int size,
                           std::uint64_t number) {
   Frames& frames = this->Scenes_[KeyOf(command)];
-  // Those of the step that has just passed, less what was left out: in the same order.
+  // The ids of the step that passed last, without the omitted ones, in the same order.
   std::size_t at = 0;
   for (int i = 0; i < ids.size(); ++i) {
     while (at < frames.ids.size() && frames.ids[at] != ids.Get(i)) {

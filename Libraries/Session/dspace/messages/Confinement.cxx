@@ -115,8 +115,8 @@ void Confinement::RequireWithin(const std::string& path) const {
                   this->Who_ + " allows");
 }
 
-// What is not there may mean something else than a file to the library that is to read it, and what
-// is no plain file may never end.
+// A library may interpret the name of a missing file in another way, and reading a special file may
+// never end.
 void Confinement::RequireThere(const std::string& real, const std::string& text,
                                const std::string& field) const {
   std::error_code error;
@@ -135,11 +135,11 @@ std::string Confinement::Check(const std::string& text, const std::string& field
   if (text.find('\0') != std::string::npos) {
     RefusePath(text, field, "contains a zero byte");
   }
-  // GDAL takes a name with "<VRTDataset" anywhere in it for that document itself.
+  // GDAL interprets a name that contains "<VRTDataset" as the document itself.
   if (text.find_first_of("<>") != std::string::npos) {
     RefusePath(text, field, "contains '<' or '>'; accepted: names without them");
   }
-  // What is opened is what was looked at: the same absolute path.
+  // The opened path is the checked one: the same absolute path.
   const fs::path path = fs::absolute(text).lexically_normal();
   std::error_code error;
   const fs::path real = fs::weakly_canonical(path, error);

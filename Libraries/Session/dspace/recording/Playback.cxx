@@ -172,8 +172,7 @@ void Playback::CarryOut(v1::Command command, const char* table, std::uint64_t se
   }
 }
 
-// What was drawn of a large raster was its overviews, which are built anew beside the unpacked
-// file.
+// Large rasters were drawn from their overviews, which are rebuilt beside the unpacked file.
 void Playback::WaitForOverviews(const v1::Command& opened) {
   v1::Command ask;
   ask.set_scene(opened.scene());

@@ -79,7 +79,7 @@ PlaybackSteps StepsOf(RecordingReader& reader, const std::optional<std::string>&
         inside.push_back(step);
       }
     }
-    // After what is lost nobody knows whether all came before the time was set.
+    // After lost commands it is unknown whether the step is complete.
     PutFirstStep(inside, base, open || number > 0 || !base.payload.empty());
     std::vector<PlaybackStep> found;
     for (std::size_t i = 0; i < inside.size(); ++i) {

@@ -51,7 +51,7 @@ void RequireAbsent(const RecordingReader& reader, const RecordingAsset& asset) {
   }
 }
 
-// The SHA-256 of a file of so many bytes; empty where it has another number of them.
+// The SHA-256 of a file of `size` bytes; empty if its size differs.
 std::string HashOf(const std::string& path, std::int64_t size, const std::string& object) {
   std::error_code error;
   if (std::int64_t(fs::file_size(path, error)) != size && !error) {

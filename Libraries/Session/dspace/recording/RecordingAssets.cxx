@@ -59,7 +59,7 @@ void RecordingAssets::PutOne(const std::string& path, const FileStamp& stamp) {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  // What is on a server is no file here, and not absent.
+  // A file on a server is not a local file, and not absent.
   if (status.type() == fs::file_type::not_found && fs::path(path).is_absolute() &&
       path.compare(0, 4, "/vsi") != 0 && path.find("://") == std::string::npos) {
     this->PutRow(path, stamp.size < 0 ? "absent" : "changed");

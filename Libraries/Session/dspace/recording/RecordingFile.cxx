@@ -59,7 +59,7 @@ std::string Sha256::Finish() {
   const auto context = static_cast<EVP_MD_CTX*>(this->Context_);
   std::string digest(32, '\0');
   EVP_DigestFinal_ex(context, reinterpret_cast<unsigned char*>(digest.data()), nullptr);
-  EVP_DigestInit_ex(context, nullptr, nullptr); // the same digest anew
+  EVP_DigestInit_ex(context, nullptr, nullptr); // restarts the digest
   return digest;
 }
 
@@ -221,12 +221,12 @@ void RecordingFile::Close() noexcept {
     sqlite3_finalize(statement);
   }
   if (this->Database_) {
-    // All goes into the file itself, also while somebody has it open (else the last one who closes
-    // it would have to be able to write it), as far as nobody is in the middle of reading.
+    // Moves the log into the file even if another process has it open, as far as no read is in
+    // progress. Otherwise the last process that closes the file would need write access.
     sqlite3_busy_timeout(this->Database_, 2000);
     sqlite3_wal_checkpoint_v2(this->Database_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr,
                               nullptr);
-    // If nobody has it open it needs no log any more, and can be read where nothing can be written.
+    // If no other process has the file open, it needs no log, and can be read from read-only media.
     sqlite3_busy_timeout(this->Database_, 0);
     sqlite3_exec(this->Database_, "PRAGMA journal_mode=DELETE", nullptr, nullptr, nullptr);
   }

@@ -25,7 +25,7 @@ bool IsThere(const RecordingAsset& asset) {
   return std::filesystem::is_regular_file(asset.path, error);
 }
 
-// Without its files a packed recording would replay nowhere.
+// A packed recording without its files could not be played.
 void RequireFiles(const std::string& name, const std::vector<RecordingAsset>& assets) {
   std::vector<std::string> gone;
   for (const RecordingAsset& asset : assets) {
@@ -109,7 +109,7 @@ PackReport PackRecording(const std::string& path, const std::optional<std::strin
     RecordingAssets packer(file, true);
     for (const RecordingAsset& asset : assets) {
       if (IsNeeded(asset)) {
-        RequireFiles(name, {asset}); // it may have gone meanwhile
+        RequireFiles(name, {asset}); // it may have been removed since
         PackOne(file, packer, name, asset, checkCancel);
       } else if (asset.state != "absent" && !asset.packed) {
         report.missing.push_back(asset.path);

@@ -3,7 +3,7 @@
 // of its payload, the row's number (both varints), the payload, and where that does not fit, the
 // number of the first page of a chain that holds the rest. The payload is a record: types of its
 // columns, then their values. The write-ahead log has a head of 32 bytes, then pages, each after a
-// head of 24 that states the page's number and a salt, which changes when the log begins anew.
+// head of 24 that states the page's number and a salt, which changes when the log restarts.
 #include <dspace/recording/RecordingPages.h>
 
 #include <algorithm>
@@ -154,7 +154,7 @@ double ToReal(const Column& column) {
   return whole ? double(*whole) : std::get<double>(column);
 }
 
-// Makes rows of records, those whose checksum holds.
+// Converts records with a valid checksum to rows.
 class Believer {
 public:
   std::optional<FoundRow> Believe(std::int64_t key, std::vector<Column>& columns) {

@@ -75,7 +75,7 @@ LostIn(const RecordingDatabase& found, std::uint64_t begin, std::uint64_t last) 
   return lost;
 }
 
-// Packed files whose content is not whole.
+// Packed files with incomplete content.
 std::vector<RecordingAsset> BrokenIn(RecordingReader& found, const CancelCheck& checkCancel) {
   const RecordingReader::PartNumbers numbers = found.Parts();
   std::vector<RecordingAsset> broken;

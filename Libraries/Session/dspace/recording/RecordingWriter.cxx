@@ -22,7 +22,8 @@ namespace dspace::session {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t TransactionBytes = 8u << 20; // so many waiting are written at once
+constexpr std::size_t TransactionBytes =
+    8u << 20; // starts a transaction when this many bytes are queued
 
 // SQLite gives -0 back as 0, which has another checksum.
 double WithoutMinus0(double value) {

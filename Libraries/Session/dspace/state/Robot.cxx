@@ -89,14 +89,14 @@ double Robot::CheckedPosition(std::size_t index, double position, bool clamp) co
   }
   RequireFinite(label, "the position", position);
   if (!joint.hasLimits) {
-    // Where a ten-thousandth of a degree is lost, a wheel's turn means nothing any more.
+    // Beyond this, a ten-thousandth of a degree is lost, and a wheel's angle is meaningless.
     if (joint.type != UrdfJoint::Type::Prismatic) {
       Require(std::abs(position) <= 1e12, label, "the position", position,
               "within 1e12 degrees of 0");
     }
     return position;
   }
-  // A file's rounded radians must not refuse the round number of degrees that they stand for.
+  // Rounded radians in a file must not reject the round number of degrees that they represent.
   const double slack = joint.type == UrdfJoint::Type::Prismatic ? 1e-6 : 1e-6 * 180.0 / M_PI;
   if (!clamp && (position < joint.lower - slack || position > joint.upper + slack)) {
     Refuse(label, "the position is " + NumberText(position) + "; accepted: " +

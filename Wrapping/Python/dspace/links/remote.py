@@ -63,7 +63,7 @@ class RemoteClient(LocalClient):
         link.Begin(encode(command), asks)
         reply = self._take(link, asks)
         for warning in self.recording.take_warnings() if self.recording is not None else ():
-            warn(warning) if reply.HasField("error") else reply.warning.append(news)
+            warn(warning) if reply.HasField("error") else reply.warning.append(warning)
         return reply
 
     def _take(self, link, asks=False, end=None):

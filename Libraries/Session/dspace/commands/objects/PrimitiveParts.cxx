@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint32_t DefaultResolution = 32;
 
-// A message's resolution; beyond int's range it is refused with the largest int.
+// The resolution of a message; values beyond the range of int become the largest int, which is
+// rejected.
 template<class Shape> int ResolutionOf(const Shape& shape) {
   const std::uint32_t value = shape.has_resolution() ? shape.resolution() : DefaultResolution;
   return int(std::min<std::uint32_t>(value, 1u << 30));

@@ -101,7 +101,7 @@ void CheckIds(const v1::LoadRobot& command, const Urdf& urdf, const std::string&
   }
 }
 
-// Makes the frames and objects of a robot whose geometry is loaded.
+// Creates the frames and objects of a robot with loaded geometry.
 class RobotBuilder {
 public:
   RobotBuilder(const Context& context, v1::LoadRobot& command, const Urdf& urdf)

@@ -19,7 +19,7 @@ Eigen::Affine3d ToAffine(const Pose& X) {
 
 constexpr double BeamWidth = 0.01; // of the longest edge of a box of beams
 
-// Orange, so that nobody takes it for the part itself.
+// Orange, to distinguish it from the part itself.
 std::shared_ptr<const Material> StandInMaterial() {
   auto material = std::make_shared<Material>();
   material->name = "stand-in";
@@ -68,7 +68,7 @@ UrdfGeometry StandInForMesh(const UrdfVisual& visual, std::string& text) {
     size = bounds.sizes().array() * visual.size.array().abs();
     center = visual.size.asDiagonal() * bounds.center();
   }
-  // Beyond that no number is a part's, whoever stated it.
+  // No part is larger than this.
   if (!(size.maxCoeff() >= 1e-6 && size.maxCoeff() <= 1e9 && center.norm() <= 1e9)) {
     text = CubePlaceholder;
     return SmallCube(visual);

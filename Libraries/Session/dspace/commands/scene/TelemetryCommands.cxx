@@ -12,7 +12,7 @@ void List(const Context& context, const Telemetry::Channel& channel) {
 }
 
 void CreateTelemetry(const Context& context, v1::CreateTelemetry& command) {
-  // Ids go on through the session, so that a scene that is made anew has others.
+  // Ids are unique in the session, so that a recreated scene has other ids.
   const std::uint64_t id =
       context.scene->telemetry.Create(command, context.state.lastTelemetryId + 1);
   context.state.lastTelemetryId = std::max(context.state.lastTelemetryId, id);

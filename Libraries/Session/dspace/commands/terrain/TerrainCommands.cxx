@@ -87,7 +87,7 @@ constexpr std::int64_t MeshPixels = 4000000;
 // Where overviews are read; empty: nowhere.
 std::string CacheFolder(v1::OpenTerrain& command) {
   if (!command.has_overview_cache()) {
-    return ElevationCache::DefaultFolder(); // whose it is where a recording replays
+    return ElevationCache::DefaultFolder(); // of the user who plays the recording
   }
   if (!command.overview_cache().empty()) {
     command.set_overview_cache(AbsolutePath(command.overview_cache()));

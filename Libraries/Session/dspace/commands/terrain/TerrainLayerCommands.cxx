@@ -18,7 +18,7 @@ namespace {
 
 using Add = v1::AddTerrainLayer;
 
-// A layer and what is told of it.
+// A layer and its description.
 struct Opened {
   std::shared_ptr<const ColorLayer> layer;
   v1::TerrainLayerReply about;
@@ -186,7 +186,7 @@ void Warn(const Context& context, const ColorLayer& layer) {
   }
 }
 
-// What marks ground that is made up stays on top, unless it is told otherwise.
+// The layer that marks interpolated ground stays on top, unless a command moves it.
 std::optional<std::size_t> UnderFilled(const TerrainLayers& layers) {
   v1::TerrainLayerList list;
   layers.Describe(list);

@@ -1,4 +1,4 @@
-// What is laid over a terrain's own colour.
+// The overlays of a terrain's own colour.
 #include <algorithm>
 
 #include <dspace/commands/objects/ObjectTools.h>
@@ -24,7 +24,8 @@ ClipmapStyle::Lines ToLines(const v1::StyleTerrain::Lines& lines, const std::str
 ClipmapStyle::GridLabels ToGridLabels(const v1::StyleTerrain::GridLabels& labels,
                                       const std::string& label) {
   ClipmapStyle::GridLabels result;
-  if (labels.has_font_size()) { // what is beyond int's range is refused as the largest int
+  if (labels.has_font_size()) { // values beyond the range of int become the largest int, which is
+                                // rejected
     result.fontSize = int(std::min<std::uint32_t>(labels.font_size(), 0x7fffffffu));
   }
   if (labels.has_color()) {
@@ -91,7 +92,7 @@ ClipmapStyle::Ramp ToRamp(const v1::StyleTerrain::Ramp& ramp, const StreamedTerr
 ClipmapStyle::Noise ToNoise(const v1::StyleTerrain::Noise& noise) {
   ClipmapStyle::Noise result;
   result.options.wavelength = noise.wavelength();
-  result.options.octaves = static_cast<int>(std::min(noise.octaves(), 1000U)); // then refused
+  result.options.octaves = static_cast<int>(std::min(noise.octaves(), 1000U)); // rejected later
   result.options.gain = noise.gain();
   result.options.seed = noise.seed();
   result.amplitude = noise.amplitude();

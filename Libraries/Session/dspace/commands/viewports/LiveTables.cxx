@@ -101,7 +101,7 @@ void ColorValues(const v1::SetTextTable& command, const Telemetry& telemetry, Te
   }
 }
 
-// False where the viewport refuses it.
+// False if the viewport rejects it.
 bool Put(const v1::SetTextTable& command, vtkDspaceViewport& viewport, const Telemetry& telemetry,
          const Cell& live) {
   try {

@@ -40,7 +40,7 @@ ViewportCommands::~ViewportCommands() {
 
 void ViewportCommands::Clear() {
   for (const auto& [name, viewport] : this->Viewports_) {
-    viewport->SetBeforeDrawing({}); // somebody may keep it
+    viewport->SetBeforeDrawing({}); // other code may still own it
   }
   this->Viewports_.clear();
   this->RenderContext_ = nullptr;

@@ -23,9 +23,9 @@ using std::chrono::milliseconds;
 constexpr std::chrono::seconds ToLeave{3};
 constexpr std::size_t MostEvents = 10000;
 constexpr std::size_t MostEventBytes = 16 << 20;
-// How far a sender is ahead of what has been written, while it goes on: a few steps, whose memory
-// serves again while it is in the processor's caches. Where it does not go on for a while the other
-// side stalls, and the window takes in what comes.
+// How far a sender may be ahead of the written bytes: a few steps, so that their memory is reused
+// while it is in the processor's caches. If writing stalls for ToCatchUp, the sender may fill the
+// window.
 constexpr std::size_t UnsentBytes = 1 << 20;
 constexpr std::chrono::milliseconds ToCatchUp{5};
 
@@ -67,11 +67,11 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const Lin
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);                  // pictures
   arguments.SetMaxSendMessageSize(-1);                     // the server has its limit
-  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // a connection of one's own
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // a separate connection for each client
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 50);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
-  // A connection that is dead without a word is found out by asking, also while nothing is sent.
+  // Pings detect a dead connection, also while nothing is sent.
   const int keepalive_ms = int(std::clamp(1e3 * keepalive_s, 1.0, 1e9));
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, keepalive_ms);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, std::min(keepalive_ms, 10000));
@@ -154,7 +154,7 @@ RemoteClient::Link::Link(const RemoteClientOptions& from)
       MakeChannel(this->options.address, this->options.security, this->options.keepalive_s);
 }
 
-// The generated stub's Drive, but for messages that are in bytes already.
+// Drive of the generated stub, for serialized messages.
 std::unique_ptr<RemoteClient::Link::Stream> RemoteClient::Link::Call(grpc::ClientContext& context) {
   static const grpc::internal::RpcMethod method("/dspace.v1.Dspace/Drive",
                                                 grpc::internal::RpcMethod::BIDI_STREAMING);
@@ -187,7 +187,7 @@ void RemoteClient::Link::End() {
     std::unique_lock lock(this->mutex);
     this->ending = true;
     this->toSend.notify_all();
-    // The writing thread says goodbye, so that the server keeps no place for this client.
+    // The writing thread closes the stream, so that the server keeps no reservation.
     if (this->leaving || (this->connected && !this->broken)) {
       this->changed.wait_for(lock, ToLeave, [this] { return !this->context; });
     }
@@ -240,14 +240,14 @@ bool RemoteClient::Link::WaitForEarlier(std::unique_lock<std::mutex>& lock,
   return true;
 }
 
-// Looks whether the command is to be sent at all.
+// Checks whether the command must be sent.
 void RemoteClient::Link::Admit() {
   this->catchUp = LinkClock::now() + ToCatchUp;
   if (this->failure.has_error()) {
     this->Finish(std::exchange(this->failure, {}));
     return;
   }
-  if (FindInvalidText(this->command)) { // the server could not parse it, and would never answer
+  if (FindInvalidText(this->command)) { // the server could not parse it and would never reply
     this->Finish(Catch([&]() -> v1::Reply {
       RequireUtf8(this->command, "command " + CommandName(this->command));
       return {};
@@ -305,7 +305,7 @@ bool RemoteClient::Link::WaitForWindow(std::unique_lock<std::mutex>& lock,
     this->Finish(std::move(gone));
   } else {
     this->Put();
-    lock.unlock(); // whoever wakes up wants it
+    lock.unlock(); // the woken thread needs it
     this->toSend.notify_one();
     lock.lock();
   }
@@ -386,7 +386,7 @@ bool RemoteClient::Link::WaitForFlush(std::unique_lock<std::mutex>& lock,
 }
 
 void RemoteClient::Link::MoveUnawaitedReplies(v1::Reply& reply) {
-  // What came before goes before.
+  // Earlier warnings and events come first.
   reply.mutable_warning()->MergeFrom(this->unawaitedReplies.warning());
   if (this->unawaitedReplies.frame_event_size() > 0) {
     auto events = std::move(*this->unawaitedReplies.mutable_frame_event());
@@ -414,8 +414,8 @@ void RemoteClient::Link::RunConnection() {
     }
     bool final = false;
     const v1::Error error = ToError(this->options.address, status, final);
-    // A client that was let in once is not sent away because its former self is still there. (What
-    // a stream that was opened has too much of is its messages' size.)
+    // A client that reconnects is not rejected because its old connection still exists. (An opened
+    // stream fails with this status because of the size of its messages.)
     const bool crowded =
         this->opened && !opened && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
     final = final && !crowded;
@@ -457,7 +457,7 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
   v1::DriveReply message;
   const bool answered = stream->Write(ToBytes(open)) && stream->Read(&message);
   bool good = answered && message.has_opened();
-  bool over = !answered; // there is a status, or soon
+  bool over = !answered; // the stream ends with a status
   v1::Reply rejected;
   if (good) {
     const std::lock_guard lock(this->mutex);
@@ -466,8 +466,7 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
     this->leaving = !good;
     this->changed.notify_all();
   }
-  if (rejected
-          .has_error()) { // the place that it was given is not wanted: first that, then the news
+  if (rejected.has_error()) { // releases the reservation first, then reports the error
     stream->WritesDone();
     over = true;
     while (stream->Read(&message)) {
@@ -487,7 +486,7 @@ bool RemoteClient::Link::Drive(grpc::Status& status) {
         this->HandleReply(message);
         over = !this->broken;
       }
-      this->changed.notify_all(); // without the mutex, which whoever wakes up wants
+      this->changed.notify_all(); // without the mutex, which the woken thread needs
     }
   }
   {
@@ -514,7 +513,7 @@ v1::Reply RemoteClient::Link::Resume(const v1::Opened& message) {
     return this->Fault(v1::Error::UNSUPPORTED, "it speaks protocol '" + message.protocol() +
                                                    "'; accepted: '" + LinkProtocol + "'");
   }
-  if (this->opened && !message.resumed()) { // of a server that does not know `again`
+  if (this->opened && !message.resumed()) { // the server does not know `again`
     return this->Fault(v1::Error::IO,
                        "it was restarted, or another client has driven it since: its scenes are "
                        "lost or unknown; accepted: connect again");
@@ -543,7 +542,7 @@ void RemoteClient::Link::Write(Stream& stream) {
     const auto request = this->TakeNext();
     grpc::WriteOptions options;
     if (this->next < this->pending.size()) {
-      options.set_buffer_hint(); // what follows takes it along
+      options.set_buffer_hint(); // the next message flushes it
     }
     lock.unlock();
     const bool written = stream.Write(request, options);
@@ -557,7 +556,8 @@ void RemoteClient::Link::Write(Stream& stream) {
 grpc::ByteBuffer RemoteClient::Link::TakeNext() {
   const Pending& command = this->pending[this->next++];
   this->unsentBytes -= command.bytes;
-  if (this->unsentBytes <= UnsentBytes / 2) { // not for each: whoever waits then sends several
+  if (this->unsentBytes <=
+      UnsentBytes / 2) { // not for each command: the waiting thread then sends several
     this->absorbing = false;
     if (this->crowded) {
       this->changed.notify_all();
@@ -607,7 +607,7 @@ void RemoteClient::Link::HandleReply(v1::DriveReply& message) {
 
 void RemoteClient::Link::TakeReply(std::uint64_t number, v1::Reply& reply) {
   if (reply.has_error()) {
-    this->filter.Forget(); // what it set it has not set
+    this->filter.Forget(); // its values were not set
   }
   if (number == this->awaited) {
     this->reply = std::move(reply);
@@ -615,7 +615,7 @@ void RemoteClient::Link::TakeReply(std::uint64_t number, v1::Reply& reply) {
     return;
   }
   const bool dropped = this->abandoned.count(number) != 0;
-  // Replies come in order: none of an earlier number comes any more.
+  // Replies come in order: there will be none for an earlier number.
   this->abandoned.erase(this->abandoned.begin(), this->abandoned.upper_bound(number));
   if (reply.has_error() && !dropped && !this->failure.has_error()) {
     *this->failure.mutable_error() = reply.error();

@@ -32,7 +32,7 @@ RemoteClient::RemoteClient(const RemoteClientOptions& options, NonBlocking)
 
 RemoteClient::~RemoteClient() {
   if (this->Link_->Forked()) {
-    (void)this->Link_.release(); // its threads and connections are the parent's
+    (void)this->Link_.release(); // its threads and connections belong to the parent
     return;
   }
   this->Link_->End();
@@ -52,7 +52,7 @@ bool RemoteClient::WaitForConnect(double seconds) {
   } else if (LinkClock::now() < link.deadline) {
     return false;
   } else {
-    lock.unlock(); // to look takes a moment
+    lock.unlock(); // the diagnosis takes a moment
     const std::string why =
         DiagnoseConnection(link.options.address, link.options.security.HasCertificates());
     lock.lock();
@@ -131,8 +131,7 @@ bool RemoteClient::Wait(double seconds) {
   std::unique_lock lock(link.mutex);
   if (link.activity == Link::Activity::Pace) {
     const auto wake = std::min(link.due, until);
-    if (link.due >
-        LinkClock::time_point()) { // not cut short by a broken link: it is due when it is
+    if (link.due > LinkClock::time_point()) { // a failed link does not shorten the wait
       while (LinkClock::now() < wake) {
         link.changed.wait_until(lock, wake);
       }
@@ -177,10 +176,10 @@ void RemoteClient::Abandon() {
   }
   const std::lock_guard lock(link.mutex);
   if (link.activity == Link::Activity::Reply) {
-    if (link.awaited != 0) { // its reply has not come
+    if (link.awaited != 0) { // its reply was not received
       link.abandoned.insert(std::exchange(link.awaited, 0));
     }
-    link.filter.Forget(); // whether it was carried out will not be known
+    link.filter.Forget(); // it is unknown whether it was executed
   }
   link.reply.Clear();
   link.activity = Link::Activity::Nothing;
@@ -201,7 +200,7 @@ std::size_t RemoteClient::TakeEvents(const std::function<void(const v1::ViewerEv
                           [&] { return link.broken || !link.events.empty(); });
   const auto events = std::exchange(link.events, {});
   link.eventBytes = 0;
-  lock.unlock(); // whoever hears may give commands
+  lock.unlock(); // the callback may execute commands
   for (const v1::ViewerEvent& event : events) {
     handle(event);
   }

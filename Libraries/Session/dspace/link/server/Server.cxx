@@ -22,7 +22,7 @@ namespace {
 
 // Room for a message's own fields around a command.
 constexpr int Slack = 4096;
-// How long a client whose commands want no reply waits to hear that the last one is done.
+// How long the completion of commands without replies may be delayed.
 constexpr std::chrono::microseconds DoneDelay{500};
 
 void Check(const ServerOptions& options) {
@@ -47,7 +47,7 @@ void Check(const ServerOptions& options) {
   }
 }
 
-// gRPC would take a living server's socket away from it.
+// Prevents gRPC from replacing the socket of a running server.
 void RejectTakenSocket(const LinkAddress& address) {
   if (address.path.empty()) {
     return;
@@ -62,7 +62,7 @@ void RejectTakenSocket(const LinkAddress& address) {
   bool taken = !S_ISSOCK(info.st_mode);
   const int probe = taken ? -1 : socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (probe >= 0) {
-    // One whose queue is full lives, too.
+    // A server with a full queue is alive too.
     taken = connect(probe, reinterpret_cast<const sockaddr*>(&place), sizeof(place)) == 0 ||
             (errno != ECONNREFUSED && errno != ENOENT);
     close(probe);
@@ -84,7 +84,7 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   RejectTakenSocket(address);
   hub.service = std::make_unique<Service>(hub);
   grpc::ServerBuilder builder;
-  // Half of what there is stays for files and for answers.
+  // Half of the descriptors stay available for files and replies.
   hub.listener = std::make_unique<ServerListener>(
       address,
       std::min(std::size_t(4 * options.maximumConnections + 32), RaiseDescriptorLimit() / 2));
@@ -93,11 +93,11 @@ Server::Server(const ServerOptions& options) : Hub_(new Hub) {
   builder.RegisterService(hub.service.get());
   builder.SetMaxReceiveMessageSize(int(options.maximumMessage) + Slack);
   builder.SetMaxSendMessageSize(-1); // pictures
-  // No thread is left for a connection beyond the limit to hold one up.
+  // Limits the threads, so that connections beyond the limit cannot block one.
   grpc::ResourceQuota quota("dspace");
   quota.SetMaxThreads(int(options.maximumConnections + DrivesAtOnce) + 8);
   builder.SetResourceQuota(quota);
-  // Who connects and says nothing takes nobody's place for long.
+  // A client that connects and sends nothing is disconnected soon.
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 5000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 60000);
   const int keepalive_ms = int(std::max(1.0, 1e3 * options.keepalive_s));
@@ -126,7 +126,7 @@ Server::~Server() {
     return;
   }
   hub.listener->Stop();
-  // Who does not read is not waited for: its connection is cut off.
+  // Connections of clients that do not read are closed.
   std::mutex mutex;
   std::condition_variable ended;
   bool over = false;
@@ -210,11 +210,12 @@ bool Server::Run(const SessionWork& work, double seconds) {
     Task task = std::move(hub.tasks.front());
     hub.tasks.pop_front();
     hub.taskBytes -= task.bytes;
-    if (hub.taskBytes <= ReadAheadBytes / 2) { // not for each: whoever waits then queues several
+    if (hub.taskBytes <=
+        ReadAheadBytes / 2) { // not for each task: the waiting thread then queues several
       hub.space.notify_all();
     }
     if (task.generation != hub.writer.generation) {
-      continue; // somebody else drives by now
+      continue; // another client has taken over
     }
     lock.unlock();
     v1::Reply reply = work.execute(task.command);
@@ -250,7 +251,7 @@ void Server::Publish(const v1::Command& command) {
       size = message->ByteSizeLong() + 64;
     }
     if (viewer->out.bytes - viewer->partBytes + size > hub.options.unreadBytes) {
-      viewer->FallBehind(); // it will begin anew, once it reads again
+      viewer->FallBehind(); // it gets a snapshot when it reads again
     } else {
       viewer->out.Put(message, size);
     }

@@ -38,7 +38,7 @@ void Server::Hub::Answer(std::uint64_t number, bool noReply, v1::Reply reply) {
   const bool silent =
       noReply && !reply.has_error() && reply.warning().empty() && reply.frame_event().empty();
   if (silent) {
-    this->writer.unacknowledgedDone = number; // a later one tells of this one too
+    this->writer.unacknowledgedDone = number; // the next message covers this one too
     if (number % DoneEvery == 0) {
       this->SendDone();
     }
@@ -75,12 +75,12 @@ void Server::Hub::SendDone() {
 void Server::Hub::PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::size_t size) {
   const std::shared_ptr<DriveStream>& stream = this->writer.stream;
   if (!stream) {
-    return; // it asks again when it comes back
+    return; // the client gets it when it resumes
   }
   auto& out = stream->out;
   const auto silent = [](const v1::DriveReply& m) { return m.has_done() && !m.done().has_reply(); };
   if (!out.messages.empty() && silent(*reply) && silent(*out.messages.back().first)) {
-    out.messages.back().first = std::move(reply); // the newer number says it all
+    out.messages.back().first = std::move(reply); // the newer number covers both
     return;
   }
   if (!out.messages.empty() && out.bytes - stream->eventBytes + size > this->options.unreadBytes) {
@@ -88,7 +88,7 @@ void Server::Hub::PutToWriter(std::shared_ptr<const v1::DriveReply> reply, std::
     stream->eventBytes = 0;
     out.ended = true;
     out.ready.notify_one();
-    stream->context->TryCancel(); // it does not read: its replies are kept, and it may come back
+    stream->context->TryCancel(); // it does not read; its replies are stored, and it may resume
     return;
   }
   out.Put(std::move(reply), size);
@@ -138,11 +138,11 @@ LinkClock::time_point Server::Hub::SnapshotDue(LinkClock::time_point otherwise) 
 void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mutex>& lock) {
   const auto began = LinkClock::now();
   if (this->SnapshotDue(LinkClock::time_point::max()) > began) {
-    return; // nobody waits for one, or the last one was just made
+    return; // none is requested, or the last one is too recent
   }
   grpc::Status failed;
   if (!this->snapshot) {
-    // Nobody else publishes meanwhile: that is this thread's.
+    // Only this thread publishes, so that the state does not change.
     lock.unlock();
     SnapshotLimits limits;
     limits.part = std::min(limits.part, this->options.maximumMessage);
@@ -155,7 +155,7 @@ void Server::Hub::PutSnapshots(const SessionWork& work, std::unique_lock<std::mu
     lock.lock();
     this->snapshot = made;
     ++this->counts.snapshots;
-    // Viewers that come and go without end do not stop whoever drives.
+    // Frequent new viewers must not stop the driver.
     const auto now = LinkClock::now();
     this->nextSnapshot = now + std::max<LinkClock::duration>(SnapshotPause, 10 * (now - began));
   }

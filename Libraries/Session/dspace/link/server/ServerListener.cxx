@@ -29,7 +29,7 @@ constexpr unsigned MostUnread_ms = 60000; // what was sent and the other side do
               "the system does not let a server listen there: " + why);
 }
 
-// Of a connection that is still what it was; 0: it is not open.
+// The inode of an open connection; 0: it is not open.
 ino_t InodeOf(int descriptor) {
   struct stat info = {};
   return fstat(descriptor, &info) == 0 && S_ISSOCK(info.st_mode) ? info.st_ino : 0;
@@ -60,7 +60,7 @@ std::size_t RaiseDescriptorLimit() {
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) {
     return 1024;
   }
-  // Beyond a million tables of them cost memory, and nobody needs them.
+  // More than a million descriptors cost memory and are not needed.
   const rlim_t wanted = std::min<rlim_t>(limit.rlim_max, 1 << 20);
   if (limit.rlim_cur < wanted) {
     const rlimit raised = {wanted, limit.rlim_max};
@@ -138,8 +138,8 @@ void ServerListener::ListenAtPath(const std::string& path) {
     Refuse("unix:" + path, std::strerror(errno));
   }
   this->Listeners_.push_back(listener);
-  // Its owner's alone, from the beginning, less what the process's mask takes from the owner, too.
-  // (To set that for a moment would be for all its threads.)
+  // Accessible to the owner only from the start, minus the process's umask. (Setting the umask
+  // temporarily would affect all threads.)
   if (fchmod(listener, 0700) != 0 ||
       bind(listener, reinterpret_cast<sockaddr*>(&place), sizeof(place)) != 0 ||
       listen(listener, Backlog) != 0) {
@@ -191,7 +191,7 @@ void ServerListener::ListenAtHost(const std::string& target) {
     close(listener);
     why = std::strerror(error);
     if (error == EADDRINUSE) {
-      Refuse(target, why); // half of somebody else's is not what was asked for
+      Refuse(target, why); // do not share an address with another server
     }
   }
   if (this->Listeners_.empty()) {
@@ -229,7 +229,8 @@ void ServerListener::Accept() {
 }
 
 void ServerListener::Take(int listener, int connection) {
-  // gRPC does not say when it closes one; its number is then nobody's, or another socket's.
+  // gRPC does not report closed connections; their descriptors may be unused or belong to other
+  // sockets.
   this->Open_.erase(std::remove_if(this->Open_.begin(), this->Open_.end(),
                                    [connection](const std::pair<int, ino_t>& each) {
                                      return each.first == connection ||

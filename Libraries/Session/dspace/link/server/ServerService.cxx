@@ -63,8 +63,8 @@ Status CheckClient(const std::string& protocol, const std::string& name) {
   return Status::OK;
 }
 
-// Whether the client ended its side, rather than that the connection broke: what says the latter
-// may come a moment after the end.
+// Whether the client closed its side. A broken connection may be reported a moment after the end of
+// the stream.
 bool HasLeft(const grpc::ServerContext& context) {
   for (int i = 0; i < 10; ++i) {
     if (context.IsCancelled()) {
@@ -81,7 +81,7 @@ std::shared_ptr<v1::DriveReply> MakeClosed(v1::Error::Kind kind, const std::stri
   return reply;
 }
 
-// What a simulation would otherwise take for a person's wish.
+// Rejects values that a simulation must not take for input of a person.
 void CheckEvent(const v1::ViewerEvent& event) {
   if (event.has_edited()) {
     RequireFinite("value '" + event.edited().name() + "'", "the value", event.edited().value());
@@ -108,7 +108,7 @@ Status Server::Service::Hello(grpc::ServerContext*, const v1::HelloRequest* requ
   return Status::OK;
 }
 
-// A call of Drive. However it ends, nothing holds its context then and its sender has ended.
+// A call of Drive. When it ends, nothing refers to its context, and its sender has ended.
 struct Server::Service::Driving {
   Hub& hub;
   grpc::ServerContext* context;
@@ -119,7 +119,8 @@ struct Server::Service::Driving {
     std::unique_lock lock(this->hub.mutex);
     this->me->out.ended = true;
     this->me->out.ready.notify_all();
-    // Whoever does not read what is still sent to it is not waited for longer than one who is lost.
+    // A client that does not read its last messages gets no more time than one with a lost
+    // connection.
     const auto seat = std::chrono::duration_cast<LinkClock::duration>(
         std::chrono::duration<double>(this->hub.options.reservation_s));
     auto& deadline = this->hub.deadlines[this->context];
@@ -168,11 +169,12 @@ Status Server::Service::Drive(grpc::ServerContext* context, Stream* stream) {
     hub.SendWriterName();
   }
   const Status result = this->Read(*stream, *me, generation);
-  const bool left = !result.ok() || HasLeft(*context); // whom it sends away is not waited for
+  const bool left = !result.ok() || HasLeft(*context); // a rejected client is not waited for
   std::unique_lock lock(hub.mutex);
   if (left && hub.writer.stream == me) {
     hub.writer.left = true;
-    // What it still sent is carried out, unless it waits no longer or somebody else comes.
+    // Its queued commands are executed, unless the client stops waiting or another client takes
+    // over.
     while (!hub.tasks.empty() && !hub.stopping && !me->out.ended && !context->IsCancelled()) {
       hub.space.wait_for(lock, milliseconds(50));
     }
@@ -228,7 +230,7 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
         "it was restarted, or another client has driven it since: its scenes are lost or unknown; "
         "accepted: connect again"};
   }
-  if (writer.stream) { // of a lost connection, or of whom it is taken over from
+  if (writer.stream) { // a lost connection, or the replaced driver
     DriveStream& old = *writer.stream;
     old.out.Clear();
     old.eventBytes = 0;
@@ -243,7 +245,7 @@ Status Server::Service::Open(const v1::OpenDrive& open, const std::shared_ptr<Dr
     hub.deadlines[old.context] = LinkClock::now() + ToSayGoodbye;
   }
   if (!resumed) {
-    hub.tasks.clear(); // whoever drives now is not to see them done
+    hub.tasks.clear(); // the new driver must not see them executed
     hub.taskBytes = 0;
     hub.space.notify_all();
     Writer next;
@@ -287,8 +289,8 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
       return {StatusCode::INVALID_ARGUMENT, "a message after the first is not `send`"};
     }
     v1::SendCommand& send = *request.mutable_send();
-    // What it holds, which may be far more than what came: an empty message is two bytes on the
-    // wire.
+    // The memory of the command, which may be far larger than the message: an empty message has two
+    // bytes on the wire.
     const std::size_t bytes = send.command().SpaceUsedLong() + sizeof(Task);
     std::unique_lock lock(hub.mutex);
     if (me.out.ended || generation != hub.writer.generation) {
@@ -296,14 +298,15 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
     }
     hub.Acknowledge(send.acknowledged());
     if (send.number() <= hub.writer.queued) {
-      continue; // has come before the connection was lost
+      continue; // received before the connection was lost
     }
     if (send.number() != hub.writer.queued + 1) {
       return {StatusCode::INVALID_ARGUMENT, "command " + std::to_string(send.number()) +
                                                 " came after " + std::to_string(hub.writer.queued) +
                                                 "; accepted: the next number"};
     }
-    // Beyond the rate it waits, and what it sends waits with it. A second's worth may come at once.
+    // A client beyond the rate waits, and its further messages wait too. A burst of one second is
+    // accepted.
     auto& due = hub.writer.due;
     due = std::max(due, LinkClock::now() - seconds(1)) + period;
     const auto free = [&] {
@@ -333,7 +336,7 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
     }
     hub.tasks.push_back(std::move(task));
     hub.taskBytes += bytes;
-    lock.unlock(); // whoever wakes up wants it
+    lock.unlock(); // the woken thread needs it
     hub.work.notify_one();
   }
   return Status::OK;
@@ -342,7 +345,7 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
 Status Server::Service::Watch(grpc::ServerContext* context, const v1::WatchRequest* request,
                               grpc::ServerWriter<v1::WatchReply>* stream) {
   Hub& hub = this->Hub_;
-  const unsigned most = hub.options.maximumConnections - 1; // one is for whoever drives
+  const unsigned most = hub.options.maximumConnections - 1; // one is reserved for the driver
   const Connection connection(hub.watching, hub.mutex, most);
   if (!connection.Good()) {
     return TooMany(most, "viewers");
@@ -398,7 +401,7 @@ Status Server::Service::Tell(grpc::ServerContext*, const v1::TellRequest* reques
   }
   const std::lock_guard lock(this->Hub_.mutex);
   const auto& writer = this->Hub_.writer.stream;
-  // A simulation that does not read is not to be cut off for its viewers' sake.
+  // Events of viewers must not disconnect a simulation that does not read.
   if (writer && writer->out.messages.size() < 1000 && writer->eventBytes + size <= WaitingEvents) {
     writer->eventBytes += size;
     writer->out.Put(std::move(message), size);

@@ -82,7 +82,7 @@ v1::Reply ViewerViews::Execute(Interpreter& interpreter, v1::Command& command) {
   return reply;
 }
 
-// Another one has taken the name of one that sleeps.
+// Discards a suspended view whose name is in use again.
 void ViewerViews::Forget(const std::string& scene, const std::string& name) {
   const auto found = this->Suspended_.find(scene);
   if (found == this->Suspended_.end()) {
@@ -140,7 +140,7 @@ v1::Reply ViewerViews::ExecuteEvent(Interpreter& interpreter, v1::Command& comma
   v1::Command recorded;
   if (ToRecorded(command, reply, recorded)) {
     this->Track(recorded, reply);
-  } else if (given) { // nothing has moved: it goes on looking through the scene's camera
+  } else if (given) { // nothing has moved: it uses the scene's camera again
     v1::Command back;
     back.mutable_set_viewport()->set_viewport(name);
     back.mutable_set_viewport()->set_vantage(before.vantage);
@@ -156,7 +156,7 @@ v1::Reply ViewerViews::ExecuteEvent(Interpreter& interpreter, v1::Command& comma
   return reply;
 }
 
-// The viewport looks through a camera like `to`, in a vantage of its own name.
+// Gives the viewport a copy of the camera `to` in a vantage of its own name.
 bool ViewerViews::GiveCamera(Interpreter& interpreter, const std::string& viewport,
                              const v1::SetCamera& to) {
   const std::string scene = interpreter.GetState().viewports[viewport].scene;
@@ -179,7 +179,7 @@ bool ViewerViews::GiveCamera(Interpreter& interpreter, const std::string& viewpo
   return !this->Execute(interpreter, command).has_error();
 }
 
-// --- What the simulation does goes before ------------------------------------------------------
+// --- The simulation has priority ---------------------------------------------------------------
 
 std::vector<std::string> ViewerViews::ViewportsIn(Interpreter& interpreter,
                                                   const std::string& scene) const {
@@ -233,7 +233,7 @@ bool ViewerViews::RemoveConflicting(Interpreter& interpreter, const v1::Command&
   return false;
 }
 
-// Cameras on a frame that is to go stay where they are, in the root.
+// Moves cameras on a frame that will be removed to the root, at their present poses.
 bool ViewerViews::DetachCameras(Interpreter& interpreter, const std::string& name,
                                 std::uint64_t frame) {
   bool any = false;
@@ -259,7 +259,7 @@ bool ViewerViews::DetachCameras(Interpreter& interpreter, const std::string& nam
   return any;
 }
 
-// Viewports that look through a camera that is to go look through a copy; empty: any camera.
+// Gives viewports a copy of a camera that will be removed; empty: any camera.
 bool ViewerViews::DetachViewports(Interpreter& interpreter, const std::string& scene,
                                   const std::string& vantage, const std::string& camera) {
   bool any = false;
@@ -316,7 +316,7 @@ void ViewerViews::BeforeSnapshot(Interpreter& interpreter) {
                     frame == RootFrame ? std::string() : at->Frames().Path(frame)};
   };
   for (const auto& [scene, vantage] : this->Vantages_) {
-    // A scene may be gone, and another one of its name have come.
+    // A scene may have been removed and created again.
     const std::shared_ptr<Scene> at = interpreter.FindScene(scene);
     const std::vector<std::string> there = at ? at->VantageNames() : std::vector<std::string>();
     if (std::find(there.begin(), there.end(), vantage) == there.end()) {
@@ -354,12 +354,12 @@ std::vector<v1::Command> ViewerViews::Commands(Interpreter& interpreter) const {
   return commands;
 }
 
-// The scene goes, or has gone: keeps what makes its views.
+// Stores the commands that recreate the views of a removed scene.
 void ViewerViews::Suspend(Interpreter& interpreter, const std::string& scene) {
   Suspended& views = this->Suspended_[scene];
   for (v1::Command& command : this->Commands(interpreter)) {
-    // Time is the simulation's, and so are fragments: one that is hidden and gone is hidden no
-    // more.
+    // Time and fragments belong to the simulation: a hidden fragment that was removed is no longer
+    // hidden.
     if (SceneName(command) == scene && !command.has_set_time() && !command.has_create_fragment() &&
         !command.has_remove_fragment()) {
       views.commands.push_back(std::move(command));
@@ -396,7 +396,7 @@ void ViewerViews::Resume(Interpreter& interpreter, bool alone) {
       views.time_s = scene->Time();
     }
     if (!alone && scene->Time() == *views.time_s && !this->IsReady(*scene, views)) {
-      ++it; // it may be about to be built
+      ++it; // it may still be under construction
       continue;
     }
     std::vector<v1::Command> commands = std::move(views.commands);
@@ -439,7 +439,7 @@ bool ViewerViews::IsReady(const Scene& scene, const Suspended& views) const {
 }
 
 void ViewerViews::Restore(Interpreter& interpreter, v1::Command& command) {
-  if (!this->Owns(command)) { // of a viewport or vantage that could not be made
+  if (!this->Owns(command)) { // of a viewport or vantage that could not be created
     return;
   }
   if (command.has_set_camera() && command.set_camera().has_mount()) {
@@ -447,7 +447,7 @@ void ViewerViews::Restore(Interpreter& interpreter, v1::Command& command) {
     const auto at = this->Cameras_.find({{SceneName(command), set.vantage()}, set.name()});
     if (at != this->Cameras_.end() && !at->second.path.empty()) {
       const FrameTree& frames = interpreter.FindScene(SceneName(command))->Frames();
-      const FrameId frame = frames.Find(at->second.path); // ids may be others than they were
+      const FrameId frame = frames.Find(at->second.path); // ids may have changed
       if (frame == NoFrame) {
         *set.mutable_mount() = at->second.mount;
       } else {
@@ -458,7 +458,7 @@ void ViewerViews::Restore(Interpreter& interpreter, v1::Command& command) {
   if (!this->Execute(interpreter, command).has_error()) {
     return;
   }
-  if (command.has_create_viewport()) { // what it looked through is gone
+  if (command.has_create_viewport()) { // its camera was removed
     v1::CreateViewport& create = *command.mutable_create_viewport();
     const auto at = this->Views_.find(create.name());
     if (at == this->Views_.end()) {

@@ -208,7 +208,7 @@ bool Watcher::WaitForConnect(double seconds) {
   const bool late = !link.final;
   std::string why;
   if (late) {
-    lock.unlock(); // to look takes a moment
+    lock.unlock(); // the diagnosis takes a moment
     why = DiagnoseConnection(link.options.address, link.options.security.HasCertificates());
     lock.lock();
     if (link.once) {
@@ -229,7 +229,7 @@ bool Watcher::WaitForConnect(double seconds) {
 
 Watcher::~Watcher() {
   if (this->Link_->Forked()) {
-    (void)this->Link_.release(); // its thread and connection are the parent's
+    (void)this->Link_.release(); // its thread and connection belong to the parent
     return;
   }
   this->Link_->End();
@@ -333,7 +333,7 @@ bool Watcher::TakeSendEventResult() {
 }
 
 void Watcher::CancelSendEvent() {
-  if (!this->Link_->Forked()) { // else it is the parent's
+  if (!this->Link_->Forked()) { // else it belongs to the parent
     this->Link_->eventCall.reset();
   }
 }
