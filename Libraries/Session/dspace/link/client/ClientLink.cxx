@@ -212,8 +212,8 @@ void RemoteClient::Link::Finish(v1::Reply&& with) {
   this->activity = Activity::Done;
 }
 
-// A command that is waited for is sent once those are done that nobody waits for: were one of them
-// rejected, it is not carried out.
+// A command that waits for its reply is sent after all commands without replies are completed. If
+// one of these has failed, it is not executed.
 void RemoteClient::Link::BeginWaitForEarlier() {
   this->deadline = After(this->options.timeout_s);
   if (!this->noReply && this->done < this->unawaited && !this->broken) {
