@@ -108,13 +108,13 @@ void RecorderThread::Take(v1::WatchReply& message) {
   if (message.has_snapshot()) {
     this->Begin(message);
   } else if (message.has_command()) {
-    this->CarryOut(*message.mutable_command());
+    this->Execute(*message.mutable_command());
   }
   const std::lock_guard lock(this->mutex);
   this->sequence = message.sequence();
 }
 
-void RecorderThread::CarryOut(v1::Command& command) {
+void RecorderThread::Execute(v1::Command& command) {
   if (command.has_set_time()) {
     this->time_s = command.set_time().time_s();
   }
@@ -148,7 +148,7 @@ void RecorderThread::Begin(v1::WatchReply& message) {
   }
   this->diverged = false;
   for (v1::Command& command : *message.mutable_snapshot()->mutable_command()) {
-    this->CarryOut(command);
+    this->Execute(command);
   }
   if (!first) {
     this->session->TakeRecording(old);

@@ -59,7 +59,7 @@ private:
   bool IsRunning();
   void Take(v1::WatchReply& message);
   void Begin(v1::WatchReply& message);
-  void CarryOut(v1::Command& command);
+  void Execute(v1::Command& command);
   void CheckLink();
   void UpdateCounts();
   void Warn(const std::string& text);

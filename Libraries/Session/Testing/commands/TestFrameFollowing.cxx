@@ -1,4 +1,4 @@
-// Replies tell what happens to the frames of followed scenes.
+// Frame events of followed scenes in replies.
 #include <vector>
 
 #include "CommandTestSupport.h"

@@ -1,4 +1,4 @@
-// Which files commands may name.
+// The files that commands may name.
 #include <filesystem>
 #include <fstream>
 

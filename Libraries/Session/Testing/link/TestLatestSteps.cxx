@@ -1,4 +1,4 @@
-// Steps that later ones make needless: without them the state is the same, to the bit.
+// Superseded steps: without them the state is the same, to the bit.
 #include <random>
 #include <string>
 #include <vector>

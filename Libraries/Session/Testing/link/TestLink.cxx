@@ -51,7 +51,7 @@ TEST_F(LinkTest, LockstepLosesNothingAndRepeatsNothing) {
   }
 }
 
-TEST_F(LinkTest, ASecondWriterIsRefusedByNameOrTakesOver) {
+TEST_F(LinkTest, ASecondWriterIsRejectedOrTakesOver) {
   this->StartServer();
   RemoteClient first(this->ClientOptions("first"));
   Accept(first.Execute(MakeScene()));
@@ -128,7 +128,7 @@ TEST_F(LinkTest, UnmovedFramesCostNothingAndTheStateIsTheSame) {
   EXPECT_EQ(client.Execute(ask).SerializeAsString(), local.Execute(ask).SerializeAsString());
 }
 
-TEST_F(LinkTest, AMessageBeyondTheLimitIsRefusedAndTheLinkGoesOn) {
+TEST_F(LinkTest, AMessageBeyondTheLimitIsRejectedAndTheLinkContinues) {
   this->Options.maximumMessage = 10000;
   this->StartServer();
   RemoteClient client(this->ClientOptions());
@@ -177,7 +177,7 @@ TEST_F(LinkTest, ASocketThatIsInUseIsNotTakenAway) {
   EXPECT_TRUE(std::filesystem::is_regular_file(file));
 }
 
-TEST_F(LinkTest, NobodyThereIsAnErrorWithinTheTimeout) {
+TEST_F(LinkTest, AMissingServerIsAnErrorWithinTheTimeout) {
   auto options = this->ClientOptions();
   options.timeout_s = 0.5;
   EXPECT_THROW(RemoteClient client(options), Error);
@@ -235,7 +235,7 @@ TEST_F(LinkTest, TenViewersSeeTheSameState) {
   }
 }
 
-TEST_F(LinkTest, AViewerThatDoesNotReadBeginsAnewAndSlowsNobody) {
+TEST_F(LinkTest, AViewerThatDoesNotReadGetsANewSnapshotAndDelaysNoOther) {
   this->Options.unreadBytes = 200000;
   this->StartServer();
   RemoteClient client(this->ClientOptions());

@@ -1,4 +1,4 @@
-// What a writer is told of commands that it did not wait for.
+// Errors and warnings of commands that were sent without waiting.
 #include "LinkTestSupport.h"
 
 #include <future>
@@ -74,7 +74,7 @@ TEST_F(LinkTest, ErrorsOfWhatWasAbandonedHitNothingElse) {
 }
 
 // What is waited for is never carried out after something that was refused and not waited for.
-TEST_F(LinkTest, ACommandThatIsWaitedForIsNotCarriedOutAfterARefusal) {
+TEST_F(LinkTest, AWaitingCommandIsNotExecutedAfterAnError) {
   this->StartServer();
   std::promise<void> go;
   std::vector<double> times;

@@ -123,7 +123,7 @@ TEST_F(LinkEvents, AreSaidInPartsAndDropped) {
               this->Take(client, 1).back().answer().answer() == "go");
 }
 
-TEST_F(LinkEvents, WhatIsNoWishIsRefusedByTheServer) {
+TEST_F(LinkEvents, InvalidEventsAreRejectedByTheServer) {
   RemoteClient client(this->ClientOptions());
   v1::ViewerEvent event;
   event.mutable_edited()->set_name("speed");

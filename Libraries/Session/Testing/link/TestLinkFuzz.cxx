@@ -130,7 +130,7 @@ TEST_F(LinkTest, DamagedMessagesDoNoHarm) {
   EXPECT_EQ(this->Server->GetCounts().viewers, 0u);
 }
 
-TEST_F(LinkTest, WhatIsNotTheProtocolIsRefusedByName) {
+TEST_F(LinkTest, OtherProtocolsAreRejectedByName) {
   this->Options.maximumMessage = 2000;
   this->StartServer();
   grpc::GenericStub stub(

@@ -248,7 +248,7 @@ TEST_F(LinkKills, ServersDieAndClientsReportItAndRecordingsAreSound) {
   EXPECT_GT(recorded, 0u);
 }
 
-TEST_F(LinkKills, ViewersDieAndNobodyNotices) {
+TEST_F(LinkKills, ViewersDieWithoutEffectOnOthers) {
   ChildProcesses children;
   this->StartServer();
   RemoteClient client(this->ClientOptions());

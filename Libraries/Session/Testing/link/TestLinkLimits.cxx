@@ -1,4 +1,4 @@
-// What a server and its clients let others cost them, and what a child process of a client may do.
+// The limits of a server and its clients, and what a child process of a client may do.
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
@@ -26,7 +26,7 @@ v1::ViewerEvent MakeEvent(int number, std::size_t bytes) {
   return event;
 }
 
-TEST_F(LinkLimits, EventsThatNobodyReadsTakeBoundedMemoryAndCutNobodyOff) {
+TEST_F(LinkLimits, UnreadEventsTakeBoundedMemoryAndDisconnectNoClient) {
   this->Options.unreadBytes = 4 << 20; // of replies
   this->StartServer();
   Watcher watcher(this->ToWatch());
@@ -164,7 +164,7 @@ TEST_F(LinkLimits, SnapshotsAreMadeOncePerStateAndNotAtEveryCall) {
   EXPECT_LE(double(this->Server->GetCounts().snapshots), seconds / 0.1 + 2);
 }
 
-TEST_F(LinkLimits, ASnapshotThatFailsIsToldAndEndsNothing) {
+TEST_F(LinkLimits, AFailedSnapshotIsReportedAndEndsNothing) {
   this->Server = std::make_unique<session::Server>(this->Options);
   this->Served = std::make_unique<ServedInterpreter>();
   auto work = this->Served->Work();
@@ -185,7 +185,7 @@ TEST_F(LinkLimits, ASnapshotThatFailsIsToldAndEndsNothing) {
   Accept(client.Execute(MakeScene()));
 }
 
-TEST_F(LinkLimits, AChildProcessIsToldAndMayCloseWhatItsParentOpened) {
+TEST_F(LinkLimits, AChildProcessGetsAnErrorAndMayCloseTheClientsOfItsParent) {
   if (testing::Sanitized()) {
     GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
   }

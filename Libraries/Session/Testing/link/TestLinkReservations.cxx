@@ -1,4 +1,4 @@
-// Who drives, and for whom a place is kept.
+// The driver of a server, and its reservation after a lost connection.
 #include <csignal>
 #include <numeric>
 
@@ -16,7 +16,7 @@ using session::Watcher;
 
 using LinkReservations = RawLinkTest;
 
-TEST_F(LinkReservations, ASimulationComesBackWhereAllPlacesAreTaken) {
+TEST_F(LinkReservations, ASimulationReconnectsToAFullServer) {
   this->Options.maximumConnections = 2;
   this->StartServer();
   Watcher watcher(this->ToWatch());
@@ -79,7 +79,7 @@ TEST_F(LinkReservations, AClientThatWasLetInTriesAgainWhereThereIsNoRoom) {
   server->Shutdown(std::chrono::system_clock::now());
 }
 
-TEST_F(LinkReservations, WhoLostItsConnectionKeepsItsPlace) {
+TEST_F(LinkReservations, ADisconnectedWriterKeepsItsReservation) {
   this->StartServer();
   {
     RawDrive first(this->Address(), KeyA, session::ProcessName());
@@ -112,7 +112,7 @@ TEST_F(LinkReservations, WhoLostItsConnectionKeepsItsPlace) {
   Accept(second.Execute(MakeFrame(3)));
 }
 
-TEST_F(LinkReservations, WhoLeavesOrHasDiedKeepsNoPlace) {
+TEST_F(LinkReservations, AWriterThatLeftOrDiedKeepsNoReservation) {
   this->StartServer();
   for (std::uint64_t i = 1; i < 4; ++i) {
     RemoteClient client(this->ClientOptions());
@@ -143,7 +143,7 @@ TEST_F(LinkReservations, WhoLeavesOrHasDiedKeepsNoPlace) {
   Accept(next.Execute(MakeFrame(9)));
 }
 
-TEST_F(LinkReservations, APlaceIsKeptForAWhile) {
+TEST_F(LinkReservations, AReservationExpires) {
   this->Options.reservation_s = 0.2;
   this->StartServer();
   RawDrive(this->Address(), KeyA).Break();
@@ -188,7 +188,7 @@ TEST_F(LinkReservations, WhatAFormerWriterLeftBehindIsNotCarriedOut) {
 
 // A simulation that comes back to a server that was started anew does not keep others out while it
 // finds out.
-TEST_F(LinkReservations, WhoIsNotKnownAnyMoreTakesNoPlace) {
+TEST_F(LinkReservations, AnUnknownWriterGetsNoReservation) {
   this->StartServer();
   RawDrive former(this->Address(), KeyA, {}, true);
   EXPECT_FALSE(former.IsOpen);

@@ -179,7 +179,7 @@ TEST_F(SnapshotTest, OneThatIsTooLargeIsAnError) {
 }
 
 // A viewer that has been connected says why it is not any more, and goes on once that is over.
-TEST_F(SnapshotTest, AViewerSaysWhyItIsRefused) {
+TEST_F(SnapshotTest, AViewerReportsWhyItIsRejected) {
   this->Options.unreadBytes = 20000;
   this->Server = std::make_unique<session::Server>(this->Options);
   this->Served = std::make_unique<ServedInterpreter>();

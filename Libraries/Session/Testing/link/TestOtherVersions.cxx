@@ -169,7 +169,7 @@ TEST_F(WireLink, UnknownFieldsReachViewers) {
 
 class WireCommands : public CommandTest {};
 
-TEST_F(WireCommands, UnknownOnesAreRefusedByNumber) {
+TEST_F(WireCommands, UnknownCommandsAreRejectedByNumber) {
   v1::Command command;
   command.GetReflection()->MutableUnknownFields(&command)->AddLengthDelimited(4321, "");
   this->Refuse(command, Kind::UNSUPPORTED, "command number 4321");

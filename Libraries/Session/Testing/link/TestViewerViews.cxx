@@ -33,7 +33,7 @@ v1::Command SetCamera(const std::string& vantage, FrameId frame, double x) {
   return command;
 }
 
-class OwnViewsTest : public CommandTest {
+class ViewerViewsTest : public CommandTest {
 protected:
   // Two frames, the child turned by 90 degrees about Z, and a camera of the viewer's on it.
   void SetUp() override {
@@ -90,7 +90,7 @@ protected:
 };
 
 // What a snapshot's command is refused for is no matter of views that are not there yet.
-TEST_F(OwnViewsTest, MakesNoRoomWhileASnapshotIsApplied) {
+TEST_F(ViewerViewsTest, MakesNoRoomWhileASnapshotIsApplied) {
   this->Own.BeforeSnapshot(this->Interpreter_);
   Interpreter next;
   v1::Command command;
@@ -114,7 +114,7 @@ TEST_F(OwnViewsTest, MakesNoRoomWhileASnapshotIsApplied) {
   }
 }
 
-TEST_F(OwnViewsTest, OwnsItsOwnAlone) {
+TEST_F(ViewerViewsTest, OwnsItsOwnAlone) {
   for (v1::Command command : {CreateVantage("main 2"), SetCamera("main", 1, 0), SetCamera("", 1, 0),
                               SetCamera("viewer:another's", 1, 0)}) {
     EXPECT_FALSE(this->Own.Owns(command)) << command.ShortDebugString();
@@ -131,7 +131,7 @@ TEST_F(OwnViewsTest, OwnsItsOwnAlone) {
   EXPECT_FALSE(this->Own.Owns(v1::Command()));
 }
 
-TEST_F(OwnViewsTest, OutlastASnapshotAndLoseNothingOfTheCamera) {
+TEST_F(ViewerViewsTest, OutlastASnapshotAndLoseNothingOfTheCamera) {
   v1::Command project;
   project.mutable_set_camera()->set_vantage(Mine);
   project.mutable_set_camera()->set_name("camera");
@@ -149,7 +149,7 @@ TEST_F(OwnViewsTest, OutlastASnapshotAndLoseNothingOfTheCamera) {
   EXPECT_EQ(camera.projection.verticalFov_deg, 20);
 }
 
-TEST_F(OwnViewsTest, WithoutItsFrameACameraStaysWhereItWas) {
+TEST_F(ViewerViewsTest, WithoutItsFrameACameraStaysWhereItWas) {
   this->Own.BeforeSnapshot(this->Interpreter_);
   for (const bool alone : {true, false}) {
     Interpreter next;
@@ -169,7 +169,7 @@ TEST_F(OwnViewsTest, WithoutItsFrameACameraStaysWhereItWas) {
   }
 }
 
-TEST_F(OwnViewsTest, AFrameThatTheSimulationRemovesGoes) {
+TEST_F(ViewerViewsTest, AFrameThatTheSimulationRemovesGoes) {
   v1::Command remove;
   remove.mutable_remove_frame()->set_frame(this->Parent);
   ASSERT_TRUE(this->Interpreter_.Execute(remove).has_error());
@@ -180,7 +180,7 @@ TEST_F(OwnViewsTest, AFrameThatTheSimulationRemovesGoes) {
       this->Own.RemoveConflicting(this->Interpreter_, remove)); // nothing is in the way any more
 }
 
-TEST_F(OwnViewsTest, ViewsSleepWhileThereIsNoScene) {
+TEST_F(ViewerViewsTest, ViewsSleepWhileThereIsNoScene) {
   v1::Command remove;
   remove.mutable_remove_scene();
   this->Own.RemoveConflicting(this->Interpreter_, remove);
@@ -201,7 +201,7 @@ TEST_F(OwnViewsTest, ViewsSleepWhileThereIsNoScene) {
   EXPECT_TRUE(this->Own.Owns(SetCamera(Mine, 1, 0)));
 }
 
-TEST_F(OwnViewsTest, ASceneThatIsGoneOrAnotherIsLeft) {
+TEST_F(ViewerViewsTest, ASceneThatIsGoneOrAnotherIsLeft) {
   v1::Command remove;
   remove.mutable_remove_scene();
   this->Accept(remove); // RemoveConflicting has not been told
@@ -212,7 +212,7 @@ TEST_F(OwnViewsTest, ASceneThatIsGoneOrAnotherIsLeft) {
   EXPECT_NO_THROW(this->Own.BeforeSnapshot(this->Interpreter_));
 }
 
-TEST_F(OwnViewsTest, ANewOneTakesTheNameOfOneThatSleeps) {
+TEST_F(ViewerViewsTest, ANewViewTakesTheNameOfASuspendedOne) {
   v1::Command remove;
   remove.mutable_remove_scene();
   this->Own.RemoveConflicting(this->Interpreter_, remove);

@@ -149,7 +149,7 @@ TEST_F(Salvage, AnyOnePageMayBeLost) {
   ASSERT_EQ(pages.size(), rows.size());
   ASSERT_GT(whole.size() / Page, 10u);
   Write(this->Of("bad"), whole);
-  EXPECT_TRUE(this->Salvaged().IsWhole());
+  EXPECT_TRUE(this->Salvaged().IsComplete());
   EXPECT_EQ(In(this->Of("new")), rows);
   std::mt19937 random(1);
   for (std::size_t number = 1; number <= whole.size() / Page; ++number) {
@@ -207,7 +207,7 @@ TEST_F(Salvage, TheLogBesideItCounts) {
     const SalvageReport report = this->Salvaged();
     EXPECT_EQ(report.commands, 60u) << byte;
     EXPECT_EQ(report.snapshots, 1u);
-    EXPECT_TRUE(report.IsWhole());
+    EXPECT_TRUE(report.IsComplete());
   }
 }
 
@@ -255,7 +255,7 @@ TEST_F(Salvage, OfTwoVersionsOfAFileThePackedOneComesBack) {
                                  std::filesystem::copy_options::overwrite_existing);
     }
     std::filesystem::remove(this->Of("new"));
-    EXPECT_TRUE(session::SalvageRecording(this->Of("bad"), this->Of("new"), On).IsWhole());
+    EXPECT_TRUE(session::SalvageRecording(this->Of("bad"), this->Of("new"), On).IsComplete());
     const auto assets = RecordingReader(this->Of("new")).Assets();
     ASSERT_EQ(assets.size(), 1u);
     EXPECT_TRUE(assets[0].packed) << newerFirst;
@@ -273,7 +273,7 @@ TEST_F(Salvage, WhatIsLostIsNamed) {
   using Range = std::pair<std::uint64_t, std::uint64_t>;
   EXPECT_EQ(report.lost, (std::vector<Range>{{7, 7}, {50, 52}}));
   EXPECT_TRUE(report.beginLost);
-  EXPECT_FALSE(report.IsWhole());
+  EXPECT_FALSE(report.IsComplete());
   EXPECT_EQ(report.lastCommand, 130u);
   EXPECT_EQ(RecordingReader(this->Of("new")).Lost(), report.lost);
 }
@@ -293,7 +293,7 @@ TEST_F(Salvage, APartBeginsWithItsState) {
     EXPECT_EQ(part.Last(), begin + 20);
   }
   const SalvageReport report = this->Salvaged();
-  EXPECT_TRUE(report.IsWhole()); // what came before it was cut, and is not lost
+  EXPECT_TRUE(report.IsComplete()); // what came before it was cut, and is not lost
   EXPECT_GT(report.begin, 0u);
 }
 
@@ -319,7 +319,7 @@ TEST_F(Salvage, WhatCannotBeSalvagedLeavesNothingBehind) {
   this->Refuses(Error::Kind::Unsupported, "a newer Dspace wrote it");
   EXPECT_FALSE(std::filesystem::exists(this->Of("new")));
   Run(this->Of("bad"), "UPDATE meta SET value = 'damaged' WHERE key = 'format'");
-  EXPECT_TRUE(this->Salvaged().IsWhole());
+  EXPECT_TRUE(this->Salvaged().IsComplete());
   this->Refuses(Error::Kind::AlreadyExists, "there is such a file");
   EXPECT_TRUE(std::filesystem::exists(this->Of("new"))); // it is another one's
 }

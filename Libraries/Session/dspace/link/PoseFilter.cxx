@@ -30,7 +30,7 @@ bool KeepsPoses(const v1::Command& command) {
 
 bool PoseFilter::Pass(v1::Command& command) {
   if (HasUnknown(command)) { // has unknown fields
-    this->Forget();
+    this->Clear();
     return true;
   }
   if (command.has_set_poses()) {
@@ -52,13 +52,13 @@ bool PoseFilter::Pass(v1::Command& command) {
                           1);
   }
   if (!KeepsPoses(command)) {
-    this->Forget();
+    this->Clear();
   }
   return true;
 }
 
 // Finds the entries of the ids; false if an id occurs twice.
-bool PoseFilter::Look(Frames& frames, const Ids& ids) {
+bool PoseFilter::FindEntries(Frames& frames, const Ids& ids) {
   const std::size_t n = std::size_t(ids.size());
   if (frames.ids.size() == n &&
       std::memcmp(frames.ids.data(), ids.data(), n * sizeof(std::uint64_t)) == 0) {
@@ -70,7 +70,7 @@ bool PoseFilter::Look(Frames& frames, const Ids& ids) {
   ++this->Step_;
   for (std::size_t i = 0; i < n; ++i) {
     const auto [place, made] =
-        frames.places.emplace(frames.ids[i], std::uint32_t(frames.entries.size()));
+        frames.entryOf.emplace(frames.ids[i], std::uint32_t(frames.entries.size()));
     if (made) {
       frames.entries.emplace_back();
     }
@@ -91,7 +91,7 @@ bool PoseFilter::PassRows(Frames& frames, Ids& ids, Numbers& rows, int size) {
   if (frames.entries.size() + std::size_t(n) > MostFrames) {
     frames = {};
   }
-  if (!this->Look(frames, ids)) {
+  if (!this->FindEntries(frames, ids)) {
     return true; // likewise
   }
   const std::size_t bytes = std::size_t(size) * sizeof(double);
@@ -135,7 +135,7 @@ void PoseFilter::SentRows(const v1::Command& command, const Ids& ids, const Numb
       ++at;
     }
     if (at == frames.ids.size()) {
-      this->Forget(); // Pass has not seen it
+      this->Clear(); // Pass has not seen it
       return;
     }
     Entry& entry = frames.entries[frames.order[at]];

@@ -25,7 +25,7 @@ public:
   void Sent(const v1::Command& command, std::uint64_t number);
   void Accepted(std::uint64_t number) { this->Accepted_ = number; }
   // Drops all stored values: after an error, or if another client may have changed the state.
-  void Forget() { this->Scenes_.clear(); }
+  void Clear() { this->Scenes_.clear(); }
 
   std::uint64_t LeftOut() const { return this->LeftOut_; }
 
@@ -37,7 +37,7 @@ private:
   };
   struct Frames {
     std::vector<Entry> entries;
-    std::unordered_map<std::uint64_t, std::uint32_t> places; // of ids in `entries`
+    std::unordered_map<std::uint64_t, std::uint32_t> entryOf; // of ids in `entries`
     // The ids of the last step: most steps of a simulation name the same frames.
     std::vector<std::uint64_t> ids;
     std::vector<std::uint32_t> order;
@@ -45,7 +45,7 @@ private:
   };
   using Ids = google::protobuf::RepeatedField<std::uint64_t>;
   using Numbers = google::protobuf::RepeatedField<double>;
-  bool Look(Frames& frames, const Ids& ids);
+  bool FindEntries(Frames& frames, const Ids& ids);
   bool PassRows(Frames& frames, Ids& ids, Numbers& rows, int size);
   void SentRows(const v1::Command& command, const Ids& ids, const Numbers& rows, int size,
                 std::uint64_t number);

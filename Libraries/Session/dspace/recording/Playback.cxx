@@ -26,7 +26,7 @@ Playback::Playback(RecordingReader& reader, Interpreter& interpreter, bool check
     throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()), "it has no complete step");
   }
   this->SetSteps();
-  this->Go(0);
+  this->MoveTo(0);
 }
 
 void Playback::SetSteps() {
@@ -58,7 +58,7 @@ double Playback::Seek(double time_s) {
                       " to " + (gap.end_s ? Seconds(*gap.end_s) : "the end"));
     }
   }
-  this->Go(*index);
+  this->MoveTo(*index);
   return this->Time();
 }
 
@@ -66,7 +66,7 @@ std::int64_t Playback::Step(std::int64_t n) {
   const auto before = std::int64_t(this->Index_);
   const auto last = std::int64_t(this->Steps_.steps.size()) - 1;
   const std::int64_t to = n > last - before ? last : std::max<std::int64_t>(before + n, 0);
-  this->Go(std::size_t(to));
+  this->MoveTo(std::size_t(to));
   return to - before;
 }
 
@@ -78,7 +78,7 @@ std::size_t Playback::Update() {
   return this->Steps_.steps.size() - before;
 }
 
-void Playback::Go(std::size_t index) {
+void Playback::MoveTo(std::size_t index) {
   const std::uint64_t target = this->Steps_.steps[index].end;
   std::optional<double> reached_s;
   if (!this->At_ || target != *this->At_) {
@@ -94,7 +94,7 @@ void Playback::Go(std::size_t index) {
     this->At_.reset(); // unknown, if one of these fails
     if (target > at) {
       this->Reader_.Read(at + 1, target, [&](RecordedCommand&& row) {
-        this->CarryOut(std::move(row.command), "command ", row.seq);
+        this->Execute(std::move(row.command), "command ", row.seq);
         at = row.seq;
         reached_s = row.time_s;
         return true;
@@ -138,21 +138,21 @@ void Playback::Begin(const RecordedSnapshot& snapshot) {
   for (const std::string& name : viewports) {
     v1::Command command;
     command.mutable_remove_viewport()->set_viewport(name);
-    this->CarryOut(std::move(command), "before snapshot ", snapshot.seq);
+    this->Execute(std::move(command), "before snapshot ", snapshot.seq);
   }
   for (const std::string& name : scenes) {
     v1::Command command;
     command.set_scene(name);
     command.mutable_remove_scene();
-    this->CarryOut(std::move(command), "before snapshot ", snapshot.seq);
+    this->Execute(std::move(command), "before snapshot ", snapshot.seq);
   }
   for (const v1::Command& command : snapshot.commands) {
-    this->CarryOut(command, "snapshot ", snapshot.seq);
+    this->Execute(command, "snapshot ", snapshot.seq);
   }
   this->At_ = snapshot.seq;
 }
 
-void Playback::CarryOut(v1::Command command, const char* table, std::uint64_t seq) {
+void Playback::Execute(v1::Command command, const char* table, std::uint64_t seq) {
   const Registry::Entry* entry = this->Interpreter_.Commands().Find(command.command_case());
   const FilesGuard guard(this->Files_.Look());
   std::string rejected;

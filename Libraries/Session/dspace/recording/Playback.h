@@ -50,10 +50,10 @@ public:
 
 private:
   void SetSteps();
-  void Go(std::size_t index);
+  void MoveTo(std::size_t index);
   void Begin(const RecordedSnapshot& snapshot);
   void CheckStep(std::size_t index, std::optional<double> reached_s);
-  void CarryOut(v1::Command command, const char* table, std::uint64_t seq);
+  void Execute(v1::Command command, const char* table, std::uint64_t seq);
   void WaitForOverviews(const v1::Command& opened);
 
   RecordingReader& Reader_;

@@ -28,7 +28,7 @@ namespace {
 constexpr unsigned char Leaf = 13;
 constexpr std::size_t LogHead = 32;
 constexpr std::size_t FrameHead = 24;
-constexpr std::size_t Turns = 8; // of a log, whose pages are tried
+constexpr std::size_t Generations = 8; // of a log, whose pages are tried
 constexpr std::size_t MostColumns = 7;
 
 // A file's bytes; none where there is no such file.
@@ -155,9 +155,9 @@ double ToReal(const Column& column) {
 }
 
 // Converts records with a valid checksum to rows.
-class Believer {
+class RowValidator {
 public:
-  std::optional<FoundRow> Believe(std::int64_t key, std::vector<Column>& columns) {
+  std::optional<FoundRow> Validate(std::int64_t key, std::vector<Column>& columns) {
     return columns.size() == 7 ? Asset(key, columns)
            : columns.size() == 6 && std::holds_alternative<std::monostate>(columns[0]) &&
                    std::holds_alternative<std::string>(columns[4]) &&
@@ -237,7 +237,7 @@ class Pages {
 public:
   Pages(const Source& data, const Source& log, std::size_t size)
       : Data_(data), Log_(log), Size_(size) {
-    this->FindTurns();
+    this->FindGenerations();
   }
 
   bool Find(const std::function<void(FoundRow&&)>& take, const CancelCheck& checkCancel) {
@@ -259,12 +259,12 @@ public:
 
 private:
   // Places in the log of a page's newest version, in one of the log's turns.
-  using Turn = std::map<std::uint64_t, std::size_t>;
+  using Generation = std::map<std::uint64_t, std::size_t>;
 
-  // The log's own turn first, then the others (its head may be damaged), then none, which leaves
-  // the file itself.
-  void FindTurns() {
-    std::map<std::string, Turn> turns;
+  // The log's own generation first, then the others (its head may be damaged), then none, which
+  // leaves the file itself.
+  void FindGenerations() {
+    std::map<std::string, Generation> turns;
     for (std::size_t place = LogHead; place + FrameHead < this->Log_.Size();
          place += FrameHead + this->Size_) {
       const std::string head = this->Log_.Read(place, FrameHead);
@@ -273,20 +273,20 @@ private:
       }
     }
     const std::string own = this->Log_.Read(16, 8);
-    std::vector<std::pair<std::string, Turn>> order(turns.begin(), turns.end());
+    std::vector<std::pair<std::string, Generation>> order(turns.begin(), turns.end());
     std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
       return std::make_pair(a.first != own, -std::ptrdiff_t(a.second.size())) <
              std::make_pair(b.first != own, -std::ptrdiff_t(b.second.size()));
     });
-    for (std::size_t i = 0; i < order.size() && i < Turns; ++i) {
-      this->Turns_.push_back(std::move(order[i].second));
+    for (std::size_t i = 0; i < order.size() && i < Generations; ++i) {
+      this->Generations_.push_back(std::move(order[i].second));
     }
-    this->Turns_.emplace_back();
+    this->Generations_.emplace_back();
   }
 
-  std::string Page(std::uint64_t number, const Turn& turn) const {
-    const auto logged = turn.find(number);
-    if (logged != turn.end()) {
+  std::string Page(std::uint64_t number, const Generation& generation) const {
+    const auto logged = generation.find(number);
+    if (logged != generation.end()) {
       return this->Log_.Read(logged->second, this->Size_);
     }
     return number > 0 ? this->Data_.Read((number - 1) * this->Size_, this->Size_) : std::string();
@@ -300,7 +300,7 @@ private:
     }
     // Cells of a sound page share no bytes; in a forged one they may, which must not take long.
     std::set<std::uint64_t> seen;
-    this->Left_ = (this->Data_.Size() + this->Log_.Size()) * this->Turns_.size();
+    this->Left_ = (this->Data_.Size() + this->Log_.Size()) * this->Generations_.size();
     bool any = false;
     const std::uint64_t count = Unsigned(page, start + 3, 2);
     for (std::size_t n = 0; n < count && start + 10 + 2 * n <= page.size(); ++n) {
@@ -309,9 +309,9 @@ private:
         continue;
       }
       checkCancel();
-      for (const Turn& turn : this->Turns_) {
+      for (const Generation& generation : this->Generations_) {
         bool chained = false;
-        std::optional<FoundRow> row = this->RowAt(page, std::size_t(place), turn, chained);
+        std::optional<FoundRow> row = this->RowAt(page, std::size_t(place), generation, chained);
         if (row) {
           any = true;
           take(std::move(*row));
@@ -324,15 +324,15 @@ private:
     return any;
   }
 
-  std::optional<FoundRow> RowAt(const std::string& page, std::size_t at, const Turn& turn,
-                                bool& chained) {
+  std::optional<FoundRow> RowAt(const std::string& page, std::size_t at,
+                                const Generation& generation, bool& chained) {
     const auto size = Varint(page, at);
     const auto key = size ? Varint(page, at) : std::nullopt;
     if (!key || *size > this->Data_.Size() + this->Log_.Size()) {
       return std::nullopt;
     }
     const std::optional<std::string> record =
-        this->PayloadAt(page, at, std::size_t(*size), turn, chained);
+        this->PayloadAt(page, at, std::size_t(*size), generation, chained);
     std::size_t place = 0;
     const auto head = record ? Varint(*record, place) : std::nullopt;
     if (!head || *head > record->size()) {
@@ -348,12 +348,12 @@ private:
       }
       columns.push_back(std::move(*column));
     }
-    return this->Believer_.Believe(std::int64_t(*key), columns);
+    return this->Validator_.Validate(std::int64_t(*key), columns);
   }
 
   // With its overflow pages; how much of it is on the leaf itself is SQLite's rule.
   std::optional<std::string> PayloadAt(const std::string& page, std::size_t at, std::size_t size,
-                                       const Turn& turn, bool& chained) {
+                                       const Generation& generation, bool& chained) {
     const std::size_t most = this->Size_ - 35;
     if (size <= most) {
       return at + size <= page.size() ? std::optional<std::string>(page.substr(at, size))
@@ -373,7 +373,7 @@ private:
         return std::nullopt;
       }
       this->Left_ -= this->Size_;
-      const std::string next = this->Page(following, turn);
+      const std::string next = this->Page(following, generation);
       const std::size_t wanted = std::min(size - payload.size(), this->Size_ - 4);
       if (next.size() < 4 + wanted) {
         return std::nullopt;
@@ -387,9 +387,9 @@ private:
   const Source& Data_;
   const Source& Log_;
   const std::size_t Size_;
-  std::vector<Turn> Turns_;
+  std::vector<Generation> Generations_;
   std::size_t Left_ = 0; // bytes of chains that cells of the present page may still have
-  Believer Believer_;
+  RowValidator Validator_;
 };
 
 // Of pages: what the file's head says, which may be damaged, ours, and a common one.

@@ -130,7 +130,7 @@ SalvageReport ReportOf(const RecordingDatabase& found, std::uint64_t begin) {
 
 } // namespace
 
-bool SalvageReport::IsWhole() const {
+bool SalvageReport::IsComplete() const {
   return !this->beginLost && this->lost.empty() && this->broken.empty() && this->unknownAssets == 0;
 }
 

@@ -25,7 +25,7 @@ struct SalvageReport {
                                    // longer packed
   std::uint64_t unknownAssets = 0; // files of which nothing is known, by the gaps in their numbers
 
-  bool IsWhole() const;
+  bool IsComplete() const;
 };
 
 // Copies every command, snapshot and file with a valid checksum from a damaged recording and its

@@ -104,7 +104,7 @@ struct RecordingWriter::Impl {
   // A child of the process that records has no such thread, and the mutex as it was.
   const pid_t process = getpid();
   bool Forked() const { return getpid() != this->process; }
-  std::string Foreign() const {
+  std::string ForkedError() const {
     return "recording '" + this->path + "': process " + std::to_string(this->process) +
            " writes it, and this one is its child; accepted: a recording of its own";
   }
@@ -116,7 +116,7 @@ struct RecordingWriter::Impl {
     return this->wall_s;
   }
 
-  void HandFiles(const v1::Command& command) {
+  void EnqueueFiles(const v1::Command& command) {
     const CommandFiles none;
     for (const auto& [file, stamp] : (this->files ? *this->files : none).Of(command)) {
       const auto known = this->handed.find(file);
@@ -129,7 +129,7 @@ struct RecordingWriter::Impl {
   }
 
   // Blocks while the queue is full; nothing after a failure.
-  void Hand(RecordingRow row) {
+  void Enqueue(RecordingRow row) {
     std::unique_lock<std::mutex> lock(this->mutex);
     this->room.wait(lock, [this] {
       return this->queued < this->options.queueBytes || !this->counts.failure.empty();
@@ -169,7 +169,7 @@ struct RecordingWriter::Impl {
       return "the state has " + std::to_string(this->lastSnapshot) + " bytes; accepted: up to " +
              std::to_string(this->options.largestSnapshot);
     }
-    this->Hand(std::move(row));
+    this->Enqueue(std::move(row));
     return {};
   }
 
@@ -185,7 +185,7 @@ struct RecordingWriter::Impl {
     if (recorded->has_set_time()) {
       this->time_s = WithoutMinus0(recorded->set_time().time_s());
     }
-    this->HandFiles(*recorded);
+    this->EnqueueFiles(*recorded);
     RecordingRow row;
     row.seq = ++this->seq;
     row.time_s = this->time_s;
@@ -194,7 +194,7 @@ struct RecordingWriter::Impl {
     row.payload = recorded->SerializeAsString();
     this->bytesSince += row.payload.size();
     ++this->commandsSince;
-    this->Hand(std::move(row));
+    this->Enqueue(std::move(row));
     // Not oftener than four times their own size: a large state costs a part of the file at most.
     if (this->bytesSince >= std::max(this->options.snapshotBytes, 4 * this->lastSnapshot) ||
         (this->commandsSince >= this->options.snapshotCommands &&
@@ -294,7 +294,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const Ledger& initial,
   this->Impl_->time_s = WithoutMinus0(time_s);
   this->Impl_->files = files;
   for (const v1::Command& command : commands) {
-    this->Impl_->HandFiles(command);
+    this->Impl_->EnqueueFiles(command);
   }
   const std::string failure = this->Impl_->TakeSnapshot(initial);
   if (!failure.empty()) {
@@ -320,7 +320,7 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
                                  const Ledger& ledger) {
   Impl& impl = *this->Impl_;
   if (impl.Forked()) {
-    return std::exchange(impl.told, true) ? std::string() : impl.Foreign();
+    return std::exchange(impl.told, true) ? std::string() : impl.ForkedError();
   }
   {
     const std::lock_guard<std::mutex> lock(impl.mutex);
@@ -342,7 +342,7 @@ std::string RecordingWriter::Add(const v1::Command& accepted, const v1::Reply& r
 std::string RecordingWriter::Flush() {
   Impl& impl = *this->Impl_;
   if (impl.Forked()) {
-    return impl.Foreign();
+    return impl.ForkedError();
   }
   std::unique_lock<std::mutex> lock(impl.mutex);
   impl.flush = true;
@@ -365,7 +365,7 @@ void RecordingWriter::Resync(const Ledger& ledger, double time_s, const CommandF
   std::string failure;
   try {
     for (const v1::Command& command : ledger.Commands()) {
-      impl.HandFiles(command);
+      impl.EnqueueFiles(command);
     }
     {
       const std::lock_guard<std::mutex> lock(impl.mutex);
@@ -383,7 +383,7 @@ void RecordingWriter::Resync(const Ledger& ledger, double time_s, const CommandF
 RecordingCounts RecordingWriter::Counts() const {
   if (this->Impl_->Forked()) {
     RecordingCounts none;
-    none.failure = this->Impl_->Foreign();
+    none.failure = this->Impl_->ForkedError();
     return none;
   }
   const std::lock_guard<std::mutex> lock(this->Impl_->mutex);

@@ -26,7 +26,7 @@ SceneState& State::FindScene(const std::string& name) {
   return found->second;
 }
 
-void SceneState::ForgetRemoved() {
+void SceneState::EraseRemoved() {
   const auto& objects = this->scene->Objects();
   const auto gone = [&objects](ObjectId id) { return objects.count(id) == 0; };
   for (auto it = this->robots.begin(); it != this->robots.end();) {

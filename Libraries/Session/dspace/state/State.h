@@ -38,7 +38,7 @@ struct SceneState {
   std::unique_ptr<FrameFollower> follower; // null while the frames are not followed
 
   // Removes the robots, terrains, trails and primitives whose frames or objects were removed.
-  void ForgetRemoved();
+  void EraseRemoved();
 };
 
 // The state of a viewport without its drawing.

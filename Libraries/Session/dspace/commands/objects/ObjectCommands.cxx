@@ -74,7 +74,7 @@ void RemoveObject(const Context& context, v1::RemoveObject& command) {
     }
   }
   state.scene->RemoveObject(id);
-  state.ForgetRemoved();
+  state.EraseRemoved();
 }
 
 void SetObjectVisible(const Context& context, v1::SetObjectVisible& command) {

@@ -219,7 +219,7 @@ void LoadRobot(const Context& context, v1::LoadRobot& command) {
 void RemoveRobot(const Context& context, v1::RemoveRobot& command) {
   const FrameId base = FindRobot(context, command.robot()).Base();
   context.GetScene().RemoveFrame(base);
-  context.scene->ForgetRemoved();
+  context.scene->EraseRemoved();
 }
 
 void SetJoints(const Context& context, v1::SetJoints& command) {

@@ -46,7 +46,7 @@ void RemoveFrame(const Context& context, v1::RemoveFrame& command) {
     }
   }
   context.GetScene().RemoveFrame(command.frame());
-  context.scene->ForgetRemoved();
+  context.scene->EraseRemoved();
   v1::RemovedFrames* reply = context.reply.mutable_removed_frames();
   for (auto it = removed.rbegin(); it != removed.rend(); ++it) {
     reply->add_frame(*it);

@@ -292,7 +292,7 @@ void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
 
 void RemoveTerrain(const Context& context, v1::RemoveTerrain& command) {
   context.GetScene().RemoveObject(FindTerrain(context, command.terrain()).Object());
-  context.scene->ForgetRemoved();
+  context.scene->EraseRemoved();
 }
 
 void FocusTerrain(const Context& context, v1::FocusTerrain& command) {

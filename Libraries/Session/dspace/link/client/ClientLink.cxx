@@ -260,7 +260,7 @@ void RemoteClient::Link::Admit() {
   }
   this->bytes = this->command.ByteSizeLong();
   if (this->opened && this->bytes > this->server.maximumMessage) {
-    this->filter.Forget();
+    this->filter.Clear();
     this->Finish(this->Fault(v1::Error::RESOURCE, "the command has " + std::to_string(this->bytes) +
                                                       " bytes; accepted: up to " +
                                                       std::to_string(this->server.maximumMessage)));
@@ -295,7 +295,7 @@ bool RemoteClient::Link::WaitForWindow(std::unique_lock<std::mutex>& lock,
     if (LinkClock::now() < this->deadline) {
       return false;
     }
-    this->filter.Forget();
+    this->filter.Clear();
     this->Finish(this->Fault(v1::Error::DEADLINE_EXCEEDED, "the send window stayed full for " +
                                                                NumberText(this->options.timeout_s) +
                                                                " s; the command was not sent"));
@@ -348,7 +348,7 @@ bool RemoteClient::Link::WaitForReply(std::unique_lock<std::mutex>& lock,
     return false;
   }
   this->abandoned.insert(std::exchange(this->awaited, 0));
-  this->filter.Forget();
+  this->filter.Clear();
   v1::Reply lost;
   if (come) {
     *lost.mutable_error() = this->error;
@@ -607,7 +607,7 @@ void RemoteClient::Link::HandleReply(v1::DriveReply& message) {
 
 void RemoteClient::Link::TakeReply(std::uint64_t number, v1::Reply& reply) {
   if (reply.has_error()) {
-    this->filter.Forget(); // its values were not set
+    this->filter.Clear(); // its values were not set
   }
   if (number == this->awaited) {
     this->reply = std::move(reply);

@@ -179,7 +179,7 @@ void RemoteClient::Abandon() {
     if (link.awaited != 0) { // its reply was not received
       link.abandoned.insert(std::exchange(link.awaited, 0));
     }
-    link.filter.Forget(); // it is unknown whether it was executed
+    link.filter.Clear(); // it is unknown whether it was executed
   }
   link.reply.Clear();
   link.activity = Link::Activity::Nothing;
