@@ -66,7 +66,7 @@ class Playback:
     def _read_steps(self):
         steps, gaps = steps_of(self.file, self._scene)
         if not steps:
-            raise self.file.corrupt("no step of it is whole")
+            raise self.file.corrupt("it has no complete step")
         self._take_files()  # after the steps: a command's files are noted before it
         self.gaps = gaps
         self._ends = [step.end for step in steps]
@@ -255,7 +255,7 @@ class Playback:
         payload = self._files.map(payload)
         reply = to_reply(self.session.vtk.Replay(payload, self._files.vtk))
         if reply.HasField("error"):
-            raise Corrupt(f"{self.file.label}: {what} is refused: {reply.error.message}", self.file.label)
+            raise Corrupt(f"{self.file.label}: {what} is rejected: {reply.error.message}", self.file.label)
         if self._files.folder and b"/overviews" in payload:
             self._wait_for_overviews(command_of(payload))
 

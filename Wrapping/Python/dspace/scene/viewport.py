@@ -144,7 +144,7 @@ class Viewport(Strict):
         None where nothing pickable is drawn (the sky), so that it is asked for before it is used.
 
         Ornaments that are drawn are picked, too. frame: a frame in which the point is given as well
-        (Pick.in_given). send: what was hit is also said to the simulation (Session.on_event)."""
+        (Pick.in_given). send: also sends the pick to the simulation (Session.on_event)."""
         scene = self.scene
         in_frame = 0 if frame is None else scene._frame_id(frame)
         reply = self._do("pick", x=x, y=y, radius=radius, in_frame=in_frame).pick
