@@ -154,7 +154,7 @@ TEST_F(MessageTest, EventsThatAreRefused) {
   }
   this->Refuse(event, Kind::INVALID_ARGUMENT, "accepted: up to 16384");
   event.mutable_log_event()->mutable_datum(0)->set_name("d1");
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "there twice");
+  this->Refuse(event, Kind::INVALID_ARGUMENT, "occurs twice");
   EXPECT_EQ(this->Log("mode").number(), 2u); // nothing of them counted
 }
 

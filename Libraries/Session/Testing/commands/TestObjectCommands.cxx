@@ -166,7 +166,7 @@ TEST_F(ObjectCommands, TrailsGrowAndAreCleared) {
   this->Accept(clear);
   EXPECT_EQ(this->Describe(id).bounds_radius(), 0);
   append.mutable_append_trail()->set_object(this->AddBox());
-  this->Refuse(append, v1::Error::INVALID_ARGUMENT, "no trail");
+  this->Refuse(append, v1::Error::INVALID_ARGUMENT, "not a trail");
 }
 
 TEST_F(ObjectCommands, BadInputIsRefusedAndChangesNothing) {
@@ -198,7 +198,7 @@ TEST_F(ObjectCommands, BadInputIsRefusedAndChangesNothing) {
   c.mutable_create_primitive()->mutable_lines()->add_point(1);
   this->Refuse(c, v1::Error::INVALID_ARGUMENT, "multiple of 3");
   c.mutable_create_primitive()->clear_shape();
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "no shape");
+  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "its shape is missing");
   c.Clear();
   c.mutable_set_object_offset()->set_object(box);
   c.mutable_set_object_offset()->mutable_offset()->mutable_scale()->set_x(1);

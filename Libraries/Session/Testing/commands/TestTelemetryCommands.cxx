@@ -239,12 +239,12 @@ TEST_F(TelemetryTest, ChoicesHaveLabels) {
   v1::Command twice = define;
   twice.mutable_create_telemetry()->add_label()->set_label("idle");
   twice.mutable_create_telemetry()->mutable_label(2)->set_value(9);
-  this->Refuse(twice, Kind::INVALID_ARGUMENT, "there twice");
+  this->Refuse(twice, Kind::INVALID_ARGUMENT, "occurs twice");
   const std::uint64_t id = this->Accept(define).telemetry().channel(0).channel().id();
   this->Set({{id, -3.0}});
   EXPECT_EQ(this->Ask("mode").text(), "driving");
-  this->Refuse(Values({{id, 1.0}}), Kind::INVALID_ARGUMENT, "one that has a label");
-  this->Refuse(Values({{id, -2.5}}), Kind::INVALID_ARGUMENT, "one that has a label");
+  this->Refuse(Values({{id, 1.0}}), Kind::INVALID_ARGUMENT, "a value with a label");
+  this->Refuse(Values({{id, -2.5}}), Kind::INVALID_ARGUMENT, "a value with a label");
   this->Set({{id, None}});
   EXPECT_EQ(this->Ask("mode").text(), "");
 }

@@ -104,7 +104,7 @@ TEST_F(ConfinementTest, ADocumentIsNoName) {
         confinement.Apply(command);
         ADD_FAILURE() << path << " was accepted";
       } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("holds '<' or '>'"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("contains '<' or '>'"), std::string::npos);
       }
     }
   }
