@@ -105,7 +105,7 @@ class Session:
     on_event = delegate(ViewerEvents, "on_event")
     on_edited = delegate(ViewerEvents, "on_edited")
     process_events = delegate(ViewerEvents, "process_events")
-    tell = delegate(ViewerEvents, "tell")
+    send_event = delegate(ViewerEvents, "send_event")
     answer = delegate(ViewerEvents, "answer")
     edited = delegate(ViewerEvents, "edited")
     select = delegate(ViewerEvents, "select")

@@ -36,10 +36,10 @@ def prepare(link, address, certificate, key, authority, insecure, timeout, label
 
 def make_connection(link, address, name):
     """Of all kinds of links; raises why there is none."""
-    reply = to_reply(link.ConnectLater(address, name))
+    reply = to_reply(link.BeginConnect(address, name))
     state = -1 if reply.HasField("error") else 0
     while state == 0:
-        state = link.WaitToConnect(SLICE)
+        state = link.WaitForConnect(SLICE)
         check_signals()
         if state < 0:
             reply = to_reply(link.TakeReply())

@@ -38,8 +38,8 @@ class ServedRecording(Recording):
         self._recorder = client.prepared(_vtk.vtkDspaceRecorder())
         try:
             make_connection(self._recorder, client.address, client.name)
-            self._recorder.RecordLater(path, every, pack)
-            while (begun := self._recorder.WaitToRecord(SLICE)) == 0:
+            self._recorder.BeginRecord(path, every, pack)
+            while (begun := self._recorder.WaitForRecord(SLICE)) == 0:
                 check_signals()
         except BaseException:
             self._recorder = None  # which ends it
@@ -74,13 +74,13 @@ class ServedRecording(Recording):
         """What ended it, or an empty string."""
         return self._failure if self._last is not None else self._open().GetRecordingFailure()
 
-    def take_news(self):
+    def take_warnings(self):
         """What has gone wrong since the last call: texts of warnings."""
-        news = []
-        while self._last is None and (text := self._recorder.TakeNews()):
-            news.append(text)
-        self._told = self._told or bool(news and self._recorder.GetRecordingFailure())
-        return news
+        warnings = []
+        while self._last is None and (text := self._recorder.TakeWarnings()):
+            warnings.append(text)
+        self._told = self._told or bool(warnings and self._recorder.GetRecordingFailure())
+        return warnings
 
     def flush(self):
         """Waits until all that the session has been told to be done is written."""
@@ -89,8 +89,8 @@ class ServedRecording(Recording):
         recorder = self._open()
         refused = self._settle(None)
         problem = self._catch_up(recorder, None)
-        recorder.FlushLater()
-        while not recorder.WaitToFlush(SLICE):
+        recorder.BeginFlush()
+        while not recorder.WaitForFlush(SLICE):
             check_signals()
         self._raise(recorder.GetRecordingFailure() or problem)
         if refused is not None:
@@ -114,8 +114,8 @@ class ServedRecording(Recording):
         """As stop(), in `limit` seconds at the latest; what goes wrong is a warning. Nothing in a child process."""
         if self._last is not None or os.getpid() != self._process:
             return
-        for news in self.take_news():
-            warn(news)
+        for warning in self.take_warnings():
+            warn(warning)
         try:
             self._stop(limit)
         except Error as error:
@@ -163,9 +163,9 @@ class ServedRecording(Recording):
                 "not come from it; what was recorded stays")
 
     def _close(self, recorder):
-        recorder.StopLater()
+        recorder.BeginStop()
         try:
-            while not recorder.WaitToStop(SLICE):
+            while not recorder.WaitForStop(SLICE):
                 check_signals()
         finally:
             _active.discard(self)

@@ -54,18 +54,18 @@ class WatchClient(LocalClient):
             listeners.deliver()
         return count
 
-    def tell(self, event):
+    def send_event(self, event):
         watcher = self.watcher()
-        reply = to_reply(watcher.TellLater(encode(event, "event")))
+        reply = to_reply(watcher.BeginSendEvent(encode(event, "event")))
         state = -1 if reply.HasField("error") else 0
         try:
             while state == 0:
-                state = watcher.WaitToTell(SLICE)
+                state = watcher.WaitForSendEvent(SLICE)
                 check_signals()
                 if state < 0:
                     reply = to_reply(watcher.TakeReply())
         except BaseException:
-            watcher.DropTell()
+            watcher.CancelSendEvent()
             raise
         if reply.HasField("error"):
             raise make_error(reply.error)
@@ -90,8 +90,8 @@ class Watcher(Session):
     that is removed, or lost with its server, are there again when the scene is. Everything else that
     would change the scene raises dspace.Unsupported.
 
-    What a person does goes to whoever drives: tell(), answer(), edited(), select(), dragged(),
-    Viewport.pick(tell=True), and clicks in viewports of one's own (Viewport.event).
+    Actions of a person are sent to the driver: send_event(), answer(), edited(), select(), dragged(),
+    Viewport.pick(send=True), and clicks in viewports of one's own (Viewport.event).
     """
 
     def __init__(self, client):
@@ -121,10 +121,10 @@ class Watcher(Session):
         return watcher.GetWriterName() if watcher.GetWriterConnected() else None
 
     @property
-    def trouble(self):
+    def error(self):
         """Why the server rejects this viewer (a state too large to send, too many viewers), or which commands could
-        not be applied since the last snapshot; empty: no trouble."""
-        return self._client.watcher().GetTrouble()
+        not be applied since the last snapshot; empty: no error."""
+        return self._client.watcher().GetError()
 
     def record(self, path, commit_every=0.1, pack=False):
         """As Session.record(): what each update() applies, views of one's own with it. Where the watcher begins

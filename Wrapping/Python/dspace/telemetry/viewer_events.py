@@ -92,19 +92,19 @@ class ViewerEvents:
 
     # --- Sending -------------------------------------------------------------------------------
 
-    def tell(self, event):
+    def send_event(self, event):
         """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:
         dspace.NotFound when nobody drives; up to 1 MiB."""
         if not isinstance(event, service_pb2.ViewerEvent):
             refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
-        self._session._client.tell(event)
+        self._session._client.send_event(event)
 
     def answer(self, question, answer):
         """Answers a question of the simulation."""
         event = service_pb2.ViewerEvent()
         event.answer.question = text(question, "the question", "event")
         event.answer.answer = text(answer, "the answer", "event")
-        self.tell(event)
+        self.send_event(event)
 
     def edited(self, name, value, unit=None):
         """Says a value that a person has entered; finite. Where a scene has a telemetry channel of that
@@ -124,7 +124,7 @@ class ViewerEvents:
         unit = "" if unit is None else unit
         event = service_pb2.ViewerEvent()
         put(event.edited, label, name=name, value=value, unit=text(unit, "the unit", label))
-        self.tell(event)
+        self.send_event(event)
 
     def select(self, objects):
         """Says which objects of one scene are selected; none: nothing is."""
@@ -138,7 +138,7 @@ class ViewerEvents:
             refuse("event", "the selection's scenes", sorted(scenes), "objects of one scene")
         event.selection.scene = scenes.pop() if scenes else ""
         event.selection.object.extend(each.id for each in objects)
-        self.tell(event)
+        self.send_event(event)
 
     def dragged(self, goal, position=None, quaternion=None, pose=None, relative_to=None, scene=DEFAULT_SCENE,
                 done=True):
@@ -160,7 +160,7 @@ class ViewerEvents:
         message.goal = goal.path if isinstance(goal, Frame) else goal
         put_pose(message.pose, to_pose(position, quaternion, None, pose))
         put(message, label, done=done)
-        self.tell(event)
+        self.send_event(event)
 
 
 def pose_of(message):
