@@ -187,7 +187,8 @@ TEST_F(LinkLimits, AFailedSnapshotIsReportedAndEndsNothing) {
 
 TEST_F(LinkLimits, AChildProcessGetsAnErrorAndMayCloseTheClientsOfItsParent) {
   if (testing::Sanitized()) {
-    GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
+    GTEST_SKIP()
+        << "the sanitizer's allocator may be locked by another thread when a process forks";
   }
   this->StartServer();
   auto client = std::make_unique<RemoteClient>(this->ClientOptions());

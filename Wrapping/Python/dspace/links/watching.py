@@ -91,7 +91,7 @@ class Watcher(Session):
     would change the scene raises dspace.Unsupported.
 
     Actions of a person are sent to the driver: send_event(), answer(), edited(), select(), dragged(),
-    Viewport.pick(send=True), and clicks in the watcher's own viewports (Viewport.event).
+    Viewport.pick(send=True), and clicks in viewports of one's own (Viewport.event).
     """
 
     def __init__(self, client):
@@ -122,8 +122,8 @@ class Watcher(Session):
 
     @property
     def error(self):
-        """Why the server rejects the viewer (a state that is too large to send, too many viewers), or the first
-        command since the last snapshot that failed here; empty: no error."""
+        """Why the server rejects this viewer (a state too large to send, too many viewers), or which commands could
+        not be applied since the last snapshot; empty: no error."""
         return self._client.watcher().GetError()
 
     def record(self, path, commit_every=0.1, pack=False):

@@ -93,10 +93,10 @@ class ViewerEvents:
     # --- Sending -------------------------------------------------------------------------------
 
     def send_event(self, event):
-        """Sends a dspace.proto.service_pb2.ViewerEvent of up to 1 MiB to the simulation. A Watcher raises
-        dspace.NotFound if the server has no driver."""
+        """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:
+        dspace.NotFound when nobody drives; up to 1 MiB."""
         if not isinstance(event, service_pb2.ViewerEvent):
-            reject("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
+            refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
         self._session._client.send_event(event)
 
     def answer(self, question, answer):
