@@ -13,10 +13,12 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
-# ccache, where it is installed. Precompiled headers carry time stamps, which ccache would take for changes.
+# ccache, where it is installed. Precompiled headers carry time stamps, which ccache would take for changes. The
+# preprocessor that ccache would run reads an old precompiled header in place of changed headers: with
+# CCACHE_DEPEND the compiler's list of dependencies decides.
 find_program(DSPACE_CCACHE ccache)
 if(DSPACE_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_DEPEND=true
     CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime "${DSPACE_CCACHE}")
 endif()
 

@@ -18,7 +18,7 @@ FINAL = {grpc.StatusCode.INVALID_ARGUMENT, grpc.StatusCode.FAILED_PRECONDITION, 
          grpc.StatusCode.RESOURCE_EXHAUSTED, grpc.StatusCode.UNIMPLEMENTED}  # asking again would not help
 
 
-class Refused(Exception):
+class Rejected(Exception):
     """What the server says of a command that it has not carried out."""
 
 
@@ -126,7 +126,7 @@ class Driver:
             if done.HasField("reply") and done.number > self.acknowledged:
                 self.acknowledged = done.number
                 if done.reply.HasField("error"):
-                    raise Refused(f"command {done.number}: {done.reply.error.message}")
+                    raise Rejected(f"command {done.number}: {done.reply.error.message}")
                 for warning in done.reply.warning:
                     print(f"warning: {warning}")
                 return done

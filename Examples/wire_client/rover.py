@@ -11,7 +11,7 @@ import math
 import sys
 
 import grpc
-from drive import Driver, Refused, new, open_channel
+from drive import Driver, Rejected, new, open_channel
 
 STEPS, DT = 500, 0.01  # s
 RADIUS, RATE = 3.0, 0.2  # of the circle [m], along it [rad/s]
@@ -153,5 +153,5 @@ if __name__ == "__main__":
         main()
     except grpc.RpcError as error:
         sys.exit(f"wire rover: {error.details()}")
-    except (Refused, ConnectionError, OSError, ValueError) as error:
+    except (Rejected, ConnectionError, OSError, ValueError) as error:
         sys.exit(f"wire rover: {error}")

@@ -68,7 +68,7 @@ def test_modules_beside_a_program_are_the_run(tmp_path):
         assert make() == 12 and make() == 0
         assert files(out, 12) != before
         before = files(out, 12)
-    assert movie.make(f"{program}:run", out, jobs=2, anew=True) == 12 and files(out, 12) == before
+    assert movie.make(f"{program}:run", out, jobs=2, redraw=True) == 12 and files(out, 12) == before
 
 
 def test_files_that_a_recording_names_are_the_run(tmp_path, field):

@@ -37,7 +37,7 @@ vtkShaderProgram* Ready(vtkDspaceHubWindow* window, const std::string& vertex,
   vtkShaderProgram* program =
       window->GetShaderCache()->ReadyShaderProgram(vertex.c_str(), fragment.c_str(), "");
   if (!program) {
-    throw Error(Error::Kind::Internal, "shader", "the OpenGL driver refused to compile it");
+    throw Error(Error::Kind::Internal, "shader", "the OpenGL driver failed to compile it");
   }
   return program;
 }

@@ -154,7 +154,7 @@ TEST_F(MessageTest, EventsThatAreRejected) {
   }
   this->Reject(event, Kind::INVALID_ARGUMENT, "accepted: up to 16384");
   event.mutable_log_event()->mutable_datum(0)->set_name("d1");
-  this->Refuse(event, Kind::INVALID_ARGUMENT, "occurs twice");
+  this->Reject(event, Kind::INVALID_ARGUMENT, "occurs twice");
   EXPECT_EQ(this->Log("mode").number(), 2u); // nothing of them counted
 }
 
@@ -200,13 +200,13 @@ TEST_F(MessageTest, QuestionsAreOpenUntilTheyAreClosed) {
   ASSERT_EQ(this->Questions().question_size(), 2);
   EXPECT_EQ(this->Questions().question(0).choice(1), "no");
 
-  this->Refuse(Question("go"), Kind::ALREADY_EXISTS, "'go': it is already open");
-  this->Refuse(Question(""), Kind::INVALID_ARGUMENT, "its name is empty");
-  this->Refuse(Question("a", ""), Kind::INVALID_ARGUMENT, "its text is empty");
+  this->Reject(Question("go"), Kind::ALREADY_EXISTS, "'go': it is already open");
+  this->Reject(Question(""), Kind::INVALID_ARGUMENT, "its name is empty");
+  this->Reject(Question("a", ""), Kind::INVALID_ARGUMENT, "its text is empty");
   v1::Command twice = Question("a");
   twice.mutable_ask_operator()->add_choice("yes");
   twice.mutable_ask_operator()->add_choice("yes");
-  this->Refuse(twice, Kind::INVALID_ARGUMENT, "its choice 'yes' occurs twice");
+  this->Reject(twice, Kind::INVALID_ARGUMENT, "its choice 'yes' occurs twice");
 
   v1::Command other; // names are the session's: answers do not say of which scene
   other.set_scene("other");

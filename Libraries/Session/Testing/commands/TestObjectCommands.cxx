@@ -142,7 +142,7 @@ TEST_F(ObjectCommands, TiltMarkersTurnRed) {
   this->Reject(tilt, v1::Error::INVALID_ARGUMENT, "-1");
   tilt.mutable_set_tilt()->set_tilt_deg(40);
   tilt.mutable_set_tilt()->set_object(this->AddBox());
-  this->Refuse(tilt, v1::Error::INVALID_ARGUMENT, "not a tilt marker");
+  this->Reject(tilt, v1::Error::INVALID_ARGUMENT, "not a tilt marker");
 }
 
 TEST_F(ObjectCommands, TrailsGrowAndAreCleared) {
@@ -166,7 +166,7 @@ TEST_F(ObjectCommands, TrailsGrowAndAreCleared) {
   this->Accept(clear);
   EXPECT_EQ(this->Describe(id).bounds_radius(), 0);
   append.mutable_append_trail()->set_object(this->AddBox());
-  this->Refuse(append, v1::Error::INVALID_ARGUMENT, "not a trail");
+  this->Reject(append, v1::Error::INVALID_ARGUMENT, "not a trail");
 }
 
 TEST_F(ObjectCommands, BadInputIsRejectedAndChangesNothing) {
@@ -198,7 +198,7 @@ TEST_F(ObjectCommands, BadInputIsRejectedAndChangesNothing) {
   c.mutable_create_primitive()->mutable_lines()->add_point(1);
   this->Reject(c, v1::Error::INVALID_ARGUMENT, "multiple of 3");
   c.mutable_create_primitive()->clear_shape();
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "its shape is missing");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "its shape is missing");
   c.Clear();
   c.mutable_set_object_offset()->set_object(box);
   c.mutable_set_object_offset()->mutable_offset()->mutable_scale()->set_x(1);

@@ -108,11 +108,11 @@ TEST_F(TelemetryTest, AStepIsSetWholeOrNotAtAll) {
   const std::uint64_t b = this->Add("b");
   const std::uint64_t text = this->AddText("text");
   this->Set({{a, 1.0}, {b, 2.0}});
-  this->Refuse(Values({{a, 3.0}, {b, Infinite}}), Kind::INVALID_ARGUMENT, "'b': its value is inf");
-  this->Refuse(Values({{a, 3.0}, {b, -Infinite}}), Kind::INVALID_ARGUMENT, "-inf");
-  this->Refuse(Values({{a, 3.0}, {a, 4.0}}), Kind::INVALID_ARGUMENT, "'a': it occurs twice");
-  this->Refuse(Values({{a, 3.0}, {b + 100, 4.0}}), Kind::NOT_FOUND, "no such channel");
-  this->Refuse(Values({{a, 3.0}, {text, 4.0}}), Kind::INVALID_ARGUMENT, "set_telemetry_texts");
+  this->Reject(Values({{a, 3.0}, {b, Infinite}}), Kind::INVALID_ARGUMENT, "'b': its value is inf");
+  this->Reject(Values({{a, 3.0}, {b, -Infinite}}), Kind::INVALID_ARGUMENT, "-inf");
+  this->Reject(Values({{a, 3.0}, {a, 4.0}}), Kind::INVALID_ARGUMENT, "'a': it occurs twice");
+  this->Reject(Values({{a, 3.0}, {b + 100, 4.0}}), Kind::NOT_FOUND, "no such channel");
+  this->Reject(Values({{a, 3.0}, {text, 4.0}}), Kind::INVALID_ARGUMENT, "set_telemetry_texts");
   v1::Command uneven = Values({{a, 3.0}, {b, 4.0}});
   uneven.mutable_set_telemetry()->add_value(5.0);
   this->Reject(uneven, Kind::INVALID_ARGUMENT, "3 values and 0 times are given for 2 channels");
@@ -239,12 +239,12 @@ TEST_F(TelemetryTest, ChoicesHaveLabels) {
   v1::Command twice = define;
   twice.mutable_create_telemetry()->add_label()->set_label("idle");
   twice.mutable_create_telemetry()->mutable_label(2)->set_value(9);
-  this->Refuse(twice, Kind::INVALID_ARGUMENT, "occurs twice");
+  this->Reject(twice, Kind::INVALID_ARGUMENT, "occurs twice");
   const std::uint64_t id = this->Accept(define).telemetry().channel(0).channel().id();
   this->Set({{id, -3.0}});
   EXPECT_EQ(this->Ask("mode").text(), "driving");
-  this->Refuse(Values({{id, 1.0}}), Kind::INVALID_ARGUMENT, "a value with a label");
-  this->Refuse(Values({{id, -2.5}}), Kind::INVALID_ARGUMENT, "a value with a label");
+  this->Reject(Values({{id, 1.0}}), Kind::INVALID_ARGUMENT, "a value with a label");
+  this->Reject(Values({{id, -2.5}}), Kind::INVALID_ARGUMENT, "a value with a label");
   this->Set({{id, None}});
   EXPECT_EQ(this->Ask("mode").text(), "");
 }

@@ -149,7 +149,7 @@ TEST_F(TerrainCommands, BadInputIsRejectedAndChangesNothing) {
   c.mutable_query_terrain()->add_point(1);
   this->Reject(c, v1::Error::INVALID_ARGUMENT, "multiple of 2");
   c.mutable_query_terrain()->add_point(1);
-  this->Refuse(c, v1::Error::INVALID_ARGUMENT, "no quantity is requested");
+  this->Reject(c, v1::Error::INVALID_ARGUMENT, "no quantity is requested");
   c.mutable_query_terrain()->set_terrain("sea");
   this->Reject(c, v1::Error::NOT_FOUND, "sea");
   c.Clear();

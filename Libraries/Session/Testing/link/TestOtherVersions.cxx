@@ -189,7 +189,7 @@ TEST_F(WireCommands, UnimplementedCommandsAreRejected) {
     }
     v1::Command command;
     command.GetReflection()->MutableMessage(&command, field);
-    this->Refuse(command, Kind::UNIMPLEMENTED,
+    this->Reject(command, Kind::UNIMPLEMENTED,
                  "command " + field->name() + ": this version does not implement it");
     command.set_scene("no such scene");
     const v1::Reply reply = this->Interpreter_.Execute(command);

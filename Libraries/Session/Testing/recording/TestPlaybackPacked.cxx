@@ -46,7 +46,7 @@ TEST_F(PlaybackPacked, WithoutPackingFilesMustBeWhatTheyWere) {
     EXPECT_EQ(unchecked.Files().Locate("/a"), "/a");
   }
   fs::remove(material);
-  this->Refuses(Error::Kind::NotFound, {material.string(), "is missing"});
+  this->Rejects(Error::Kind::NotFound, {material.string(), "is missing"});
   Write(material, before);
   EXPECT_EQ(this->Played(), live);
   // A source that only the mosaic names.
@@ -72,7 +72,7 @@ TEST_F(PlaybackPacked, WhatWasNotThereMayNotBeThereNow) {
   RecordingReader reader(this->Path_);
   { const RecordedFiles whole(reader); }
   Write(this->Here_ / "part.mtl", "newmtl m\nKd 1 1 1\n");
-  this->Refuses(Error::Kind::Corrupt, {"part.mtl", "did not exist"});
+  this->Rejects(Error::Kind::Corrupt, {"part.mtl", "did not exist"});
 }
 
 TEST_F(PlaybackPacked, DamagedContentIsRejectedByName) {

@@ -300,9 +300,9 @@ TEST_F(Salvage, APartBeginsWithItsState) {
 TEST_F(Salvage, WhatCannotBeSalvagedLeavesNothingBehind) {
   this->Rejects(Error::Kind::NotFound, "no such file");
   Write(this->Of("bad"), std::string(3 * Page, '\0'));
-  this->Refuses(Error::Kind::Corrupt, "nothing in it can be recovered");
+  this->Rejects(Error::Kind::Corrupt, "nothing in it can be recovered");
   Write(this->Of("bad"), "");
-  this->Refuses(Error::Kind::Corrupt, "nothing in it can be recovered");
+  this->Rejects(Error::Kind::Corrupt, "nothing in it can be recovered");
   this->Make(this->Of("whole"));
   std::filesystem::copy_file(this->Of("whole"), this->Of("bad"),
                              std::filesystem::copy_options::overwrite_existing);
@@ -320,7 +320,7 @@ TEST_F(Salvage, WhatCannotBeSalvagedLeavesNothingBehind) {
   EXPECT_FALSE(std::filesystem::exists(this->Of("new")));
   Run(this->Of("bad"), "UPDATE meta SET value = 'damaged' WHERE key = 'format'");
   EXPECT_TRUE(this->Salvaged().IsComplete());
-  this->Refuses(Error::Kind::AlreadyExists, "there is such a file");
+  this->Rejects(Error::Kind::AlreadyExists, "there is such a file");
   EXPECT_TRUE(std::filesystem::exists(this->Of("new"))); // it is another one's
 }
 

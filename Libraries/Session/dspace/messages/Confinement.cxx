@@ -133,11 +133,11 @@ void Confinement::RequireThere(const std::string& real, const std::string& text,
 std::string Confinement::Check(const std::string& text, const std::string& field,
                                bool isRead) const {
   if (text.find('\0') != std::string::npos) {
-    RefusePath(text, field, "contains a zero byte");
+    RejectPath(text, field, "contains a zero byte");
   }
   // GDAL interprets a name that contains "<VRTDataset" as the document itself.
   if (text.find_first_of("<>") != std::string::npos) {
-    RefusePath(text, field, "contains '<' or '>'; accepted: names without them");
+    RejectPath(text, field, "contains '<' or '>'; accepted: names without them");
   }
   // The opened path is the checked one: the same absolute path.
   const fs::path path = fs::absolute(text).lexically_normal();
@@ -156,7 +156,7 @@ std::string Confinement::Check(const std::string& text, const std::string& field
   for (const std::string& root : this->Roots_) {
     accepted += (accepted.empty() ? "" : ", ") + root;
   }
-  RefusePath(text, field,
+  RejectPath(text, field,
              "is outside of the folders that " + this->Who_ + " allows; accepted: files in " +
                  (accepted.empty() ? "no folder" : accepted));
 }

@@ -32,10 +32,10 @@ void CheckData(const std::string& label, const v1::LogEvent& event) {
     RequireLines(label, "the text of a datum", datum.text(), MostBytes("EventDatum.text"));
     RequireLine(label, "the unit of a datum", datum.unit(), MostBytes("EventDatum.unit"));
     if (!names.insert(datum.name()).second) {
-      Refuse(label, "its datum " + QuotedText(datum.name()) + " occurs twice; accepted: once");
+      Reject(label, "its datum " + QuotedText(datum.name()) + " occurs twice; accepted: once");
     }
     if (!datum.unit().empty() && !datum.has_number()) {
-      Refuse(label, "its datum " + QuotedText(datum.name()) +
+      Reject(label, "its datum " + QuotedText(datum.name()) +
                         " has a unit and is not a number; accepted: units of numbers only");
     }
   }
@@ -53,7 +53,7 @@ void MessageLog::Log(v1::LogEvent& event, double now) {
   if (event.has_position()) {
     RequirePosition(label, "its position", ToVector(event.position()));
     if (event.frame() == 0 && event.frame_path().empty()) {
-      Refuse(label, "it has a position and no frame; accepted: a frame, 1 for the root");
+      Reject(label, "it has a position and no frame; accepted: a frame, 1 for the root");
     }
   }
   if (event.has_time_s()) {
@@ -97,7 +97,7 @@ void MessageLog::Ask(v1::AskOperator& question, double now) {
   RequireLines(label, "its text", question.text(), MostBytes("AskOperator.text"));
   CheckSeverity(label, question.severity());
   if (question.text().empty()) {
-    Refuse(label, "its text is empty; accepted: the question's text");
+    Reject(label, "its text is empty; accepted: the question's text");
   }
   if (question.choice_size() > MaximumChoices) {
     Reject(label, "it has " + std::to_string(question.choice_size()) +
@@ -107,7 +107,7 @@ void MessageLog::Ask(v1::AskOperator& question, double now) {
   for (const std::string& choice : question.choice()) {
     RequireWord(label, "a choice", choice, MostBytes("AskOperator.choice"));
     if (!choices.insert(choice).second) {
-      Refuse(label, "its choice " + QuotedText(choice) + " occurs twice; accepted: once");
+      Reject(label, "its choice " + QuotedText(choice) + " occurs twice; accepted: once");
     }
   }
   if (question.has_time_s()) {

@@ -74,7 +74,7 @@ void CheckLabels(const std::string& label, const v1::CreateTelemetry& command) {
   const bool choice = command.kind() == v1::CreateTelemetry::CHOICE;
   if (choice ? command.label_size() < 1 || command.label_size() > MaximumLabels
              : command.label_size() > 0) {
-    Refuse(label, "it has " + std::to_string(command.label_size()) + " labels; accepted: " +
+    Reject(label, "it has " + std::to_string(command.label_size()) + " labels; accepted: " +
                       (choice ? "1 to 1,000 for a choice" : "labels of a choice only"));
   }
   std::set<std::int32_t> values;
@@ -82,7 +82,7 @@ void CheckLabels(const std::string& label, const v1::CreateTelemetry& command) {
   for (const v1::CreateTelemetry::Label& each : command.label()) {
     RequireWord(label, "a label", each.label(), MostBytes("CreateTelemetry.Label.label"));
     if (!values.insert(each.value()).second || !texts.insert(each.label()).second) {
-      Refuse(label, "its label " + QuotedText(each.label()) + " of value " +
+      Reject(label, "its label " + QuotedText(each.label()) + " of value " +
                         std::to_string(each.value()) + " occurs twice; accepted: each once");
     }
   }
@@ -112,7 +112,7 @@ std::uint64_t Telemetry::Create(const v1::CreateTelemetry& command, std::uint64_
   RequireLine(label, "its description", command.description(),
               MostBytes("CreateTelemetry.description"));
   if (!number && (!command.unit().empty() || command.has_limits())) {
-    Refuse(label, "it has a unit or limits; accepted: units and limits of numbers only");
+    Reject(label, "it has a unit or limits; accepted: units and limits of numbers only");
   }
   CheckLabels(label, command);
   CheckLimits(label, command.limits());
@@ -172,7 +172,7 @@ void Telemetry::SetLimits(const v1::SetTelemetryLimits& command) {
   Channel& channel = this->At(command.id());
   const std::string label = Label(channel.about.name());
   if (channel.about.kind() != v1::CreateTelemetry::NUMBER) {
-    Refuse(label, "it is not a number; accepted: limits of numbers only");
+    Reject(label, "it is not a number; accepted: limits of numbers only");
   }
   CheckLimits(label, command.limits());
   v1::CreateTelemetry about = channel.about;
@@ -212,7 +212,7 @@ std::vector<Telemetry::Channel*> Telemetry::Check(const Command& command, const 
   for (int i = 0; i < command.id_size(); ++i) {
     Channel& channel = this->At(command.id(i));
     if (channel.step == this->Step_) {
-      Refuse(Label(channel.about.name()), "it occurs twice in " + label + "; accepted: once");
+      Reject(Label(channel.about.name()), "it occurs twice in " + label + "; accepted: once");
     }
     channel.step = this->Step_;
     channels.push_back(&channel);
@@ -237,7 +237,7 @@ void Telemetry::Set(const v1::SetTelemetry& command, double now) {
     }
     if (about.kind() == v1::CreateTelemetry::CHOICE && !std::isnan(value) &&
         !HasLabel(about, value)) {
-      Refuse(Label(about.name()), "its value is " + NumberText(value) +
+      Reject(Label(about.name()), "its value is " + NumberText(value) +
                                       "; accepted: a value with a label, or NaN for none");
     }
   }
@@ -280,7 +280,7 @@ void Telemetry::Remove(const v1::RemoveTelemetry& command) {
   for (const std::uint64_t id : command.id()) {
     const Channel& channel = this->Get(id);
     if (!ids.insert(id).second) {
-      Refuse(Label(channel.about.name()),
+      Reject(Label(channel.about.name()),
              "it occurs twice in command remove_telemetry; accepted: once");
     }
   }

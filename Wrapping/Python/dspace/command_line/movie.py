@@ -20,7 +20,7 @@ def add_arguments(parser):
     parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers share it: tcp://HOST:PORT or tls://...")
     parser.add_argument("--work", metavar="DIR", help="folder for pictures (default: X.work)")
     parser.add_argument("--keep", action="store_true", help="keeps the work folder when the movie is made")
-    parser.add_argument("--anew", action="store_true", help="draws pictures again that an ended make left")
+    parser.add_argument("--redraw", action="store_true", help="draws pictures again that an ended make left")
     parser.set_defaults(run=run)
 
 
@@ -38,7 +38,7 @@ def run(options):
     try:
         drawn = movie.make(options.source, options.out, jobs=options.jobs, scheduler=options.scheduler,
                            work=options.work, keep=options.keep, progress=bar.show, encoding=bar.encoding,
-                           anew=options.anew)
+                           redraw=options.redraw)
     except KeyboardInterrupt:
         bar.end()
         print("dspace: ended; the same command goes on where this one was", file=sys.stderr)

@@ -90,10 +90,10 @@ def identity(movie, run):
 # --- The folder ------------------------------------------------------------------------------------
 
 class Folder:
-    """A folder of a movie's pictures, used by one make() at a time. anew: what is there is not made use of."""
+    """A folder of a movie's pictures, used by one make() at a time. redraw: existing pictures are not used."""
 
-    def __init__(self, folder, movie, run, anew=False):
-        self.folder, self.movie, self.run, self.anew = folder, movie, run, anew
+    def __init__(self, folder, movie, run, redraw=False):
+        self.folder, self.movie, self.run, self.redraw = folder, movie, run, redraw
 
     def path(self, name):
         return os.path.join(self.folder, name)
@@ -137,7 +137,7 @@ class Folder:
         lasting = isinstance(self.run, (str, os.PathLike))
         now = identity(self.movie, self.run) if lasting else None
         before = self._state()
-        if self.anew or now is None or before is None or before["hash"] != now:
+        if self.redraw or now is None or before is None or before["hash"] != now:
             self._say(None)
             for name in self._ours():
                 if name.startswith("frame_"):

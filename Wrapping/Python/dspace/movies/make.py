@@ -22,7 +22,7 @@ from dspace.movies.encode import codec_of, encode, programs
 from dspace.movies.folder import FRAME, SCRIPT, Folder, absolute
 
 
-def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progress=None, encoding=None, anew=False):
+def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progress=None, encoding=None, redraw=False):
     """Draws a Movie of a run into `out`: .mp4 (H.264), .webm (VP9), or a folder of PNGs (a name without a dot, one
     with a slash at its end, or a folder that is there).
 
@@ -30,7 +30,7 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
     jobs: processes that share the pictures; scheduler: a Dask scheduler's address (tcp://HOST:PORT, tls://...), whose
     workers draw them; `run` must have the same path on their machines. work: the folder for pictures (default: `out`
     with ".work", removed at the end unless `keep`; of a folder of PNGs `out` itself). An interrupted make()
-    of the same movie is continued, unless `anew`. progress: called with (done, all, seconds so
+    of the same movie is continued, unless `redraw`. progress: called with (done, all, seconds so
     far, drawn in them); encoding: when all are drawn, with (pictures in the file, all, seconds so far). Returns the
     number of pictures drawn now."""
     total = movie.check()
@@ -52,10 +52,10 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
         programs()
         _check_place(out)
     with contextlib.ExitStack() as stack:
-        folder = stack.enter_context(Folder(work, movie, run, anew))
+        folder = stack.enter_context(Folder(work, movie, run, redraw))
         shown = folder
         if codec is None and os.path.realpath(work) != os.path.realpath(out):
-            shown = stack.enter_context(Folder(out, movie, run, anew))
+            shown = stack.enter_context(Folder(out, movie, run, redraw))
         missing = folder.missing(total)
         began = clock.monotonic()
 

@@ -95,7 +95,7 @@ void SetObjectOffset(const Context& context, v1::SetObjectOffset& command) {
   Scene& scene = context.GetScene();
   for (const auto& [name, terrain] : context.scene->terrains) {
     if (terrain->Object() == command.object()) {
-      Refuse(ObjectLabel(scene, command.object()),
+      Reject(ObjectLabel(scene, command.object()),
              "terrain '" + name + "' is queried in its frame; accepted: move the frame");
     }
   }

@@ -36,11 +36,11 @@ void SetPrimitive(const Context& context, v1::SetPrimitive& command) {
   scene.Object(command.object()); // throws where there is none
   const std::string label = ObjectLabel(scene, command.object());
   if (!context.scene->primitives.count(command.object())) {
-    Refuse(label, "it is not a primitive; accepted: an object of create_primitive");
+    Reject(label, "it is not a primitive; accepted: an object of create_primitive");
   }
   const v1::CreatePrimitive& shape = command.shape();
   if (shape.has_tilt() != (context.scene->tilts.count(command.object()) != 0)) {
-    Refuse(label, "a tilt marker cannot become another shape, nor another shape a tilt marker");
+    Reject(label, "a tilt marker cannot become another shape, nor another shape a tilt marker");
   }
   std::vector<DetailLevel> levels(1);
   levels[0].parts = PartsOfShape(shape);
@@ -52,7 +52,7 @@ void SetTilt(const Context& context, v1::SetTilt& command) {
   MaterialOverride material = scene.Object(command.object()).material;
   const auto found = context.scene->tilts.find(command.object());
   if (found == context.scene->tilts.end()) {
-    Refuse(ObjectLabel(scene, command.object()), "it is not a tilt marker");
+    Reject(ObjectLabel(scene, command.object()), "it is not a tilt marker");
   }
   material.color = TiltColor(command.tilt_deg(), found->second.first, found->second.second);
   scene.SetObjectMaterial(command.object(), material);

@@ -39,7 +39,7 @@ std::vector<Part> LineParts(const v1::CreatePrimitive::Lines& lines) {
   std::size_t begin = 0;
   for (const std::uint32_t count : lines.count()) {
     if (count > points.size() - begin) {
-      Refuse("line set",
+      Reject("line set",
              "count needs more points than the " + std::to_string(points.size()) + " in point");
     }
     parts.push_back(PartOf(MakeLineSet(
@@ -48,7 +48,7 @@ std::vector<Part> LineParts(const v1::CreatePrimitive::Lines& lines) {
     begin += count;
   }
   if (begin != points.size()) {
-    Refuse("line set", "count uses " + std::to_string(begin) + " of " +
+    Reject("line set", "count uses " + std::to_string(begin) + " of " +
                            std::to_string(points.size()) + " points; accepted: all of them");
   }
   return parts;
@@ -108,7 +108,7 @@ std::vector<Part> PartsOfShape(const v1::CreatePrimitive& command) {
   case Shape::SHAPE_NOT_SET:
     break;
   }
-  Refuse("primitive", "its shape is missing or unknown; accepted: box, sphere, cylinder, cone, "
+  Reject("primitive", "its shape is missing or unknown; accepted: box, sphere, cylinder, cone, "
                       "plane, disc, torus, arrow, axes, lines, points, frustum, goal, tilt");
 }
 

@@ -11,7 +11,7 @@ Trail& FindTrail(const Context& context, ObjectId id) {
   context.GetScene().Object(id); // throws where there is none
   const auto found = context.scene->trails.find(id);
   if (found == context.scene->trails.end()) {
-    Refuse(ObjectLabel(context.GetScene(), id), "it is not a trail");
+    Reject(ObjectLabel(context.GetScene(), id), "it is not a trail");
   }
   return found->second;
 }
@@ -28,7 +28,7 @@ std::vector<DetailLevel> LevelsOf(const Trail& trail) {
 
 void CreateTrail(const Context& context, v1::CreateTrail& command) {
   if (command.object().has_offset()) {
-    Refuse("trail", "it has an offset; accepted: none, its points are in the frame");
+    Reject("trail", "it has an offset; accepted: none, its points are in the frame");
   }
   Trail trail(command.capacity(), command.minimum_spacing(), command.fade());
   const ObjectId id = AddObject(context, *command.mutable_object(), "trail", LevelsOf(trail));

@@ -148,7 +148,7 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   options.onBody = command.on_body();
   if (command.has_map_origin()) {
     if (options.onBody) {
-      Refuse(label, "it is on a body, whose centre is the origin; accepted: no origin");
+      Reject(label, "it is on a body, whose centre is the origin; accepted: no origin");
     }
     options.origin = Eigen::Vector2d(command.map_origin().x(), command.map_origin().y());
     options.originHeight = command.map_origin().z();
@@ -221,10 +221,10 @@ v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
                       " is not known; accepted: auto, triangles, clipmap");
   }
   if (command.on_body() && command.mode() == Command::TRIANGLES) {
-    Refuse(label, "triangles need a plane; accepted on a body: a clipmap");
+    Reject(label, "triangles need a plane; accepted on a body: a clipmap");
   }
   if (command.patch_size() != 0 && command.mode() == Command::TRIANGLES) {
-    Refuse(label, "triangles use one raster; accepted with patches: a clipmap");
+    Reject(label, "triangles use one raster; accepted with patches: a clipmap");
   }
   if (command.subdivisions() != 0 && command.mode() == Command::TRIANGLES) {
     Reject(label, "triangles have no posts between pixels; accepted with subdivisions: a clipmap");

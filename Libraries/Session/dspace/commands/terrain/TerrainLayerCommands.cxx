@@ -176,7 +176,7 @@ Opened Open(const ClipmapTerrainObject& terrain, Add& command, const std::string
   case Add::kNoise:
     return MakeNoise(command.noise());
   default:
-    Refuse(label, "the layer has no kind; accepted: an image, false colour, shapes, noise");
+    Reject(label, "the layer has no kind; accepted: an image, false colour, shapes, noise");
   }
 }
 

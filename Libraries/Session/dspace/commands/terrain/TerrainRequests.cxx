@@ -68,17 +68,17 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   const TerrainSurface& surface = command.undisturbed() ? terrain.Undisturbed() : terrain.Surface();
   const std::string label = "terrain '" + command.terrain() + "'";
   if (command.map() && command.spatial()) {
-    Refuse(label, "map and spatial are both set; accepted: one of them");
+    Reject(label, "map and spatial are both set; accepted: one of them");
   }
   const bool body = terrain.OnBody();
   if (body && !command.map() && !command.spatial()) {
-    Refuse(label, "it is on a body; accepted: map coordinates, or x, y and z");
+    Reject(label, "it is on a body; accepted: map coordinates, or x, y and z");
   }
   const int size = command.spatial() ? 3 : 2;
   const std::size_t n = RowsOf(command.point_size(), size, label, "point");
   if (!command.height() && !command.normal() && !command.slope() && !command.aspect() &&
       !command.has_roughness_radius() && !command.filled()) {
-    Refuse(label,
+    Reject(label,
            "no quantity is requested; accepted: height, normal, slope, aspect, roughness, filled");
   }
   RequireFinitePoints(label, command.point().data(), size, n);

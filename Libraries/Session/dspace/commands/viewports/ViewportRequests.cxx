@@ -49,7 +49,7 @@ void ViewportCommands::Capture(const Context& context, v1::Capture& command) {
   request.depth = command.depth();
   request.label = command.label();
   if (!request.color && !request.depth && !request.label) {
-    Refuse("capture of viewport '" + command.viewport() + "'",
+    Reject("capture of viewport '" + command.viewport() + "'",
            "it requests no plane; accepted: color, depth, label");
   }
   this->LastCapture_ = viewport.GetCapture(request);

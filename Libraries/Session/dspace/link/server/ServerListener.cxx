@@ -191,7 +191,7 @@ void ServerListener::ListenAtHost(const std::string& target) {
     close(listener);
     why = std::strerror(error);
     if (error == EADDRINUSE) {
-      Refuse(target, why); // do not share an address with another server
+      Reject(target, why); // do not share an address with another server
     }
   }
   if (this->Listeners_.empty()) {

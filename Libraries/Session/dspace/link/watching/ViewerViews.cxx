@@ -193,12 +193,12 @@ std::vector<std::string> ViewerViews::ViewportsIn(Interpreter& interpreter,
   return names;
 }
 
-bool ViewerViews::RemoveConflicting(Interpreter& interpreter, const v1::Command& refused) {
-  const std::string scene = SceneName(refused);
+bool ViewerViews::RemoveConflicting(Interpreter& interpreter, const v1::Command& rejected) {
+  const std::string scene = SceneName(rejected);
   if (!interpreter.FindScene(scene)) {
     return false;
   }
-  if (refused.has_remove_scene()) {
+  if (rejected.has_remove_scene()) {
     this->BeforeSnapshot(interpreter);
     this->Suspend(interpreter, scene);
     const std::vector<std::string> names = this->ViewportsIn(interpreter, scene);
@@ -212,23 +212,23 @@ bool ViewerViews::RemoveConflicting(Interpreter& interpreter, const v1::Command&
                           this->Vantages_.lower_bound({scene + '\0', ""}));
     return !names.empty();
   }
-  if (refused.has_remove_frame()) {
-    return this->DetachCameras(interpreter, scene, refused.remove_frame().frame());
+  if (rejected.has_remove_frame()) {
+    return this->DetachCameras(interpreter, scene, rejected.remove_frame().frame());
   }
-  if (refused.has_remove_robot()) {
+  if (rejected.has_remove_robot()) {
     v1::Command ask;
     ask.set_scene(scene);
-    ask.mutable_describe_robot()->set_robot(refused.remove_robot().robot());
+    ask.mutable_describe_robot()->set_robot(rejected.remove_robot().robot());
     const v1::Reply reply = interpreter.Execute(ask);
     return reply.has_robot() && this->DetachCameras(interpreter, scene, reply.robot().base());
   }
-  if (refused.has_remove_vantage()) {
-    return this->DetachViewports(interpreter, scene, refused.remove_vantage().name(), "");
+  if (rejected.has_remove_vantage()) {
+    return this->DetachViewports(interpreter, scene, rejected.remove_vantage().name(), "");
   }
-  if (refused.has_remove_camera()) {
-    const std::string& vantage = refused.remove_camera().vantage();
+  if (rejected.has_remove_camera()) {
+    const std::string& vantage = rejected.remove_camera().vantage();
     return this->DetachViewports(interpreter, scene, vantage.empty() ? DefaultVantage : vantage,
-                                 refused.remove_camera().name());
+                                 rejected.remove_camera().name());
   }
   return false;
 }

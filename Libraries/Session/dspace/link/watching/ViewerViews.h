@@ -44,7 +44,7 @@ public:
   // Removes views that conflict with a rejected command of the simulation. True: retry the command.
   // Call it before a command that removes a scene, because only viewports make that command fail,
   // and vantages would be lost.
-  bool RemoveConflicting(Interpreter& interpreter, const v1::Command& refused);
+  bool RemoveConflicting(Interpreter& interpreter, const v1::Command& rejected);
 
 private:
   using Name = std::pair<std::string, std::string>; // scene and vantage

@@ -109,7 +109,7 @@ def test_mistakes_are_told_with_file_and_key(run, script, tmp_path, jobs):  # no
                         "overlay 2: {charge:s} cannot be written of ")):
         movie = dspace.Movie.load(script(text))
         with pytest.raises(dspace.Error, match=f"^movie '{tmp_path}/a.toml': (a process .*: )?({says})"):
-            movie.make(run, tmp_path / "out", jobs=jobs, anew=True)
+            movie.make(run, tmp_path / "out", jobs=jobs, redraw=True)
 
 
 def test_formats_are_looked_at_before_anything_is_drawn(script):
