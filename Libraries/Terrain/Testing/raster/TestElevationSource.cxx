@@ -353,7 +353,7 @@ TEST_F(Raster, HeightsThatNoGroundHasAreSuspected) {
     std::string all;
     for (const std::string& warning : terrain->GetWarnings())
       all += warning;
-    return all.find("vertical_scale (metres a unit)") != std::string::npos;
+    return all.find("vertical_scale (metres per unit)") != std::string::npos;
   };
   // Planes on pixels of 2 m, below and above 60 degrees.
   const auto plane = [](double slope_deg) {
