@@ -37,7 +37,7 @@ public:
   std::string Map(const std::string& command);
 #ifndef __VTK_WRAP__
   /// See RecordedFiles::Look; empty if nothing is open.
-  dspace::FilesGuard::Look GetLook() const;
+  dspace::FilesGuard::Check GetLook() const;
 #endif
   /// Removes the unpacked files. Calling it twice is no error.
   void Close();

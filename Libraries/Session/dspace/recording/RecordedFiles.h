@@ -52,7 +52,7 @@ public:
   // destroyed. With packed files it accepts only files in the folder. Without, it accepts any file,
   // because files were checked; the guard still restricts the formats of rasters and shapes
   // (ConfinedDrivers.h).
-  FilesGuard::Look Look() const;
+  FilesGuard::Check Look() const;
 
   // Changes the paths of a recorded command to those in the folder, if there is one. The overview
   // cache of the recording machine is not available: terrains build overviews in the folder.

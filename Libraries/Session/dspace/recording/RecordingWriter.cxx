@@ -43,11 +43,11 @@ void Check(const RecordingOptions& options, const std::string& path) {
            " s; accepted: 0.001 to 60");
   }
   if (options.queueBytes < (1u << 20)) {
-    refuse("the queue has " + std::to_string(options.queueBytes) +
+    reject("the queue has " + std::to_string(options.queueBytes) +
            " bytes; accepted: 1 MiB or more");
   }
   if (options.snapshotBytes == 0 || options.snapshotCommands == 0) {
-    refuse("the distance between snapshots is 0; accepted: 1 byte and 1 command or more");
+    reject("the distance between snapshots is 0; accepted: 1 byte and 1 command or more");
   }
 }
 

@@ -96,7 +96,7 @@ class ViewerEvents:
         """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:
         dspace.NotFound when nobody drives; up to 1 MiB."""
         if not isinstance(event, service_pb2.ViewerEvent):
-            refuse("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
+            reject("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
         self._session._client.send_event(event)
 
     def answer(self, question, answer):

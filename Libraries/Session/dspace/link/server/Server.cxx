@@ -37,13 +37,13 @@ void Check(const ServerOptions& options) {
     reject("the number of connections", std::to_string(options.maximumConnections), "1 to 1000");
   }
   if (!(options.maximumRate > 0)) {
-    refuse("the number of commands a second", std::to_string(options.maximumRate), "above 0");
+    reject("the number of commands a second", std::to_string(options.maximumRate), "above 0");
   }
   if (!(options.reservation_s >= 0 && options.reservation_s <= 1e6)) {
-    refuse("the reservation time", NumberText(options.reservation_s) + " s", "0 to 1e6");
+    reject("the reservation time", NumberText(options.reservation_s) + " s", "0 to 1e6");
   }
   if (!(options.keepalive_s > 0 && options.keepalive_s <= 1e6)) {
-    refuse("the keepalive time", NumberText(options.keepalive_s) + " s", "above 0, up to 1e6");
+    reject("the keepalive time", NumberText(options.keepalive_s) + " s", "above 0, up to 1e6");
   }
 }
 
