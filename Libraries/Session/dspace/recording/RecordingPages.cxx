@@ -29,7 +29,7 @@ constexpr unsigned char Leaf = 13;
 constexpr std::size_t LogHead = 32;
 constexpr std::size_t FrameHead = 24;
 constexpr std::size_t Generations = 8; // of a log, whose pages are tried
-constexpr std::size_t MostColumns = 7;
+constexpr std::size_t MaximumColumns = 7;
 
 // A file's bytes; none where there is no such file.
 class Source {
