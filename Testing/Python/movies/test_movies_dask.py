@@ -101,7 +101,7 @@ def test_when_the_scheduler_goes_it_ends(run, tmp_path, monkeypatch):
             yield from finished(*arguments)
 
         monkeypatch.setattr(dask_workers, "_finished", killed)
-        with pytest.raises(dspace.Io, match="it has had no worker for 2 s, or is gone"):
+        with pytest.raises(dspace.Io, match="it has had no worker for 2 s, or has stopped"):
             flight().make(run, tmp_path / "pictures", scheduler=address)
     finally:
         process.kill()

@@ -93,7 +93,7 @@ def test_pictures_of_other_programs_stay(run, tmp_path, theirs):
     (mine / "movie.json").write_text(theirs)
     (mine / (FRAME % 0)).write_bytes(b"mine")
     for out, options in ((mine, {}), (tmp_path / "other", {"work": mine}), (mine, {"work": tmp_path / "work"})):
-        with pytest.raises(dspace.InvalidArgument, match="is of no movie"):
+        with pytest.raises(dspace.InvalidArgument, match="belongs to no movie"):
             flight().make(run, out, **options)
         assert (mine / (FRAME % 0)).read_bytes() == b"mine" and (mine / "movie.json").read_text() == theirs
         assert sorted(os.listdir(mine)) == [FRAME % 0, "movie.json"]

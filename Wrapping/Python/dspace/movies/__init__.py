@@ -1,1 +1,1 @@
-"""Movies of a run along camera key frames."""
+"""Movies of a run with cameras that follow key frames."""

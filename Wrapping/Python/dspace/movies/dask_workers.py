@@ -1,4 +1,4 @@
-"""Pictures of a movie drawn by the workers of a Dask scheduler (Debian: python3-distributed)."""
+"""Draws the pictures of a movie on the workers of a Dask scheduler (Debian: python3-distributed)."""
 import contextlib
 import functools
 import hashlib
@@ -15,14 +15,14 @@ from dspace.movies.draw import is_whole
 from dspace.movies.folder import FRAME, SCRIPT, files_of, states_of
 from dspace.movies.make import finish, worker
 
-_AT_ONCE = 24  # pictures that a worker draws of one request
+_AT_ONCE = 24  # largest number of pictures in one request to a worker
 _TO_CONNECT = 30.0  # seconds
 _PATIENCE = 30.0  # seconds without a scheduler or a worker
 
 
 def share(scheduler, words, run, missing, folder, tell):
-    """Has the pictures `missing` drawn by the workers of the scheduler at that address. dspace.Io where there is no
-    scheduler or no worker for 30 s."""
+    """Lets the workers of the scheduler at that address draw the pictures `missing`. Raises dspace.Io if no scheduler
+    answers, or if it has no worker, for 30 s."""
     try:
         from distributed import Client
     except ImportError:
@@ -51,16 +51,17 @@ def share(scheduler, words, run, missing, folder, tell):
                     path = folder.path(FRAME % number)
                     atomic_write(path, data)
                     if not is_whole(path):
-                        raise Internal(f"picture {number} came damaged from the scheduler {scheduler!r}")
+                        raise Internal(f"picture {number} from the scheduler {scheduler!r} is damaged")
                 left -= len(drawn)
                 tell(left)
         finally:
-            with contextlib.suppress(OSError, RuntimeError):  # the scheduler is gone
+            with contextlib.suppress(OSError, RuntimeError):  # the scheduler has stopped
                 client.cancel(waiting)
 
 
 def _require_listener(scheduler):
-    """Of a client that has met nobody Dask says more than one line at its end."""
+    """Waits until the address accepts a connection, for up to 30 s. A Dask client that never connected prints several
+    lines when it ends; this check avoids them."""
     host, _, port = scheduler.partition("://")[2].rpartition(":")
     end = clock.monotonic() + _TO_CONNECT
     while True:
@@ -77,31 +78,31 @@ def _require_listener(scheduler):
 def _workers(client):
     try:
         return len(client.scheduler_info()["workers"]) if client.status == "running" else 0
-    except (OSError, RuntimeError):  # the scheduler is gone
+    except (OSError, RuntimeError):  # the scheduler has stopped
         return 0
 
 
 def _without_workers(scheduler):
-    return Io(f"scheduler {scheduler!r}: it has had no worker for {_PATIENCE:g} s, or is gone; accepted: one with a "
-              "worker (dask worker ADDRESS)", scheduler)
+    return Io(f"scheduler {scheduler!r}: it has had no worker for {_PATIENCE:g} s, or has stopped; accepted: one with "
+              "a worker (dask worker ADDRESS)", scheduler)
 
 
 def _finished(client, scheduler, waiting):
-    """Results in the order in which they come; each is taken out of `waiting`, so that no worker keeps it."""
+    """Yields the results in the order of completion. Each is removed from `waiting`, so that no worker keeps it."""
     from distributed import CancelledError
-    seen = clock.monotonic()  # when there was a worker, last
+    seen = clock.monotonic()  # the last time at which there was a worker
     while waiting:
         done = [future for future in waiting if future.done()]
         for future in done:
             try:
                 drawn = future.result(timeout=4 * _PATIENCE)
-            except TimeoutError:  # its worker has died with it: another one draws it again
+            except TimeoutError:  # its worker died before it sent the result; another worker draws it again
                 continue
             except Error:
                 raise
-            except CancelledError:  # with the scheduler
+            except CancelledError:  # the scheduler has stopped
                 raise _without_workers(scheduler) from None
-            except Exception as error:  # of Dask's own
+            except Exception as error:  # an error inside Dask
                 raise Io(f"scheduler {scheduler!r}: {type(error).__name__}: {error}", scheduler) from None
             waiting.remove(future)
             future.release()
@@ -117,14 +118,14 @@ def _finished(client, scheduler, waiting):
 
 
 def fingerprint(run):
-    """What tells a run from another one of its path: Dspace's version, and a hash of the run's files. (Files that a
-    recording names are compared by whoever plays it.)"""
+    """Returns Dspace's version and a hash of the run's files. They differ if another machine has another run at the
+    same path. Playback compares the files that a recording names; this hash leaves them out."""
     return __version__, _content(tuple(map(tuple, states_of(files_of(run)))))
 
 
 @functools.lru_cache(maxsize=16)
 def _content(states):
-    """A hash of files, which are read again when their states have changed."""
+    """Returns a hash of the files' contents, cached until a file's size or time of change differs."""
     hashed = hashlib.sha256()
     for path, size, _ in states:
         hashed.update(f"{os.path.basename(path)} {size} ".encode(errors="replace"))
@@ -135,12 +136,12 @@ def _content(states):
 
 
 def pictures(words, run, numbers, expected):
-    """[(number, the bytes of its PNG)], on a worker; in a process of its own, since a graphics context
-    serves one thread."""
+    """Runs on a worker. Returns [(number, the bytes of its PNG)]. A separate process draws, because a graphics
+    context can be used from one thread only."""
     if fingerprint(run) != expected:
-        raise InvalidArgument(f"run {run!r}: on the worker {socket.gethostname()!r} it is another file, or Dspace "
-                              f"another version than {expected[0]}; accepted: the same on each machine, and no "
-                              "recording that is still written", run)
+        raise InvalidArgument(f"run {run!r}: the worker {socket.gethostname()!r} has another file at this path, or "
+                              f"another version of Dspace than {expected[0]}; accepted: the same on each machine, "
+                              "and no recording that is still written", run)
     with tempfile.TemporaryDirectory(prefix="dspace-movie-") as folder:
         script = os.path.join(folder, SCRIPT)
         atomic_write(script, words.encode())

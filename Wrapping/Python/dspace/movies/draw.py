@@ -68,7 +68,7 @@ def open_run(run):
 
 
 def require_run(run):
-    """Refuses what open_run() can make nothing of."""
+    """Raises dspace.WrongType for a run that open_run() does not accept."""
     if isinstance(run, (str, os.PathLike, Source)) or all(hasattr(run, name) for name in ("execute", "scene")):
         return
     if hasattr(run, "session") and (hasattr(run, "seek") or hasattr(run, "advance")):
@@ -78,10 +78,10 @@ def require_run(run):
 
 
 def _of_playback(playback):
-    # A recording's telemetry is in its scenes.
+    # The telemetry of a recording belongs to its scenes.
     telemetry = None if hasattr(playback, "file") else getattr(playback, "telemetry", None)
     times = StepTimes(playback.times)
-    # What was there before the simulation first set a time has the time 0 that nobody set.
+    # Commands before the first step have time 0, which the simulation did not set; the steps give the true extent.
     steps = [time for _, time in playback.file.steps()] if hasattr(playback, "file") else []
     steps = steps or times.times
     return Source(playback.session, lambda time: playback.seek(times.step_at(time)),
@@ -107,7 +107,7 @@ def _made_by(path, name):
 
 @contextlib.contextmanager
 def naming(part):
-    """In a `with` statement: errors say which part of the movie they are about."""
+    """In a `with` statement: prefixes errors with the part of the movie that they concern."""
     try:
         yield
     except Error as error:
@@ -126,13 +126,14 @@ class Stage:
         self.paths = {name: CameraPath(view.keys, f"view {name!r}")
                       for name, view in movie.views.items() if view.keys}
         self.shown = {name: [] for name in movie.views}
-        # Of viewports and cameras. Another movie's may be there, even recorded, and come while this one is drawn.
+        # Names of its viewports and cameras. The random mark keeps them apart from those of other movies, which may
+        # be in the session, or in the recording, or appear while this movie is drawn.
         mark = secrets.token_hex(4)
         self.names = {name: f"movie {name} {mark}" for name in movie.views}
-        self.hidden, self.unseen = set(), True  # fragments that there were; no picture was drawn yet
+        self.hidden, self.unseen = set(), True  # fragments that were found and hidden; whether no picture is drawn yet
 
     def close(self):
-        """Takes its viewports and cameras out of the session."""
+        """Removes its viewports and cameras from the session."""
         for view in self.movie.views.values():
             try:
                 session, name = self.source.session, self.names[view.name]
@@ -141,15 +142,16 @@ class Stage:
                 cameras = session.scenes[view.scene].vantages[view.vantage].cameras
                 if name in cameras:
                     cameras[name].remove()
-            except Error:  # the session is closed, or has no such scene any more
+            except Error:  # the session is closed, or the scene was removed
                 pass
             unknown = [fragment for fragment in view.hide if fragment not in self.hidden]
             if unknown and not self.unseen:
-                warnings.warn(f"view {view.name!r}: hide names {unknown[0]!r}, and no picture that was drawn now has "
+                warnings.warn(f"view {view.name!r}: hide names {unknown[0]!r}, but no picture that was drawn now has "
                               "such a fragment", stacklevel=2)
 
     def _advance(self, run):
-        """A recording may remove what a view shows, which is refused while it shows it."""
+        """Moves the run to a time [s]. A recording may remove a scene or camera that a view uses, which a session
+        rejects; then the views' viewports are removed first. _viewport() creates them again."""
         try:
             self.source.advance(run)
         except Error:
@@ -161,7 +163,7 @@ class Stage:
             self.source.advance(run)
 
     def _find(self, view, run, things, kind, name, *within):
-        """A scene, vantage or camera that a view names."""
+        """Returns the scene, vantage or camera that a view names, or raises dspace.NotFound."""
         if name in things:
             return things[name]
         about = f"view {view.name!r}, {kind}"
@@ -176,7 +178,7 @@ class Stage:
         raise NotFound(f"{what}; there are: {', '.join(map(repr, named[:50])) or 'none'}", about)
 
     def _viewport(self, view, run):
-        """Its viewport, made where there is none (any more: a playback that seeks may begin anew)."""
+        """Returns the viewport of a view. Creates it if it is missing; a playback that seeks may have removed it."""
         session, name = self.source.session, self.names[view.name]
         viewport = session.viewports.get(name)
         if viewport is not None:
@@ -199,7 +201,7 @@ class Stage:
         return viewport
 
     def picture(self, number):
-        """Picture `number`, from 0: (h, w, 3) uint8, sRGB."""
+        """Returns picture `number`, counted from 0: (h, w, 3) uint8, sRGB."""
         time = number / self.movie.rate
         first, last = self.source.extent
         run = min(max(self.runs.at(time), first), last)
@@ -219,7 +221,7 @@ class Stage:
         return out
 
     def _hide(self, view, scene):
-        """Those of the fragments that a view leaves out that there are now: some come later in a run."""
+        """Returns the fragments to hide that exist now. Some may appear later in the run."""
         there = scene.fragments if view.hide else ()
         hide = [fragment for fragment in view.hide if fragment in there]
         self.hidden.update(hide)
@@ -244,7 +246,7 @@ class Stage:
                          fov_deg=fov_deg, near=view.near, far=view.far, vantage=view.vantage)
 
     def _write(self, viewport, scene, view, first, time, run):
-        """Tables of the overlays that this view has now."""
+        """Updates the tables of the overlays that this view shows at this time."""
         now = []
         for number, overlay in enumerate(self.movie.overlays):
             if overlay.view not in ((view.name, "") if first else (view.name,)) or not overlay.shows(time):
@@ -277,7 +279,7 @@ class Stage:
 
 
 def fill(text, values):
-    """A text whose {name:format} are replaced by what values(name) gives, and {{ and }} by one brace."""
+    """Returns a text in which values(name) replaces each {name:format}, and one brace replaces {{ and }}."""
     def put(match):
         if match[0] in ("{{", "}}"):
             return match[0][0]
@@ -285,7 +287,7 @@ def fill(text, values):
         try:
             return format(value, match[2] or "")
         except (ValueError, TypeError):
-            raise InvalidArgument(f"{match[0]} cannot be written of {shown(value)}; accepted: a format "
+            raise InvalidArgument(f"{match[0]} cannot format {shown(value)}; accepted: a format "
                                   "such as {run:.2f}", match[1]) from None
 
     return FIELD.sub(put, text)
@@ -298,11 +300,11 @@ _END = b"\x00\x00\x00\x00IEND\xaeB`\x82"
 
 
 def png(picture):
-    """The bytes of a PNG file of an array (h, w, 3) of sRGB bytes; equal pictures have equal bytes."""
+    """Returns an array (h, w, 3) of sRGB bytes as the bytes of a PNG file. Equal pictures have equal bytes."""
     height, width = picture.shape[:2]
     rows = np.ascontiguousarray(picture[..., :3]).reshape(height, width * 3)
     filtered = np.empty((height, width * 3 + 1), np.uint8)
-    filtered[:, 0] = 2  # each row less the one above
+    filtered[:, 0] = 2  # PNG filter "up": the difference to the row above
     filtered[0, 1:] = rows[0]
     filtered[1:, 1:] = rows[1:] - rows[:-1]
 
@@ -314,7 +316,7 @@ def png(picture):
 
 
 def is_whole(path):
-    """Whether a file is a PNG whose parts all have their checksums."""
+    """Returns whether a file is a complete PNG: every chunk's checksum matches."""
     try:
         with open(path, "rb") as file:
             data = file.read()

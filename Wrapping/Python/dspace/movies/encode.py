@@ -1,4 +1,4 @@
-"""Pictures to a movie file through ffmpeg: H.264 in MP4, VP9 in WebM."""
+"""Encodes pictures into a movie file with ffmpeg: H.264 in MP4, VP9 in WebM."""
 import os
 import shutil
 import subprocess
@@ -14,20 +14,21 @@ CODECS = {
     ".mp4": ["-c:v", "libx264", "-preset", "medium", "-crf", "18", "-movflags", "+faststart", "-f", "mp4"],
     ".webm": ["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-f", "webm"],
 }
-# What players take a video for that is told nothing; told all the same.
+# Players assume these color properties for an untagged video. They are stated explicitly all the same.
 _COLORS = ["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-pix_fmt", "yuv420p", "-colorspace", "bt709",
            "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
 
 
 def codec_of(path, size):
-    """ffmpeg's words for a file; None for a folder of PNGs. Refuses other endings and odd sizes."""
+    """Returns ffmpeg's arguments for a file, or None for a folder of PNGs. Raises dspace.InvalidArgument for other
+    file name extensions and for odd sizes."""
     path = path_of(path, "the file", "movie", "a path")
     ending = os.path.splitext(path)[1].lower()
     if not ending or path.endswith(os.sep) or os.path.isdir(path):
         return None
     if ending not in CODECS:
         raise InvalidArgument(f"movie {path!r}: its ending is {ending!r}; accepted: {', '.join(CODECS)}, or a folder: "
-                              "a name without a dot, with a slash at its end, or of one that is there", path)
+                              "a name without a dot, a name with a slash at its end, or an existing folder", path)
     if size[0] % 2 or size[1] % 2:
         raise InvalidArgument(f"movie {str(path)!r}: its size is {size[0]} x {size[1]}; accepted: even numbers "
                               f"for {ending}, any for a folder of PNGs", str(path))
@@ -35,7 +36,7 @@ def codec_of(path, size):
 
 
 def programs():
-    """The paths of ffmpeg, which writes, and ffprobe, which looks at what was written."""
+    """Returns the paths of ffmpeg, which writes the movie, and ffprobe, which verifies it."""
     found = [shutil.which(name) for name in ("ffmpeg", "ffprobe")]
     if None in found:
         name = ("ffmpeg", "ffprobe")[found.index(None)]
@@ -44,28 +45,29 @@ def programs():
 
 
 class _Part:
-    """The file that ffmpeg writes, until it is whole."""
+    """The temporary file that ffmpeg writes. finish() gives it its final name when it is complete."""
 
     def __init__(self, path):
         self.label = os.fspath(path)
-        self.said = tempfile.TemporaryFile()  # a pipe that nobody reads would stop it
+        self.output = tempfile.TemporaryFile()  # a file: ffmpeg would block on a pipe that is not read
         self.file = AtomicFile(path, f"movie {self.label!r}")
-        self.part = self.file.temporary  # absolute: of "12:30.mp4" and "-x.mp4" ffmpeg thinks otherwise
+        self.part = self.file.temporary  # absolute: ffmpeg reads "12:30.mp4" as a protocol, "-x.mp4" as an option
 
     def start(self, words, codec, **settings):
         ffmpeg, _ = programs()
-        # Without -xerror ffmpeg calls a file done whose end it could not write.
+        # Without -xerror ffmpeg reports success even if it could not write the end of the file.
         return subprocess.Popen([ffmpeg, "-y", "-xerror", "-nostats", "-loglevel", "error", *words, "-an", *_COLORS,
-                                 *codec, self.part], stderr=self.said, **settings)
+                                 *codec, self.part], stderr=self.output, **settings)
 
     def failed(self, words):
-        self.said.seek(0)
-        said = " ".join(self.said.read().decode(errors="replace").split())
-        return Io(f"movie {self.label!r}: {words}" + (f": {said}" if said else ""), self.label)
+        self.output.seek(0)
+        output = " ".join(self.output.read().decode(errors="replace").split())
+        return Io(f"movie {self.label!r}: {words}" + (f": {output}" if output else ""), self.label)
 
     def finish(self, process, count):
-        """The file under its own name, if ffmpeg had nothing to complain of and all `count` pictures are in it."""
-        if process.wait() != 0 or self.said.seek(0, os.SEEK_END):
+        """Gives the file its final name if ffmpeg reported no error and the file holds all `count` pictures. Raises
+        dspace.Io otherwise."""
+        if process.wait() != 0 or self.output.seek(0, os.SEEK_END):
             raise self.failed("ffmpeg failed")
         _, ffprobe = programs()
         seen = subprocess.run([ffprobe, "-v", "error", "-count_packets", "-select_streams", "v:0", "-show_entries",
@@ -73,18 +75,20 @@ class _Part:
                               capture_output=True, text=True, errors="replace")
         held = seen.stdout.strip().rstrip(",")
         if seen.returncode != 0 or seen.stderr.strip() or held != str(count):
-            raise self.failed(f"of {count} pictures it holds {held or 'none'} {' '.join(seen.stderr.split())}".strip())
+            raise self.failed(f"it holds {held or 'none'} of {count} pictures {' '.join(seen.stderr.split())}".strip())
         self.file.commit()
 
     def close(self):
-        self.said.close()
+        self.output.close()
         self.file.close()
 
 
 class Encoder:
-    """A movie file that pictures are added to, in a `with` statement: arrays (h, w, 3) of sRGB bytes, one
-    after the other, `rate` a second. The file is there when all is written, never half of it; without a
-    picture there is none, and an error. quick: for pictures that are drawn meanwhile; the file is larger."""
+    """Writes a movie file, in a `with` statement. add() appends a picture: an array (h, w, 3) of sRGB bytes.
+
+    rate: pictures a second. The file appears when it is complete, never in part. Without a picture there is no file,
+    and dspace.InvalidArgument. quick: encodes faster, for pictures that are drawn at the same time; the file is
+    larger."""
 
     def __init__(self, path, size, rate, quick=False):
         codec = codec_of(path, size)
@@ -121,7 +125,7 @@ class Encoder:
         try:
             try:
                 self._process.stdin.close()
-            except BrokenPipeError:  # what it says is told below
+            except BrokenPipeError:  # finish() reports ffmpeg's error below
                 pass
             if kind is not None:
                 self._process.kill()
@@ -137,9 +141,9 @@ class Encoder:
 
 
 def encode(pattern, path, size, rate, count, tell=lambda done: None):
-    """A movie file of `count` numbered PNGs from 0, such as "work/frame_%06d.png"; tell(done): called as it
-    goes on."""
-    # A folder's % signs are no numbers.
+    """Encodes `count` PNGs, numbered from 0, into a movie file. pattern: their path, such as "work/frame_%06d.png".
+    tell(done): called with the number of encoded pictures as the work advances."""
+    # ffmpeg runs in the folder, so that it does not read % signs in the folder's name as number formats.
     folder, name = os.path.split(os.path.abspath(pattern))
     part = _Part(path)
     process = None

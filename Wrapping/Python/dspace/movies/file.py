@@ -1,4 +1,4 @@
-"""A movie's text file: TOML, which a person may edit. It is written in a fixed order, without default values."""
+"""The text file of a movie: TOML that a person may edit. It has a fixed order and omits default values."""
 import json
 import tomllib
 from dataclasses import fields
@@ -8,11 +8,11 @@ from dspace.errors import Corrupt, InvalidArgument, Io
 
 
 def _value(value):
-    """A value as TOML."""
+    """Returns a value as TOML."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        # JSON's escapes are TOML's, but for DEL.
+        # TOML has the escapes of JSON, except for DEL.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
     if isinstance(value, (tuple, list)):
         return "[" + ", ".join(map(_value, value)) + "]"
@@ -22,7 +22,7 @@ def _value(value):
 
 
 def table_of(thing, skip=()):
-    """Names and values of a dataclass that are not the default ones."""
+    """Returns the fields of a dataclass, as a dict, that differ from their defaults."""
     return {each.name: getattr(thing, each.name) for each in fields(thing)
             if each.name not in skip and getattr(thing, each.name) != each.default}
 
@@ -32,7 +32,7 @@ def _lines(values):
 
 
 def write(movie):
-    """The text of a Movie; equal movies have equal texts."""
+    """Returns the text of a Movie. Equal movies have equal texts."""
     parts = [["# A movie of Dspace: see Documentation/Movies.md. Seconds, metres, degrees."]
              + _lines(movie.settings())]
     for view in movie.views.values():
@@ -43,7 +43,7 @@ def write(movie):
 
 
 def load(path):
-    """What a file holds, as dicts."""
+    """Returns the contents of a file as dicts. Raises dspace.Io, or dspace.Corrupt if it is not TOML."""
     try:
         with open(path, "rb") as file:
             data = file.read()
@@ -57,7 +57,7 @@ def load(path):
 
 
 def parse(words):
-    """Dicts of a text."""
+    """Returns the contents of a TOML text as dicts. Raises dspace.Corrupt if it is not TOML."""
     try:
         return tomllib.loads(text(words, "the text of a movie"))
     except tomllib.TOMLDecodeError as error:
@@ -65,7 +65,7 @@ def parse(words):
 
 
 def take(kind, values, about, also=()):
-    """A dataclass of a dict; what it does not have is refused by name."""
+    """Returns a dataclass from a dict. Raises dspace.InvalidArgument that names an unknown or a missing field."""
     if not isinstance(values, dict):
         raise InvalidArgument(f"{about}: it is {values!r}; accepted: a table", about)
     accepted = [each.name for each in fields(kind) if each.name != "keys"]

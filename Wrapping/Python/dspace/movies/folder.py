@@ -16,26 +16,26 @@ _STATE, _LOCK = "movie.json", "movie.lock"
 _KIND = "pictures of a dspace movie"
 _FILES, _PART = r"(frame_\d{6,}\.png|movie\.toml|movie\.json)", r"\.[0-9a-f]{16}\.part"
 _OURS = re.compile(rf"{_FILES}|\.{_FILES}{_PART}|movie\.lock")
-_BEGUN = re.compile(rf"\.movie\.json{_PART}|movie\.lock")  # by a process that was ended at once
+_BEGUN = re.compile(rf"\.movie\.json{_PART}|movie\.lock")  # left by a process that was killed as it started
 
 
 # --- Runs ------------------------------------------------------------------------------------------
 
 def file_of(run):
-    """The file of a run, and the function's name where it is FILE.py:NAME."""
+    """Returns the file of a run, and the function's name if the run is FILE.py:NAME, "" otherwise."""
     script, _, function = run.rpartition(":")
     return (script, function) if script.endswith(".py") and function.isidentifier() else (run, "")
 
 
 def absolute(run):
-    """The same run for a process in another folder."""
+    """Returns the run with an absolute path, for a process in another folder."""
     file, function = file_of(os.fspath(run))
     return os.path.abspath(file) + (f":{function}" if function else "")
 
 
 def files_of(run):
-    """The files that a run is made of: a recording and what is still in its log, or a program and the modules and
-    packages beside it."""
+    """Returns the files that a run consists of: a recording and its SQLite log, or a program and the modules and
+    packages in its folder."""
     file, function = file_of(run)
     if not function:
         log = file + "-wal"
@@ -48,7 +48,7 @@ def files_of(run):
 
 
 def _assets_of(run):
-    """Files that a recording's commands name."""
+    """Returns the paths of the files that a recording's commands name."""
     file, function = file_of(run)
     if function:
         return []
@@ -56,12 +56,12 @@ def _assets_of(run):
     try:
         with RecordingFile(file) as recording:
             return sorted(asset.path for asset in recording.assets)
-    except Error:  # it is none, or damaged: who opens it to draw says so
+    except Error:  # not a recording, or damaged; opening it to draw reports the error
         return []
 
 
 def states_of(paths):
-    """[path, size, time of the last change] of each file, which change whenever it is written."""
+    """Returns [path, size, time of the last change] of each file. Each write to a file changes them."""
     out = []
     for path in paths:
         try:
@@ -73,7 +73,7 @@ def states_of(paths):
 
 
 def identity(movie, run):
-    """What tells one movie of one run from all others: a hash of its text, its size and the run's files."""
+    """Returns a hash that identifies a movie of a run: of its text, its settings and the run's files."""
     state = {"movie": movie.text, "size": movie.size, "samples": movie.samples, "rate": movie.rate,
              "frames": movie.frames, "dspace": __version__}
     if isinstance(run, (str, os.PathLike)):
@@ -90,7 +90,7 @@ def identity(movie, run):
 # --- The folder ------------------------------------------------------------------------------------
 
 class Folder:
-    """A folder of a movie's pictures, used by one make() at a time. redraw: existing pictures are not used."""
+    """The folder of a movie's pictures. One make() at a time can use it. redraw: draws all pictures again."""
 
     def __init__(self, folder, movie, run, redraw=False):
         self.folder, self.movie, self.run, self.redraw = folder, movie, run, redraw
@@ -104,8 +104,8 @@ class Folder:
             names = sorted(os.listdir(self.folder))
             other = [name for name in names if not _BEGUN.fullmatch(name)]
             if other and self._state() is None:
-                raise InvalidArgument(f"folder {self.folder!r}: it holds {other[0]!r} and is of no movie; accepted: "
-                                      "an empty folder, a new one, or a movie's", self.folder)
+                raise InvalidArgument(f"folder {self.folder!r}: it holds {other[0]!r} and belongs to no movie; "
+                                      "accepted: an empty folder, a new one, or a movie's", self.folder)
             self._lock = open(self.path(_LOCK), "w")
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -124,7 +124,7 @@ class Folder:
         return self
 
     def _state(self):
-        """What it says of itself; None where it is not ours."""
+        """Returns the contents of its state file, or None if the folder does not belong to a movie."""
         try:
             with open(self.path(_STATE), encoding="utf-8") as file:
                 state = json.load(file)
@@ -133,7 +133,7 @@ class Folder:
         return state if isinstance(state, dict) and state.get("kind") == _KIND and "hash" in state else None
 
     def _begin(self):
-        # What no one can state as a file is told apart by nobody: its pictures are always drawn anew.
+        # A run that is not a file has no identity that lasts, so its pictures are always drawn again.
         lasting = isinstance(self.run, (str, os.PathLike))
         now = identity(self.movie, self.run) if lasting else None
         before = self._state()
@@ -145,7 +145,7 @@ class Folder:
             atomic_write(self.path(SCRIPT), self.movie.text.encode())
             self._say(now)
         for name in self._ours():
-            if name.endswith(".part"):  # of a process that was ended
+            if name.endswith(".part"):  # left by a process that was killed
                 os.unlink(self.path(name))
 
     def _say(self, state):
@@ -165,5 +165,5 @@ class Folder:
             os.unlink(self.path(name))
         try:
             os.rmdir(self.folder)
-        except OSError:  # somebody keeps something there
+        except OSError:  # it holds other files
             pass

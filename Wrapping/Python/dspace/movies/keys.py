@@ -1,4 +1,4 @@
-"""Key frames of a movie's camera, shots between cuts, and run time over movie time."""
+"""Key frames of a movie's camera, shots between cuts, and run time as a function of movie time."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,13 +13,14 @@ EASINGS = ("through", "rest")
 
 @dataclass(frozen=True)
 class Key:
-    """Where a camera is at one time of a movie. Lengths in metres, angles in degrees.
+    """The pose of a camera at one time of a movie. Lengths in metres, angles in degrees.
 
-    time: of the movie [s], from 0. run: time of the run [s]; None: see Movie. frame: path of the frame
-    that position, quaternion, target and up are in ("": the root). Either quaternion (X right, Y down,
-    Z forward) or target is given; target_frame: another frame for the target. up: towards the picture's
-    top, with a target. fov_deg: vertical full angle, above 0, below 180. easing: "through" goes on with an
-    even rate, "rest" comes to a halt. cut: a new shot begins here; it may have the time of the key before.
+    time: of the movie [s], from 0. run: time of the run [s]; None: see Movie. frame: path of the frame in which
+    position, quaternion, target and up are given ("": the root). Give either quaternion (X right, Y down, Z forward)
+    or target; target_frame: another frame for the target. up: the direction of the picture's top, used with a
+    target. fov_deg: full vertical angle, 1e-6 to 179. easing: "through" passes the key at an even rate, "rest" stops
+    at it. cut: a new shot begins at this key, which may have the same time as the key before it. Raises
+    dspace.InvalidArgument for other values.
     """
     time: float
     position: tuple
@@ -83,7 +84,7 @@ def _triple(value, what, about):
 
 
 def in_order(keys, about):
-    """Keys by their times; two of one time only where the second one cuts."""
+    """Returns the keys sorted by time. Two keys may have the same time only if the second one cuts."""
     keys = sorted(keys, key=lambda key: (key.time, key.cut))
     for a, b in zip(keys, keys[1:]):
         if a.time == b.time and not (b.cut and not a.cut):
@@ -93,7 +94,7 @@ def in_order(keys, about):
 
 
 def shots_of(keys):
-    """Lists of keys between cuts."""
+    """Returns the lists of keys between cuts."""
     shots = []
     for key in keys:
         if key.cut or not shots:
@@ -111,7 +112,7 @@ class Shot:
         self.times = [key.time for key in keys]
         self.rests = [key.easing == "rest" for key in keys]
         self.follows = all(key.target is not None for key in keys)
-        # A path through other frames' keys is another one whenever these move.
+        # A path through keys in other frames changes whenever those frames move.
         self.moves = any(key.frame != self.frame or key.target_frame not in (None, self.frame)
                          for key in keys)
         self._fov = FovPath(self.times, [key.fov_deg for key in keys], self.rests)
@@ -127,7 +128,7 @@ class Shot:
             return position, turns.at(time), self._fov.at(time)
         quaternion = looking(position, targets.at(time), ups.at(time))
         if quaternion is None:
-            raise InvalidArgument(f"at {time:g} s of the movie the camera is at its target, or looks along up; "
+            raise InvalidArgument(f"at {time:g} s of the movie the camera is at its target or looks along up; "
                                   "accepted: keys with another target or up, or with quaternions")
         return position, quaternion, self._fov.at(time)
 
@@ -167,7 +168,7 @@ class Shot:
 
 
 class CameraPath:
-    """A camera through all of its keys."""
+    """The path of a camera through all of its keys."""
 
     def __init__(self, keys, about="the keys"):
         if not keys:
@@ -187,9 +188,9 @@ class CameraPath:
 
 
 class RunTime:
-    """Time of the run over time of the movie: straight between keys that state it, at `speed` elsewhere.
+    """The time of the run as a function of the movie's time: linear between keys that state it, at `speed` elsewhere.
 
-    Equal run times freeze the run while the camera moves on."""
+    Two keys with equal run times freeze the run while the camera keeps moving."""
 
     def __init__(self, keys, start=0.0, speed=1.0):
         self.parts = []  # (from, [(time, run)])
@@ -198,7 +199,7 @@ class RunTime:
             knots = [(key.time, key.run) for key in shot if key.run is not None]
             begin = shot[0].time if self.parts else 0.0
             run += speed * (begin - at)
-            # Before the first key that states it the run comes towards it at its speed.
+            # The run approaches the first key that states a run time at `speed`.
             knots = knots or [(begin, run)]
             self.parts.append((begin, knots))
             at, run = knots[-1]

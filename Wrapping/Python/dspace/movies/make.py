@@ -23,16 +23,17 @@ from dspace.movies.folder import FRAME, SCRIPT, Folder, absolute
 
 
 def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progress=None, encoding=None, redraw=False):
-    """Draws a Movie of a run into `out`: .mp4 (H.264), .webm (VP9), or a folder of PNGs (a name without a dot, one
-    with a slash at its end, or a folder that is there).
+    """Draws a Movie of a run into `out`: .mp4 (H.264), .webm (VP9), or a folder of PNGs (a name without a dot, a name
+    with a slash at its end, or an existing folder).
 
-    run: a recording's path, "FILE.py:NAME", or another run that dspace.movies.draw.open_run accepts (then jobs is 1).
-    jobs: processes that share the pictures; scheduler: a Dask scheduler's address (tcp://HOST:PORT, tls://...), whose
-    workers draw them; `run` must have the same path on their machines. work: the folder for pictures (default: `out`
-    with ".work", removed at the end unless `keep`; of a folder of PNGs `out` itself). An interrupted make()
-    of the same movie is continued, unless `redraw`. progress: called with (done, all, seconds so
-    far, drawn in them); encoding: when all are drawn, with (pictures in the file, all, seconds so far). Returns the
-    number of pictures drawn now."""
+    run: a recording's path, "FILE.py:NAME", or another run that dspace.movies.draw.open_run accepts (then jobs must
+    be 1). jobs: number of processes that share the pictures, 1 to 64. scheduler: the address of a Dask scheduler
+    (tcp://HOST:PORT, tls://...) whose workers draw the pictures; `run` must have the same path on their machines.
+    work: the folder for pictures (default: `out` with ".work", or `out` itself for a folder of PNGs). make() removes
+    it after encoding unless `keep`. make() continues an interrupted make() of the same movie; redraw: draws all
+    pictures again. progress: called with (pictures done, total, seconds so far, pictures drawn in them). encoding:
+    called while the file is written with (pictures in the file, total, seconds so far). Returns the number of
+    pictures that this call drew. Raises dspace.Error."""
     total = movie.check()
     codec = codec_of(out, movie.size)
     jobs = integer(jobs, "jobs", "movie", "an integer from 1 to 64")
@@ -45,10 +46,10 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
     work = path_of(work, "the work folder", "movie") if work is not None else (out if codec is None else out + ".work")
     if isinstance(run, (str, os.PathLike)):
         path_of(run, "the run", "movie", "a recording's path or FILE.py:NAME")
-        run = absolute(run)  # workers may stand in another folder
+        run = absolute(run)  # workers may have another current folder
     elif jobs > 1 or scheduler:
         reject("movie", "the run", run, "a recording's path or FILE.py:NAME, where several processes share it")
-    if codec is not None:  # what is missing at the end is told at the beginning
+    if codec is not None:  # report a missing program or an unwritable folder before any drawing
         programs()
         _check_place(out)
     with contextlib.ExitStack() as stack:
@@ -86,7 +87,7 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
 
 
 def require_address(scheduler):
-    """Refuses what is no address of a Dask scheduler, for which Dask would wait."""
+    """Raises dspace.InvalidArgument for a malformed address; Dask would wait for such a scheduler until its timeout."""
     address = re.fullmatch(r"(tcp|tls)://(\[[0-9A-Fa-f:.]+\]|[^\s:/\[\]]+):([0-9]{1,5})",
                            text(scheduler, "the scheduler", "movie"))
     if not address or not 1 <= int(address[3]) <= 65535:
@@ -95,7 +96,7 @@ def require_address(scheduler):
 
 @contextlib.contextmanager
 def _in_file(label):
-    """In a `with` statement: what is wrong with a view or an overlay is told with the movie's file."""
+    """In a `with` statement: adds the movie's file to the errors of views and overlays."""
     try:
         yield
     except Error as error:
@@ -105,7 +106,7 @@ def _in_file(label):
 
 
 def _check_place(out):
-    """Whether a file can be written there."""
+    """Creates the folder of `out`. Raises dspace.Io if the file cannot be written there."""
     try:
         os.makedirs(os.path.dirname(os.path.abspath(out)), exist_ok=True)
     except OSError as error:
@@ -114,7 +115,7 @@ def _check_place(out):
 
 
 def draw(movie, run, numbers, path, tell=lambda left: None):
-    """Draws the pictures `numbers`, rising, into files path(name), in this process."""
+    """Draws the pictures `numbers`, in rising order, into files path(name), in this process."""
     source = open_run(run)
     try:
         stage = Stage(movie, source)
@@ -125,37 +126,38 @@ def draw(movie, run, numbers, path, tell=lambda left: None):
         finally:
             stage.close()
     finally:
-        if source is not run:  # who hands in a Source closes it
+        if source is not run:  # the caller closes a Source that it passed in
             source.close()
 
 
 # --- Processes -------------------------------------------------------------------------------------
 
 def worker(script, run, folder, numbers):
-    """A process that draws pictures of a movie's file into a folder; see main()."""
-    said = tempfile.TemporaryFile()  # a pipe that nobody reads would stop it
+    """Starts a process that draws pictures of a movie's file into a folder; see main()."""
+    output = tempfile.TemporaryFile()  # a file: the process would block on a pipe that is not read
     process = subprocess.Popen(
         [sys.executable, "-c", "from dspace.movies.make import main; main()", script, run, folder,
          str(os.getpid())],
-        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said,
+        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=output,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
-    process.said = said
-    try:  # however many they are
+    process.output = output
+    try:  # through a pipe: the list may be too long for an argument
         process.stdin.write(json.dumps(numbers).encode())
         process.stdin.close()
-    except BrokenPipeError:  # it has ended; finish() says why
+    except BrokenPipeError:  # it has ended; finish() reports why
         pass
     return process
 
 
 def main():
-    """python -c "..." SCRIPT RUN FOLDER PARENT, and the pictures' numbers on the input stream."""
+    """Entry point of a worker process: python -c "..." SCRIPT RUN FOLDER PARENT. It reads the numbers of the pictures
+    from the standard input as JSON."""
     from dspace.movies.movie import Movie
     script, run, folder, parent = sys.argv[1:]
     numbers = json.load(sys.stdin)
 
     def tell(left):
-        if os.getppid() != int(parent):  # nobody waits for the rest
+        if os.getppid() != int(parent):  # the parent has ended
             os.kill(os.getpid(), signal.SIGTERM)
 
     try:
@@ -166,18 +168,18 @@ def main():
 
 
 def finish(process):
-    """Waits for a worker; raises what it said."""
+    """Waits for a worker. Raises dspace.Io with its last line of output if it failed."""
     process.wait()
-    process.said.seek(0)
-    message = process.said.read().decode(errors="replace").strip()
-    process.said.close()
+    process.output.seek(0)
+    message = process.output.read().decode(errors="replace").strip()
+    process.output.close()
     if process.returncode != 0:
-        words = message.splitlines()[-1] if message else "it said nothing"
+        words = message.splitlines()[-1] if message else "no message"
         raise Io(f"a process that drew pictures ended with {process.returncode}: {words}")
 
 
 def _share(run, missing, jobs, folder, tell):
-    """Each process draws pictures that follow each other, for a run goes forward."""
+    """Shares the pictures among processes. Each draws consecutive pictures, because a run only moves forward."""
     edges = [len(missing) * k // jobs for k in range(jobs + 1)]
     processes = []
     try:

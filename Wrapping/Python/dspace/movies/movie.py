@@ -1,4 +1,4 @@
-"""Movies: cameras through key frames, several views in one picture, texts over it."""
+"""Movies: cameras that follow key frames, several views in one picture, and text overlays."""
 import math
 
 from dspace._core.fields import Named, integer, integers, number, path as path_of, reject
@@ -15,7 +15,7 @@ SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": DEFAULT_SAMPLES, "star
 
 
 class Movie:
-    """What a movie shows; make() draws it.
+    """A movie of a run. make() draws it.
 
         movie = dspace.Movie(size=(1920, 1080), rate=30)
         movie.add_key(viewport, 0.0)                # where the viewport's camera is now
@@ -23,10 +23,10 @@ class Movie:
         movie.save("flight.toml")
         movie.make("drive.dspace", "flight.mp4")
 
-    size: pixels; rate: pictures a second; samples: n x n a pixel, 1 to 8. Picture n shows movie time
-    n / rate, up to `duration` [s] (default: the last key's time), which itself is not shown any more. The
-    run's time is `start` (default: its beginning) + `speed` x movie time where no key states it; only one
-    view's keys may."""
+    size: (width, height) in pixels; rate: pictures a second, 0.01 to 1000; samples: n x n for each pixel, 1 to 8.
+    Picture n shows the movie time n / rate. The movie ends before `duration` [s] (default: the last key's time; at
+    most 1e6). Where no key states it, the run's time is `start` [s] (default: the beginning of the run) + `speed` x
+    movie time. Only the keys of one view may state run times. Raises dspace.InvalidArgument for other values."""
 
     def __init__(self, size=SETTINGS["size"], rate=SETTINGS["rate"], samples=SETTINGS["samples"],
                  start=SETTINGS["start"], speed=SETTINGS["speed"], duration=SETTINGS["duration"]):
@@ -50,12 +50,13 @@ class Movie:
         if self._duration is not None and not 0 < self._duration <= 1e6:
             reject(about, "the duration", duration, "above 0, up to 1e6 seconds")
         self.views, self.overlays = Named("view", {}), []
-        self.label = ""  # of its file
+        self.label = ""  # names its file in errors
 
     # --- What it shows -------------------------------------------------------------------------
 
     def add_view(self, name="main", **settings):
-        """A part of the picture; settings: see View."""
+        """Adds a View, which is a part of the picture, and returns it. settings: see View. Raises
+        dspace.AlreadyExists if the movie has a view of that name."""
         if name in self.views:
             raise AlreadyExists(f"view {name!r}: there is one; accepted: another name", name)
         view = movie_file.take(View, {"name": name, **settings}, f"view {name!r}")
@@ -63,10 +64,11 @@ class Movie:
         return view
 
     def add_key(self, viewport=None, time=0.0, view=None, **values):
-        """A key at a movie time [s]: where a viewport's camera (or a Camera) is now, or as the values say.
+        """Adds a Key at a movie time [s] and returns it. The key has the present pose and field of view of a
+        viewport's camera (or of a Camera); values replace them.
 
-        view: a view's name (default: the first, made now if there is none). values: see Key; frame= another
-        frame (a Frame or its path) than the one that the camera stands on."""
+        view: a view's name (default: the first view, which is created if the movie has none). values: see Key;
+        frame: a Frame or its path that replaces the frame of the camera."""
         if not isinstance(viewport, (Viewport, Camera, type(None))):
             reject("movie", "what the key sees", viewport, "a dspace.Viewport, a dspace.Camera, or None", WrongType)
         if view is None:
@@ -90,7 +92,7 @@ class Movie:
         return self.add_view(**settings)
 
     def add_overlay(self, title="", rows=(), **settings):
-        """A title or a table; settings: see Overlay."""
+        """Adds an Overlay, a title or a table, and returns it. settings: see Overlay."""
         overlay = movie_file.take(Overlay, {"title": title, "rows": rows, **settings}, f"overlay {title!r}")
         self.overlays.append(overlay)
         return overlay
@@ -99,7 +101,7 @@ class Movie:
 
     @property
     def duration(self):
-        """Seconds."""
+        """The duration [s]: the given one, or the time of the last key."""
         last = max((key.time for view in self.views.values() for key in view.keys), default=0.0)
         if self._duration is None and not last:
             reject("movie", "the duration", None, "seconds, where no key comes after 0 s")
@@ -111,7 +113,7 @@ class Movie:
         return max(1, round(self.duration * self.rate))
 
     def run_time(self, beginning=0.0):
-        """A RunTime: at(movie time) is the run's time. beginning: of the run [s]."""
+        """Returns a RunTime, whose at(movie time) is the time of the run. beginning: of the run [s]."""
         stating = [view for view in self.views.values() if any(key.run is not None for key in view.keys)]
         if len(stating) > 1:
             raise InvalidArgument(f"view {stating[1].name!r}: its keys state run times, as those of view "
@@ -120,11 +122,12 @@ class Movie:
         return RunTime(stating[0].keys if stating else [], start, self.speed)
 
     def check(self):
-        """Raises what is wrong with it as a whole; a new view with keys or a camera is the least."""
+        """Validates the movie as a whole and returns the number of pictures. A movie needs at least one view, and each
+        view needs keys or a camera. Raises dspace.Error."""
         if not self.views:
             raise InvalidArgument("movie: it has no view; accepted: one or more")
         for each in (*self.views.values(), *self.overlays):
-            each.__post_init__()  # what was changed since it was made
+            each.__post_init__()  # validates values that were changed after construction
         for view in self.views.values():
             if bool(view.camera) == bool(view.keys):
                 raise InvalidArgument(f"view {view.name!r}: it has " + ("a camera and keys" if view.camera else
@@ -142,24 +145,25 @@ class Movie:
     # --- Its file ------------------------------------------------------------------------------
 
     def settings(self):
-        """What was given besides views and overlays, without what is as usual."""
+        """Returns the settings other than views and overlays that differ from their defaults, as a dict."""
         values = {**{name: getattr(self, name) for name in SETTINGS}, "duration": self._duration}
         return {name: value for name, value in values.items() if value != SETTINGS[name]}
 
     @property
     def text(self):
-        """Its file's text."""
+        """The text of the movie's file."""
         return movie_file.write(self)
 
     def save(self, path):
-        """Writes its file (TOML), at once or not at all."""
+        """Writes the movie's file (TOML), completely or not at all. Raises dspace.Error."""
         self.check()
         path = path_of(path, "the path", "movie")
         atomic_write(path, self.text.encode(), f"movie {path!r}")
 
     @classmethod
     def load(cls, path, **settings):
-        """The movie of a file; settings (size, rate, samples, ...) replace the file's."""
+        """Returns the movie of a file. settings (size, rate, samples, ...) replace those of the file. Raises
+        dspace.Error that names the file."""
         path = path_of(path, "the path", "movie", "the path of a TOML file")
         about = f"movie {path!r}"
         values = movie_file.load(path)
@@ -167,14 +171,14 @@ class Movie:
             movie = cls._of(values, about, settings)
             movie.label = about
             return movie
-        except Error as error:  # says in which file
+        except Error as error:  # the error names the file
             if str(error).startswith(about):
                 raise
             raise type(error)(f"{about}: {str(error).removeprefix('movie: ')}", about) from None
 
     @classmethod
     def of_text(cls, words):
-        """The movie of a file's text."""
+        """Returns the movie of a file's text."""
         return cls._of(movie_file.parse(words), "movie", {})
 
     @classmethod
@@ -199,7 +203,7 @@ class Movie:
         return movie
 
     def make(self, run, out, **options):
-        """Draws it into a file (.mp4, .webm) or a folder of PNGs; see dspace.movies.make.make."""
+        """Draws the movie into a file (.mp4, .webm) or a folder of PNGs; see dspace.movies.make.make."""
         from dspace.movies.make import make
         return make(self, run, out, **options)
 
@@ -216,7 +220,7 @@ def _tables(values, name, about):
 
 
 def _seen(viewport, frame):
-    """What a key has of a viewport's camera, or of a Camera."""
+    """Returns the values of a key at the present pose of a Camera or of a viewport's camera."""
     camera = viewport if isinstance(viewport, Camera) else viewport.camera
     if camera is None:
         camera = viewport.scene.vantages[viewport.vantage].active
@@ -227,7 +231,7 @@ def _seen(viewport, frame):
         raise InvalidArgument(f"camera {camera.name!r}: it has no field of view; accepted: a perspective camera",
                               camera.name)
     base, pose = camera.frame, camera.pose
-    if pose is None:  # it chases: where it is now, in a frame that does not move with what it follows
+    if pose is None:  # a chase camera: its present pose, in a frame that does not move with its target
         base = scene.root if frame is None else frame
         pose = camera.pose_in(base)
     elif frame is not None:

@@ -1,22 +1,25 @@
 """The path of a camera through key frames, as a function of movie time. Plain numpy.
 
 Positions lie on a centripetal Catmull-Rom spline (Yuksel, Schaefer and Keyser 2011). The speed along it is
-separate: the arc length is a monotone cubic of time (Fritsch and Butland 1984), so the speed has no jumps, and an
-even speed stays even whatever the distances of the keys. Rotations are cubic curves (Kim, Kim and Shin 1995) whose
+separate: the arc length is a monotone cubic of time (Fritsch and Butland 1984), so the speed has no jumps, and a
+constant speed stays constant for any distances between keys. Rotations are cubic curves (Kim, Kim and Shin 1995) whose
 angular rate at a key is the mean of both sides, weighted by time. Fields of view are a monotone cubic in the
-logarithm of tan(fov / 2). Keys are met exactly. The camera stands still before the first key and after the last.
+logarithm of tan(fov / 2). The path meets the keys exactly. The camera stands still before the first key and after the
+last.
 """
 import numpy as np
 
 from dspace.frames.poses import multiply
 
 _X, _W = np.polynomial.legendre.leggauss(16)
-_PARTS = 8  # of a piece of the spline, each integrated with 16 points
-_QUARTER = 1.5 * np.pi  # a third of a span at this over its time is a quarter turn: with the chord under two pi
+_PARTS = 8  # parts of a spline piece, each integrated with 16 points
+# Limit of angle [rad]: a third of a span at this angle over its time is a quarter turn, so that both ends and the
+# chord together stay under two pi.
+_QUARTER = 1.5 * np.pi
 
 
 def monotone_slopes(times, values):
-    """Slopes at each time of a cubic that overshoots nowhere; of even data the even slope.
+    """Returns the slope at each time of a cubic that never overshoots. Linear data has a constant slope.
 
     times: (n,) rising; values: (n,)."""
     if len(times) == 1:
@@ -33,13 +36,13 @@ def monotone_slopes(times, values):
 
 
 def _piece(times, time):
-    """The number of the piece that `time` is in, and how far: 0 to 1."""
+    """Returns the index of the piece that contains `time`, and the position within it, 0 to 1."""
     k = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 2))
     return k, float(np.clip((time - times[k]) / (times[k + 1] - times[k]), 0.0, 1.0))
 
 
 class MonotonePath:
-    """A number over time."""
+    """A number as a function of time."""
 
     def __init__(self, times, values, rests):
         self.times, self.values = np.asarray(times, float), np.asarray(values, float)
@@ -58,13 +61,13 @@ class MonotonePath:
 
 
 class PlacePath:
-    """A point over time: points (n, 3) that are met at `times`."""
+    """A point as a function of time, which meets the points (n, 3) at `times`."""
 
     def __init__(self, times, points, rests):
         times, points = np.asarray(times, float), np.asarray(points, float)
         chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
         moves = np.concatenate(([True], chords > 0))
-        self.points = points[moves]  # equal neighbours are one: there it waits
+        self.points = points[moves]  # without repeated points, at which the path waits
         self.exact = points
         chords = chords[chords > 0]
         knots = np.concatenate(([0.0], np.cumsum(np.sqrt(chords))))
@@ -77,14 +80,14 @@ class PlacePath:
         self.along.slopes = self.along.slopes * self._slowing()[self.number]
 
     def _shape(self, knots):
-        """Derivatives at the points, by the knots."""
+        """Computes the derivatives at the points with respect to the knots."""
         p, h = self.points, np.diff(knots)
         self.steps = h
         if len(p) == 1:
             return
         d = np.diff(p, axis=0) / h[:, None]
         tangents = np.empty_like(p)
-        # Beyond the ends the points are mirrored, which leaves the chord.
+        # The points are mirrored beyond the ends, so the end tangent is the chord.
         tangents[0], tangents[-1] = d[0], d[-1]
         if len(p) > 2:
             # d01 - d02 + d12 of Catmull-Rom by knots, as a weighted mean of the two chords.
@@ -93,7 +96,8 @@ class PlacePath:
         self.tangents = tangents
 
     def _slowing(self):
-        """1, and less where the path turns back by more than a right angle: 0 at a full reversal."""
+        """Returns a factor for each point: 1, less where the path turns by more than a right angle, 0 at a full
+        reversal."""
         out = np.ones(len(self.points))
         if len(self.points) > 2:
             d = np.diff(self.points, axis=0)
@@ -104,25 +108,25 @@ class PlacePath:
     def _place(self, k, x):
         (a, b), (m, n) = self.points[k:k + 2], self.tangents[k:k + 2]
         y = 1 - x
-        # From the nearer end, so that large coordinates do not cost digits.
+        # Relative to the start of the piece, so that large coordinates do not lose digits.
         return (a + (b - a) * (x * x * (3 - 2 * x)) + self.steps[k] * x * y * (m * y - n * x))
 
     def _speed(self, k, x):
-        """|dp/dx|, for an array x."""
+        """Returns |dp/dx| for an array x."""
         (a, b), (m, n) = self.points[k:k + 2], self.tangents[k:k + 2] * self.steps[k]
         x = np.asarray(x)[..., None]
         return np.linalg.norm(6 * x * (1 - x) * (b - a) + m * (1 - x) * (1 - 3 * x)
                               + n * x * (3 * x - 2), axis=-1)
 
     def _length(self, k, end):
-        """Of a piece from 0 to `end`."""
+        """Returns the arc length of a piece from 0 to `end`."""
         edges = np.linspace(0.0, end, _PARTS + 1)
         half = end / (2 * _PARTS)
         x = (edges[:-1, None] + half) + half * _X
         return float(half * np.sum(self._speed(k, x) * _W))
 
     def _where(self, k, length):
-        """x at a length along a piece: Newton's method, kept between bounds."""
+        """Returns x at a length along a piece: Newton's method within bounds."""
         total = self.lengths[k + 1] - self.lengths[k]
         low, high, x = 0.0, 1.0, length / total
         for _ in range(60):
@@ -151,13 +155,13 @@ class PlacePath:
 # --- Rotations -------------------------------------------------------------------------------------
 
 def exponential(vector):
-    """The unit quaternion of a rotation vector [rad]."""
+    """Returns the unit quaternion of a rotation vector [rad]."""
     half = 0.5 * np.linalg.norm(vector)
     return np.concatenate(([np.cos(half)], 0.5 * np.sinc(half / np.pi) * np.asarray(vector)))
 
 
 def logarithm(q):
-    """The rotation vector [rad], up to pi long, of a unit quaternion; q and -q have the same."""
+    """Returns the rotation vector [rad], of length up to pi, of a unit quaternion. q and -q have the same one."""
     q = -q if q[0] < 0 else q
     sine = np.linalg.norm(q[1:])
     if sine < 1e-12:
@@ -166,8 +170,8 @@ def logarithm(q):
 
 
 def _long_logarithm(q):
-    """The rotation vector [rad], less than two pi long, of a unit quaternion; that of -q goes the other way
-    round."""
+    """Returns the rotation vector [rad], of length less than two pi, of a unit quaternion. That of -q turns the other
+    way."""
     sine = np.linalg.norm(q[1:])
     if sine < 1e-12:
         return 2 * q[1:]
@@ -179,7 +183,7 @@ def _inverse(q):
 
 
 class TurnPath:
-    """A rotation over time: unit quaternions (n, 4) that are met at `times`, the shorter way round."""
+    """A rotation as a function of time. It meets the unit quaternions (n, 4) at `times` and turns the shorter way."""
 
     def __init__(self, times, quaternions, rests):
         self.times = np.asarray(times, float)
@@ -199,9 +203,9 @@ class TurnPath:
             rate = (h[k] * rates[k - 1] + h[k - 1] * rates[k]) / (h[k - 1] + h[k])
             before, after = np.linalg.norm(rates[k - 1]), np.linalg.norm(rates[k])
             if not before or not after:
-                continue  # what waits on one side rests here
-            # Neither side swings far beyond its keys: slower where the turn goes back by more than a right
-            # angle (at a full reversal it halts), and less than a quarter turn of each side is this rate's.
+                continue  # the rotation waits on one side, so its rate is 0 here
+            # These limits keep either side from overshooting its keys: the rate falls where the turn reverses by more
+            # than a right angle (to 0 at a full reversal), and contributes less than a quarter turn to each side.
             slowing = np.clip(1 + rates[k - 1] @ rates[k] / (before * after), 0.0, 1.0)
             limit = min(3 * before, 3 * after, _QUARTER / h[k - 1], _QUARTER / h[k])
             size = np.linalg.norm(rate)
@@ -212,8 +216,8 @@ class TurnPath:
             first, last = at_keys[k] * step / 3, at_keys[k + 1] * step / 3
             middle = multiply(multiply(exponential(-first), multiply(_inverse(q[k]), q[k + 1])),
                               exponential(-last))
-            # Up to two pi long: what is left of a chord that first and last go against may be more than half a
-            # turn, and the shorter way to its end would go round the other side.
+            # The middle part may exceed half a turn where first and last turn against the chord. The shorter way
+            # would then turn in the other direction, so the long logarithm is used.
             self.parts.append((first, _long_logarithm(middle), last))
 
     def at(self, time):
@@ -230,7 +234,7 @@ class TurnPath:
 
 
 class FovPath:
-    """A field of view [degrees] over time, even in what a picture shows: log tan(fov / 2)."""
+    """A field of view [degrees] as a function of time. It interpolates log tan(fov / 2), so that a zoom looks even."""
 
     def __init__(self, times, fovs, rests):
         self.fovs = np.asarray(fovs, float)
@@ -245,8 +249,8 @@ class FovPath:
 
 
 def looking(eye, target, up):
-    """The unit quaternion of a camera (X right, Y down, Z forward) at `eye` that looks at `target`, with
-    `up` towards the picture's top; None where these leave it open."""
+    """Returns the unit quaternion of a camera (X right, Y down, Z forward) at `eye` that looks at `target`, with
+    `up` towards the picture's top. Returns None if the eye is at the target or looks along `up`."""
     forward = np.asarray(target, float) - eye
     length = np.linalg.norm(forward)
     if not length > 0:

@@ -13,7 +13,8 @@ WIDEST = 99
 
 
 def writable(form, is_number):
-    """Whether a format is one, of numbers or of any kind of value; none that writes letters without end."""
+    """Returns whether a format is valid for numbers (is_number) or for any kind of value. A format with a width or
+    precision above 99 is invalid."""
     if any(int(digits) > WIDEST for digits in re.findall(r"[0-9]+", form)):
         return False
     for value in (1.0, 1, "x")[:1 if is_number else 3]:
@@ -29,11 +30,12 @@ def writable(form, is_number):
 class View:
     """A part of the movie's picture.
 
-    rectangle: left, top, width, height as parts of the picture, 0 to 1. scene and vantage: by name.
-    camera: one of the scene's cameras that the view looks through; "": its keys. near, far: metres along
-    Z (0.05, infinity). hide: fragments that it leaves out. ornaments: whether ornamental objects are
-    drawn. background: sRGB, 0 to 1, or a name; background_top: for a gradient. corner_axes: whether the
-    root's axes are drawn in the corner."""
+    rectangle: left, top, width, height as fractions of the picture, 0 to 1. scene, vantage: their names.
+    camera: the name of a camera of the scene; "": the view follows its keys. near, far: clip distances in metres
+    along Z (default: 0.05, infinity). hide: names of fragments that the view does not draw. ornaments: whether
+    ornamental objects are drawn. background: sRGB, 0 to 1, or a color name; background_top: the top color of a
+    gradient. corner_axes: whether the root's axes are drawn in the corner. Raises dspace.InvalidArgument or
+    dspace.WrongType for other values."""
     name: str = "main"
     rectangle: tuple = (0.0, 0.0, 1.0, 1.0)
     scene: str = DEFAULT_SCENE
@@ -90,9 +92,9 @@ class View:
         self.near, self.far = near, far
 
     def pixels(self, size):
-        """(left, top, right, bottom) in a picture of that size."""
+        """Returns (left, top, right, bottom) in pixels of a picture of that size."""
         x, y, width, height = self.rectangle
-        # Sums to nine digits: 0.02 + 0.68 is the edge that 0.7 is, so that neighbours meet.
+        # Sums are rounded to nine digits, so that 0.02 + 0.68 equals 0.7 and adjacent views meet.
         left, top, right, bottom = (round(round(part, 9) * pixels) for part, pixels in
                                     zip((x, y, x + width, y + height), (*size, *size)))
         if right <= left or bottom <= top:
@@ -104,10 +106,11 @@ class View:
 class Overlay:
     """A title, or a table of texts and values, over a view.
 
-    rows: (label, value) pairs; a value may hold {movie} and {run} (times [s]), {FRAME.x} of y, z (a frame's
-    place in the root [m]), and names of the source's telemetry, each with a format
-    of up to 99 characters and places: {run:.2f}; {{ and }} are a brace each. since, until: movie times
-    [s]. font_size: pixels, 4 to 200; 0: a 40th of the picture's height, from 8 to 200."""
+    rows: (label, value) pairs. A value may hold {movie} and {run} (times [s]), {FRAME.x}, {FRAME.y} and {FRAME.z} (a
+    frame's position in the root [m]), and names of the source's telemetry. Each may have a format, such as {run:.2f},
+    with a width and precision up to 99. {{ and }} give one brace each. view: the name of a view; "": the first.
+    since, until: movie times [s] between which it is shown. font_size: pixels, 4 to 200; 0: the picture's height / 40,
+    within 8 to 200. Raises dspace.InvalidArgument or dspace.WrongType for other values."""
     title: str = ""
     rows: tuple = ()
     view: str = ""
@@ -151,5 +154,5 @@ class Overlay:
         return self.since <= time and (self.until is None or time < self.until)
 
     def pixels(self, size):
-        """Of its letters, in a picture of that size."""
+        """Returns the font size in pixels for a picture of that size."""
         return self.font_size or min(FONT_SIZES[1], max(8, round(size[1] / 40)))
