@@ -106,7 +106,7 @@ def test_mistakes_are_told_with_file_and_key(run, script, tmp_path, jobs):  # no
                        (KEYS + '[[overlay]]\ntitle = "T"\nrows = [["a", "{nothing:.1f}"]]',
                         "overlay 1 'T': .*'nothing'"),
                        (KEYS + '[[overlay]]\nrows = [["a", "{movie}"]]\n[[overlay]]\nrows = [["a", "{charge:s}"]]',
-                        "overlay 2: {charge:s} cannot be written of ")):
+                        "overlay 2: {charge:s} cannot format ")):
         movie = dspace.Movie.load(script(text))
         with pytest.raises(dspace.Error, match=f"^movie '{tmp_path}/a.toml': (a process .*: )?({says})"):
             movie.make(run, tmp_path / "out", jobs=jobs, redraw=True)

@@ -70,7 +70,7 @@ def test_play_passes_over_steps_without_the_viewport(late, tmp_path, capsys):
     drawn = sorted((tmp_path / "out").iterdir())
     assert [each.name for each in drawn] == ["000000.png", "000001.png", "000002.png", "000003.png"]
     assert said.out.splitlines() == list(map(str, drawn))
-    assert ("3 of 7 steps are passed over, without viewport 'first', which is there from 1 to 2 s, from 4 s on"
+    assert ("3 of 7 steps are skipped, without viewport 'first', which exists from 1 to 2 s, from 4 s on"
             in said.err)
     for file, image in zip(drawn, live.values()):
         assert np.array_equal(pixels(file), image.ravel())
@@ -88,7 +88,7 @@ def test_play_says_which_viewports_there_are_and_when(late, tmp_path, capsys):
     assert capsys.readouterr().out == "7 steps, 0 to 0.5 s; viewports: 'view'\n"
     # Nothing is made before it is known that there is something to draw.
     out = tmp_path / "out"
-    for words, says in (([], "which viewport is not said.*'first' .from 1 to 2 s"),
+    for words, says in (([], "the viewport is not stated.*'first' .from 1 to 2 s"),
                         (["--viewport", "third"], "no viewport 'third'.*'first' .from 1 to 2 s"),
                         (["--viewport", "first", "--at", "3"], "at 3 s there is no viewport 'first'.*from 1 to 2 s")):
         assert main(["play", path, "--out", str(out), *words]) == 1
@@ -157,9 +157,9 @@ def test_play_writes_over_nothing(tmp_path, capsys):
 @pytest.mark.parametrize("words, says", [
     (["--at", "0.2", "--every", "1", "--out", "OUT"], "--at and --every are given; accepted: one or the other"),
     (["--at", "0.2", "--reverse", "--out", "OUT"], "--at and --reverse are given; accepted: one or the other"),
-    (["--every", "1"], "--every is of pictures; accepted: with --out"),
-    (["--reverse"], "--reverse is of pictures; accepted: with --out"),
-    (["--viewport", "view", "--at", "0.2"], "--viewport is of pictures; accepted: with --out")])
+    (["--every", "1"], "--every applies to pictures; accepted: with --out"),
+    (["--reverse"], "--reverse applies to pictures; accepted: with --out"),
+    (["--viewport", "view", "--at", "0.2"], "--viewport applies to pictures; accepted: with --out")])
 def test_play_leaves_no_option_out(tmp_path, capsys, words, says):
     out = tmp_path / "out"
     assert main(["play", record(tmp_path / "a.dspace"), *(str(out) if word == "OUT" else word for word in words)]) == 1

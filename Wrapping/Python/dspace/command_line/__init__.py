@@ -1,7 +1,7 @@
-"""The `dspace` command: one module a word, which says what it takes and carries it out.
+"""The `dspace` command. Each subcommand has a module, which defines its arguments and executes it.
 
-Exit code 0; 1 when something failed, with one line on the error stream that names it; 2 when the
-command line itself is wrong.
+Exit code: 0 on success; 1 when something failed, with one line on the error stream that names it; 2 when the command
+line itself is wrong.
 """
 import argparse
 import importlib
@@ -12,20 +12,20 @@ import warnings
 
 from dspace.errors import Error
 
-WORDS = {"log": "what recordings hold, where two part, what survives damage",
-         "movie": "a movie of a run, from a text file of camera key frames",
-         "play": "pictures of a recording, with no simulation",
-         "serve": "a session for simulations and viewers in other processes",
-         "terrain": "what a raster of heights is, and pictures of it",
-         "watch": "pictures of a simulation that runs, from a server"}
+WORDS = {"log": "show, compare, cut, pack and salvage recordings",
+         "movie": "make a movie of a run from a text file of camera key frames",
+         "play": "draw pictures of a recording, without a simulation",
+         "serve": "serve a session to simulations and viewers in other processes",
+         "terrain": "describe and draw rasters of heights",
+         "watch": "draw pictures of a running simulation through its server"}
 
 
 class Failed(Exception):
-    """Told in one line."""
+    """A failure that the command reports in one line."""
 
 
 class Parser(argparse.ArgumentParser):
-    """Whose errors are one line, and which takes "-60,10" for a value."""
+    """An ArgumentParser that prints errors in one line and accepts values such as "-60,10"."""
 
     def __init__(self, *arguments, **named):
         super().__init__(*arguments, **named)
@@ -36,14 +36,14 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(arguments=None):
-    """Carries out a command line; returns the exit code."""
+    """Executes a command line and returns the exit code."""
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     parser = Parser(prog="dspace", description="Measures and draws what simulations do.")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     asked = next((a for a in arguments if not a.startswith("-")), None)
     for word, purpose in WORDS.items():
         command = commands.add_parser(word, help=purpose, description=purpose)
-        if word == asked:  # others need not be read
+        if word == asked:  # the modules of other commands are not imported
             importlib.import_module(f"{__name__}.{word}").add_arguments(command)
     options = parser.parse_args(arguments)
     warnings.showwarning = lambda message, *_: print(f"dspace: note: {message}", file=sys.stderr)
@@ -51,7 +51,7 @@ def main(arguments=None):
         done = options.run(options) or 0
         sys.stdout.flush()
         return done
-    except BrokenPipeError:  # `| head` has read enough
+    except BrokenPipeError:  # the reader, such as `| head`, has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except (Failed, Error, OSError, RuntimeError) as error:  # RuntimeError: GDAL's
@@ -59,7 +59,7 @@ def main(arguments=None):
 
 
 def tell(error):
-    """One line on the error stream; returns the exit code of failures."""
+    """Prints an error in one line on the error stream. Returns the exit code of a failure."""
     print("dspace: " + " ".join(str(error).split()), file=sys.stderr)
     return 1
 

@@ -1,4 +1,4 @@
-"""A test authority and certificates, by the openssl command."""
+"""Makes a test authority and certificates with the openssl command."""
 import os
 import pathlib
 import shutil
@@ -12,8 +12,8 @@ DAYS = "30"
 
 
 def make_test_certificates(folder):
-    """Writes ca.pem, server.pem, server.key, client.pem and client.key into `folder`, which must not have
-    them. The authority's own key is not kept: nobody else can be let in later."""
+    """Writes ca.pem, server.pem, server.key, client.pem and client.key into `folder`, which must not have them. The
+    authority's own key is deleted, so no further certificates can be issued. Raises Failed."""
     openssl = shutil.which("openssl")
     if not openssl:
         raise Failed("--make-test-certificates needs the openssl command (Debian: openssl)")
@@ -30,14 +30,14 @@ def make_test_certificates(folder):
         raise Failed(f"folder '{folder}': it has {', '.join(there)}; accepted: a folder without them")
     mask, made = os.umask(0o077), []
     try:
-        with tempfile.TemporaryDirectory(prefix="dspace-certificates-") as work:  # forgets the authority's own key
+        with tempfile.TemporaryDirectory(prefix="dspace-certificates-") as work:  # deletes the authority's key
             work = pathlib.Path(work)
             _make(openssl, work)
             for name in names:
                 atomic_write(folder / name, (work / name).read_bytes(), new=True)
                 made.append(folder / name)
     except BaseException:
-        for path in made:  # one without the others is of no use
+        for path in made:  # an incomplete set is useless
             path.unlink(missing_ok=True)
         raise
     finally:

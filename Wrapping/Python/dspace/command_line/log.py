@@ -1,4 +1,4 @@
-"""`dspace log`: what recordings hold, where two part, what survives damage."""
+"""`dspace log`: shows, compares, cuts, packs and salvages recordings."""
 import datetime
 import math
 import os
@@ -15,36 +15,36 @@ from dspace.recording.file import RecordingFile, carry_out, path_of
 
 def add_arguments(parser):
     what = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
-    info = what.add_parser("info", help="how long it is and what is in it; reads and checks all of it")
+    info = what.add_parser("info", help="its duration and contents; reads and checks the complete file")
     info.add_argument("file", metavar="FILE")
     info.set_defaults(run=show)
-    cat = what.add_parser("cat", help="its commands as text")
+    cat = what.add_parser("cat", help="print its commands as text")
     cat.add_argument("file", metavar="FILE")
-    cat.add_argument("--first", type=int, default=None, metavar="N", help="the command to begin with")
+    cat.add_argument("--first", type=int, default=None, metavar="N", help="the number of the first command to print")
     cat.add_argument("--last", type=int, default=None, metavar="N")
     cat.set_defaults(run=write_out)
-    diff = what.add_parser("diff", help="where two runs part; exit code 1 where they do")
+    diff = what.add_parser("diff", help="find where two runs differ; exit code 1 if they do")
     diff.add_argument("file", metavar="FILE")
     diff.add_argument("other", metavar="OTHER")
     diff.add_argument("--tolerance", type=float, default=0.0, metavar="E",
-                      help="in any number that is not whole, in its own unit (poses: m, and of a quaternion); "
-                           "absent: 0")
+                      help="largest difference allowed in any floating-point number, in its own unit (poses: m, "
+                           "and quaternion components); absent: 0")
     diff.set_defaults(run=compare)
-    cut = what.add_parser("cut", help="a part of it as a recording of its own")
+    cut = what.add_parser("cut", help="copy a part of it into a new recording")
     cut.add_argument("file", metavar="FILE")
     cut.add_argument("--from", dest="begin", type=float, metavar="T", help="simulation time [s]")
     cut.add_argument("--to", dest="end", type=float, metavar="T")
     cut.add_argument("--out", required=True, metavar="FILE")
     cut.set_defaults(run=cut_out)
-    packing = what.add_parser("pack", help="takes the files that it needs into it, so that it replays anywhere; "
-                                           "files that are gone or have changed are rejected; those that could not be "
-                                           "read when it was recorded are listed, exit code 1")
+    packing = what.add_parser("pack", help="copy the files that it needs into it, so that it replays anywhere; "
+                                           "missing or changed files are rejected; files that could not be read when "
+                                           "it was recorded are listed, exit code 1")
     packing.add_argument("file", metavar="FILE")
-    packing.add_argument("--out", metavar="FILE", help="the packed recording; absent: FILE itself, which no process "
-                                                       "may be writing or reading")
+    packing.add_argument("--out", metavar="FILE", help="the packed recording; absent: FILE itself, which no other "
+                                                       "process may write or read")
     packing.set_defaults(run=pack)
-    rescue = what.add_parser("salvage", help="every command of a damaged one that its own checksum vouches for; "
-                                             "exit code 1 where some are lost")
+    rescue = what.add_parser("salvage", help="recover every command of a damaged recording whose checksum matches; "
+                                             "exit code 1 if some are lost")
     rescue.add_argument("file", metavar="FILE")
     rescue.add_argument("--out", required=True, metavar="FILE", help="the new recording")
     rescue.set_defaults(run=salvage)
@@ -65,8 +65,8 @@ def show(options):
         for each in summary.kind:
             print(f"{each.count:10} {name_of(each.kind):24} {each.bytes:12} bytes")
         for asset in file.assets:
-            said = f"{asset.size} bytes, SHA-256 {asset.sha256.hex()}" if asset.state == "read" else asset.state
-            print(f"file {asset.path}: {said}{', packed' if asset.packed else ''}")
+            state = f"{asset.size} bytes, SHA-256 {asset.sha256.hex()}" if asset.state == "read" else asset.state
+            print(f"file {asset.path}: {state}{', packed' if asset.packed else ''}")
         for first, last in file.lost:
             print(f"lost: commands {first} to {last}")
     return 0
@@ -84,7 +84,7 @@ def write_out(options):
 
 
 def there(file, first, last):
-    """The rows of a range, those that are lost told and left out."""
+    """Yields the rows of a range. Prints the ranges of lost commands and skips them."""
     for lost, end in file.lost:
         if first <= end and lost <= last:
             yield from file.rows(first, lost - 1) if lost > first else ()
@@ -99,7 +99,7 @@ def poses_text(command):
 
 
 def cut_out(options):
-    """From the last snapshot before the time to begin with."""
+    """Writes a part of a recording, from the last snapshot before --from."""
     for name, at in (("--from", options.begin), ("--to", options.end)):
         if at is not None and math.isnan(at):
             raise Failed(f"{name} {at!r}; accepted: a time in s")
@@ -107,7 +107,7 @@ def cut_out(options):
         raise Failed(f"--to {options.end!r}; accepted: {options.begin!r} and later, --from")
     with RecordingFile(options.file) as file:
         first, last = file.first, file.last
-        steps = [step for step in file.step_begins() if step[0] <= last]  # it may be being written
+        steps = [step for step in file.step_begins() if step[0] <= last]  # the recording may still be growing
         times = StepTimes(at for _, at in steps)
         for name, at, end, side in (("--from", options.begin, max, 1), ("--to", options.end, min, -1)):
             if at is None or not steps or (at - end(times.times)) * side <= 0:

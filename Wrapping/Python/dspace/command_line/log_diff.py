@@ -1,4 +1,4 @@
-"""`dspace log diff`: where two runs part, numbers compared to a tolerance."""
+"""`dspace log diff`: finds where two runs differ; compares numbers with a tolerance."""
 import itertools
 import math
 
@@ -16,7 +16,8 @@ def name_of(kind):
 
 
 def compare(options):
-    """Both streams side by side: the same commands in the same order, their numbers and times to the tolerance."""
+    """Compares both command streams: the same commands in the same order, with numbers and times that differ by no
+    more than the tolerance."""
     if not options.tolerance >= 0:
         raise Failed(f"--tolerance {options.tolerance!r}; accepted: 0 and more")
     greatest = 0.0
@@ -59,7 +60,7 @@ def compare(options):
 
 
 def other_file(one, two):
-    """The first of the files that their commands need which is not the same in both; "" where all are."""
+    """Returns the first file needed by the commands that differs between the recordings, or "" if none does."""
     there = [{asset.path: asset for asset in file.assets} for file in (one, two)]
     say = lambda asset: "is not noted" if asset is None else (
         f"has {asset.size} bytes of SHA-256 {asset.sha256.hex()}" if asset.state == "read" else f"is {asset.state}")
@@ -71,17 +72,17 @@ def other_file(one, two):
 
 
 def difference(a, b):
-    """The greatest difference of any number in two serialized commands, and in which field; infinite where they
-    differ in anything else."""
+    """Returns the greatest difference of any number in two serialized commands and the name of its field. The
+    difference is infinite if they differ in anything else."""
     if a == b:
         return 0.0, ""
     found = of_messages(command_of(a), command_of(b), "")
-    # Different bytes may be the same values; but they may also be fields that are not known here.
+    # Different bytes may hold the same values, or fields that this version does not know.
     return found if found[0] or unknown(a) == unknown(b) else (math.inf, "a field that is not known here")
 
 
 def unknown(payload):
-    """What of a command this version does not know, at any depth: what is left when the rest is dropped."""
+    """Returns the serialized command if it has fields, at any depth, that this version does not know; else None."""
     message = command_of(payload)
     kept = message.SerializeToString(deterministic=True)
     message.DiscardUnknownFields()

@@ -1,4 +1,4 @@
-"""`dspace log pack`: a recording takes the files that it needs into itself (RecordingPack.h)."""
+"""`dspace log pack`: copies the files that a recording needs into it (RecordingPack.h)."""
 import os
 
 from dspace.recording.file import carry_out, path_of

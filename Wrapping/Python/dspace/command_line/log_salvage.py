@@ -1,4 +1,4 @@
-"""`dspace log salvage`: what survives of a damaged recording (RecordingSalvage.h)."""
+"""`dspace log salvage`: recovers the intact commands of a damaged recording (RecordingSalvage.h)."""
 import os
 
 from dspace.recording.file import carry_out, path_of

@@ -1,4 +1,4 @@
-"""`dspace log telemetry` and `dspace log events`: what a simulation said in a recording, as tables."""
+"""`dspace log telemetry` and `dspace log events`: the telemetry and events of a recording as tables."""
 import csv
 import io
 import math
@@ -11,31 +11,32 @@ from dspace.recording.file import RecordingFile
 
 
 def add_arguments(what):
-    telemetry = what.add_parser("telemetry", help="named values over time; without --csv which there are")
+    telemetry = what.add_parser("telemetry", help="named values over time; without --csv: a list of the names")
     telemetry.add_argument("file", metavar="FILE")
     telemetry.add_argument("--name", action="append", metavar="NAME",
-                           help="this one, or all below it (rover: rover/...); may be given several times; absent: all")
+                           help="a channel, or all channels below it (rover: rover/...); may be given several times; "
+                                "absent: all")
     telemetry.add_argument("--scene", metavar="NAME")
-    telemetry.add_argument("--csv", metavar="OUT", help="writes them: time, name, value, unit, in the order in which "
-                                                        "they were set; '-': to the standard output")
+    telemetry.add_argument("--csv", metavar="OUT", help="write a table of time, name, value and unit, in the order in "
+                                                        "which values were set; '-': to the standard output")
     telemetry.set_defaults(run=list_telemetry)
-    events = what.add_parser("events", help="what happened")
+    events = what.add_parser("events", help="the events that the simulation logged")
     events.add_argument("file", metavar="FILE")
-    events.add_argument("--kind", action="append", metavar="KIND", help="this one; may be given several times")
+    events.add_argument("--kind", action="append", metavar="KIND", help="a kind of events; may be given several times")
     events.add_argument("--scene", metavar="NAME")
-    events.add_argument("--csv", metavar="OUT", help="writes them as a table; '-': to the standard output")
+    events.add_argument("--csv", metavar="OUT", help="write them as a table; '-': to the standard output")
     events.set_defaults(run=list_events)
 
 
 def chosen(series, names):
-    """Those of the names, or below them."""
+    """Returns the series with the given names, and those below them."""
     if names is None:
         return list(series.values())
     found = {}
     for name in names:
         below = [each for each in series if each == name or each.startswith(name + "/")]
         if not below:
-            series[name]  # says what there is
+            series[name]  # raises an error that lists the names
         found.update((each, series[each]) for each in below)
     return list(found.values())
 
@@ -55,7 +56,7 @@ def write(path, head, rows):
 
 
 def cell(series, value):
-    """Numbers to the last bit; nothing where there is no value."""
+    """Returns a value as text: numbers exactly, and "" where there is no value."""
     if series.kind == "text":
         return value or ""
     if math.isnan(value):
@@ -68,14 +69,14 @@ def list_telemetry(options):
         series = chosen(History(file).scene(options.scene).series(), options.name)
     if options.csv is None:
         for each in series:
-            told = each.kind if each.kind != "number" else f"[{each.unit}]" if each.unit else "[]"
-            said = f"{len(each.times):8} values"
+            unit = each.kind if each.kind != "number" else f"[{each.unit}]" if each.unit else "[]"
+            summary = f"{len(each.times):8} values"
             if len(each.times):
-                said += f", {min(each.times):g} to {max(each.times):g} s"
+                summary += f", {min(each.times):g} to {max(each.times):g} s"
             if each.kind == "number" and any(value == value for value in each.values):
                 good = [value for value in each.values if value == value]
-                said += f", {min(good):.6g} to {max(good):.6g}"
-            print(f"{each.name:32} {told:10} {said}")
+                summary += f", {min(good):.6g} to {max(good):.6g}"
+            print(f"{each.name:32} {unit:10} {summary}")
         return 0
     rows = []
     for each in series:
@@ -107,8 +108,8 @@ def list_events(options):
                for event in events))
         return 0
     for event in events:
-        said = event.text.replace("\n", " / ")
+        line = event.text.replace("\n", " / ")
         more = [each for each in (event.frame_path, data(event)) if each]
-        print(f"{event.number:6} {event.time:14.6f} s  {event.severity:8} {event.kind:12} {said}"
+        print(f"{event.number:6} {event.time:14.6f} s  {event.severity:8} {event.kind:12} {line}"
               + (f"  ({'; '.join(more)})" if more else ""))
     return 0

@@ -10,17 +10,20 @@ from dspace.command_line import terrain as values
 def add_arguments(parser):
     parser.add_argument("file", metavar="FILE.toml", help="the movie: see Documentation/Movies.md")
     parser.add_argument("--run", metavar="RUN", dest="source", required=True,
-                        help="a recording, or FILE.py:NAME, a function that returns what a movie is drawn of")
+                        help="a recording, or FILE.py:NAME, a function that returns the source of the pictures")
     parser.add_argument("--out", required=True, metavar="X", help="X.mp4 (H.264), X.webm (VP9), or a folder of PNGs: "
                                                            "X without a dot, or with a slash at its end")
     parser.add_argument("--size", type=values.size, metavar="WxH", help="pixels (default: the file's)")
     parser.add_argument("--rate", type=float, help="pictures a second (default: the file's)")
-    parser.add_argument("--samples", type=int, metavar="N", help=f"N x N samples a pixel, {SAMPLES[0]} to {SAMPLES[1]} (default: the file's)")
-    parser.add_argument("--jobs", type=jobs, default=1, metavar="N", help="processes that share it (1)")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers share it: tcp://HOST:PORT or tls://...")
-    parser.add_argument("--work", metavar="DIR", help="folder for pictures (default: X.work)")
-    parser.add_argument("--keep", action="store_true", help="keeps the work folder when the movie is made")
-    parser.add_argument("--redraw", action="store_true", help="draws pictures again that an ended make left")
+    parser.add_argument("--samples", type=int, metavar="N",
+                        help=f"N x N samples a pixel, {SAMPLES[0]} to {SAMPLES[1]} (default: the file's)")
+    parser.add_argument("--jobs", type=jobs, default=1, metavar="N", help="number of processes that draw, 1 to 64 (1)")
+    parser.add_argument("--scheduler", metavar="ADDRESS",
+                        help="a Dask scheduler whose workers draw: tcp://HOST:PORT or tls://...")
+    parser.add_argument("--work", metavar="DIR", help="folder for the pictures (default: X.work)")
+    parser.add_argument("--keep", action="store_true", help="keep the work folder after the movie is complete")
+    parser.add_argument("--redraw", action="store_true",
+                        help="draw all pictures, also those that an interrupted command left")
     parser.set_defaults(run=run)
 
 
@@ -41,7 +44,7 @@ def run(options):
                            redraw=options.redraw)
     except KeyboardInterrupt:
         bar.end()
-        print("dspace: ended; the same command goes on where this one was", file=sys.stderr)
+        print("dspace: interrupted; run the same command again to continue", file=sys.stderr)
         return 130
     bar.end()
     before = movie.frames - drawn
@@ -50,7 +53,7 @@ def run(options):
 
 
 class Bar:
-    """How far a movie is and how long it takes yet: a bar on a terminal, else a line every tenth."""
+    """Shows progress and the time left: as a bar on a terminal, otherwise as one line for each tenth."""
 
     def __init__(self, stream):
         self.stream, self.terminal, self.tenth = stream, stream.isatty(), None
@@ -77,7 +80,7 @@ class Bar:
 
 
 def left_words(done, total, seconds, drawn):
-    """The time left, of the pace so far."""
+    """Returns the time left, estimated from the rate so far, as text."""
     if done >= total:
         return "all drawn"
     if not drawn:

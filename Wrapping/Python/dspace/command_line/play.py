@@ -1,4 +1,4 @@
-"""`dspace play`: pictures of a recording, with no simulation."""
+"""`dspace play`: draws pictures of a recording, without a simulation."""
 import math
 import os
 import re
@@ -8,26 +8,26 @@ from dspace.command_line import Failed
 
 PICTURE = re.compile(r"\d{6,}\.png")
 ABOUT = (
-    "Draws what a recorded session showed, the same to the byte: at one time with --at, at every step of the "
-    "simulation at which the viewport is there, or with --every at most one picture each so many seconds of its time. "
-    "Without --out it says how long the recording is and what can be seen, and when.")
+    "Draws the pictures of a recorded session, identical to the byte: one picture at the time --at; or one at each "
+    "step of the simulation at which the viewport exists, with --every at most one per interval of simulation time. "
+    "Without --out it prints the duration of the recording, and its viewports with the times at which they exist.")
 
 
 def add_arguments(parser):
     parser.description = ABOUT
     parser.add_argument("file", metavar="FILE", help="a recording (.dspace)")
     parser.add_argument("--at", type=float, metavar="T", help="simulation time [s]: one picture")
-    parser.add_argument("--viewport", metavar="NAME", help="of the pictures; absent: the recording's only one")
+    parser.add_argument("--viewport", metavar="NAME", help="the viewport to draw; absent: the recording's only one")
     parser.add_argument("--out", metavar="DIR", help="folder for the pictures, 000000.png and so "
-                                                                  "on; refused where it has such pictures")
+                                                                  "on; rejected if it has such pictures")
     parser.add_argument("--every", type=float, metavar="DT", help="seconds of simulation time between pictures; not "
                                                                     "with --at")
-    parser.add_argument("--reverse", action="store_true", help="from the last step to the first; not with --at")
+    parser.add_argument("--reverse", action="store_true", help="draw from the last step to the first; not with --at")
     parser.set_defaults(run=run)
 
 
 def check(options):
-    """Refuses options that others leave without effect."""
+    """Rejects options that have no effect together with the others."""
     if options.every is not None and not (options.every > 0 and math.isfinite(options.every)):
         raise Failed(f"--every {options.every:g}; accepted: more than 0 s")
     given = [word for word, value in (("every", options.every is not None), ("reverse", options.reverse)) if value]
@@ -36,7 +36,7 @@ def check(options):
     if options.viewport is not None:
         given.append("viewport")
     if options.out is None and given:
-        raise Failed(f"--{given[0]} is of pictures; accepted: with --out")
+        raise Failed(f"--{given[0]} applies to pictures; accepted: with --out")
 
 
 def run(options):
@@ -44,7 +44,7 @@ def run(options):
     from dspace.playback.playback import Playback
 
     check(options)
-    vtk.vtkDspaceSession().ConfineProcess()  # it opens nothing but the recording's files
+    vtk.vtkDspaceSession().ConfineProcess()  # it may open only the recording's files
     with Playback(options.file) as playback:
         if options.at is not None:
             playback.seek(options.at)
@@ -56,14 +56,15 @@ def run(options):
         paths = [os.path.join(options.out, f"{number:06d}.png") for number in range(len(steps))]
         make_folder(options.out)
         for index, path in zip(steps, paths):
-            playback.step(index - playback.index)  # steps between are not gone to: back, each takes long
+            playback.step(index - playback.index)  # directly: a step back is slow
             playback.session.viewports[name].save(path)
             print(path)
     return 0
 
 
 def seen(playback, options):
-    """Which viewports there are: at one time, or over all steps, and when where it is not at all of them."""
+    """Returns the names of the viewports as text: those at the time --at; otherwise those of all steps, with their
+    times unless they exist at every step."""
     if options.at is not None:
         names = ", ".join(repr(name) for name in playback.session.viewports) or "none"
         return f"at {playback.time:g} s viewports: {names}"
@@ -71,7 +72,7 @@ def seen(playback, options):
 
 
 def viewports_of(playback):
-    """{name: [(begin, end)]}, ranges of steps."""
+    """Returns {name: [(begin, end)]}, the ranges of steps at which each viewport exists."""
     from dspace.playback.spans import spans_of
     return {key[1]: ranges for key, ranges in spans_of(playback).items() if key[0] == "viewport" and ranges}
 
@@ -84,7 +85,8 @@ def listed(playback, viewports):
 
 
 def chosen(playback, options):
-    """The viewport, and the steps to draw it at, in their order. Those without it are passed over, and counted."""
+    """Returns the viewport's name and the steps at which to draw it, in order. Prints the number of steps without
+    it, which are skipped."""
     from dspace.playback.spans import when
     viewports = viewports_of(playback)
     if not viewports:
@@ -96,16 +98,16 @@ def chosen(playback, options):
         name = next(iter(viewports))
     at = "" if options.at is None else f"at {playback.time:g} s "
     if name not in viewports or at and name not in playback.session.viewports:
-        said = "which viewport is not said" if name is None else f"there is no viewport {name!r}"
-        raise Failed(f"{playback.file.label}: {at}{said}; there are: {listed(playback, viewports)}; accepted: "
+        problem = "the viewport is not stated" if name is None else f"there is no viewport {name!r}"
+        raise Failed(f"{playback.file.label}: {at}{problem}; there are: {listed(playback, viewports)}; accepted: "
                      "--viewport with one of them" + (", and a time when it is there" if at else ""))
     if at:
         return name, [playback.index]
     there = [index for begin, end in viewports[name] for index in range(begin, end)]
     missing = len(playback.times) - len(there)
     if missing:
-        print(f"dspace: note: {missing} of {len(playback.times)} steps are passed over, without viewport {name!r}, "
-              f"which is there {when(playback, viewports[name])}", file=sys.stderr)
+        print(f"dspace: note: {missing} of {len(playback.times)} steps are skipped, without viewport {name!r}, "
+              f"which exists {when(playback, viewports[name])}", file=sys.stderr)
     drawn = []
     for index in reversed(there) if options.reverse else there:
         if not drawn or options.every is None or (abs(playback.times[index] - playback.times[drawn[-1]])
@@ -115,7 +117,8 @@ def chosen(playback, options):
 
 
 def make_folder(folder):
-    """The folder, without pictures: those of another run would mix with these."""
+    """Creates the folder. Raises Failed if it already has pictures, because those of another run would mix with the
+    new ones."""
     try:
         os.makedirs(folder, exist_ok=True)
         there = sorted(name for name in os.listdir(folder) if PICTURE.fullmatch(name))

@@ -1,4 +1,4 @@
-"""`dspace serve`: a session for simulations and viewers in other processes."""
+"""`dspace serve`: serves a session to simulations and viewers in other processes."""
 import contextlib
 import faulthandler
 import math
@@ -11,36 +11,38 @@ import time
 from dspace.command_line import Failed
 from dspace.command_line.certificates import make_test_certificates
 
-TO_END = 60.0  # seconds, once the session has ended
+TO_END = 60.0  # time limit [s] for closing connections after the session has ended
 
 
 def add_arguments(parser):
     parser.add_argument("--listen", default="127.0.0.1:0", metavar="ADDRESS",
-                        help="unix:PATH or host:port, port 0 for a free one (default 127.0.0.1:0); beyond "
-                        "this machine only with certificates")
-    parser.add_argument("--name", default="dspace", help="told to clients")
+                        help="unix:PATH or host:port, port 0 for a free one (default 127.0.0.1:0); addresses "
+                        "beyond this machine need certificates or --insecure")
+    parser.add_argument("--name", default="dspace", help="the server's name, shown to clients (default dspace)")
     parser.add_argument("--cert", default="", metavar="PEM", help="the server's certificate")
-    parser.add_argument("--key", default="", metavar="PEM", help="its key")
-    parser.add_argument("--ca", default="", metavar="PEM", help="the authority of clients' certificates")
+    parser.add_argument("--key", default="", metavar="PEM", help="the private key of the certificate")
+    parser.add_argument("--ca", default="", metavar="PEM", help="the authority that signed the clients' certificates")
     parser.add_argument("--insecure", action="store_true",
-                        help="listens beyond this machine for anybody, unencrypted")
+                        help="listen beyond this machine without encryption and without checking clients")
     parser.add_argument("--allow-root", action="append", metavar="DIR",
                         help="a folder whose files commands may name, for reading and writing; may be "
                         "given several times (default: the working folder)")
     parser.add_argument("--max-message", type=int, default=64 << 20, metavar="BYTES",
-                        help="of a message to the server (default 64 MiB)")
-    parser.add_argument("--max-connections", type=int, default=32, metavar="N", help="default 32")
+                        help="largest size of a message to the server (default 64 MiB)")
+    parser.add_argument("--max-connections", type=int, default=32, metavar="N",
+                        help="largest number of connections (default 32)")
     parser.add_argument("--max-frames", type=int, default=1000000, metavar="N",
-                        help="of one scene (default 1,000,000)")
+                        help="largest number of frames in one scene (default 1,000,000)")
     parser.add_argument("--max-rate", type=float, default=100000.0, metavar="N",
-                        help="commands a second; a faster simulation is slowed down (default 100,000)")
-    parser.add_argument("--record", metavar="FILE", help="records the session into a new file, for `dspace play`")
-    parser.add_argument("--pack", action="store_true", help="with --record: the files that commands need go into it")
+                        help="largest number of commands a second; a faster simulation is slowed down "
+                        "(default 100,000)")
+    parser.add_argument("--record", metavar="FILE", help="record the session into a new file, for `dspace play`")
+    parser.add_argument("--pack", action="store_true", help="with --record: include the files that commands need")
     parser.add_argument("--end-with-input", action="store_true",
-                        help="ends once the standard input does: with the program that started it")
+                        help="end when the standard input does, that is with the program that started the server")
     parser.add_argument("--make-test-certificates", metavar="DIR",
-                        help="writes an authority and certificates for server and clients of this machine "
-                        "into DIR, and ends; for tests, not for operations")
+                        help="write an authority and certificates for a server and clients on this machine "
+                        "into DIR, and exit; for tests only")
     parser.set_defaults(run=run)
 
 
@@ -86,25 +88,25 @@ def run(options):
             raise Failed(trouble)
     trouble = server.Start()
     if trouble:
-        if options.record is not None:  # it holds nothing, and would be in the way of the next one
+        if options.record is not None:  # an empty recording would block the next start
             server.GetSession().StopRecording()
             for end in ("", "-wal", "-shm"):
                 with contextlib.suppress(OSError):
                     os.unlink(options.record + end)
         raise Failed(trouble)
     if options.insecure and not options.cert:
-        print("dspace: note: --insecure: nothing is encrypted, and whoever reaches the server may drive it",
+        print("dspace: note: --insecure: nothing is encrypted, and anyone who reaches the server may drive it",
               file=sys.stderr, flush=True)
     print(f"dspace serve: listening on {server.GetAddress()}", flush=True)
     while not stop and server.Run(0.2):
-        time.sleep(0)  # else Python does not see a signal that another thread has caught
+        time.sleep(0)  # lets Python handle a signal that another thread received
         if options.end_with_input and input_ended():
             break
     server.Stop()
     trouble = server.GetSession().StopRecording()
     for path in server.GetSession().GetRecordingMissing().splitlines():
         print(f"dspace: note: not packed: {path}", file=sys.stderr, flush=True)
-    # Everything is written; whatever should hang now in closing connections, say where and go.
+    # Everything is written. If closing the connections hangs, print where and exit.
     faulthandler.dump_traceback_later(TO_END, exit=True)
     if trouble:
         raise Failed(trouble)

@@ -5,62 +5,67 @@ import math
 from dspace._core.traits import SIDE
 from dspace.command_line import terrain_cache, terrain_info, terrain_layers, terrain_render
 
-# What a patch's keys hold.
+# The type of each key of a patch.
 PATCH = {"band": int, "crs": str, "vertical_datum": str, "vertical_scale": float, "vertical_offset": float,
          "pixel_size": float, "margin": float}
 
 
 def add_arguments(parser):
     commands = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
-    info = commands.add_parser("info", help="what a raster is, its statistics, its pyramid, what would be drawn",
-                               description="What a raster is, its statistics, its pyramid, what would be drawn.")
+    info = commands.add_parser("info",
+                               help="describe a raster: its properties, statistics, pyramid, and how it is drawn",
+                               description="Describes a raster: its properties, statistics, pyramid, and how it is "
+                               "drawn.")
     add_raster(info)
-    info.add_argument("--json", action="store_true", help="as JSON: a list with an entry a file")
+    info.add_argument("--json", action="store_true", help="print JSON: a list with one entry for each file")
     info.set_defaults(run=terrain_info.run)
 
     render = commands.add_parser(
-        "render", help="a picture: a map, or a perspective view",
-        description="A picture of one raster or of several of one CRS, lit by a sun: from straight above "
-        "with the rasters' extent, or in perspective; on a plane, or on the body.")
+        "render", help="draw a picture: a map, or a perspective view",
+        description="Draws a picture of one raster, or of several with the same CRS, lit by a sun: from straight "
+        "above with the rasters' extent, or in perspective; on a plane, or on the body.")
     add_raster(render)
     render.add_argument("--out", required=True, metavar="PNG", help="the picture: .png, .jpg or .tif")
     render.add_argument("--size", type=size, metavar="WxH", help="pixels (default: 1024 on the longer side)")
     render.add_argument("--view", choices=("map", "perspective"), default="map")
-    render.add_argument("--on-body", action="store_true", help="stands on its body, else on a plane")
+    render.add_argument("--on-body", action="store_true", help="place the terrain on its body (default: on a plane)")
     terrain_layers.add_arguments(render)
-    render.add_argument("--color-by-height", action="store_true", help="false colour of the heights")
-    render.add_argument("--image-crs", metavar="CRS", help="of the one image, where its file does not say")
+    render.add_argument("--color-by-height", action="store_true", help="color the terrain by height")
+    render.add_argument("--image-crs", metavar="CRS", help="CRS of the image, if its file does not state one")
     render.add_argument("--image-extent", type=numbers(4, "LEFT,TOP,RIGHT,BOTTOM"), metavar="L,T,R,B",
-                        help="of the one image in map coordinates, where its file does not say")
+                        help="extent of the image in map coordinates, if its file does not state one")
     render.add_argument("--sun", type=sun, default=(315.0, 45.0), metavar="AZ,EL",
                         help="degrees clockwise from north and above the horizon, at the target or the middle (315,45)")
     render.add_argument("--eye", type=numbers(3, "LON,LAT,HEIGHT"), metavar="LON,LAT,HEIGHT",
-                        help="of a perspective view, height in metres above the vertical datum; without a "
-                        "CRS map x,y,height")
-    render.add_argument("--target", type=numbers(3, "LON,LAT,HEIGHT"), metavar="LON,LAT,HEIGHT")
+                        help="position of the camera of a perspective view; height in metres above the vertical "
+                        "datum; map x,y,height without a CRS")
+    render.add_argument("--target", type=numbers(3, "LON,LAT,HEIGHT"), metavar="LON,LAT,HEIGHT",
+                        help="the point that a perspective view looks at")
     render.add_argument("--fov", type=fov, default=35.0, metavar="DEG",
                         help="vertical angle of a perspective view (default 35)")
     render.set_defaults(run=terrain_render.run)
 
     terrain_cache.add_arguments(commands.add_parser(
-        "cache", help="overviews of large rasters that have none", description=terrain_cache.ABOUT))
+        "cache", help="build overviews of large rasters that have none", description=terrain_cache.ABOUT))
 
 
 def add_raster(parser):
-    """What files do not say, or say wrongly."""
+    """Adds the raster files, and options for properties that the files lack or state wrongly."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="any raster that GDAL opens")
     parser.add_argument("--band", type=int)
-    parser.add_argument("--crs", help="of the raster: WKT, PROJ, AUTHORITY:CODE")
+    parser.add_argument("--crs", help="CRS of the raster: WKT, PROJ, AUTHORITY:CODE")
     parser.add_argument("--vertical-datum", metavar="DATUM", help="ellipsoid, sphere:R, areoid, relative, ...")
-    parser.add_argument("--vertical-scale", type=float, metavar="S", help="metres a unit of height")
-    parser.add_argument("--vertical-offset", type=float, metavar="M", help="metres added to them")
-    parser.add_argument("--pixel-size", type=float, metavar="P", help="map units, without georeference")
+    parser.add_argument("--vertical-scale", type=float, metavar="S", help="metres per unit of height")
+    parser.add_argument("--vertical-offset", type=float, metavar="M", help="metres added to the heights")
+    parser.add_argument("--pixel-size", type=float, metavar="P",
+                        help="size of a pixel in map units, if the raster has no georeference")
     parser.add_argument("--patch", type=patch, action="append", dest="patches", metavar="PATH[,KEY=VALUE...]",
-                        help="a raster of higher resolution that lies on FILE, in its own CRS, blended over a "
+                        help="a raster of higher resolution, in its own CRS, blended into FILE over a "
                         f"margin; keys: {', '.join(PATCH)}; may be given several times")
     parser.add_argument("--level-size", type=int, metavar="N",
-                        help="cells a side of a clipmap's levels (info 124, render 252)")
-    parser.add_argument("--byte-budget", type=int, metavar="BYTES", help="of tiles in memory (256 MiB)")
+                        help="number of cells along a side of a clipmap level (info 124, render 252)")
+    parser.add_argument("--byte-budget", type=int, metavar="BYTES",
+                        help="largest size of the tiles in memory (256 MiB)")
     parser.add_argument("--deadline", type=float, metavar="S", help="seconds to wait for tiles (60)")
 
 
@@ -103,7 +108,7 @@ def fov(text):
 
 
 def patch(text):
-    """A dict that add_terrain's `patches` takes; commas without a key belong to the path or CRS."""
+    """Returns a dict for the `patches` of add_terrain. A comma without a key belongs to the path or CRS."""
     found = {"path": ""}
     last = "path"
     for number, part in enumerate(text.split(",")):

@@ -1,4 +1,4 @@
-"""`dspace terrain cache`: averaged overviews of rasters that have none, in a folder of their own."""
+"""`dspace terrain cache`: builds averaged overviews of rasters that have none, in the cache folder."""
 import glob
 import json
 import os
@@ -11,24 +11,26 @@ from dspace.command_line import Failed, tell
 from dspace.command_line.terrain_rasters import mebibytes
 
 ABOUT = (
-    "Builds averaged overviews of rasters that have none, so that far ground is the mean of all its pixels: "
-    "add_terrain reads them from the cache folder. Nothing is written beside a raster. A file is read once as a "
-    "whole; on a terminal the bytes written are shown meanwhile (compressed: how many there will be is not known). "
-    "Ctrl-C cancels and leaves what was there before.")
+    "Builds averaged overviews of rasters that have none, so that distant ground shows the mean of all its pixels. "
+    "add_terrain reads them from the cache folder. Nothing is written beside a raster. Each file is read once, "
+    "completely. A terminal shows the number of compressed bytes written so far; the total is not known in advance. "
+    "Ctrl-C cancels and leaves the folder as it was.")
 TICK = 0.2  # seconds
 
 
 def add_arguments(parser):
     parser.add_argument("files", nargs="*", metavar="FILE", help="any raster that GDAL opens")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--list", action="store_true", help="what the folder holds")
-    what.add_argument("--clear", action="store_true", help="remove the overviews of FILE..., without any all of them")
-    what.add_argument("--verify", action="store_true", help="read all of them; exit code 1 where one is damaged")
+    what.add_argument("--list", action="store_true", help="list the contents of the folder")
+    what.add_argument("--clear", action="store_true",
+                      help="remove the overviews of FILE..., or all of them without FILE")
+    what.add_argument("--verify", action="store_true", help="read all overviews; exit code 1 if one is damaged")
     parser.add_argument("--folder", metavar="DIR",
-                        help="instead of $XDG_CACHE_HOME/dspace/terrain or ~/.cache/dspace/terrain")
+                        help="the cache folder (default: $XDG_CACHE_HOME/dspace/terrain or ~/.cache/dspace/terrain)")
     parser.add_argument("--band", type=int)
-    parser.add_argument("--crs", help="of the raster: WKT, PROJ, AUTHORITY:CODE")
-    parser.add_argument("--pixel-size", type=float, metavar="P", help="map units, without georeference")
+    parser.add_argument("--crs", help="CRS of the raster: WKT, PROJ, AUTHORITY:CODE")
+    parser.add_argument("--pixel-size", type=float, metavar="P",
+                        help="size of a pixel in map units, if the raster has no georeference")
     parser.set_defaults(run=run)
 
 
@@ -37,7 +39,7 @@ def run(options):
         raise Failed("--folder ''; accepted: a folder's path")
     if options.list or options.verify:
         if options.files:
-            raise Failed(f"--{'list' if options.list else 'verify'} is of the whole folder; accepted: no FILE")
+            raise Failed(f"--{'list' if options.list else 'verify'} applies to the complete folder; accepted: no FILE")
         return show(options)
     if options.clear:
         return clear(options)
@@ -51,13 +53,13 @@ def run(options):
         for path in options.files:
             failed |= build(path, folder, options)
     except KeyboardInterrupt:
-        tell("cancelled; nothing half-made is left")
+        tell("cancelled; no partial overviews are left")
         return 130
     return failed
 
 
 def ask(name, options, **values):
-    """A request's entries and folder."""
+    """Executes a cache command and returns its reply: the entries and the folder."""
     import dspace
     from dspace._core.fields import put, put_given
     from dspace.proto import commands_pb2
@@ -72,7 +74,7 @@ def ask(name, options, **values):
 # --- Built -----------------------------------------------------------------------------------------
 
 def build(path, folder, options):
-    """In a process of its own, which can be ended at any time; returns the exit code."""
+    """Builds the overviews of a file in a child process, which can be killed at any time. Returns the exit code."""
     began = time.monotonic()
     answer, child = in_child(lambda: [
         {"file": entry.file, "bytes": entry.bytes, "levels": entry.levels}
@@ -93,7 +95,7 @@ def build(path, folder, options):
     if isinstance(found, str):
         return tell(found if path in found else f"'{path}': {found}")
     if not found:
-        print(f"{path}: has overviews of its own; none are built")
+        print(f"{path}: has its own overviews; none are built")
     for entry in found:
         print(f"{path}: {entry['levels']} levels of overviews, {mebibytes(entry['bytes'])}, "
               f"{time.monotonic() - began:.1f} s: {entry['file']}", flush=True)
@@ -111,19 +113,19 @@ def folder_of(options):
 
 
 def in_child(work):
-    """Begins it; returns where its answer is read, and its process."""
+    """Starts work() in a child process. Returns the read end of the pipe for its result, and its process id."""
     sys.stdout.flush()
-    answer, said = os.pipe()
+    answer, output = os.pipe()
     child = os.fork()
     if child:
-        os.close(said)
+        os.close(output)
         return answer, child
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent kills it
     try:
         text = json.dumps(work())
     except Exception as error:
         text = json.dumps(str(error) or type(error).__name__)
-    os.write(said, text.encode())
+    os.write(output, text.encode())
     os._exit(0)
 
 
@@ -140,7 +142,7 @@ def wait(answer, each_tick):
 
 
 def parts(folder, child):
-    """Files that a process has not finished: AtomicFile puts its process id into their names."""
+    """Returns the temporary files of a process. AtomicFile puts the process id into their names."""
     return glob.glob(os.path.join(glob.escape(folder), f".*.overviews.{child:08x}*.part"))
 
 
@@ -149,7 +151,7 @@ def written(folder, child):
 
 
 def note(text):
-    """One line of a terminal, which the next replaces."""
+    """Shows one line on a terminal, which the next call replaces."""
     if sys.stderr.isatty():
         print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
@@ -162,8 +164,8 @@ def show(options):
     for entry in reply.entry:
         line(entry)
         if entry.problem:
-            damaged = tell(f"'{entry.file}': {entry.problem}; --clear, or build it anew")
-    total(reply, "all whole" if options.verify and not damaged else "")
+            damaged = tell(f"'{entry.file}': {entry.problem}; use --clear, or build it again")
+    total(reply, "all intact" if options.verify and not damaged else "")
     return damaged if options.verify else 0
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from dspace.command_line import Failed, tell
 from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, lines, mebibytes, open_raster
 
-MESH_PIXELS = 4_000_000  # what mode "auto" draws as triangles
-STATISTICS_PIXELS = 4_000_000  # more are not read for statistics
+MESH_PIXELS = 4_000_000  # the largest raster that mode "auto" draws as triangles
+STATISTICS_PIXELS = 4_000_000  # the largest number of pixels that statistics read
 TILE = 128
 
 
@@ -34,7 +34,7 @@ def run(options):
 
 
 def finite(value):
-    """With null for what JSON has no number for."""
+    """Returns the value with None in place of numbers that JSON cannot hold."""
     if isinstance(value, dict):
         return {key: finite(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
@@ -43,7 +43,7 @@ def finite(value):
 
 
 def describe(scene, path, options):
-    """Everything, as a dict of what JSON holds."""
+    """Returns all properties of a raster and its terrain as a dict for JSON."""
     import dspace
     gdal, osr = gdal_modules()
     terrain, warned = add(scene, path, options, name="plane")
@@ -92,7 +92,7 @@ def map_unit(crs):
 # --- Where it is -----------------------------------------------------------------------------------
 
 def bounds(osr, crs, to_map, columns, rows):
-    """Of the outer edges of its pixels, on the map and in longitude and latitude."""
+    """Returns the bounds of the outer pixel edges, in map coordinates and in longitude and latitude."""
     u, v = (np.linspace(0, n, 65) for n in (columns, rows))
     edge = np.concatenate([np.column_stack((u, 0 * u)), np.column_stack((0 * v + columns, v)),
                            np.column_stack((u[::-1], 0 * u + rows)), np.column_stack((0 * v, v[::-1]))])
@@ -107,11 +107,11 @@ def bounds(osr, crs, to_map, columns, rows):
         try:
             there = osr.CoordinateTransformation(*crs)
             points = np.array(there.TransformPoints(np.column_stack((x, y)).tolist()))[:, :2]
-        except RuntimeError:  # beyond where the projection is defined
+        except RuntimeError:  # outside the domain of the projection
             return found
         if not np.isfinite(points).all():
             return found
-        # An edge that crosses the date line goes on beyond 180 degrees.
+        # An edge that crosses the date line continues beyond 180 degrees.
         longitude, latitude = np.degrees(np.unwrap(np.radians(points[:, 0]))), points[:, 1]
         if abs(longitude[-1] - longitude[0]) > 180:  # around a pole
             found["longitude"] = [-180.0, 180.0]
@@ -126,7 +126,7 @@ def bounds(osr, crs, to_map, columns, rows):
 # --- What it holds ---------------------------------------------------------------------------------
 
 def statistics(data, band, info):
-    """Heights in metres above the vertical datum."""
+    """Returns statistics of the heights, in metres above the vertical datum."""
     columns, rows = data.RasterXSize, data.RasterYSize
     shrink = max(1, math.ceil(math.sqrt(columns * rows / STATISTICS_PIXELS)))
     size = (math.ceil(columns / shrink), math.ceil(rows / shrink))
@@ -171,7 +171,7 @@ def pyramid(info, options):
 
 
 def on_body(dspace, scene, path, options):
-    """The same on its body, or why it cannot stand there."""
+    """Returns the pyramid of the terrain on its body, or the reason why it cannot be placed there."""
     try:
         terrain, _ = add(scene, path, options, name="body", on_body=True)
     except dspace.Error as error:

@@ -1,4 +1,4 @@
-"""What `dspace terrain render` paints on terrain: --image, --false-color, --shapes, in the order given."""
+"""The layers that `dspace terrain render` draws on terrain: --image, --false-color, --shapes, in the order given."""
 import argparse
 import pathlib
 import sys
@@ -16,17 +16,17 @@ class Layer(argparse.Action):
 
 def add_arguments(parser):
     parser.add_argument("--image", dest="layers", action=Layer, metavar="FILE",
-                        help="an image that lies on it; this and the next two may be given several times, "
-                        "later ones on top")
+                        help="an image to drape on the terrain; this and the next two options may be given several "
+                        "times, later ones on top")
     parser.add_argument("--false-color", dest="layers", action=Layer, metavar="FILE[:BAND]",
-                        help="a band's values from green over ochre to white, least to greatest")
+                        help="the values of a band, colored from green (least) through ochre to white (greatest)")
     parser.add_argument("--shapes", dest="layers", action=Layer, metavar="FILE",
                         help="polygons, lines and points: GeoJSON, GeoPackage, Shapefile, ...")
     parser.set_defaults(reject=parser.error)
 
 
 def check(options):
-    """What argparse does not see, in its way."""
+    """Rejects combinations of options that argparse cannot check, as argparse does."""
     layers = options.layers or []
     if layers and options.color_by_height:
         options.reject(f"argument --color-by-height: not allowed with argument --{layers[0][0]}")
@@ -37,7 +37,7 @@ def check(options):
 
 
 def paint(terrains, options):
-    """Each layer on the terrains that it lies on: on one at least."""
+    """Adds each layer to the terrains that it overlaps. Raises dspace.InvalidArgument if it overlaps none."""
     for kind, path in options.layers or ():
         painted, missed = 0, None
         for terrain in terrains:
@@ -67,7 +67,7 @@ def add(terrain, kind, path, options):
 
 
 def file_and_band(given):
-    """FILE[:BAND]; a file may have a colon in its name."""
+    """Returns the file and the band of FILE[:BAND]. The name of an existing file may contain a colon."""
     path, colon, band = given.rpartition(":")
     if colon and band.isdecimal() and not pathlib.Path(given).exists():
         return path, int(band)

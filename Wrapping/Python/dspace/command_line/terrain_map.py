@@ -1,41 +1,41 @@
-"""Pictures from straight above, orthographic: of a plane with the raster's extent, of a body its disc.
+"""Orthographic pictures from straight above: the raster's extent on a plane, or the disc of a body.
 
-A clipmap shows fewer posts away from its camera. These pictures are made of small ones, each from a
-camera right above its middle, so low that it shows one level of posts everywhere, and so high that
-this level's posts are about as close as pixels. Cameras are parallel and share edges: the picture is
-one."""
+A clipmap shows fewer posts farther from its camera. The picture is therefore composed of tiles, each from a camera
+right above its middle. The camera is low enough that the tile shows one level of posts, and high enough that the posts
+of this level are about as close as pixels. The cameras are parallel and share edges, so the tiles join exactly."""
 import math
 
 import numpy as np
 
 BESIDE = (1.0, 1.0, 1.0)
 SKY = (0.0, 0.0, 0.0)
-# Of levels of 252 cells, in posts: a level is drawn unmixed within 90 posts of the camera, and a
-# finer one is drawn as well below 60.
+# In posts of a level of 252 cells. Within 90 posts of the camera a level is drawn without blending; below 60 posts a
+# finer level is drawn as well.
 REACH = 80
 ABOVE = 75
 
 
 def fitted_size(width, height, longer):
-    """Pixels of that shape."""
+    """Returns a size in pixels with that aspect ratio, whose longer side is `longer`."""
     shrink = longer / max(width, height)
     return max(1, round(width * shrink)), max(1, round(height * shrink))
 
 
 def level_of(ground, pixel):
-    """The level whose posts are about `pixel` metres apart, or closer."""
+    """Returns the level whose posts are about `pixel` metres apart, or closer."""
     return min(max(0, math.floor(math.log2(pixel / ground.post))), ground.levels - 1)
 
 
 def tiles(size, side):
-    """(x, y, width, height) in pixels of squares that make up a picture."""
+    """Yields (x, y, width, height) in pixels of the tiles of a picture."""
     for y in range(0, size[1], side):
         for x in range(0, size[0], side):
             yield x, y, min(side, size[0] - x), min(side, size[1] - y)
 
 
 def draw_tiles(session, scene, ground, size, pixel, background, camera_at):
-    """camera_at(x, y, width, height, above): eye, the direction up in the picture, and the way down."""
+    """Draws a picture tile by tile. camera_at(x, y, width, height, above) returns the eye, the direction of the
+    picture's top, and the viewing direction of a tile's camera."""
     level = level_of(ground, pixel)
     reach, above = (posts * ground.post * 2**level for posts in (REACH, ABOVE))
     side = max(16, min(1024, math.floor(2 * reach / pixel)))
@@ -64,7 +64,7 @@ def draw_map(session, scene, ground, options, longer):
     west, east, south, north = ground.extent
     size = options.size or fitted_size(east - west, north - south, longer)
     pixel = max((east - west) / size[0], (north - south) / size[1])
-    # What is beside the rasters in a picture of another shape is background.
+    # If the picture has another shape than the rasters, the rest is background.
     left = 0.5 * (west + east) - 0.5 * size[0] * pixel
     top = 0.5 * (south + north) + 0.5 * size[1] * pixel
 
@@ -73,7 +73,7 @@ def draw_map(session, scene, ground, options, longer):
         u, v = (middle[i] + np.linspace(-0.5, 0.5, 33) * n * pixel for i, n in ((0, width), (1, height)))
         heights = np.stack([t.height(u[:, None], v[None, :]) for t in ground.terrains])
         known = heights[np.isfinite(heights)]
-        # Just above what stands highest there, as far as 33 x 33 samples tell.
+        # Just above the highest ground of the tile, estimated from 33 x 33 samples.
         highest = min(known.max() + 0.3 * np.ptp(known), ground.heights[1]) if len(known) else ground.heights[1]
         lowest = known.min() if len(known) else ground.heights[0]
         z = max(highest + 0.01 * above, lowest + above)
@@ -87,13 +87,13 @@ def draw_map(session, scene, ground, options, longer):
 
 
 def draw_disc(session, scene, ground, options, longer):
-    """The body, or the part that the rasters cover, from above their middle."""
+    """Draws the body, or the part that the rasters cover, from above their middle."""
     middle = ground.place((*ground.middle, 0.0))
     axes = ground.axes(middle)
     points = ground.grid(65) @ axes.T
     points = points[points[:, 2] > 0]
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-    if ground.radius < np.abs(points[:, :2]).max() * 1.02:  # nearly half of it, or more
+    if ground.radius < np.abs(points[:, :2]).max() * 1.02:  # the rasters cover nearly half of the body, or more
         low, high = np.full(2, -1.02 * ground.radius), np.full(2, 1.02 * ground.radius)
     size = options.size or fitted_size(*(high - low), longer)
     pixel = max((high - low) / size)
@@ -103,7 +103,7 @@ def draw_disc(session, scene, ground, options, longer):
     def camera_at(x, y, width, height, above):
         u = left + (x + 0.5 * width) * pixel
         v = top - (y + 0.5 * height) * pixel
-        # The highest that the ground stands anywhere in this part, towards the camera.
+        # The greatest height of the ground in this tile, towards the camera.
         near = np.hypot(*(max(abs(at) - 0.5 * n * pixel, 0.0) for at, n in ((u, width), (v, height))))
         up = math.sqrt(max(outer**2 - near**2, 0.0)) + 0.2 * above
         here = math.sqrt(max(ground.radius**2 - u**2 - v**2, 0.0)) + above

@@ -1,4 +1,4 @@
-"""What several `dspace terrain` commands do with a raster."""
+"""Functions on rasters that several `dspace terrain` commands share."""
 import warnings
 
 from dspace.command_line import Failed
@@ -18,9 +18,9 @@ def gdal_modules():
 
 
 def open_raster(gdal, path, options):
-    """GDAL's own view of a raster, and its geotransform: made up where the file has none."""
+    """Returns GDAL's dataset of a raster and its geotransform, or a default one if the file has none."""
     name = str(path)
-    if name.startswith(("http://", "https://")):  # in parts, as the terrain itself reads it
+    if name.startswith(("http://", "https://")):  # read in parts, as the terrain does
         name = "/vsicurl/" + name
         for key, seconds in (("CONNECTTIMEOUT", 10), ("LOW_SPEED_TIME", 10), ("LOW_SPEED_LIMIT", 1)):
             gdal.SetConfigOption(f"GDAL_HTTP_{key}", str(seconds))
@@ -35,13 +35,13 @@ def mebibytes(count):
 
 
 def check(options):
-    """What no single argument is wrong with."""
+    """Rejects wrong combinations of arguments."""
     if options.patches and len(options.files) > 1:
         raise Failed(f"--patch is given with {len(options.files)} files; accepted: patches on one")
 
 
 def add(scene, path, options, **more):
-    """The terrain of a file as a clipmap, and what was warned of."""
+    """Adds the terrain of a file as a clipmap. Returns it and the texts of its warnings."""
     given = {name: getattr(options, name) for name in RASTER if getattr(options, name) is not None}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -50,7 +50,7 @@ def add(scene, path, options, **more):
 
 
 def degrees(osr, wkt):
-    """From map x, y to longitude and latitude on the CRS's own body, and its CRS; None without a CRS."""
+    """Returns the horizontal CRS and the geographic CRS of its body, or None without a CRS."""
     if not wkt:
         return None
     crs = osr.SpatialReference()
@@ -69,7 +69,7 @@ def _horizontal(crs):
 
 
 def lines(title, rows):
-    """A table of labels and values as text."""
+    """Returns a table of labels and values as text."""
     text = [title]
     for label, value in rows:
         value = value if isinstance(value, list) else [value]

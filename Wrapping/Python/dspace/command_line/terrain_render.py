@@ -21,11 +21,11 @@ def run(options):
     terrain_layers.check(options)
     out = pathlib.Path(options.out)
     if out.suffix.lower() not in (".png", ".jpg", ".jpeg", ".tif", ".tiff"):
-        raise Failed(f"'{out}': the picture's format is not known; accepted: .png, .jpg, .tif")
+        raise Failed(f"'{out}': the picture's format is unknown; accepted: .png, .jpg, .tif")
     if not out.resolve().parent.is_dir():
         raise Failed(f"'{out}': there is no folder {out.resolve().parent}")
     if options.view == "map" and (options.eye or options.target):
-        raise Failed("--eye and --target are of perspective views; accepted: --view perspective with them")
+        raise Failed("--eye and --target apply to perspective views; accepted: --view perspective with them")
     options.level_size = options.level_size or 252
     with dspace.Session() as session:
         scene = session.scene()
@@ -46,7 +46,7 @@ def save(path, picture):
     height, width = picture.shape[:2]
     memory = gdal.GetDriverByName("MEM").Create("", width, height, 3, gdal.GDT_Byte)
     memory.WriteArray(np.ascontiguousarray(np.moveaxis(picture[..., :3], -1, 0)))
-    gdal.SetConfigOption("GDAL_PAM_ENABLED", "NO")  # nothing is written beside it
+    gdal.SetConfigOption("GDAL_PAM_ENABLED", "NO")  # no metadata file beside the picture
     name = f"/vsimem/dspace-render-{id(memory)}"
     try:
         gdal.GetDriverByName(driver).CreateCopy(name, memory).FlushCache()
@@ -56,7 +56,7 @@ def save(path, picture):
 
 
 def bytes_of(gdal, name):
-    """A file in GDAL's memory."""
+    """Returns the contents of a file in GDAL's memory."""
     file = gdal.VSIFOpenL(name, "rb")
     try:
         return bytes(gdal.VSIFReadL(1, gdal.VSIStatL(name).size, file))
@@ -109,27 +109,28 @@ class Ground:
 
     @property
     def middle(self):
-        """Map x and y."""
+        """Map x and y of the middle of all rasters."""
         every = np.array(self.maps)
         return (0.5 * (every[:, 0].min() + every[:, 1].max()), 0.5 * (every[:, 2].min() + every[:, 3].max()))
 
     def place(self, point):
-        """Of map x, y and height, in the frame."""
+        """Returns the position, in the frame, of map x, y and height."""
         return self.terrains[0].from_map(np.array([point], float))[0]
 
     def place_of_degrees(self, point):
-        """Of longitude, latitude and height, in the frame; without a CRS of map x, y and height."""
+        """Returns the position, in the frame, of longitude, latitude and height, or of map x, y and height without a
+        CRS."""
         if self.crs and not self.crs[0].IsGeographic():
             _, osr = gdal_modules()
             x, y, _ = osr.CoordinateTransformation(self.crs[1], self.crs[0]).TransformPoint(*point[:2])
             point = (x, y, point[2])
         place = self.place(point)
         if not np.isfinite(place).all():
-            raise Failed(f"the place {point} is not on the map of '{self.terrains[0].name}'")
+            raise Failed(f"the point {point} is not on the map of '{self.terrains[0].name}'")
         return place
 
     def grid(self, count=25):
-        """Points of the ground all over it, in the frame, (n, 3)."""
+        """Returns a grid of points on the ground, in the frame, (n, 3)."""
         points = []
         for terrain, (x0, x1, y0, y1) in zip(self.terrains, self.maps):
             x, y = (a.ravel() for a in np.meshgrid(np.linspace(x0, x1, count), np.linspace(y0, y1, count)))
@@ -139,7 +140,7 @@ class Ground:
         return np.concatenate(points)
 
     def axes(self, place):
-        """East, north and up at a place of the frame."""
+        """Returns the directions east, north and up at a position of the frame, as rows."""
         if not self.on_body:
             return np.eye(3)
         up = place / np.linalg.norm(place)
@@ -151,7 +152,7 @@ class Ground:
 
 
 def map_extent(data, to_map):
-    """Map x0, x1, y0, y1 of its outermost pixels' centres."""
+    """Returns map x0, x1, y0, y1 of the centres of the outermost pixels."""
     g = to_map
     corners = np.array([(u, v) for u in (0.5, data.RasterXSize - 0.5) for v in (0.5, data.RasterYSize - 0.5)])
     x, y = g[0] + corners @ g[1:3], g[3] + corners @ g[4:6]
@@ -159,7 +160,7 @@ def map_extent(data, to_map):
 
 
 def set_sun(scene, ground, options):
-    """Its angles are those at the target, else at the middle of the ground."""
+    """Sets the sun's direction. Its angles hold at the target, or at the middle of the ground without one."""
     place = ground.place((*ground.middle, 0.0)) if options.target is None else ground.place_of_degrees(options.target)
     azimuth, elevation = np.radians(options.sun)
     toward = np.array([np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation),
@@ -169,14 +170,14 @@ def set_sun(scene, ground, options):
 
 
 def draw_perspective(session, scene, ground, options):
-    """From the eye; by default from the south, so that all of it is seen."""
+    """Draws a picture from the eye, or from the south with all of the ground visible if no eye is given."""
     width, height = options.size or (LONGER_SIDE, LONGER_SIDE * 9 // 16)
     points = ground.grid()
     middle = ground.place((*ground.middle, 0.5 * sum(ground.heights)))
     target = middle if options.target is None else ground.place_of_degrees(options.target)
     east, north, up = ground.axes(middle)
     if options.eye is None:
-        # Back along the line of sight until every point is within the picture.
+        # Move back along the line of sight until every point is within the picture.
         slope = math.radians(90 if ground.on_body and np.ptp(points, axis=0).max() > ground.radius else 35)
         back = -math.cos(slope) * north + math.sin(slope) * up
         right, down = east, np.cross(-back, east)
@@ -189,7 +190,7 @@ def draw_perspective(session, scene, ground, options):
     above = ground.axes(eye)[2]
     vertical = north if abs(above @ towards) > 0.9999 else above
     if abs(vertical @ towards) > 0.9999:
-        raise Failed("the eye and the target are one place; accepted: two")
+        raise Failed("the eye and the target are the same point; accepted: two different points")
     near = max(0.05, 1e-6 * float(np.linalg.norm(target - eye)))
     scene.add_camera("eye", eye=tuple(eye), target=tuple(target), up=tuple(vertical), fov_deg=options.fov,
                      near=near)

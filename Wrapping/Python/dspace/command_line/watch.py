@@ -1,4 +1,4 @@
-"""`dspace watch`: pictures of a simulation that runs, from a server."""
+"""`dspace watch`: draws pictures of a running simulation through its server."""
 import math
 import itertools
 import os
@@ -10,42 +10,44 @@ from dspace.command_line import Failed
 from dspace.command_line import terrain as values
 from dspace.command_line.play import make_folder
 
-PATIENCE = 2.0  # s without what is to be drawn, until it is said what is waited for
-LISTED = 20     # names
+PATIENCE = 2.0  # time [s] without anything to draw before a note states what is missing
+LISTED = 20     # largest number of names in a note
 
 ABOUT = (
-    "Follows a simulation through its server (dspace serve), draws it here, and saves a picture whenever --every "
-    "seconds of wall time have passed and something has changed. It ends when the simulation does, also where that has "
-    "gone before, or with Ctrl-C; the last picture is then saved, too. It waits for a first simulation, and for a "
-    "viewport, scene or frame that is not there yet, and says so; where the simulation ends without it the exit code "
-    "is 1. --viewport is one that the simulation has made; with --eye and --target it "
-    "looks from elsewhere, which changes nothing for the simulation and for others.")
+    "Follows a simulation through its server (dspace serve), draws it on this machine, and saves a picture whenever "
+    "--every seconds of wall time have passed and something has changed. It ends when the simulation ends, or at once "
+    "if the simulation has already ended, or with Ctrl-C. It then saves the last picture. It waits for a first "
+    "simulation, and for a viewport, scene or frame that does not exist yet, and prints a note. If the simulation ends "
+    "without it, the exit code is 1. --viewport names a viewport of the simulation. --eye and --target make a separate "
+    "view, which does not affect the simulation or other viewers.")
 
 
 def add_arguments(parser):
     parser.description = ABOUT
-    parser.add_argument("address", metavar="ADDRESS", help="of the server: unix:PATH or host:port")
+    parser.add_argument("address", metavar="ADDRESS", help="address of the server: unix:PATH or host:port")
     parser.add_argument("--out", required=True, metavar="DIR",
-                        help="folder for the pictures, 000000.png and so on; made if it is not there, refused where it "
-                             "has such pictures")
+                        help="folder for the pictures, 000000.png and so on; created if it does not exist, rejected "
+                             "if it has such pictures")
     parser.add_argument("--every", type=float, default=1.0, metavar="S",
                         help="seconds of wall time between pictures (1)")
     parser.add_argument("--viewport", metavar="NAME", help="absent: the server's only one")
-    parser.add_argument("--count", type=int, metavar="N", help="ends after so many pictures")
+    parser.add_argument("--count", type=int, metavar="N", help="end after N pictures")
     parser.add_argument("--stay", action="store_true",
-                        help="goes on when the simulation or the server has gone, for the next")
-    view = parser.add_argument_group("a view of one's own, instead of --viewport")
+                        help="keep waiting for the next simulation or server after one has ended")
+    view = parser.add_argument_group("a separate view, instead of --viewport")
     view.add_argument("--eye", type=values.numbers(3, "X,Y,Z"), metavar="X,Y,Z", help="where the camera stands [m]")
     view.add_argument("--target", type=values.numbers(3, "X,Y,Z"), metavar="X,Y,Z", help="what it looks at [m]")
-    view.add_argument("--frame", metavar="PATH", help="the frame that both are in, which it moves with (the root)")
+    view.add_argument("--frame", metavar="PATH",
+                      help="the frame of --eye and --target, with which the camera moves (the root)")
     view.add_argument("--fov", type=float, metavar="DEG", help="vertical field of view (45)")
     view.add_argument("--size", type=values.size, metavar="WxH", help="pixels (1280x720)")
     view.add_argument("--scene", metavar="NAME", help="absent: the server's only one")
     link = parser.add_argument_group("beyond this machine")
     link.add_argument("--cert", metavar="PEM", help="the viewer's certificate")
-    link.add_argument("--key", metavar="PEM", help="its key")
-    link.add_argument("--ca", metavar="PEM", help="the authority of the server's certificate")
-    link.add_argument("--insecure", action="store_true", help="unencrypted, from nobody knows whom")
+    link.add_argument("--key", metavar="PEM", help="the private key of the certificate")
+    link.add_argument("--ca", metavar="PEM", help="the authority that signed the server's certificate")
+    link.add_argument("--insecure", action="store_true",
+                      help="connect without encryption and without checking the server's identity")
     parser.set_defaults(run=run)
 
 
@@ -58,22 +60,22 @@ def check(options):
         raise Failed("--eye and --target: one is given; accepted: both, or none of them")
     own = [word for word in ("frame", "fov", "size", "scene") if getattr(options, word) is not None]
     if options.eye is None and own:
-        raise Failed(f"--{own[0]} belongs to a view of one's own; accepted: with --eye and --target")
+        raise Failed(f"--{own[0]} belongs to a separate view; accepted: with --eye and --target")
     if options.eye is not None and options.viewport is not None:
         raise Failed("--viewport and --eye are given; accepted: one or the other")
 
 
 class Pictures:
-    """Saves them, numbered from 0."""
+    """Saves pictures, numbered from 0."""
 
     def __init__(self, watcher, options):
         self.watcher, self.options = watcher, options
         self.count = 0
         self._own = None
-        self._seen = None  # what the last picture shows
+        self._seen = None  # the state that the last picture shows
 
     def view(self):
-        """The viewport, or None while there is none."""
+        """Returns the viewport to save, or None while it does not exist."""
         options, viewports = self.options, self.watcher.viewports
         if options.eye is not None:
             if self._own is None or self._own.name not in viewports:
@@ -88,19 +90,19 @@ class Pictures:
     def _make(self):
         options, scene = self.options, self._scene()
         if scene is None or options.frame is not None and options.frame not in scene.frames:
-            return None  # it will come
+            return None  # it may be created later
         return self.watcher.add_view("watch", scene, options.size or (1280, 720), frame=options.frame, eye=options.eye,
                                      target=options.target, fov_deg=options.fov)
 
     def _scene(self):
-        """The scene that a view of one's own is of, or None while it is not there."""
+        """Returns the scene of the separate view, or None while it does not exist."""
         options, scenes = self.options, self.watcher.scenes
         if options.scene is None and len(scenes) > 1:
             raise Failed(f"the scenes are {', '.join(map(repr, scenes))}; accepted: --scene with one of them")
         return next(iter(scenes.values()), None) if options.scene is None else scenes.get(options.scene)
 
     def lack(self):
-        """What there is no picture without, and the names that there are, while view() is None."""
+        """Returns, while view() is None, the missing thing and the existing names, as texts."""
         options, kind, name, there = self.options, "viewport", self.options.viewport, self.watcher.viewports
         if options.eye is not None:
             scene = self._scene()
@@ -111,7 +113,7 @@ class Pictures:
         return f"a {kind}" if name is None else f"{kind} {name!r}", ", ".join(names) or "none"
 
     def save(self):
-        """Whether there was something new to save."""
+        """Saves a picture if something has changed since the last one. Returns whether it did."""
         view = self.view()
         state = (self.watcher.sequence, self.watcher.connected, self.watcher.simulation)
         if view is None or state == self._seen:
@@ -132,7 +134,7 @@ def run(options):
 
     def hear(*_):
         stop.append(True)
-        if not connected and len(stop) == 1:  # one more while this is told ends nothing else
+        if not connected and len(stop) == 1:  # a second signal does not interrupt the report
             raise KeyboardInterrupt
 
     try:
@@ -152,13 +154,13 @@ def run(options):
             if watcher.error != told:
                 told = watcher.error
                 if told:
-                    print(f"dspace: note: the pictures lack what could not be done here: {told}", file=sys.stderr)
+                    print(f"dspace: note: the pictures lack commands that failed here: {told}", file=sys.stderr)
             why = presence.disconnected()
-            # Not at once: its link may be about to be made again.
+            # Only after a delay, because the simulation may be reconnecting.
             if not (why or options.stay) and time.monotonic() - began > PATIENCE and presence.disconnected_before():
                 why = "the simulation had gone before"
             if why:
-                watcher.update()  # its picture says so
+                watcher.update()  # the viewport then shows the disconnection
             if why or time.monotonic() >= due:
                 pictures.save()
                 due = max(due + options.every, time.monotonic())
@@ -177,7 +179,7 @@ def run(options):
 
 
 class Waiting:
-    """Says what is waited for, once it has not been there for a while, and again when what there is has changed."""
+    """Prints a note about what is missing after a while, and again when the existing names change."""
 
     def __init__(self):
         self._since = self._told = None
@@ -198,27 +200,28 @@ class Waiting:
         words = f"{presence.words()}waiting for {what}; there are: {there}"
         if words != self._told:
             print(f"dspace: note: {words}", file=sys.stderr, flush=True)
-            self._told, self._due = words, now + PATIENCE  # one that comes to be bit by bit is not told each time
+            self._told, self._due = words, now + PATIENCE  # limits the rate of notes
 
 
 class Presence:
-    """Whether the server and a simulation were connected at the last look."""
+    """Remembers whether the server and a simulation were connected at the last check."""
 
     def __init__(self, watcher):
         self._watcher, self._driver, self._served = watcher, watcher.simulation, True
 
     def disconnected_before(self):
-        """Whether a simulation drove the server before the first look, and none does now: the state has its commands."""
+        """Returns whether a simulation drove the server before the first check and none does now. The state then has
+        commands."""
         return self._driver is None and self._watcher.sequence > 0
 
     def words(self):
-        """The first words of a note about waiting."""
+        """Returns the first words of a note about waiting."""
         if self._driver is not None:
             return ""
         return "the simulation has gone; " if self._watcher.sequence > 0 else "no simulation has begun; "
 
     def disconnected(self):
-        """Says what disconnected since the last look; None if nothing did."""
+        """Returns what disconnected since the last check, as text, or None."""
         # Each value is read once, because the link may break at any time. A break between the two reads is the server's.
         driver, served = self._watcher.simulation, self._watcher.connected
         was_driver, was_served = self._driver, self._served
