@@ -13,14 +13,14 @@ class FrameListeners:
     """The callbacks of one client, and the events that are not delivered yet."""
 
     def __init__(self):
-        self._entries = {}  # token: (scene, callback), in the order they came
-        # (message, the last token when it came, round, the token of who caused it or 0)
+        self._entries = {}  # token: (scene, callback), in the order of registration
+        # (message, the last token when it was queued, round, the token of the callback that caused it or 0)
         self._waiting = deque()
         self._last_token = 0
         self._delivering = False
-        self._round = 0  # of the event that is delivered; 0: from outside
-        self._calling = 0  # the token of the callback that hears it
-        self._caused = 0  # events of callbacks' commands in this delivery
+        self._round = 0  # the round of the event being delivered; 0: not caused by a callback
+        self._calling = 0  # the token of the callback being called
+        self._caused = 0  # the number of events that callbacks caused in this delivery
 
     def __bool__(self):
         return bool(self._entries)

@@ -66,12 +66,12 @@ class LocalClient:
         return reply
 
     def send_event(self, event):
-        """A ViewerEvent for who drives: in a session of one's own, for oneself."""
+        """Sends a ViewerEvent to the driver. A local session is its own driver, so the event is queued here."""
         self.local()
         self.events.put(event)
 
     def take_event(self, wait):
-        """The next ViewerEvent, or None; nothing comes meanwhile."""
+        """Returns the next queued ViewerEvent, or None. Does not wait, because no other process sends events."""
         self.local()
         return self.events.take()
 

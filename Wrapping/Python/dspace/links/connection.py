@@ -1,4 +1,4 @@
-"""Settings and connecting, for all kinds of connections to a server."""
+"""Settings and connection for all kinds of links to a server."""
 import os
 
 from dspace._core.fields import flag, number, reject, text
@@ -8,8 +8,8 @@ from dspace.errors import WrongType
 
 
 def prepare(link, address, certificate, key, authority, insecure, timeout, label):
-    """Checks the settings that all kinds of links have, and sets them. Returns a function that sets the same on another
-    link and returns that link."""
+    """Checks the settings that all kinds of links share, and applies them to `link`. Returns a function that applies
+    them to another link and returns that link."""
     if "\0" in text(address, "the address", label):
         reject(label, "the address", address, "one without a character of code 0")
     files = []
@@ -30,12 +30,12 @@ def prepare(link, address, certificate, key, authority, insecure, timeout, label
 
     prepared(link)
     if insecure:
-        warn(f"{label}: nothing is encrypted, and nobody knows who is there")
+        warn(f"{label}: nothing is encrypted, and the identity of the server is not checked")
     return prepared
 
 
 def make_connection(link, address, name):
-    """Of all kinds of links; raises why there is none."""
+    """Connects a link of any kind. Raises the reason if the connection fails."""
     reply = to_reply(link.BeginConnect(address, name))
     state = -1 if reply.HasField("error") else 0
     while state == 0:

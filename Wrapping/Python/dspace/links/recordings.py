@@ -1,4 +1,4 @@
-"""A session in a server process that is being recorded here."""
+"""A recording, in this process, of a session in a server process."""
 import atexit
 import os
 import sys
@@ -15,14 +15,14 @@ from dspace.links.connection import make_connection
 from dspace.recording.file import path_of
 from dspace.recording.recording import COUNTS, Recording, checked_time, new_file
 
-SOON = 5.0  # [s]: what the end of a program, or of a block that Ctrl-C left, waits for at most
+SOON = 5.0  # longest wait [s] at the end of the program, or of a block that Ctrl-C left
 
-_active = weakref.WeakSet()  # those that the end of the program has to end
+_active = weakref.WeakSet()  # the recordings that the end of the program must stop
 
 
 class ServedRecording(Recording):
-    """What RemoteSession.record() returns: a watcher of the same server, in a thread of its own, writes what
-    comes. What goes wrong is told as a warning by the session's next command."""
+    """A recording returned by RemoteSession.record(). A watcher of the same server receives the commands and writes
+    them in a separate thread. The session's next command reports failures as warnings."""
 
     def __init__(self, client, path, commit_every, pack=False):
         if client.recording is not None and client.recording.active:
@@ -34,7 +34,7 @@ class ServedRecording(Recording):
         self._process = os.getpid()
         self._last = None
         self._failure, self._told, self._missing = "", False, []
-        client.flush()  # so that it begins with all that the session has been given
+        client.flush()  # the recording begins with the effect of all commands sent so far
         self._recorder = client.prepared(_vtk.vtkDspaceRecorder())
         try:
             make_connection(self._recorder, client.address, client.name)
@@ -42,7 +42,7 @@ class ServedRecording(Recording):
             while (begun := self._recorder.WaitForRecord(SLICE)) == 0:
                 check_signals()
         except BaseException:
-            self._recorder = None  # which ends it
+            self._recorder = None  # destroys it, which ends the recording
             raise
         if begun < 0:
             problem = self._recorder.GetRecordingFailure()
@@ -54,28 +54,28 @@ class ServedRecording(Recording):
     def _open(self):
         if os.getpid() != self._process:
             raise Unsupported(f"recording {self.path!r}: process {self._process} records it, and this one is its "
-                              "child; accepted: a session of its own", "recording")
+                              "child; accepted: a new session in this process", "recording")
         self._client.require_thread()
         return self._recorder
 
     @property
     def active(self):
-        """Whether commands are still recorded: not after stop() or a failure, and not in a child process."""
+        """Whether commands are still recorded. False after stop() or a failure, and in a child process."""
         return self._last is None and os.getpid() == self._process and not self.failure
 
     @property
     def counts(self):
-        """Commands recorded (accepted) and written (safe from then on when this process dies), bytes of these,
-        snapshots; a tenth of a second old at most."""
+        """A dict: accepted commands, written commands (they survive the death of this process), their bytes,
+        snapshots. The counts are at most 0.1 s old."""
         return dict(self._last) if self._last is not None else self._counts(self._open())
 
     @property
     def failure(self):
-        """What ended it, or an empty string."""
+        """Why the recording failed; empty if it did not."""
         return self._failure if self._last is not None else self._open().GetRecordingFailure()
 
     def take_warnings(self):
-        """What has gone wrong since the last call: texts of warnings."""
+        """Returns the texts of the warnings since the last call."""
         warnings = []
         while self._last is None and (text := self._recorder.TakeWarnings()):
             warnings.append(text)
@@ -83,23 +83,23 @@ class ServedRecording(Recording):
         return warnings
 
     def flush(self):
-        """Waits until all that the session has been told to be done is written."""
+        """Waits until every command that the server has confirmed to this session is written. Raises dspace.Io."""
         if self._last is not None:
             return
         recorder = self._open()
-        refused = self._settle(None)
+        rejected = self._settle(None)
         problem = self._catch_up(recorder, None)
         recorder.BeginFlush()
         while not recorder.WaitForFlush(SLICE):
             check_signals()
         self._raise(recorder.GetRecordingFailure() or problem)
-        if refused is not None:
-            raise refused
+        if rejected is not None:
+            raise rejected
 
     def stop(self):
-        """Waits until all that the session has been told to be done has come (each time that nothing comes up to
-        the session's timeout), writes it and closes the file; raises dspace.Io where something of it is missing.
-        Twice is no error."""
+        """Waits for every command that the server has confirmed to this session, writes it and closes the file. The
+        wait ends when nothing arrives for the session's timeout; then some commands are missing and dspace.Io is
+        raised. A second call does nothing."""
         if self._last is None:
             self._open()
             self._stop(None)
@@ -107,11 +107,11 @@ class ServedRecording(Recording):
     def __exit__(self, kind, *exception):
         if kind is None:
             self.stop()
-        else:  # which is not to be hidden; and who has pressed Ctrl-C does not want to wait long
+        else:  # keep the exception that is in flight, and wait only briefly after Ctrl-C
             self.finish(None if issubclass(kind, Exception) else SOON)
 
     def finish(self, limit=None):
-        """As stop(), in `limit` seconds at the latest; what goes wrong is a warning. Nothing in a child process."""
+        """Stops as stop() does, within `limit` seconds. Failures are warnings. Does nothing in a child process."""
         if self._last is not None or os.getpid() != self._process:
             return
         for warning in self.take_warnings():
@@ -123,10 +123,10 @@ class ServedRecording(Recording):
                 warn(str(error))
 
     def _stop(self, limit):
-        recorder, problem, refused = self._recorder, "", None
+        recorder, problem, rejected = self._recorder, "", None
         end = None if limit is None else time.monotonic() + limit
         try:
-            refused = self._settle(end)
+            rejected = self._settle(end)
             problem = self._catch_up(recorder, end)
         finally:
             self._close(recorder)
@@ -136,19 +136,19 @@ class ServedRecording(Recording):
         if self._missing:
             warn(f"recording {self.path!r}: files that could not be packed: " + ", ".join(self._missing))
         self._raise(self._failure or problem)
-        if refused is not None:
-            raise refused
+        if rejected is not None:
+            raise rejected
 
     def _settle(self, end):
-        """So that the number of the last command is known; returns what earlier commands were refused with."""
+        """Waits until the number of the last command is known. Returns the error of an earlier command, or None."""
         try:
             self._client.settle(end)
         except Error as error:
-            return None if self._client.broken() else error  # the session's commands say that
+            return None if self._client.broken() else error  # the session's next command reports a broken connection
         return None
 
     def _catch_up(self, recorder, end):
-        """Waits for the last command; what is missing, or ""."""
+        """Waits for the last command. Returns which commands are missing, or ""."""
         wanted, have = self._client.sequence, -1
         while (state := recorder.WaitFor(wanted, SLICE)) == 0:
             check_signals()

@@ -1,4 +1,4 @@
-"""Sessions in a server process, with the methods of dspace.Session."""
+"""Sessions in a server process. They have the methods of dspace.Session."""
 import os
 import time
 
@@ -28,12 +28,12 @@ class RemoteClient(LocalClient):
         self.address = address
         self.name = name
         self.timeout = timeout
-        self.prepared = prepared  # sets on another link what this one has
+        self.prepared = prepared  # applies the settings of this link to another one
         self.process = os.getpid()
         self.wait = True
         self.pace = None
-        self.sequence = 0  # of the last command that is known to be done
-        self.later = False  # whether others may have been done since
+        self.sequence = 0  # the number of the last command that is known to be executed
+        self.later = False  # whether later commands may have been executed
 
     def local(self):
         raise Unsupported(f"the session is in the server at {self.address}: its VTK objects are there; "
@@ -50,7 +50,7 @@ class RemoteClient(LocalClient):
 
     @property
     def thread(self):
-        """The only one that may use it."""
+        """The only thread that may use the session."""
         return self._thread
 
     def require_thread(self):
@@ -67,19 +67,20 @@ class RemoteClient(LocalClient):
         return reply
 
     def _take(self, link, asks=False, end=None):
-        """The reply to what was begun (`asks`: a command that has one), at the time `end` at the latest."""
+        """Waits for the reply to a request that was begun, until the time `end` at the latest. asks: the request is a
+        command that waits for its reply."""
         try:
             while not link.Wait(SLICE):
                 check_signals()
                 if end is not None and time.monotonic() > end:
                     raise DeadlineExceeded(f"server {self.address!r}: no answer in time", "server")
         except BaseException:
-            self.later = True  # it may yet be done
+            self.later = True  # the server may still execute it
             link.Abandon()
             raise
         reply = to_reply(link.TakeReply())
         self.sequence = max(self.sequence, reply.sequence)
-        if asks and not reply.HasField("error"):  # else it may be that of an earlier command
+        if asks and not reply.HasField("error"):  # an error may belong to an earlier command
             self.later = False
         return reply
 
@@ -111,7 +112,7 @@ class RemoteClient(LocalClient):
             end = time.monotonic() + wait
             data = to_bytes(link.TakeEvent(min(wait, SLICE)))
             while not data and time.monotonic() < end:
-                broken = to_reply(link.GetBroken())  # then nothing comes any more
+                broken = to_reply(link.GetBroken())  # no more events will arrive
                 if broken.HasField("error"):
                     raise make_error(broken.error)
                 check_signals()
@@ -138,10 +139,10 @@ class RemoteClient(LocalClient):
 
 
 class RemoteSession(Session):
-    """What connect() returns: a Session whose scenes are in a server process.
+    """A Session whose scenes are in a server process, returned by connect().
 
     Closing it leaves the scenes in the server. Relative paths of files are relative to this process's working
-    folder; the server must be able to read them and allow them.
+    folder. The server must be able to read the files, and its allowed roots must include them.
     """
 
     def __init__(self, client):
@@ -149,10 +150,10 @@ class RemoteSession(Session):
 
     @property
     def wait(self):
-        """Whether every command waits for its reply: then, with a capture or render() each step, picture
-        and simulation are in lockstep. False: poses, time, joints, trails, texts and the like are sent
-        without waiting; when one of them is refused, the next command that waits raises what it says,
-        and is not carried out itself."""
+        """Whether every command waits for its reply (default: True). With a capture or render() at each step, pictures
+        and simulation are then in lockstep. False: poses, time, joints, trails, texts and similar commands are sent
+        without waiting. If the server rejects one of them, the next command that waits raises its error and is not
+        executed."""
         return self._client.wait
 
     @wait.setter
@@ -164,25 +165,27 @@ class RemoteSession(Session):
         self._client.flush()
 
     def record(self, path, commit_every=0.1, pack=False):
-        """As Session.record(), into a file of this process's machine: the state that the server has, and then every
-        command that it accepts, whoever gives it. They come back over a connection of their own, one of a viewer,
-        and are written by a thread of its own.
+        """Records as Session.record() does, into a file on this process's machine: the state of the server, and then
+        every command that the server accepts from any client. A separate connection, that of a viewer, receives the
+        commands, and a separate thread writes them.
 
-        recording.stop(), the end of its `with` block and session.close() wait until all that this session has been
-        told to be done is in the file. What goes wrong (a full disk, a server that is gone) is told once, as a
-        warning by the session's next command, and what was written stays; where the recording was cut off, and came
-        back, it has a gap (Playback.gaps). Every command is carried out here as well, without drawing: files that
-        commands name are read by the paths that the server has. One that cannot be is recorded all the same, with a
-        warning; where the present state already needs one that is not here, dspace.Io is raised. `dspace serve
-        --record` records in the server, and outlives this process.
+        recording.stop(), the end of its `with` block and session.close() wait until every command that the server has
+        confirmed to this session is in the file. The session's next command reports a failure (a full disk, a server
+        that has stopped) once, as a warning; the data written so far stays. If the connection broke and was restored,
+        the recording has a gap (Playback.gaps).
+
+        This process executes every command as well, without drawing, and reads the files that commands name at the
+        server's paths. A file that cannot be read gives a warning, and its command is still recorded. If the present
+        state needs such a file, record() raises dspace.Io. `dspace serve --record` records in the server instead, and
+        continues after this process ends.
         """
         return ServedRecording(self._client, path, commit_every, pack)
 
     @property
     def pace(self):
-        """Simulation seconds per second of wall time. Setting a scene's time then waits until that time is due,
-        counted from the first time set after this, and again from a time that goes back. A late simulation
-        catches up. None (the default): no waits."""
+        """Simulation seconds per second of wall time: a finite number above 0, or None (the default) for no waits.
+        Setting a scene's time waits until that time is due, counted from the first time set after this property, and
+        again from a time that goes back. A late simulation catches up."""
         return self._client.pace
 
     @pace.setter
@@ -213,10 +216,11 @@ def connect(address, certificate=None, key=None, authority=None, insecure=False,
             name="simulation", take_over=False, only_changes=True):
     """Drives the session of a `dspace serve` process at "host:port" or "unix:PATH".
 
-    certificate, key, authority: PEM files for mutual TLS, all three; without them only an address of
-    this machine is accepted, unless `insecure` is spelled out. timeout: seconds of every wait. One
-    simulation drives a server: a second is refused, unless it says take_over=True. only_changes: poses
-    that the server has already are not sent again.
+    certificate, key, authority: PEM files for mutual TLS, all three together. Without them only an address of this
+    machine is accepted, unless `insecure` is True. timeout: limit of each wait, above 0 to 1e6 s. name: the client's
+    name, shown to viewers. take_over: replaces the client that drives the server; without it a second driver is
+    rejected. only_changes: does not send poses that the server already has. Returns a RemoteSession. Raises
+    dspace.Error.
     """
     label = f"server {address!r}"
     link = _vtk.vtkDspaceRemoteSession()

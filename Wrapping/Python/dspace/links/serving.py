@@ -1,4 +1,4 @@
-"""Starting a server process."""
+"""Starts a server process."""
 import os
 import select
 import signal
@@ -14,7 +14,7 @@ LISTENING = "dspace serve: listening on "
 
 
 def _above():
-    """The folder for temporary files, or /tmp where a socket's path below that one would be too long."""
+    """Returns the folder for temporary files, or /tmp if a socket's path below that folder would be too long."""
     above = tempfile.gettempdir()
     return above if len(os.fsencode(f"{above}/dspace-serve-12345678/socket")) < 108 else "/tmp"
 
@@ -51,17 +51,17 @@ class ServerProcess:
         for root in self._roots:
             command += ["--allow-root", root]
         command += self._record
-        # In a session of its own: Ctrl-C at the terminal is this process's, which ends it in its own time.
+        # A new process session: Ctrl-C at the terminal reaches only this process, which then stops the server.
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True)
         try:
             line = self._first_line()
         except BaseException:
-            self._process.kill()  # it may hear nothing
+            self._process.kill()  # it may not react to SIGTERM
             self.__exit__()
             raise
         if not line.startswith(LISTENING):
             self.__exit__()
-            raise Io("the server process did not start; see what it said on the error stream", "server")
+            raise Io("the server process did not start; see its messages on the error stream", "server")
         self.address = line[len(LISTENING):].rstrip("\n")
         return self
 
@@ -80,12 +80,12 @@ class ServerProcess:
     def __exit__(self, *exception):
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGTERM)
-            try:  # what is recorded is written first, however long it takes; it ends itself soon after
+            try:  # the server first writes its recording, which may take any time
                 self._process.wait(timeout=None if self._record else 90)
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-            except BaseException:  # whoever is interrupted here waits no longer; the recording is sound
+            except BaseException:  # an interrupt ends the wait; the recording stays intact
                 self._process.kill()
                 self._process.wait()
                 raise

@@ -1,4 +1,4 @@
-"""Viewers: they follow a simulation in another process through a server."""
+"""Viewers, which follow a simulation in another process through a server."""
 import time
 
 from dspace import vtk as _vtk
@@ -17,7 +17,7 @@ OWN = "viewer:"  # the prefix of names of a watcher's own views
 
 
 class WatchClient(LocalClient):
-    """Executes requests on a copy of the server's session, which follows it."""
+    """Executes requests on a local copy of the server's session."""
 
     def __init__(self, watcher):
         super().__init__()
@@ -36,11 +36,11 @@ class WatchClient(LocalClient):
         return self.vtk
 
     def _carry(self, command):
-        self.local()  # whose planes a capture is read from
+        self.local()  # captures read the planes of the present session
         return to_reply(self.watcher().Execute(encode(command)))
 
     def update(self, wait):
-        """How many messages came; then calls who follows frames."""
+        """Applies messages for up to `wait` seconds, then calls the frame listeners. Returns the number of messages."""
         watcher = self.watcher()
         end = time.monotonic() + wait
         check_signals()
@@ -72,7 +72,7 @@ class WatchClient(LocalClient):
 
     def take_event(self, wait):
         self.watcher()
-        return None  # they are the simulation's
+        return None  # only the driver receives events
 
     def close(self):
         super().close()
@@ -82,26 +82,25 @@ class WatchClient(LocalClient):
 
 
 class Watcher(Session):
-    """What watch() returns: a read-only Session that is what the server's was at the last update().
+    """A read-only Session, returned by watch(). It has the state of the server's session at the last update().
 
-    It draws for itself. Nothing changes between two calls of update(). Views of one's own may be made:
-    add_view(), or viewports, vantages and cameras whose names begin with "viewer:". They are nobody
-    else's, and outlast snapshots: a camera whose frame is removed stays where it was; views of a scene
-    that is removed, or lost with its server, are there again when the scene is. Everything else that
-    would change the scene raises dspace.Unsupported.
+    It draws in this process. The state does not change between two calls of update(). A watcher may have its own
+    views: add_view(), or viewports, vantages and cameras whose names begin with "viewer:". Other clients do not see
+    them, and they survive snapshots. A camera whose frame is removed keeps its pose. Views of a scene that is removed,
+    or lost with its server, return when the scene does. Every other change to the scene raises dspace.Unsupported.
 
-    Actions of a person are sent to the driver: send_event(), answer(), edited(), select(), dragged(),
-    Viewport.pick(send=True), and clicks in viewports of one's own (Viewport.event).
+    The watcher sends actions of a person to the driver: send_event(), answer(), edited(), select(), dragged(),
+    Viewport.pick(send=True), and clicks in its own viewports (Viewport.event).
     """
 
     def __init__(self, client):
         self._client = client
 
     def update(self, wait=0.0):
-        """Applies all that the server has accepted since; waits up to `wait` seconds for something.
-        Returns how many messages came. Scene.on_frame_change is told of what has changed, but of a new
-        snapshot as a whole. Where the simulation or the server is gone the state stays,
-        viewports say so, and the link is made again by itself."""
+        """Applies all commands that the server has accepted since the last call. Waits up to `wait` seconds for the
+        first one. Returns the number of messages. Callbacks of Scene.on_frame_change get the changes; a new snapshot
+        is a single event. If the simulation or the server disconnects, the state stays, viewports show the
+        disconnection, and the watcher reconnects automatically."""
         return self._client.update(real(wait, "the wait", "watcher", "seconds"))
 
     @property
@@ -127,14 +126,17 @@ class Watcher(Session):
         return self._client.watcher().GetError()
 
     def record(self, path, commit_every=0.1, pack=False):
-        """As Session.record(): what each update() applies, views of one's own with it. Where the watcher begins
-        anew with a snapshot (the link broke, or it was too slow) the recording has a gap (Playback.gaps)."""
+        """Records as Session.record() does: the commands that each update() applies, and the watcher's own views.
+        Where the watcher restarts from a snapshot (because the link broke or the watcher was too slow), the recording
+        has a gap (Playback.gaps)."""
         return super().record(path, commit_every, pack)
 
     def add_view(self, name, scene=None, size=(1280, 720), samples=None, **camera):
-        """A viewport "viewer:NAME" of one's own. With what Scene.add_camera takes (eye and target, pose,
-        chase, frame, fov_deg, ...) it has a camera of its own; without, it looks through the scene's
-        active one until Viewport.event moves it. scene: default the server's only one."""
+        """Adds the viewport "viewer:NAME", which belongs to this watcher, and returns it.
+
+        With arguments of Scene.add_camera (eye and target, pose, chase, frame, fov_deg, ...) it has its own camera.
+        Without, it looks through the scene's active camera until Viewport.event moves it. scene: default: the server's
+        only one. size: (width, height) in pixels."""
         label = f"view {text(name, 'the name', 'watcher')!r}"
         if not name:
             reject("watcher", "the view's name", name, "any that is not empty")
@@ -162,8 +164,8 @@ class Watcher(Session):
 
 def watch(address, certificate=None, key=None, authority=None, insecure=False, timeout=30.0,
           name="viewer"):
-    """Watches the session of a server; the arguments are those of dspace.connect. Returns a Watcher,
-    with the state of now in it."""
+    """Watches the session of a server. The arguments are those of dspace.connect. Returns a Watcher that has the
+    present state. Raises dspace.Error."""
     label = f"server {address!r}"
     watcher = _vtk.vtkDspaceWatcher()
     prepare(watcher, address, certificate, key, authority, insecure, timeout, label)

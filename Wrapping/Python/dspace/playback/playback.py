@@ -17,7 +17,7 @@ from dspace.recording.assets import RecordedFiles
 from dspace.recording.file import RecordingFile, commands_of
 
 BUILDING = terrain_pb2.TerrainReply.BUILDING
-AT_ONCE = 3600.0  # [s] of sleep; the operating system takes no number of any size
+AT_ONCE = 3600.0  # longest single sleep [s]; the operating system limits the argument
 SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER
 
 
@@ -26,7 +26,7 @@ def scene_of(payload):
 
 
 class Playback:
-    """A recording in a session of its own, at a time that may go either way.
+    """Plays a recording in its own session, forward and backward.
 
         with dspace.Playback("run.dspace") as run:
             run.seek(12.5)
@@ -56,7 +56,7 @@ class Playback:
                 warn(f"{self.file.label}: commands are lost, and nothing is shown from "
                      + ", nor from ".join(str(gap) for gap in self.gaps))
             self.session = Session()
-            self._at = None  # the command after which the session is
+            self._at = None  # the last command that the session has executed
             self.index = 0
             self._go(0)
         except BaseException:
@@ -67,7 +67,7 @@ class Playback:
         steps, gaps = steps_of(self.file, self._scene)
         if not steps:
             raise self.file.corrupt("it has no complete step")
-        self._take_files()  # after the steps: a command's files are noted before it
+        self._take_files()  # after the steps: a recording notes the files of a command before the command
         self.gaps = gaps
         self._ends = [step.end for step in steps]
         self.times = [step.time for step in steps]  # [s], of each step
@@ -82,16 +82,16 @@ class Playback:
                            + (", ".join(map(repr, there)) or "none"), self.file.label)
 
     def _take_files(self):
-        """Unpacks or checks the files that were noted since."""
+        """Unpacks or checks the files that were recorded since the last call."""
         if self._files is None:
             self._files = RecordedFiles(self.file, self._checks)
         else:
             self._files.update()
 
     def update(self):
-        """Takes in what has been recorded since, of a recording that is being written; returns how many steps came.
-        The last one may have grown: seek to it again to see all of it. Files that were noted since are unpacked or
-        checked, with the errors of the constructor."""
+        """Reads the steps that were added to a recording that is being written. Returns their number. The previous
+        last step may have new commands; seek to it again to apply them. Files that were added are unpacked or checked,
+        with the errors of the constructor."""
         before = len(self.times)
         self._read_steps()
         return len(self.times) - before
@@ -111,20 +111,21 @@ class Playback:
 
     @property
     def duration(self):
-        """Seconds from the first step's time to the last one's."""
+        """The time from the first step to the last one [s]."""
         return self.times[-1] - self.times[0]
 
     @property
     def time(self):
-        """The present step's [s]."""
+        """The time of the present step [s]."""
         return self.times[self.index]
 
     def seek(self, at):
-        """To the last step that is not after `at` [s]; returns its own recorded time. A step that is later by no more
-        than a rounding is not after it: a thousandth of the step before it, at most 0.1 ms (Documentation/Recording.md).
-        Where time went back in the recording (a simulation that was reset), in the latest run of steps that reaches
-        `at`, else in the latest that begins before it. An error before the first step (dspace.InvalidArgument) and in a
-        gap (dspace.Corrupt)."""
+        """Moves to the last step that is not after `at` [s] and returns the recorded time of that step.
+
+        A step that is late by no more than a rounding counts as at the time: a thousandth of the step before it, at
+        most 0.1 ms (Documentation/Recording.md). Where time went back in the recording (a simulation that was reset),
+        the step is in the latest run of steps that reaches `at`, or else in the latest run that begins before it.
+        Raises dspace.InvalidArgument before the first step and dspace.Corrupt in a gap."""
         at = number(at, "the time", self.file.label)
         index = self._steps.index_at(at)
         if index is None:
@@ -138,17 +139,19 @@ class Playback:
         return self.time
 
     def step(self, n=1):
-        """n steps on, or back; stops at the ends. Returns how many were made."""
+        """Moves n steps forward, or back if n is negative, and stops at the ends. Returns the number of steps made."""
         n = integer(n, "the number of steps", self.file.label, "a whole number")
         before = self.index
         self._go(min(max(before + n, 0), len(self.times) - 1))
         return self.index - before
 
     def play(self, speed=1.0, on_step=None, until=None):
-        """Steps on, or with a negative speed back, in `speed` times real time, to the end, to the time `until` [s]
-        (with a step that passes it by no more than a rounding, as seek() has it), or until on_step(playback), called
-        after each step, returns False. Of steps that are due by then only the last one is gone to, so that it keeps
-        its pace; with a speed of 0, or back with -inf, every step is, as fast as it goes."""
+        """Plays at `speed` times real time; a negative speed plays backward.
+
+        Playback ends at the end of the recording, at the time `until` [s] (within a rounding, as in seek()), or when
+        on_step(playback), which is called after each step, returns False. If several steps are due, only the last one
+        is shown, so that playback keeps its pace. A speed of 0, or -inf for backward, shows every step as fast as
+        possible."""
         speed = real(speed, "the speed", self.file.label)
         until = None if until is None else real(until, "until", self.file.label, "a time [s]")
         if on_step is not None and not callable(on_step):
@@ -174,21 +177,22 @@ class Playback:
                 return
 
     def telemetry(self, name=None, scene=None):
-        """The dspace.playback.telemetry.Series of a channel over the whole recording, which unpacks into times and
-        values; without a name a dict of all. All of the file is read once.
+        """Returns the dspace.playback.telemetry.Series of a channel over the complete recording, or a dict of all
+        channels without a name. A Series unpacks into times and values. The file is read once.
 
             times, values = run.telemetry("rover/power")
 
-        scene: by name; default: the playback's, or the only one that has telemetry or events. A name that was
-        removed and defined again with another unit or kind is refused (dspace.Unsupported)."""
+        scene: a scene's name; default: the playback's scene, or the only one that has telemetry or events. Raises
+        dspace.Unsupported if a channel was removed and defined again with another unit or kind."""
         return self._telemetry.series(name, scene)
 
     def events(self, scene=None):
-        """All Events of a scene in their order, also those that the scene itself has forgotten."""
+        """Returns all Events of a scene in order, including those that the scene no longer keeps."""
         return self._telemetry.events(scene)
 
     def _due(self, index, direction, now, until):
-        """The last step from `index` on, or back, that is not after `now`, nor after `until`, before time turns."""
+        """Returns the last step from `index`, in the given direction, that is beyond neither `now` nor `until`, and
+        before the time reverses."""
         while 0 <= index + direction < len(self.times):
             following = self.times[index + direction]
             if ((following - self.times[index]) * direction < 0 or (following - now) * direction > 0
@@ -198,7 +202,7 @@ class Playback:
         return index
 
     def _passes(self, index, direction, until):
-        """Whether a step lies beyond the time to play to."""
+        """Returns whether a step lies beyond the time at which playback ends."""
         if until is None:
             return False
         if direction > 0:
@@ -231,7 +235,7 @@ class Playback:
         self.index = index
 
     def _check_step(self, index, reached):
-        """Steps are found by an index that has no checksums; the rows that it leads to have."""
+        """Verifies that the step has its expected time. The index of steps has no checksums, but the rows have."""
         good = reached in (None, self.times[index])
         following = self._ends[index] + 1
         if good and index + 1 < len(self.times):
@@ -260,7 +264,7 @@ class Playback:
             self._wait_for_overviews(command_of(payload))
 
     def _wait_for_overviews(self, opened):
-        """What was drawn of a large raster was its overviews, which are built anew beside the unpacked file."""
+        """Waits until the overviews of an unpacked raster are built again. The recorded pictures showed overviews."""
         while opened.HasField("open_terrain"):
             asked = pb.Command(scene=opened.scene)
             asked.describe_terrain.terrain = opened.open_terrain.name

@@ -15,7 +15,7 @@ class _Present:
     """The keys of what exists after the commands so far; see spans_of()."""
 
     def __init__(self):
-        self.now = {}  # keys only, in the order in which they came
+        self.now = {}  # keys only, in the order of creation
 
     def apply(self, command):
         scene, kind = scene_name(command), command.WhichOneof("command")
@@ -39,7 +39,7 @@ class _Present:
         self.now = {key: None for key in self.now if not gone(key)}
 
     def _free_name(self):
-        """The name that the interpreter would choose."""
+        """Returns the name that the interpreter would choose."""
         name, number = "viewport", 1
         while ("viewport", name) in self.now:
             number += 1
@@ -48,9 +48,9 @@ class _Present:
 
 
 def spans_of(playback):
-    """{thing: [(begin, end)]}: of ("scene", name), ("camera", scene, vantage, name) and ("viewport", name), in the order
-    in which they come, the ranges [begin, end) of steps of a Playback at which they are there. Reads the commands that
-    make and remove them, and no others; each is checked."""
+    """Returns {thing: [(begin, end)]}: the ranges [begin, end) of steps of a Playback at which a thing exists. Things
+    are ("scene", name), ("camera", scene, vantage, name) and ("viewport", name), in the order of creation. Reads and
+    checks only the commands that create and remove them."""
     file, ends = playback.file, playback._ends
     present, spans = _Present(), {}
 
@@ -63,7 +63,7 @@ def spans_of(playback):
             if not ranges or ranges[-1][1] is not None:
                 ranges.append((index, None))
 
-    # After what is lost the state is that of the last snapshot.
+    # After a gap the state is that of the last snapshot.
     begins = sorted({0, *(gap.before for gap in playback.gaps if gap.before < len(ends))})
     for begin, end in zip(begins, [*begins[1:], len(ends)]):
         snapshot = file.snapshot(ends[begin])
@@ -82,10 +82,10 @@ def spans_of(playback):
 
 
 def when(playback, ranges):
-    """Ranges of steps in words: "from 0 to 3 s, at 4 s, from 5 s on"."""
-    times, said = playback.times, []
+    """Returns ranges of steps as text: "from 0 to 3 s, at 4 s, from 5 s on"."""
+    times, parts = playback.times, []
     for begin, end in ranges[:5]:
-        said.append(f"from {times[begin]:g} s on" if end == len(times) else
+        parts.append(f"from {times[begin]:g} s on" if end == len(times) else
                     f"at {times[begin]:g} s" if times[begin] == times[end - 1] else
                     f"from {times[begin]:g} to {times[end - 1]:g} s")
-    return ", ".join(said) + (", ..." if len(ranges) > 5 else "")
+    return ", ".join(parts) + (", ..." if len(ranges) > 5 else "")

@@ -1,5 +1,5 @@
-"""The steps of a recording that can be shown, the gaps between them, and the step at a time. C++ has the rules
-(PlaybackSteps.h, StepTimes.h)."""
+"""The steps of a recording that can be shown, the gaps between them, and the step at a time. PlaybackSteps.h and
+StepTimes.h in C++ implement the rules."""
 import array
 from typing import NamedTuple, Optional
 
@@ -7,17 +7,17 @@ from dspace import vtk as _vtk
 
 
 class Step(NamedTuple):
-    """The state after command `end`: a time that was set, and all that came until the next one."""
+    """The state after command `end`: a time that was set, and all commands until the next time."""
 
     time: float  # [s]
     end: int
 
 
 class Gap(NamedTuple):
-    """A span of which nothing can be shown: commands first..last are lost or of no use.
+    """A span that cannot be shown, because commands first..last are lost or unusable.
 
-    begin, end: simulation time [s] of the first step that may lack a command, and of the next one that is whole;
-    None: the recording's own begin or end. before: how many whole steps come before it.
+    begin, end: simulation time [s] of the first step that may lack a command, and of the next complete step; None: the
+    beginning or the end of the recording. before: the number of complete steps before the gap.
     """
 
     first: int
@@ -32,8 +32,8 @@ class Gap(NamedTuple):
 
 
 def steps_of(file, scene=None):
-    """The Steps of a RecordingFile, of one scene or of all, and its Gaps. After lost commands the next snapshot goes
-    on."""
+    """Returns the Steps of a RecordingFile, of one scene or of all, and its Gaps. After lost commands, playback
+    continues at the next snapshot."""
     reply = file.playback_steps(scene)
     value = lambda gap, name: getattr(gap, name) if gap.HasField(name) else None
     return (list(map(Step, reply.time_s, reply.seq)),
@@ -41,10 +41,10 @@ def steps_of(file, scene=None):
 
 
 class StepTimes:
-    """The times of steps [s], and the one rule for which of them is at a time. Where a simulation was reset, times go
-    back: a run is a range of steps whose times do not.
+    """The times of steps [s], and the rule that finds the step at a time. Times go back where a simulation was reset. A
+    run is a range of steps whose times do not go back.
 
-    A step counts as at a time where the two differ by no more than a rounding (Documentation/Recording.md)."""
+    A step is at a time if the two differ by no more than a rounding (Documentation/Recording.md)."""
 
     def __init__(self, times):
         self.times = list(times)
@@ -55,26 +55,27 @@ class StepTimes:
         return len(self.times)
 
     def index_at(self, at):
-        """Of the latest run that reaches a time, or else the latest that begins before it, the last step that is not
-        after it; None before all of them. Of steps that lie closely a step at the very time is before all others."""
+        """Returns the index of the last step that is not after a time, or None before all steps. The step is that of
+        the latest run that reaches the time, or else of the latest run that begins before it. Among close steps, one
+        at exactly this time has precedence."""
         index = self._vtk.IndexAt(at)
         return None if index < 0 else index
 
     def is_at(self, index, at):
-        """Whether a step counts as at a time: it is late or early by no more than a rounding."""
+        """Returns whether a step is at a time: late or early by no more than a rounding."""
         return self._vtk.IsAt(index, at)
 
     def is_after(self, index, at):
-        """Whether a step is later than a time, by more than a rounding; than not-a-number each is."""
+        """Returns whether a step is later than a time by more than a rounding. Every step is later than NaN."""
         return self._vtk.IsAfter(index, at)
 
     def step_at(self, at):
-        """A time for code that knows no roundings: `at`, or that of the step that is late by one."""
+        """Returns a time for code that does not handle roundings: `at`, or the time of the step that is late by one."""
         index = self.index_at(at)
         return at if index is None else max(at, self.times[index])
 
 
 def rounding(time, step):
-    """How far from its recorded time a step may be asked for and still be meant [s]; step: its distance from the
-    nearest step on the side of the time that is asked for [s]."""
+    """Returns the largest difference [s] at which a requested time still means a step at the recorded `time`. step:
+    distance [s] to the nearest step on the side of the requested time."""
     return _vtk.vtkDspaceStepTimes.Rounding(time, step)

@@ -22,26 +22,26 @@ class Series:
 
         times, values = run.telemetry("rover/power")
 
-    A value holds from its time to the next one's. There is one for each time that the simulation set the
-    channel, in the order in which it did; where it set several at one time the last one holds. Numbers are
-    floats, NaN where there is no value: also where the channel was removed, and where commands are lost.
-    Choices are their numbers (labels: {number: label}), texts str, None where there is none."""
+    A value holds until the time of the next one. There is one value for each time that the simulation set the channel,
+    in the order of the commands; of several at one time the last one holds. Numbers are floats; NaN means no value,
+    also where the channel was removed or commands are lost. Choices are numbers (labels: {number: label}). Texts are
+    str; None means no value."""
 
     def __init__(self, channel, times, values, clock=()):
         self.name, self.unit, self.description = channel.name, channel.unit, channel.description
         self.kind = ("number", "text", "choice")[channel.kind]
         self.labels = {label.value: label.label for label in channel.label}
         self.times, self.values = times, values
-        # StepTimes that the simulation set, the steps of a Playback of this scene; all series' own.
+        # The StepTimes of a Playback of this scene. All series share them.
         self._clock = clock if isinstance(clock, StepTimes) else StepTimes(clock)
 
     def __iter__(self):
         return iter((self.times, self.values))
 
     def at(self, time):
-        """The value that holds at a time [s]: the last one that was set at or before it, or NaN (of a text
-        None). At it is a step, too, that is later by no more than a rounding, as seek() of a Playback of its scene
-        has it. Where time went back in the recording, the last that was set at such a time."""
+        """Returns the value that holds at a time [s]: the last one that was set at or before it, or NaN (None for a
+        text). A step that is late by no more than a rounding counts as at the time, as in Playback.seek(). Where time
+        went back in the recording, the value that was set last counts."""
         before = np.flatnonzero(self.times <= self._clock.step_at(time))
         if not len(before):
             return None if self.kind == "text" else float("nan")
@@ -54,14 +54,14 @@ class Series:
 
 
 def _what(event):
-    """All of it but the id of its frame, which a snapshot leaves out where the frame is gone."""
+    """Returns an event without the id of its frame, which a snapshot omits if the frame was removed."""
     event = type(event).FromString(event.SerializeToString())
     event.ClearField("frame")
     return event
 
 
 class _Scene:
-    """What a scene's channels were set to, command by command."""
+    """Collects the values of a scene's channels, command by command."""
 
     def __init__(self, file, name):
         self.file, self.name = file, name
@@ -99,13 +99,13 @@ class _Scene:
         self.found[self.open[id].name].append((times, values))
 
     def end(self, ids, time):
-        """There are no values of these from now on."""
+        """Ends the values of some channels at a time."""
         self.sort()
         for id in ids:
             self.put(id, [time], [None if self.open[id].kind == TEXT else np.nan])
 
     def sort(self):
-        """Values by channel, each in the order in which they came."""
+        """Sorts values by channel and keeps their order within each channel."""
         if self.steps:
             ids, values, times = (np.concatenate(each) for each in zip(*self.steps))
             self.steps = []
@@ -116,7 +116,7 @@ class _Scene:
                 self.put(int(ids[a]), times[a:b], values[a:b])
 
     def lose(self):
-        """What comes next is lost: nothing is known of its channels from now on."""
+        """Ends all channels, because the following commands are lost."""
         self.end(list(self.open), self.time)
         self.open = {}
 
@@ -126,7 +126,8 @@ class _Scene:
         self.time, self.last, self.numbers = 0.0, 0, {}
 
     def goes_on(self, events):
-        """Whether the events of a later state are this scene's: it may have been removed and made anew."""
+        """Returns whether the events of a later state belong to this scene. The scene may have been removed and created
+        again."""
         if max((event.number for event in events), default=0) < self.last:
             return False
         return all(_what(self.numbers.get(event.number, event)) == _what(event) for event in events)
@@ -143,7 +144,7 @@ class _Scene:
         return Named("telemetry channel", made)
 
     def apply(self, command, seq, from_now=False):
-        """from_now: its values hold from the scene's time on, whenever they were set."""
+        """Applies a command. from_now: its values hold from the scene's present time on, not from their own."""
         kind = command.WhichOneof("command")
         if kind == "set_time":
             self.time = command.set_time.time_s
@@ -169,7 +170,7 @@ class _Scene:
 
 
 class History:
-    """All that a recording says of telemetry and events, by scene."""
+    """The telemetry and events of a recording, by scene."""
 
     def __init__(self, file):
         self.file, self.scenes = file, {}
@@ -190,8 +191,8 @@ class History:
         return self.scenes[name]
 
     def _begin(self, snapshot, after_loss):
-        """The state of a snapshot: the first one, or the one after lost commands, of whose values it is not
-        known since when they hold."""
+        """Applies a snapshot: the first one, or one after lost commands. After lost commands it is unknown since when
+        the values hold."""
         commands = [command_of(payload) for payload in commands_of(snapshot)]
         events, there = {}, {self._scene(command) for command in commands}
         for command in commands:
@@ -238,10 +239,10 @@ class RecordedTelemetry:
         return self._history[1].scene(scene)
 
     def series(self, name, scene):
-        """The Series of a channel; without a name a dict of all."""
+        """Returns the Series of a channel, or a dict of all without a name."""
         series = self._read(scene).series()
         return series if name is None else series[text(name, "the name", self._file.label)]
 
     def events(self, scene):
-        """All Events of a scene in their order."""
+        """Returns all Events of a scene in order."""
         return list(self._read(scene).events)

@@ -7,10 +7,12 @@ from dspace._core.replies import make_error, to_bytes, to_reply
 
 
 class RecordedFiles:
-    """The files of a RecordingFile where it is played. Packed ones are unpacked into a folder of their own, at their own
-    paths below it; of a recording that is not packed, files on this machine must be what they were (check=False looks
-    at none). Raises with the first that is not: dspace.Corrupt, dspace.NotFound, dspace.Io or dspace.Resource, which
-    name it. RecordedFiles in C++ does it, for whoever plays there too (RecordedFiles.h); close() removes the folder."""
+    """The files of a RecordingFile on the machine that plays it.
+
+    Packed files are unpacked into a temporary folder, at their own paths below it; close() removes the folder. Other
+    files on this machine must be unchanged (check=False: not checked). Raises dspace.Corrupt, dspace.NotFound,
+    dspace.Io or dspace.Resource, which names the first file that is not. The C++ class RecordedFiles
+    (RecordedFiles.h) implements it."""
 
     def __init__(self, file, check=True):
         self.vtk = _vtk.vtkDspaceRecordedFiles()
@@ -19,7 +21,7 @@ class RecordedFiles:
         self.folder = self._path(self.vtk.GetFolder())  # empty: nothing was packed
 
     def update(self):
-        """Unpacks or checks the files that were noted since."""
+        """Unpacks or checks the files that were recorded since the last call."""
         self._raise(self.vtk.Update())
         self.folder = self._path(self.vtk.GetFolder())
 
@@ -27,11 +29,11 @@ class RecordedFiles:
         self._remove()
 
     def place(self, path):
-        """Where a path of the recording's is: below the folder, whatever it holds."""
+        """Returns the path, below the folder, of a path in the recording."""
         return self._path(self.vtk.Locate(os.fsencode(path)))
 
     def map(self, payload):
-        """A serialized command with its paths made those of the folder."""
+        """Returns a serialized command whose paths point into the folder."""
         return to_bytes(self.vtk.Map(payload)) if self.folder and b"/" in payload else payload
 
     @staticmethod

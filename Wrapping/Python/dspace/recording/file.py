@@ -1,5 +1,5 @@
-"""What a recording holds: Documentation/Recording.md describes the file. The reader is C++'s (RecordingReader.h);
-nothing is executed or drawn here."""
+"""Reads recordings. Documentation/Recording.md describes the file. The reader is in C++ (RecordingReader.h). This
+module executes and draws nothing."""
 import os
 import threading
 from typing import NamedTuple
@@ -15,7 +15,7 @@ LAST = 2 ** 62  # more commands than any recording has
 
 
 def path_of(path):
-    """An absolute path, of a str or a path object."""
+    """Returns the absolute path of a str or a path object. Raises dspace.InvalidArgument or dspace.WrongType."""
     path = text(os.fspath(path) if isinstance(path, os.PathLike) else path, "the path", "recording",
                 "a str or a path")
     if not path or "\0" in path:
@@ -24,7 +24,7 @@ def path_of(path):
 
 
 class Row(NamedTuple):
-    """A command, or a snapshot: the commands that make the state after command `seq`."""
+    """A command, or a snapshot: the commands that produce the state after command `seq`."""
 
     seq: int
     time: float  # of the simulation [s]
@@ -34,7 +34,7 @@ class Row(NamedTuple):
 
 
 class Asset(NamedTuple):
-    """A file that commands need. state: "read"; "absent", "unreadable" or "changed", these without size and hash."""
+    """A file that commands need. state: "read"; or "absent", "unreadable" or "changed", without size and hash."""
 
     id: int
     path: str
@@ -45,7 +45,7 @@ class Asset(NamedTuple):
 
 
 def commands_of(snapshot):
-    """The serialized commands of a snapshot's payload: each after its length as a varint."""
+    """Returns the serialized commands of a snapshot's payload, in which each follows its length as a varint."""
     data, at, found = snapshot.payload, 0, []
     while at < len(data):
         length = shift = 0
@@ -63,7 +63,7 @@ def commands_of(snapshot):
 
 
 def reply_of(answer):
-    """The RecordingReply of a method of the wrapped classes; raises the exception that its error stands for."""
+    """Returns the RecordingReply of a method of the wrapped classes. Raises the exception of its error."""
     reply = pb.RecordingReply.FromString(to_bytes(answer))
     if reply.HasField("error"):
         raise make_error(reply.error)
@@ -71,8 +71,8 @@ def reply_of(answer):
 
 
 def carry_out(name, *arguments):
-    """The RecordingReply of long work on recordings, such as "Salvage" (vtkDspaceRecordingTask). Ctrl-C ends it, and
-    leaves no new file behind."""
+    """Runs a long task on recordings, such as "Salvage" (vtkDspaceRecordingTask), and returns its RecordingReply.
+    Ctrl-C cancels it without leaving a new file."""
     task = _vtk.vtkDspaceRecordingTask()
     getattr(task, "Begin" + name)(*arguments)
     try:
@@ -89,14 +89,14 @@ def _row(row):
 
 
 def _number(seq):
-    """A command's number that can be asked for: those that no command has are cut to the nearest that one may have."""
+    """Clamps the number of a command to the valid range."""
     return min(max(int(seq), 0), LAST)
 
 
 class RecordingFile:
-    """A recording, to be read, also while it is written. Every row is checked against its checksum when it is read: a
-    damaged one raises dspace.Corrupt, which names the file and the command. A file that is not a recording, or that a
-    newer Dspace wrote, raises dspace.Unsupported; one that the operating system rejects, or that a process has locked,
+    """Reads a recording, also while it is being written. Every row is checked against its checksum when it is read. A
+    damaged row raises dspace.Corrupt, which names the file and the command. A file that is not a recording, or that a
+    newer Dspace wrote, raises dspace.Unsupported. A file that cannot be opened, or that a process has locked, raises
     dspace.Io."""
 
     def __init__(self, path):
@@ -118,7 +118,7 @@ class RecordingFile:
         self.close()
 
     def _ask(self, name, *values):
-        """The RecordingReply of a method of the reader."""
+        """Calls a method of the reader and returns its RecordingReply."""
         if self._vtk is None:
             raise Closed(f"{self.label}: it is closed; accepted: to open it again", self.label)
         if threading.get_ident() != self._thread:
@@ -140,16 +140,16 @@ class RecordingFile:
             following = reply.next
 
     def rows(self, first=1, last=None):
-        """The commands first..last in their order, with none missing between; last: absent: the present last one."""
+        """Yields the commands first..last in order, with none missing between. last: default: the present last one."""
         return self._rows("ReadRows", first, self.last if last is None else last, "")
 
     def rows_of(self, kinds, first, last):
-        """The commands first..last of some kinds (field numbers) in their order; none of any kind is missing.
-        All are read and checked: a kind that is damaged must not hide one."""
+        """Yields those of the commands first..last that are of some kinds (field numbers), in order, with none missing
+        between. All commands are read and checked, so that a row with a damaged kind cannot hide one."""
         return self._rows("ReadRows", first, last, ",".join(map(str, kinds)))
 
     def only(self, kinds, first, last):
-        """The same, and no others are read: where one whose kind is damaged may be passed over."""
+        """Yields the same commands without reading others. It may skip a command whose kind is damaged."""
         return self._rows("ReadOnly", first, last, ",".join(map(str, kinds)))
 
     @property
@@ -168,28 +168,28 @@ class RecordingFile:
         return self._ask("Begin").number
 
     def steps(self, scene=None):
-        """(seq, time) of every command that set the time, in one scene or in any, in order."""
+        """Returns (seq, time) of every command that set the time, in one scene or in any, in order."""
         reply = self._ask("Steps", scene is not None, scene or "")
         return list(zip(reply.seq, reply.time_s))
 
     def step_begins(self):
-        """(first command, time) of every step after the first snapshot, in order: first what was there and done before
-        time was first set."""
+        """Returns (first command, time) of every step after the first snapshot, in order. The first entry is for the
+        commands before the time was first set."""
         reply = self._ask("StepBegins")
         return list(zip(reply.seq, reply.time_s))
 
     def playback_steps(self, scene=None):
-        """A RecordingReply with the steps that can be shown, of one scene or of all, and the gaps between."""
+        """Returns a RecordingReply with the steps that can be shown, of one scene or of all, and the gaps between."""
         return self._ask("PlaybackSteps", scene is not None, scene or "")
 
     def blocks(self):
-        """Ranges of commands with none missing between: (first, last, snapshot), where snapshot is the number of the
-        first state from which they can be played, or None."""
+        """Returns the ranges of commands with none missing between: (first, last, snapshot). snapshot is the number of
+        the first state from which they can be played, or None."""
         return [(each.first, each.last, each.snapshot if each.HasField("snapshot") else None)
                 for each in self._ask("Blocks").range]
 
     def snapshot(self, seq):
-        """The last snapshot at or before a command."""
+        """Returns the last snapshot at or before a command."""
         return _row(self._ask("ReadSnapshot", _number(seq)).row[0])
 
     @property
@@ -214,6 +214,6 @@ class RecordingFile:
         return self._ask("Summary").summary
 
     def check(self):
-        """Reads all of it; raises at the first damage."""
-        self._ask("First")  # of an open one, in its thread
+        """Reads the complete file. Raises dspace.Corrupt at the first damage."""
+        self._ask("First")  # checks that the file is open and the thread is the right one
         carry_out("Check", os.fsencode(self.path))
