@@ -23,10 +23,10 @@ WELL_KNOWN = ("staging", "separation", "deployment", "parachute", "ignition", "c
 class Event(Strict):
     """An event in a scene's log: see scene.events() and playback.events().
 
-    number: counts a scene's events from 1. time: of the simulation [s]. kind: a word. text: for people.
-    severity: "info", "caution", "warning" or "alarm". frame_path: of the frame where it happened, as it was
-    called then; "" for none. position: in that frame [m], or None. data: {name: number or str}; units:
-    {name: unit} of those that have one."""
+    number: counts a scene's events from 1. time: of the simulation [s]. kind: a word for programs. text: for people.
+    severity: "info", "caution", "warning" or "alarm". frame_path: the path, at that time, of the frame where the event
+    happened; "" for none. position: in that frame [m], or None. data: {name: number or str}. units: {name: unit} of
+    the data that have one."""
 
     def __init__(self, message, scene=None):
         self._message, self._scene = message, scene
@@ -53,7 +53,7 @@ class Event(Strict):
 
     @property
     def frame(self):
-        """The Frame, while it is in the scene; else None."""
+        """The Frame where the event happened, or None if there is none or it was removed."""
         return Frame(self._scene, self._message.frame) if self._scene and self._message.frame else None
 
     @property
@@ -102,7 +102,7 @@ class Question(Strict):
 
     @property
     def choices(self):
-        """The answers that are accepted; none: any text."""
+        """The accepted answers; an empty list accepts any text."""
         return list(self._message.choice)
 
     @property
@@ -223,10 +223,10 @@ class SceneMessages:
         return Event(self._scene._execute(command).event, self._scene)
 
     def events(self, after=0, since=-math.inf, until=math.inf, kind=None, severity="info", most=0):
-        """The scene's kept Events, in the order of their numbers.
+        """Returns the Events that the scene keeps, in the order of their numbers.
 
-        after: of numbers above this one. since, until: times [s], these included. kind: a word, or several.
-        severity: this one or above. most: the newest so many; 0: all."""
+        after: only events with larger numbers. since, until: inclusive times [s]. kind: a word, or several.
+        severity: the lowest one. most: the number of newest events to return; 0: all."""
         label = f"events of scene {self._scene.name!r}"
         command = self._scene._command()
         message = command.list_events
@@ -241,7 +241,8 @@ class SceneMessages:
     def ask(self, name, text, choices=(), severity="info"):
         """Asks the viewers and returns the Question. Question.wait waits for the answer.
 
-        name: unique among the open questions of the session. choices: the accepted answers; none: any text."""
+        name: unique among the open questions of the session. choices: the accepted answers; an empty list accepts any
+        text. severity: "info", "caution", "warning" or "alarm"."""
         label = f"question {shown(name)}"
         command = self._scene._command()
         message = command.ask_operator

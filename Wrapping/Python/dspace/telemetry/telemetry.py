@@ -33,12 +33,13 @@ def _put_limits(message, limits, label):
 
 
 def ids_of(scene):
-    """{name: (id, kind)} of the channels that this client knows of the scene."""
+    """Returns {name: (id, kind)} of the channels of a scene that this client knows."""
     return scene._client.telemetry.setdefault(scene.name, {})
 
 
 def _line(value, label):
-    """A text as the session takes it: refused here, before the numbers that are set with it are sent."""
+    """Validates the text of a value here, before the numbers that are set with it are sent. Raises
+    dspace.InvalidArgument for a text that the session would reject."""
     value = text(value, "the text", label)
     size = len(value.encode())
     if size > MAXIMUM_TEXT:
@@ -49,9 +50,9 @@ def _line(value, label):
 
 
 class Channel(Strict):
-    """One value of a scene's telemetry, by name: scene.telemetry["rover/power"].
+    """One channel of a scene's telemetry: scene.telemetry["rover/power"].
 
-    What it says of the value is asked anew each time; `info` is all of it at once."""
+    Each property queries the session when it is read; `info` returns all of them in one query."""
 
     def __init__(self, scene, id, name, kind):
         self._scene, self._id, self._name, self._kind = scene, id, name, kind
@@ -62,7 +63,7 @@ class Channel(Strict):
 
     @property
     def id(self):
-        """The number that names it in commands."""
+        """The number that identifies the channel in commands."""
         return self._id
 
     @property
@@ -76,7 +77,7 @@ class Channel(Strict):
 
     @property
     def info(self):
-        """The TelemetryInfo message (telemetry.proto) as it is now."""
+        """The present TelemetryInfo message (telemetry.proto)."""
         command = self._scene._command()
         command.list_telemetry.id.append(self._id)
         with about(_label(self._name)):
@@ -84,8 +85,8 @@ class Channel(Strict):
 
     @property
     def value(self):
-        """A float, NaN where there is none; of a choice its label, of a text a str, each None where there is
-        none. May be set; a choice by its label or its number."""
+        """The value, which may be set. A number is a float, NaN if there is no value. A choice is its label and a text
+        is a str, None if there is no value. Set a choice by its label or its number."""
         return value_of(self.info)
 
     @value.setter
@@ -94,13 +95,13 @@ class Channel(Strict):
 
     @property
     def time(self):
-        """Simulation time of the value's last change [s]; None: it was never set."""
+        """Simulation time of the value's last change [s], or None if it was never set."""
         info = self.info
         return info.time_s if info.HasField("time_s") else None
 
     @property
     def state(self):
-        """"no value", "good", "warning" or "alarm": where the value lies among the limits."""
+        """"no value", "good", "warning" or "alarm": the value compared to the limits."""
         return STATES[self.info.state]
 
     @property
@@ -113,17 +114,17 @@ class Channel(Strict):
 
     @property
     def labels(self):
-        """Of a choice: {number: label}."""
+        """{number: label} of a choice; empty for other kinds."""
         return {label.value: label.label for label in self.info.channel.label}
 
     @property
     def limits(self):
-        """A dict of those that there are: alarm_low, warning_low, warning_high, alarm_high."""
+        """A dict of the limits that are set: alarm_low, warning_low, warning_high, alarm_high."""
         limits = self.info.channel.limits
         return {name: getattr(limits, name) for name in LIMITS if limits.HasField(name)}
 
     def set_limits(self, alarm_low=None, warning_low=None, warning_high=None, alarm_high=None):
-        """Replaces all limits; None: there is none. A value on a limit is within it."""
+        """Replaces all limits; None: no limit. A value on a limit is within it."""
         command = self._scene._command()
         message = command.set_telemetry_limits
         message.id = self._id
@@ -132,7 +133,7 @@ class Channel(Strict):
         self._scene._execute(command)
 
     def remove(self):
-        """Its name may be used again; this object is of no use then."""
+        """Removes the channel. Its name may be used again. This object can no longer be used."""
         command = self._scene._command()
         command.remove_telemetry.id.append(self._id)
         ids_of(self._scene).pop(self._name, None)
@@ -154,7 +155,7 @@ class Channel(Strict):
 
 
 def value_of(info):
-    """A TelemetryInfo's value, as Channel.value."""
+    """Returns the value of a TelemetryInfo, as Channel.value."""
     if info.channel.kind == telemetry_pb2.CreateTelemetry.NUMBER:
         return info.value
     return info.text if info.state else None
@@ -185,12 +186,13 @@ class Telemetry(Mapping):
 
     def add(self, name, unit="", description="", kind="number", labels=None, value=None, alarm_low=None,
             warning_low=None, warning_high=None, alarm_high=None):
-        """A new channel, without a value unless one is given; returns it.
+        """Adds a channel and returns it.
 
-        name: names joined by '/', such as "rover/wheel_fl/torque", up to 255 bytes. unit: free text, best of
-        UCUM ("m/s", "deg", "N.m", "Cel"). kind: "number", "text", or "choice" with labels: a dict of
-        integers to labels, or the labels of 0, 1, 2, ... Limits, of numbers: finite, in the order alarm_low
-        <= warning_low <= warning_high <= alarm_high; a value on a limit is within it."""
+        name: names joined by '/', such as "rover/wheel_fl/torque", up to 255 bytes. unit: free text; UCUM is
+        recommended ("m/s", "deg", "N.m", "Cel"). kind: "number", "text", or "choice". labels: of a choice: a dict of
+        integers to labels, or the labels of 0, 1, 2, ... value: the first value; default: no value. Limits apply to
+        numbers. They are finite, alarm_low <= warning_low <= warning_high <= alarm_high; a value on a limit is within
+        it. Raises dspace.Error, such as dspace.AlreadyExists for a name that is in use."""
         label = _label(name)
         command = self._scene._command()
         message = command.create_telemetry
@@ -216,12 +218,12 @@ class Telemetry(Mapping):
         return channel
 
     def set(self, values, array=None):
-        """Sets many values at once, all or none: a dict of channels or their names to values, or a list of
-        channels or names (quickest: an integer array of ids, as Channel.id), and an array of as many numbers.
+        """Sets many values at once, all or none.
 
-        NaN, of a choice or a text None, is no value; of a text that is an empty one. Numbers go in one message,
-        as poses do, and texts in another after it; where another client removes a channel of texts between the two,
-        the numbers stay set. A value that is what it was changes nothing."""
+        values: a dict of channels or their names to values; or, with `array`, a list of channels or names (fastest: an
+        integer array of ids, see Channel.id). array: as many numbers. NaN, or None for a choice, means no value. None
+        for a text sets an empty text. Numbers go in one message and texts in a second one; if another client removes a
+        text channel between the two, the numbers stay set. A value equal to the present one changes nothing."""
         if array is not None:
             numbers = array_of(array, "the values", "an array of numbers", "telemetry")
             quick = isinstance(values, np.ndarray) and np.issubdtype(values.dtype, np.integer)
@@ -266,12 +268,12 @@ class Telemetry(Mapping):
     def _execute(self, command):
         try:
             self._scene._execute(command)
-        except NotFound:  # somebody else has removed one: ask anew next time
+        except NotFound:  # another client has removed a channel; query the ids again next time
             ids_of(self._scene).clear()
             raise
 
     def _known(self, key):
-        """(name, id, kind) of a channel or a name."""
+        """Returns (name, id, kind) of a channel or a name."""
         if isinstance(key, Channel):
             if key.scene != self._scene:
                 reject(_label(key.name), "its scene", key.scene.name, f"a channel of {self._scene.name!r}")
@@ -295,11 +297,11 @@ class Telemetry(Mapping):
                               f"{', '.join(map(repr, labels.values()))}", _label(name))
 
     def below(self, name):
-        """The channels `name` and all under it ("rover": "rover", "rover/..."), in the order of their names."""
+        """Returns the channel `name` and those below it ("rover": "rover", "rover/..."), sorted by name."""
         return [self._channel(info) for info in self._list(below=text(name, "the name", "telemetry"))]
 
     def read(self, below=""):
-        """{name: value} of all channels, or of those below a name, in one request."""
+        """Returns {name: value} of all channels, or of those below a name, in one request."""
         return {info.channel.name: value_of(info)
                 for info in self._list(below=text(below, "the name", "telemetry"))}
 
@@ -321,11 +323,11 @@ class Telemetry(Mapping):
         return len(self._list())
 
     def items(self):
-        """(name, Channel) pairs, in one request."""
+        """Returns the (name, Channel) pairs, in one request."""
         return [(info.channel.name, self._channel(info)) for info in self._list()]
 
     def values(self):
-        """The Channels, in one request."""
+        """Returns the Channels, in one request."""
         return [self._channel(info) for info in self._list()]
 
     def __repr__(self):
@@ -336,15 +338,15 @@ class Telemetry(Mapping):
 
 
 class NoValue:
-    """What overlays write for a channel that has no value, whatever the format."""
+    """The text that overlays show, for any format, if a channel has no value."""
 
     def __format__(self, _):
         return "–"
 
 
 def overlay_value(scene, key):
-    """What an overlay shows of a scene's channel "rover/power", or of its unit, "rover/power.unit": a float, a
-    str or a NoValue. None: there is no such channel."""
+    """Returns what an overlay shows for a channel, such as "rover/power", or for its unit, "rover/power.unit": a float,
+    a str or a NoValue. Returns None if the scene has no such channel."""
     for name, of in ((key, None), (key[:-5], "unit")) if key.endswith(".unit") else ((key, None),):
         try:
             info = scene.telemetry[name].info

@@ -37,8 +37,8 @@ def process_events(client, wait):
 class ViewerEvents:
     """Sends and receives events of viewers, for a Session or Watcher, which delegates to it.
 
-    A Watcher says it to whoever drives the server; a Session (or RemoteSession) to itself, so that a
-    program with a window of its own works in the same way.
+    A Watcher sends events to the driver of the server. A Session (or RemoteSession) sends them to itself, so that a
+    program with its own window works in the same way.
     """
 
     def __init__(self, session):
@@ -47,9 +47,10 @@ class ViewerEvents:
     # --- Receiving -----------------------------------------------------------------------------
 
     def on_event(self, callback, kind=None):
-        """Calls `callback` with a ViewerEvent (dspace.proto.service_pb2) for everything that viewers
-        say, or of one kind only: "picked", "selection", "answer", "edited" or "dragged". Called by
-        process_events(). Callbacks stay until the session is closed."""
+        """Registers `callback`, which process_events() calls with each ViewerEvent (dspace.proto.service_pb2).
+
+        kind: "picked", "selection", "answer", "edited" or "dragged"; None: all kinds. Callbacks stay until the
+        session is closed. Raises dspace.WrongType or dspace.InvalidArgument."""
         if not callable(callback):
             reject("session", "the callback", callback, "a function of one ViewerEvent", WrongType)
         if kind is not None:
@@ -57,11 +58,10 @@ class ViewerEvents:
         self._session._client.events.callbacks.append((kind, callback))
 
     def on_edited(self, name, callback, low=-math.inf, high=math.inf, unit=""):
-        """Calls `callback` with a number for everything that people enter for the value `name`.
+        """Registers `callback`, which is called with each number that a person enters for the value `name`.
 
-        low, high: bounds, which are accepted themselves; unit: what the number must be in ("m", "deg",
-        ...). What is out of bounds or in another unit does not reach the callback: a
-        dspace.DspaceWarning tells of it, and nothing is converted or clipped."""
+        low, high: inclusive bounds. unit: the required unit ("m", "deg", ...). A number out of bounds or in another
+        unit does not reach the callback and gives a dspace.DspaceWarning. Numbers are never converted or clipped."""
         label = _value(name, "session")
         low, high = number(low, "low", label), number(high, "high", label)
         text(unit, "the unit", label)
@@ -77,7 +77,7 @@ class ViewerEvents:
             if edited.unit != unit or not low <= edited.value <= high:
                 who = getattr(event, "from") or "a person"  # a word of Python's
                 warnings.warn(f"{label}: {who} has entered {edited.value!r} "
-                              f"{edited.unit!r}; accepted: {low!r} to {high!r} {unit!r}; it is left as it was",
+                              f"{edited.unit!r}; accepted: {low!r} to {high!r} {unit!r}; the value is unchanged",
                               DspaceWarning, stacklevel=3)
                 return
             callback(edited.value)
@@ -93,8 +93,8 @@ class ViewerEvents:
     # --- Sending -------------------------------------------------------------------------------
 
     def send_event(self, event):
-        """Says a dspace.proto.service_pb2.ViewerEvent to the simulation. Of a Watcher:
-        dspace.NotFound when nobody drives; up to 1 MiB."""
+        """Sends a dspace.proto.service_pb2.ViewerEvent of up to 1 MiB to the simulation. A Watcher raises
+        dspace.NotFound if the server has no driver."""
         if not isinstance(event, service_pb2.ViewerEvent):
             reject("event", "it", event, "a dspace.proto.service_pb2.ViewerEvent", WrongType)
         self._session._client.send_event(event)
@@ -107,8 +107,8 @@ class ViewerEvents:
         self.send_event(event)
 
     def edited(self, name, value, unit=None):
-        """Says a value that a person has entered; finite. Where a scene has a telemetry channel of that
-        name, it is one of its numbers or choices, and in its unit, which is the default."""
+        """Sends a finite value that a person has entered. If a scene has a telemetry channel of that name, the value
+        must be one of its numbers or choices, in its unit, which is the default for `unit`."""
         label = _value(name, "event")
         value = number(value, "the value", label)
         if not math.isfinite(value):
@@ -127,7 +127,7 @@ class ViewerEvents:
         self.send_event(event)
 
     def select(self, objects):
-        """Says which objects of one scene are selected; none: nothing is."""
+        """Sends the selection: a list of objects of one scene. An empty list means that nothing is selected."""
         event = service_pb2.ViewerEvent()
         objects = items(objects, "the objects", "event", "a list of objects")
         for each in objects:
@@ -142,11 +142,11 @@ class ViewerEvents:
 
     def dragged(self, goal, position=None, quaternion=None, pose=None, relative_to=None, scene=DEFAULT_SCENE,
                 done=True):
-        """Says where a person wants a goal to be: of an end effector, a wheel, a drive.
+        """Sends the pose that a person requests for a goal, such as one of an end effector, a wheel or a drive.
 
-        goal: a Frame, or the name that the simulation knows the goal by. position [m], quaternion or
-        pose: X_GF, in the frame `relative_to` (a Frame; default: the root). done: False while the
-        person has not let go. Nothing moves by it; the simulation decides."""
+        goal: a Frame, or the goal's name in the simulation. position [m], quaternion or pose: X_GF, in the frame
+        `relative_to` (a Frame; default: the root). done: False while the person is still dragging. This call moves
+        nothing; the simulation decides."""
         label = f"goal {goal.path if isinstance(goal, Frame) else text(goal, 'the goal', 'event')!r}"
         event = service_pb2.ViewerEvent()
         message = event.dragged
@@ -164,7 +164,7 @@ class ViewerEvents:
 
 
 def pose_of(message):
-    """The dspace.Pose of a Pose message, such as ViewerEvent.Dragged.pose: what is absent is identity."""
+    """Returns the dspace.Pose of a Pose message, such as ViewerEvent.Dragged.pose. Absent fields are identity."""
     p, q = message.position, message.rotation
     return Pose((p.x, p.y, p.z), (q.w, q.x, q.y, q.z) if message.HasField("rotation") else (1, 0, 0, 0),
                 message.scale if message.HasField("scale") else 1.0)

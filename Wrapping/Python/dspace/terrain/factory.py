@@ -6,7 +6,7 @@ from dspace.terrain.terrain import MODES, Terrain
 
 
 def _put_patches(message, label, patches):
-    """The dicts of add_terrain's `patches` into its command."""
+    """Writes the dicts of add_terrain's `patches` into its command."""
     accepted = "a list of dicts of path and options"
     for index, patch in enumerate(items(patches, "patches", label, accepted)):
         what = f"patch {index}"
@@ -38,36 +38,38 @@ class TerrainFactory:
                     vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
                     on_body=False, level_size=None, byte_budget=None, deadline=None, patches=(),
                     subdivisions=None, track_budget=None, cache=None, build_overviews=True, fill_holes=False):
-        """A raster of heights (anything that GDAL opens) as a physical object.
+        """Opens a raster of heights (any format that GDAL reads) as a physical object. Returns the Terrain.
 
-        image: a file to drape over it (of a clipmap the layer "drape", see add_image(): in full
-        resolution), with image_crs and image_extent (left, top, right, bottom in map coordinates)
-        where the file does not say; color: one colour; relief: shaded relief (the
-        default), a dict of sun_azimuth_deg, sun_elevation_deg, color_by_height. lit: whether the
-        scene's lights shade it as well. origin: map x, y[, height] that become the frame's origin,
-        by default the raster's middle at height 0. triangles: the budget (200000).
-        mode: "triangles" (all of it in memory, within the budget), "clipmap" (any size: tiles are
-        read as they are needed and triangles follow each camera) or "auto": triangles for up to
-        four million pixels on a plane. on_body: its frame is the body-fixed one (Z to the north
-        pole, X to longitude 0; centre at the frame's origin) instead of a plane, for degree grids of
-        a sphere. level_size: cells a side of a clipmap's levels (124; 252 is finer and slower);
-        byte_budget: of its tiles (256 MiB); deadline: seconds that images and queries wait for them
-        (60).
-        cache: the folder of averaged overviews that a clipmap reads where a raster has none (the user's
-        cache folder, which `dspace terrain cache FILE` fills); False: none are read.
-        build_overviews: a local raster of over four million pixels that has none gets them there, in
-        the background; far ground changes once when they are there (Terrain.overviews tells).
-        fill_holes: True fills what has no data smoothly from the ground around it, a number only
-        within so many pixels of data (clipmaps only): drawn and answered alike, Terrain.filled tells,
-        and the layer "filled" marks it in pictures.
-        subdivisions: on a plane, how often a clipmap's cells between pixels are halved: wheel tracks
-        (track()) need posts some centimetres apart. track_budget: bytes for them (64 MiB).
-        band, crs, vertical_datum ("ellipsoid", "sphere:R", "areoid", ...), vertical_scale and
-        vertical_offset [m], pixel_size (map units): what the file does not say, or says wrongly.
-        patches: rasters of higher resolution on this one, each in its own CRS, later ones on top
-        (clipmaps only): dicts of path and, as above, name, band, crs, vertical_datum, vertical_scale,
-        vertical_offset, pixel_size; margin [m] is what each is blended over into what lies under it
-        (a tenth of its shorter side). Terrain.patches tells what became of them."""
+        Appearance: give at most one of image, color and relief. image: a file to drape over the terrain (on a clipmap
+        the layer "drape" in full resolution, see add_image()); image_crs and image_extent (left, top, right, bottom in
+        map coordinates) replace what the file lacks. color: one color. relief: shaded relief (the default), a dict of
+        sun_azimuth_deg, sun_elevation_deg, color_by_height. lit: whether the scene's lights also shade the terrain.
+
+        Geometry: origin: map x, y[, height] of the frame's origin (default: the raster's middle at height 0).
+        triangles: the budget (200000). mode: "triangles" (completely in memory, within the budget), "clipmap" (any
+        size; tiles are read as needed and triangles follow each camera) or "auto" (triangles for up to four million
+        pixels on a plane). on_body: places the terrain on its body instead of on a plane, for degree grids of a
+        sphere; its frame is body-fixed (Z to the north pole, X to longitude 0, the center at the origin). level_size:
+        cells along a side of a clipmap level (124; 252 is finer and slower). byte_budget: bytes of tiles in memory
+        (256 MiB). deadline: seconds that images and queries wait for tiles (60). subdivisions: how many times a
+        clipmap on a plane halves the cells between pixels; wheel tracks (track()) need posts some centimetres apart.
+        track_budget: bytes for wheel tracks (64 MiB).
+
+        Overviews: cache: the folder of averaged overviews that a clipmap reads if a raster has none (default: the
+        user's cache folder, which `dspace terrain cache FILE` fills); False: do not read any. build_overviews: builds
+        missing overviews of a local raster of more than four million pixels there, in the background. Distant ground
+        changes once when they are complete; Terrain.overviews reports the progress.
+
+        Data: fill_holes (clipmaps only): True fills pixels without data smoothly from the ground around them; a number
+        fills only within that many pixels of data. Pictures and queries include the filled ground, Terrain.filled
+        reports it, and the layer "filled" marks it in pictures. band, crs, vertical_datum ("ellipsoid", "sphere:R",
+        "areoid", ...), vertical_scale, vertical_offset [m] and pixel_size (map units) replace properties that the file
+        lacks or states wrongly.
+
+        patches (clipmaps only): rasters of higher resolution on this one, each in its own CRS, later ones on top. Each
+        is a dict of path and, as above, name, band, crs, vertical_datum, vertical_scale, vertical_offset, pixel_size,
+        and margin: the width [m] over which it is blended into the terrain below (a tenth of its shorter side).
+        Terrain.patches reports how each is used. Raises dspace.Error."""
         path = file_path(path, "the path", "terrain")
         label = f"terrain {shown(path if name is None else name)}"
         if sum(value is not None for value in (image, color, relief)) > 1:

@@ -1,4 +1,4 @@
-"""Colour layers of terrain: images, false colour, shapes and noise painted on it."""
+"""Color layers of terrain: images, false color, shapes and noise."""
 from dspace._core.fields import color, file_path, flag, items, numbers, put, put_color, put_given, reject, shown
 from dspace._core.strict import Strict
 from dspace.errors import NotFound, WrongType
@@ -22,7 +22,7 @@ class TerrainLayer(Strict):
         for layer in TerrainLayers(self._terrain).info().layer:
             if layer.name == self._name:
                 return layer
-        raise NotFound(f"{self._label()}: it is there no more", self._label())
+        raise NotFound(f"{self._label()}: it was removed", self._label())
 
     def _set(self, **values):
         command = self._scene._command()
@@ -41,12 +41,12 @@ class TerrainLayer(Strict):
 
     @property
     def path(self):
-        """Of its file; "" of noise."""
+        """The path of its file; "" for noise."""
         return self._info().path
 
     @property
     def opacity(self):
-        """0 to 1. What is under it shows by the rest, mixed in linear light."""
+        """The opacity, 0 to 1. Colors are blended with those below in linear light."""
         return self._info().opacity
 
     @opacity.setter
@@ -63,7 +63,7 @@ class TerrainLayer(Strict):
 
     @property
     def position(self):
-        """Its place among terrain.layers: 0 is the bottom."""
+        """The index of the layer in terrain.layers: 0 is the bottom."""
         return self._info().position
 
     @position.setter
@@ -72,18 +72,18 @@ class TerrainLayer(Strict):
 
     @property
     def pixel_size(self):
-        """Of its finest detail [m] on the ground; infinity where any will do."""
+        """The size on the ground of its finest detail [m]; infinity if it has no finest detail."""
         return self._info().pixel_size
 
     @property
     def range(self):
-        """Of false colour: (low, high), the values of its first and last colour; else None."""
+        """(low, high), the values of the first and the last color of a false color layer; otherwise None."""
         info = self._info()
         return (info.low, info.high) if KINDS[info.kind] == "false_color" else None
 
     @property
     def colors(self):
-        """Of false colour: its colours (r, g, b), evenly spaced over `range`; else None."""
+        """The colors (r, g, b) of a false color layer, evenly spaced over `range`; otherwise None."""
         info = self._info()
         if KINDS[info.kind] != "false_color":
             return None
@@ -91,7 +91,7 @@ class TerrainLayer(Strict):
 
     @property
     def unit(self):
-        """Of false colour: of its values, as the file states it ("" where it does not); else None."""
+        """The unit of the values of a false color layer ("" if the file states none); otherwise None."""
         info = self._info()
         return info.unit if KINDS[info.kind] == "false_color" else None
 
@@ -109,23 +109,23 @@ class TerrainLayer(Strict):
 
 
 class TerrainLayers:
-    """The colour layers of a Terrain, which delegates to it: of clipmaps, up to 64 layers. They lie over the terrain's
-    own colour and under set_style()'s. A file is opened at once and read as pictures need it;
-    what it leaves unsaid is a warning, what cannot be used is refused: a file that is absent
-    (NotFound), damaged (Corrupt), of another body or kind (Unsupported), beside the terrain, or any
-    value out of range (InvalidArgument)."""
+    """The color layers of a Terrain, which delegates to it. A clipmap has up to 64 layers. They lie over the terrain's
+    own color and under that of set_style(). A file is opened at once and read as pictures need it. A missing property
+    of a file gives a warning. Raises dspace.NotFound for an absent file, dspace.Corrupt for a damaged one,
+    dspace.Unsupported for one of another body or kind, and dspace.InvalidArgument for one that does not overlap the
+    terrain and for values out of range."""
 
     def __init__(self, terrain):
         self._terrain, self._scene, self._name = terrain, terrain._scene, terrain.name
 
     def add_image(self, path, name=None, crs=None, extent=None, opacity=1.0, visible=True, position=None):
-        """An image file of any size and in any CRS as a TerrainLayer; no data and its own opacity let
-        through what is under it.
+        """Adds an image file of any size and in any CRS, and returns its TerrainLayer. Pixels without data, and the
+        image's own transparency, show the layers below.
 
-        name: unique among the terrain's layers ("image", or with a number the first that is free).
-        crs, extent (left, top, right, bottom in map coordinates of that CRS): what the file does not
-        say, or says wrongly; without either it is stretched over the terrain. opacity: 0 to 1.
-        visible: whether it is drawn. position: from the bottom, 0 (on top)."""
+        name: unique among the terrain's layers (default: "image", with a number if that is in use). crs, extent (left,
+        top, right, bottom in map coordinates of that CRS): replace what the file lacks or states wrongly; an image
+        without either is stretched over the terrain. opacity: 0 to 1. visible: whether it is drawn. position: index
+        from the bottom, 0 (default: on top)."""
         label = self._terrain._label()
         command = self._adding(label, name, opacity, visible, position)
         _put_raster(command.add_terrain_layer.image, label, path, crs, extent)
@@ -133,12 +133,13 @@ class TerrainLayers:
 
     def add_false_color(self, path, band=1, colors=None, low=None, high=None, name=None, crs=None,
                         extent=None, opacity=1.0, visible=True, position=None):
-        """A raster's values through a ramp of colours as a TerrainLayer; no data is transparent.
+        """Adds the values of a raster as colors of a ramp, and returns the TerrainLayer. Pixels without data are
+        transparent.
 
-        band: counted from 1. colors: evenly spaced, linear between (green over ochre to white).
-        low, high: values of the first and the last, in the band's unit after the file's own scale and
-        offset (its least and greatest); what is beyond has their colours. The layer's range, colors
-        and unit are what a legend needs. The rest as for add_image()."""
+        band: counted from 1. colors: evenly spaced, interpolated linearly (default: green through ochre to white).
+        low, high: values of the first and the last color, in the band's unit after the file's own scale and offset
+        (default: the least and greatest value); values beyond have the end colors. A legend needs the layer's range,
+        colors and unit. The other arguments are those of add_image()."""
         label = self._terrain._label()
         command = self._adding(label, name, opacity, visible, position)
         message = command.add_terrain_layer.false_color
@@ -154,15 +155,16 @@ class TerrainLayers:
 
     def add_shapes(self, path, line=(1, 1, 0), fill=(1, 1, 0, 0.25), width=None, pixels=2.0, point=6.0,
                    layer=None, crs=None, name=None, opacity=1.0, visible=True, position=None):
-        """Polygons, lines and points of a file (GeoJSON, GeoPackage, Shapefile, ...) as a TerrainLayer.
+        """Adds the polygons, lines and points of a file (GeoJSON, GeoPackage, Shapefile, ...), and returns the
+        TerrainLayer.
 
-        line, fill: a colour, or red, green, blue and opacity (0 to 1), or None for none; features' own
-        "stroke", "stroke-width", "stroke-opacity", "fill", "fill-opacity" and "marker-color"
-        (simplestyle) go before them. width: of lines, in metres on the ground, above 0 to 1e7; by default
-        they are `pixels` of the picture wide, about (2; 0.1 to 64, or 0: no lines). point: diameter of
-        points in pixels, or with `width` that many times it (6; above 0 to 256), in the lines' colour.
-        layer: of a file with several (all). crs: replaces the file's; GeoJSON without one is in longitude
-        and latitude of the terrain's body (of the Earth WGS 84's). The rest as for add_image()."""
+        line, fill: a color, or red, green, blue and opacity (0 to 1), or None for none. The features' own "stroke",
+        "stroke-width", "stroke-opacity", "fill", "fill-opacity" and "marker-color" (simplestyle) take precedence.
+        width: of lines, in metres on the ground, above 0 to 1e7; default: about `pixels` pixels (2; 0.1 to 64, or 0:
+        no lines). point: diameter of points in pixels, or in multiples of `width` if that is given (6; above 0 to
+        256); points have the lines' color. layer: a layer of the file (default: all). crs: replaces the file's CRS;
+        GeoJSON without one is in longitude and latitude of the terrain's body (WGS 84 for the Earth). The other
+        arguments are those of add_image()."""
         label = self._terrain._label()
         command = self._adding(label, name, opacity, visible, position)
         message = command.add_terrain_layer.shapes
@@ -176,13 +178,13 @@ class TerrainLayers:
 
     def add_noise(self, wavelength=10.0, octaves=6, gain=0.5, seed=0, contrast=0.25, name=None,
                   opacity=1.0, visible=True, position=None):
-        """Gradient noise as a TerrainLayer: structure finer than the data, which looks like ground and
-        measures nothing.
+        """Adds gradient noise and returns its TerrainLayer. The noise adds visual structure finer than the data; it is
+        not measured data.
 
-        wavelength: of its longest octave [m], 1e-3 to 1e7; octaves: each half as long as the one before,
-        1 to 16; gain: amplitude of an octave over that of the one before, above 0 to 1; seed: an integer
-        from 0 to 2**32 - 1, the same noise for the same one; contrast: how much it darkens and brightens
-        at most, 0 to 1. The rest as for add_image()."""
+        wavelength: of the longest octave [m], 1e-3 to 1e7. octaves: 1 to 16, each with half the wavelength of the one
+        before. gain: amplitude of an octave relative to the one before, above 0 to 1. seed: an integer from 0 to
+        2**32 - 1; equal seeds give equal noise. contrast: the largest change of brightness, 0 to 1. The other
+        arguments are those of add_image()."""
         label = self._terrain._label()
         command = self._adding(label, name, opacity, visible, position)
         put(command.add_terrain_layer.noise, label, wavelength=wavelength, octaves=octaves, gain=gain,
@@ -191,13 +193,13 @@ class TerrainLayers:
 
     @property
     def layers(self):
-        """Its colour layers, bottom first; "drape" is that of add_terrain's `image`."""
+        """The color layers, bottom first. "drape" is the layer of add_terrain's `image`."""
         if self._terrain.mode != "clipmap":
             return []
         return [TerrainLayer(self._terrain, layer.name) for layer in self.info().layer]
 
     def layer(self, name):
-        """The TerrainLayer of that name. Raises NotFound naming those there are."""
+        """Returns the TerrainLayer of that name. Raises dspace.NotFound, which lists the existing names."""
         layers = {layer.name: layer for layer in self.layers}
         try:
             return layers[name]
@@ -208,16 +210,16 @@ class TerrainLayers:
 
     @property
     def layer_tiles(self):
-        """Of the colour layers, a dict of bytes (in memory), kept_bytes (of JPEG, PNG and other files that
-        are decoded as a whole), reads (of one tile of one layer), compositions (of tiles of all layers),
-        failures and last_failure (a message, or "")."""
+        """Counters of the color layers' tiles, a dict: bytes (in memory), kept_bytes (of JPEG, PNG and other files that
+        must be decoded completely), reads (of one tile of one layer), compositions (tiles combined from all layers),
+        failures, last_failure (a message, or "")."""
         info = self.info()
         return {"bytes": info.bytes, "kept_bytes": info.kept_bytes, "reads": info.reads,
                 "compositions": info.compositions, "failures": info.failures,
                 "last_failure": info.last_failure}
 
     def info(self):
-        """The TerrainLayersReply."""
+        """Returns the TerrainLayersReply."""
         return self._scene._ask("list_terrain_layers", terrain=self._name).terrain_layers
 
     def _adding(self, label, name, opacity, visible, position):
@@ -241,7 +243,7 @@ def _put_raster(message, label, path, crs, extent):
 
 
 def _shade(value, what, label):
-    """Red, green, blue, opacity."""
+    """Returns red, green, blue and opacity."""
     if value is None:
         return (0.0, 0.0, 0.0, 0.0)
     if isinstance(value, str):

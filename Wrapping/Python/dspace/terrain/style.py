@@ -1,4 +1,4 @@
-"""The style of a clipmap: false colour, lines, details and noise over its own colour."""
+"""The style of a clipmap: false color, lines, details and noise over its own color."""
 from dspace._core.fields import file_path, flag, items, keywords, numbers, put, put_color, put_given, reject, word
 from dspace.errors import InvalidArgument, WrongType
 
@@ -13,29 +13,29 @@ class TerrainStyle:
 
     def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
                   contours=None, grid=None, details=(), tracks=None, noise=None, grid_labels=False):
-        """What is laid over a clipmap's own colour; replaces the style before, set_style() removes it.
+        """Sets what is drawn over a clipmap's own color. Each call replaces the previous style; set_style() removes it.
 
-        color_by: "height", "slope" (degrees from level) or "aspect" (azimuth of steepest descent,
-        degrees clockwise from north; level ground keeps its colour), over `range` (low, high; the
-        heights' own, 0 to 45, 0 to 360), in `colors` evenly spaced (green over ochre to white; of an
-        aspect a circle: end with the first), with `opacity` 0 to 1; or "normal": the colour is
-        0.5 + 0.5 n, n the normal in the place's east, north, up.
-        levels: opacity of a colour for each clipmap level. contours: metres of height between lines,
-        or a dict of interval, width (pixels), color, opacity. grid: the same for lines along the
-        map's axes, in map units; on a body meridians and parallels, in degrees. grid_labels: their
-        values over the picture ("12°E"; of projected maps "4,500 E", "-200 N"), True or a dict of
-        font_size (13), color, background, background_opacity (0.5). details: up to two
-        tiling images that add structure closer than the posts, on a plane: dicts of image (a file),
-        size (metres a tile), slope (low, high; degrees), height (low, high; metres), opacity
-        (0.5). tracks: the ground's colour where wheels have rolled (see track()), or a dict of color
+        color_by: "height", "slope" (degrees from level), "aspect" (azimuth of steepest descent in degrees clockwise
+        from north; level ground keeps its color), or "normal" (the color is 0.5 + 0.5 n, where n is the normal in
+        local east, north, up). range: (low, high) of the ramp (default: the terrain's heights, 0 to 45, 0 to 360).
+        colors: of the ramp, evenly spaced (default: green through ochre to white; a ramp for the aspect is circular and
+        should end with its first color). opacity: of the ramp, 0 to 1. levels: opacity of a color for each clipmap
+        level.
+
+        contours: metres of height between lines, or a dict of interval, width (pixels), color, opacity. grid: the same
+        for lines along the map's axes, in map units; on a body meridians and parallels, in degrees. grid_labels: their
+        values in the picture ("12°E"; "4,500 E", "-200 N" on projected maps), True or a dict of font_size (13), color,
+        background, background_opacity (0.5). details: up to two tiling images that add structure finer than the posts,
+        on a plane: dicts of image (a file), size (metres for each tile), slope (low, high; degrees), height (low, high;
+        metres), opacity (0.5). tracks: the color of ground where wheels have rolled (see track()), or a dict of color
         and opacity (black, 0.35).
 
-        noise: decoration of the ground's drawn shape where posts are closer than the data's pixels
-        (on a plane: `subdivisions` of add_terrain): a dict of wavelength (metres, of the longest
-        octave; at most two of the data's pixels leave those as they are), amplitude (metres that it
-        adds at most), octaves of halved wavelength (4), gain of each over the one before it (0.5),
-        seed (0). Pictures, their depth images, contours and ramps have it, height() and every other
-        query and analysis, ruts and robots do not: leave it off where something is measured."""
+        noise: changes the drawn shape of the ground where posts are closer than the data's pixels (on a plane: see
+        `subdivisions` of add_terrain). It is a dict of wavelength (metres, of the longest octave; up to two data pixels
+        leaves the data's posts unchanged), amplitude (the largest change in metres), octaves of halved wavelength (4),
+        gain of each octave relative to the one before (0.5), seed (0). Pictures, depth images, contours and ramps
+        include the noise. Queries such as height(), analyses, ruts and robots do not, so do not use it where you
+        measure in pictures."""
         label = self._terrain._label()
         command = self._scene._command()
         style = command.style_terrain
@@ -49,7 +49,7 @@ class TerrainStyle:
             for value in items(() if colors is None else colors, "the colours", label, "colours"):
                 put_color(style.ramp.color.add(), value, "a colour of the ramp", label)
         elif range is not None or colors is not None:
-            raise InvalidArgument(f"{label}: a range and colours are of color_by, which is not given; "
+            raise InvalidArgument(f"{label}: a range and colours need color_by, which is not given; "
                                   f"accepted: color_by {', '.join(map(repr, COLOR_BY))}", label)
         for detail in items(details, "details", label, "a list of dicts"):
             _put_detail(style.detail.add(), detail, f"{label}, a detail")
@@ -68,8 +68,8 @@ class TerrainStyle:
 
     @property
     def style(self):
-        """The false colour of a clipmap as it is drawn, a dict of color_by, range, colors (r, g, b) and
-        opacity; by normal range is None; {} without any."""
+        """The false color of a clipmap as it is drawn: a dict of color_by, range (None for "normal"), colors (r, g, b)
+        and opacity; {} without false color."""
         reply = self._scene._ask("describe_terrain_style", terrain=self._name).terrain_style
         if not reply.HasField("ramp"):
             return {}
@@ -80,7 +80,7 @@ class TerrainStyle:
 
 
 def _put_detail(message, detail, label):
-    """A dict into a Detail."""
+    """Writes a dict into a Detail."""
     if not isinstance(detail, dict):
         reject(label, "it", detail, "a dict of image, size, slope, height, opacity", WrongType)
     keywords(detail, ("image", "size", "slope", "height", "opacity"), label)
@@ -96,7 +96,7 @@ def _put_detail(message, detail, label):
 
 
 def _put_noise(message, noise, label):
-    """A dict into a Noise."""
+    """Writes a dict into a Noise."""
     accepted = ("wavelength", "amplitude", "octaves", "gain", "seed")
     if not isinstance(noise, dict):
         reject(label, "it", noise, f"a dict of {', '.join(accepted)}", WrongType)
@@ -108,7 +108,7 @@ def _put_noise(message, noise, label):
 
 
 def _put_lines(message, lines, what, label):
-    """A number or a dict into Lines; nothing for None."""
+    """Writes a number or a dict into Lines. Does nothing for None."""
     if lines is None:
         return
     lines = lines if isinstance(lines, dict) else {"interval": lines}
@@ -121,7 +121,7 @@ def _put_lines(message, lines, what, label):
 
 
 def _put_grid_labels(message, look, label):
-    """True or a dict into StyleTerrain.GridLabels; nothing for False."""
+    """Writes True or a dict into StyleTerrain.GridLabels. Does nothing for False."""
     label = f"{label}, grid_labels"
     look = look if isinstance(look, dict) else {} if flag(look, "grid_labels", label) else None
     if look is None:

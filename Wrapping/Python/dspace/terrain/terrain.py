@@ -14,12 +14,11 @@ MODES = ("auto", "triangles", "clipmap")  # in the order of OpenTerrain.Mode
 
 
 class Terrain(Strict):
-    """A raster of heights in a frame S: X east, Y north, Z up from its origin [m]; on its body, the
-    body-fixed frame (Z to the north pole, X to longitude 0).
+    """A raster of heights in a frame S: X east, Y north, Z up from its origin [m]. On its body, S is the body-fixed
+    frame (Z to the north pole, X to longitude 0).
 
-    Queries are answered from the full-resolution posts, in double precision, on the same triangles
-    between them that are drawn near the camera (of a clipmap) or the focus. Those of a clipmap read
-    the tiles that they need.
+    Queries use the full-resolution posts, in double precision, and the same triangles between them that are drawn near
+    the camera (of a clipmap) or the focus. Queries of a clipmap read the tiles that they need.
     """
 
     def __init__(self, scene, name, undisturbed=False):
@@ -51,7 +50,7 @@ class Terrain(Strict):
 
     @property
     def crs(self):
-        """WKT; "" without one."""
+        """The CRS as WKT; "" without one."""
         return self._info().crs
 
     @property
@@ -84,13 +83,13 @@ class Terrain(Strict):
 
     @property
     def on_body(self):
-        """Whether it stands on its body, else on a plane."""
+        """Whether the terrain is on its body. Otherwise it is on a plane."""
         return self._info().on_body
 
     @property
     def tiles(self):
-        """Of a clipmap: a dict of levels, subdivisions (halvings of a pixel's side between its
-        posts), bytes (in memory), loads, failures and last_failure (a message, or "")."""
+        """The state of a clipmap's tiles, a dict: levels, subdivisions (how many times the side of a pixel is halved),
+        bytes (in memory), loads, failures, last_failure (a message, or "")."""
         info = self._info()
         return {"levels": info.levels, "subdivisions": info.subdivisions, "bytes": info.tile_bytes,
                 "loads": info.tile_loads, "failures": info.tile_failures,
@@ -98,9 +97,9 @@ class Terrain(Strict):
 
     @property
     def overviews(self):
-        """Of a clipmap, a dict: levels (that it reads), cached (else they are the file's own), build
-        (of those that are missing, in the background: None, "building", "built", "failed"), progress
-        (0 to 1) and failure (why; drawing goes on without)."""
+        """The overviews of a clipmap, a dict: levels (the number it reads), cached (False: they are the file's own),
+        build (of missing overviews in the background: None, "building", "built", "failed"), progress (0 to 1), failure
+        (why the build failed; drawing continues without)."""
         info = self._info()
         return {"levels": info.overviews, "cached": info.overviews_are_cached,
                 "build": (None, "building", "built", "failed")[info.overview_build],
@@ -108,9 +107,9 @@ class Terrain(Strict):
 
     @property
     def resampling(self):
-        """Of a clipmap on its body whose raster's columns do not halve often enough, a dict: columns
-        (around the body instead of the raster's); rms_error and greatest_error [m] of the surface
-        against the raster's pixels, measured at `posts` of them taken at random. Else None."""
+        """The resampling of a clipmap on its body whose number of columns cannot be halved often enough, a dict:
+        columns (the new number around the body); rms_error and greatest_error [m] of the surface against the raster's
+        pixels, measured at `posts` random pixels. None without resampling."""
         info = self._info()
         return {"columns": info.resampled_columns, "posts": info.resampling_posts,
                 "rms_error": info.resampling_rms_error,
@@ -118,10 +117,10 @@ class Terrain(Strict):
 
     @property
     def patches(self):
-        """Of a clipmap, a dict for each patch: name; used (else it adds nothing, as a warning said);
-        pixel_size and margin [m]; added [m] to its heights for its vertical datum; height_range [m];
-        rms_error and greatest_error [m] of the surface against the patch's own posts (what resampling
-        costs), measured at `posts` of them taken at random where nothing is blended."""
+        """The patches of a clipmap, a dict for each: name; used (False: it adds nothing, and a warning was given);
+        pixel_size and margin [m]; added (to its heights for its vertical datum [m]); height_range [m]; rms_error and
+        greatest_error [m] of the surface against the patch's own posts due to resampling, measured at `posts` random
+        posts outside the margin."""
         return [{"name": patch.name, "used": patch.used, "pixel_size": patch.pixel_size,
                  "margin": patch.margin, "added": patch.added,
                  "height_range": (patch.minimum_height, patch.maximum_height), "posts": patch.posts,
@@ -177,23 +176,23 @@ class Terrain(Strict):
         return given[0].shape, self._scene._execute(command).terrain_values
 
     def height(self, x, y, z=None, map=False):
-        """z of the surface [m] at x, y (numbers or arrays, shapes broadcast); NaN without data.
+        """Returns z of the surface [m] at x, y (numbers or arrays whose shapes broadcast); NaN without data.
 
-        With the ruts of wheels; terrain.undisturbed.height() is without.
-        In the terrain's frame; with map=True, x and y are map coordinates and the result is the
-        height above the vertical datum. On a body give map=True (longitude and latitude, for a
-        degree grid) or x, y and z, through which the local vertical goes: heights above the datum."""
+        The result includes the ruts of wheels; terrain.undisturbed.height() excludes them. x, y and z are in the
+        terrain's frame. With map=True, x and y are map coordinates and the result is the height above the vertical
+        datum. On a body, give map=True (longitude and latitude for a degree grid), or x, y and z of a point on the
+        local vertical; the result is the height above the datum."""
         shape, values = self._query(x, y, "height", map, z)
         return _unpack(values, "height", shape)
 
     def normal(self, x, y, z=None, map=False):
-        """Unit normals (..., 3) in the terrain's frame, of the surface at x, y as for height()."""
+        """Returns the unit normals (..., 3) of the surface, in the terrain's frame, at x, y as for height()."""
         shape, values = self._query(x, y, "normal", map, z)
         return _unpack(values, "normal", shape + (3,))
 
     def filled(self, x, y, z=None, map=False):
-        """Whether the ground at x, y (as for height()) is made up by add_terrain's fill_holes: True or
-        False, or an array; False as well where there is no ground. Clipmaps only."""
+        """Returns whether add_terrain's fill_holes filled the ground at x, y (as for height()): a bool, or an array.
+        False where there is no ground. Clipmaps only."""
         shape, values = self._query(x, y, "filled", map, z)
         made = wire.get_array(values, "filled").reshape(shape) == 1.0
         return bool(made) if shape == () else made
@@ -206,38 +205,38 @@ class Terrain(Strict):
         return array
 
     def heights(self, xy):
-        """z of points (n, 2) in its frame; with normals() what dspace.rover stands vehicles on."""
+        """Returns z [m] of points (n, 2) in the terrain's frame. dspace.rover places vehicles with it and normals()."""
         xy = self._xy(xy)
         return self.height(xy[..., 0], xy[..., 1])
 
     def normals(self, xy):
-        """Unit normals (n, 3) at points (n, 2)."""
+        """Returns the unit normals (n, 3) at points (n, 2)."""
         xy = self._xy(xy)
         return self.normal(xy[..., 0], xy[..., 1])
 
     def slope_deg(self, x, y, z=None, map=False):
-        """Degrees from level at x, y as for height()."""
+        """Returns the slope in degrees from level at x, y as for height()."""
         shape, values = self._query(x, y, "slope", map, z)
         return _unpack(values, "slope_deg", shape)
 
     def aspect_deg(self, x, y, z=None, map=False):
-        """Azimuth of steepest descent at x, y as for height(): degrees clockwise from north, 0 to 360;
+        """Returns the azimuth of steepest descent at x, y as for height(), in degrees clockwise from north, 0 to 360;
         NaN on level ground."""
         shape, values = self._query(x, y, "aspect", map, z)
         return _unpack(values, "aspect_deg", shape)
 
     def roughness(self, x, y, radius, z=None, map=False):
-        """Root mean square [m] of the heights of the raster's pixels within `radius` metres of x, y (as
-        for height()) about the plane that fits them best; NaN where they span none. Clipmaps only."""
+        """Returns the root mean square [m] of the heights of the raster's pixels within `radius` metres of x, y (as for
+        height()) about their best-fit plane; NaN if they span no plane. Clipmaps only."""
         shape, values = self._query(x, y, "roughness_radius", map, z, radius)
         return _unpack(values, "roughness", shape)
 
     def intersect(self, origins, directions, maximum=None):
-        """Distances [m] at which rays first meet the surface, from above or from below; infinity where
-        they meet nothing within `maximum` metres (default: no limit).
+        """Returns the distances [m] at which rays first meet the surface, from above or from below; infinity for rays
+        that meet nothing within `maximum` metres (default: no limit).
 
-        origins and directions (..., 3) in the terrain's frame, of shapes that broadcast; directions
-        need not be unit. The point met is origin + distance * direction / |direction|."""
+        origins and directions: (..., 3) in the terrain's frame, with shapes that broadcast; directions need not be
+        unit vectors. The intersection is origin + distance * direction / |direction|."""
         given = [array_of(value, name, "an array (..., 3)", self._label)
                  for value, name in ((origins, "the origins"), (directions, "the directions"))]
         try:
@@ -269,18 +268,18 @@ class Terrain(Strict):
         return wire.get_array(reply, "point").reshape(points.shape)
 
     def to_map(self, points):
-        """Map x, y and height above the datum of points (..., 3) in the terrain's frame."""
+        """Converts points (..., 3) in the terrain's frame to map x, y and height above the datum."""
         return self._convert(points, True)
 
     def from_map(self, points):
-        """Points (..., 3) in the terrain's frame of map x, y and height above the datum."""
+        """Converts map x, y and height above the datum (..., 3) to points in the terrain's frame."""
         return self._convert(points, False)
 
     def focus(self, points, radius=20.0):
-        """Where every post is drawn: within `radius` metres of x, y points (n, 2) in its frame.
+        """Draws every post within `radius` metres of the x, y points (n, 2) in the terrain's frame.
 
-        Replaces the earlier ones; only tiles that change are sent to the GPU. A clipmap draws every
-        post near each camera by itself."""
+        Replaces the earlier points. Only tiles that change are sent to the GPU. A clipmap does not need it: it draws
+        every post near each camera."""
         points = np.empty((0, 2)) if isinstance(points, (list, tuple)) and not points else self._xy(points)
         command = self._scene._command()
         put(command.focus_terrain, self._label, terrain=self._name, radius=radius)

@@ -9,29 +9,29 @@ _CONTACTS = "a dict of wheels' names to contacts (x, y) or (n, 2), or what a veh
 
 
 class TerrainTracks:
-    """The wheel tracks of a Terrain, which delegates to it: of clipmaps on a plane."""
+    """The wheel tracks of a Terrain, which delegates to it. Only clipmaps on a plane have tracks."""
 
     def __init__(self, terrain):
         self._terrain, self._scene, self._name = terrain, terrain._scene, terrain.name
 
     def track(self, wheels, width, sinkage=0.0, heading_deg=None, rolled=None, wall=None,
               rim_width=None, rim_height=None, tread_pitch=None, tread_depth=None, begin=False):
-        """Wheels roll on to new contacts; what they roll over is a rut, drawn (also in depth images)
-        and answered by every query from then on. `undisturbed` answers without.
+        """Rolls wheels to new contacts. Each wheel leaves a rut, which pictures, depth images and all queries include.
+        Queries of `undisturbed` exclude ruts.
 
-        wheels: {name: (x, y) or points (n, 2) or (n, 3)} in the terrain's frame, or the state that a
-        vehicle's solve() returns: its wheels' middles. Each name is a track that goes on; begin=True begins them anew,
-        without a rut from where they were. Solve on `undisturbed`, less the sinkage where the vehicle
-        is to stand in its ruts: on the tracked ground it would sink twice.
-        sinkage: metres of the ruts' floor below the ground; heading_deg: of the wheels,
-        counter-clockwise from X (along the path); rolled: metres that their rims have turned (as far
-        as they moved): a number, or a dict of a number or n for each name.
-        width: of the floor, the wheels' contact. wall: of each wall, seen from above (0.02).
-        rim_width, rim_height: of a rim thrown up beside it (none). tread_pitch, tread_depth: bars
-        across the floor, deeper by up to tread_depth (none). All metres. Where ruts overlap the
-        deepest counts."""
+        wheels: {name: (x, y) or points (n, 2) or (n, 3)} in the terrain's frame, or the state that a vehicle's
+        solve() returns, of which the wheel centers are used. Each name is one track, which the call extends.
+        begin=True starts new tracks, without ruts from the last contacts. Solve the vehicle on `undisturbed`, lowered
+        by the sinkage if the vehicle should stand in its ruts; on the tracked ground it would sink twice.
+
+        sinkage: depth of the rut's floor below the ground (0). heading_deg: heading of the wheels in degrees,
+        counter-clockwise from X (default: along the path). rolled: the distance that the rims have turned (default:
+        the distance moved). Each of these is a number, or a dict of a number or n numbers for each name. width: width
+        of the floor, which is the wheels' contact. wall: width of each wall, seen from above (0.02). rim_width,
+        rim_height: a rim beside the rut (none). tread_pitch, tread_depth: bars across the floor, deeper by up to
+        tread_depth (none). All lengths are in metres. Where ruts overlap, the deepest counts."""
         label = self._terrain._label()
-        # Of a vehicle's state the wheels' middles: a wide wheel may rest on either edge.
+        # A vehicle's state gives the wheel centers, because a wide wheel may rest on either edge.
         contacts = getattr(wheels, "wheel_centers", wheels)
         if not isinstance(contacts, dict):
             reject(label, "wheels", wheels, _CONTACTS, WrongType)
@@ -74,19 +74,19 @@ class TerrainTracks:
         self._scene._do("clear_tracks", terrain=self._name)
 
     def save_tracks(self, path):
-        """All tracks as GeoJSON: a LineString a track, in map coordinates, with its sizes."""
+        """Writes all tracks as GeoJSON: one LineString for each track, in map coordinates, with its sizes."""
         self._scene._do("save_tracks", terrain=self._name,
                         path=file_path(path, "the path", self._terrain._label()))
 
     def load_tracks(self, path):
-        """Adds tracks that save_tracks() wrote, or lines of other programs with a "sinkage"."""
+        """Adds the tracks of a file that save_tracks() wrote, or lines of other programs with a "sinkage"."""
         self._scene._do("load_tracks", terrain=self._name,
                         path=file_path(path, "the path", self._terrain._label()))
 
     @property
     def tracks(self):
-        """A dict of length (metres of all wheels), contacts (that are kept: those on a line between
-        others are left out) and bytes (of the budget, add_terrain's track_budget)."""
+        """A dict of length (sum of all tracks [m]), contacts (the number stored; contacts on a straight line between
+        others are not stored) and bytes (in use of add_terrain's track_budget)."""
         info = self._terrain._info()
         return {"length": info.track_length, "contacts": info.track_contacts,
                 "bytes": info.track_bytes}
