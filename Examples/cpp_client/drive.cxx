@@ -16,7 +16,7 @@ constexpr double Step = 1e-3;  // s
 constexpr double Radius = 4.0; // m
 constexpr double Rate = 0.5;   // rad/s
 
-// Errors come as replies: of this command, or of an earlier one that nobody waited for.
+// A reply may hold an error of this command, or of an earlier one whose reply was not awaited.
 const v1::Reply& Good(const v1::Reply& reply) {
   if (reply.has_error()) {
     throw std::runtime_error(reply.error().message());
@@ -30,7 +30,7 @@ void Put(v1::Vector3* to, double x, double y, double z) {
   to->set_z(z);
 }
 
-// Makes the scene anew; the cart's frame.
+// Creates the scene again and returns the cart's frame.
 std::uint64_t Build(dspace::session::RemoteClient& client) {
   v1::Command command;
   command.mutable_remove_viewport()->set_viewport("view"); // of an earlier run, if there was one

@@ -1,6 +1,6 @@
 """How the rover moves: six wheels that stay on the ground and roll on it without slipping.
 
-Each step of a millisecond the body goes on by its speed and curvature, seen from above; its height, roll and
+In each step of a millisecond the body advances by its speed and curvature, seen from above; its height, roll and
 pitch, the rockers' and the bogies' angles follow from the six wheels' contacts (Newton's method, six
 equations for six unknowns). A wheel is a thin disc: its contact is the rim's point where the ground's
 tangent plane touches it. It turns as far as its middle moves along the ground, over its radius.

@@ -124,7 +124,7 @@ def main():
             clear(session)
         simulation = Simulation(session, RoverModel(wheelbase=options.wheelbase), folder=folder)
         if options.connect:
-            session.wait = False  # a server takes steps as they come; what it refuses is told later
+            session.wait = False  # do not wait for replies; a later command reports rejected ones
         began = time.perf_counter()
         while simulation.mobility.time < options.seconds - STEP / 2:
             simulation.step()

@@ -19,7 +19,7 @@ FINAL = {grpc.StatusCode.INVALID_ARGUMENT, grpc.StatusCode.FAILED_PRECONDITION, 
 
 
 class Rejected(Exception):
-    """What the server says of a command that it has not carried out."""
+    """The error of a command that the server rejected."""
 
 
 def open_channel(address, certificate=None, key=None, authority=None):
@@ -37,7 +37,7 @@ class Driver:
     def __init__(self, channel, name, patience=20.0):
         self.stub = service_pb2_grpc.DspaceStub(channel)
         self.name, self.patience = name, patience
-        self.key = os.urandom(16)  # says, after a break, that it is still us
+        self.key = os.urandom(16)  # identifies this client when it reconnects
         self.number = 0  # of the last command
         self.acknowledged = 0  # the highest number whose reply has come
         self.pending = collections.OrderedDict()  # number: request; sent, and not known to be done
@@ -72,14 +72,14 @@ class Driver:
                 return done.reply
 
     def close(self):
-        self.requests.put(None)  # the end of our half: the server sees that we have gone of our own will
+        self.requests.put(None)  # closes the request stream, so that the server sees a regular end
         for _ in self.replies:
             pass
 
     # --- The stream ----------------------------------------------------------------------------
 
     def _open(self):
-        """Begins, or goes on: the same key, and what is pending is sent again if it has not arrived."""
+        """Connects, or reconnects with the same key and sends pending commands again that have not arrived."""
         end = time.monotonic() + self.patience
         while True:
             self.requests = queue.Queue()
@@ -92,7 +92,7 @@ class Driver:
             try:
                 opened = next(self.replies).opened
                 break
-            except grpc.RpcError as error:  # refused for good, or not there (yet)
+            except grpc.RpcError as error:  # rejected permanently, or the server is not running
                 if error.code() == grpc.StatusCode.ABORTED:
                     raise ConnectionError("the server was restarted: the scene is lost") from None
                 if error.code() in FINAL or time.monotonic() > end:

@@ -61,7 +61,7 @@ def build(link):
     view = new()
     view.create_viewport.name, view.create_viewport.camera = "view", "main"
     view.create_viewport.width, view.create_viewport.height = 320, 240
-    return link.ask(view)  # waits: what was refused before it has been raised
+    return link.ask(view)  # waits for the reply, and raises errors of earlier commands
 
 
 def poses(time_s):
@@ -134,7 +134,8 @@ def main():
     parser.add_argument("--cert", help="PEM files for mutual TLS, all three")
     parser.add_argument("--key")
     parser.add_argument("--ca")
-    parser.add_argument("--break-at", type=int, metavar="STEP", help="breaks the connection there, to see it go on")
+    parser.add_argument("--break-at", type=int, metavar="STEP",
+                        help="break the connection at this step, to test reconnection")
     options = parser.parse_args()
     channel = open_channel(options.address, options.cert, options.key, options.ca)
     link = Driver(channel, "wire rover")

@@ -8,7 +8,7 @@ a failure of the operating system an OSError. dspace.rover works without the com
 
 
 def _cut(text):
-    # A very long name is not repeated as a whole; the end of the message says what is accepted.
+    # A very long name is shortened, because the end of the message states what is accepted.
     return text if len(text) <= 2000 else f"{text[:1200]} ... {text[-600:]}"
 
 

@@ -105,7 +105,7 @@ class AtomicFile:
         try:
             with self._errors():
                 own, named = os.fstat(self._file), os.lstat(self.temporary)
-                if (own.st_dev, own.st_ino) != (named.st_dev, named.st_ino):  # a program made it anew
+                if (own.st_dev, own.st_ino) != (named.st_dev, named.st_ino):  # another program has replaced it
                     os.close(self._file)
                     self._file = None
                     self._file = os.open(self.temporary, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)

@@ -40,7 +40,7 @@ class Camera(Strict):
     # --- Where it stands -----------------------------------------------------------------------
 
     def look_at(self, eye, target, up=(0, 0, 1), frame=None):
-        """Stands at `eye` and looks at `target`, both in `frame` (default: root) [m]."""
+        """Places the camera at `eye`, looking at `target`, both in `frame` (default: root) [m]."""
         command = self._command()
         mount = command.set_camera.mount
         mount.frame = self._scene._frame_id(frame)
@@ -76,7 +76,7 @@ class Camera(Strict):
 
     @property
     def pose(self):
-        """X_FC on its frame; None for a chase camera, of which pose_in() tells where it is. May be set."""
+        """X_FC on its frame, which may be set; None for a chase camera (see pose_in())."""
         mount = self._info().mount
         if not mount.HasField("pose"):
             return None
@@ -152,7 +152,7 @@ class Camera(Strict):
         self._change_projection(far=far)
 
     def activate(self):
-        """Makes it the one that its vantage is seen through."""
+        """Makes it the active camera of its vantage."""
         self._scene._do("set_active_camera", vantage=self._vantage, name=self._name)
 
     @property

@@ -41,7 +41,7 @@ class Frame(Strict):
 
     @property
     def id(self):
-        """The number that names it in commands."""
+        """The number that identifies it in commands."""
         return self._id
 
     def _label(self):
@@ -177,7 +177,7 @@ class Frame(Strict):
         self.set_pose(scale=scale)
 
     def rotate(self, axis, angle_deg):
-        """Turns it on by an angle about an axis of its own ("x", "y", "z" or a vector)."""
+        """Rotates it by an angle about one of its own axes ("x", "y", "z" or a vector)."""
         with about(self._label):
             turn = quaternion_of_axis(axis, angle_deg)
         q = multiply(self.pose.quaternion, turn)

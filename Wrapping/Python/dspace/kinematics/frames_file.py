@@ -73,8 +73,8 @@ def _frame(entry, i, file, label):
         if value is absent and absent is not _NOTHING:
             return absent
         if not good(value):
-            told = "is missing" if value is _NOTHING else f"is {_shown(value)}"
-            raise Corrupt(f"{where}: '{key}' {told}; accepted: {accepted}", label)
+            problem = "is missing" if value is _NOTHING else f"is {_shown(value)}"
+            raise Corrupt(f"{where}: '{key}' {problem}; accepted: {accepted}", label)
         return value
 
     name = take("name", "a text", lambda v: isinstance(v, str) and v != "")
@@ -115,7 +115,7 @@ def _ordered(frames, label):
     if sorted_already:
         return list(frames.values())
     ordered = list(children[None])
-    for frame in ordered:  # grows meanwhile
+    for frame in ordered:  # the loop appends to it
         ordered += children.get(frame.name, [])
     if len(ordered) != len(frames):
         lost = next(name for name in frames if all(f.name != name for f in ordered))

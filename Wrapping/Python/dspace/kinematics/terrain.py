@@ -42,7 +42,7 @@ class GridTerrain:
 
     z (rows, columns) [m], row 0 northernmost (largest y); `west`, `north` the coordinates of post
     (0, 0); `spacing` > 0 [m]. `diagonal` is the edge that splits each cell: "nw-se" or "sw-ne".
-    Beyond the edges the surface goes on flat from the nearest edge point."""
+    Beyond the edges the surface continues flat from the nearest edge point."""
 
     def __init__(self, z, west, north, spacing, diagonal="nw-se"):
         self.z = np.ascontiguousarray(z, float)

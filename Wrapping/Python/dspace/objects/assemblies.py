@@ -1,4 +1,4 @@
-"""Vehicles of single-part models: the frames of a frames.json with a model on each."""
+"""Vehicles that consist of one model for each part: the frames of a frames.json, each with a model."""
 import os
 
 import numpy as np
@@ -35,7 +35,7 @@ class Assembly(Strict):
 
     @property
     def pose(self):
-        """Of the base frame in its parent; may be set."""
+        """The pose of the base frame in its parent; may be set."""
         return self._frame.pose
 
     @pose.setter
@@ -53,7 +53,7 @@ class Assembly(Strict):
         return list(self._objects)
 
     def place(self, state):
-        """Stands as a vehicle of dspace.rover that was solved on terrain: its base and all frames."""
+        """Applies the state of a vehicle of dspace.rover that was solved on terrain: its base and all frames."""
         for each in ("position", "quaternion", "frames"):
             if not hasattr(state, each):
                 reject(f"vehicle {self._name!r}", "the state", state,
@@ -65,7 +65,7 @@ class Assembly(Strict):
         self._scene.set_poses([self._frame, *(frames[name] for name in state.frames)], np.array(rows))
 
     def remove(self):
-        """The base frame with all that hangs on it."""
+        """Removes the base frame with everything attached to it."""
         self._frame.remove()
 
     def __repr__(self):
@@ -79,9 +79,8 @@ def is_assembly(path):
 
 def load_assembly(scene, path, base, frame=None, name=None, ornamental=False, fragment=None,
                   strict=False):
-    """The vehicle of a frames.json or its folder, its base frame at the Pose `base` in `frame`.
-
-    What is refused on the way leaves nothing of it."""
+    """Loads the vehicle of a frames.json or its folder, with its base frame at the Pose `base` in `frame`. If
+    anything is rejected, the scene is unchanged."""
     _, parts = read_frames_file(path)
     name = name or path_of(path).resolve().parent.name or "vehicle"
     root = scene.add_frame(name, frame, pose=base)
@@ -102,8 +101,8 @@ def load_assembly(scene, path, base, frame=None, name=None, ornamental=False, fr
 
 
 def offset_of(matrix):
-    """Position, quaternion and stretch of a 4 x 4 matrix whose columns are at right angles; it may
-    mirror, which becomes a negative stretch along X."""
+    """Returns position, quaternion and stretch of a 4 x 4 matrix with orthogonal columns. A mirror becomes a negative
+    stretch along X."""
     stretch = np.linalg.norm(matrix[:3, :3], axis=0)
     if np.linalg.det(matrix[:3, :3]) < 0:
         stretch[0] = -stretch[0]

@@ -40,14 +40,13 @@ class ObjectFactory:
         """A model file (glTF, GLB, VRML, OBJ, STL, PLY) as a GraphicsObject; a URDF as a Robot; the
         folder of a frames.json, or that file, as an Assembly.
 
-        scale: metres a unit of the file. up: the file's axis that becomes Z ("z", "y", "x", "-z");
-        without it the file is taken as it is ("z"), which glTF seldom means: its Y is up. rotation: a
-        quaternion that turns it further. levels: coarser files as (path, pixels) pairs, each drawn
-        while the object is seen larger than `pixels`; the last one should have 0, and `path` then
-        needs its own number: (path, pixels) too.
-        strict: a missing texture or mesh raises; else it is a warning, and what stands in for a
-        URDF's mesh is an orange cube, or the edges of a box as large as its glTF says it is.
-        point_cloud: a file of points is shown, `point_size` pixels large; else no faces, no object.
+        scale: metres per unit of the file. up: the file's axis that becomes Z ("z", "y", "x", "-z"; default "z"). glTF
+        files usually need "y". rotation: a quaternion that turns the model further. levels: coarser files as (path,
+        pixels) pairs; each is drawn while the object appears larger than `pixels`. The last one should have 0, and
+        `path` is then also a (path, pixels) pair.
+        strict: a missing texture or mesh raises an error. Otherwise it gives a warning, and an orange cube, or the
+        edges of a box of the size stated in its glTF, replaces a URDF's mesh.
+        point_cloud: shows a file of points, `point_size` pixels large; a file without faces is otherwise rejected.
         A URDF (links to frames, joints as `robot.joints[name].position` in degrees or metres, meshes
         from beside it) and a frames.json take frame, scale, up, rotation, ornamental, strict, name,
         fragment, and position, quaternion or `pose` of their base frame."""
@@ -123,7 +122,7 @@ class ObjectFactory:
         return kind(self._scene, self._scene._execute(command).object.object)
 
     def add_box(self, size, **settings):
-        """size: three edges [m]; centred."""
+        """Adds a centered box. size: three edges [m]."""
         command = self._primitive(settings, "box")
         put_vector(command.create_primitive.box.size, size, "the size", "box")
         return self._make(command)
@@ -208,9 +207,9 @@ class ObjectFactory:
         return self._make(command, TiltMarker)
 
     def add_text(self, text, height, ornamental=True, **settings):
-        """Flat letters in XY, readable from +Z; a capital letter is `height` metres high.
+        """Adds flat text in XY, readable from +Z. A capital letter is `height` metres high.
 
-        Letters of any alphabet that DejaVu Sans has and that is written from left to right."""
+        The text may use any left-to-right alphabet that DejaVu Sans supports."""
         command = self._scene._command()
         put_settings(self._scene, command.create_text.object, "text", ornamental=ornamental, **settings)
         put(command.create_text, "text", text=text)
@@ -219,9 +218,9 @@ class ObjectFactory:
 
     def add_label(self, text, font_size=None, color=None, background=None, background_opacity=None,
                   offset=None, ornamental=True, **settings):
-        """A label that faces the camera; font_size and offset (right, up) in pixels.
+        """Adds a label that faces the camera; font_size and offset (right, up) in pixels.
 
-        Letters as for add_text."""
+        The alphabets are those of add_text."""
         command = self._scene._command()
         put_settings(self._scene, command.create_text.object, "label", ornamental=ornamental, **settings)
         put(command.create_text, "label", text=text)
@@ -237,8 +236,8 @@ class ObjectFactory:
 
     def add_trail(self, capacity=10000, minimum_spacing=0.0, fade=False, ornamental=True,
                   **settings):
-        """A line through the last `capacity` points that Trail.append was given, each at least
-        `minimum_spacing` [m] from the one before; fade: older points are fainter."""
+        """Adds a line through the last `capacity` points given to Trail.append, each at least `minimum_spacing` [m]
+        from the one before. fade: older points are fainter."""
         command = self._scene._command()
         message = command.create_trail
         label = put_settings(self._scene, message.object, "trail", ornamental=ornamental, **settings)

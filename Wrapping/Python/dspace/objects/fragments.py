@@ -33,7 +33,7 @@ class Fragment(Strict):
 
     @property
     def visible(self):
-        """Everywhere; a viewport hides it for itself with Viewport.hide."""
+        """Whether all viewports draw it. Viewport.hide hides it in one viewport."""
         return self._info().visible
 
     @visible.setter
@@ -46,7 +46,7 @@ class Fragment(Strict):
         return [self._scene._object(id) for id in self._info().object]
 
     def remove(self):
-        """It must be empty."""
+        """Removes the fragment, which must be empty."""
         self._scene._do("remove_fragment", name=self._name)
 
     def __repr__(self):
@@ -72,7 +72,7 @@ class Light(Strict):
         return self._name
 
     def set(self, **values):
-        """Of: kind, frame, direction, position, cone_deg, color, intensity, attenuation, enabled."""
+        """Changes any of kind, frame, direction, position, cone_deg, color, intensity, attenuation and enabled."""
         command = self._scene._command()
         command.set_light.CopyFrom(self._info())
         put_light(self._scene, command.set_light, values)
@@ -85,7 +85,7 @@ class Light(Strict):
 
     @property
     def direction(self):
-        """The way the light travels, in its frame."""
+        """The direction in which the light travels, in its frame."""
         v = self._info().direction
         return (v.x, v.y, v.z)
 
@@ -128,7 +128,7 @@ class Light(Strict):
 
 
 def put_light(scene, message, values):
-    """Writes what is given into a SetLight message that has its name."""
+    """Writes the given values into a SetLight message of that name."""
     about = f"light {message.name!r}"
     keywords(values, LIGHT, about)
     values = {key: value for key, value in values.items() if value is not None}

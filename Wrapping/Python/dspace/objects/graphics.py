@@ -25,7 +25,7 @@ def put_material(message, values, about=None):
 
 
 def put_rotation(message, quaternion, what="the quaternion", about=None):
-    """Four numbers into a Quaternion."""
+    """Writes four numbers into a Quaternion."""
     q = numbers(quaternion, 4, what, about, "4 numbers w, x, y, z")
     message.w, message.x, message.y, message.z = q
 
@@ -98,7 +98,7 @@ class GraphicsObject(Strict):
 
     @property
     def id(self):
-        """The number that names it in commands and in label planes."""
+        """The number that identifies it in commands and in label planes."""
         return self._id
 
     @property
@@ -111,7 +111,7 @@ class GraphicsObject(Strict):
 
     @property
     def frame(self):
-        """The frame it hangs on; may be set."""
+        """The frame to which it is attached; may be set."""
         return self._scene._frame_of(self._info().frame)
 
     @frame.setter
@@ -145,7 +145,7 @@ class GraphicsObject(Strict):
     wireframe = _material_property("wireframe", "Whether only edges are drawn.")
 
     def set_material(self, **values):
-        """Several at once; None takes a change back."""
+        """Changes several material properties at once; None restores a property."""
         keywords(values, MATERIAL, self._label)
         command = self._scene._command()
         change = command.set_material
@@ -161,15 +161,15 @@ class GraphicsObject(Strict):
 
     @property
     def offset(self):
-        """X_FO, where its own axes lie in its frame, as a 4 x 4 matrix; see set_offset."""
+        """X_FO, the pose of the object's own axes in its frame, as a 4 x 4 matrix; see set_offset."""
         matrix = np.eye(4)
         matrix[:3] = np.reshape(self._info().offset, (3, 4))
         return matrix
 
     def set_offset(self, position=None, quaternion=None, stretch=None):
-        """Places it in its frame; what is not given is as if it had never been set.
+        """Places it in its frame. Values that are not given return to their defaults.
 
-        stretch: one factor, or one an axis (negative ones mirror)."""
+        stretch: one factor, or one for each axis (negative factors mirror)."""
         command = self._scene._command()
         command.set_object_offset.object = self._id
         put_offset(command.set_object_offset.offset, position, quaternion, stretch, self._label)
@@ -182,14 +182,14 @@ class GraphicsObject(Strict):
 
     @property
     def bounds(self):
-        """Centre (3 numbers) and radius of a sphere about it, in its own axes [m]."""
+        """The center (3 numbers) and radius of a bounding sphere, in its own axes [m]."""
         info = self._info()
         c = info.bounds_center
         return np.array([c.x, c.y, c.z]), info.bounds_radius
 
     @property
     def box(self):
-        """Least and greatest corner of the box along its own axes [m], an array (2, 3)."""
+        """The least and greatest corner of its bounding box along its own axes [m], an array (2, 3)."""
         info = self._info()
         return np.array([[c.x, c.y, c.z] for c in (info.box_minimum, info.box_maximum)])
 
@@ -218,10 +218,10 @@ class Primitive(GraphicsObject):
 
 
 class Text(GraphicsObject):
-    """Letters or a label in the scene."""
+    """Text or a label in the scene."""
 
     def set(self, text):
-        """Other words in the same style."""
+        """Changes the text and keeps its style."""
         self._scene._do("set_text", self._label, object=self._id, text=text)
 
 
@@ -234,12 +234,12 @@ class TiltMarker(GraphicsObject):
 
 
 class Trail(GraphicsObject):
-    """The path that something has come."""
+    """The path that something has traveled."""
 
     def append(self, points):
-        """Points p_F in the frame that it hangs on [m]: 3 numbers or an array (n, 3).
+        """Appends points p_F in its frame [m]: 3 numbers or an array (n, 3).
 
-        They stay whatever the scene's time does; clear() takes them away."""
+        Points do not depend on the scene's time; clear() removes them."""
         array = np.atleast_2d(array_of(points, "the points", "(3,) or (n, 3)", self._label))
         if array.ndim != 2 or array.shape[1] != 3:
             raise InvalidArgument(f"{self._label()}: the points have shape {np.shape(points)}; "

@@ -41,7 +41,7 @@ class Joint(Strict):
 
     @property
     def mimics(self):
-        """The joint that it follows, or None."""
+        """The joint that it mimics, or None."""
         if not self._info.HasField("mimic"):
             return None
         return self._robot.joints[self._robot._joint_names[self._info.mimic]]
@@ -53,7 +53,8 @@ class Joint(Strict):
 
     @property
     def position(self):
-        """Degrees or metres. Setting it beyond the limits raises; without limits, beyond 1e12 degrees."""
+        """The position in degrees or metres. A value beyond the limits, or beyond 1e12 degrees without limits, raises
+        an error."""
         return self._robot._describe().joint[self._index].position
 
     @position.setter
@@ -139,7 +140,7 @@ class Robot(Strict):
 
     @property
     def pose(self):
-        """Of the base frame in its parent; may be set."""
+        """The pose of the base frame in its parent; may be set."""
         return self.frame.pose
 
     @pose.setter
@@ -158,25 +159,25 @@ class Robot(Strict):
         return [self._scene._object(id) for link in self._link_list for id in link.object]
 
     def set_joints(self, positions, clamp=False):
-        """Many joints at once, {name: degrees or metres}; all are checked before any moves.
+        """Sets many joints at once, {name: degrees or metres}. All values are checked before any joint moves.
 
-        clamp: what lies beyond a limit is set to it; else it raises."""
+        clamp: limits a value beyond a limit; otherwise such a value raises an error."""
         if not hasattr(positions, "items"):
             reject(self._label, "positions", positions, "a dict {name: degrees or metres}", WrongType)
         self._set(positions, clamp)
 
     def place(self, state):
-        """Stands as a vehicle of dspace.rover that was solved on terrain: its base and all joints.
+        """Applies the state of a vehicle of dspace.rover that was solved on terrain: its base and all joints.
 
             vehicle = dspace.rover.load_vehicle("rover.urdf")
             rover.place(vehicle.solve((x, y, heading_deg), ground))
 
-        The terrain's frame must be the one that the robot hangs on."""
+        The terrain's frame must be the parent of the robot's base frame."""
         for each in ("position", "quaternion", "joints"):
             if not hasattr(state, each):
                 reject(self._label, "the state", state, "what dspace.rover's solve() returned", WrongType)
         pose = Pose(state.position, state.quaternion, self.pose.scale)
-        self.set_joints(state.joints, clamp=True)  # refuses another vehicle's before anything moves
+        self.set_joints(state.joints, clamp=True)  # rejects the state of another vehicle before anything moves
         self.pose = pose
 
     def joint_positions(self):

@@ -31,12 +31,12 @@ class ViewportLegends:
                       horizontal=False, anchor="bottom right", margin=None, length=None, thickness=None,
                       font_size=None, color=None, opacity=None, background=None,
                       background_opacity=None):
-        """A bar of colours, evenly spaced from `low` to `high` and linear between, over the picture.
+        """Shows a bar of colors over the picture, evenly spaced from `low` to `high` and interpolated linearly.
 
-        Creates it or replaces the one of that name; like text tables it is an ornament. ticks: at most
-        so many, at round values (6); values: ticks there instead. title and unit stand above it as
-        "title [unit]"; of the unit "deg" round values are those of a circle. margin, length,
-        thickness, font_size: pixels (8, 200, 16, 14). color and opacity: of texts, ticks and frame."""
+        Creates the bar or replaces the one of that name. Like text tables it is an ornament. ticks: the largest number
+        of ticks, at round values (6). values: the values of the ticks instead. title and unit appear above the bar as
+        "title [unit]". The unit "deg" gets ticks at round angles. margin, length, thickness, font_size: pixels (8, 200,
+        16, 14). color, opacity: of texts, ticks and frame."""
         label = f"colour bar {name!r}"
         command = pb.Command()
         message = command.set_color_bar
@@ -58,12 +58,12 @@ class ViewportLegends:
         self._viewport._do("remove_color_bar", name=name)
 
     def legend_of(self, shown, name=None, **look):
-        """A colour bar of what false colour shows: a terrain whose style has a ramp (color_by "height",
-        "slope" or "aspect"), or a layer that has `colors`, `range` and `unit`.
+        """Shows a color bar for false color: of a terrain whose style has a ramp (color_by "height", "slope" or
+        "aspect"), or of a layer that has `colors`, `range` and `unit`.
 
-        It is a copy: after another style call it again. name: its name (the terrain's or the
-        layer's); `look`: keywords of set_color_bar(), title, unit, low, high and colors among them.
-        Returns the bar's name."""
+        The bar is a copy; call this again after a change of style. name: the bar's name (default: that of the terrain
+        or layer). look: arguments of set_color_bar(), including title, unit, low, high and colors. Returns the bar's
+        name."""
         if isinstance(shown, Terrain):
             ramp = shown.style
             if not ramp or ramp["color_by"] == "normal":

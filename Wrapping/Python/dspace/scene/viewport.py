@@ -106,8 +106,8 @@ class Viewport(Strict):
     def image(self, alpha=False, physical_only=False, hide=()):
         """The picture, (h, w, 3) uint8, sRGB; with alpha (h, w, 4).
 
-        It shows all that the viewport does, ornaments too; depth() and labels() leave these out unless
-        they are told not to, for they measure what a real camera sees."""
+        The picture includes ornaments. depth() and labels() exclude them by default, because they measure what a real
+        camera sees."""
         alpha = flag(alpha, "alpha", self._label)
         image = self.capture(physical_only=physical_only, hide=hide)["color"]
         return image if alpha else image[..., :3]
@@ -140,11 +140,11 @@ class Viewport(Strict):
         return bool(self._do("render").render.drawn)
 
     def pick(self, x, y, radius=0, frame=None, send=False):
-        """What lies under a pixel, or the nearest object within `radius` (0 to 256) pixels: a Pick, or
-        None where nothing pickable is drawn (the sky), so that it is asked for before it is used.
+        """Returns a Pick of the object at a pixel, or of the nearest object within `radius` (0 to 256) pixels, or None
+        if nothing pickable is drawn there (the sky).
 
-        Ornaments that are drawn are picked, too. frame: a frame in which the point is given as well
-        (Pick.in_given). send: also sends the pick to the simulation (Session.on_event)."""
+        Visible ornaments can be picked. frame: a frame in which the point is also given (Pick.in_given). send: also
+        sends the pick to the simulation (Session.on_event)."""
         scene = self.scene
         in_frame = 0 if frame is None else scene._frame_id(frame)
         reply = self._do("pick", x=x, y=y, radius=radius, in_frame=in_frame).pick
@@ -223,7 +223,7 @@ class Viewport(Strict):
 
     @property
     def samples(self):
-        """n x n a pixel, 1 to 8; limited as `size` says."""
+        """The number of samples, n x n for each pixel, 1 to 8; see `size` for the limit."""
         return self._info().samples
 
     @samples.setter
@@ -265,7 +265,7 @@ class Viewport(Strict):
                  fragment=self.scene._fragment_name(fragment, None))
 
     def show(self, fragment):
-        """Takes hide() back."""
+        """Reverses hide()."""
         self._do("set_viewport_fragment", visible=True,
                  fragment=self.scene._fragment_name(fragment, None))
 
@@ -331,7 +331,7 @@ class Viewport(Strict):
             try:
                 window = self._client.vtk.GetRenderContext().GetRenderWindow()
                 result.append((function(window, self.vtk.GetRenderer()), None))
-            except BaseException as error:  # VTK would print it and go on
+            except BaseException as error:  # VTK would only print the exception
                 result.append((None, error))
 
         session = self._client.local()
