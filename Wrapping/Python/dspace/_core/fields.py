@@ -14,7 +14,7 @@ _OTHERS = {_Field.TYPE_BOOL: "True or False", _Field.TYPE_STRING: "a str",
 
 
 def shown(value):
-    """A value in a message: its repr, cut where it is long."""
+    """Returns the repr of a value for a message, shortened if it is long."""
     full = repr(value)
     return full if len(full) <= 80 else f"{full[:77]}..."
 
@@ -151,7 +151,7 @@ def items(value, what, about, accepted):
 
 
 def word(value, words, what, about=None):
-    """The value that `words`, a dict, has for the word."""
+    """Returns the value of a word in the dict `words`. Rejects other words."""
     try:  # an unhashable value is not a word
         return words[value]
     except (KeyError, TypeError):
@@ -177,7 +177,7 @@ def color(value, what="the colour", about=None):
             except ValueError:
                 reject(about, what, value, accepted)
         names = vtkNamedColors()
-        # CSS has both spellings of grey, VTK one each. VTK ends the process for a str that is no UTF-8.
+        # CSS accepts both spellings of grey, VTK only one for each color. VTK ends the process for invalid UTF-8.
         plain = value.isascii() and value.replace("_", "").isalnum()
         for name in () if not plain else (value, value.replace("grey", "gray"), value.replace("gray", "grey")):
             if names.ColorExists(name):

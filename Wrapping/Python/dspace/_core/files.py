@@ -1,4 +1,4 @@
-"""The one writer of files in Python: a file is replaced as a whole or not at all. The rules are those of
+"""The only writer of files in Python: it replaces a file completely or not at all. The rules are those of
 dspace::AtomicFile in C++ (Libraries/Core/dspace/AtomicFile.h)."""
 import contextlib
 import errno
@@ -9,7 +9,7 @@ import stat
 from dspace.errors import AlreadyExists, InvalidArgument, Io
 
 ACCEPTED = "a file in a folder that may be written and has free space"
-_NAME_BYTES = 64  # of the target's name in that of its temporary file, so that long ones fit as well
+_NAME_BYTES = 64  # length of the target's name within the name of its temporary file, so that long names fit
 _NO_LINKS = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.EMLINK)
 
 
@@ -151,6 +151,6 @@ class AtomicFile:
 
 
 def atomic_write(path, data, about=None, new=False, accepted=ACCEPTED):
-    """Bytes to a file, at once; see AtomicFile."""
+    """Writes bytes to a file atomically; see AtomicFile."""
     with AtomicFile(path, about, new, accepted) as file:
         file.write(data)

@@ -1,4 +1,4 @@
-"""Messages in and out of bytes, and arrays in and out of messages without a Python number for each element.
+"""Converts messages to and from bytes, and arrays to and from messages without a Python number for each element.
 
 A packed repeated field is, on the wire, its tag, its length and the little-endian array itself.
 """
@@ -10,7 +10,7 @@ from dspace.proto import commands_pb2 as pb
 
 
 def decode(kind, data, about, error=Corrupt):
-    """The message of a kind that the bytes are; raises `error`, naming what it is about, where they are none."""
+    """Parses bytes into a message of a kind. Raises `error`, which names the subject, for malformed bytes."""
     try:
         return kind.FromString(data)
     except DecodeError:
@@ -18,12 +18,12 @@ def decode(kind, data, about, error=Corrupt):
 
 
 def command_of(payload, about="command"):
-    """The Command that the bytes of a recording are."""
+    """Parses the bytes of a recording into a Command."""
     return decode(pb.Command, payload, about)
 
 
 def encode(message, about="command"):
-    """The bytes of a message; raises Resource for one that is too large to be sent."""
+    """Returns the bytes of a message. Raises dspace.Resource for one that is too large to send."""
     try:
         return message.SerializeToString()
     except EncodeError:

@@ -65,8 +65,8 @@ _BLOCK = 4096  # wheels searched at once: a sweep's points stay within some tens
 
 def wheel_contact(heights, centre, axle, radius, width):
     """Lowest clearance of rims with given centres and unit axles (n, 3), radii and widths (n,):
-    (clearance (n,), point (n, 3)). Where many points are equally low, as on level ground, the middle
-    one is taken."""
+    (clearance (n,), point (n, 3)). If many points are equally low, as on level ground, the result is the middle
+    one."""
     n = len(centre)
     if n > _BLOCK:
         parts = [wheel_contact(heights, *(a[k:k + _BLOCK] for a in (centre, axle, radius, width)))
@@ -194,7 +194,7 @@ def rest_on(suspension, terrain, xy, heading, steering, tolerance=1e-6, iteratio
         if len(rows):
             base[rows], reached[rows], alpha[rows] = trial[accept], worst[accept], 1.0
             j = jacobian[accept]
-            # A whisper of damping keeps the step finite where the linkage is singular.
+            # A small damping keeps the step finite where the linkage is singular.
             jt = np.swapaxes(j, 1, 2)
             normal = jt @ j + 1e-12 * np.eye(unknowns)
             step[rows] = -np.linalg.solve(normal, jt @ rest.clearance[accept][..., None])[..., 0]

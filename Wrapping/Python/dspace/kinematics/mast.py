@@ -1,4 +1,4 @@
-"""A vehicle's camera mast: which joints pan and tilt its head, and where straight ahead is."""
+"""A vehicle's camera mast: the joints that pan and tilt its head, and their angles for straight ahead."""
 import re
 from dataclasses import dataclass
 

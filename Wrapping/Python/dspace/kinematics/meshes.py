@@ -1,6 +1,6 @@
-"""Vertices of a mesh file, to measure wheels and bounds: what kinematics need and no more.
+"""Reads the vertices of a mesh file, from which kinematics measure wheels and bounds.
 
-Drawing reads files through the importers of the core library; this reader only looks at positions.
+Drawing reads files through the importers of the core library. This reader returns only positions.
 """
 import json
 import struct

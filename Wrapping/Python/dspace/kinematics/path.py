@@ -6,7 +6,7 @@ import numpy as np
 
 @dataclass
 class PathPose:
-    """Where a vehicle's reference point is on a path. Heading counter-clockwise from +X."""
+    """The pose of a vehicle's reference point on a path. Heading counter-clockwise from +X."""
     x: float  # [m]
     y: float  # [m]
     heading_deg: float

@@ -69,7 +69,7 @@ def _placed(description):
 
 
 def find(description):
-    """The Suspension of a Description, or None when it has none that is known."""
+    """Returns the Suspension of a Description, or None if no known suspension is recognized."""
     poses = _placed(description)
     parents = {j.parent for j in description.joints if j.kind != "fixed"}
     spins = []
@@ -111,7 +111,7 @@ def _rover_axes(description, poses, spins, lateral):
 
 
 def _wheel_size(description, joint):
-    """Radius and width of a wheel: its collision cylinder, or what its mesh measures."""
+    """Returns radius and width of a wheel from its collision cylinder, or from its mesh."""
     if joint.child in description.cylinders:
         return description.cylinders[joint.child]
     v = description.link_vertices(joint.child)
@@ -200,8 +200,8 @@ def _differential_bar(description, b, s):
 
 
 def _reference(wheels):
-    """Below which point of the chassis the path runs: at the unsteered wheels' mean axle, or at the
-    middle of all wheels; that is where every turn's centre is abeam."""
+    """Returns the point of the chassis that follows the path: the middle of the unsteered wheels' axles, or of all
+    wheels. Every turn's center is abeam of it."""
     fixed = [w.centre for w in wheels if w.steering < 0] or [w.centre for w in wheels]
     centre = np.mean(fixed, axis=0)
     return np.array([centre[0], 0.0, centre[2] - wheels[0].radius])

@@ -38,8 +38,8 @@ class VehicleState:
 
 
 class CarriedModel:
-    """A model without wheels, carried along the path: it stands on its bounds' bottom, aligned with
-    the mean plane of the terrain below its footprint, touching the highest point.
+    """A model without wheels that moves along the path. The bottom of its bounds is parallel to the mean plane of the
+    terrain below its footprint and touches the highest point.
 
     bounds: (minimum (3,), maximum (3,)) in the file's coordinates. `scale` multiplies them to
     metres. `up` is the file's axis that points up, "y" or "z" (forward is then +Z or +X)."""
@@ -117,7 +117,7 @@ class WheeledVehicle:
 
     @property
     def wheel_base(self):
-        """Distance from the rearmost to the foremost wheel centre [m]."""
+        """Returns the distance from the rearmost to the foremost wheel center [m]."""
         return float(np.ptp([w.centre[0] for w in self.suspension.wheels]))
 
     def steering_angles(self, curvature):
@@ -144,15 +144,14 @@ class WheeledVehicle:
     def solve(self, pose, terrain):
         """VehicleState at a PathPose or (x, y, heading_deg[, curvature[, distance]]).
 
-        Wheels have turned by the length of their plane paths (from the pose's path, or all by
-        `distance`); `drive` counts the way up and down hills too."""
+        Wheels turn by the length of their paths seen from above (from the pose's path, or all by `distance`). `drive`
+        also includes the distance up and down hills."""
         pose = as_pose(pose)
         return self._states([pose], terrain, None)[0]
 
     def drive(self, path, times, terrain):
-        """VehicleStates along a Path at ascending times [s], solved together. Each wheel has turned
-        by the way its centre has come in space since the first time, as rolling without slip
-        demands."""
+        """Returns VehicleStates along a Path at ascending times [s], solved together. Each wheel turns by the distance
+        that its center has moved in space since the first time, which is rolling without slip."""
         times = np.atleast_1d(np.asarray(times, float))
         if (np.diff(times) < 0).any():
             raise ValueError(f"{self.name}: times must ascend")
@@ -244,7 +243,7 @@ class IndependentSuspension(WheeledVehicle):
 
 
 def load_vehicle(path, bounds=None, scale=1.0, up=None):
-    """The vehicle in a model file.
+    """Returns the vehicle in a model file.
 
     A URDF or a frames.json (or a folder that holds one) in which a suspension is recognised gives a
     RockerBogie or IndependentSuspension; everything else a CarriedModel, whose bounds are `bounds`
