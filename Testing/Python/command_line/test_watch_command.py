@@ -219,7 +219,7 @@ def test_it_can_be_ended_while_it_connects(tmp_path, number):
     (("--every", "0"), "--every 0; accepted: more than 0 s"),
     (("--count", "0"), "--count 0; accepted: 1 and more"),
     (("--eye", "1,2,3"), "accepted: both"),
-    (("--fov", "30"), "--fov belongs to a view of one's own"),
+    (("--fov", "30"), "--fov belongs to a separate view"),
     (("--eye", "1,2,3", "--target", "0,0,0", "--viewport", "view"), "one or the other")])
 def test_what_is_wrong_is_said(tmp_path, arguments, text):
     run = subprocess.run([*RUN, f"unix:{socket_folder(tmp_path)}/nobody", "--out", tmp_path / "out", *arguments],

@@ -90,8 +90,8 @@ def test_a_full_disk_costs_no_picture(run, tmp_path, instead):
 
 @pytest.mark.parametrize("how", ("encode", "Encoder"))
 @pytest.mark.parametrize("change, says", [
-    ("words[-1:-1] = ['-frames:v', '25']", "of 40 pictures it holds 25"),
-    ("open(words[-1], 'w').write('no movie'); sys.exit(0)", "of 40 pictures it holds none"),
+    ("words[-1:-1] = ['-frames:v', '25']", "it holds 25 of 40 pictures"),
+    ("open(words[-1], 'w').write('no movie'); sys.exit(0)", "it holds none of 40 pictures"),
     ("sys.stderr.write('all is not well\\n')", "ffmpeg failed: all is not well"),
     ("os.kill(os.getpid(), signal.SIGKILL)", "ffmpeg"),
 ])
