@@ -65,20 +65,20 @@ def test_the_same_build_folder_serves_all_commands(dspace):
     dspace("demo")
     assert dspace("test", "--quick") == ["cmake --preset release -DDSPACE_TESTS=ON",
                                          "ninja build/release dspace_runtime dspace_tests",
-                                         "ctest in release: -j 2 --output-on-failure --no-tests=error"]
+                                         "ctest in release: -j 3 --output-on-failure --no-tests=error"]
     assert dspace("demo") == ["ninja build/release dspace_runtime", "demo"]
     assert dspace("build", "--all") == ["cmake --preset release -DDSPACE_BENCHMARKS=ON",
                                         "ninja build/release dspace_runtime dspace_tests dspace_benchmarks"]
-    assert dspace("test", "--quick", BUILT="1") == ["ctest in release: -j 2 --output-on-failure --no-tests=error"]
+    assert dspace("test", "--quick", BUILT="1") == ["ctest in release: -j 3 --output-on-failure --no-tests=error"]
 
 
 def test_sanitizers_come_first(dspace):
     assert [line.split(" --output")[0] for line in dspace("test")] == [
         "cmake --preset release -DDSPACE_TESTS=OFF -DDSPACE_BENCHMARKS=OFF -DDSPACE_TESTS=ON",
         "ninja build/release dspace_runtime dspace_tests", "cmake --preset sanitize", "ninja build/sanitize",
-        "ctest with build/sanitize/lib in release: -j 2", "ctest in release: -j 2"]
+        "ctest with build/sanitize/lib in release: -j 3", "ctest in release: -j 3"]
     named = dspace("test", "Pose", "Scene", BUILT="1")
-    assert named == ["ctest in release: -j 2 --output-on-failure --no-tests=error -R Pose|Scene"]
+    assert named == ["ctest in release: -j 3 --output-on-failure --no-tests=error -R Pose|Scene"]
 
 
 def test_headings_are_the_stages(dspace, tmp_path):

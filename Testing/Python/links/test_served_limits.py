@@ -50,7 +50,7 @@ def test_a_document_in_the_place_of_a_name_reads_nothing(tmp_path):
         commands.append((command, "outside of the folders|contains '<' or '>'"))
     command = pb.Command()
     command.open_terrain.path = str(root / "absent.tif")
-    commands.append((command, "there is no such file"))
+    commands.append((command, "names no existing file"))
     with Served(tmp_path, "--allow-root", str(root)) as server, dspace.connect(server.address) as session:
         session.scene()
         for command, refusal in commands:

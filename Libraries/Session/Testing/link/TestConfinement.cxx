@@ -70,7 +70,7 @@ TEST_F(ConfinementTest, WhatIsReadIsThereAndAFile) {
   };
   EXPECT_EQ(open(root + "/model.obj"), "");
   EXPECT_EQ(open(root + "/inner"), ""); // some rasters are folders
-  EXPECT_NE(open(root + "/absent").find("there is no such file"), std::string::npos);
+  EXPECT_NE(open(root + "/absent").find("names no existing file"), std::string::npos);
   // Whether a file outside is there is nobody's business.
   EXPECT_NE(open("/etc/absent").find("outside of the folders that the server allows"),
             std::string::npos);

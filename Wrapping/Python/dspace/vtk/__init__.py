@@ -3,5 +3,9 @@ import vtkmodules.vtkCommonCore  # noqa: F401 - the classes that ours derive fro
 import vtkmodules.vtkCommonTransforms  # noqa: F401
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 
+# All messages before the compiled part, which has the same ones: protobuf would find those that are imported later
+# there, with other classes for the messages in them.
+from dspace.proto import recordings_pb2, service_pb2  # noqa: F401
+
 from .vtkDspaceCore import *  # noqa: F401,F403
 from .vtkDspaceSession import *  # noqa: F401,F403
