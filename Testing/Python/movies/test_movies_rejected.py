@@ -166,7 +166,7 @@ def test_where_it_is_made(run, script, tmp_path, monkeypatch, capsys):  # noqa: 
     path = str(script(KEYS))
     assert main(["movie", path, "--run", run, "--out", "out.d"]) == 1
     said = capsys.readouterr().err
-    assert "its ending is '.d'; accepted: .mp4, .webm, or a folder: a name without a dot, with a slash" in said
+    assert "its ending is '.d'; accepted: .mp4, .webm, or a folder: a name without a dot, a name with a slash" in said
     assert not (tmp_path / "out.d").exists()
     for out in ("out.d/", "out.d", "out"):
         assert main(["movie", path, "--run", run, "--out", out]) == 0

@@ -101,7 +101,7 @@ def test_fragments_that_come_later_are_hidden_when_they_come(session, scene):
     movie.views["main"].hide = ()
     assert (stage.picture(1) != (0, 0, 255)).any()
     movie.views["main"].hide = ("lait",)
-    with pytest.warns(UserWarning, match="hide names 'lait', and no picture"):
+    with pytest.warns(UserWarning, match="hide names 'lait', but no picture"):
         stage.close()
     movie.views["main"].hide = ("late",)
     stage = Stage(movie, Source(session))

@@ -162,7 +162,8 @@ std::string WriteMutant(const Format& format, int number, const testing::TempFol
   const rlimit cpu = {600, 600};
   setrlimit(RLIMIT_CPU, &cpu);
   const int null = open("/dev/null", O_WRONLY);
-  dup2(null, testing::Sanitized() ? STDOUT_FILENO : STDERR_FILENO); // a sanitizer's report stays visible
+  dup2(null,
+       testing::Sanitized() ? STDOUT_FILENO : STDERR_FILENO); // a sanitizer's report stays visible
   for (int number = first; number < last; ++number) {
     progress.current = number;
     const std::string path = WriteMutant(format, number, folder);

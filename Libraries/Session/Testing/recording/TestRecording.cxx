@@ -314,7 +314,8 @@ TEST_F(Recording, KilledAtAnyMomentItIsAPrefix) {
 // A child of the process that records says so, and may end as it likes.
 TEST_F(Recording, AChildProcessLeavesItAlone) {
   if (testing::Sanitized()) {
-    GTEST_SKIP() << "the sanitizer's allocator may be locked by another thread when a process forks";
+    GTEST_SKIP()
+        << "the sanitizer's allocator may be locked by another thread when a process forks";
   }
   auto writer = std::make_unique<RecordingWriter>(this->Path_, Ledger(), 0.0, RecordingOptions());
   EXPECT_EQ(writer->Add(Numbered(1), {}, Ledger()), "");

@@ -260,7 +260,8 @@ TEST(ElevationPyramid, AWaitEndsAtItsDeadline) {
     pyramid.Read({0, 0, 0, 100, 100}, heights.data(), 0.0);
     ADD_FAILURE() << "the deadline passed unnoticed";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("before the deadline"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("before the deadline"), std::string::npos)
+        << error.what();
   }
   gate.Open();
   pyramid.Read({0, 0, 0, 100, 100}, heights.data(), 60.0); // it came all the same
