@@ -176,7 +176,7 @@ def test_order_visibility_and_removal(ground, image, tmp_path):
     first.remove()
     np.testing.assert_array_equal(view.image(), bare)
     assert terrain.layers == []
-    with pytest.raises(dspace.NotFound, match="no more"):
+    with pytest.raises(dspace.NotFound, match="it was removed"):
         first.opacity
     assert "removed" in repr(first)
 
