@@ -1,4 +1,4 @@
-"""Makes the pictures of the documentation anew: ./dspace python Documentation/make_pictures.py
+"""Generates the pictures of the documentation: ./dspace python Documentation/make_pictures.py
 
 Those of real data are made where DSPACE_DATA names it, and left as they are otherwise."""
 import json
