@@ -1,16 +1,11 @@
-// The model itself, images, and which reader a file gets.
+// The model itself, its normals, and which reader a file gets.
 #include <dspace/import/model/Model.h>
 #include <dspace/import/model/Normals.h>
 
 #include <cmath>
 #include <limits>
 
-#include <OpenImageIO/imageio.h>
-
-#include <dspace/import/files/ImageReader.h>
-
 #include "ImportTestSupport.h"
-#include "TestData.h"
 
 using namespace dspace;
 using namespace dspace::testing;
@@ -181,68 +176,6 @@ TEST(ImportModel, NormalsTakeLinearTimeAroundOneVertex) {
   ComputeNormals(fan);
   EXPECT_EQ(fan.VertexCount(), n + 1u);
   EXPECT_NEAR(fan.normals[2], 1.0, 1e-6);
-}
-
-TEST(ImportImage, PngPixelsTopRowFirst) {
-  const std::string png = DecodeBase64(FourColorsPng);
-  const auto image = ReadImageMemory(png.data(), png.size(), "four");
-  EXPECT_EQ(image->name, "four");
-  ASSERT_EQ(image->channels, 3);
-  EXPECT_EQ(image->pixels,
-            (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}));
-  const std::string alpha = DecodeBase64(AlphaPng);
-  EXPECT_EQ(ReadImageMemory(alpha.data(), alpha.size(), "a")->pixels,
-            (std::vector<std::uint8_t>{200, 100, 50, 64, 10, 20, 30, 255}));
-}
-
-TEST(ImportImage, EveryTypeIsReadUpright) {
-  const TempFolder folder;
-  // Upper half red, lower half blue.
-  const int size = 16;
-  std::vector<std::uint8_t> pixels;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      pixels.insert(pixels.end(), {std::uint8_t(y < size / 2 ? 230 : 10), 20,
-                                   std::uint8_t(y < size / 2 ? 10 : 230)});
-    }
-  }
-  for (const std::string type : {"png", "jpg", "webp", "tif", "bmp", "tga", "gif", "ppm"}) {
-    const std::string path = folder / ("half." + type);
-    const auto out = OIIO::ImageOutput::create(path);
-    ASSERT_TRUE(out) << type;
-    ASSERT_TRUE(out->open(path, OIIO::ImageSpec(size, size, 3, OIIO::TypeDesc::UINT8))) << type;
-    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, pixels.data())) << type;
-    out->close();
-    const auto image = ReadImage(path);
-    ASSERT_EQ(image->width, size) << type;
-    ASSERT_EQ(image->height, size) << type;
-    ASSERT_GE(image->channels, 3) << type;
-    ASSERT_EQ(image->pixels.size(), std::size_t(size * size * image->channels)) << type;
-    const auto pixel = [&](int x, int y) {
-      return &image->pixels[std::size_t((y * size + x) * image->channels)];
-    };
-    // JPEG, WebP and GIF change colours a little.
-    EXPECT_NEAR(pixel(8, 2)[0], 230, 24) << type;
-    EXPECT_NEAR(pixel(8, 2)[2], 10, 24) << type;
-    EXPECT_NEAR(pixel(8, 13)[0], 10, 24) << type;
-    EXPECT_NEAR(pixel(8, 13)[2], 230, 24) << type;
-  }
-}
-
-TEST(ImportImage, BadImagesAreTypedErrors) {
-  const TempFolder folder;
-  const std::string png = DecodeBase64(FourColorsPng);
-  ExpectError(Error::Kind::NotFound, "none.png", [&] { ReadImage(folder / "none.png"); });
-  ExpectError(Error::Kind::Io, "", [&] { ReadImage(folder / ""); });
-  ExpectError(Error::Kind::Corrupt, "is empty", [&] { ReadImage(folder.Write("e.png", "")); });
-  ExpectError(Error::Kind::Unsupported, "no known type",
-              [&] { ReadImage(folder.Write("t.png", "not an image")); });
-  const std::string huge = DecodeBase64(HugePng);
-  ExpectError(Error::Kind::Resource, "100000 x 100000",
-              [&] { ReadImageMemory(huge.data(), huge.size(), "huge"); });
-  for (const std::size_t n : {8u, 20u, 33u, 45u}) {
-    ExpectError(Error::Kind::Corrupt, "cut", [&] { ReadImageMemory(png.data(), n, "cut"); });
-  }
 }
 
 TEST(ImportReader, WrongFilesAreTypedErrors) {

@@ -165,9 +165,10 @@ TEST(ImportObj, BadFilesAreTypedErrors) {
   expect("line 4: f names '99999999999999999999'", vertices + "f 99999999999999999999 1 2\n");
   expect("texture coordinates", vertices + "f 1/1 2/1 3/1\n");
   expect("normals", vertices + "f 1//1 2//1 3//1\n");
-  expect("line 1: v has 'nan'", "v nan 0 0\n" + vertices + "f 1 2 3\n");
-  expect("line 1: v has 'inf'", "v 0 inf 0\n" + vertices + "f 1 2 3\n");
-  expect("line 1: v has '1e39'", "v 0 1e39 0\n" + vertices + "f 1 2 3\n");
+  for (const char* number : {"nan", "inf", "-inf", "1e39", "1.#QNAN", "-nan(ind)"}) {
+    expect("positions that are not finite are left out: 1 (the first: face 0)",
+           "v 0 " + std::string(number) + " 0\n" + vertices + "f 1 2 3\n");
+  }
   expect("line 1: v has '0x10'", "v 0 0x10 0\n" + vertices + "f 1 2 3\n");
   expect("line 1: v has 2 numbers", "v 0 0\n" + vertices + "f 1 2 3\n");
   expect("no faces", vertices + "f 1 2");
@@ -175,6 +176,32 @@ TEST(ImportObj, BadFilesAreTypedErrors) {
   few.maximumTriangles = 3;
   ExpectReadError(Error::Kind::Resource, "more than 3 triangles",
                   folder.Write("many.obj", vertices + "f 1 2 3 1 2 3\n"), few);
+}
+
+TEST(ImportObj, DamageIsRepairedWithOneWarning) {
+  const TempFolder folder;
+  // A corner of the second face has a bad normal, one a bad texture coordinate, one a bad position.
+  const std::string path =
+      folder.Write("d.obj", "o wing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv nan 0 0\n"
+                            "vt 0 0\nvt 0.5 inf\nvn 0 0 2\nvn nan 0 1\nvn 0 0 0\n"
+                            "f 1/1/1 2/1/1 3/1/2\nf 1/1/1 3/2/1 4/1/3\nf 1/1/1 2/1/1 5/1/1\n");
+  const Model model = ReadModel(path);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_TRUE(HasWarning(model.warnings, "mesh 'wing': "));
+  EXPECT_TRUE(HasWarning(model.warnings,
+                         "positions that are not finite are left out: 1 (the first: "
+                         "face 2)"));
+  EXPECT_TRUE(HasWarning(model.warnings, "made from the faces: 2 (the first: vertex 2)"));
+  EXPECT_TRUE(HasWarning(model.warnings, "become 0: 1 (the first: vertex 3)"));
+  const Mesh& mesh = model.meshes.at(0);
+  EXPECT_EQ(mesh.PrimitiveCount(), 2u);
+  ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+    EXPECT_FLOAT_EQ(mesh.normals[i], i % 3 == 2 ? 1.0f : 0.0f); // the faces lie in XY
+  }
+  ImportOptions strict;
+  strict.strict = true;
+  ExpectReadError(Error::Kind::Corrupt, "mesh 'wing'", path, strict);
 }
 
 TEST(ImportObj, TruncationNeverCrashes) {

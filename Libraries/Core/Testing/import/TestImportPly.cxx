@@ -237,7 +237,8 @@ TEST(ImportPly, BadInput) {
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n");
   bad("vertex index 4.0", Square(SquareRows, "3 0 1 4\n"));
   bad("vertex index -1.0", Square(SquareRows, "3 0 1 -1\n"));
-  bad("vertex 1 is at (nan", Square("0 0 0\nnan 0 0\n1 1 0\n0 1 0\n", "3 0 1 2\n"));
+  bad("positions that are not finite are left out: 1",
+      Square("0 0 0\nnan 0 0\n1 1 0\n0 1 0\n", "3 0 1 2\n"));
   bad("'x' is not a number", Square("0 0 0\nx 0 0\n1 1 0\n0 1 0\n", "3 0 1 2\n"));
   bad("'1.5' is not an integer", Square(SquareRows, "3 0 1 1.5\n"));
   bad("face 0: the file ends here", Square(SquareRows, "3 0 1\n"));
@@ -254,16 +255,117 @@ TEST(ImportPly, BadInput) {
   ExpectReadError(Error::Kind::Resource, "5 triangles", folder.Write("a.ply", TextPyramid()), few);
 }
 
-TEST(ImportPly, UnusableAttributesAreLeftOut) {
+TEST(ImportPly, UnusableAttributesAreRepaired) {
   const TempFolder folder;
   std::string text = TextPyramid();
-  for (std::size_t at = text.find("0 0 2 0.25"); at != std::string::npos;
-       at = text.find("0 0 2 0.25")) {
-    text.replace(at, 10, "0 0 0 0.25");
+  const std::size_t at = text.find("0 0 2 0.25");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, 10, "0 0 0 0.25");
+  const Model model = ReadModel(folder.Write("a.ply", text));
+  const Mesh& mesh = model.meshes.at(0);
+  ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+  for (std::size_t v = 0; v < mesh.VertexCount(); ++v) {
+    EXPECT_NEAR(Eigen::Map<const Eigen::Vector3f>(&mesh.normals[3 * v]).norm(), 1.0, 1e-6);
   }
-  const Model model = ReadPly(folder.Write("a.ply", text), {});
-  EXPECT_TRUE(model.meshes.at(0).normals.empty());
-  EXPECT_TRUE(HasWarning(model.warnings, "a normal is null"));
+  EXPECT_TRUE(HasWarning(model.warnings, "made from the faces: 1 (the first: vertex"));
+}
+
+// What other writers and readers agree on, beyond the format's first description.
+TEST(ImportPly, VariantsOfHeadersAndNumbers) {
+  const TempFolder folder;
+  const std::string rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const auto read = [&](const std::string& bytes, bool cloud = false) {
+    ImportOptions options;
+    options.pointCloud = cloud;
+    return ReadModel(folder.Write("v.ply", bytes), options);
+  };
+  const auto header = [](const std::string& vertex, const std::string& face) {
+    return "ply\nformat ascii 1.0\ncomment made by hand\nobj_info num_cols 2\nelement vertex 4\n" +
+           vertex + face + "end_header\n";
+  };
+  const std::string xyz = "property float32 x\nproperty float64 y\nproperty double z\n";
+  const std::string quad = "4 0 1 2 3\n";
+  // Names of types and of the list; lists of other kinds beside it.
+  for (const std::string list :
+       {"property list uint8 int32 vertex_index\n", "property list int8 uint32 vertex_indices\n",
+        "property list float int vertex_indices\n", "property list uchar uint corners\n"}) {
+    EXPECT_EQ(read(header(xyz, "element face 1\n" + list) + rows + quad).TriangleCount(), 2u)
+        << list;
+  }
+  EXPECT_EQ(
+      read(header(xyz, "element face 1\nproperty int flags\nproperty list uchar float weights\n"
+                       "property list uchar int vertex_indices\n") +
+           rows + "7 2 0.5 0.5 4 0 1 2 3\n")
+          .TriangleCount(),
+      2u);
+  // Elements that nobody knows, between and behind.
+  EXPECT_EQ(
+      read(header(xyz, "element camera 1\nproperty float view_px\nelement face 1\nproperty list "
+                       "uchar int vertex_indices\nelement material 1\nproperty uchar red\n") +
+           rows + "3.5\n" + quad + "9\n")
+          .TriangleCount(),
+      2u);
+  // Lines that end in CR LF or CR, and numbers as programs write them.
+  std::string text = header(xyz, "element face 1\nproperty list uchar int vertex_indices\n") +
+                     "+0 0.0e0 -0\n1e0 0 1e-400\n1.0E+00 1. 0\n0 1 0\n4 0 1 2.0 3\n";
+  const std::vector<float> unit = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string changed;
+    for (const char c : text) {
+      changed += c == '\n' ? end : std::string(1, c);
+    }
+    EXPECT_EQ(read(changed).meshes.at(0).positions, unit);
+  }
+  // Colours in each type, and of faces.
+  const std::string colors =
+      "property TYPE diffuse_red\nproperty TYPE diffuse_green\nproperty TYPE "
+      "diffuse_blue\n";
+  for (const auto& [type, full] :
+       {std::pair("uchar", "255"), std::pair("float", "1"), std::pair("ushort", "65535")}) {
+    std::string properties = colors;
+    for (std::size_t at; (at = properties.find("TYPE")) != std::string::npos;) {
+      properties.replace(at, 4, type);
+    }
+    std::string colored;
+    for (const char* row : {"0 0 0 ", "1 0 0 ", "1 1 0 ", "0 1 0 "}) {
+      colored += row + std::string(full) + " 0 0\n";
+    }
+    const Model model = read(header(xyz + properties, "element face 1\nproperty list uchar int "
+                                                      "vertex_indices\n") +
+                             colored + quad);
+    EXPECT_EQ(model.meshes.at(0).colors[0], 255) << type;
+    EXPECT_EQ(model.meshes.at(0).colors[1], 0) << type;
+  }
+  const Model faces =
+      read(header(xyz, "element face 2\nproperty list uchar int vertex_indices\nproperty "
+                       "uchar red\nproperty uchar green\nproperty uchar blue\n") +
+           rows + "3 0 1 2 255 0 0\n3 0 2 3 0 0 255\n");
+  const Mesh& each = faces.meshes.at(0);
+  ASSERT_EQ(each.colors.size(), 24u); // six corners
+  EXPECT_EQ(each.colors[0], 255);
+  EXPECT_EQ(each.colors[12], 0);
+  EXPECT_EQ(each.colors[14], 255);
+  // Points that a sensor did not see are not numbers.
+  const Model cloud = read(header(xyz, "") + "0 0 0\nnan nan nan\n1.#QNAN 0 0\n0 1 0\n", true);
+  EXPECT_EQ(cloud.meshes.at(0).PrimitiveCount(), 2u);
+  EXPECT_EQ(cloud.warnings.size(), 1u);
+}
+
+TEST(ImportPly, TexturesOfMeshLab) {
+  const TempFolder folder;
+  folder.Write("four colors.png", testing::DecodeBase64(testing::FourColorsPng));
+  const Model model = ReadModel(folder.Write(
+      "t.ply",
+      "ply\nformat ascii 1.0\ncomment TextureFile four colors.png\nelement vertex 3\nproperty "
+      "float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
+      "vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 "
+      "2 "
+      "6 0 0 0.5 0 0 0.25\n"));
+  const Mesh& mesh = model.meshes.at(0);
+  EXPECT_EQ(mesh.tcoords, (std::vector<float>{0, 0, 0.5, 0, 0, 0.25}));
+  ASSERT_EQ(mesh.material, 0);
+  ASSERT_TRUE(model.materials[0].texture);
+  EXPECT_EQ(model.materials[0].texture->width, 2);
 }
 
 } // namespace dspace

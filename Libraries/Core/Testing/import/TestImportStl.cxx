@@ -161,14 +161,26 @@ TEST(ImportStl, BadInput) {
   many.replace(80, 4, "\xff\xff\xff\xff");
   ExpectReadError(Error::Kind::Corrupt, "says it has 4294967295", folder.Write("many.stl", many));
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  ExpectReadError(Error::Kind::Corrupt, "triangle 0 has the coordinate nan",
+  ExpectReadError(Error::Kind::Corrupt, "positions that are not finite are left out: 1",
                   folder.Write("nan.stl", Binary({{0, 0, nan, 1, 0, 0, 0, 1, 0}})));
+  const Model rest = ReadModel(folder.Write(
+      "one.stl", Binary({{0, 0, nan, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 1, 0, 0, 0, 1, 0}})));
+  EXPECT_EQ(rest.TriangleCount(), 1u);
+  EXPECT_TRUE(HasWarning(rest.warnings, "left out: 1 (the first: face 0)"));
   const std::string text = Text(BoxTriangles(1, 2, 4), "box");
   ExpectReadError(Error::Kind::Corrupt, "the end of the file",
                   folder.Write("cut-text.stl", text.substr(0, text.find("endloop"))));
-  ExpectReadError(Error::Kind::Corrupt, "line 4: found 'nan'",
-                  folder.Write("nan-text.stl", "solid a\nfacet normal 0 0 1\nouter loop\n"
-                                               "vertex 0 nan 0\n"));
+  ExpectReadError(Error::Kind::Corrupt, "line 4: found 'x'",
+                  folder.Write("x-text.stl", "solid a\nfacet normal 0 0 1\nouter loop\n"
+                                             "vertex 0 x 0\n"));
+  EXPECT_EQ(
+      ReadModel(folder.Write("nan-text.stl",
+                             "solid a\nfacet normal nan -nan(ind) 0\nouter loop\nvertex 0 0 0\n"
+                             "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nfacet normal 0 0 0\n"
+                             "outer loop\nvertex 0 nan 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+                             "endfacet\nendsolid a\n"))
+          .TriangleCount(),
+      1u);
   ExpectReadError(Error::Kind::Corrupt, "line 5: found 'vertex'",
                   folder.Write("two.stl", "solid a\nfacet normal 0 0 1\nouter loop\n"
                                           "vertex 0 0\nvertex 0 0 0\n"));

@@ -1,66 +1,20 @@
 // URDF: hand-made robots with known answers, bad ones, and Perseverance.
-#include <dspace/import/urdf/Urdf.h>
+#include <dspace/FrameRules.h>
 
 #include <cmath>
 #include <map>
 #include <random>
 
-#include "ImportTestSupport.h"
 #include "TestData.h"
+#include "UrdfTestSupport.h"
 
 using namespace dspace;
 using namespace dspace::testing;
 
 namespace {
 
-const char* const Arm = R"(<?xml version="1.0"?>
-<robot name="arm">
-  <material name="gold"><color rgba="1 0.8 0 0.5"/></material>
-  <link name="base">
-    <visual name="plate"><origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/>
-      <geometry><box size="2 4 6"/></geometry><material name="gold"/></visual>
-    <visual><geometry><cylinder radius="0.5" length="3"/></geometry>
-      <material name="own"><color rgba="0.1 0.2 0.3 1"/></material></visual>
-    <visual><geometry><sphere radius="0.25"/></geometry></visual>
-    <visual name="shell"><geometry><mesh filename="meshes/shell.stl" scale="1 -2 3"/></geometry>
-    </visual>
-  </link>
-  <link name="upper"/><link name="slide"/><link name="spin"/><link name="free"/><link name="lead"/>
-  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
-    <origin xyz="0 0 1" rpy="0.1 0.2 0.3"/><axis xyz="0 3 4"/>
-    <limit lower="-1" upper="2" effort="1" velocity="1"/></joint>
-  <joint name="slider" type="prismatic"><parent link="upper"/><child link="slide"/>
-    <axis xyz="0 0 2"/><limit lower="-0.5" upper="0.25" effort="1" velocity="1"/>
-    <mimic joint="shoulder" multiplier="2" offset="0.5"/></joint>
-  <joint name="wheel" type="continuous"><parent link="upper"/><child link="spin"/>
-    <mimic joint="shoulder" multiplier="-1" offset="0.1"/></joint>
-  <joint name="loose" type="floating"><parent link="slide"/><child link="free"/></joint>
-  <joint name="flat" type="planar"><parent link="slide"/><child link="lead"/><axis xyz="0 0 1"/>
-  </joint>
-</robot>)";
-
-const UrdfJoint& Joint(const Urdf& urdf, const std::string& name) {
-  for (const UrdfJoint& joint : urdf.joints) {
-    if (joint.name == name) {
-      return joint;
-    }
-  }
-  throw std::runtime_error("no joint " + name);
-}
-
-Urdf ReadText(const TempFolder& folder, const std::string& text) {
-  return ReadUrdf(folder.Write("robot.urdf", text));
-}
-
 void ExpectBad(const TempFolder& folder, const std::string& part, const std::string& text) {
   ExpectError(Error::Kind::Corrupt, part, [&] { ReadText(folder, text); });
-}
-
-std::string Changed(const std::string& from, const std::string& to) {
-  std::string text = Arm;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
 }
 
 } // namespace
@@ -189,9 +143,13 @@ TEST(ImportUrdf, BadGraphsAreTypedErrors) {
   ExpectBad(folder, "part of a loop",
             links + joint("1", "a", "b") + joint("2", "c", "c") + "</robot>");
   ExpectBad(folder, "Two root links", links + "</robot>");
-  ExpectBad(folder, "nowhere",
-            links + joint("1", "a", "b") + joint("2", "a", "nowhere") + "</robot>");
-  ExpectBad(folder, "unique", links + joint("1", "a", "b") + joint("1", "a", "c") + "</robot>");
+  // Links that joints name are there, and once.
+  const Urdf arm = ReadText(folder, "<robot name='r'><link name='a'/><link name='a'/>" +
+                                        joint("1", "body", "a") + "</robot>");
+  ASSERT_EQ(arm.links.size(), 2u);
+  EXPECT_EQ(arm.links[0].name, "body");
+  EXPECT_TRUE(HasWarning(arm.warnings, "empty ones are made: joint '1' (body)"));
+  EXPECT_TRUE(HasWarning(arm.warnings, "defined twice, the first is taken: link 'a'"));
   ExpectBad(folder, "", "<robot name='r'></robot>");
   std::string chain = "<robot name='r'><link name='l0'/>";
   for (int i = 1; i <= 1001; ++i) {
@@ -201,29 +159,39 @@ TEST(ImportUrdf, BadGraphsAreTypedErrors) {
   ExpectBad(folder, "deeper than 1000", chain + "</robot>");
 }
 
-TEST(ImportUrdf, BadJointsAreTypedErrors) {
+TEST(ImportUrdf, NamesThatFramesCannotHaveAreMapped) {
   const TempFolder folder;
-  ExpectBad(folder, "joint 'shoulder': its axis", Changed("0 3 4", "0 0 0"));
-  ExpectBad(folder, "", Changed("0 3 4", "nan 0 0"));
-  ExpectBad(folder, "", Changed("0 3 4", "0 3"));
-  ExpectBad(folder, "joint 'shoulder': its limits", Changed("lower=\"-1\"", "lower=\"3\""));
-  ExpectBad(folder, "", Changed("type=\"revolute\"", "type=\"bendy\""));
-  ExpectBad(folder, "mimics joint 'elbow'",
-            Changed("mimic joint=\"shoulder\"", "mimic joint=\"elbow\""));
-  ExpectBad(folder, "mimics itself", Changed("mimic joint=\"shoulder\"", "mimic joint=\"slider\""));
-  const char* const scales = "; accepted: 1e-12 to 1e12, or the negative of it";
-  ExpectBad(folder, scales, Changed("1 -2 3", "1 0 3"));
-  ExpectBad(folder, scales, Changed("1 -2 3", "1 1e-300 3"));
-  ExpectBad(folder, "has the scale 1 1e+300 3", Changed("1 -2 3", "1 1e300 3"));
-  ExpectBad(folder, "; accepted: 1e-9 to 1e15 metres", Changed("radius=\"0.25\"", "radius=\"-1\""));
-  ExpectBad(folder, "; accepted: 1e-9 to 1e15 metres",
-            Changed("radius=\"0.25\"", "radius=\"1e300\""));
-  ExpectBad(folder, "joint 'shoulder': its origin is not finite or beyond 1e18 m",
-            Changed("xyz=\"0 0 1\" rpy=\"0.1", "xyz=\"0 1e300 1\" rpy=\"0.1"));
-  // Limits beyond any degree are none.
-  const Urdf urdf = ReadText(
-      folder, Changed("lower=\"-1\" upper=\"2\"", "lower=\"-1.79769e308\" upper=\"1.79769e308\""));
-  EXPECT_FALSE(Joint(urdf, "shoulder").hasLimits);
+  const std::string text =
+      "<robot name='r2'><link name='/r2/robot_base'/><link name='_r2_robot_base'/><link name='..'/>"
+      "<link name='" +
+      std::string(300, 'n') +
+      "'/><link name='fine'/>"
+      "<joint name='r2/a' type='fixed'><parent link='/r2/robot_base'/><child "
+      "link='_r2_robot_base'/></joint>"
+      "<joint name='b' type='fixed'><parent link='/r2/robot_base'/><child link='..'/></joint>"
+      "<joint name='c' type='fixed'><parent link='..'/><child link='" +
+      std::string(300, 'n') +
+      "'/></joint>"
+      "<joint name='d' type='fixed'><parent link='..'/><child link='fine'/></joint></robot>";
+  const std::string path = folder.Write("r2.urdf", text);
+  const Urdf urdf = ReadUrdf(path);
+  std::map<std::string, std::string> mapped;
+  for (const UrdfLink& link : urdf.links) {
+    EXPECT_TRUE(IsValidFrameName(link.name)) << link.name;
+    mapped[link.originalName] = link.name;
+  }
+  EXPECT_EQ(mapped["/r2/robot_base"], "_r2_robot_base_2"); // the other one has that name already
+  EXPECT_EQ(mapped["_r2_robot_base"], "_r2_robot_base");
+  EXPECT_EQ(mapped[".."], "_");
+  EXPECT_EQ(mapped["fine"], "fine");
+  EXPECT_EQ(mapped.size(), 5u);
+  // Joints are no frames.
+  EXPECT_EQ(urdf.links[std::size_t(Joint(urdf, "r2/a").childLink)].name, "_r2_robot_base");
+  ASSERT_EQ(urdf.warnings.size(), 1u); // once
+  EXPECT_TRUE(HasWarning(urdf.warnings, "'/r2/robot_base' is '_r2_robot_base_2'"));
+  ImportOptions strict;
+  strict.strict = true;
+  ExpectError(Error::Kind::Corrupt, "'/r2/robot_base'", [&] { ReadUrdf(path, strict); });
 }
 
 TEST(ImportUrdf, BadTextIsTyped) {

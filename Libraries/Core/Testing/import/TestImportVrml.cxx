@@ -68,16 +68,16 @@ TEST(ImportVrml, RotationOfNoAxisTurnsNothing) {
 
 // ---- grouping, PROTO, Inline ------------------------------------------------------------------
 
-TEST(ImportVrml, SwitchAndLodShowOneChild) {
+TEST(ImportVrml, SwitchShowsOneChild) {
   const TempFolder folder;
   const auto boxAt = [](int x) {
     return "Transform { translation " + std::to_string(x) +
            " 0 0 children Shape { geometry Box { } } } ";
   };
-  const Model model = Read(
-      folder, Head2 + "Switch { whichChoice 1 choice [ " + boxAt(100) + boxAt(10) +
-                  "] } Switch { choice [ " + boxAt(200) + "] } Switch { whichChoice 7 choice [ " +
-                  boxAt(300) + "] } LOD { range [ 5 ] level [ " + boxAt(20) + boxAt(400) + "] }");
+  const Model model = Read(folder, Head2 + "Switch { whichChoice 1 choice [ " + boxAt(100) +
+                                       boxAt(10) + "] } Switch { choice [ " + boxAt(200) +
+                                       "] } Switch { whichChoice 7 choice [ " + boxAt(300) +
+                                       "] } LOD { level [ " + boxAt(20) + boxAt(400) + "] }");
   EXPECT_EQ(model.TriangleCount(), 24u);
   EXPECT_EQ(model.Bounds().min().x(), 9.0);
   EXPECT_EQ(model.Bounds().max().x(), 21.0);
@@ -143,10 +143,12 @@ TEST(ImportVrml, Vrml1StateAndSeparators) {
     Cylinder { parts (SIDES | TOP) height 1 }
     Switch { whichChild 1 Cone { } Cube { width 0.5 height 0.5 depth 0.5 } }
     Separator { MatrixTransform { matrix 1 0 0 0 0 1 0 0 0 0 1 0 0 0 30 1 } Cube { } }
-    AsciiText { string "hello" }
+    Separator { FontStyle { size 1 } AsciiText { string "hello" } }
     Extension { fields [ SFLong a ] a 1 }
   })");
-  EXPECT_EQ(model.TriangleCount(), 12u + 960u + 94u + 12u + 12u);
+  const std::size_t letters = model.meshes.back().PrimitiveCount(); // "hello"
+  EXPECT_GT(letters, 50u);
+  EXPECT_EQ(model.TriangleCount(), 12u + 960u + 94u + 12u + 12u + letters);
   EXPECT_EQ(model.Bounds().max().z(), 31.0);
   EXPECT_NEAR(model.Bounds().max().x(), 6.0, 1e-6); // the cube lies on its side
   EXPECT_EQ(MaterialOf(model, 0).color, (std::array<double, 3>{1, 0, 0}));
@@ -154,7 +156,6 @@ TEST(ImportVrml, Vrml1StateAndSeparators) {
   EXPECT_EQ(MaterialOf(model, 2).color,
             (std::array<double, 3>{0, 0, 1})); // TransformSeparator leaks it
   EXPECT_EQ(MaterialOf(model, 4).color, (std::array<double, 3>{0, 0, 1}));
-  EXPECT_TRUE(HasWarning(model.warnings, "node AsciiText is not read"));
   EXPECT_TRUE(HasWarning(model.warnings, "unknown node Extension"));
 }
 
@@ -223,14 +224,83 @@ TEST(ImportVrml, Pathfinder) {
   }
 }
 
+TEST(ImportVrml, LevelsKeepTheirDistances) {
+  const TempFolder folder;
+  const Model two =
+      Read(folder, Head2 +
+                       "Transform { scale 2 2 2 children LOD { center 0 1 0 range [ 5, 20 ] "
+                       "level [ " +
+                       Shape("Box { }") + Shape("Sphere { }") + " Group { } ] } }");
+  std::vector<DistanceRange> ranges;
+  for (const ModelNode& node : two.nodes) {
+    if (node.range) {
+      ranges.push_back(*node.range);
+      EXPECT_EQ(node.range->center, Eigen::Vector3d(0, 1, 0));
+    }
+  }
+  ASSERT_EQ(ranges.size(), 3u);
+  EXPECT_EQ(ranges[0].from, 0.0);
+  EXPECT_EQ(ranges[0].to, 5.0);
+  EXPECT_EQ(ranges[1].from, 5.0);
+  EXPECT_EQ(ranges[1].to, 20.0);
+  EXPECT_EQ(ranges[2].from, 20.0);
+  EXPECT_TRUE(std::isinf(ranges[2].to));
+  const Model one = Read(folder, Head1 + "LOD { range [ 7 ] Cube { } Sphere { } Cone { } }");
+  ranges.clear();
+  for (const ModelNode& node : one.nodes) {
+    if (node.range) {
+      ranges.push_back(*node.range);
+    }
+  }
+  ASSERT_EQ(ranges.size(), 2u); // the third has no distance
+  EXPECT_EQ(ranges[1].from, 7.0);
+  // Without ranges the finest level is shown.
+  EXPECT_EQ(Read(folder, Head2 + "LOD { level [ " + Shape("Box { }") + Shape("Sphere { }") + " ] }")
+                .TriangleCount(),
+            12u);
+}
+
+TEST(ImportVrml, WhatIsLeftOutIsListed) {
+  const TempFolder folder;
+  const Model model =
+      Read(folder, Head2 +
+                       "Background { } Fog { } Viewpoint { } Viewpoint { } PointLight { } "
+                       "NavigationInfo { }" +
+                       Shape("Box { }"));
+  EXPECT_TRUE(model.warnings.empty());
+  EXPECT_EQ(LeftOutWarning(model, false, false),
+            "file '" + folder / "test.wrl" +
+                "': left out: 1 Background, 1 Fog, 1 PointLight, 2 Viewpoint");
+}
+
+TEST(ImportVrml, EmissionDoesNotHideATextureOfVrml1) {
+  const TempFolder folder;
+  folder.Write("t.png", DecodeBase64(FourColorsPng));
+  const auto read = [&](const std::string& emission) {
+    return MaterialOf(Read(folder, Head1 +
+                                       "Separator { Texture2 { filename \"t.png\" } Material { "
+                                       "diffuseColor 0.5 0.5 0.5 emissiveColor " +
+                                       emission + " } Cube { } }"));
+  };
+  const Material white = read("1 1 1"); // as OpenGL 1 draws it: the texture itself
+  ASSERT_TRUE(white.texture);
+  EXPECT_FALSE(white.lit);
+  EXPECT_EQ(white.emissive, (std::array<double, 3>{0, 0, 0}));
+  EXPECT_EQ(white.color, (std::array<double, 3>{1, 1, 1}));
+  const Material half = read("0.5 0.5 0.5"); // times the texture's mean: red, green, blue and white
+  EXPECT_TRUE(half.lit);
+  EXPECT_NEAR(half.emissive[0], 0.25, 1e-9);
+}
+
 TEST(ImportVrml, Samples) {
   DSPACE_REAL_DATA(folder, "models/vrml97_samples");
   const Model hello = ReadModel(folder + "/HelloWorld.wrl");
-  EXPECT_EQ(hello.TriangleCount(), 960u);
+  ASSERT_EQ(hello.meshes.size(), 2u); // the globe, and the letters
+  EXPECT_EQ(hello.meshes[0].PrimitiveCount(), 960u);
+  EXPECT_GT(hello.meshes[1].PrimitiveCount(), 100u);
   ASSERT_TRUE(MaterialOf(hello).texture);
   EXPECT_GT(MaterialOf(hello).texture->width, 100);
-  EXPECT_TRUE(HasWarning(hello.warnings, "node Text is not read"));
-  EXPECT_EQ(hello.warnings.size(), 1u);
+  EXPECT_TRUE(hello.warnings.empty());
   const Model wuson = ReadModel(folder + "/Wuson.wrl");
   EXPECT_EQ(wuson.TriangleCount(), 3732u);
   EXPECT_TRUE(wuson.warnings.empty());

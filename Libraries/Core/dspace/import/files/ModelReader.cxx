@@ -12,6 +12,7 @@
 #include <dspace/import/files/FileNames.h>
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/files/Importers.h>
+#include <dspace/import/model/MeshRepair.h>
 #include <dspace/import/model/Normals.h>
 
 namespace dspace {
@@ -109,8 +110,43 @@ void MakeTextUtf8(Model& model) {
   for (ModelNode& node : model.nodes) {
     node.name = ToUtf8(std::move(node.name));
   }
-  for (std::string& warning : model.warnings) {
-    warning = ToUtf8(std::move(warning));
+  for (ModelLight& light : model.lights) {
+    light.name = ToUtf8(std::move(light.name));
+  }
+  for (ModelAnimation& animation : model.animations) {
+    animation.name = ToUtf8(std::move(animation.name));
+  }
+  for (std::vector<std::string>* texts : {&model.warnings, &model.leftOut}) {
+    for (std::string& text : *texts) {
+      text = ToUtf8(std::move(text));
+    }
+  }
+}
+
+// One warning a mesh, which counts what was repaired and says where it is.
+void RepairMeshes(Model& model) {
+  for (std::size_t i = 0; i < model.meshes.size(); ++i) {
+    Mesh& mesh = model.meshes[i];
+    const MeshFlaws flaws = RepairMesh(mesh);
+    if (!flaws.Any()) {
+      continue;
+    }
+    std::string text = mesh.name.empty() ? "mesh " + std::to_string(i) : "mesh '" + mesh.name + "'";
+    const char* separator = ": ";
+    const auto add = [&](std::size_t count, std::size_t first, const char* of, const char* what) {
+      if (count > 0) {
+        text += separator + std::string(what) + ": " + std::to_string(count) +
+                " (the first: " + of + " " + std::to_string(first) + ")";
+        separator = "; ";
+      }
+    };
+    add(flaws.primitives, flaws.firstPrimitive, "face",
+        "faces, lines or points with positions that are not finite are left out");
+    add(flaws.normals, flaws.firstNormal, "vertex",
+        "normals that are not finite or have no length are made from the faces");
+    add(flaws.tcoords, flaws.firstTcoord, "vertex",
+        "texture coordinates that are not finite become 0");
+    model.warnings.push_back(text);
   }
 }
 
@@ -165,6 +201,7 @@ Model ReadModel(const std::string& path, const ImportOptions& options) {
     Model model = ReaderFor(path)(path, options);
     model.path = path;
     MakeTextUtf8(model);
+    RepairMeshes(model);
     CheckResult(model, options);
     for (std::string& warning : model.warnings) {
       if (warning.find("file '") == std::string::npos) { // as some readers leave it

@@ -11,7 +11,8 @@ namespace dspace {
 
 // How a file is read.
 struct ImportOptions {
-  bool strict = false;                     // warnings (missing textures, meshes, ...) become errors
+  // Warnings (missing textures, repaired damage, ...) become errors; Model::leftOut does not.
+  bool strict = false;
   std::size_t maximumTriangles = 50000000; // a file that expands beyond this is rejected
   bool pointCloud = false; // points alone are drawn; else a file without faces or lines is rejected
 };
@@ -19,7 +20,8 @@ struct ImportOptions {
 // Reads `path` by its content (magic bytes) and, where that is silent, its extension:
 // .gltf .glb .wrl .wrz .iv .obj .stl .ply. Triangles that the file gives no normals get them from
 // ComputeNormals with its default crease angle. A file without faces and lines is rejected unless
-// options.pointCloud, with which the vertices of a PLY or OBJ become points. URDF is read by
+// options.pointCloud, with which the vertices of a PLY or OBJ become points. Damage that can be
+// repaired (MeshRepair.h) is, with one warning a mesh that counts it. URDF is read by
 // ReadUrdf (Urdf.h), since it has joints. Throws Error: NotFound, Io, Unsupported (type), Corrupt
 // (with what is wrong and where).
 Model ReadModel(const std::string& path, const ImportOptions& options = {});

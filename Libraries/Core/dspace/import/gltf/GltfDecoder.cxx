@@ -134,10 +134,6 @@ private:
     this->ConvertTcoords(from, primitive, mesh);
     this->ConvertColors(from, primitive, mesh);
     this->ConvertFaces(from, primitive, mesh);
-    if (!NormalizeNormals(mesh)) {
-      this->Warnings_.push_back(primitive.where +
-                                ": its normals are left out, some have no length");
-    }
     DropUnusedVertices(mesh);
     return mesh;
   }

@@ -64,7 +64,7 @@ GltfDocument::GltfDocument(const std::string& path, Contents contents) : Path_(p
   json = ToUtf8(std::move(json));
   const std::size_t mark = json.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
   this->ParseJson(json.data() + mark, json.data() + json.size());
-  this->CheckVersionAndExtensions();
+  this->CheckVersion();
   if (contents == Contents::All) {
     this->LoadBuffers();
   }
@@ -81,7 +81,9 @@ std::string GltfDocument::SplitContainer(const std::string& bytes) {
                std::to_string(bytes.size()));
   }
   if (Word(bytes, 4) != 2) {
-    this->Fail("is GLB version " + std::to_string(Word(bytes, 4)) + "; version 2 is read",
+    this->Fail("is GLB version " + std::to_string(Word(bytes, 4)) +
+                   (Word(bytes, 4) == 1 ? ", which holds glTF 1.0" : "") +
+                   "; glTF 2.0 is read, into which gltf-pipeline converts it",
                Error::Kind::Unsupported);
   }
   if (Word(bytes, 8) > bytes.size()) {
@@ -131,9 +133,15 @@ void GltfDocument::ParseJson(const char* begin, const char* end) {
   if (!good || !this->Root_.isObject()) {
     this->Fail("is not glTF: its JSON is damaged or truncated: " + Utf8Beginning(message, 200));
   }
-  for (const char* name :
-       {"accessors", "bufferViews", "buffers", "images", "materials", "meshes", "nodes", "samplers",
-        "scenes", "textures", "animations", "skins", "extensionsRequired"}) {
+  // Version 1 has objects where version 2 has arrays, and its asset may be absent.
+  const Json::Value& root = this->Root_; // whose [] makes no members
+  if (root["meshes"].isObject() && root["accessors"].isObject()) {
+    this->Fail("is glTF 1.0; glTF 2.0 is read, into which gltf-pipeline converts it",
+               Error::Kind::Unsupported);
+  }
+  for (const char* name : {"accessors", "cameras", "extensionsUsed", "bufferViews", "buffers",
+                           "images", "materials", "meshes", "nodes", "samplers", "scenes",
+                           "textures", "animations", "skins", "extensionsRequired"}) {
     if (this->Root_.isMember(name) && !this->Root_[name].isArray()) {
       this->Fail(std::string("'") + name + "' is not an array");
     }
@@ -229,28 +237,15 @@ GltfDocument::View GltfDocument::BufferView(std::size_t index) const {
   return view;
 }
 
-void GltfDocument::CheckVersionAndExtensions() const {
+void GltfDocument::CheckVersion() const {
   const Json::Value& asset = this->Root_["asset"];
   const std::string version =
       asset.isObject() && asset["version"].isString() ? asset["version"].asString() : "";
   if (version.compare(0, 2, "2.") != 0) {
     this->Fail(version.empty() ? "is not glTF: asset.version is missing"
-                               : "is glTF " + version + "; version 2 is read",
+                               : "is glTF " + version +
+                                     "; glTF 2.0 is read, into which gltf-pipeline converts it",
                version.empty() ? Error::Kind::Corrupt : Error::Kind::Unsupported);
-  }
-  static const char* const known[] = {"KHR_draco_mesh_compression",
-                                      "KHR_mesh_quantization",
-                                      "KHR_texture_transform",
-                                      "KHR_materials_unlit",
-                                      "KHR_materials_emissive_strength",
-                                      "KHR_materials_pbrSpecularGlossiness",
-                                      "EXT_texture_webp"};
-  for (const Json::Value& extension : this->Array("extensionsRequired")) {
-    const std::string name = extension.isString() ? extension.asString() : "";
-    if (std::find(std::begin(known), std::end(known), name) == std::end(known)) {
-      this->Fail("requires the extension '" + name + "', which is not read",
-                 Error::Kind::Unsupported);
-    }
   }
 }
 

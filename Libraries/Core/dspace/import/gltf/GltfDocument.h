@@ -17,7 +17,7 @@ class GltfDocument {
 public:
   // Opens text (.gltf) or binary (.glb) by content, and loads every buffer (data: URIs, files
   // beside the model, the binary chunk). Throws Error: NotFound naming a missing buffer file,
-  // Unsupported (glTF 1, extensions that are required and not known), Corrupt. With Contents::Json
+  // Unsupported (glTF 1), Corrupt. With Contents::Json
   // the buffers are left where they are, and need not exist.
   enum class Contents { All, Json };
   explicit GltfDocument(const std::string& path, Contents contents = Contents::All);
@@ -61,7 +61,7 @@ public:
 private:
   std::string SplitContainer(const std::string& bytes);
   void ParseJson(const char* begin, const char* end);
-  void CheckVersionAndExtensions() const;
+  void CheckVersion() const;
   void LoadBuffers();
 
   std::string Path_;

@@ -89,9 +89,6 @@ private:
     if (!primitives.isArray() || primitives.empty()) {
       this->Document_.Fail(label + " has no primitives");
     }
-    if (!mesh["weights"].isNull()) {
-      this->Warnings_.push_back(label + ": its morph targets are left out");
-    }
     for (Json::ArrayIndex p = 0; p < primitives.size(); ++p) {
       const std::string where = label + ".primitives[" + std::to_string(p) + "]";
       if (!primitives[p].isObject() || !primitives[p]["attributes"].isObject()) {

@@ -140,9 +140,8 @@ private:
     return this->LoadImage(this->Document_.Index(source, "source", "images", name));
   }
 
-  void ReadBaseTexture(const Json::Value& info, const std::string& where, Material& material,
-                       GltfTextureUse& use) {
-    material.texture = this->LoadTexture(info, where, &material.repeatTexture);
+  GltfTextureUse ReadUse(const Json::Value& info, const std::string& where) const {
+    GltfTextureUse use;
     use.set = this->Document_.Count(info, "texCoord", 0, where);
     const Json::Value& transform = info["extensions"]["KHR_texture_transform"];
     if (transform.isObject()) {
@@ -156,6 +155,7 @@ private:
       use.transform = Eigen::Translation2d(offset[0], offset[1]) * Eigen::Rotation2Dd(angle) *
                       Eigen::Scaling(scale[0], scale[1]);
     }
+    return use;
   }
 
   void ReadSurface(const Json::Value& json, const std::string& where, Material& material,
@@ -171,7 +171,8 @@ private:
                                        factor, where);
       const Json::Value& base = pbr[isGlossy ? "diffuseTexture" : "baseColorTexture"];
       if (!base.isNull()) {
-        this->ReadBaseTexture(base, where, material, use);
+        material.texture = this->LoadTexture(base, where, &material.repeatTexture);
+        use = this->ReadUse(base, where);
       }
       if (isGlossy) {
         material.roughness = 1.0 - this->Document_.Number(pbr, "glossinessFactor", 1.0, where);
@@ -217,6 +218,28 @@ private:
     }
   }
 
+  // It is drawn with the texture coordinates of the base colour, which are the mesh's.
+  void ReadNormals(const Json::Value& info, const std::string& where, GltfTextureUse& use,
+                   Material& material) {
+    if (!info.isObject()) {
+      this->Document_.Fail(where + ".normalTexture is not an object");
+    }
+    const GltfTextureUse own = this->ReadUse(info, where);
+    if (!material.texture) {
+      use = own;
+    } else if (own.set != use.set || !own.transform.isApprox(use.transform)) {
+      this->Warnings_.push_back(where +
+                                ": its normal texture is left out, since its texture coordinates "
+                                "are not those of its colour");
+      return;
+    }
+    // With an alpha channel it would be in the mesh's own axes.
+    const auto image =
+        this->LoadTexture(info, where, material.texture ? nullptr : &material.repeatTexture);
+    material.normalTexture = image ? WithAlpha(image, -1.0) : nullptr;
+    material.normalScale = this->Document_.Number(info, "scale", 1.0, where);
+  }
+
   // Section 3.9.4: only BLEND is translucent; MASK is made a texture of alpha 0 and 255.
   void ReadAlpha(const Json::Value& json, const std::string& where, Material& material) {
     const std::string mode = json["alphaMode"].isString() ? json["alphaMode"].asString() : "OPAQUE";
@@ -252,7 +275,7 @@ private:
     material.doubleSided = json["doubleSided"].isBool() && json["doubleSided"].asBool();
     material.lit = !json["extensions"]["KHR_materials_unlit"].isObject();
     if (!json["normalTexture"].isNull()) {
-      this->Warnings_.push_back(where + ": its normal texture is left out");
+      this->ReadNormals(json["normalTexture"], where, use, material);
     }
     out.opaque.push_back(!json["alphaMode"].isString() || json["alphaMode"].asString() != "BLEND");
     out.materials.push_back(std::move(material));

@@ -9,10 +9,16 @@
 
 namespace dspace {
 
-// The nodes of the default scene, parents first; `meshesOf` as in GltfGeometry. Throws
-// Error(Corrupt).
-std::vector<ModelNode> ReadGltfNodes(const GltfDocument& document,
-                                     const std::vector<std::vector<int>>& meshesOf);
+struct GltfNodes {
+  std::vector<ModelNode> nodes; // parents first
+  std::vector<int> indexOf;     // of each node of the file, -1: not in the scene
+};
+
+// The nodes of the default scene; `meshesOf` as in GltfGeometry. Instances of
+// EXT_mesh_gpu_instancing become children of their node, unless the document was opened without
+// its buffers. Throws Error(Corrupt).
+GltfNodes ReadGltfNodes(const GltfDocument& document,
+                        const std::vector<std::vector<int>>& meshesOf);
 
 } // namespace dspace
 

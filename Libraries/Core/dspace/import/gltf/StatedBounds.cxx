@@ -63,7 +63,7 @@ Eigen::AlignedBox3d GltfBounds(const GltfDocument& document) {
   for (std::size_t i = 0; i < meshesOf.size(); ++i) {
     meshesOf[i] = {static_cast<int>(i)};
   }
-  const std::vector<ModelNode> nodes = ReadGltfNodes(document, meshesOf);
+  const std::vector<ModelNode> nodes = ReadGltfNodes(document, meshesOf).nodes;
   std::vector<Eigen::Affine3d> toModel;
   Eigen::AlignedBox3d bounds;
   for (const ModelNode& node : nodes) {

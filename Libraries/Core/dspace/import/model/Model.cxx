@@ -118,6 +118,10 @@ private:
     if (!node.local.matrix().allFinite()) {
       this->Fail("node", index, node.name, "its transform is not finite");
     }
+    if (node.range && (!node.range->center.allFinite() || !(node.range->from >= 0.0) ||
+                       !(node.range->to >= node.range->from))) {
+      this->Fail("node", index, node.name, "its range of distances is not ascending");
+    }
     for (const int mesh : node.meshes) {
       if (mesh < 0 || mesh >= static_cast<int>(this->Model_.meshes.size())) {
         this->Fail("node", index, node.name,
@@ -169,6 +173,22 @@ Eigen::Affine3d Model::NodeToModel(int node) const {
     X_FN = this->nodes[static_cast<std::size_t>(i)].local * X_FN;
   }
   return X_FN;
+}
+
+std::string LeftOutWarning(const Model& model, bool usesLights, bool usesAnimations) {
+  std::vector<std::string> all = model.leftOut;
+  const auto add = [&all](std::size_t count, const char* what) {
+    if (count > 0) {
+      all.push_back(std::to_string(count) + " " + what + (count > 1 ? "s" : ""));
+    }
+  };
+  add(usesLights ? 0 : model.lights.size(), "light");
+  add(usesAnimations ? 0 : model.animations.size(), "animation");
+  std::string text;
+  for (const std::string& each : all) {
+    text += (text.empty() ? "" : ", ") + each;
+  }
+  return text.empty() ? text : "file '" + model.path + "': left out: " + text;
 }
 
 void CheckModel(const Model& model) {

@@ -4,11 +4,15 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
+
+#include <dspace/import/model/Reflectance.h>
 
 namespace dspace {
 
@@ -32,8 +36,13 @@ struct Material {
   double roughness = 0.8;
   std::array<double, 3> emissive = {0.0, 0.0, 0.0};
   std::shared_ptr<const Image> texture; // modulates colour (and opacity, with an alpha channel)
-  bool repeatTexture = true;            // else clamped to the edge
+  // Tangent space: 0.5 + 0.5 n, X along u, Y along v. With four channels in the mesh's own axes,
+  // for what replaces its normals: opacity times n (128 is 0, 255 is 1), opacity.
+  std::shared_ptr<const Image> normalTexture;
+  double normalScale = 1.0;  // multiplies X and Y of normals in tangent space
+  bool repeatTexture = true; // else clamped to the edge
   bool lit = true;
+  Reflectance reflectance; // no file has another than metallic-roughness
   bool doubleSided = true;
 };
 
@@ -59,12 +68,49 @@ struct Mesh {
   }
 };
 
+// A part is drawn while the distance from the camera to `center` is in [from, to).
+struct DistanceRange {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double from = 0.0;
+  double to = std::numeric_limits<double>::infinity();
+};
+
 // A node of the file's own hierarchy. A mesh may be named by several nodes (instances).
 struct ModelNode {
   std::string name;
   int parent = -1;                                     // index of an earlier node, or -1 for a root
   Eigen::Affine3d local = Eigen::Affine3d::Identity(); // node to parent; any affine map
   std::vector<int> meshes;                             // indices into Model::meshes
+  // Of the node and its descendants, in the node's coordinates; absent: drawn at all distances.
+  std::optional<DistanceRange> range;
+};
+
+// A light of the file (glTF: KHR_lights_punctual).
+struct ModelLight {
+  enum class Kind { Directional, Point, Spot };
+  std::string name;
+  Kind kind = Kind::Directional;
+  int node = -1; // it shines along the node's -Z, from the node's origin
+  std::array<double, 3> color = {1.0, 1.0, 1.0}; // linear light
+  double intensity = 1.0;                        // lux, or candela
+  double cone_deg = 45.0;                        // half angle, Spot
+};
+
+// Key frames of one property of one node.
+struct ModelChannel {
+  enum class Property { Translation, Rotation, Scale };
+  enum class Interpolation { Step, Linear, CubicSpline };
+  int node = -1;
+  Property property = Property::Translation;
+  Interpolation interpolation = Interpolation::Linear;
+  std::vector<double> time_s; // ascending
+  // 3 numbers a key (Rotation: 4, x y z w); CubicSpline: in-tangent, value, out-tangent of each.
+  std::vector<double> value;
+};
+
+struct ModelAnimation {
+  std::string name;
+  std::vector<ModelChannel> channels;
 };
 
 // One imported file, unscaled and unrotated, in its own units and axes.
@@ -72,8 +118,13 @@ struct Model {
   std::string path;
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
-  std::vector<ModelNode> nodes;      // parents come before children
+  std::vector<ModelNode> nodes; // parents come before children
+  std::vector<ModelLight> lights;
+  std::vector<ModelAnimation> animations;
   std::vector<std::string> warnings; // each names an omission or a repair and its place
+  // What the file has and Model cannot hold: "2 cameras", "Background", "morph targets of 3
+  // meshes".
+  std::vector<std::string> leftOut;
 
   // Triangles over all nodes, instances counted each time.
   std::size_t TriangleCount() const;
@@ -82,6 +133,18 @@ struct Model {
   // Node to file coordinates.
   Eigen::Affine3d NodeToModel(int node) const;
 };
+
+// One sentence that lists Model::leftOut, and the lights and animations unless they are used; empty
+// where nothing is left out.
+std::string LeftOutWarning(const Model& model, bool usesLights, bool usesAnimations);
+
+// The local transforms of all nodes at a time of an animation: ModelNode::local where it has no
+// channel. Before the first key of a channel and after its last, that key holds; rotations are
+// interpolated on the sphere (glTF 2.0, section 3.11 and appendix C).
+std::vector<Eigen::Affine3d> PoseModel(const Model& model, const ModelAnimation& animation,
+                                       double time_s);
+// The time of its last key [s].
+double DurationOf(const ModelAnimation& animation);
 
 // Throws Error(Corrupt) naming `path` and the mesh when an index, vertex, node or material of the
 // model is out of range or not finite. Every importer calls it before it returns.

@@ -80,7 +80,7 @@ void TriangulatePolygon(const std::vector<Eigen::Vector3d>& corners, bool convex
   if (!convex && n > 3 && n <= MaximumEarCorners) {
     const Eigen::Vector3d normal = PolygonNormal(corners);
     const std::vector<Eigen::Vector2d> flat = Flatten(corners, normal);
-    if (!IsConvex(flat)) {
+    if (normal.allFinite() && !IsConvex(flat)) {
       for (int i = 0; i < n; ++i) {
         rest.push_back(i);
       }

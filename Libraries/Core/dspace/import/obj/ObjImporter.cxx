@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -14,7 +15,6 @@
 #include <dspace/Error.h>
 
 #include <dspace/import/files/ImportFile.h>
-#include <dspace/import/model/MeshRepair.h>
 #include <dspace/import/model/Polygon.h>
 #include <dspace/import/obj/ObjMaterials.h>
 #include <dspace/import/obj/ObjText.h>
@@ -94,10 +94,6 @@ public:
       }
       if (!part->hasTcoords) {
         part->mesh.tcoords.clear();
-      }
-      if (!NormalizeNormals(part->mesh)) {
-        this->Warnings_.push_back("mesh '" + part->mesh.name +
-                                  "': its normals are left out, some have no length");
       }
       meshes.push_back(std::move(part->mesh));
     }
@@ -196,6 +192,15 @@ private:
   std::size_t Work_ = 0;
 };
 
+// Puts back, for RepairMesh to find, what tinyobjloader does not read.
+void MarkBad(const std::vector<std::size_t>& bad, std::size_t width, std::vector<float>& values) {
+  for (const std::size_t i : bad) {
+    if ((i + 1) * width <= values.size()) {
+      values[i * width] = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+}
+
 } // namespace
 
 Model ReadObj(const std::string& path, const ImportOptions& options) {
@@ -217,6 +222,9 @@ Model ReadObj(const std::string& path, const ImportOptions& options) {
   if (!tinyobj::LoadObj(&attrib, &shapes, &unused, &warning, &error, &in, nullptr, false, false)) {
     throw Error(Error::Kind::Corrupt, FileObject(path), "cannot be parsed: " + error);
   }
+  MarkBad(text.badVertices, 3, attrib.vertices);
+  MarkBad(text.badTcoords, 2, attrib.texcoords);
+  MarkBad(text.badNormals, 3, attrib.normals);
   ObjBuilder builder(text, materials, attrib, model.warnings);
   for (const tinyobj::shape_t& shape : shapes) {
     builder.Add(shape);

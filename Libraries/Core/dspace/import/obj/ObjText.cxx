@@ -9,6 +9,7 @@
 #include <dspace/Utf8.h>
 
 #include <dspace/import/files/ImportFile.h>
+#include <dspace/import/files/NumberWords.h>
 
 namespace dspace {
 
@@ -56,13 +57,13 @@ public:
 private:
   void Statement(const std::string& keyword, const std::string& rest) {
     if (keyword == "v") {
-      this->Numbers("v", rest, 3, 6);
+      this->Numbers("v", rest, 3, 6, &this->Out_.badVertices, this->Vertices_.size);
       ++this->Vertices_.size;
     } else if (keyword == "vt") {
-      this->Numbers("vt", rest, 1, 2);
+      this->Numbers("vt", rest, 1, 2, &this->Out_.badTcoords, this->Tcoords_.size);
       ++this->Tcoords_.size;
     } else if (keyword == "vn") {
-      this->Numbers("vn", rest, 3, 3);
+      this->Numbers("vn", rest, 3, 3, &this->Out_.badNormals, this->Normals_.size);
       ++this->Normals_.size;
     } else if (keyword == "f" || keyword == "fo") {
       this->Corners("f", rest, 3);
@@ -94,14 +95,17 @@ private:
   }
 
   // Copies up to `maximum` numbers, of which `minimum` must be there. Three to five beyond a
-  // vertex's coordinates are a weight, which is dropped, and not a colour.
+  // vertex's coordinates are a weight, which is dropped, and not a colour. Where one is not finite,
+  // `bad` gets the `index` of the element.
   void Numbers(const char* keyword, const std::string& rest, std::size_t minimum,
-               std::size_t maximum) {
+               std::size_t maximum, std::vector<std::size_t>* bad, std::size_t index) {
+    bool finite = true;
     std::string line = keyword, word;
     std::size_t at = 0, count = 0;
     std::size_t coordinates = 0;
     while (count < maximum && NextWord(rest, at, word)) {
-      this->CheckNumber(keyword, word);
+      const bool good = this->CheckNumber(keyword, word);
+      finite = finite && (good || count >= 3); // colours after coordinates may be anything
       line += ' ';
       line += word;
       if (++count == minimum) {
@@ -115,11 +119,15 @@ private:
     if (count < maximum && maximum == 6) {
       line.resize(coordinates);
     }
+    if (!finite) {
+      bad->push_back(index);
+    }
     this->Out_.text += line;
     this->Out_.text += '\n';
   }
 
-  void CheckNumber(const char* keyword, std::string& word) const {
+  // False, with 0 in place of the word, for a number that is no finite float.
+  bool CheckNumber(const char* keyword, std::string& word) const {
     const char* begin = word.data() + (word[0] == '+' ? 1 : 0);
     const char* end = word.data() + word.size();
     double value = 0.0;
@@ -127,13 +135,19 @@ private:
     if (error == std::errc::result_out_of_range && word.find_first_of("eE") != std::string::npos &&
         word.find('-', 1) != std::string::npos) {
       word = "0"; // too small for a double
-      return;
+      return true;
     }
-    if (error != std::errc() || stop != end || !std::isfinite(value) ||
-        std::abs(value) > double(std::numeric_limits<float>::max())) {
+    const bool notFinite = error == std::errc::result_out_of_range || IsNotFiniteWord(word);
+    if (!notFinite && (error != std::errc() || stop != end)) {
       this->Fail(std::string(keyword) + " has '" + Utf8Beginning(word, 40) +
-                 "'; finite numbers are accepted");
+                 "'; numbers are accepted");
     }
+    if (notFinite || !std::isfinite(value) ||
+        std::abs(value) > double(std::numeric_limits<float>::max())) {
+      word = "0";
+      return false;
+    }
+    return true;
   }
 
   void Corners(const char* keyword, const std::string& rest, std::size_t minimum) {

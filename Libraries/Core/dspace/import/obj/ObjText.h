@@ -24,10 +24,13 @@ struct ObjText {
   std::size_t vertices = 0;
   std::vector<std::string> libraries; // what mtllib names, each the rest of its line
   std::vector<std::string> warnings;
+  // Vertices, texture coordinates and normals, from 0, with a number that is not finite in float;
+  // `text` has 0 in its place.
+  std::vector<std::size_t> badVertices, badTcoords, badNormals;
 };
 
-// Throws Error(Corrupt) naming the line: a coordinate that is missing, no number or not finite in
-// float, an index that is zero or out of range; Error(Resource) beyond `maximumTriangles`.
+// Throws Error(Corrupt) naming the line: a coordinate that is missing or no number, an index that
+// is zero or out of range; Error(Resource) beyond `maximumTriangles`.
 ObjText CheckObjText(const std::string& path, const std::string& bytes,
                      std::size_t maximumTriangles);
 

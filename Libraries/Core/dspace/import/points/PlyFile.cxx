@@ -1,6 +1,7 @@
 #include <dspace/import/points/PlyFile.h>
 
 #include <dspace/import/files/ImportFile.h>
+#include <dspace/import/files/NumberWords.h>
 
 #include <dspace/Error.h>
 #include <dspace/Utf8.h>
@@ -86,9 +87,6 @@ PlyProperty ParseProperty(const std::vector<std::string>& words, const Lines& li
     property.list = true;
     property.countType = ParseType(words[2], lines);
     property.type = ParseType(words[3], lines);
-    if (!IsPlyInteger(property.countType)) {
-      lines.Fail("the length of a list is of type " + words[2] + "; an integer type is accepted");
-    }
   } else if (words.size() == 3) {
     property.type = ParseType(words[1], lines);
   } else {
@@ -153,6 +151,12 @@ PlyHeader ParsePlyHeader(const std::string& bytes, const std::string& path) {
   bool format = false;
   for (std::vector<std::string> words = lines.Next();
        words != std::vector<std::string>{"end_header"}; words = lines.Next()) {
+    if (words.size() > 2 && words[0] == "comment" && words[1] == "TextureFile") {
+      header.texture = words[2];
+      for (std::size_t i = 3; i < words.size(); ++i) {
+        header.texture += " " + words[i];
+      }
+    }
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
       continue;
     }
@@ -266,7 +270,10 @@ double PlyValues::NextText(PlyType type, const PlyElement& element, std::uint64_
   const bool tiny = result.ec == std::errc::result_out_of_range &&
                     word.find_first_of("eE") != std::string::npos &&
                     word.find('-', 1) != std::string::npos;
-  if (result.ptr != text.data() + i || (result.ec != std::errc() && !tiny)) {
+  const bool huge = result.ec == std::errc::result_out_of_range && !tiny;
+  if (huge || IsNotFiniteWord(word)) {
+    value = std::numeric_limits<double>::quiet_NaN(); // for RepairMesh to find
+  } else if (result.ptr != text.data() + i || (result.ec != std::errc() && !tiny)) {
     this->Fail("'" + word + "' is not a number", element, row);
   }
   value = tiny ? 0.0 : value;
@@ -275,7 +282,7 @@ double PlyValues::NextText(PlyType type, const PlyElement& element, std::uint64_
         {-128, 127},      {0, 255}, {-32768, 32767}, {0, 65535}, {-2147483648.0, 2147483647.0},
         {0, 4294967295.0}};
     const double* range = limits[static_cast<std::size_t>(type)];
-    if (value != std::floor(value) || value < range[0] || value > range[1]) {
+    if (!(value == std::floor(value) && value >= range[0] && value <= range[1])) {
       this->Fail("'" + word + "' is not an integer of its type", element, row);
     }
   }
@@ -288,9 +295,11 @@ void PlyValues::NextList(const PlyProperty& property, const PlyElement& element,
   const std::size_t least =
       this->Format_ == PlyHeader::Format::Text ? 2 : PlyTypeSize(property.type);
   const std::size_t room = (this->Bytes_.size() - this->Position_ + 1) / least;
-  if (count < 0.0 || count > static_cast<double>(room)) {
-    this->Fail("list '" + property.name + "' of length " +
-                   std::to_string(static_cast<long long>(count)) + " does not fit in the file",
+  if (!(count >= 0.0 && count <= static_cast<double>(room) && count == std::floor(count))) {
+    std::ostringstream length;
+    length << count;
+    this->Fail("list '" + property.name + "' of length " + length.str() +
+                   " does not fit in the file",
                element, row);
   }
   values.clear();

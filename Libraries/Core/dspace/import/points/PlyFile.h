@@ -32,6 +32,7 @@ struct PlyHeader {
   enum class Format { Text, LittleEndian, BigEndian };
   Format format = Format::Text;
   std::vector<PlyElement> elements;
+  std::string texture;  // what MeshLab's "comment TextureFile" names; or empty
   std::size_t body = 0; // where the values begin
 };
 

@@ -1,5 +1,7 @@
 // ReadPly: text and binary PLY: polygons, triangle strips, edges or bare points, with the colours,
 // normals and texture coordinates of their vertices.
+#include <dspace/import/files/FileNames.h>
+#include <dspace/import/files/ImageReader.h>
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/files/Importers.h>
 #include <dspace/import/model/Polygon.h>
@@ -41,6 +43,9 @@ struct Vertices {
 struct Primitives {
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> lines;
+  // Of the triangles' corners, where faces have attributes of their own; else empty.
+  std::vector<Eigen::Vector2d> tcoords;
+  std::vector<std::array<std::uint8_t, 4>> colors;
 };
 
 class Reader {
@@ -68,6 +73,7 @@ public:
       this->Warn(std::to_string(this->Values_.BytesLeft()) +
                  " bytes after the last element are left out");
     }
+    this->ReadTexture();
     return this->MakeModel();
   }
 
@@ -80,9 +86,11 @@ private:
     this->Warnings_.push_back(message + " (" + FileObject(this->Path_) + ")");
   }
 
-  // One row: plain values by property; lists are read into `list` where wanted, else skipped.
+  // One row: plain values by property; lists are read into `list` and `other` where wanted, else
+  // skipped.
   void ReadRow(const PlyElement& element, std::uint64_t row, int wantedList,
-               std::vector<double>& values, std::vector<double>& list) {
+               std::vector<double>& values, std::vector<double>& list, int otherList = -1,
+               std::vector<double>* other = nullptr) {
     values.assign(element.properties.size(), 0.0);
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
@@ -90,6 +98,8 @@ private:
         values[i] = this->Values_.Next(property.type, element, row);
       } else if (static_cast<int>(i) == wantedList) {
         this->Values_.NextList(property, element, row, list);
+      } else if (other && static_cast<int>(i) == otherList) {
+        this->Values_.NextList(property, element, row, *other);
       } else {
         this->Values_.NextList(property, element, row, this->Unused_);
       }
@@ -112,13 +122,11 @@ private:
     if (p[0] < 0 || p[1] < 0 || p[2] < 0) {
       this->Fail("element vertex has no properties x, y and z");
     }
-    const int n[3] = {FindAny(element, {"nx"}), FindAny(element, {"ny"}), FindAny(element, {"nz"})};
-    const int c[4] = {FindAny(element, {"red", "diffuse_red", "r"}),
-                      FindAny(element, {"green", "diffuse_green", "g"}),
-                      FindAny(element, {"blue", "diffuse_blue", "b"}),
-                      FindAny(element, {"alpha", "a"})};
-    const int t[2] = {FindAny(element, {"u", "s", "texture_u"}),
-                      FindAny(element, {"v", "t", "texture_v"})};
+    const int n[3] = {FindAny(element, {"nx", "normal_x"}), FindAny(element, {"ny", "normal_y"}),
+                      FindAny(element, {"nz", "normal_z"})};
+    const std::array<int, 4> c = FindColors(element);
+    const int t[2] = {FindAny(element, {"u", "s", "texture_u", "texture_s"}),
+                      FindAny(element, {"v", "t", "texture_v", "texture_t"})};
     const bool normals = n[0] >= 0 && n[1] >= 0 && n[2] >= 0;
     const bool colors = c[0] >= 0 && c[1] >= 0 && c[2] >= 0;
     const bool tcoords = t[0] >= 0 && t[1] >= 0;
@@ -127,11 +135,6 @@ private:
       this->ReadRow(element, i, -1, row, this->Unused_);
       const auto at = [&row](int k) { return row[static_cast<std::size_t>(k)]; };
       const Eigen::Vector3d position(at(p[0]), at(p[1]), at(p[2]));
-      if (!(position.cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max())) {
-        this->Fail("vertex " + std::to_string(i) + " is at (" + std::to_string(position.x()) +
-                   ", " + std::to_string(position.y()) + ", " + std::to_string(position.z()) +
-                   "); finite is accepted");
-      }
       this->Vertices_.positions.push_back(position);
       if (normals) {
         this->Vertices_.normals.emplace_back(at(n[0]), at(n[1]), at(n[2]));
@@ -141,30 +144,18 @@ private:
       }
       for (int k = 0; colors && k < 4; ++k) {
         this->Vertices_.colors.push_back(
-            c[k] < 0 ? 255 : Byte(at(c[k]), element.properties[static_cast<std::size_t>(c[k])]));
+            c[std::size_t(k)] < 0
+                ? 255
+                : Byte(at(c[std::size_t(k)]), element.properties[std::size_t(c[std::size_t(k)])]));
       }
     }
-    this->CheckAttributes();
   }
 
-  // Attributes that cannot be used as they are, are dropped whole, never the vertices.
-  void CheckAttributes() {
-    const auto limit = static_cast<double>(std::numeric_limits<float>::max());
-    const auto badNormal = [](const Eigen::Vector3d& n) {
-      return !n.allFinite() || !(n.norm() > 1e-30) || !std::isfinite(n.norm());
-    };
-    const auto badTcoord = [limit](const Eigen::Vector2d& t) {
-      return !(t.cwiseAbs().maxCoeff() <= limit);
-    };
-    Vertices& v = this->Vertices_;
-    if (std::any_of(v.normals.begin(), v.normals.end(), badNormal)) {
-      this->Warn("a normal is null or not finite: all are left out");
-      v.normals.clear();
-    }
-    if (std::any_of(v.tcoords.begin(), v.tcoords.end(), badTcoord)) {
-      this->Warn("a texture coordinate is not finite: all are left out");
-      v.tcoords.clear();
-    }
+  static std::array<int, 4> FindColors(const PlyElement& element) {
+    return {FindAny(element, {"red", "diffuse_red", "r"}),
+            FindAny(element, {"green", "diffuse_green", "g"}),
+            FindAny(element, {"blue", "diffuse_blue", "b"}),
+            FindAny(element, {"alpha", "diffuse_alpha", "a"})};
   }
 
   // Integers use the range of their type, floats run from 0 to 1.
@@ -196,13 +187,32 @@ private:
   }
 
   static int FindIndices(const PlyElement& element) {
-    for (const char* name : {"vertex_indices", "vertex_index"}) {
-      const int i = element.Find(name);
-      if (i >= 0 && element.properties[static_cast<std::size_t>(i)].list) {
-        return i;
+    int only = -1, lists = 0;
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      if (property.list) {
+        ++lists;
+        only = static_cast<int>(i);
+        if (property.name == "vertex_indices" || property.name == "vertex_index") {
+          return only;
+        }
       }
     }
-    return -1;
+    return lists == 1 && IsPlyInteger(element.properties[std::size_t(only)].type) ? only : -1;
+  }
+
+  // A face's own attributes, for the corners of one of its triangles.
+  void AddCorners(const std::array<int, 3>& triangle, const std::vector<double>& tcoords,
+                  std::size_t corners, const std::array<std::uint8_t, 4>* color) {
+    for (const int k : triangle) {
+      if (color) {
+        this->Primitives_.colors.push_back(*color);
+      }
+      if (tcoords.size() == 2 * corners) {
+        this->Primitives_.tcoords.emplace_back(tcoords[2 * std::size_t(k)],
+                                               tcoords[2 * std::size_t(k) + 1]);
+      }
+    }
   }
 
   void ReadFaces(const PlyElement& element) {
@@ -210,16 +220,17 @@ private:
     if (indices < 0 && element.count > 0) {
       this->Fail("element face has no list vertex_indices or vertex_index");
     }
-    if (FindAny(element, {"red", "r"}) >= 0) {
-      this->Warn("colours of faces are not read");
-    }
+    const int texcoord = element.Find("texcoord"); // MeshLab's: u v a corner
+    const std::array<int, 4> c = FindColors(element);
+    const bool colored = c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && this->Vertices_.colors.empty();
     std::vector<double> row;
     std::vector<double> list;
+    std::vector<double> tcoords;
     std::vector<Eigen::Vector3d> corners;
     std::vector<std::array<int, 3>> triangles;
     std::size_t small = 0;
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      this->ReadRow(element, i, indices, row, list);
+      this->ReadRow(element, i, indices, row, list, texcoord, &tcoords);
       corners.clear();
       for (const double value : list) {
         corners.push_back(this->Vertices_.positions[this->Index(value, element, i)]);
@@ -227,16 +238,28 @@ private:
       small += corners.size() < 3;
       triangles.clear();
       TriangulatePolygon(corners, false, triangles);
+      std::array<std::uint8_t, 4> color = {255, 255, 255, 255};
+      for (std::size_t k = 0; colored && k < 4; ++k) {
+        if (c[k] >= 0) {
+          color[k] = Byte(row[std::size_t(c[k])], element.properties[std::size_t(c[k])]);
+        }
+      }
       for (const std::array<int, 3>& t : triangles) {
         for (const int k : t) {
           this->Primitives_.triangles.push_back(
               static_cast<std::uint32_t>(list[static_cast<std::size_t>(k)]));
         }
+        this->AddCorners(t, tcoords, corners.size(), colored ? &color : nullptr);
       }
       this->CheckTriangles();
     }
     if (small > 0) {
       this->Warn(std::to_string(small) + " faces with fewer than 3 corners are left out");
+    }
+    if (this->Primitives_.tcoords.size() != this->Primitives_.triangles.size() &&
+        !this->Primitives_.tcoords.empty()) {
+      this->Warn("texture coordinates of faces are left out: some faces have none");
+      this->Primitives_.tcoords.clear();
     }
   }
 
@@ -296,10 +319,12 @@ private:
     model.nodes[0].name = std::filesystem::path(this->Path_).stem().string();
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& p : this->Vertices_.positions) {
-      box.extend(p);
+      if (p.allFinite()) {
+        box.extend(p);
+      }
     }
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-    if (box.center().norm() > FarFromOrigin * box.sizes().norm()) {
+    if (!box.isEmpty() && box.center().norm() > FarFromOrigin * box.sizes().norm()) {
       origin = box.center();
       model.nodes[0].local.translate(origin);
     }
@@ -340,7 +365,10 @@ private:
       append(mesh.tcoords, t);
     }
     for (const Eigen::Vector3d& n : this->Vertices_.normals) {
-      append(mesh.normals, n.normalized().eval());
+      append(mesh.normals, n.normalized().eval()); // of one without length all 0
+    }
+    if (primitive == Mesh::Primitive::Triangles) {
+      this->GiveCornersTheirOwn(mesh);
     }
     // Vertex colours are the colours, not a tint of the default grey; what has no normals and no
     // faces to make them from cannot be lit.
@@ -349,12 +377,65 @@ private:
     if (!mesh.colors.empty()) {
       material.color = {1.0, 1.0, 1.0};
     }
-    if (!mesh.colors.empty() || !material.lit) {
+    if (!mesh.tcoords.empty() && this->Texture_) {
+      material.texture = this->Texture_;
+      material.color = {1.0, 1.0, 1.0};
+    }
+    if (!mesh.colors.empty() || !material.lit || material.texture) {
       mesh.material = static_cast<int>(model.materials.size());
       model.materials.push_back(material);
     }
     model.nodes[0].meshes.push_back(static_cast<int>(model.meshes.size()));
     model.meshes.push_back(std::move(mesh));
+  }
+
+  // Vertices that faces share become one a corner where faces have attributes of their own.
+  void GiveCornersTheirOwn(Mesh& mesh) const {
+    const Primitives& own = this->Primitives_;
+    const std::size_t n = mesh.indices.size();
+    const bool colors = own.colors.size() == n;
+    const bool tcoords = own.tcoords.size() == n;
+    if (n == 0 || (!colors && !tcoords)) {
+      return;
+    }
+    Mesh made;
+    made.primitive = mesh.primitive;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t v = mesh.indices[i];
+      const auto take = [v](const auto& from, std::size_t width, auto& to) {
+        if (!from.empty()) {
+          to.insert(to.end(), from.begin() + std::ptrdiff_t(v * width),
+                    from.begin() + std::ptrdiff_t((v + 1) * width));
+        }
+      };
+      take(mesh.positions, 3, made.positions);
+      take(mesh.normals, 3, made.normals);
+      if (colors) {
+        made.colors.insert(made.colors.end(), own.colors[i].begin(), own.colors[i].end());
+      } else {
+        take(mesh.colors, 4, made.colors);
+      }
+      if (tcoords) {
+        made.tcoords.push_back(static_cast<float>(own.tcoords[i].x()));
+        made.tcoords.push_back(static_cast<float>(own.tcoords[i].y()));
+      } else {
+        take(mesh.tcoords, 2, made.tcoords);
+      }
+      made.indices.push_back(static_cast<std::uint32_t>(i));
+    }
+    mesh = std::move(made);
+  }
+
+  // What the header's TextureFile names.
+  void ReadTexture() {
+    if (this->Header_.texture.empty()) {
+      return;
+    }
+    try {
+      this->Texture_ = ReadImage(ResolveReference(this->Path_, this->Header_.texture));
+    } catch (const Error& e) {
+      this->Warn("its texture is left out: " + std::string(e.what()));
+    }
   }
 
   std::string Path_;
@@ -365,6 +446,7 @@ private:
   Vertices Vertices_;
   bool HasVertices_ = false;
   Primitives Primitives_;
+  std::shared_ptr<const Image> Texture_;
   std::vector<std::string> Warnings_;
   std::vector<double> Unused_;
 };

@@ -1,6 +1,7 @@
 // ReadStl: text and binary STL. Vertices at exactly the same place become one.
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/files/Importers.h>
+#include <dspace/import/files/NumberWords.h>
 
 #include <dspace/Error.h>
 #include <dspace/Utf8.h>
@@ -42,10 +43,10 @@ public:
     this->Mesh_.name = name;
   }
 
-  void AddTriangle(const std::array<float, 9>& p, std::size_t serial) {
+  void AddTriangle(const std::array<float, 9>& p) {
     std::uint32_t v[3];
     for (std::size_t i = 0; i < 3; ++i) {
-      v[i] = this->Vertex(&p[3 * i], serial);
+      v[i] = this->Vertex(&p[3 * i]);
     }
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
       ++this->Degenerate_;
@@ -80,14 +81,10 @@ private:
     }
   };
 
-  std::uint32_t Vertex(const float* p, std::size_t serial) {
+  // Coordinates that are not finite are left for RepairMesh to find.
+  std::uint32_t Vertex(const float* p) {
     Key key;
     for (std::size_t i = 0; i < 3; ++i) {
-      if (!std::isfinite(p[i])) {
-        throw Error(Error::Kind::Corrupt, this->Object_,
-                    "triangle " + std::to_string(serial) + " has the coordinate " +
-                        std::to_string(p[i]) + "; finite is accepted");
-      }
       const float value = p[i] + 0.0f; // -0 is 0
       std::memcpy(&key[i], &value, sizeof value);
     }
@@ -134,7 +131,7 @@ void ReadBinary(const std::string& bytes, Model& model, const ImportOptions& opt
     for (std::size_t k = 0; k < 9; ++k) {
       p[k] = LittleEndianFloat(triangle + 4 * k);
     }
-    solid.AddTriangle(p, i);
+    solid.AddTriangle(p);
   }
   solid.Finish(model);
 }
@@ -182,10 +179,15 @@ public:
     const auto result = std::from_chars(begin, word.data() + word.size(), value);
     const bool tiny =
         result.ec == std::errc::result_out_of_range && word.find("e-") != std::string::npos;
+    const bool huge = result.ec == std::errc::result_out_of_range && !tiny;
+    if (huge || IsNotFiniteWord(word) ||
+        (result.ec == std::errc() && result.ptr == word.data() + word.size() &&
+         !(std::abs(value) <= std::numeric_limits<float>::max()))) {
+      return std::numeric_limits<float>::quiet_NaN();
+    }
     if (word.empty() || result.ptr != word.data() + word.size() ||
-        (result.ec != std::errc() && !tiny) ||
-        !(std::abs(value) <= std::numeric_limits<float>::max())) {
-      this->Fail(word, "a finite number");
+        (result.ec != std::errc() && !tiny)) {
+      this->Fail(word, "a number");
     }
     return tiny ? 0.0f : static_cast<float>(value);
   }
@@ -232,7 +234,7 @@ void ReadText(const std::string& text, Model& model, const ImportOptions& option
       words.Expect("endloop");
       words.Expect("endfacet");
       CheckCount(++count, model.path, options);
-      solid.AddTriangle(p, count - 1);
+      solid.AddTriangle(p);
     }
     if (word != "endsolid") {
       words.Fail(word, "'facet' or 'endsolid'");

@@ -33,8 +33,8 @@ public:
   Urdf Read() {
     this->Out_.path = this->Path_;
     const std::string text = ReadFileText(this->Path_, std::size_t(1) << 28);
-    const urdf::ModelInterfaceSharedPtr model =
-        ParseUrdfText(this->Path_, text, this->Out_.warnings);
+    const urdf::ModelInterfaceSharedPtr model = ParseUrdfText(
+        this->Path_, text, this->Out_.warnings, this->Options_.strict ? nullptr : &this->Repairs_);
     try {
       this->Convert(*model);
     } catch (...) {
@@ -42,6 +42,10 @@ public:
       throw;
     }
     this->MakeTextUtf8();
+    this->MapLinkNames();
+    for (const std::string& warning : this->Repairs_.Texts()) {
+      this->Warn(FileObject(this->Path_) + ": " + ToUtf8(warning), Error::Kind::Corrupt);
+    }
     return std::move(this->Out_);
   }
 
@@ -83,6 +87,27 @@ private:
     if (!taken.insert(name).second) {
       this->Fail(std::string(kind) + " '" + name + "': two " + kind +
                  "s have this name in different encodings; accepted: one of each name");
+    }
+  }
+
+  // Frames are named after links, and paths of frames are made of their names.
+  void MapLinkNames() {
+    std::set<std::string> taken;
+    for (const UrdfLink& link : this->Out_.links) {
+      taken.insert(link.name);
+    }
+    for (UrdfLink& link : this->Out_.links) {
+      link.originalName = link.name;
+      if (IsValidFrameName(link.name)) {
+        continue;
+      }
+      const std::string mapped = MappedFrameName(link.name);
+      link.name = mapped;
+      for (int n = 2; !taken.insert(link.name).second; ++n) {
+        link.name = mapped + "_" + std::to_string(n);
+      }
+      this->Repairs_.Add("links whose names a path of frames cannot hold are renamed",
+                         "'" + link.originalName + "' is '" + link.name + "'");
     }
   }
 
@@ -141,7 +166,7 @@ private:
       }
       for (const urdf::VisualSharedPtr& visual : model.getLink(next.link)->visual_array) {
         if (visual && visual->geometry) {
-          link.visuals.push_back(this->ConvertVisual(*visual, next.link));
+          this->AddVisual(*visual, link);
         }
       }
       this->Out_.links.push_back(std::move(link));
@@ -154,20 +179,21 @@ private:
     }
   }
 
-  Pose ConvertPose(const urdf::Pose& from, const std::string& where) const {
+  Pose ConvertPose(const urdf::Pose& from, const std::string& where) {
     Pose pose;
     pose.position = {from.position.x, from.position.y, from.position.z};
     pose.rotation =
         Eigen::Quaterniond(from.rotation.w, from.rotation.x, from.rotation.y, from.rotation.z);
     if (!(pose.position.array().abs() <= MaximumCoordinate).all() ||
         !pose.rotation.coeffs().allFinite() || !(pose.rotation.norm() > 1e-6)) {
-      this->Fail(where + ": its origin is not finite or beyond 1e18 m");
+      this->Repairs_.Add("origins that are not finite, or beyond 1e18 m, are taken as 0", where);
+      return {};
     }
     pose.rotation.normalize();
     return pose;
   }
 
-  UrdfJoint ConvertJoint(const urdf::Joint& from, int parent, int child) const {
+  UrdfJoint ConvertJoint(const urdf::Joint& from, int parent, int child) {
     const std::string where = "joint '" + from.name + "'";
     UrdfJoint joint;
     joint.name = from.name;
@@ -177,12 +203,12 @@ private:
     joint.X_PJ = this->ConvertPose(from.parent_to_joint_origin_transform, where);
     if (joint.type != UrdfJoint::Type::Fixed && joint.type != UrdfJoint::Type::Floating) {
       const Eigen::Vector3d axis(from.axis.x, from.axis.y, from.axis.z);
-      if (!axis.allFinite() || !(axis.norm() > 1e-9)) {
-        this->Fail(where + ": its axis (" + std::to_string(axis.x()) + ", " +
-                   std::to_string(axis.y()) + ", " + std::to_string(axis.z()) +
-                   ") has no direction");
+      if (axis.allFinite() && axis.norm() > 1e-9) {
+        joint.axis = axis.normalized();
+      } else {
+        this->Repairs_.Add("joints whose axis has no direction are taken as fixed", where);
+        joint.type = UrdfJoint::Type::Fixed;
       }
-      joint.axis = axis.normalized();
     }
     if (from.limits &&
         (joint.type == UrdfJoint::Type::Revolute || joint.type == UrdfJoint::Type::Prismatic)) {
@@ -191,19 +217,25 @@ private:
     return joint;
   }
 
-  void ConvertLimits(const urdf::JointLimits& from, const std::string& where,
-                     UrdfJoint& joint) const {
-    if (!std::isfinite(from.lower) || !std::isfinite(from.upper) || from.lower > from.upper) {
-      this->Fail(where + ": its limits " + std::to_string(from.lower) + " to " +
-                 std::to_string(from.upper) + " are the wrong way round or not finite");
+  void ConvertLimits(const urdf::JointLimits& from, const std::string& where, UrdfJoint& joint) {
+    double lower = from.lower, upper = from.upper;
+    if (std::isnan(lower) || std::isnan(upper)) {
+      this->Repairs_.Add("limits that are no numbers are left out", where);
+      return;
+    }
+    if (lower > upper) {
+      std::ostringstream text;
+      text << where << " (" << lower << " to " << upper << ")";
+      this->Repairs_.Add("limits that are the wrong way round are exchanged", text.str());
+      std::swap(lower, upper);
     }
     // Generators write the largest double where there is no limit.
     constexpr double boundless = 1e300;
-    joint.hasLimits = from.lower > -boundless || from.upper < boundless;
+    joint.hasLimits = lower > -boundless || upper < boundless;
     if (joint.hasLimits) {
       const double unit = Turns(joint) ? DegreesPerRadian : 1.0;
-      joint.lower = std::max(from.lower, -boundless) * unit;
-      joint.upper = std::min(from.upper, boundless) * unit;
+      joint.lower = std::max(lower, -boundless) * unit;
+      joint.upper = std::min(upper, boundless) * unit;
     }
   }
 
@@ -245,10 +277,15 @@ private:
       const std::string where = "joint '" + joint.name + "'";
       const auto found = indexOf.find(mimic->joint_name);
       if (found == indexOf.end()) {
-        this->Fail(where + " mimics joint '" + mimic->joint_name + "', which does not exist");
+        this->Repairs_.Add("joints that mimic one that does not exist move by themselves",
+                           where + " ('" + mimic->joint_name + "')");
+        continue;
       }
       if (!std::isfinite(mimic->multiplier) || !std::isfinite(mimic->offset)) {
-        this->Fail(where + ": its mimic's multiplier or offset is not finite");
+        this->Repairs_.Add(
+            "joints that mimic by a factor or an offset that is not finite move by themselves",
+            where);
+        continue;
       }
       const double unit = Turns(joint) ? DegreesPerRadian : 1.0;
       const double otherUnit =
@@ -257,18 +294,21 @@ private:
       joint.mimicMultiplier = mimic->multiplier * unit / otherUnit;
       joint.mimicOffset = mimic->offset * unit;
     }
-    for (const UrdfJoint& joint : this->Out_.joints) {
+    for (UrdfJoint& joint : this->Out_.joints) {
       std::size_t steps = 0;
       for (int i = joint.mimic; i >= 0; i = this->Out_.joints[std::size_t(i)].mimic) {
         if (++steps > this->Out_.joints.size()) {
-          this->Fail("joint '" + joint.name + "' mimics itself through other joints");
+          this->Repairs_.Add("joints that mimic themselves, through others too, move by themselves",
+                             "joint '" + joint.name + "'");
+          joint.mimic = -1;
+          break;
         }
       }
     }
   }
 
-  UrdfVisual ConvertVisual(const urdf::Visual& from, const std::string& link) {
-    const std::string where = "link '" + link + "'";
+  void AddVisual(const urdf::Visual& from, UrdfLink& link) {
+    const std::string where = "link '" + link.name + "'";
     UrdfVisual visual;
     visual.name = from.name;
     visual.X_LV = this->ConvertPose(from.origin, where);
@@ -293,12 +333,6 @@ private:
       const auto& mesh = dynamic_cast<const urdf::Mesh&>(*from.geometry);
       visual.size = {mesh.scale.x, mesh.scale.y, mesh.scale.z};
       visual.meshPath = this->Resolve(mesh.filename);
-      std::error_code error;
-      visual.missing = !fs::is_regular_file(visual.meshPath, error);
-      if (visual.missing) {
-        this->Warn(where + ": its mesh '" + visual.meshPath + "' does not exist");
-        visual.warning = this->Out_.warnings.size() - 1;
-      }
       break;
     }
     }
@@ -308,22 +342,34 @@ private:
     size = isMesh ? size.abs().eval() : size;
     if (!(size >= (isMesh ? MinimumScale : 1e-9) && size <= (isMesh ? MaximumScale : 1e15)).all()) {
       std::ostringstream text;
-      text << where << ": its geometry has the " << (isMesh ? "scale " : "size ") << visual.size.x()
-           << " " << visual.size.y() << " " << visual.size.z() << "; accepted: "
-           << (isMesh ? "1e-12 to 1e12, or the negative of it" : "1e-9 to 1e15 metres");
-      this->Fail(text.str());
+      text << where << " has " << visual.size.x() << " " << visual.size.y() << " "
+           << visual.size.z();
+      this->Repairs_.Add(isMesh ? "visuals are left out for the scale of their mesh (accepted: "
+                                  "1e-12 to 1e12, or the negative of it)"
+                                : "visuals are left out for their size (accepted: 1e-9 to 1e15 "
+                                  "metres)",
+                         text.str());
+      return;
     }
     if (from.material) {
       visual.hasMaterial = true;
       visual.material = this->ConvertMaterial(*from.material, where);
     }
-    return visual;
+    std::error_code error;
+    visual.missing = isMesh && !fs::is_regular_file(visual.meshPath, error);
+    if (visual.missing) {
+      this->Warn(where + ": its mesh '" + visual.meshPath + "' does not exist");
+      visual.warning = this->Out_.warnings.size() - 1;
+    }
+    link.visuals.push_back(std::move(visual));
   }
 
   Material ConvertMaterial(const urdf::Material& from, const std::string& where) {
     const auto unit = [&](double v) {
       if (!std::isfinite(v)) {
-        this->Fail(where + ": material '" + from.name + "' has a colour that is not finite");
+        this->Repairs_.Add("colours that are not finite are taken as 1",
+                           where + ", material '" + from.name + "'");
+        return 1.0;
       }
       return std::clamp(v, 0.0, 1.0);
     };
@@ -348,9 +394,9 @@ private:
     return material;
   }
 
-  void Warn(const std::string& message) {
+  void Warn(const std::string& message, Error::Kind kind = Error::Kind::NotFound) {
     if (this->Options_.strict) {
-      this->Fail(message + " (rejected: strict)", Error::Kind::NotFound);
+      this->Fail(message + " (rejected: strict)", kind);
     }
     this->Out_.warnings.push_back(message);
   }
@@ -392,6 +438,7 @@ private:
   const std::string& Path_;
   const ImportOptions& Options_;
   Urdf Out_;
+  GroupedWarnings Repairs_;
   std::map<std::string, int> LinkIndex_;
   std::vector<const urdf::Joint*> Sources_; // one a joint of Out_
   std::map<std::string, std::shared_ptr<const Image>> Images_;

@@ -27,8 +27,9 @@ struct UrdfVisual {
 };
 
 struct UrdfLink {
-  std::string name;
-  int parentJoint = -1; // index into joints, or -1 for the root link
+  std::string name;         // unique; a valid name of a frame
+  std::string originalName; // in the file
+  int parentJoint = -1;     // index into joints, or -1 for the root link
   std::vector<UrdfVisual> visuals;
 };
 
@@ -62,9 +63,12 @@ struct Urdf {
 
 // Reads and checks a URDF. Mesh file names are resolved relative to the URDF's folder; `package://`
 // names are looked for from the folders above it. A missing mesh is a warning and
-// `visual.missing`, or an Error when options.strict.
-// Throws Error: NotFound, Io, Corrupt (XML, two parents, a loop, several roots, a zero or
-// non-finite axis, limits the wrong way round, nesting deeper than 1000).
+// `visual.missing`. What does not concern the tree of links is repaired with a warning: names that
+// frames cannot have, undefined materials, shapes without a size (left out), limits that are
+// missing or the wrong way round, axes without a direction (the joint becomes fixed), mimics of
+// unknown joints. With options.strict each of these is an Error.
+// Throws Error: NotFound, Io, Corrupt (XML, no link, two parents, a loop, several roots, nesting
+// deeper than 1000).
 Urdf ReadUrdf(const std::string& path, const ImportOptions& options = {});
 
 } // namespace dspace

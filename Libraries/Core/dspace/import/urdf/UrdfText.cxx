@@ -10,6 +10,7 @@
 #include <dspace/Utf8.h>
 
 #include <dspace/import/files/ImportFile.h>
+#include <dspace/import/urdf/UrdfRepair.h>
 
 namespace dspace {
 
@@ -84,10 +85,20 @@ int XmlDepth(const std::string& text) {
   return deepest;
 }
 
+urdf::ModelInterfaceSharedPtr Parse(const std::string& text, LogCapture& log) {
+  try {
+    return urdf::parseURDF(text);
+  } catch (const std::exception& e) {
+    log.Messages.push_back(e.what());
+    return nullptr;
+  }
+}
+
 } // namespace
 
 urdf::ModelInterfaceSharedPtr ParseUrdfText(const std::string& path, const std::string& text,
-                                            std::vector<std::string>& warnings) {
+                                            std::vector<std::string>& warnings,
+                                            GroupedWarnings* repairs) {
   if (text.find('\0') != std::string::npos) {
     throw Error(Error::Kind::Corrupt, FileObject(path), "is not a URDF: it has zero bytes");
   }
@@ -98,13 +109,13 @@ urdf::ModelInterfaceSharedPtr ParseUrdfText(const std::string& path, const std::
                     std::to_string(MaximumUrdfDepth) + " is accepted");
   }
   LogCapture log;
-  urdf::ModelInterfaceSharedPtr model;
-  try {
-    model = urdf::parseURDF(text);
-  } catch (const std::exception& e) {
-    log.Messages.push_back(e.what());
+  urdf::ModelInterfaceSharedPtr model = Parse(text, log);
+  // It drops the rest of a link after something that it cannot read, and only logs that.
+  if ((!model || !log.Messages.empty()) && repairs) {
+    log.Messages.clear();
+    model = Parse(RepairUrdfText(text, *repairs), log);
   }
-  if (!model) {
+  if (!model || (!log.Messages.empty() && !repairs)) {
     std::string message = "is not a valid URDF";
     for (std::size_t i = 0; i < log.Messages.size() && i < 4; ++i) {
       message += (i == 0 ? ": " : "; ") + log.Messages[i];

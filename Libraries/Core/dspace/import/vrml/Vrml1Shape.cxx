@@ -1,6 +1,7 @@
 #include <dspace/import/vrml/Vrml1Shape.h>
 
 #include <dspace/import/vrml/VrmlFields.h>
+#include <dspace/import/vrml/VrmlLetters.h>
 #include <dspace/import/vrml/VrmlSolids.h>
 
 #include <Inventor/nodes/SoNodes.h>
@@ -135,6 +136,24 @@ Mesh FromPointSet(const SoPointSet& node, const Vrml1State& state, VrmlComplaint
   return MakeVrmlPoints(points, complaints);
 }
 
+Mesh FromText(const SoAsciiText& node, const Vrml1State& state, VrmlComplaints& complaints) {
+  VrmlLetters letters;
+  letters.lines = ToVector(node.string);
+  letters.size = 10.0; // VRML 1.0's default
+  if (const auto* style = As<SoFontStyle>(state.fontStyle)) {
+    letters.size = style->size.getValue();
+  }
+  letters.spacing = node.spacing.getValue();
+  const int side = node.justification.getValue();
+  letters.major = side == SoAsciiText::CENTER  ? VrmlLetters::Justify::Middle
+                  : side == SoAsciiText::RIGHT ? VrmlLetters::Justify::End
+                                               : VrmlLetters::Justify::Begin;
+  for (int i = 0; i < node.width.getNum(); ++i) {
+    letters.lengths.push_back(node.width[i]);
+  }
+  return MakeVrmlLetters(letters, complaints);
+}
+
 bool Positive(std::initializer_list<double> sizes, VrmlComplaints& complaints) {
   const bool positive = std::all_of(sizes.begin(), sizes.end(), [](double s) { return s > 0.0; });
   if (!positive) {
@@ -152,6 +171,9 @@ Mesh MakeShape(SoNode* shape, const Vrml1State& state, bool textured, VrmlCompla
   }
   if (const auto* points = As<SoPointSet>(shape)) {
     return FromPointSet(*points, state, complaints);
+  }
+  if (const auto* text = As<SoAsciiText>(shape)) {
+    return FromText(*text, state, complaints);
   }
   if (const auto* cube = As<SoCube>(shape)) {
     const Eigen::Vector3d size(cube->width.getValue(), cube->height.getValue(),
@@ -238,6 +260,29 @@ Material MakeMaterial(const Vrml1State& state, bool colored, bool filled) {
   return result;
 }
 
+// VRML 1.0 is drawn as OpenGL 1 does: a texture multiplies the sum of emission and reflection.
+// Material adds the emission after it, so that white would hide the texture.
+void DimEmission(const Image& texture, Material& material) {
+  const double least = *std::min_element(material.emissive.begin(), material.emissive.end());
+  if (least >= 0.999) { // reflection adds nothing to white: the texture as it is
+    material.emissive = {0.0, 0.0, 0.0};
+    material.color = {1.0, 1.0, 1.0};
+    material.lit = false;
+    return;
+  }
+  std::array<double, 3> sum = {0.0, 0.0, 0.0};
+  const std::size_t n = static_cast<std::size_t>(texture.channels);
+  for (std::size_t p = 0; p + n <= texture.pixels.size(); p += n) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum[c] += texture.pixels[p + (n >= 3 ? c : 0)];
+    }
+  }
+  const double pixels = static_cast<double>(texture.pixels.size() / n);
+  for (std::size_t c = 0; c < 3; ++c) {
+    material.emissive[c] *= sum[c] / (255.0 * pixels);
+  }
+}
+
 } // namespace
 
 bool Vrml1State::SetProperty(SoNode* candidate) {
@@ -252,7 +297,8 @@ bool Vrml1State::SetProperty(SoNode* candidate) {
       {SoTexture2::getClassTypeId(), &this->texture},
       {SoTexture2Transform::getClassTypeId(), &this->textureTransform},
       {SoTextureCoordinate2::getClassTypeId(), &this->textureCoordinates},
-      {SoShapeHints::getClassTypeId(), &this->hints}};
+      {SoShapeHints::getClassTypeId(), &this->hints},
+      {SoFontStyle::getClassTypeId(), &this->fontStyle}};
   for (const auto& [kind, slot] : kinds) {
     if (type == kind) {
       *slot = candidate;
@@ -273,7 +319,7 @@ void AddVrml1Shape(VrmlBuilder& builder, const VrmlFile& file, SoNode* shape,
         static_cast<const SoNode*>(state.texture),
         static_cast<const SoNode*>(state.textureTransform),
         static_cast<const SoNode*>(state.textureCoordinates),
-        static_cast<const SoNode*>(state.hints)}) {
+        static_cast<const SoNode*>(state.hints), static_cast<const SoNode*>(state.fontStyle)}) {
     key.push_back(reinterpret_cast<std::uintptr_t>(part));
   }
   if (builder.UseMesh(node, key)) {
@@ -297,6 +343,9 @@ void AddVrml1Shape(VrmlBuilder& builder, const VrmlFile& file, SoNode* shape,
       Material material = MakeMaterial(state, colored, filled);
       material.name = state.material ? file.NameOf(state.material) : "";
       material.texture = image;
+      if (image && filled) {
+        DimEmission(*image, material);
+      }
       material.repeatTexture = !texture || (texture->wrapS.getValue() == SoTexture2::REPEAT &&
                                             texture->wrapT.getValue() == SoTexture2::REPEAT);
       mesh.material = builder.AddMaterial(materialKey, material);

@@ -24,6 +24,7 @@ struct Vrml1State {
   SoNode* textureTransform = nullptr;
   SoNode* textureCoordinates = nullptr;
   SoNode* hints = nullptr;
+  SoNode* fontStyle = nullptr;
 
   // Takes a property node; false when it is none.
   bool SetProperty(SoNode* candidate);

@@ -4,6 +4,9 @@
 #include <dspace/import/vrml/Vrml1Shape.h>
 #include <dspace/import/vrml/VrmlFields.h>
 
+#include <algorithm>
+#include <limits>
+
 #include <Inventor/nodes/SoNodes.h>
 
 namespace dspace {
@@ -54,6 +57,9 @@ private:
           this->Visit(group.getChild(i), used, depth + 1);
         }
       }
+    } else if (group.isOfType(SoLOD::getClassTypeId()) &&
+               static_cast<SoLOD&>(group).range.getNum() > 0) {
+      this->VisitLevels(static_cast<SoLOD&>(group), used, depth);
     } else if (group.isOfType(SoLOD::getClassTypeId()) ||
                group.isOfType(SoLevelOfDetail::getClassTypeId())) {
       if (count > 0) {
@@ -69,6 +75,25 @@ private:
       inner.local = state.local;
       inner.localNode = state.localNode;
       state = inner;
+    }
+  }
+
+  // As in VRML 2.0: level i is shown from range[i - 1] to range[i].
+  void VisitLevels(SoLOD& lod, Vrml1State& state, int depth) {
+    const int levels = lod.getNumChildren();
+    const int ranges = lod.range.getNum();
+    DistanceRange range;
+    range.center = ToEigen(lod.center.getValue());
+    for (int i = 0; i < levels && i <= ranges; ++i) {
+      range.from = i == 0 ? 0.0 : range.to;
+      range.to = i + 1 < levels && i < ranges ? std::max<double>(lod.range[i], range.from)
+                                              : std::numeric_limits<double>::infinity();
+      Vrml1State inner = state;
+      inner.node = this->Builder_.AddNode(this->NodeFor(state), "", Eigen::Affine3d::Identity());
+      inner.local = Eigen::Affine3d::Identity();
+      inner.localNode = inner.node;
+      this->Builder_.SetRange(inner.node, range);
+      this->Visit(lod.getChild(i), inner, depth + 1);
     }
   }
 

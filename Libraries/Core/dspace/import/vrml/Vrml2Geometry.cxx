@@ -3,6 +3,7 @@
 #include <dspace/import/vrml/Vrml2Shape.h>
 #include <dspace/import/vrml/VrmlExtrusion.h>
 #include <dspace/import/vrml/VrmlFields.h>
+#include <dspace/import/vrml/VrmlLetters.h>
 #include <dspace/import/vrml/VrmlSolids.h>
 
 #include <Inventor/VRMLnodes/SoVRMLBox.h>
@@ -12,11 +13,13 @@
 #include <Inventor/VRMLnodes/SoVRMLCylinder.h>
 #include <Inventor/VRMLnodes/SoVRMLElevationGrid.h>
 #include <Inventor/VRMLnodes/SoVRMLExtrusion.h>
+#include <Inventor/VRMLnodes/SoVRMLFontStyle.h>
 #include <Inventor/VRMLnodes/SoVRMLIndexedFaceSet.h>
 #include <Inventor/VRMLnodes/SoVRMLIndexedLineSet.h>
 #include <Inventor/VRMLnodes/SoVRMLNormal.h>
 #include <Inventor/VRMLnodes/SoVRMLPointSet.h>
 #include <Inventor/VRMLnodes/SoVRMLSphere.h>
+#include <Inventor/VRMLnodes/SoVRMLText.h>
 #include <Inventor/VRMLnodes/SoVRMLTextureCoordinate.h>
 #include <Inventor/fields/SoSFNode.h>
 
@@ -135,6 +138,28 @@ void FromPointSet(SoVRMLPointSet& node, Vrml2Geometry& out) {
   out.mesh = MakeVrmlPoints(points, out.complaints);
 }
 
+void FromText(SoVRMLText& node, Vrml2Geometry& out) {
+  VrmlLetters letters;
+  letters.lines = ToVector(node.string);
+  for (int i = 0; i < node.length.getNum(); ++i) {
+    letters.lengths.push_back(node.length[i]);
+  }
+  letters.maximumExtent = node.maxExtent.getValue();
+  if (const auto* style = NodeIn<SoVRMLFontStyle>(node.fontStyle)) {
+    letters.size = style->size.getValue();
+    letters.spacing = style->spacing.getValue();
+    const std::vector<std::string> justify = ToVector(style->justify);
+    letters.major = VrmlJustify(justify.empty() ? "" : justify[0], VrmlLetters::Justify::Begin);
+    letters.minor = VrmlJustify(justify.size() < 2 ? "" : justify[1], VrmlLetters::Justify::First);
+    if (!style->horizontal.getValue() || !style->leftToRight.getValue() ||
+        !style->topToBottom.getValue()) {
+      out.complaints.emplace_back("text of another direction is written from left to right");
+    }
+  }
+  out.mesh = MakeVrmlLetters(letters, out.complaints);
+  out.solid = false; // it is seen from both sides
+}
+
 bool Positive(std::initializer_list<double> sizes, Vrml2Geometry& out) {
   for (const double size : sizes) {
     if (!(size > 0.0)) {
@@ -160,6 +185,8 @@ Vrml2Geometry MakeVrml2Geometry(SoNode* node, bool textured) {
     FromElevationGrid(*static_cast<SoVRMLElevationGrid*>(node), out);
   } else if (type == SoVRMLExtrusion::getClassTypeId()) {
     FromExtrusion(*static_cast<SoVRMLExtrusion*>(node), out);
+  } else if (type == SoVRMLText::getClassTypeId()) {
+    FromText(*static_cast<SoVRMLText*>(node), out);
   } else if (type == SoVRMLBox::getClassTypeId()) {
     const Eigen::Vector3d size = ToEigen(static_cast<SoVRMLBox*>(node)->size.getValue());
     if (Positive({size.x(), size.y(), size.z()}, out)) {

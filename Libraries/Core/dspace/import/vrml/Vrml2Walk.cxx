@@ -4,6 +4,9 @@
 #include <dspace/import/vrml/Vrml2Shape.h>
 #include <dspace/import/vrml/VrmlFields.h>
 
+#include <algorithm>
+#include <limits>
+
 #include <Inventor/VRMLnodes/SoVRMLCollision.h>
 #include <Inventor/VRMLnodes/SoVRMLInline.h>
 #include <Inventor/VRMLnodes/SoVRMLLOD.h>
@@ -41,8 +44,7 @@ public:
       const auto& s = *static_cast<SoVRMLSwitch*>(node);
       this->VisitOne(s.choice, s.whichChoice.getValue(), this->Named(node, parent), depth);
     } else if (type == SoVRMLLOD::getClassTypeId()) {
-      // The nearest level, which is the finest.
-      this->VisitOne(static_cast<SoVRMLLOD*>(node)->level, 0, this->Named(node, parent), depth);
+      this->VisitLevels(*static_cast<SoVRMLLOD*>(node), this->Named(node, parent), depth);
     } else if (type == SoVRMLInline::getClassTypeId()) {
       this->Builder_.Inline(this->File_, ToVector(static_cast<SoVRMLInline*>(node)->url),
                             this->Named(node, parent), depth);
@@ -73,6 +75,27 @@ private:
   void VisitOne(const SoMFNode& children, int which, int parent, int depth) {
     if (which >= 0 && which < children.getNum()) {
       this->Visit(children[which], parent, depth + 1);
+    }
+  }
+
+  // VRML97 6.26: level i is shown from range[i - 1] to range[i]; further ranges show the last
+  // level. Without ranges the browser is free: the first level, which is the finest.
+  void VisitLevels(const SoVRMLLOD& lod, int parent, int depth) {
+    const int levels = lod.level.getNum();
+    const int ranges = lod.range.getNum();
+    if (ranges == 0) {
+      this->VisitOne(lod.level, 0, parent, depth);
+      return;
+    }
+    DistanceRange range;
+    range.center = ToEigen(lod.center.getValue());
+    for (int i = 0; i < levels && i <= ranges; ++i) {
+      range.from = i == 0 ? 0.0 : range.to;
+      range.to = i + 1 < levels && i < ranges ? std::max<double>(lod.range[i], range.from)
+                                              : std::numeric_limits<double>::infinity();
+      const int own = this->Builder_.AddNode(parent, "", Eigen::Affine3d::Identity());
+      this->Builder_.SetRange(own, range);
+      this->Visit(lod.level[i], own, depth + 1);
     }
   }
 

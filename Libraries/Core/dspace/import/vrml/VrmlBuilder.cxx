@@ -62,6 +62,9 @@ Model VrmlBuilder::Run() {
                 Eigen::Affine3d::Identity());
   this->WalkFile(this->Model_.path, 0, 0);
   this->AppendWarnings();
+  for (const auto& [type, count] : this->LeftOut_) {
+    this->Model_.leftOut.push_back(std::to_string(count) + " " + type);
+  }
   return std::move(this->Model_);
 }
 
@@ -72,6 +75,9 @@ const VrmlFile& VrmlBuilder::Open(const std::string& path) {
     return found->second;
   }
   VrmlFile file = ParseVrml(path, this->Session_, this->Model_.warnings);
+  for (const auto& [type, count] : file.guarded.leftOut) {
+    this->LeftOut_[type] += count;
+  }
   return this->Files_.emplace(canonical, std::move(file)).first->second;
 }
 
@@ -96,6 +102,10 @@ void VrmlBuilder::Step(const VrmlFile& file, int depth) {
     throw Error(Error::Kind::Resource, FileObject(this->Model_.path),
                 "expands to more than " + std::to_string(MaximumSteps) + " nodes");
   }
+}
+
+void VrmlBuilder::SetRange(int node, const DistanceRange& range) {
+  this->Model_.nodes[static_cast<std::size_t>(node)].range = range;
 }
 
 int VrmlBuilder::AddNode(int parent, const std::string& name, const Eigen::Affine3d& local) {

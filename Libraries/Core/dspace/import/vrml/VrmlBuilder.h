@@ -29,6 +29,7 @@ public:
   // Counts a step of the walk. Throws Error(Resource) beyond 2,000,000 steps or 512 levels.
   void Step(const VrmlFile& file, int depth);
   int AddNode(int parent, const std::string& name, const Eigen::Affine3d& local);
+  void SetRange(int node, const DistanceRange& range);
   // Hangs the mesh of that key on the node; false when there is none yet.
   bool UseMesh(int node, const Key& key);
   // Stores a mesh, unless it is empty, and hangs it on the node.
@@ -69,6 +70,7 @@ private:
   std::map<std::string, std::shared_ptr<const Image>> Textures_;
   std::map<Key, int> Meshes_; // -1: empty
   std::map<Key, int> Materials_;
+  std::map<std::string, int> LeftOut_; // by type of node, of all files
   std::set<std::string> Warned_;
   std::vector<Warnings> Warnings_; // in the order of each kind's first
   std::size_t Steps_ = 0;

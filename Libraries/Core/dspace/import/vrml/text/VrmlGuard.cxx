@@ -214,6 +214,8 @@ private:
         (!proto && (!known || known->use != VrmlNodeType::Use::Kept))) {
       if (!proto && (!known || known->use == VrmlNodeType::Use::Unsupported)) {
         this->Warn(std::string(known ? "" : "unknown ") + "node " + type + " is not read", line);
+      } else if (known && known->use == VrmlNodeType::Use::Listed) {
+        ++this->Result_.leftOut[type];
       }
       this->Tokens_.SkipBalanced();
       if (!name.empty()) {

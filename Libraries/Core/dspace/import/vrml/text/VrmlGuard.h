@@ -4,6 +4,7 @@
 
 #include <dspace/import/vrml/text/VrmlText.h>
 
+#include <map>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -15,6 +16,7 @@ struct GuardedVrml {
   std::unordered_map<std::string, std::string> names; // DEF name in `text` -> name in the file
   // DEF name in `text` of a VRML 1.0 Texture2 -> its file name, which Coin would open at once.
   std::unordered_map<std::string, std::string> textures;
+  std::map<std::string, int> leftOut; // types of nodes that a Model cannot hold, and how many
 };
 
 // Coin crashes, hangs or opens files on its own on some input, so it never sees the file itself but

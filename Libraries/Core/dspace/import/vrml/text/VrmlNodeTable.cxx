@@ -38,13 +38,16 @@ Coordinate point=MFVec3f
 Normal vector=MFVec3f
 Color color=MFColor
 TextureCoordinate point=MFVec2f
+Text string=MFString fontStyle=SFNode length=MFFloat maxExtent=SFFloat
+FontStyle -family=MFString horizontal=SFBool justify=MFString -language=SFString leftToRight=SFBool size=SFFloat spacing=SFFloat -style=SFString topToBottom=SFBool
 )";
-const char* const Vrml2Ignored =
+const char* const Vrml2Ignored = "NavigationInfo WorldInfo";
+const char* const Vrml2Listed =
     "AudioClip Background ColorInterpolator CoordinateInterpolator CylinderSensor DirectionalLight "
-    "Fog FontStyle NavigationInfo NormalInterpolator OrientationInterpolator PlaneSensor "
-    "PointLight PositionInterpolator ProximitySensor ScalarInterpolator Script Sound SphereSensor "
-    "SpotLight TimeSensor TouchSensor Viewpoint VisibilitySensor WorldInfo";
-const char* const Vrml2Unsupported = "Text MovieTexture";
+    "Fog NormalInterpolator OrientationInterpolator PlaneSensor PointLight PositionInterpolator "
+    "ProximitySensor ScalarInterpolator Script Sound SphereSensor SpotLight TimeSensor TouchSensor "
+    "Viewpoint VisibilitySensor";
+const char* const Vrml2Unsupported = "MovieTexture";
 
 const char* const Vrml1Nodes = R"(
 +Separator -renderCulling=SFEnum -renderCaching=SFEnum -boundingBoxCaching=SFEnum -pickCulling=SFEnum
@@ -80,16 +83,20 @@ Cube width=SFFloat height=SFFloat depth=SFFloat
 Sphere radius=SFFloat
 Cylinder parts=SFEnum radius=SFFloat height=SFFloat
 Cone parts=SFEnum bottomRadius=SFFloat height=SFFloat
+AsciiText string=MFString spacing=SFFloat justification=SFEnum width=MFFloat
+FontStyle size=SFFloat -family=SFEnum -style=SFEnum
+Font size=SFFloat -name=SFName
 )";
 const char* const Vrml1Ignored =
-    "Info Label DirectionalLight PointLight SpotLight OrthographicCamera PerspectiveCamera "
-    "FontStyle Font Environment DrawStyle LightModel Complexity PickStyle TextureCoordinateBinding "
-    "NavigationInfo Viewpoint Background";
-const char* const Vrml1Unsupported = "AsciiText Text2 Text3 FaceSet LineSet TriangleStripSet "
+    "Info Label Complexity PickStyle TextureCoordinateBinding NavigationInfo";
+const char* const Vrml1Listed = "DirectionalLight PointLight SpotLight OrthographicCamera "
+                                "PerspectiveCamera Environment DrawStyle LightModel Viewpoint "
+                                "Background";
+const char* const Vrml1Unsupported = "Text2 Text3 FaceSet LineSet TriangleStripSet "
                                      "QuadMesh IndexedTriangleStripSet PackedColor VertexProperty "
                                      "Units ResetTransform Array MultipleCopy NurbsSurface";
 
-Table Parse(const char* kept, const char* ignored, const char* unsupported) {
+Table Parse(const char* kept, const char* ignored, const char* listed, const char* unsupported) {
   Table table;
   std::istringstream lines(kept);
   for (std::string line; std::getline(lines, line);) {
@@ -112,6 +119,7 @@ Table Parse(const char* kept, const char* ignored, const char* unsupported) {
     table[name] = type;
   }
   for (const auto& [names, use] : {std::pair(ignored, VrmlNodeType::Use::Ignored),
+                                   std::pair(listed, VrmlNodeType::Use::Listed),
                                    std::pair(unsupported, VrmlNodeType::Use::Unsupported)}) {
     std::istringstream words(names);
     for (std::string name; words >> name;) {
@@ -144,8 +152,8 @@ bool FindVrmlFieldType(const std::string& name, VrmlFieldType& type) {
 }
 
 const VrmlNodeType* FindVrmlNodeType(VrmlDialect dialect, const std::string& name) {
-  static const Table vrml1 = Parse(Vrml1Nodes, Vrml1Ignored, Vrml1Unsupported);
-  static const Table vrml2 = Parse(Vrml2Nodes, Vrml2Ignored, Vrml2Unsupported);
+  static const Table vrml1 = Parse(Vrml1Nodes, Vrml1Ignored, Vrml1Listed, Vrml1Unsupported);
+  static const Table vrml2 = Parse(Vrml2Nodes, Vrml2Ignored, Vrml2Listed, Vrml2Unsupported);
   const Table& table = dialect == VrmlDialect::Vrml1 ? vrml1 : vrml2;
   const auto found = table.find(name);
   return found == table.end() ? nullptr : &found->second;

@@ -21,7 +21,8 @@ struct VrmlFieldType {
 struct VrmlNodeType {
   enum class Use {
     Kept,       // read
-    Ignored,    // has no geometry (lights, sensors, ...): left out
+    Ignored,    // describes the file, or how it is browsed: left out
+    Listed,     // has no geometry but an effect (lights, sensors, ...): left out and counted
     Unsupported // would be seen, is not read: left out with a warning
   };
   Use use = Use::Kept;

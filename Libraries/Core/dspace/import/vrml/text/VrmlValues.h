@@ -26,8 +26,8 @@ private:
 // Takes a value of that type from `in` and appends it to `out`. Returns false, with nothing
 // appended, when the value is unusable and the field's default is to hold: an image whose pixels
 // do not match its size, or more than 16384 pixels wide or high. A list loses an incomplete last
-// value. Both add a
-// warning. Throws Error(Corrupt) naming the line if anything else than such a value follows.
+// value. Both add a warning. Throws Error(Corrupt) naming the line if anything else than such a
+// value follows.
 bool WriteVrmlValue(const VrmlFieldType& type, VrmlTokens& in, std::string& out,
                     VrmlWarnings& warnings);
 
