@@ -4,7 +4,7 @@
 
 #include "RenderingTestSupport.h"
 
-#include <dspace/scene/RoundNumbers.h>
+#include <dspace/overlay/RoundNumbers.h>
 
 namespace dspace::testing {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <set>
 
+#include <dspace/overlay/Overlay.h>
 #include <dspace/render/text/TextShapes.h>
-#include <dspace/scene/Overlay.h>
 
 using namespace dspace;
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <dspace/scene/Overlay.h>
+#include <dspace/overlay/Overlay.h>
 
 namespace dspace {
 
@@ -33,6 +33,10 @@ struct ColorBar {
   int fontSize = 14;  // pixels, 4 to 200
   std::array<double, 4> textColor = {1, 1, 1, 1};         // sRGB and opacity, 0 to 1
   std::array<double, 4> backgroundColor = {0, 0, 0, 0.5}; // sRGB and opacity, 0 to 1
+  // The terrain whose ramp, or the one of whose layer, the bar explains: it is shown while that is.
+  // Empty: it is always shown.
+  std::string terrain;
+  std::string layer;
 
   bool operator==(const ColorBar& o) const;
   bool operator!=(const ColorBar& o) const { return !(*this == o); }

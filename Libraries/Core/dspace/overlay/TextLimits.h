@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 namespace dspace {
 

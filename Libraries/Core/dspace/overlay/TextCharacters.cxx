@@ -1,9 +1,9 @@
-#include <dspace/scene/TextCharacters.h>
+#include <dspace/overlay/TextCharacters.h>
 
 #include <cstdio>
 
+#include <dspace/Checks.h>
 #include <dspace/Utf8.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace {
 namespace {

@@ -1,4 +1,4 @@
-#include <dspace/scene/RoundNumbers.h>
+#include <dspace/overlay/RoundNumbers.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,11 +1,11 @@
-#include <dspace/scene/ColorBar.h>
+#include <dspace/overlay/ColorBar.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include <dspace/scene/RoundNumbers.h>
-#include <dspace/scene/TextCharacters.h>
-#include <dspace/scene/TextLimits.h>
+#include <dspace/overlay/RoundNumbers.h>
+#include <dspace/overlay/TextCharacters.h>
+#include <dspace/overlay/TextLimits.h>
 
 namespace dspace {
 namespace {
@@ -37,7 +37,8 @@ bool ColorBar::operator==(const ColorBar& o) const {
          this->ticks == o.ticks && this->values == o.values && this->horizontal == o.horizontal &&
          this->anchor == o.anchor && this->margin == o.margin && this->length == o.length &&
          this->thickness == o.thickness && this->fontSize == o.fontSize &&
-         this->textColor == o.textColor && this->backgroundColor == o.backgroundColor;
+         this->textColor == o.textColor && this->backgroundColor == o.backgroundColor &&
+         this->terrain == o.terrain && this->layer == o.layer;
 }
 
 void ColorBar::Check() const {

@@ -1,7 +1,7 @@
-#include <dspace/scene/Overlay.h>
+#include <dspace/overlay/Overlay.h>
 
-#include <dspace/scene/TextCharacters.h>
-#include <dspace/scene/TextLimits.h>
+#include <dspace/overlay/TextCharacters.h>
+#include <dspace/overlay/TextLimits.h>
 
 namespace dspace {
 
