@@ -1,10 +1,10 @@
-#include <dspace/scene/OrbitController.h>
+#include <dspace/scene/controls/OrbitController.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/OrbitMotion.h>
+#include <dspace/Checks.h>
+#include <dspace/scene/controls/OrbitMotion.h>
 
 namespace dspace {
 
@@ -101,6 +101,9 @@ OrbitResult OrbitController::Handle(const InputEvent& event, const OrbitView& vi
   case Type::Release:
     if (event.button == this->Button_) {
       result.picked = this->Clicking_ && this->Drag_ == Drag::Orbit;
+      if (this->Clicking_ && !result.picked && this->Drag_ != Drag::None) {
+        result.clicked = event.button;
+      }
       result.x = this->PressX_;
       result.y = this->PressY_;
       this->Drag_ = Drag::None;
@@ -134,7 +137,7 @@ Eigen::Vector3d OrbitController::PivotFor(const InputEvent& event, const OrbitVi
     depth = X_CF.Apply(view.bounds_F->center).z();
   }
   if (!(depth > 0.0) && pointed) {
-    depth = std::max(DefaultDepth, 2.0 * projection.nearDistance);
+    depth = std::max(DefaultDepth, 2.0 * projection.Near());
   }
   const Projection::Ray ray = projection.PixelRay(event.x, event.y, view.width, view.height);
   return view.pose.X_FC.Apply(ray.origin + ray.direction * (depth / ray.direction.z()));
@@ -252,8 +255,10 @@ Camera OrbitController::FrameSphere(const OrbitView& view, const BoundingSphere&
   Eigen::Vector3d p_C = Eigen::Vector3d::Zero(); // where the sphere's centre is to come
   if (projection.kind == Projection::Kind::Orthographic) {
     projection.height = 2.0 * r * std::max(1.0, double(view.height) / view.width);
-    const double range = projection.farDistance - projection.nearDistance;
-    p_C.z() = projection.nearDistance + std::min(2.0 * r, 0.5 * range);
+    p_C.z() = projection.Near() + 2.0 * r;
+    if (projection.farDistance) {
+      p_C.z() = std::min(p_C.z(), 0.5 * (projection.Near() + *projection.farDistance));
+    }
   } else {
     // Tangents a < b of opposite borders, at angles with cosines ca, cb from Z. The centre, on
     // their bisector, is r away from both at z (b - a) = r / ca + r / cb.
@@ -264,7 +269,7 @@ Camera OrbitController::FrameSphere(const OrbitView& view, const BoundingSphere&
     const Eigen::Array2d ca = (1.0 + a.square()).rsqrt();
     const Eigen::Array2d cb = (1.0 + b.square()).rsqrt();
     const double z = (r * (1.0 / ca + 1.0 / cb) / (b - a)).maxCoeff();
-    p_C.z() = std::max(z, r + projection.nearDistance);
+    p_C.z() = std::max(z, r + projection.Near());
     p_C.head<2>() = p_C.z() * (a * ca + b * cb) / (ca + cb);
   }
   camera.mount = CameraMount();

@@ -6,7 +6,7 @@
 
 #include <dspace/scene/Camera.h>
 #include <dspace/scene/GraphicsObject.h>
-#include <dspace/scene/InputEvent.h>
+#include <dspace/scene/controls/InputEvent.h>
 
 namespace dspace {
 
@@ -26,6 +26,8 @@ struct OrbitResult {
   bool picked = false; // a left click (no drag): pick the pixel (x, y)
   double x = 0.0;
   double y = 0.0;
+  // A click of another button, or with Shift; pixel as above. None: there was none.
+  InputEvent::Button clicked = InputEvent::Button::None;
 };
 
 // Left drag orbits about the point under the pointer; right is +X of the picture, and the horizon

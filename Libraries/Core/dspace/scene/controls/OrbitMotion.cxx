@@ -1,4 +1,4 @@
-#include <dspace/scene/OrbitMotion.h>
+#include <dspace/scene/controls/OrbitMotion.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,7 +68,7 @@ void DollyTo(Pose& X_FC, Projection& projection, const Eigen::Vector3d& pivot_F,
   if (!(p_C.z() > 0.0)) {
     return; // behind the camera: there is no pixel to keep
   }
-  const double nearest = std::min(p_C.z(), 2.0 * projection.nearDistance);
+  const double nearest = std::min(p_C.z(), 2.0 * projection.Near());
   const double farthest = std::max(p_C.z(), 1e15);
   const double depth = std::clamp(p_C.z() * factor, nearest, farthest);
   X_FC.position = pivot_F + (X_FC.position - pivot_F) * (depth / p_C.z());
