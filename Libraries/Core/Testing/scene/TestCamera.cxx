@@ -3,6 +3,8 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -142,8 +144,8 @@ TEST(Projection, MatrixAgreesWithProject) {
 
 TEST(Projection, DepthIsReversed) {
   for (const Projection& p : {Perspective(0.25, Infinity), Perspective(0.25, 1e3), OffAxis()}) {
-    EXPECT_NEAR(ByClip(p, {0, 0, p.nearDistance}, 64, 64).z(), 1.0, 1e-14);
-    EXPECT_DOUBLE_EQ(p.DepthFromBuffer(1.0), p.nearDistance);
+    EXPECT_NEAR(ByClip(p, {0, 0, p.Near()}, 64, 64).z(), 1.0, 1e-14);
+    EXPECT_DOUBLE_EQ(p.DepthFromBuffer(1.0), p.Near());
     EXPECT_EQ(p.DepthFromBuffer(0.0), Infinity);
   }
   EXPECT_NEAR(ByClip(Perspective(0.25, 1e3), {0, 0, 1e3}, 64, 64).z(), 0.0, 1e-15);
@@ -210,7 +212,7 @@ TEST(Projection, RejectsWhatCannotBeProjected) {
   p = Orthographic();
   p.nearDistance = -1e300;
   rejected(p, "near");
-  p.nearDistance = p.farDistance - 1e-10;
+  p.nearDistance = p.Far() - 1e-10;
   rejected(p, "far");
   p = OffAxis();
   EXPECT_NO_THROW(p.Check("left eye"));
@@ -227,6 +229,47 @@ TEST(Projection, RejectsWhatCannotBeProjected) {
   EXPECT_REFUSED(OffAxis().ClipFromView(0, 10), "0 x 10");
   EXPECT_REFUSED(OffAxis().Project({0, 0, 1}, 10, -1), "10 x -1");
   EXPECT_REFUSED(Orthographic().MetresPerPixel(1.0, 0), "0");
+}
+
+TEST(Projection, NearAndFarThatAreAbsentFollowWhatIsSeen) {
+  Projection perspective;
+  EXPECT_EQ(perspective.Near(), 0.05);
+  EXPECT_TRUE(std::isinf(perspective.Far()));
+  const auto near = [&](double nearest, double farthest) {
+    return *perspective.Seeing(nearest, farthest).nearDistance;
+  };
+  EXPECT_EQ(near(3.0, 9.0), 0.05);
+  EXPECT_DOUBLE_EQ(near(1e-3, 9.0), 0.9e-3);
+  EXPECT_EQ(near(1e-12, 9.0), 1e-9);
+  EXPECT_EQ(near(-1.0, 9.0), 0.05);
+  EXPECT_EQ(near(1.0, 0.0), 0.05); // nothing
+  EXPECT_TRUE(std::isinf(*perspective.Seeing(1.0, 2.0).farDistance));
+  EXPECT_NO_THROW(perspective.Seeing(1e-12, 1e18).Check("eye"));
+
+  Projection flat;
+  flat.kind = Projection::Kind::Orthographic;
+  const std::vector<std::pair<double, double>> depths = {
+      {2e5 - 1, 2e5 + 1}, {5.0, 5.0}, {-3.0, 7.0}, {0.0, 1e17}, {1.0, 0.0}};
+  for (const auto& [nearest, farthest] : depths) {
+    const Projection seeing = flat.Seeing(nearest, farthest);
+    EXPECT_NO_THROW(seeing.Check("eye")) << nearest;
+    EXPECT_GE(seeing.Near(), 0.0);
+    if (nearest <= farthest) {
+      EXPECT_LE(seeing.Near(), std::max(nearest, 0.0));
+      EXPECT_GT(seeing.Far(), farthest);
+      // No more than a hundredth of the depth buffer's range is spare.
+      EXPECT_LT(seeing.Far() - seeing.Near(), 1.01 * (farthest - nearest) + 1e-5 * farthest + 1e-5);
+    }
+  }
+  // A distance that is set stays.
+  flat.nearDistance = -10.0;
+  EXPECT_EQ(flat.Seeing(1.0, 2.0).Near(), -10.0);
+  flat.farDistance = -5.0;
+  EXPECT_EQ(flat.Seeing(1.0, 2.0).Far(), -5.0);
+  flat.nearDistance.reset();
+  flat.farDistance = 5.0;
+  EXPECT_LT(flat.Seeing(100.0, 200.0).Near(), 5.0);
+  EXPECT_EQ(flat.Seeing(100.0, 200.0).Far(), 5.0);
 }
 
 TEST(LookAt, AxesByHand) {
@@ -367,7 +410,7 @@ TEST(Chase, LagIsTheExactExponentialOfSimulationTime) {
   // It looks at the target from where it is.
   EXPECT_LT((Forward(once) - (Vector3d(18, 20, 2) - there).normalized()).norm(), 1e-15);
 
-  // A step back starts anew.
+  // A step back starts again.
   EXPECT_LT((dspace::PlaceCamera(s.camera, s.tree, 50.0, state).X_FC.position - Vector3d(13, 20, 2))
                 .norm(),
             1e-14);

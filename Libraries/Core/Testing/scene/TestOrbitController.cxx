@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
-#include <dspace/scene/OrbitController.h>
-#include <dspace/scene/OrbitMotion.h>
+#include <dspace/scene/controls/OrbitController.h>
+#include <dspace/scene/controls/OrbitMotion.h>
 
 namespace {
 
@@ -247,7 +247,7 @@ TEST(Orbit, DollyStopsBeforeThePoint) {
   for (int i = 0; i < 20; ++i) {
     hand.Send(Wheel(100, 300, 100.0));
   }
-  EXPECT_NEAR(hand.Pixel(pivot).depth, 2.0 * hand.view.camera.projection.nearDistance, 1e-9);
+  EXPECT_NEAR(hand.Pixel(pivot).depth, 2.0 * hand.view.camera.projection.Near(), 1e-9);
   ExpectPixel(hand, pivot, 100, 300);
   for (int i = 0; i < 20; ++i) {
     hand.Send(Wheel(100, 300, -100.0));
@@ -336,7 +336,7 @@ TEST(Orbit, FramesASphere) {
         const auto q =
             hand.view.camera.projection.Project(X_CF.Apply(p_F), hand.view.width, hand.view.height);
         ASSERT_TRUE(q.visible);
-        ASSERT_GT(q.depth, hand.view.camera.projection.nearDistance);
+        ASSERT_GT(q.depth, hand.view.camera.projection.Near());
         box.extend(Eigen::Vector2d(q.x, q.y));
       }
       const double w = hand.view.width;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include <dspace/scene/Overlay.h>
+#include <dspace/overlay/Overlay.h>
 
 using namespace dspace;
 
@@ -108,6 +108,47 @@ TEST_F(SceneTest, AMeshThatIsGoneVouchesForNone) {
   object = Object("bad");
   object.levels[0].parts[0].mesh = lend();
   ExpectRejected(this->S, Invalid, "index 9", [&] { this->S.AddObject(object); });
+}
+
+// Terrain with contours in a fragment of their own.
+class Painted : public CustomGeometry {
+public:
+  BoundingSphere Bounds() const override { return {}; }
+  std::uint64_t Revision() const override { return 1; }
+  std::vector<Member> Members() const override { return this->members; }
+
+  std::vector<Member> members = {{"contours", {Nature::Ornamental, "map"}}, {"the ramp", {}}};
+};
+
+TEST_F(SceneTest, AFragmentHoldsPartsOfObjects) {
+  this->S.CreateFragment("map", Nature::Ornamental);
+  const auto painted = std::make_shared<Painted>();
+  GraphicsObject ground;
+  ground.name = "ground";
+  ground.custom = painted;
+  this->S.AddObject(ground);
+  EXPECT_EQ(this->S.MembersOf("map"), std::vector<std::string>{"contours of object 'ground'"});
+  EXPECT_EQ(this->S.MembersOf("ornamental"),
+            std::vector<std::string>{"the ramp of object 'ground'"});
+  EXPECT_TRUE(this->S.MembersOf("physical").empty());
+  ExpectRejected(this->S, Invalid, "contours of object 'ground'",
+                 [&] { this->S.RemoveFragment("map"); });
+  ExpectRejected(this->S, Invalid, "always", [&] { this->S.RemoveFragment("ornamental"); });
+  painted->members.clear();
+  this->S.RemoveFragment("map");
+  EXPECT_FALSE(this->S.Fragments().Contains("map"));
+}
+
+TEST_F(SceneTest, AMembershipIsOfAFragmentOfItsNature) {
+  this->S.CreateFragment("map", Nature::Ornamental);
+  const SceneFragmentManager& fragments = this->S.Fragments();
+  EXPECT_EQ(fragments.Member("contours", Nature::Ornamental, "").fragment, "ornamental");
+  EXPECT_EQ(fragments.Member("contours", Nature::Physical, "").fragment, "physical");
+  EXPECT_EQ(fragments.Member("contours", Nature::Ornamental, "map").fragment, "map");
+  ExpectRejected(this->S, Invalid, "it is physical and fragment 'map' ornamental",
+                 [&] { fragments.Member("ground", Nature::Physical, "map"); });
+  ExpectRejected(this->S, NotFound, "nowhere",
+                 [&] { fragments.Member("ground", Nature::Physical, "nowhere"); });
 }
 
 TEST_F(SceneTest, FragmentsKeepTheirNature) {

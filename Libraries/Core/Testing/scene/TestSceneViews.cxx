@@ -149,7 +149,7 @@ TEST_F(SceneTest, ChaseLagOutlivesAChangeOfLensNotOfFrame) {
   chase.projection.verticalFov_deg = 20;
   this->S.SetCamera("main", chase);
   EXPECT_NEAR(this->S.PlaceCamera("main", "chase").X_FC.position.x(), -5.0, 1e-3);
-  this->S.SetTime(0.5); // back: anew
+  this->S.SetTime(0.5); // back: starts again
   EXPECT_NEAR(this->S.PlaceCamera("main", "chase").X_FC.position.x(), 95.0, 1e-9);
   this->S.SetTime(2.0);
   chase.mount.frame = this->Mast;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include <dspace/Checks.h>
 #include <dspace/FrameRules.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace {
 
@@ -46,12 +46,16 @@ Eigen::Matrix3d OffsetAxes(CameraMount::ChaseAxes axes, const Eigen::Matrix3d& R
   return Eigen::Matrix3d::Identity();
 }
 
+bool Continues(const ChaseState& state, double time_s, double smoothing_s, FrameId frame,
+               FrameId parent) {
+  return state.started && state.frame == frame && state.parent == parent &&
+         time_s >= state.time_s && smoothing_s > 0.0;
+}
+
 // Advances the lag to `time_s`, when the camera should be at `wanted`.
 void Advance(ChaseState& state, double time_s, double smoothing_s, FrameId frame, FrameId parent,
              const Eigen::Vector3d& wanted) {
-  const bool continues = state.started && state.frame == frame && state.parent == parent &&
-                         time_s >= state.time_s && smoothing_s > 0.0;
-  if (continues) {
+  if (Continues(state, time_s, smoothing_s, frame, parent)) {
     const double left = std::exp(-(time_s - state.time_s) / smoothing_s);
     state.p_PC = wanted + left * (state.p_PC - wanted);
   } else {
@@ -61,6 +65,54 @@ void Advance(ChaseState& state, double time_s, double smoothing_s, FrameId frame
   state.time_s = time_s;
   state.frame = frame;
   state.parent = parent;
+}
+
+// Advances the lag of a direction to `time_s`, when it should be `wanted` (unit).
+void AdvanceDirection(ChaseState& state, double time_s, double smoothing_s, FrameId frame,
+                      FrameId aim, const Eigen::Vector3d& wanted) {
+  Eigen::Vector3d now = wanted;
+  if (Continues(state, time_s, smoothing_s, frame, aim) && state.p_PC.norm() > 0.5) {
+    const Eigen::Vector3d old = state.p_PC.normalized();
+    Eigen::Vector3d axis = wanted.cross(old);
+    const double angle = std::atan2(axis.norm(), wanted.dot(old));
+    if (axis.norm() < Parallel) { // of opposite directions: any axis across them
+      axis = wanted.unitOrthogonal();
+    }
+    const double left = angle * std::exp(-(time_s - state.time_s) / smoothing_s);
+    now = Eigen::AngleAxisd(left, axis.normalized()) * wanted;
+  }
+  state = {true, time_s, frame, aim, now};
+}
+
+CameraPose PlacePointing(const CameraMount& mount, const std::string& object,
+                         const FrameTree& frames, double time_s, ChaseState& state) {
+  for (const FrameId frame : {mount.frame, mount.aim}) {
+    if (!frames.Contains(frame)) {
+      throw Error(Error::Kind::NotFound, object,
+                  "frame " + std::to_string(frame) + " is not in the tree");
+    }
+  }
+  const Eigen::Vector3d& eye = mount.X_FC.position;
+  const Eigen::Vector3d target = frames.RelativePose(mount.frame, mount.aim).Apply(mount.target);
+  Eigen::Vector3d sight = target - eye;
+  const bool there = sight.norm() <= 1e-15 * (target.norm() + eye.norm());
+  if (!there) {
+    sight = sight.stableNormalized();
+  } else if (Continues(state, time_s, mount.smoothing_s, mount.frame, mount.aim)) {
+    sight = state.p_PC;
+  } else {
+    sight = Eigen::Vector3d::UnitX();
+  }
+  AdvanceDirection(state, time_s, mount.smoothing_s, mount.frame, mount.aim, sight);
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  if (!AxesLookingAlong(state.p_PC, mount.up, axes) &&
+      !AxesLookingAlong(state.p_PC, Eigen::Vector3d::UnitX(), axes)) {
+    AxesLookingAlong(state.p_PC, Eigen::Vector3d::UnitY(), axes);
+  }
+  Pose X_FC;
+  X_FC.position = eye;
+  X_FC.rotation = Eigen::Quaterniond(axes).normalized();
+  return {mount.frame, X_FC};
 }
 
 } // namespace
@@ -74,17 +126,29 @@ void CameraMount::Check(const std::string& camera) const {
     Require(this->X_FC.scale == 1.0, object, "scale", this->X_FC.scale, "1");
     return;
   }
-  RequirePosition(object, "offset", this->offset);
+  const bool pointing = this->kind == Kind::Pointing;
+  if (pointing) {
+    RequirePosition(object, "eye", this->X_FC.position);
+  } else {
+    RequirePosition(object, "offset", this->offset);
+  }
   RequirePosition(object, "target", this->target);
   RequireFinite(object, "up", this->up);
   Require(this->smoothing_s >= 0.0 && std::isfinite(this->smoothing_s), object, "smoothing",
           this->smoothing_s, "0 seconds and more");
-  if (this->offset == this->target) {
+  if (pointing && this->aim == this->frame && this->target == this->X_FC.position) {
+    Reject(object, "it points at its own eye, " + VectorText(this->target) +
+                       "; accepted: another target, or another frame");
+  }
+  if (!pointing && this->offset == this->target) {
     Reject(object, "its offset and its target are both " + VectorText(this->offset) +
                        "; accepted: an offset away from the target");
   }
   if (this->up.isZero(0.0)) {
     Reject(object, "up is (0, 0, 0); accepted: a direction");
+  }
+  if (pointing) {
+    return; // the direction changes with the frames
   }
   // Followed axes turn against `up`, and headings against any that is not upright.
   const Eigen::Vector3d up = this->up.stableNormalized();
@@ -131,6 +195,9 @@ CameraPose PlaceCamera(const Camera& camera, const FrameTree& frames, double tim
                   "frame " + std::to_string(mount.frame) + " is not in the tree");
     }
     return {mount.frame, mount.X_FC};
+  }
+  if (mount.kind == CameraMount::Kind::Pointing) {
+    return PlacePointing(mount, "camera '" + camera.name + "'", frames, time_s, state);
   }
   if (mount.frame == RootFrame) {
     Reject("camera '" + camera.name + "'",

@@ -15,8 +15,9 @@ namespace dspace {
 // How a camera moves.
 struct CameraMount {
   enum class Kind {
-    Fixed, // X_FC in `frame`: placed by hand, by the simulation, or attached to a moving frame
-    Chase  // follows `frame` from an offset and looks at it
+    Fixed,   // X_FC in `frame`: placed by hand, by the simulation, or attached to a moving frame
+    Chase,   // follows `frame` from an offset and looks at it
+    Pointing // stands at X_FC's position in `frame` and keeps pointing at `aim`
   };
   enum class ChaseAxes {
     Followed, // the offset turns with the followed frame
@@ -24,16 +25,17 @@ struct CameraMount {
     Parent    // the offset keeps its direction in the followed frame's parent
   };
   Kind kind = Kind::Fixed;
-  FrameId frame = 1; // root
-  Pose X_FC;         // Fixed only; scale 1
+  FrameId frame = 1;     // root
+  Pose X_FC;             // Fixed, scale 1; Pointing: only its position, the eye
+  FrameId aim = NoFrame; // Pointing: the frame that it points at; `target` is in its axes
   // Chase: the camera's offset from the followed frame's origin, and the point looked at, both in
-  // the axes chosen [m]; `up` in the parent's axes.
+  // the axes chosen [m]; `up` in the parent's axes. Pointing: `up` in the axes of `frame`.
   ChaseAxes axes = ChaseAxes::Heading;
   Eigen::Vector3d offset = Eigen::Vector3d(-5, 0, 2);
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  double smoothing_s =
-      0.0; // time constant of the lag behind the offset, in simulation time; 0 none
+  double smoothing_s = 0.0; // time constant of the lag behind the offset (Pointing: behind the
+                            // direction to the target), in simulation time; 0 none
 
   // Throws Error(InvalidArgument) naming `camera` and the value: an invalid pose or one with
   // a scale, a chase whose offset equals its target, an `up` that is zero or always along the line
@@ -60,13 +62,15 @@ struct CameraPose {
   Pose X_FC;
 };
 
-// State of a chase camera's lag; a function of simulation time only.
+// State of the lag of a chase or pointing camera; a function of simulation time only.
 struct ChaseState {
   bool started = false;
   double time_s = 0.0;
   FrameId frame = NoFrame;  // the followed frame and the frame of the position;
-  FrameId parent = NoFrame; // a change of either restarts the lag
-  Eigen::Vector3d p_PC = Eigen::Vector3d::Zero(); // smoothed camera position in the parent frame
+  FrameId parent = NoFrame; // a change of either restarts the lag. Pointing: `frame` and `aim`
+  // Chase: the smoothed camera position in the parent frame. Pointing: the smoothed direction of
+  // sight in `frame`, unit.
+  Eigen::Vector3d p_PC = Eigen::Vector3d::Zero();
 };
 
 // Returns the current pose of `camera`. The pose of a chase camera is in the followed frame's
@@ -78,6 +82,12 @@ struct ChaseState {
 // stands upright, that of the axis which pitching brought there. Where `up` falls on the line of
 // sight, the followed frame's X (else Y) axis takes its place; where the lag brings the camera onto
 // its target, it keeps the direction of the offset.
+//
+// The pose of a pointing camera is in its own frame F. With a the angle between the direction of
+// sight and the direction to the target in F, a(t + dt) = a(t) exp(-dt / smoothing_s), exact for
+// any dt while the latter is constant. Where the target is at the eye, the camera looks along F's
+// X axis, or keeps its smoothed direction. Where `up` falls on the line of sight, F's X (else Y)
+// axis takes its place.
 // Throws Error(NotFound) for a frame that is not in the tree, InvalidArgument for a chase of the
 // root.
 CameraPose PlaceCamera(const Camera& camera, const FrameTree& frames, double time_s,

@@ -3,8 +3,12 @@
 #define DSPACE_SCENE_CUSTOM_GEOMETRY_H
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
+
+#include <dspace/scene/Membership.h>
 
 namespace dspace {
 
@@ -19,6 +23,14 @@ public:
   virtual BoundingSphere Bounds() const = 0;
   // Increases with every change of the drawn geometry, including newly loaded data.
   virtual std::uint64_t Revision() const = 0;
+
+  // Something that it draws and that is shown and hidden with a fragment of its own.
+  struct Member {
+    std::string name; // "contours", "layer 'image'"
+    Membership membership;
+  };
+  // All of them. Their fragments cannot be removed.
+  virtual std::vector<Member> Members() const { return {}; }
 };
 
 } // namespace dspace

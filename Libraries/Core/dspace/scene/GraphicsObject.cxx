@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <dspace/Checks.h>
 #include <dspace/FrameRules.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace {
 
@@ -45,6 +45,25 @@ Eigen::Vector3d Vertex(const Part& part, std::size_t i) {
   return part.X_OP * Eigen::Vector3d(p[0], p[1], p[2]);
 }
 
+// A node's range in O, within that of the nodes above it. Nested ranges keep the inner centre, from
+// which the outer distances are off by no more than the centres are apart.
+std::optional<DistanceRange> RangeOf(const ModelNode& node, const Eigen::Affine3d& X_ON,
+                                     const std::optional<DistanceRange>& above) {
+  if (!node.range) {
+    return above;
+  }
+  const double scale = std::cbrt(std::abs(X_ON.linear().determinant()));
+  DistanceRange range;
+  range.center = X_ON * node.range->center;
+  range.from = scale * node.range->from;
+  range.to = std::isinf(node.range->to) ? node.range->to : scale * node.range->to;
+  if (above) {
+    range.from = std::max(range.from, above->from);
+    range.to = std::max(range.from, std::min(range.to, above->to));
+  }
+  return range;
+}
+
 } // namespace
 
 void MaterialOverride::Check(const std::string& object) const {
@@ -53,11 +72,19 @@ void MaterialOverride::Check(const std::string& object) const {
       RequireFraction(object, "colour", c);
     }
   }
+  if (this->emissive) {
+    for (const double c : *this->emissive) {
+      RequireFraction(object, "emissive", c);
+    }
+  }
   RequireFraction(object, "opacity", this->opacity.value_or(1.0));
   RequireFraction(object, "metallic", this->metallic.value_or(0.0));
   RequireFraction(object, "roughness", this->roughness.value_or(0.0));
   if (this->texture && *this->texture) {
     CheckImage(**this->texture, object);
+  }
+  if (this->reflectance) {
+    this->reflectance->Check(object);
   }
 }
 
@@ -69,8 +96,14 @@ void CheckMaterial(const Material& material, const std::string& object) {
   RequireFraction(object, "opacity", material.opacity);
   RequireFraction(object, "metallic", material.metallic);
   RequireFraction(object, "roughness", material.roughness);
+  material.reflectance.Check(object);
   if (material.texture) {
     CheckImage(*material.texture, object);
+  }
+  if (material.normalTexture) {
+    CheckImage(*material.normalTexture, object);
+    Require(std::isfinite(material.normalScale), object, "the scale of its normal texture",
+            material.normalScale, "a finite number");
   }
 }
 
@@ -152,9 +185,12 @@ std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scal
   X_OM.linear() = scale * rotation.normalized().toRotationMatrix();
   std::vector<Eigen::Affine3d> X_ON; // by node; parents come before children
   X_ON.reserve(model->nodes.size());
+  std::vector<std::optional<DistanceRange>> ranges; // of each node with those above it, in O
   std::vector<Part> parts;
   for (const ModelNode& node : model->nodes) {
     X_ON.push_back((node.parent < 0 ? X_OM : X_ON[std::size_t(node.parent)]) * node.local);
+    ranges.push_back(RangeOf(node, X_ON.back(),
+                             node.parent < 0 ? std::nullopt : ranges[std::size_t(node.parent)]));
     for (const int index : node.meshes) {
       const Mesh& mesh = model->meshes[std::size_t(index)];
       Part part;
@@ -163,6 +199,8 @@ std::vector<Part> PartsOf(const std::shared_ptr<const Model>& model, double scal
                                         : std::shared_ptr<const Material>(
                                               model, &model->materials[std::size_t(mesh.material)]);
       part.X_OP = X_ON.back();
+      part.name = node.name.empty() ? mesh.name : node.name;
+      part.range = ranges.back();
       parts.push_back(std::move(part));
     }
   }

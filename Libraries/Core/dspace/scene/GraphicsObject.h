@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,13 +13,12 @@
 #include <dspace/FrameTree.h>
 #include <dspace/import/model/Model.h>
 #include <dspace/scene/CustomGeometry.h>
+#include <dspace/scene/Membership.h>
+#include <dspace/scene/ShaderCode.h>
 
 namespace dspace {
 
 using ObjectId = std::uint32_t; // 0 means none; never reused within a scene
-
-// Physical: visible to a real camera. Ornamental: helps only a person.
-enum class Nature { Physical, Ornamental };
 
 // One mesh with its material, placed in the object's frame O. The mesh is shared: all parts
 // with the same Mesh use the same GPU buffers. A mesh must not change after a scene has it.
@@ -26,6 +26,8 @@ struct Part {
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const Material> material; // null: Material's defaults (the scene fills them in)
   Eigen::Affine3d X_OP = Eigen::Affine3d::Identity();
+  std::string name = {}; // as in the file; several parts may share one; may be empty
+  std::optional<DistanceRange> range = {}; // in O
 };
 
 // Sphere about the centre of the axis-aligned bounds of a level's vertices, in O; radius 0 at the
@@ -52,16 +54,25 @@ struct MaterialOverride {
   std::optional<std::shared_ptr<const Image>> texture; // set to null: no texture
   std::optional<bool> lit;
   std::optional<bool> wireframe;
+  std::optional<std::array<double, 3>> emissive; // sRGB, 0 to 1
+  std::optional<Reflectance> reflectance;        // whole
 
   bool operator==(const MaterialOverride& o) const {
     return this->color == o.color && this->opacity == o.opacity && this->metallic == o.metallic &&
            this->roughness == o.roughness && this->texture == o.texture && this->lit == o.lit &&
-           this->wireframe == o.wireframe;
+           this->wireframe == o.wireframe && this->emissive == o.emissive &&
+           this->reflectance == o.reflectance;
   }
   bool operator!=(const MaterialOverride& o) const { return !(*this == o); }
 
   // Throws Error(InvalidArgument) naming `object` and the value.
   void Check(const std::string& object) const;
+};
+
+// Overrides of the parts of one name. The material overrides that of the object.
+struct PartOverride {
+  MaterialOverride material;
+  bool visible = true;
 };
 
 struct GraphicsObject {
@@ -75,6 +86,8 @@ struct GraphicsObject {
   std::vector<DetailLevel> levels;              // finest first, minimumPixels descending
   std::shared_ptr<const CustomGeometry> custom; // drawn instead of levels, of which there are none
   MaterialOverride material;
+  std::map<std::string, PartOverride> parts; // by the name of a part of some level
+  std::shared_ptr<const ShaderCode> shader;  // null: the surface shader as it is
   bool visible = true;
   bool pickable = true;
   // Mesh coordinates are pixels in the image plane (X right, Y up) about the object's origin:

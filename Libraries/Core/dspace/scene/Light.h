@@ -29,7 +29,17 @@ struct Light {
   double intensity = 1.0;                                // 0 to 1e12, multiplies the colour
   std::array<double, 3> attenuation = {1, 0, 0}; // 1 / (a + b d + c d²), d in metres; 0 to 1e12
   bool enabled = true;
+  double radius_deg = 0.2666; // Directional: angular radius of its disc, 0 (a point) to 90
 };
+
+// The light of this name is the Sun, if it is directional: it alone casts shadows. Intensity 1 is
+// an irradiance of SolarConstant.
+inline constexpr const char* SunName = "sun";
+inline constexpr double SolarConstant = 1361.0; // [W/m^2] at 1 au (Kopp and Lean 2011)
+
+inline bool IsSun(const Light& light) {
+  return light.kind == Light::Kind::Directional && light.name == SunName;
+}
 
 } // namespace dspace
 

@@ -9,9 +9,9 @@
 
 #include <Eigen/Geometry>
 
+#include <dspace/Checks.h>
 #include <dspace/import/model/Model.h>
 #include <dspace/import/model/SolidMesh.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace {
 

@@ -1,9 +1,11 @@
 #include <dspace/scene/Projection.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include <dspace/Checks.h>
 #include <dspace/FrameRules.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace {
 
@@ -13,6 +15,8 @@ constexpr double RadiansPerDegree = 3.14159265358979323846 / 180.0;
 constexpr double Smallest = 1e-9; // metres, or a tangent
 constexpr double SmallestFov_deg = 1e-6;
 constexpr double LargestTangent = 1e6;
+constexpr double StandardNear = 0.05;
+constexpr double StandardOrthographicFar = 1e4;
 
 void CheckSize(int width, int height) {
   if (width < 1 || height < 1) {
@@ -44,14 +48,56 @@ struct DepthMap {
 };
 
 DepthMap DepthOf(const Projection& p) {
-  if (std::isinf(p.farDistance)) {
-    return {p.nearDistance, 0.0};
+  const double near = p.Near();
+  const double far = p.Far();
+  if (std::isinf(far)) {
+    return {near, 0.0};
   }
-  const double ratio = p.nearDistance / (p.farDistance - p.nearDistance);
-  return {ratio * p.farDistance, -ratio};
+  const double ratio = near / (far - near);
+  return {ratio * far, -ratio};
 }
 
 } // namespace
+
+double Projection::Near() const {
+  return this->nearDistance.value_or(StandardNear);
+}
+
+double Projection::Far() const {
+  return this->farDistance.value_or(this->kind == Kind::Orthographic
+                                        ? StandardOrthographicFar
+                                        : std::numeric_limits<double>::infinity());
+}
+
+Projection Projection::Seeing(double nearest, double farthest) const {
+  Projection set = *this;
+  const bool nothing = !(nearest <= farthest);
+  if (this->kind != Kind::Orthographic) {
+    // Reversed float depth resolves the same fraction of the distance for any near distance.
+    const double ahead = nothing || nearest <= 0.0 ? StandardNear : 0.9 * nearest;
+    set.nearDistance = this->nearDistance.value_or(std::clamp(ahead, Smallest, StandardNear));
+    set.farDistance = this->Far();
+    return set;
+  }
+  if (nothing) {
+    set.nearDistance = this->nearDistance.value_or(std::min(StandardNear, this->Far() - 1.0));
+    set.farDistance = this->farDistance.value_or(std::max(this->Far(), *set.nearDistance + 1.0));
+    return set;
+  }
+  // Beyond what single precision rounds.
+  const double spare =
+      1e-3 * (farthest - nearest) + 1e-6 * std::max(std::abs(nearest), std::abs(farthest)) + 1e-6;
+  if (!this->nearDistance) {
+    set.nearDistance = std::max(0.0, nearest - spare);
+    if (this->farDistance && *set.nearDistance >= *this->farDistance) {
+      set.nearDistance = *this->farDistance - spare; // all of it lies beyond far
+    }
+  }
+  if (!this->farDistance) {
+    set.farDistance = std::max(farthest, *set.nearDistance) + spare;
+  }
+  return set;
+}
 
 void Projection::Check(const std::string& camera) const {
   const std::string object = "camera '" + camera + "'";
@@ -76,20 +122,22 @@ void Projection::Check(const std::string& camera) const {
     Require(this->bottom - this->top >= Smallest, object, "top", this->top,
             ("less than bottom (" + NumberText(this->bottom) + ") by 1e-9 and more").c_str());
   }
-  Require(this->nearDistance >= (orthographic ? -MaximumCoordinate : Smallest) &&
-              this->nearDistance <= MaximumCoordinate,
-          object, "near distance", this->nearDistance,
+  const double near = this->Near();
+  Require(near >= (orthographic ? -MaximumCoordinate : Smallest) && near <= MaximumCoordinate,
+          object, "near distance", near,
           orthographic ? "-1e18 to 1e18 metres" : "1e-9 to 1e18 metres");
-  Require(this->farDistance > this->nearDistance, object, "far distance", this->farDistance,
-          ("more than near (" + NumberText(this->nearDistance) + ")").c_str());
+  if (!this->farDistance) {
+    return;
+  }
+  const double far = *this->farDistance;
+  Require(far > near, object, "far distance", far,
+          ("more than near (" + NumberText(near) + ")").c_str());
   if (orthographic) {
-    Require(this->farDistance - this->nearDistance >= Smallest &&
-                this->farDistance <= MaximumCoordinate,
-            object, "far distance", this->farDistance,
+    Require(far - near >= Smallest && far <= MaximumCoordinate, object, "far distance", far,
             "1e-9 metres and more beyond near, up to 1e18 metres, for an orthographic camera");
   } else {
-    Require(this->farDistance <= MaximumCoordinate || std::isinf(this->farDistance), object,
-            "far distance", this->farDistance, "up to 1e18 metres, or infinite");
+    Require(far <= MaximumCoordinate || std::isinf(far), object, "far distance", far,
+            "up to 1e18 metres, or infinite");
   }
 }
 
@@ -101,9 +149,9 @@ Eigen::Matrix4d Projection::ClipFromView(int width, int height) const {
   m(0, 0) = 2.0 / w;
   m(1, 1) = 2.0 / h;
   if (this->kind == Kind::Orthographic) {
-    const double range = this->farDistance - this->nearDistance;
+    const double range = this->Far() - this->Near();
     m(2, 2) = 1.0 / range;
-    m(2, 3) = this->farDistance / range;
+    m(2, 3) = this->Far() / range;
     m(3, 3) = 1.0;
     return m;
   }
@@ -149,7 +197,7 @@ double Projection::DepthFromBuffer(double value) const {
     return std::numeric_limits<double>::infinity();
   }
   if (this->kind == Kind::Orthographic) {
-    return this->farDistance - value * (this->farDistance - this->nearDistance);
+    return this->Far() - value * (this->Far() - this->Near());
   }
   const DepthMap depth = DepthOf(*this);
   return depth.scale / (value - depth.offset);

@@ -2,7 +2,7 @@
 #ifndef DSPACE_SCENE_PROJECTION_H
 #define DSPACE_SCENE_PROJECTION_H
 
-#include <limits>
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -20,9 +20,23 @@ struct Projection {
   // Frustum (off-axis): tangents of the half angles, right and bottom positive along X and Y;
   // left < right, top < bottom, by 1e-9 and more; up to 1e6.
   double left = -0.5, right = 0.5, top = -0.5, bottom = 0.5;
-  double nearDistance = 0.05; // metres along Z, 1e-9 to 1e18 (-1e18 to 1e18 for Orthographic)
-  // > nearDistance, up to 1e18 or (but for Orthographic) infinite.
-  double farDistance = std::numeric_limits<double>::infinity();
+  // Metres along Z, 1e-9 to 1e18 (-1e18 to 1e18 for Orthographic). Absent: follows what is drawn.
+  std::optional<double> nearDistance = {};
+  // > Near(), up to 1e18 or (but for Orthographic) infinite. Absent: follows what is drawn.
+  std::optional<double> farDistance = {};
+
+  // The distances, where they are absent those of a picture of nothing: 0.05 m, and infinity, or
+  // 1e4 m for Orthographic.
+  double Near() const;
+  double Far() const;
+  // This projection with near and far set, so that a picture of things at depths from `nearest` to
+  // `farthest` [m] shows them whole. A distance that is set stays. Far that is absent becomes
+  // infinite for the perspective kinds, and lies behind `farthest` for Orthographic. Near that is
+  // absent becomes 0.05 m for the perspective kinds, or less where `nearest` is positive and less,
+  // and lies before `nearest` for Orthographic, but not behind the camera.
+  // nearest > farthest: there is nothing.
+  Projection Seeing(double nearest, double farthest) const;
+
   // Throws Error(InvalidArgument) naming `camera` and the value (fov, height, near >= far, ...).
   void Check(const std::string& camera) const;
 

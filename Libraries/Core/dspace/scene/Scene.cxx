@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <unordered_set>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 namespace dspace {
 
@@ -15,10 +16,6 @@ constexpr ObjectId LargestAllowedObject = 0x7fffffff;
 
 std::string Label(const std::string& name) {
   return "object '" + name + "'";
-}
-
-const char* NatureText(Nature nature) {
-  return nature == Nature::Physical ? "physical" : "ornamental";
 }
 
 void CheckOffset(const std::string& object, const Eigen::Affine3d& X_FO) {
@@ -47,6 +44,17 @@ std::vector<FrameId> SubtreeOf(const FrameTree& frames, FrameId top) {
 
 template<typename Value> void EraseValue(std::vector<Value>& values, const Value& value) {
   values.erase(std::find(values.begin(), values.end(), value));
+}
+
+std::set<std::string> PartNames(const GraphicsObject& object) {
+  std::set<std::string> names;
+  for (const DetailLevel& level : object.levels) {
+    for (const Part& part : level.parts) {
+      names.insert(part.name);
+    }
+  }
+  names.erase("");
+  return names;
 }
 
 } // namespace
@@ -161,15 +169,7 @@ ObjectId Scene::AddObject(GraphicsObject object) {
                 "id " + std::to_string(object.id) + " is or was in use; accepted: 0 or a new one");
   }
   this->RequireFrame(label, object.frame);
-  if (object.fragment.empty()) {
-    object.fragment = NatureText(object.nature);
-  }
-  SceneFragment& fragment = this->Fragments_.Find(object.fragment);
-  if (fragment.nature != object.nature) {
-    Reject(label, std::string("it is ") + NatureText(object.nature) + " and fragment '" +
-                      fragment.name + "' " + NatureText(fragment.nature) +
-                      "; accepted: a fragment of its nature");
-  }
+  object.fragment = this->Fragments_.Member(label, object.nature, object.fragment).fragment;
   CheckOffset(label, object.X_FO);
   Require(object.lineWidth > 0.0 && std::isfinite(object.lineWidth), label, "line width",
           object.lineWidth, "a positive number of pixels");
@@ -185,7 +185,7 @@ ObjectId Scene::AddObject(GraphicsObject object) {
   if (object.custom) {
     this->Customs_.push_back(object.custom);
   }
-  fragment.objects.push_back(id);
+  this->Fragments_.Find(object.fragment).objects.push_back(id);
   this->ObjectNames_.emplace(object.name, id);
   this->Objects_.emplace(id, std::move(object));
   this->LargestObject_ = std::max(this->LargestObject_, id);
@@ -224,6 +224,29 @@ void Scene::SetObjectMaterial(ObjectId id, const MaterialOverride& material) {
   }
 }
 
+void Scene::SetPart(ObjectId id, const std::string& part, const PartOverride& over) {
+  GraphicsObject& object = this->Find(id);
+  const std::string label = Label(object.name) + ", part '" + part + "'";
+  const std::set<std::string> names = PartNames(object);
+  if (names.count(part) == 0) {
+    std::string known;
+    for (const std::string& name : names) {
+      known += (known.empty() ? "'" : ", '") + name + "'";
+    }
+    throw Error(Error::Kind::NotFound, label,
+                "no part has this name; accepted: " +
+                    (known.empty() ? "the object has no named part" : known));
+  }
+  over.material.Check(label);
+  object.parts[part] = over;
+  this->ContentChanged();
+}
+
+void Scene::SetObjectShader(ObjectId id, std::shared_ptr<const ShaderCode> shader) {
+  this->Find(id).shader = std::move(shader);
+  this->ContentChanged();
+}
+
 void Scene::SetObjectOffset(ObjectId id, const Eigen::Affine3d& X_FO) {
   GraphicsObject& object = this->Find(id);
   CheckOffset(Label(object.name), X_FO);
@@ -244,14 +267,10 @@ void Scene::AttachObject(ObjectId id, FrameId frame) {
 
 void Scene::MoveToFragment(ObjectId id, const std::string& name) {
   GraphicsObject& object = this->Find(id);
-  SceneFragment& fragment = this->Fragments_.Find(name);
-  if (fragment.nature != object.nature) {
-    Reject(Label(object.name), std::string("it is ") + NatureText(object.nature) +
-                                   " and fragment '" + name + "' " + NatureText(fragment.nature) +
-                                   "; accepted: a fragment of its nature");
-  }
+  this->Fragments_.Get(name); // an empty name is that of none
+  this->Fragments_.Member(Label(object.name), object.nature, name);
   if (object.fragment != name) {
-    fragment.objects.push_back(id);
+    this->Fragments_.Find(name).objects.push_back(id);
     EraseValue(this->Fragments_.Find(object.fragment).objects, id);
     object.fragment = name;
     this->ContentChanged();
@@ -265,6 +284,10 @@ void Scene::SetObjectLevels(ObjectId id, std::vector<DetailLevel> levels) {
   }
   this->CheckLevels(Label(object.name), levels);
   object.levels = std::move(levels);
+  const std::set<std::string> names = PartNames(object);
+  for (auto it = object.parts.begin(); it != object.parts.end();) {
+    it = names.count(it->first) ? std::next(it) : object.parts.erase(it);
+  }
   this->ContentChanged();
 }
 
@@ -273,7 +296,29 @@ void Scene::CreateFragment(const std::string& name, Nature nature) {
   this->ContentChanged();
 }
 
+std::vector<std::string> Scene::MembersOf(const std::string& fragment) const {
+  std::vector<std::string> members;
+  for (const auto& [id, object] : this->Objects_) {
+    if (object.custom) {
+      for (const CustomGeometry::Member& member : object.custom->Members()) {
+        if (member.membership.fragment == fragment) {
+          members.push_back(member.name + " of " + Label(object.name));
+        }
+      }
+    }
+  }
+  return members;
+}
+
 void Scene::RemoveFragment(const std::string& name) {
+  const std::vector<std::string> members = this->MembersOf(name);
+  if (!members.empty() && name != StandardFragment(this->Fragments_.Get(name).nature)) {
+    std::string all;
+    for (const std::string& member : members) {
+      all += (all.empty() ? "" : ", ") + member;
+    }
+    Reject("fragment '" + name + "'", "it holds " + all + "; accepted: an empty fragment");
+  }
   this->Fragments_.Remove(name);
   this->ContentChanged();
 }
@@ -353,6 +398,9 @@ const SceneVantage& Scene::Vantage(const std::string& name) const {
 void Scene::SetCamera(const std::string& vantage, const Camera& camera) {
   this->Views_.Get(vantage);
   this->RequireFrame("camera '" + camera.name + "'", camera.mount.frame);
+  if (camera.mount.kind == CameraMount::Kind::Pointing) {
+    this->RequireFrame("camera '" + camera.name + "'", camera.mount.aim);
+  }
   this->Views_.SetCamera(vantage, camera);
   ++this->Revision_;
 }

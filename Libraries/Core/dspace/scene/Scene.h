@@ -44,6 +44,9 @@ public:
   const std::map<ObjectId, GraphicsObject>& Objects() const { return this->Objects_; }
   void SetObjectVisible(ObjectId id, bool visible);
   void SetObjectMaterial(ObjectId id, const MaterialOverride& material);
+  // Overrides of the parts of this name. Throws Error(NotFound) that lists names if no part has it.
+  void SetPart(ObjectId id, const std::string& part, const PartOverride& over);
+  void SetObjectShader(ObjectId id, std::shared_ptr<const ShaderCode> shader); // null: none
   void SetObjectOffset(ObjectId id, const Eigen::Affine3d& X_FO);
   void AttachObject(ObjectId id, FrameId frame);
   void MoveToFragment(ObjectId id, const std::string& fragment);
@@ -52,6 +55,8 @@ public:
   const SceneFragmentManager& Fragments() const { return this->Fragments_; }
   void CreateFragment(const std::string& name, Nature nature);
   void RemoveFragment(const std::string& name);
+  // What parts of objects are in the fragment: "contours of object 'gale'".
+  std::vector<std::string> MembersOf(const std::string& fragment) const;
   void SetFragmentVisible(const std::string& name, bool visible);
   void SetLight(const Light& light);
   void RemoveLight(const std::string& name);

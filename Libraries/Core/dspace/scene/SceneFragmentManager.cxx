@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 namespace dspace {
 
 namespace {
 
-const char* const PhysicalFragment = "physical";
-const char* const OrnamentalFragment = "ornamental";
+bool AlwaysExists(const std::string& fragment) {
+  return fragment == StandardFragment(Nature::Physical) ||
+         fragment == StandardFragment(Nature::Ornamental);
+}
 
 template<class Named> auto FindNamed(std::vector<Named>& all, const std::string& name) {
   return std::find_if(all.begin(), all.end(), [&](const Named& n) { return n.name == name; });
@@ -28,6 +30,8 @@ void CheckLight(const Light& light) {
   }
   Require(light.cone_deg > 0.0 && light.cone_deg < 90.0, object, "cone", light.cone_deg,
           "between 0 and 90 degrees");
+  Require(light.radius_deg >= 0.0 && light.radius_deg <= 90.0, object, "the radius of its disc",
+          light.radius_deg, "0 to 90 degrees");
   for (const double c : light.color) {
     RequireFraction(object, "colour", c);
   }
@@ -44,8 +48,9 @@ void CheckLight(const Light& light) {
 } // namespace
 
 SceneFragmentManager::SceneFragmentManager() {
-  this->Create(PhysicalFragment, Nature::Physical);
-  this->Create(OrnamentalFragment, Nature::Ornamental);
+  for (const Nature nature : {Nature::Physical, Nature::Ornamental}) {
+    this->Create(StandardFragment(nature), nature);
+  }
 }
 
 void SceneFragmentManager::Create(const std::string& name, Nature nature) {
@@ -62,7 +67,7 @@ void SceneFragmentManager::Create(const std::string& name, Nature nature) {
 
 void SceneFragmentManager::Remove(const std::string& name) {
   const SceneFragment& fragment = this->Find(name);
-  if (name == PhysicalFragment || name == OrnamentalFragment) {
+  if (AlwaysExists(name)) {
     Reject("fragment '" + name + "'", "it always exists and cannot be removed");
   }
   if (!fragment.objects.empty()) {
@@ -86,6 +91,18 @@ SceneFragment& SceneFragmentManager::Find(const std::string& name) {
 
 const SceneFragment& SceneFragmentManager::Get(const std::string& name) const {
   return const_cast<SceneFragmentManager*>(this)->Find(name);
+}
+
+Membership SceneFragmentManager::Member(const std::string& object, Nature nature,
+                                        const std::string& fragment) const {
+  const SceneFragment& found = this->Get(fragment.empty() ? StandardFragment(nature) : fragment);
+  if (found.nature != nature) {
+    // The fragments that always exist are named as the natures.
+    Reject(object, std::string("it is ") + StandardFragment(nature) + " and fragment '" +
+                       found.name + "' " + StandardFragment(found.nature) +
+                       "; accepted: a fragment of its nature");
+  }
+  return {nature, found.name};
 }
 
 bool SceneFragmentManager::Contains(const std::string& name) const {

@@ -30,6 +30,9 @@ public:
   void SetVisible(const std::string& name, bool visible);
   const SceneFragment& Get(const std::string& name) const; // throws Error(NotFound)
   bool Contains(const std::string& name) const;
+  // The membership of something in a fragment; an empty name means the one of the nature. Throws
+  // Error about `object`: NotFound, InvalidArgument for a fragment of the other nature.
+  Membership Member(const std::string& object, Nature nature, const std::string& fragment) const;
   std::vector<std::string> Names() const; // in creation order
 
   // Lights, by unique name.

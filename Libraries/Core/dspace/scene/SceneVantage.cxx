@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 namespace dspace {
 

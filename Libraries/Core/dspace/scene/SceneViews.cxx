@@ -2,14 +2,19 @@
 
 #include <algorithm>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 namespace dspace {
 namespace {
 
 // Whether a changed camera goes on where its lag has brought it.
 bool FollowsTheSame(const CameraMount& a, const CameraMount& b) {
-  return a.kind == CameraMount::Kind::Chase && b.kind == a.kind && b.frame == a.frame;
+  return a.kind != CameraMount::Kind::Fixed && b.kind == a.kind && b.frame == a.frame &&
+         b.aim == a.aim;
+}
+
+bool IsLagged(const CameraMount& mount) {
+  return mount.kind != CameraMount::Kind::Fixed && mount.smoothing_s > 0.0;
 }
 
 } // namespace
@@ -21,7 +26,15 @@ void SceneViews::RejectWhileCamerasOn(FrameId removed, const std::vector<FrameId
   for (const SceneVantage& vantage : this->Vantages_) {
     for (const std::string& name : vantage.CameraNames()) {
       const CameraMount& mount = vantage.GetCamera(name).mount;
-      if (std::find(subtree.begin(), subtree.end(), mount.frame) != subtree.end()) {
+      const auto isIn = [&subtree](FrameId frame) {
+        return std::find(subtree.begin(), subtree.end(), frame) != subtree.end();
+      };
+      if (mount.kind == CameraMount::Kind::Pointing && isIn(mount.aim)) {
+        Reject("frame '" + this->Frames_.Path(removed) + "'",
+               "camera '" + name + "' of vantage '" + vantage.Name() + "' points at frame '" +
+                   this->Frames_.Path(mount.aim) + "'; accepted: a subtree without cameras");
+      }
+      if (isIn(mount.frame)) {
         Reject("frame '" + this->Frames_.Path(removed) + "'",
                "camera '" + name + "' of vantage '" + vantage.Name() +
                    (mount.kind == CameraMount::Kind::Chase ? "' follows" : "' stands on") +
@@ -88,8 +101,7 @@ void SceneViews::SetCamera(const std::string& vantage, const Camera& camera) {
     this->Lags_.erase(key);
   }
   // In place from now on: what moves before the next time step is lagged behind like all else.
-  if (camera.mount.kind == CameraMount::Kind::Chase && camera.mount.smoothing_s > 0.0 &&
-      this->Lags_.count(key) == 0) {
+  if (IsLagged(camera.mount) && this->Lags_.count(key) == 0) {
     dspace::PlaceCamera(camera, this->Frames_, this->Time_, this->Lags_[key]);
   }
 }
@@ -135,8 +147,9 @@ bool SceneViews::SetTime(double time_s) {
   for (const SceneVantage& vantage : this->Vantages_) {
     for (const std::string& name : vantage.CameraNames()) {
       const Camera& camera = vantage.GetCamera(name);
-      if (time_s > this->Time_ && camera.mount.kind == CameraMount::Kind::Chase &&
-          camera.mount.smoothing_s > 0.0 && this->Frames_.Contains(camera.mount.frame)) {
+      if (time_s > this->Time_ && IsLagged(camera.mount) &&
+          this->Frames_.Contains(camera.mount.frame) &&
+          (camera.mount.aim == NoFrame || this->Frames_.Contains(camera.mount.aim))) {
         dspace::PlaceCamera(camera, this->Frames_, this->Time_,
                             this->Lags_[{vantage.Name(), name}]);
       }

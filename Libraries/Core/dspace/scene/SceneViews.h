@@ -43,7 +43,8 @@ private:
   std::string Scene_;
   const FrameTree& Frames_;
   std::vector<SceneVantage> Vantages_;
-  Lags Lags_; // of chase cameras at the time before the present one, by vantage and camera
+  Lags Lags_; // of chase and pointing cameras at the time before the present one, by vantage and
+              // camera
   double Time_ = 0.0;
 };
 
