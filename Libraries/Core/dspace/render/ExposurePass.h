@@ -1,0 +1,43 @@
+// Pictures in linear light: exposed, and taken through a tone curve.
+#ifndef DSPACE_RENDER_EXPOSURE_PASS_H
+#define DSPACE_RENDER_EXPOSURE_PASS_H
+
+#include <memory>
+
+#include <dspace/render/RenderTarget.h>
+#include <dspace/render/SurfaceShaders.h>
+#include <dspace/scene/ViewLook.h>
+
+namespace dspace {
+
+// The rules are those of ViewLook.h. The context must be current.
+class ExposurePass {
+public:
+  explicit ExposurePass(vtkDspaceHubWindow* window);
+  ExposurePass(const ExposurePass&) = delete;
+  ExposurePass& operator=(const ExposurePass&) = delete;
+  ~ExposurePass();
+
+  // What the scene is drawn into (Light, with depth), of this size. Alpha is 0 where display values
+  // are. Throws what RenderTarget::Resize throws.
+  RenderTarget& Target(int width, int height);
+  // From Target() into `target` (Display, with depth, of its size), colours and depth.
+  void Resolve(const ViewLook& look, RenderTarget& target);
+  // The factor of the last Resolve().
+  double Exposure() const { return this->Exposure_; }
+
+private:
+  double Metered();
+  void DrawTriangleOverScreen();
+
+  vtkDspaceHubWindow* Window_;
+  SurfaceShaders Shaders_;
+  RenderTarget Light_;
+  RenderTarget Luminances_;
+  unsigned int EmptyArray_ = 0;
+  double Exposure_ = 1.0;
+};
+
+} // namespace dspace
+
+#endif
