@@ -100,6 +100,10 @@ void vtkDspaceHubWindow::Activate(const Slot& slot) {
   this->Size[1] = slot.height;
 }
 
+vtkDspaceHubWindow::Slot vtkDspaceHubWindow::GetSlot() const {
+  return {this->RenderFramebuffer, this->Renderers, this->Size[0], this->Size[1]};
+}
+
 void vtkDspaceHubWindow::Deactivate() {
   this->RenderFramebuffer = this->OwnFramebuffers[0];
   this->DisplayFramebuffer = this->OwnFramebuffers[1];

@@ -38,6 +38,7 @@ public:
   };
   /// Makes the context current and the slot the window's own, until the next call.
   void Activate(const Slot& slot);
+  Slot GetSlot() const;
   /// Back to the window's own members: before a slot's framebuffer is destroyed.
   void Deactivate();
 

@@ -9,7 +9,7 @@
 #include <dspace/render/CustomDrawers.h>
 #include <dspace/render/EglContext.h>
 #include <dspace/render/GpuStore.h>
-#include <dspace/render/VtkMessages.h>
+#include <dspace/render/messages/VtkMessages.h>
 
 vtkStandardNewMacro(vtkDspaceRenderContext);
 
@@ -42,6 +42,12 @@ void vtkDspaceRenderContext::Initialize(std::unique_ptr<dspace::GraphicsContext>
   }
 }
 
+void vtkDspaceRenderContext::Release() {
+  if (this->Impl->hub->GetContext()) {
+    this->Impl->hub->GetContext()->Release();
+  }
+}
+
 // These two are wrapped for Python, which no C++ exception may reach.
 std::string vtkDspaceRenderContext::GetRendererName() {
   return this->AskOpenGL(GL_RENDERER);
@@ -55,7 +61,9 @@ std::string vtkDspaceRenderContext::AskOpenGL(unsigned int what) {
   try {
     this->Initialize();
     this->Impl->hub->MakeCurrent();
-    return reinterpret_cast<const char*>(glGetString(what));
+    const std::string text = reinterpret_cast<const char*>(glGetString(what));
+    this->Release();
+    return text;
   } catch (const std::exception& error) {
     vtkErrorMacro(<< error.what());
     return {};

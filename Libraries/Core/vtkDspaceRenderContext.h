@@ -40,6 +40,12 @@ public:
   std::string GetVersion();
   vtkRenderWindow* GetRenderWindow();
 
+  /// Takes the context off this thread where windows of other code may draw by GLX, such as a
+  /// vtkRenderWindow on X11, which cannot draw in a thread that has an EGL context. A session does
+  /// so after each command. A C++ program that draws viewports itself calls it before such a window
+  /// draws.
+  void Release();
+
 #ifndef __VTK_WRAP__
   /// Sets the context (default: MakeEglContext()). The first viewport calls it if it was not
   /// called.

@@ -7,18 +7,37 @@
 #include "vtkOpenGLRenderer.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
+#include <array>
+
 #include <dspace/Error.h>
 #include <dspace/render/ColorPicture.h>
 #include <dspace/render/CornerAxes.h>
 #include <dspace/render/LabelPicture.h>
+#include <dspace/render/RadiancePicture.h>
 #include <dspace/render/ViewportLimits.h>
-#include <dspace/render/VtkErrorTrap.h>
+#include <dspace/render/messages/VtkErrorTrap.h>
 #include <dspace/render/text/ColorBars.h>
 #include <dspace/render/text/TextTables.h>
 
 using dspace::Error;
 
 vtkStandardNewMacro(vtkDspaceViewport);
+
+namespace {
+
+// The names of the parts of all levels, in the order of DrawFilter::partsOf.
+std::vector<std::string> PartsOf(const dspace::GraphicsObject& object) {
+  std::vector<std::string> names;
+  for (const dspace::DetailLevel& level : object.levels) {
+    for (const dspace::Part& part : level.parts) {
+      names.push_back(part.name);
+    }
+  }
+  return names;
+}
+
+} // namespace
 
 struct vtkDspaceViewport::Internals {
   vtkSmartPointer<vtkDspaceRenderContext> context;
@@ -31,13 +50,18 @@ struct vtkDspaceViewport::Internals {
   int samples = 2;
   bool visible = true;
   bool ornaments = true;
+  dspace::ViewLook look;
   std::set<std::string> hidden;
   dspace::SceneDrawer::Background background;
   dspace::TextTables tables;
   dspace::ColorBars bars;
   std::unique_ptr<dspace::CornerAxes> cornerAxes;
   std::function<void()> prepare; // before drawing; may be empty
+  std::function<bool(const dspace::ColorBar&, const dspace::DrawFilter&)> explains; // may be empty
   dspace::LabelPicture labels;
+  dspace::LabelPicture parts; // of the object that was picked last
+  dspace::RadiancePicture radiance;
+  dspace::AnglePicture angles;
   dspace::ColorPicture picture; // stands last: it gives the window back before the rest goes
 
   bool stale = true;               // something of the viewport's own changed
@@ -60,6 +84,9 @@ struct vtkDspaceViewport::Internals {
             .projection;
     view.width = this->width * factor;
     view.height = this->height * factor;
+    view.samples = factor;
+    view.viewport = this->name;
+    view.look = this->look;
     return view;
   }
 
@@ -78,11 +105,19 @@ struct vtkDspaceViewport::Internals {
     dspace::ColorPicture::Request request;
     request.view = this->View(this->samples); // rejects a vantage without camera
     request.view.complete = complete;
+    if (!overlays) { // a physical picture
+      request.view.look.fill = 0.0;
+    }
     request.samples = this->samples;
     request.filter = filter;
     request.background = this->background;
     request.overlays = overlays;
     request.axes = overlays && this->ornaments ? this->cornerAxes.get() : nullptr;
+    request.beforeOverlays = [this](const dspace::DrawFilter& drawn) {
+      this->bars.ShowIf([&](const dspace::ColorBar& bar) {
+        return bar.terrain.empty() || (this->explains && this->explains(bar, drawn));
+      });
+    };
     this->picture.Draw(this->Object(), *this->scene, request);
   }
 
@@ -95,19 +130,52 @@ struct vtkDspaceViewport::Internals {
     this->drawnRevision = revision;
   }
 
-  void DrawLabels(const dspace::DrawFilter& filter) {
+  void DrawLabels(dspace::LabelPicture& picture, const dspace::DrawFilter& filter) {
     this->context->GetHub()->MakeCurrent();
-    if (!this->labels.IsCurrent(*this->scene, filter)) {
+    if (!picture.IsCurrent(*this->scene, filter)) {
       dspace::DrawView view = this->View(1);
       view.complete = true;
-      this->labels.Draw(this->context, *this->scene, view, filter);
+      dspace::VtkErrorTrap trap(this->context->GetMessages()); // of props
+      picture.Draw(this->context, *this->scene, view, filter);
+      trap.Check(this->Object());
     }
+  }
+
+  // Planes that hold light and its angles.
+  void DrawLight(const dspace::CaptureRequest& request, dspace::Capture& capture) {
+    const dspace::DrawFilter filter = this->Filter(request);
+    dspace::VtkErrorTrap trap(this->context->GetMessages()); // of props
+    if (request.radiance) {
+      dspace::DrawView view = this->View(this->samples);
+      view.complete = true;
+      this->radiance.Draw(this->context, *this->scene, view, filter);
+      capture.radiance = this->radiance.Radiances();
+    }
+    if (request.incidence || request.emission || request.phase || request.litFraction) {
+      dspace::DrawView view = this->View(1);
+      view.complete = true;
+      this->angles.Draw(this->context, *this->scene, view, filter);
+      using Angle = dspace::AnglePicture::Angle;
+      const auto put = [this](bool asked, Angle angle, std::vector<float>& to) {
+        if (asked) {
+          to = this->angles.Degrees(angle);
+        }
+      };
+      put(request.incidence, Angle::Incidence, capture.incidence);
+      put(request.emission, Angle::Emission, capture.emission);
+      put(request.phase, Angle::Phase, capture.phase);
+      if (request.litFraction) {
+        capture.litFraction = this->angles.LitFractions();
+      }
+    }
+    trap.Check(this->Object());
   }
 
   // The camera or the size is another.
   void ViewChanged() {
     this->stale = true;
     this->labels.Invalidate();
+    this->parts.Invalidate();
   }
 };
 
@@ -232,6 +300,21 @@ void vtkDspaceViewport::SetOrnamentsVisible(bool visible) {
   this->Impl->stale = true;
 }
 
+void vtkDspaceViewport::SetLook(const dspace::ViewLook& look) {
+  Internals& self = *this->Impl;
+  dspace::CheckLook(*self.context->GetHub(), self.Object(), look);
+  self.look = look;
+  self.stale = true;
+}
+
+double vtkDspaceViewport::GetUsedExposure() const {
+  return this->Impl->picture.Exposure();
+}
+
+const dspace::ViewLook& vtkDspaceViewport::GetLook() const {
+  return this->Impl->look;
+}
+
 void vtkDspaceViewport::SetFragmentVisible(const std::string& fragment, bool visible) {
   this->Impl->scene->Fragments().Get(fragment);
   if (visible) {
@@ -286,11 +369,20 @@ void vtkDspaceViewport::SetBeforeDrawing(std::function<void()> prepare) {
   this->Impl->prepare = std::move(prepare);
 }
 
+void vtkDspaceViewport::SetBarShown(
+    std::function<bool(const dspace::ColorBar&, const dspace::DrawFilter&)> shown) {
+  this->Impl->explains = std::move(shown);
+}
+
 bool vtkDspaceViewport::IsOutdated() {
   if (this->Impl->prepare) {
     this->Impl->prepare();
   }
-  return this->Impl->stale || this->Impl->drawnRevision != this->Impl->scene->Revision();
+  dspace::VtkErrorTrap trap(this->Impl->context->GetMessages()); // pipelines of props are updated
+  const bool outdated =
+      this->Impl->stale || this->Impl->drawnRevision != this->Impl->scene->Revision();
+  trap.Check(this->Impl->Object());
+  return outdated;
 }
 
 bool vtkDspaceViewport::Render() {
@@ -326,16 +418,30 @@ dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& requ
     }
     capture.color = self.picture.Read();
   }
-  if (request.label || request.depth) {
-    self.DrawLabels(filter);
+  if (request.label || request.depth || request.range) {
+    self.DrawLabels(self.labels, filter);
     if (request.label) {
       capture.label = self.labels.Labels();
     }
     if (request.depth) {
       capture.depth = self.labels.Depths();
     }
+    if (request.range) {
+      capture.range = self.labels.Ranges();
+    }
+  }
+  if (request.radiance || request.incidence || request.emission || request.phase ||
+      request.litFraction) {
+    self.DrawLight(request, capture);
   }
   return capture;
+}
+
+std::vector<dspace::ObjectVisibility> vtkDspaceViewport::Explain() {
+  Internals& self = *this->Impl;
+  const dspace::DrawFilter filter = self.Filter({});
+  self.DrawLabels(self.labels, filter);
+  return dspace::ExplainView(*self.scene, self.labels.View(), filter, self.labels.Labels());
 }
 
 dspace::PickResult vtkDspaceViewport::Pick(double x, double y, int radius) {
@@ -343,8 +449,24 @@ dspace::PickResult vtkDspaceViewport::Pick(double x, double y, int radius) {
   dspace::CheckPick(self.Object(), x, y, radius, self.width, self.height);
   dspace::DrawFilter filter = self.Filter({});
   filter.pickableOnly = true;
-  self.DrawLabels(filter);
-  return self.labels.Pick(*self.scene, x, y, radius);
+  self.DrawLabels(self.labels, filter);
+  std::array<int, 2> pixel;
+  dspace::PickResult pick = self.labels.Pick(*self.scene, x, y, radius, pixel);
+  if (pick.object == 0) {
+    return pick;
+  }
+  const std::vector<std::string> parts = PartsOf(self.scene->Object(pick.object));
+  const bool same = std::all_of(parts.begin(), parts.end(),
+                                [&](const std::string& name) { return name == parts[0]; });
+  if (same) {
+    pick.part = parts.empty() ? std::string() : parts[0];
+    return pick;
+  }
+  filter.partsOf = pick.object;
+  self.DrawLabels(self.parts, filter);
+  const std::uint32_t number = self.parts.LabelAt(pixel);
+  pick.part = number > 0 && number <= parts.size() ? parts[number - 1] : std::string();
+  return pick;
 }
 
 void vtkDspaceViewport::Run(const std::function<void(vtkRenderWindow*)>& f) {

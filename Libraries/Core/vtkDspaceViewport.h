@@ -19,9 +19,11 @@
 #ifndef __VTK_WRAP__
 #include <functional>
 
+#include <dspace/overlay/ColorBar.h>
+#include <dspace/overlay/Overlay.h>
 #include <dspace/render/Capture.h>
-#include <dspace/scene/ColorBar.h>
-#include <dspace/scene/Overlay.h>
+#include <dspace/render/DrawList.h>
+#include <dspace/render/ViewExplanation.h>
 #include <dspace/scene/Scene.h>
 #endif
 
@@ -39,7 +41,7 @@ public:
   int GetHeight();
   bool GetVisible();
 
-  /// The renderer of the scene, for VTK code of one's own: its world coordinates are the root
+  /// The renderer of the scene, for VTK code of the user: its world coordinates are the root
   /// frame's, in single precision on the GPU. Use it inside Run() only.
   vtkRenderer* GetRenderer();
   /// The overlay renderer (standard depth, drawn after the scene): 2D actors belong here.
@@ -72,6 +74,12 @@ public:
   void RequireSamples(int samples) const; // throws as SetSamples() would
   int GetSamples() const;
   void SetOrnamentsVisible(bool visible);
+  /// Shadows, fill light, exposure. Throws Error(InvalidArgument) naming the viewport and the
+  /// value.
+  void SetLook(const dspace::ViewLook& look);
+  const dspace::ViewLook& GetLook() const;
+  /// The factor on linear light of the last picture, as automatic exposure chose it.
+  double GetUsedExposure() const;
   void SetFragmentVisible(const std::string& fragment, bool visible); // in this viewport only
   void SetTextTable(const dspace::TextTable& table); // creates or replaces, by name
   void RemoveTextTable(const std::string& name);
@@ -83,14 +91,21 @@ public:
   /// none.
   void SetBeforeDrawing(std::function<void()> prepare);
 
+  /// Says whether a colour bar that explains something of a terrain is shown in a picture with a
+  /// filter (DrawList::Filter). Must not throw. Empty: such bars are hidden.
+  void SetBarShown(std::function<bool(const dspace::ColorBar&, const dspace::DrawFilter&)> shown);
+
   /// Draws if something changed; returns whether it did. Nothing is done while hidden.
   bool Render();
   /// Draws even if nothing changed (benchmarks).
   void ForceRender();
+  /// Throws Error(Internal) with the message of a pipeline of a prop that fails.
   bool IsOutdated();
 
   /// The picture, and other planes, of the scene as it is now (rendered if need be).
   dspace::Capture GetCapture(const dspace::CaptureRequest& request);
+  /// Says of each object whether and why it is not seen in the viewport's picture.
+  std::vector<dspace::ObjectVisibility> Explain();
   /// Picks the object at a pixel, or the nearest one within `radius` pixels if there is none.
   dspace::PickResult Pick(double x, double y, int radius = 0);
   /// Makes this viewport the window's current one and calls `f` with it.

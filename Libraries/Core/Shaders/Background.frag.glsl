@@ -10,5 +10,5 @@ void main()
 {
   vec3 c = mix(bottomColor, topColor, (gl_FragCoord.y) / height);
   c = mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
-  fragColor = vec4(c, 1.0);
+  fragColor = vec4(c, DSPACE_ALPHA);
 }

@@ -30,10 +30,13 @@ out vec3 positionVC;
 out vec3 normalVC;
 flat out vec3 surface; // metallic, roughness, mirrored
 #endif
+#ifdef DSPACE_OBJECT_NORMALS
+flat out mat3 normalsVC; // takes normals of the mesh's own axes to the view's
+#endif
 #ifdef DSPACE_EMISSIVE
 flat out vec3 emissive;
 #endif
-#ifdef DSPACE_TEXTURE
+#if defined(DSPACE_TEXTURE) || defined(DSPACE_NORMAL_MAP) || defined(DSPACE_OBJECT_NORMALS)
 out vec2 tcoord;
 #endif
 #ifdef DSPACE_VERTEX_COLOR
@@ -65,11 +68,16 @@ void main()
   positionVC = placedVC;
   surface = vec3(metallicRoughness, mirrored);
   // The cofactor matrix carries normals through any affine map; mirroring turns them inside out.
+  vec3 cofactor0 = cross(row1.xyz, row2.xyz);
+  vec3 cofactor1 = cross(row2.xyz, row0.xyz);
+  vec3 cofactor2 = cross(row0.xyz, row1.xyz);
   normalVC = surface.z *
-    vec3(dot(cross(row1.xyz, row2.xyz), normalMC), dot(cross(row2.xyz, row0.xyz), normalMC),
-      dot(cross(row0.xyz, row1.xyz), normalMC));
+    vec3(dot(cofactor0, normalMC), dot(cofactor1, normalMC), dot(cofactor2, normalMC));
+#ifdef DSPACE_OBJECT_NORMALS
+  normalsVC = surface.z * transpose(mat3(cofactor0, cofactor1, cofactor2));
 #endif
-#ifdef DSPACE_TEXTURE
+#endif
+#if defined(DSPACE_TEXTURE) || defined(DSPACE_NORMAL_MAP) || defined(DSPACE_OBJECT_NORMALS)
   tcoord = tcoordMC;
 #endif
 #ifdef DSPACE_VERTEX_COLOR

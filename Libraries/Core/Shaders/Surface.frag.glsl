@@ -13,7 +13,7 @@ flat in vec3 surface; // metallic, roughness, mirrored
 #ifdef DSPACE_EMISSIVE
 flat in vec3 emissive;
 #endif
-#ifdef DSPACE_TEXTURE
+#if defined(DSPACE_TEXTURE) || defined(DSPACE_NORMAL_MAP) || defined(DSPACE_OBJECT_NORMALS)
 in vec2 tcoord;
 #endif
 #ifdef DSPACE_VERTEX_COLOR
@@ -25,51 +25,61 @@ in float hole; // 0 in what is to be seen
 
 layout(location = 0) out vec4 fragColor;
 
-#if DSPACE_LIGHT_COUNT > 0
-uniform int lightKind[DSPACE_LIGHT_COUNT]; // 0 directional, 1 point, 2 spot, 3 head
-uniform vec3 lightColor[DSPACE_LIGHT_COUNT];
-uniform vec3 lightDirectionVC[DSPACE_LIGHT_COUNT]; // the way the light travels
-uniform vec3 lightPositionVC[DSPACE_LIGHT_COUNT];
-uniform vec3 lightAttenuation[DSPACE_LIGHT_COUNT];
-uniform float lightCosCone[DSPACE_LIGHT_COUNT];
-#endif
-uniform vec3 ambientLight;
-uniform int cameraParallel;
-
 #ifdef DSPACE_TEXTURE
 uniform sampler2D colorTexture;
 #endif
 
-#ifdef DSPACE_PEEL
-uniform sampler2D opaqueDepth;
-uniform sampler2D peeledDepth;
-uniform int firstLayer;
-#endif
+//DSPACE::Peeling
 
-// sRGB display value to linear light (IEC 61966-2-1).
-vec3 linearFromSrgb(vec3 c)
-{
-  return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
-}
+// Lights, and how a surface reflects them.
+//DSPACE::Lighting
 
-// Functions of a geometry's own, mixedColor() among them.
+// Functions of a geometry's own, mixedColor() and layeredNormal() among them.
 //DSPACE::Functions
 
-#ifdef DSPACE_SPECULAR
-// What comes back of light from L: Trowbridge-Reitz distribution with Smith's height-correlated
-// visibility over a Lambertian base; times pi, so that intensity 1 means "white paper shows 1".
-vec3 reflected(vec3 L, vec3 N, vec3 V, float NdL, float NdV, vec3 albedo, vec3 F0, float a2)
+#ifdef DSPACE_NORMAL_MAP
+uniform sampler2D normalTexture; // tangent space: 0.5 + 0.5 n, X along u, Y along v
+uniform float normalScale;
+
+// N turned by the texture, in axes along which u and v grow, from the changes of position and
+// texture coordinate across the pixel (C. Schueler, "Normal Mapping without Precomputed Tangents",
+// ShaderX5, 2006). N looks to the camera.
+vec3 mappedNormal(vec3 N)
 {
-  vec3 H = normalize(L + V);
-  float NdH = clamp(dot(N, H), 0.0, 1.0);
-  float m = 1.0 - clamp(dot(H, V), 0.0, 1.0);
-  float m2 = m * m;
-  vec3 F = F0 + (1.0 - F0) * (m2 * m2 * m);
-  float d = NdH * NdH * (a2 - 1.0) + 1.0;
-  float D = a2 / max(d * d, 1e-7);
-  float vis = 0.5 /
-    max(NdL * sqrt(NdV * NdV * (1.0 - a2) + a2) + NdV * sqrt(NdL * NdL * (1.0 - a2) + a2), 1e-5);
-  return (1.0 - F) * albedo + D * vis * F;
+  vec3 p1 = dFdx(positionVC);
+  vec3 p2 = dFdy(positionVC);
+  vec2 t1 = dFdx(tcoord);
+  vec2 t2 = dFdy(tcoord);
+  vec3 across2 = cross(p2, N);
+  vec3 across1 = cross(N, p1);
+  vec3 T = across2 * t1.x + across1 * t2.x;
+  vec3 B = across2 * t1.y + across1 * t2.y;
+  float lengthT = length(T);
+  float lengthB = length(B);
+  if (lengthT <= 0.0 || lengthB <= 0.0)
+  {
+    return N; // texture coordinates that stand still
+  }
+  vec3 n = texture(normalTexture, tcoord).xyz * 2.0 - 1.0;
+  n.xy *= normalScale;
+  return normalize(mat3(T / lengthT, B / lengthB, N) * n);
+}
+#endif
+
+#ifdef DSPACE_OBJECT_NORMALS
+uniform sampler2D normalTexture; // opacity times the normal (0 is 128 / 255), opacity
+flat in mat3 normalsVC;
+
+// N, unit, is the mesh's own.
+vec3 objectNormal(vec3 N)
+{
+  vec4 texel = texture(normalTexture, tcoord);
+  vec3 n = (texel.xyz * 255.0 - 128.0) / 127.0;
+  if (dot(n, n) < 1e-4) // nothing, or rounding
+  {
+    return N;
+  }
+  return normalize(mix(N, normalize(normalsVC * n), texel.a));
 }
 #endif
 
@@ -82,14 +92,20 @@ void main()
   }
 #endif
 #ifdef DSPACE_PEEL
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  // Reversed depth: larger is nearer.
-  if (gl_FragCoord.z < texelFetch(opaqueDepth, pixel, 0).r ||
-    (firstLayer == 0 && gl_FragCoord.z >= texelFetch(peeledDepth, pixel, 0).r))
+  if (dspacePeeled())
   {
     discard;
   }
 #endif
+#ifdef DSPACE_ANGLES
+#ifdef DSPACE_TEXTURE
+  if (texture(colorTexture, tcoord).a <= 0.0) // as labels have it
+  {
+    discard;
+  }
+#endif
+  vec4 color = vec4(0.0);
+#else
   vec4 color = baseColor;
 #ifdef DSPACE_VERTEX_COLOR
   color *= vec4(linearFromSrgb(vertexColor.rgb), vertexColor.a);
@@ -100,54 +116,28 @@ void main()
 #ifdef DSPACE_MIXED
   color = mixedColor(color);
 #endif
+#endif
 
 #ifdef DSPACE_LIT
   vec3 N = normalize(normalVC);
+#ifdef DSPACE_LAYER_NORMALS
+  N = layeredNormal(N);
+#endif
+#ifdef DSPACE_OBJECT_NORMALS
+  N = objectNormal(N);
+#endif
   if (gl_FrontFacing != (surface.z > 0.0))
   {
     N = -N;
   }
-  vec3 light = ambientLight * color.rgb;
-#if defined(DSPACE_SPECULAR) || defined(DSPACE_PLACED_LIGHTS)
-  vec3 V = cameraParallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
+#ifdef DSPACE_NORMAL_MAP
+  N = mappedNormal(N);
 #endif
-#ifdef DSPACE_SPECULAR
-  float NdV = max(dot(N, V), 1e-4);
-  float alpha = max(surface.y * surface.y, 0.002);
-  vec3 F0 = mix(vec3(0.04), color.rgb, surface.x);
-  vec3 albedo = color.rgb * (1.0 - surface.x);
-#endif
-#if DSPACE_LIGHT_COUNT > 0
-  for (int i = 0; i < DSPACE_LIGHT_COUNT; ++i)
-  {
-    vec3 L = -lightDirectionVC[i];
-    vec3 radiance = lightColor[i];
-#ifdef DSPACE_PLACED_LIGHTS
-    if (lightKind[i] == 1 || lightKind[i] == 2)
-    {
-      vec3 toLight = lightPositionVC[i] - positionVC;
-      float distance = length(toLight);
-      L = toLight / distance;
-      radiance /= dot(lightAttenuation[i], vec3(1.0, distance, distance * distance));
-      if (lightKind[i] == 2 && dot(-L, lightDirectionVC[i]) < lightCosCone[i])
-      {
-        radiance = vec3(0.0);
-      }
-    }
-    else if (lightKind[i] == 3)
-    {
-      L = V;
-    }
-#endif
-    float NdL = max(dot(N, L), 0.0);
-#ifdef DSPACE_SPECULAR
-    light += radiance * NdL * reflected(L, N, V, NdL, NdV, albedo, F0, alpha * alpha);
+#ifdef DSPACE_ANGLES
+  color = photometricAngles(N, positionVC, cameraParallel);
 #else
-    light += radiance * NdL * color.rgb;
+  color.rgb = shaded(color.rgb, N, positionVC, surface.xy);
 #endif
-  }
-#endif
-  color.rgb = light;
 #endif
 #ifdef DSPACE_EMISSIVE
   color.rgb += emissive;
@@ -159,6 +149,10 @@ void main()
     discard;
   }
   fragColor = vec4(color.rgb * color.a, color.a);
+#elif defined(DSPACE_ANGLES)
+  fragColor = color;
+#elif defined(DSPACE_DISPLAY_COLOR)
+  fragColor = vec4(color.rgb, 0.0); // not exposed
 #else
   fragColor = vec4(color.rgb, 1.0);
 #endif

@@ -49,6 +49,15 @@ bool IsValidFrameName(const std::string& name) {
          });
 }
 
+std::string MappedFrameName(const std::string& name) {
+  std::string mapped = Utf8Beginning(ToUtf8(name), MaximumFrameName - 16); // room for a number
+  for (char& c : mapped) {
+    const auto byte = static_cast<unsigned char>(c);
+    c = c == '/' || byte < 32 || byte == 127 ? '_' : c;
+  }
+  return mapped.empty() || mapped == "." || mapped == ".." ? "_" : mapped;
+}
+
 void RejectFrameName(const std::string& object, const std::string& name) {
   throw Error(
       Error::Kind::InvalidArgument, object,

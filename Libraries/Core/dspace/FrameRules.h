@@ -25,6 +25,10 @@ constexpr std::size_t MaximumFrameName = 255;
 // byte below 32, or 127).
 bool IsValidFrameName(const std::string& name);
 
+// The valid name that is nearest to one from a file: what a name cannot hold becomes '_', and what
+// is too long is cut.
+std::string MappedFrameName(const std::string& name);
+
 // Throws Error(InvalidArgument) naming `object` and the name.
 [[noreturn]] void RejectFrameName(const std::string& object, const std::string& name);
 

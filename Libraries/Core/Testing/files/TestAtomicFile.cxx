@@ -1,6 +1,5 @@
 #include <dspace/AtomicFile.h>
 
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -8,17 +7,19 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <dspace/Error.h>
+
+#include "FullDisk.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using dspace::AtomicFile;
 using dspace::Error;
+using dspace::testing::FullDisk;
 
 std::string Content(const fs::path& path) {
   std::ostringstream all;
@@ -39,26 +40,6 @@ mode_t ModeOf(const fs::path& path) {
   EXPECT_EQ(::stat(path.c_str(), &state), 0);
   return state.st_mode & 07777;
 }
-
-// As on a full disk: no file may grow beyond `bytes`.
-class FullDisk {
-public:
-  explicit FullDisk(rlim_t bytes) : Handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &this->Before_), 0);
-    const rlimit small{bytes, this->Before_.rlim_max};
-    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &this->Before_);
-    std::signal(SIGXFSZ, this->Handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
-private:
-  rlimit Before_{};
-  void (*Handler_)(int);
-};
 
 class TestAtomicFile : public ::testing::Test {
 protected:
@@ -241,7 +222,7 @@ TEST_F(TestAtomicFile, TheModeIsThatOfACreationOrOfTheFileBefore) {
   {
     AtomicFile file((this->Folder / "new").string());
     EXPECT_EQ(ModeOf(file.TemporaryPath()), 0604u);
-    fs::remove(file.TemporaryPath()); // as a library that creates its files anew
+    fs::remove(file.TemporaryPath()); // as a library that creates its files again
     Put(file.TemporaryPath(), "newer");
     file.Commit();
   }

@@ -146,6 +146,52 @@ TEST_F(ShadingTest, BothSidesAreLitFromTheSideThatIsSeen) {
   ExpectEverywhere([](const auto&) { return 0.0; });
 }
 
+TEST_F(ShadingTest, ANormalMapTurnsTheNormalsInItsTextureCoordinates) {
+  auto image = std::make_shared<Image>();
+  image->name = "normals";
+  image->width = image->height = 1;
+  image->channels = 3;
+  material->normalTexture = image;
+  const FrameId frame = scene->Frames().Create(RootFrame, "wall", At(10, 0, 0));
+  // u runs to the camera's right, -Y, v upwards, Z; not alike, so that the axes are not square.
+  for (const Eigen::Vector3d& wanted : {Eigen::Vector3d(0.5, 0, 0.8), Eigen::Vector3d(0, 0.6, 0.8),
+                                        Eigen::Vector3d(-0.4, 0.3, 0.9)}) {
+    for (const double scale : {1.0, 0.5}) {
+      const Eigen::Vector3d bytes = ((wanted * 0.5).array() + 0.5) * 255.0;
+      image->pixels = {std::uint8_t(bytes.x()), std::uint8_t(bytes.y()), std::uint8_t(bytes.z())};
+      // A new one, since a mesh and its images do not change.
+      auto made = std::make_shared<Material>(*material);
+      made->normalTexture = std::make_shared<Image>(*image);
+      made->normalScale = scale;
+      const ObjectId id = scene->AddObject(Object("wall", frame, PlaneTowardsCamera(20, 12), made));
+      Eigen::Vector3d n;
+      for (int k = 0; k < 3; ++k) {
+        n[k] = (image->pixels[std::size_t(k)] / 255.0 * 2.0 - 1.0) * (k < 2 ? scale : 1.0);
+      }
+      const Eigen::Vector3d N = Eigen::Vector3d(-n.z(), -n.x(), n.y()).normalized();
+      for (const Eigen::Vector3d& direction :
+           {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.6, 0.8, 0),
+            Eigen::Vector3d(0.6, 0, -0.8)}) {
+        light.direction = direction;
+        SetLight(Light::Kind::Directional, 0.5);
+        Take();
+        const double expected = 0.5 * std::max(0.0, -direction.dot(N));
+        for (const int x : {7, 10, 13}) { // 2 of 255 display steps are at most 0.018 here
+          EXPECT_NEAR(Linear(x, 10), expected, 2 * Step) << wanted.transpose() << ", " << scale;
+        }
+      }
+      scene->RemoveObject(id);
+    }
+  }
+  // Without one, or without texture coordinates, the surface is as it was.
+  light.direction = {1, 0, 0};
+  SetLight(Light::Kind::Directional, 0.5);
+  Mesh bare = PlaneTowardsCamera(20, 20);
+  bare.tcoords.clear();
+  scene->AddObject(Object("wall", frame, bare, material));
+  ExpectEverywhere([](const auto&) { return 0.5; });
+}
+
 TEST_F(ShadingTest, VertexColoursMultiplyInLinearLight) {
   Mesh mesh = PlaneTowardsCamera(20, 20);
   for (std::size_t i = 0; i < mesh.VertexCount(); ++i) {

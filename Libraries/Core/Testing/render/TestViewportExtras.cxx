@@ -17,8 +17,8 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 
+#include <dspace/overlay/Overlay.h>
 #include <dspace/render/text/OverlayText.h>
-#include <dspace/scene/Overlay.h>
 
 using namespace dspace;
 

@@ -4,8 +4,8 @@
 #include <thread>
 
 #include <dspace/Error.h>
-#include <dspace/render/VtkErrorTrap.h>
-#include <dspace/render/VtkMessages.h>
+#include <dspace/render/messages/VtkErrorTrap.h>
+#include <dspace/render/messages/VtkMessages.h>
 
 #include "vtkObject.h"
 #include "vtkStringOutputWindow.h"

@@ -4,9 +4,9 @@
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
 
+#include <dspace/overlay/TextLimits.h>
 #include <dspace/render/SceneDrawer.h>
 #include <dspace/render/text/OverlayText.h>
-#include <dspace/scene/TextLimits.h>
 
 namespace dspace {
 namespace {

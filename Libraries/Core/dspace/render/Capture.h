@@ -18,23 +18,39 @@ namespace dspace {
 struct Capture {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> color;  // RGBA, sRGB display values, alpha 255
-  std::vector<float> depth;         // metres along the camera's Z; +infinity where nothing was hit
+  std::vector<std::uint8_t> color; // RGBA, sRGB display values, alpha 255
+  std::vector<float> depth;        // metres along the camera's Z; +infinity where nothing was hit
+  std::vector<float> range; // metres from the camera along the pixel's ray; +infinity: nothing
   std::vector<std::uint32_t> label; // ObjectId, 0 where nothing was hit
+  // Linear light towards the camera [W/m^2/sr], red, green, blue, before exposure.
+  std::vector<float> radiance;
+  std::vector<float> litFraction; // part of the Sun's disc that lights the surface, 0 to 1
+  // Degrees between the surface's normal and the Sun, the normal and the camera, the Sun and the
+  // camera. NaN where nothing was hit; also of litFraction.
+  std::vector<float> incidence;
+  std::vector<float> emission;
+  std::vector<float> phase;
 };
 
 struct CaptureRequest {
   bool color = true;
   bool depth = false;
   bool label = false;
-  bool physicalOnly = false;             // no ornamental object, no overlay
-  std::set<std::string> hiddenFragments; // in addition to the viewport's own
+  bool physicalOnly = false;                  // no ornamental object, no overlay
+  std::set<std::string> hiddenFragments = {}; // in addition to the viewport's own
+  bool range = false;
+  bool radiance = false;
+  bool litFraction = false;
+  bool incidence = false;
+  bool emission = false;
+  bool phase = false;
 };
 
 // Result of picking at a pixel.
 struct PickResult {
   ObjectId object = 0; // 0: nothing was hit, and nothing else below is valid
   FrameId frame = 0;   // the frame the object hangs on
+  std::string part;    // name of the part that was hit; may be empty
   double depth = 0.0;  // metres along the camera's Z
   FrameId cameraFrame = 0;
   Eigen::Vector3d p_camera = Eigen::Vector3d::Zero(); // in the sensor camera's axes [m]

@@ -8,13 +8,14 @@
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceRenderer.h"
 #include "vtkOpenGLRenderer.h"
+#include "vtkOpenGLState.h"
 #include "vtkPropCollection.h"
 #include "vtkRendererCollection.h"
 
 #include <dspace/Error.h>
 #include <dspace/render/CornerAxes.h>
-#include <dspace/render/VtkErrorTrap.h>
 #include <dspace/render/VtkMirror.h>
+#include <dspace/render/messages/VtkErrorTrap.h>
 
 namespace dspace {
 
@@ -59,7 +60,8 @@ void ColorPicture::PrepareTargets(int width, int height, int samples) {
   vtkDspaceHubWindow* hub = this->Context_->GetHub();
   using Format = RenderTarget::Format;
   if (!this->DisplayTarget_) {
-    this->DisplayTarget_ = std::make_unique<RenderTarget>(hub, Format::Display, true);
+    this->DisplayTarget_ =
+        std::make_unique<RenderTarget>(hub, Format::Display, RenderTarget::DepthFormat::Float);
   }
   this->DisplayTarget_->Resize(width, height);
   if (samples == 1) { // the scene is drawn into the picture itself
@@ -67,7 +69,8 @@ void ColorPicture::PrepareTargets(int width, int height, int samples) {
     return;
   }
   if (!this->SceneTarget_) {
-    this->SceneTarget_ = std::make_unique<RenderTarget>(hub, Format::Display, true);
+    this->SceneTarget_ =
+        std::make_unique<RenderTarget>(hub, Format::Display, RenderTarget::DepthFormat::Float);
   }
   this->SceneTarget_->Resize(width * samples, height * samples);
 }
@@ -94,8 +97,31 @@ void ColorPicture::Activate(int width, int height, int samples) {
   this->ActivateScene();
 }
 
+void ColorPicture::DrawScene(const DrawView& view, const Request& request) {
+  RenderTarget& drawn = this->DrawnTarget();
+  if (ExposedByLights(view.look)) {
+    this->Exposure_.reset();
+    this->UsedExposure_ = view.look.exposure;
+    this->Drawer_->DrawColor(this->List_, view, drawn, request.samples, &request.background);
+    return;
+  }
+  vtkDspaceHubWindow* hub = this->Context_->GetHub();
+  if (!this->Exposure_) {
+    this->Exposure_ = std::make_unique<ExposurePass>(hub);
+  }
+  RenderTarget& light = this->Exposure_->Target(drawn.Width(), drawn.Height());
+  vtkOpenGLState* state = hub->GetState();
+  state->PushFramebufferBindings();
+  light.Bind();
+  this->Drawer_->ClearLight(request.background);
+  this->Drawer_->DrawColor(this->List_, view, light, request.samples, &request.background);
+  state->PopFramebufferBindings();
+  this->Exposure_->Resolve(view.look, drawn);
+  this->UsedExposure_ = this->Exposure_->Exposure();
+}
+
 void ColorPicture::Draw(const std::string& object, const Scene& scene, const Request& request) {
-  const DrawView& view = request.view;
+  DrawView view = request.view; // with its depths, once the list is built
   const int samples = request.samples;
   vtkDspaceHubWindow* hub = this->Context_->GetHub();
   VtkErrorTrap trap(this->Context_->GetMessages());
@@ -114,6 +140,7 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   }
   this->List_.Build(scene, view, request.filter);
   this->Complete_ = this->Drawer_->Prepare(this->List_, view, samples);
+  this->Drawer_->DrawShadows(scene, this->List_, view, samples);
   this->ActivateScene();
   if (this->Renderer_->GetViewProps()->GetNumberOfItems() > 0) {
     MirrorCamera(scene, view, this->Renderer_);
@@ -130,8 +157,7 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   std::vector<Caption> captions;
   this->Renderer_->DrawScene = [&] {
     try {
-      this->Drawer_->DrawColor(this->List_, view, this->DrawnTarget(), samples,
-                               &request.background);
+      this->DrawScene(view, request);
       if (request.overlays) { // the axes take the depth
         captions = this->Drawer_->Captions(this->List_, view, this->DrawnTarget(), samples);
       }
@@ -147,6 +173,9 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   if (!failure) {
     if (this->SceneTarget_) {
       this->Drawer_->Downsample(*this->SceneTarget_, *this->DisplayTarget_, samples);
+    }
+    if (request.overlays && request.beforeOverlays) {
+      request.beforeOverlays(this->List_.Filter());
     }
     if (request.overlays) {
       this->Captions_.Show(captions, this->Overlay_, view.height / samples);

@@ -3,6 +3,7 @@
 #define DSPACE_RENDER_COLOR_PICTURE_H
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 
 #include <dspace/render/Captions.h>
 #include <dspace/render/DrawList.h>
+#include <dspace/render/ExposurePass.h>
 #include <dspace/render/SceneDrawer.h>
 
 class vtkDspaceRenderContext;
@@ -43,11 +45,15 @@ public:
     SceneDrawer::Background background;
     bool overlays = true;       // props of the overlay renderer
     CornerAxes* axes = nullptr; // none: not drawn
+    // With the filter that the scene was drawn with (DrawList::Filter), where overlays are drawn.
+    std::function<void(const DrawFilter&)> beforeOverlays = {};
   };
   // Errors, OpenGL's and VTK's among them, become dspace::Error about `object`.
   void Draw(const std::string& object, const Scene& scene, const Request& request);
   // Whether all data were there for the last picture.
   bool Complete() const { return this->Complete_; }
+  // The factor on linear light of the last picture.
+  double Exposure() const { return this->UsedExposure_; }
   // The window's current framebuffer and renderers, as while the scene is drawn.
   void Activate(int width, int height, int samples);
 
@@ -55,6 +61,8 @@ public:
 
 private:
   void DrawNothing();
+  // The scene into what is bound (DrawnTarget()), exposed.
+  void DrawScene(const DrawView& view, const Request& request);
   void PrepareTargets(int width, int height, int samples);
   RenderTarget& DrawnTarget() const; // what the scene is drawn into
   void ActivateScene();
@@ -64,9 +72,11 @@ private:
   std::unique_ptr<RenderTarget> SceneTarget_;   // supersampled; none at one sample a pixel
   std::unique_ptr<RenderTarget> DisplayTarget_; // what is shown
   std::unique_ptr<SceneDrawer> Drawer_;
+  std::unique_ptr<ExposurePass> Exposure_; // none while lights expose the picture
   DrawList List_;
   CaptionActors Captions_;
   bool Complete_ = false;
+  double UsedExposure_ = 1.0;
   vtkNew<vtkDspaceRenderer> Renderer_;
   vtkNew<vtkOpenGLRenderer> Overlay_;
   vtkNew<vtkRendererCollection> SceneRenderers_;

@@ -27,6 +27,9 @@ struct CustomDrawing {
   GpuStore& store;
   RenderStatistics& statistics;
   bool labels = false; // no colours are drawn: labels and depths only
+  // The target holds linear light in floats, which is exposed later where its alpha is not 0: what
+  // has display values writes alpha 0.
+  bool light = false;
 };
 
 // One a picture and geometry; made, used and destroyed with the window's context current. Depth is
@@ -37,8 +40,23 @@ public:
   // Uploads the data that the view needs, before its target is bound. Returns false if some data is
   // not loaded yet; with view.complete it waits instead (Error(DeadlineExceeded)).
   virtual bool Prepare(const CustomDrawing& drawing) = 0;
+  // About how far from the camera [m], along the view's axis, the nearest of it that may be seen
+  // is; after Prepare(). Shadow maps are fitted to it. 0: unknown.
+  virtual double NearestDepth(const CustomDrawing&) { return 0.0; }
+  // Whether its own shader says which shadows it throws on itself (a terrain's horizon): then the
+  // maps that it is in are those of other receivers only. After Prepare().
+  virtual bool ShadowsItself(const CustomDrawing&) { return false; }
   virtual void DrawColor(const CustomDrawing& drawing) = 0;
+  // Also into the Sun's shadow maps: `drawing.view.clip` is then set, and no label is kept.
   virtual void DrawLabels(const CustomDrawing& drawing) = 0;
+  // Photometric angles of what is lit, 0 where they are not known, as Photometry.glsl has them
+  // (SurfaceShaders::Angles), and depth. Returns false, drawing nothing, if it knows none: what
+  // DrawLabels() draws then hides the rest.
+  virtual bool DrawAngles(const CustomDrawing&) { return false; }
+  // What lets light pass, over the opaque picture in `target`, which is bound; its depth says what
+  // hides it. The farthest geometry comes first, before the scene's translucent surfaces. Depth,
+  // culling and blending are as for DrawColor().
+  virtual void DrawTranslucent(const CustomDrawing&, const RenderTarget& /*target*/) {}
   // Captions over the picture, whose colours and depth are in `target`.
   virtual std::vector<Caption> Captions(const CustomDrawing&, const RenderTarget& /*target*/) {
     return {};

@@ -1,7 +1,12 @@
 #include <dspace/render/DrawList.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+
+#include <dspace/scene/PartLook.h>
+#include <dspace/scene/Stretch.h>
 
 namespace dspace {
 namespace {
@@ -9,36 +14,38 @@ namespace {
 // OpenGL's view axes (Y up, looking along -Z) from a sensor camera's (Y down, along Z).
 const Eigen::Vector3d ViewFromCamera(1.0, -1.0, -1.0);
 
-std::array<float, 3> LinearColor(const std::array<double, 3>& srgb) {
-  return {LinearFromSrgb(srgb[0]), LinearFromSrgb(srgb[1]), LinearFromSrgb(srgb[2])};
+// Whether code of the object may move its vertices out of its bounds, and turn its faces over.
+bool MovesVertices(const GraphicsObject& object) {
+  if (!object.shader) {
+    return false;
+  }
+  const auto& code = object.shader->replacements;
+  return std::any_of(code.begin(), code.end(), [](const ShaderReplacement& replacement) {
+    return replacement.stage == ShaderReplacement::Stage::Vertex;
+  });
 }
 
 // What of a part's look is the same in every view.
-DrawInstance LookOf(const GraphicsObject& object, const Material& material) {
-  const MaterialOverride& over = object.material;
-  DrawInstance look{};
-  const auto color = LinearColor(over.color.value_or(material.color));
-  look.color = {color[0], color[1], color[2],
-                static_cast<float>(over.opacity.value_or(material.opacity))};
-  look.metallic = static_cast<float>(over.metallic.value_or(material.metallic));
-  look.roughness = static_cast<float>(over.roughness.value_or(material.roughness));
-  look.label = object.id;
-  look.emissive = LinearColor(material.emissive);
-  return look;
+DrawInstance InstanceOf(const GraphicsObject& object, const Material& look) {
+  DrawInstance made{};
+  const auto color = LinearColor(look.color);
+  made.color = {color[0], color[1], color[2], static_cast<float>(look.opacity)};
+  made.metallic = static_cast<float>(look.metallic);
+  made.roughness = static_cast<float>(look.roughness);
+  made.label = object.id;
+  made.emissive = LinearColor(look.emissive);
+  return made;
 }
 
-// Planes of the view volume in view axes, normals inwards, from the rows of the clip matrix.
-std::vector<Eigen::Vector4d> FrustumPlanes(const Eigen::Matrix4d& clipFromView) {
+// Planes at the sides of the view volume in view axes, normals inwards, from the rows of the clip
+// matrix.
+std::vector<Eigen::Vector4d> SidePlanes(const Eigen::Matrix4d& clipFromView) {
   std::vector<Eigen::Vector4d> planes;
   const auto row = [&](int i) { return Eigen::Vector4d(clipFromView.row(i)); };
   for (const Eigen::Vector4d& plane :
        {Eigen::Vector4d(row(3) + row(0)), Eigen::Vector4d(row(3) - row(0)),
-        Eigen::Vector4d(row(3) + row(1)), Eigen::Vector4d(row(3) - row(1)),
-        Eigen::Vector4d(row(3) - row(2)), Eigen::Vector4d(row(2))}) {
-    const double length = plane.head<3>().norm();
-    if (length > 1e-300) { // an infinite far distance has no far plane
-      planes.push_back(plane / length);
-    }
+        Eigen::Vector4d(row(3) + row(1)), Eigen::Vector4d(row(3) - row(1))}) {
+    planes.push_back(plane / plane.head<3>().norm());
   }
   return planes;
 }
@@ -53,49 +60,56 @@ bool Outside(const std::vector<Eigen::Vector4d>& planes, const Eigen::Vector3d& 
   return false;
 }
 
-double LargestScale(const Eigen::Affine3d& affine) {
-  // Upper bound of the largest singular value, tight for rotations with uniform scale.
-  return affine.linear().colwise().norm().maxCoeff() > 0
-             ? std::min(affine.linear().norm(),
-                        std::sqrt(3.0) * affine.linear().colwise().norm().maxCoeff())
-             : 0.0;
+bool Casts(const DrawBatch& batch) {
+  return !batch.translucent && !batch.billboard && !batch.wireframe &&
+         batch.mesh->primitive == Mesh::Primitive::Triangles;
+}
+
+std::optional<DistanceRange> RangeInFrame(std::optional<DistanceRange> range,
+                                          const Eigen::Affine3d& X_FO) {
+  if (range) {
+    const double scale = std::cbrt(std::abs(X_FO.linear().determinant()));
+    range->center = X_FO * range->center;
+    range->from *= scale;
+    range->to *= scale;
+  }
+  return range;
+}
+
+bool IsInRange(const DistanceRange& range, const Eigen::Affine3d& X_VF) {
+  const double scale = std::cbrt(std::abs(X_VF.linear().determinant()));
+  const double distance = (X_VF * range.center).norm();
+  return distance >= scale * range.from && distance < scale * range.to;
 }
 
 } // namespace
 
-float LinearFromSrgb(double value) {
-  return static_cast<float>(value <= 0.04045 ? value / 12.92
-                                             : std::pow((value + 0.055) / 1.055, 2.4));
-}
-
 std::uint32_t DrawList::BatchOf(const GraphicsObject& object, const Part& part,
-                                const DrawInstance& look, bool near) {
-  const Material& material = *part.material;
+                                const Material& material, const DrawInstance& look, bool near) {
   DrawBatch batch;
   batch.mesh = part.mesh;
-  batch.texture = object.material.texture.value_or(material.texture);
-  if (part.mesh->tcoords.empty()) {
-    batch.texture = nullptr;
-  }
+  batch.texture = material.texture;
+  batch.shader = object.shader;
   batch.repeatTexture = material.repeatTexture;
-  batch.lit = object.material.lit.value_or(material.lit) &&
-              part.mesh->primitive == Mesh::Primitive::Triangles && !object.billboard &&
-              !part.mesh->normals.empty();
+  batch.lit = material.lit;
+  if (batch.lit) {
+    batch.normalTexture = material.normalTexture;
+    batch.normalScale = material.normalScale;
+  }
   batch.specular = look.metallic > 0.0f || look.roughness < 1.0f;
+  if (batch.lit && material.reflectance.model != Reflectance::Model::MetallicRoughness) {
+    batch.specular = false;
+    batch.reflectance = material.reflectance;
+  }
   batch.emissive = look.emissive != std::array<float, 3>{0.0f, 0.0f, 0.0f};
-  batch.wireframe = object.material.wireframe.value_or(false);
+  batch.wireframe = OverrideOf(object, part).wireframe.value_or(false);
   batch.billboard = object.billboard;
   batch.lineWidth = static_cast<float>(object.lineWidth);
   batch.pointSize = static_cast<float>(object.pointSize);
-  const bool alphaTexture = batch.texture && batch.texture->channels % 2 == 0;
-  bool alphaColors = false;
-  for (std::size_t i = 3; i < part.mesh->colors.size() && !alphaColors; i += 4) {
-    alphaColors = part.mesh->colors[i] != 255;
-  }
-  batch.translucent = look.color[3] < 1.0f || alphaTexture || alphaColors;
+  batch.translucent = IsTranslucent(material, *part.mesh);
 
-  batch.solid =
-      part.mesh->solid && !batch.translucent && !batch.wireframe && !batch.billboard && !near;
+  batch.solid = part.mesh->solid && !batch.translucent && !batch.wireframe && !batch.billboard &&
+                !near && !MovesVertices(object);
   batch.mirrored = batch.solid && look.mirrored < 0.0f;
 
   std::string key;
@@ -106,10 +120,21 @@ std::uint32_t DrawList::BatchOf(const GraphicsObject& object, const Part& part,
   };
   append(batch.mesh.get());
   append(batch.texture.get());
+  append(batch.normalTexture.get());
+  append(batch.normalScale);
+  append(batch.shader.get());
   append(batch.repeatTexture);
   append(batch.lit);
   append(batch.emissive);
   append(batch.specular);
+  append(batch.reflectance.model);
+  append(batch.reflectance.lunarWeight.value_or(-1.0));
+  append(batch.reflectance.singleScatteringAlbedo);
+  append(batch.reflectance.phaseAsymmetry);
+  append(batch.reflectance.phasePartition);
+  append(batch.reflectance.oppositionAmplitude);
+  append(batch.reflectance.oppositionWidth);
+  append(batch.reflectance.roughness_deg);
   append(batch.wireframe);
   append(batch.billboard);
   append(batch.translucent);
@@ -132,20 +157,28 @@ void DrawList::Flatten(const Scene& scene) {
   for (const auto& entry : scene.Objects()) {
     const GraphicsObject& object = entry.second;
     FlatObject flat{&object, {}};
+    std::uint32_t number = 0;
     for (const DetailLevel& level : object.levels) {
       FlatLevel flatLevel;
-      flatLevel.minimumPixels = level.minimumPixels;
       flatLevel.bounds = level.sphere;
       flatLevel.bounds.center = object.X_FO * flatLevel.bounds.center;
-      flatLevel.bounds.radius *= LargestScale(object.X_FO);
+      flatLevel.bounds.radius *= LargestStretch(object.X_FO);
       for (const Part& part : level.parts) {
+        ++number;
+        if (!IsPartVisible(object, part)) {
+          continue;
+        }
         FlatPart flatPart;
-        flatPart.instance = LookOf(object, *part.material);
+        flatPart.number = number;
+        const Material look = LookOf(object, part);
+        flatPart.instance = InstanceOf(object, look);
         flatPart.X_FP = object.X_FO * part.X_OP;
+        flatPart.range = RangeInFrame(part.range, object.X_FO);
         flatPart.instance.mirrored = flatPart.X_FP.linear().determinant() < 0 ? -1.0f : 1.0f;
-        flatPart.batch = this->BatchOf(object, part, flatPart.instance, false);
-        flatPart.nearBatch = part.mesh->solid ? this->BatchOf(object, part, flatPart.instance, true)
-                                              : flatPart.batch;
+        flatPart.batch = this->BatchOf(object, part, look, flatPart.instance, false);
+        flatPart.nearBatch = part.mesh->solid
+                                 ? this->BatchOf(object, part, look, flatPart.instance, true)
+                                 : flatPart.batch;
         flatLevel.parts.push_back(flatPart);
       }
       flat.levels.push_back(std::move(flatLevel));
@@ -157,8 +190,10 @@ void DrawList::Flatten(const Scene& scene) {
   this->ContentRevision_ = scene.ContentRevision();
 }
 
-void DrawList::PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, const Pose& X_CA) {
+void DrawList::PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, const Pose& X_CA,
+                           double fill) {
   this->Lights_.clear();
+  this->Sun_.reset();
   Eigen::Vector3f ambient = Eigen::Vector3f::Zero();
   for (const Light& light : scene.Fragments().Lights()) {
     if (!light.enabled) {
@@ -174,6 +209,11 @@ void DrawList::PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, c
     }
     DrawLight placed{};
     placed.kind = light.kind;
+    placed.sun = IsSun(light);
+    if (placed.sun) {
+      ambient += float(fill) * Eigen::Vector3f(color[0], color[1], color[2]);
+    }
+    placed.radius = static_cast<float>(light.radius_deg * M_PI / 180.0);
     placed.color = color;
     placed.cosCone = static_cast<float>(std::cos(light.cone_deg * M_PI / 180.0));
     placed.attenuation = {1.0f, 0.0f, 0.0f};
@@ -181,6 +221,16 @@ void DrawList::PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, c
     if (light.kind != Light::Kind::Head) {
       const Pose& X_AL = this->X_AF_[scene.Frames().Slot(light.frame)];
       const Eigen::Vector3d d = (q_VA * (X_AL.rotation * light.direction)).normalized();
+      if (placed.sun) {
+        // In the light's own axes, where the direction stands still while the camera moves.
+        const Pose X_LC = X_AL.Inverse() * X_CA.Inverse();
+        SunPlace sun;
+        sun.axes = LightAxes(-light.direction);
+        sun.camera = (sun.axes * X_LC.position).head<2>() / X_LC.scale;
+        sun.axes = sun.axes * (q_VA * X_AL.rotation).conjugate().toRotationMatrix();
+        sun.radius = light.radius_deg * M_PI / 180.0;
+        this->Sun_ = sun;
+      }
       const Eigen::Vector3d p = ViewFromCamera.cwiseProduct(X_CA.Apply(X_AL.Apply(light.position)));
       for (int i = 0; i < 3; ++i) {
         placed.direction[i] = static_cast<float>(d[i]);
@@ -188,38 +238,42 @@ void DrawList::PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, c
         placed.attenuation[i] = static_cast<float>(light.attenuation[i]);
       }
     }
-    this->Lights_.push_back(placed);
+    this->Lights_.insert(placed.sun ? this->Lights_.begin() : this->Lights_.end(), placed);
   }
   this->Ambient_ = {ambient[0], ambient[1], ambient[2]};
 }
 
-void DrawList::Build(const Scene& scene, const DrawView& view, const DrawFilter& filter) {
-  if (this->Scene_ != &scene || this->ContentRevision_ != scene.ContentRevision()) {
-    this->Flatten(scene);
+void DrawList::ExposeLights(float exposure) {
+  for (DrawLight& light : this->Lights_) {
+    for (float& channel : light.color) {
+      channel *= exposure;
+    }
   }
-  const FrameTree& frames = scene.Frames();
-  // Every pose relative to the frame that carries the camera, each through its nearest common
-  // ancestor with it; then one more step into the camera. No large number is ever subtracted that
-  // the frames themselves do not force.
-  frames.RelativePoses(view.camera.frame, this->X_AF_);
-  const Pose X_CA = view.camera.X_FC.Inverse();
-  const Eigen::Quaterniond q_VC(0.0, 1.0, 0.0, 0.0); // half a turn about X
-  this->PlaceLights(scene, q_VC * X_CA.rotation, X_CA);
+  for (float& channel : this->Ambient_) {
+    channel *= exposure;
+  }
+}
 
+std::optional<Eigen::Vector3f> DrawList::TowardsSun() const {
+  if (this->Lights_.empty() || !this->Lights_.front().sun) {
+    return std::nullopt;
+  }
+  return -Eigen::Map<const Eigen::Vector3f>(this->Lights_.front().direction.data());
+}
+
+void DrawList::FindSeen(const Scene& scene, const DrawView& view, const DrawFilter& filter) {
+  const FrameTree& frames = scene.Frames();
+  const Pose X_CA = view.camera.X_FC.Inverse();
   std::unordered_map<std::string, bool> shown;
   for (const std::string& name : scene.Fragments().Names()) {
     const SceneFragment& fragment = scene.Fragments().Get(name);
-    shown[name] = fragment.visible && filter.hiddenFragments.count(name) == 0 &&
-                  !(filter.physicalOnly && fragment.nature == Nature::Ornamental);
+    shown[name] = fragment.visible && filter.Shows({fragment.nature, name});
+    if (!shown[name]) {
+      this->Filter_.hiddenFragments.insert(name);
+    }
   }
-  const auto planes = FrustumPlanes(view.projection.ClipFromView(view.width, view.height));
-
-  for (auto& pending : this->Pending_) {
-    pending.clear();
-  }
-  this->Triangles_ = 0;
-  this->Culled_ = 0;
-  this->Customs_.clear();
+  const auto sides = SidePlanes(view.ClipFromView());
+  this->Seen_.clear();
   for (const FlatObject& flat : this->Objects_) {
     const GraphicsObject& object = *flat.object;
     if (!object.visible || (flat.levels.empty() && !object.custom) || !shown[object.fragment] ||
@@ -227,55 +281,154 @@ void DrawList::Build(const Scene& scene, const DrawView& view, const DrawFilter&
       continue;
     }
     const Pose X_CF = X_CA * this->X_AF_[frames.Slot(object.frame)];
-    Eigen::Affine3d X_VF(X_CF.Matrix());
-    X_VF.matrix().topRows<3>() = ViewFromCamera.asDiagonal() * X_VF.matrix().topRows<3>();
-
+    SeenObject seen;
+    seen.flat = &flat;
+    seen.X_VF.matrix() = X_CF.Matrix();
+    seen.X_VF.matrix().topRows<3>() = ViewFromCamera.asDiagonal() * seen.X_VF.matrix().topRows<3>();
     if (object.custom) {
-      const Eigen::Affine3d X_VO = X_VF * object.X_FO;
+      const Eigen::Affine3d X_VO = seen.X_VF * object.X_FO;
       const BoundingSphere sphere = object.custom->Bounds();
-      if (Outside(planes, X_VO * sphere.center, sphere.radius * LargestScale(X_VO))) {
-        ++this->Culled_;
-      } else {
-        this->Customs_.push_back({&object, X_VO});
-      }
+      seen.center = X_VO * sphere.center;
+      seen.radius = sphere.radius * LargestStretch(X_VO);
+    } else if (object.billboard) { // its size is pixels
+      seen.center = seen.X_VF * object.X_FO.translation();
+      seen.radius = 0.0;
+    } else {
+      const FlatLevel& finest = flat.levels.front();
+      seen.center = seen.X_VF * finest.bounds.center;
+      seen.radius = finest.bounds.radius * X_CF.scale;
+    }
+    if (!object.billboard && !MovesVertices(object) && Outside(sides, seen.center, seen.radius)) {
+      ++this->Culled_;
       continue;
     }
+    this->Seen_.push_back(std::move(seen));
+  }
+}
 
-    const FlatLevel* level = &flat.levels.front();
-    const Eigen::Vector3d center = X_VF * level->bounds.center;
-    const double radius = level->bounds.radius * X_CF.scale;
-    if (!object.billboard) {
-      if (Outside(planes, center, radius)) {
-        ++this->Culled_;
-        continue;
+double DrawList::HighestToSun() const {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const SeenObject& seen : this->Seen_) {
+    highest = std::max(highest, this->Sun_->axes.row(2).dot(seen.center) + seen.radius);
+  }
+  return highest;
+}
+
+void DrawList::FindDepths() {
+  this->NearestDepth_ = std::numeric_limits<double>::infinity();
+  this->FarthestDepth_ = -this->NearestDepth_;
+  for (const SeenObject& seen : this->Seen_) {
+    const double high = -seen.center.z() + seen.radius;
+    if (high > 0.0 && !seen.flat->object->custom) {
+      this->NearestDepth_ = std::min(this->NearestDepth_, std::max(0.0, high - 2.0 * seen.radius));
+    }
+    this->FarthestDepth_ = std::max(this->FarthestDepth_, high);
+  }
+}
+
+void DrawList::SetDepths(DrawView& view) const {
+  Projection& projection = view.projection;
+  const bool orthographic = projection.kind == Projection::Kind::Orthographic;
+  if (projection.nearDistance && (projection.farDistance || !orthographic)) {
+    projection = projection.Seeing(1.0, 0.0);
+    return;
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  double nearest = infinity;
+  double farthest = -infinity;
+  for (const SeenObject& seen : this->Seen_) {
+    const double low = -seen.center.z() - seen.radius;
+    const double high = -seen.center.z() + seen.radius;
+    // What surrounds the camera of a perspective kind is cut at the usual distance.
+    if (orthographic ? high >= projection.nearDistance.value_or(0.0) : low > 0.0) {
+      nearest = std::min(nearest, low);
+      farthest = std::max(farthest, high);
+    }
+  }
+  projection = projection.Seeing(nearest, farthest);
+}
+
+void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filter) {
+  if (this->Scene_ != &scene || this->ContentRevision_ != scene.ContentRevision()) {
+    this->Flatten(scene);
+  }
+  this->Filter_ = filter;
+  const FrameTree& frames = scene.Frames();
+  // Every pose relative to the frame that carries the camera, each through its nearest common
+  // ancestor with it; then one more step into the camera. No large number is ever subtracted that
+  // the frames themselves do not force.
+  frames.RelativePoses(view.camera.frame, this->X_AF_);
+  const Pose X_CA = view.camera.X_FC.Inverse();
+  const Eigen::Quaterniond q_VC(0.0, 1.0, 0.0, 0.0); // half a turn about X
+  this->PlaceLights(scene, q_VC * X_CA.rotation, X_CA, view.look.fill);
+
+  const float exposure = ExposedByLights(view.look) ? float(view.look.exposure) : 1.0f;
+  if (exposure != 1.0f) {
+    this->ExposeLights(exposure);
+  }
+
+  for (auto& pending : this->Pending_) {
+    pending.clear();
+  }
+  this->Triangles_ = 0;
+  this->Culled_ = 0;
+  this->Customs_.clear();
+  this->FindSeen(scene, view, filter);
+  this->FindDepths();
+  this->SetDepths(view);
+  const double near = view.projection.Near();
+  const double far = view.projection.Far();
+  for (const SeenObject& seen : this->Seen_) {
+    const FlatObject& flat = *seen.flat;
+    const GraphicsObject& object = *flat.object;
+    const double nearest = -seen.center.z() - seen.radius;
+    if (!view.clip && !object.billboard && !MovesVertices(object) &&
+        (nearest > far || -seen.center.z() + seen.radius < near)) {
+      ++this->Culled_;
+      continue;
+    }
+    if (object.custom) {
+      this->Customs_.push_back({&object, seen.X_VF * object.X_FO});
+      continue;
+    }
+    std::size_t level = 0;
+    const bool bySize = flat.levels.size() > 1 || object.levels.front().minimumPixels > 0.0;
+    if (bySize && !object.billboard) {
+      const double depth = std::max(-seen.center.z(), 1e-9);
+      const double pixels =
+          2.0 * seen.radius / view.projection.MetresPerPixel(depth, view.height) / view.samples;
+      const int found = LevelFor(object.levels, pixels);
+      if (found < 0) {
+        continue; // smaller than the coarsest level wants
       }
-      if (flat.levels.size() > 1) {
-        const double depth = std::max(-center[2], view.projection.nearDistance);
-        const double pixels = 2.0 * radius / view.projection.MetresPerPixel(depth, view.height);
-        level = nullptr;
-        for (const FlatLevel& candidate : flat.levels) {
-          if (pixels >= candidate.minimumPixels) {
-            level = &candidate;
-            break;
-          }
-        }
-        if (!level) {
-          continue; // smaller than the coarsest level wants
-        }
-      }
+      level = std::size_t(found);
     }
     // The near plane may cut it open, or the camera be inside it: then its back faces are seen.
-    const double nearest = -(X_VF * level->bounds.center)[2] - level->bounds.radius * X_CF.scale;
-    const bool opened = nearest <= view.projection.nearDistance;
-    for (const FlatPart& part : level->parts) {
-      const Eigen::Matrix<double, 3, 4> m = (X_VF * part.X_FP).matrix().topRows<3>();
+    const bool opened = nearest <= near;
+    for (const FlatPart& part : flat.levels[level].parts) {
+      if (filter.castersOnly && !Casts(this->Templates_[part.batch])) {
+        continue;
+      }
+      if (part.range && !IsInRange(*part.range, seen.X_VF)) {
+        continue;
+      }
+      const Eigen::Matrix<double, 3, 4> m = (seen.X_VF * part.X_FP).matrix().topRows<3>();
       DrawInstance instance = part.instance;
+      if (filter.partsOf != 0) {
+        instance.label = object.id == filter.partsOf ? part.number : 0;
+      }
       for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 4; ++c) {
           instance.viewFromMesh[4 * r + c] = static_cast<float>(m(r, c));
         }
       }
-      this->Pending_[opened ? part.nearBatch : part.batch].push_back(instance);
+      const std::uint32_t batch = opened ? part.nearBatch : part.batch;
+      if (exposure != 1.0f && this->Templates_[batch].lit) {
+        for (float& channel : instance.emissive) {
+          channel *= exposure;
+        }
+      }
+      this->Pending_[batch].push_back(instance);
     }
   }
 

@@ -5,12 +5,16 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include <dspace/render/shadows/CascadeFit.h>
+#include <dspace/scene/LinearLight.h>
 #include <dspace/scene/Scene.h>
+#include <dspace/scene/ViewLook.h>
 
 namespace dspace {
 
@@ -32,10 +36,14 @@ static_assert(sizeof(DrawInstance) == 96, "tightly packed");
 struct DrawBatch {
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const Image> texture;
+  std::shared_ptr<const Image> normalTexture;
+  double normalScale = 1.0;
+  std::shared_ptr<const ShaderCode> shader;
   bool repeatTexture = true;
   bool lit = true;
   bool emissive = false;
-  bool specular = true; // false: no metal and of roughness 1, hence Lambertian
+  bool specular = true;    // false: no metal and of roughness 1, hence Lambertian
+  Reflectance reflectance; // of what is lit
   bool wireframe = false;
   bool billboard = false;
   bool translucent = false;
@@ -54,6 +62,8 @@ struct DrawLight {
   std::array<float, 3> position;  // view axes [m]
   std::array<float, 3> attenuation;
   float cosCone;
+  bool sun;     // IsSun(); it stands first
+  float radius; // of its disc [rad]
 };
 
 // One object that draws itself (CustomDrawer.h).
@@ -67,6 +77,16 @@ struct DrawFilter {
   bool physicalOnly = false;
   bool pickableOnly = false;
   std::set<std::string> hiddenFragments;
+  // Labels are the numbers of this object's parts, from 1 on through all its levels; other meshes
+  // are labelled 0 and hide what is behind them. 0: labels are objects.
+  ObjectId partsOf = 0;
+  // What throws shadows: neither ornaments, nor billboards, lines, points and what is translucent.
+  bool castersOnly = false;
+
+  bool Shows(const Membership& member) const {
+    return this->hiddenFragments.count(member.fragment) == 0 &&
+           !(this->physicalOnly && member.nature == Nature::Ornamental);
+  }
 };
 
 // The view of one camera, ready for OpenGL.
@@ -75,48 +95,85 @@ struct DrawView {
   Projection projection;
   int width = 0;
   int height = 0;
+  int samples = 1;      // supersampling: `width` and `height` count samples, sizes in pixels do not
+  std::string viewport; // its name: custom geometry may have settings for each viewport
   // True for a picture that is saved or measured: custom geometry waits for all of its data. False
   // for an interactive one, which shows what is loaded.
   bool complete = false;
+  ViewLook look;
+  // Clip from view coordinates in place of the projection's, for pictures that a light sees: levels
+  // and poses remain those of the camera.
+  std::optional<Eigen::Matrix4d> clip;
+  std::optional<CascadeFit> shadows; // of the Sun's maps, where they are drawn
+
+  Eigen::Matrix4d ClipFromView() const {
+    return this->clip ? *this->clip : this->projection.ClipFromView(this->width, this->height);
+  }
 };
 
 // One instance per viewport, reused for each picture. Data that depends only on the content of the
 // scene is computed once.
 class DrawList {
 public:
-  // Rebuilds the list for `view`. Objects outside the view's frustum are omitted.
-  void Build(const Scene& scene, const DrawView& view, const DrawFilter& filter);
+  // Rebuilds the list for `view`. Objects outside the view's frustum are omitted. Sets the near and
+  // far distances that the view's projection leaves to what is drawn (Projection::Seeing).
+  void Build(const Scene& scene, DrawView& view, const DrawFilter& filter);
 
   const std::vector<DrawInstance>& Instances() const { return this->Instances_; }
   const std::vector<DrawBatch>& Batches() const { return this->Batches_; } // opaque ones first
   const std::vector<DrawCustom>& Customs() const { return this->Customs_; }
   const std::vector<DrawLight>& Lights() const { return this->Lights_; }
+  const std::optional<SunPlace>& Sun() const { return this->Sun_; }
+  // Depths [m] along the view's axis of the seen meshes' bounding spheres. Spheres around the
+  // camera begin at 0. Nothing is seen: nearest > farthest.
+  double NearestDepth() const { return this->NearestDepth_; }
+  double FarthestDepth() const { return this->FarthestDepth_; }
+  // The highest point towards the Sun of all bounding spheres of the list, from the camera [m].
+  double HighestToSun() const;
+  // Of the last Build(); its hidden fragments are all that are not drawn, for whatever reason.
+  const DrawFilter& Filter() const { return this->Filter_; }
+  std::optional<Eigen::Vector3f> TowardsSun() const; // view axes, unit; none without a Sun
   std::array<float, 3> Ambient() const { return this->Ambient_; } // linear light
   std::size_t TriangleCount() const { return this->Triangles_; }
   std::size_t CulledObjects() const { return this->Culled_; }
 
 private:
   struct FlatPart { // a part of a level of an object, with all that does not depend on the view
+    std::uint32_t number; // of the object's parts, from 1 on through all levels
     std::uint32_t batch;
     std::uint32_t nearBatch; // where the near plane may open a solid: both sides are drawn
     Eigen::Affine3d X_FP;
-    DrawInstance instance; // without viewFromMesh
+    std::optional<DistanceRange> range; // in F
+    DrawInstance instance;              // without viewFromMesh
   };
   struct FlatLevel {
     std::vector<FlatPart> parts;
     BoundingSphere bounds; // in the object's frame F
-    double minimumPixels;
   };
   struct FlatObject {
     const GraphicsObject* object;
     std::vector<FlatLevel> levels;
   };
+  // An object of the filter whose bounds reach between the view's sides.
+  struct SeenObject {
+    const FlatObject* flat;
+    Eigen::Affine3d X_VF;
+    Eigen::Vector3d center; // of its bounds, in view axes [m]
+    double radius;
+  };
   void Flatten(const Scene& scene);
-  std::uint32_t BatchOf(const GraphicsObject& object, const Part& part, const DrawInstance& look,
-                        bool near);
-  void PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, const Pose& X_CA);
+  void FindSeen(const Scene& scene, const DrawView& view, const DrawFilter& filter);
+  void FindDepths();
+  void SetDepths(DrawView& view) const;
+  std::uint32_t BatchOf(const GraphicsObject& object, const Part& part, const Material& material,
+                        const DrawInstance& look, bool near);
+  // `fill`: ViewLook::fill.
+  void PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, const Pose& X_CA,
+                   double fill);
+  void ExposeLights(float exposure); // multiplies all of them
 
   const Scene* Scene_ = nullptr;
+  DrawFilter Filter_;
   std::uint64_t ContentRevision_ = 0;
   std::vector<FlatObject> Objects_;
   std::vector<DrawBatch> Templates_;
@@ -124,17 +181,18 @@ private:
   std::vector<std::vector<DrawInstance>> Pending_; // instances of each template
 
   std::vector<Pose> X_AF_;
+  std::vector<SeenObject> Seen_;
   std::vector<DrawInstance> Instances_;
   std::vector<DrawBatch> Batches_;
   std::vector<DrawCustom> Customs_;
   std::vector<DrawLight> Lights_;
+  std::optional<SunPlace> Sun_;
+  double NearestDepth_ = 0.0;
+  double FarthestDepth_ = 0.0;
   std::array<float, 3> Ambient_ = {0, 0, 0};
   std::size_t Triangles_ = 0;
   std::size_t Culled_ = 0;
 };
-
-// sRGB display value to linear light (IEC 61966-2-1), both 0 to 1.
-float LinearFromSrgb(double value);
 
 } // namespace dspace
 

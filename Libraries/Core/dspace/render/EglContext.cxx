@@ -10,6 +10,8 @@
 #include <EGL/eglext.h>
 
 #include <dspace/Error.h>
+#include <dspace/render/DebugOutput.h>
+#include <dspace/render/GlxThread.h>
 
 namespace dspace {
 namespace {
@@ -18,6 +20,15 @@ std::string EglErrorText() {
   char text[32];
   std::snprintf(text, sizeof text, "EGL error 0x%04x", eglGetError());
   return text;
+}
+
+// Also where a window of GLX was drawn in this thread before.
+bool Make(EGLDisplay display, EGLSurface surface, EGLContext context) {
+  if (eglMakeCurrent(display, surface, surface, context)) {
+    return true;
+  }
+  ReleaseGlx();
+  return eglMakeCurrent(display, surface, surface, context);
 }
 
 class EglContext : public GraphicsContext {
@@ -38,13 +49,18 @@ public:
     // The display is left initialised: EGL returns the same one to all code of the process.
   }
   void MakeCurrent() override {
-    if (!eglMakeCurrent(this->Display_, this->Surface_, this->Surface_, this->Context_)) {
+    if (!Make(this->Display_, this->Surface_, this->Context_)) {
       throw Error(Error::Kind::Resource, "EGL context",
                   "could not be made current (" + EglErrorText() +
                       "); a context serves one thread at a time");
     }
   }
   bool IsCurrent() const override { return eglGetCurrentContext() == this->Context_; }
+  void Release() override {
+    if (this->IsCurrent() && MayUseGlx()) {
+      eglMakeCurrent(this->Display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
+  }
   std::string Description() const override { return this->Description_; }
 
 private:
@@ -73,14 +89,19 @@ std::unique_ptr<GraphicsContext> TryDisplay(EGLDisplay display, const std::strin
     tried += "\n  " + name + ": no OpenGL configuration (" + EglErrorText() + ")";
     return nullptr;
   }
-  const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                      4,
-                                      EGL_CONTEXT_MINOR_VERSION,
-                                      5,
-                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                      EGL_NONE};
-  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes);
+  const bool debug = WantsDebugOutput();
+  std::vector<EGLint> contextAttributes = {
+      EGL_CONTEXT_MAJOR_VERSION,       4,
+      EGL_CONTEXT_MINOR_VERSION,       5,
+      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+  if (debug && (major > 1 || minor >= 5)) {
+    contextAttributes.insert(contextAttributes.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
+  } else if (debug) {
+    contextAttributes.insert(contextAttributes.end(),
+                             {EGL_CONTEXT_FLAGS_KHR, EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR});
+  }
+  contextAttributes.push_back(EGL_NONE);
+  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes.data());
   if (context == EGL_NO_CONTEXT) {
     tried += "\n  " + name + ": no OpenGL 4.5 core context (" + EglErrorText() + ")";
     return nullptr;
@@ -90,14 +111,18 @@ std::unique_ptr<GraphicsContext> TryDisplay(EGLDisplay display, const std::strin
     const EGLint surfaceAttributes[] = {EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
     surface = eglCreatePbufferSurface(display, config, surfaceAttributes);
   }
-  if (!eglMakeCurrent(display, surface, surface, context)) {
+  if (!Make(display, surface, context)) {
     tried += "\n  " + name + ": context cannot be made current (" + EglErrorText() + ")";
     eglDestroyContext(display, context);
     return nullptr;
   }
-  return std::make_unique<EglContext>(display, context, surface,
-                                      "EGL " + std::to_string(major) + "." + std::to_string(minor) +
-                                          ", " + name);
+  auto made = std::make_unique<EglContext>(display, context, surface,
+                                           "EGL " + std::to_string(major) + "." +
+                                               std::to_string(minor) + ", " + name);
+  if (debug) {
+    InstallDebugOutput();
+  }
+  return made;
 }
 
 } // namespace

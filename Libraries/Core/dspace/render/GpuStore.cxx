@@ -124,8 +124,10 @@ const GpuMesh& GpuStore::MeshOf(const std::shared_ptr<const Mesh>& mesh) {
   return gpu;
 }
 
-unsigned int GpuStore::TextureOf(const std::shared_ptr<const Image>& image, bool repeat) {
-  TextureEntry& entry = this->Textures_[repeat ? 1 : 0][image.get()];
+unsigned int GpuStore::TextureOf(const std::shared_ptr<const Image>& image, bool repeat,
+                                 Values values) {
+  const bool srgb = values == Values::Srgb;
+  TextureEntry& entry = this->Textures_[(repeat ? 1 : 0) + (srgb ? 0 : 2)][image.get()];
   if (entry.texture && entry.image.lock() == image) {
     return entry.texture;
   }
@@ -143,8 +145,10 @@ unsigned int GpuStore::TextureOf(const std::shared_ptr<const Image>& image, bool
   glGenTextures(1, &entry.texture);
   glBindTexture(GL_TEXTURE_2D, entry.texture);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, channels == 4 ? GL_SRGB8_ALPHA8 : GL_SRGB8, image->width,
-               image->height, 0, channels == 4 ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
+  const GLint format =
+      channels == 4 ? (srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8) : (srgb ? GL_SRGB8 : GL_RGB8);
+  glTexImage2D(GL_TEXTURE_2D, 0, format, image->width, image->height, 0,
+               channels == 4 ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glGenerateMipmap(GL_TEXTURE_2D);
   const GLint wrap = repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;

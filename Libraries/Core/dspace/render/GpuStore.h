@@ -34,8 +34,11 @@ public:
 
   // Uploads on first use.
   const GpuMesh& MeshOf(const std::shared_ptr<const Mesh>& mesh);
-  // OpenGL name of a mip-mapped sRGB texture. Throws Error(Resource) when it is too large.
-  unsigned int TextureOf(const std::shared_ptr<const Image>& image, bool repeat);
+  // OpenGL name of a mip-mapped texture. Its values are sRGB, or numbers (normals). Throws
+  // Error(Resource) when it is too large.
+  enum class Values { Srgb, Numbers };
+  unsigned int TextureOf(const std::shared_ptr<const Image>& image, bool repeat,
+                         Values values = Values::Srgb);
   // Frees entries that only the store references.
   void Collect();
   // Frees everything.
@@ -56,7 +59,7 @@ private:
 
   RenderStatistics& Statistics_;
   std::unordered_map<const Mesh*, MeshEntry> Meshes_;
-  std::unordered_map<const Image*, TextureEntry> Textures_[2]; // clamped, repeated
+  std::unordered_map<const Image*, TextureEntry> Textures_[4]; // + 1: repeated; + 2: numbers
 };
 
 } // namespace dspace

@@ -13,6 +13,9 @@ public:
   virtual ~GraphicsContext() = default;
   virtual void MakeCurrent() = 0; // throws Error(Resource)
   virtual bool IsCurrent() const = 0;
+  // Takes it off this thread where windows of other code could not draw otherwise; MakeCurrent()
+  // undoes it. Default: does nothing.
+  virtual void Release() {}
   virtual std::string Description() const = 0; // platform and version, for messages
 };
 

@@ -5,13 +5,12 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <png.h>
 
 #include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
+#include <dspace/import/files/ImageCodec.h>
 
 namespace dspace {
 namespace {
@@ -45,79 +44,27 @@ Type TypeOf(const std::string& path) {
   Reject(path, "its extension is '" + extension + "'; accepted: .png .jpg .jpeg .tif .tiff .exr");
 }
 
-// A date of the day would make two equal pictures differ.
-constexpr const char* Software = "Dspace";
-constexpr const char* DateTime = "2000:01:01 12:00:00";
+using Sample = PictureFile::Sample;
 
-struct Pixels {
-  OIIO::TypeDesc type;
-  const void* data;
-  OIIO::stride_t pixelBytes;
-};
-
-std::unique_ptr<OIIO::ImageOutput> EncoderFor(const std::string& path) {
-  std::unique_ptr<OIIO::ImageOutput> encoder =
-      OIIO::ImageOutput::create("picture" + std::filesystem::path(path).extension().string());
-  if (!encoder) {
-    throw Error(Error::Kind::Internal, Label(path), "cannot be encoded: " + OIIO::geterror());
+// With libpng, since most pictures are PNG files and need no other library: it writes no date.
+void WritePng(const std::string& path, int width, int height,
+              const std::vector<std::uint8_t>& rgba) {
+  std::vector<std::uint8_t> rgb(rgba.size() / 4 * 3);
+  for (std::size_t from = 0, to = 0; from < rgba.size(); from += 4, to += 3) {
+    std::copy_n(rgba.data() + from, 3, rgb.data() + to);
   }
-  return encoder;
-}
-
-bool Encode(OIIO::ImageOutput& encoder, const std::string& path, const OIIO::ImageSpec& spec,
-            const Pixels& pixels) {
-  return encoder.open(path, spec) &&
-         encoder.write_image(pixels.type, pixels.data, pixels.pixelBytes) && encoder.close();
-}
-
-// Reads a TIFF to its end, where its texts are.
-bool IsComplete(const std::string& path, const OIIO::ImageSpec& spec) {
-  const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create("tiff");
-  OIIO::ImageSpec found;
-  const std::string space = spec.get_string_attribute("oiio:ColorSpace");
-  if (!in || !in->open(path, found) || found.get_string_attribute("Software") != Software ||
-      found.get_string_attribute("DateTime") != DateTime ||
-      (!space.empty() && found.get_string_attribute("oiio:ColorSpace") != space) ||
-      found.width != spec.width || found.height != spec.height ||
-      found.nchannels != spec.nchannels) {
-    return false;
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = png_uint_32(width);
+  image.height = png_uint_32(height);
+  image.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::vector<std::uint8_t> bytes(size);
+  if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr)) {
+    throw Error(Error::Kind::Internal, Label(path),
+                "cannot be encoded: " + std::string(image.message));
   }
-  std::vector<unsigned char> pixels(found.image_bytes());
-  return in->read_image(0, 0, 0, found.nchannels, found.format, pixels.data());
-}
-
-// OpenImageIO 2.4 makes damaged TIFFs in memory, hence a file. It does not report every failure at
-// the end of a file either, hence the look at what was written.
-void WriteTiff(const std::string& path, const OIIO::ImageSpec& spec, const Pixels& pixels) {
-  AtomicFile file(path);
-  const std::unique_ptr<OIIO::ImageOutput> encoder = EncoderFor(path);
-  if (!Encode(*encoder, file.TemporaryPath(), spec, pixels) ||
-      !IsComplete(file.TemporaryPath(), spec)) {
-    // The library does not say why. The system does, when the same pixels are written uncompressed.
-    file.Write(pixels.data, spec.image_bytes());
-    throw Error(Error::Kind::Io, Label(path),
-                "cannot be written: it is incomplete " + encoder->geterror());
-  }
-  file.Commit();
-}
-
-void Write(const std::string& path, OIIO::ImageSpec spec, const OIIO::TypeDesc& type,
-           const void* data, OIIO::stride_t pixelBytes = OIIO::AutoStride) {
-  spec.attribute("Software", Software);
-  spec.attribute("DateTime", DateTime);
-  const Pixels pixels = {type, data, pixelBytes};
-  if (TypeOf(path) == Type::Tiff) {
-    WriteTiff(path, spec, pixels);
-    return;
-  }
-  // Into memory: libjpeg ends the process when it cannot write a file.
-  OIIO::Filesystem::IOVecOutput memory;
-  const std::unique_ptr<OIIO::ImageOutput> encoder = EncoderFor(path);
-  if (!encoder->set_ioproxy(&memory) || !Encode(*encoder, "picture", spec, pixels) ||
-      memory.buffer().empty()) {
-    throw Error(Error::Kind::Internal, Label(path), "cannot be encoded: " + encoder->geterror());
-  }
-  AtomicFile::Save(path, memory.buffer().data(), memory.buffer().size());
+  AtomicFile::Save(path, bytes.data(), size);
 }
 
 void RequireSize(const std::string& path, int width, int height, int channels, std::size_t values) {
@@ -138,12 +85,23 @@ std::array<float, 256> LinearFromSrgb() {
   return table;
 }
 
+void WriteMetres(const std::string& path, int width, int height, const std::vector<float>& metres,
+                 const char* channel) {
+  RequireSize(path, width, height, 1, metres.size());
+  PictureFile picture = {path, width, height, 1, Sample::Float, metres.data(), sizeof(float)};
+  picture.channelNames = {channel};
+  picture.zip = true;
+  LoadImageCodec().write(picture);
+}
+
 } // namespace
 
 void CheckImageFile(const std::string& path, ImagePlane plane, const ImageFileOptions& options) {
   const Type type = TypeOf(path);
-  if (plane == ImagePlane::Depth && type != Type::Tiff && type != Type::Exr) {
-    Reject(path, "its type holds no 32-bit floats; accepted for depth: .tif .tiff .exr");
+  if ((plane == ImagePlane::Depth || plane == ImagePlane::Range) && type != Type::Tiff &&
+      type != Type::Exr) {
+    Reject(path, std::string("its type holds no 32-bit floats; accepted for ") +
+                     (plane == ImagePlane::Depth ? "depth" : "range") + ": .tif .tiff .exr");
   }
   if (plane == ImagePlane::Label && type == Type::Jpeg) {
     Reject(path, "its type loses values; accepted for labels: .png .tif .tiff .exr");
@@ -166,29 +124,30 @@ void WriteColor(const std::string& path, int width, int height,
     for (std::size_t i = 0; i < rgba.size(); i += 4) {
       rgb.insert(rgb.end(), {linear[rgba[i]], linear[rgba[i + 1]], linear[rgba[i + 2]]});
     }
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::HALF);
-    spec.attribute("compression", "zip");
-    Write(path, spec, OIIO::TypeDesc::FLOAT, rgb.data());
+    PictureFile picture = {path, width, height, 3, Sample::HalfFromFloat, rgb.data(), 12};
+    picture.zip = true;
+    LoadImageCodec().write(picture);
     return;
   }
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  if (type == Type::Jpeg) {
-    spec.attribute("CompressionQuality", options.jpegQuality);
-    spec.attribute("jpeg:subsampling", "4:4:4");
-  } else if (type == Type::Tiff) {
-    spec.attribute("compression", "zip");
+  if (type == Type::Png) {
+    WritePng(path, width, height, rgba);
+    return;
   }
-  Write(path, spec, OIIO::TypeDesc::UINT8, rgba.data(), 4);
+  PictureFile picture = {path, width, height, 3, Sample::UInt8, rgba.data(), 4};
+  picture.srgb = true;
+  picture.zip = type == Type::Tiff;
+  picture.jpegQuality = type == Type::Jpeg ? options.jpegQuality : 0;
+  LoadImageCodec().write(picture);
 }
 
 void WriteDepth(const std::string& path, int width, int height, const std::vector<float>& depth) {
   CheckImageFile(path, ImagePlane::Depth);
-  RequireSize(path, width, height, 1, depth.size());
-  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::FLOAT);
-  spec.channelnames = {"Z"};
-  spec.attribute("compression", "zip");
-  Write(path, spec, OIIO::TypeDesc::FLOAT, depth.data());
+  WriteMetres(path, width, height, depth, "Z");
+}
+
+void WriteRange(const std::string& path, int width, int height, const std::vector<float>& range) {
+  CheckImageFile(path, ImagePlane::Range);
+  WriteMetres(path, width, height, range, "R");
 }
 
 void WriteLabel(const std::string& path, int width, int height,
@@ -196,10 +155,11 @@ void WriteLabel(const std::string& path, int width, int height,
   CheckImageFile(path, ImagePlane::Label);
   RequireSize(path, width, height, 1, label.size());
   if (TypeOf(path) == Type::Exr) {
-    OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT);
-    spec.channelnames = {"id"};
-    spec.attribute("compression", "zip");
-    Write(path, spec, OIIO::TypeDesc::UINT, label.data());
+    PictureFile picture = {
+        path, width, height, 1, Sample::UInt32, label.data(), sizeof(std::uint32_t)};
+    picture.channelNames = {"id"};
+    picture.zip = true;
+    LoadImageCodec().write(picture);
     return;
   }
   const std::uint32_t largest = *std::max_element(label.begin(), label.end());
@@ -209,8 +169,8 @@ void WriteLabel(const std::string& path, int width, int height,
                      "accepted for it: .exr");
   }
   const std::vector<std::uint16_t> narrow(label.begin(), label.end());
-  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT16);
-  Write(path, spec, OIIO::TypeDesc::UINT16, narrow.data());
+  LoadImageCodec().write(
+      {path, width, height, 1, Sample::UInt16, narrow.data(), sizeof(std::uint16_t)});
 }
 
 } // namespace dspace

@@ -8,7 +8,7 @@
 
 namespace dspace {
 
-enum class ImagePlane { Color, Depth, Label };
+enum class ImagePlane { Color, Depth, Range, Label };
 
 struct ImageFileOptions {
   int jpegQuality = 95; // 1 to 100
@@ -19,6 +19,7 @@ struct ImageFileOptions {
 //
 // Color: PNG, JPEG, TIFF with 8 bits, sRGB; EXR with linear half floats. RGB: alpha is left out.
 // Depth: TIFF or EXR with 32-bit floats, metres, channel Z; +infinity where nothing was hit.
+// Range: as Depth, channel R.
 // Label: EXR with 32-bit integers; PNG or TIFF with 16 bits, rejected when an id is above 65535.
 //
 // All throw Error naming the file: InvalidArgument (extension, options, sizes that do not fit), Io
@@ -32,6 +33,7 @@ void CheckImageFile(const std::string& path, ImagePlane plane,
 void WriteColor(const std::string& path, int width, int height,
                 const std::vector<std::uint8_t>& rgba, const ImageFileOptions& options = {});
 void WriteDepth(const std::string& path, int width, int height, const std::vector<float>& depth);
+void WriteRange(const std::string& path, int width, int height, const std::vector<float>& range);
 void WriteLabel(const std::string& path, int width, int height,
                 const std::vector<std::uint32_t>& label);
 

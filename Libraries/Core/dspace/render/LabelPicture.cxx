@@ -11,6 +11,7 @@ namespace dspace {
 bool LabelPicture::IsCurrent(const Scene& scene, const DrawFilter& filter) const {
   return this->Revision_ == scene.Revision() && this->Filter_.physicalOnly == filter.physicalOnly &&
          this->Filter_.pickableOnly == filter.pickableOnly &&
+         this->Filter_.partsOf == filter.partsOf &&
          this->Filter_.hiddenFragments == filter.hiddenFragments;
 }
 
@@ -20,7 +21,8 @@ void LabelPicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, con
   vtkDspaceHubWindow* hub = context->GetHub();
   hub->MakeCurrent();
   if (!this->Drawer_) {
-    this->Target_ = std::make_unique<RenderTarget>(hub, RenderTarget::Format::Label, true);
+    this->Target_ = std::make_unique<RenderTarget>(hub, RenderTarget::Format::Label,
+                                                   RenderTarget::DepthFormat::Float);
     this->Drawer_ = std::make_unique<SceneDrawer>(hub, context->GetStore(), context->GetDrawers(),
                                                   context->CountStatistics());
   }
@@ -29,9 +31,9 @@ void LabelPicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, con
   this->Target_->Resize(view.width, view.height);
   const std::uint64_t revision =
       scene.Revision(); // read first: later changes are not in the picture
-  this->List_.Build(scene, view, filter);
-  const bool complete = this->Drawer_->Prepare(this->List_, view, 1, true);
-  this->Drawer_->DrawLabels(this->List_, view, *this->Target_);
+  this->List_.Build(scene, this->View_, filter);
+  const bool complete = this->Drawer_->Prepare(this->List_, this->View_, 1, true);
+  this->Drawer_->DrawLabels(this->List_, this->View_, *this->Target_);
   this->Revision_ = complete ? revision : 0;
 }
 
@@ -47,7 +49,25 @@ std::vector<float> LabelPicture::Depths() const {
   return depths;
 }
 
-PickResult LabelPicture::Pick(const Scene& scene, double x, double y, int radius) const {
+std::vector<float> LabelPicture::Ranges() const {
+  const DrawView& view = this->View_;
+  std::vector<float> ranges = this->Target_->ReadDepth(0, 0, view.width, view.height);
+  for (int y = 0, i = 0; y < view.height; ++y) {
+    for (int x = 0; x < view.width; ++x, ++i) {
+      const Projection::Ray ray = view.projection.PixelRay(x, y, view.width, view.height);
+      const double depth = view.projection.DepthFromBuffer(ranges[std::size_t(i)]);
+      ranges[std::size_t(i)] = static_cast<float>((depth - ray.origin.z()) / ray.direction.z());
+    }
+  }
+  return ranges;
+}
+
+std::uint32_t LabelPicture::LabelAt(const std::array<int, 2>& pixel) const {
+  return this->Target_->ReadLabel(pixel[0], pixel[1], 1, 1).front();
+}
+
+PickResult LabelPicture::Pick(const Scene& scene, double x, double y, int radius,
+                              std::array<int, 2>& pixel) const {
   const DrawView& view = this->View_;
   const int px = static_cast<int>(std::floor(x + 0.5));
   const int py = static_cast<int>(std::floor(y + 0.5));
@@ -75,8 +95,8 @@ PickResult LabelPicture::Pick(const Scene& scene, double x, double y, int radius
   result.frame = scene.Object(result.object).frame;
   result.depth = view.projection.DepthFromBuffer(depths[best]);
   // The pixel's own centre is what was drawn: the depth belongs to that ray.
-  const int row = y0 + best / w;
-  const Projection::Ray ray = view.projection.PixelRay(x0 + best % w, row, view.width, view.height);
+  pixel = {x0 + best % w, y0 + best / w};
+  const Projection::Ray ray = view.projection.PixelRay(pixel[0], pixel[1], view.width, view.height);
   result.p_camera =
       ray.origin + ray.direction * ((result.depth - ray.origin.z()) / ray.direction.z());
   result.cameraFrame = view.camera.frame;

@@ -2,6 +2,7 @@
 #ifndef DSPACE_RENDER_LABEL_PICTURE_H
 #define DSPACE_RENDER_LABEL_PICTURE_H
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -25,13 +26,23 @@ public:
             const DrawFilter& filter);
   void Invalidate() { this->Revision_ = 0; }
 
+  // Of the last picture, with its near and far distances.
+  const DrawView& View() const { return this->View_; }
   // Of the whole picture, rows from the top down; after Draw().
   std::vector<std::uint32_t> Labels() const;
   std::vector<float> Depths() const; // metres along the camera's Z; +infinity where nothing was hit
 
+  // Metres along each pixel's ray from its origin (Projection::PixelRay); +infinity where nothing
+  // was hit.
+  std::vector<float> Ranges() const;
+
   // The object at (x, y), or the nearest one within `radius` pixels if there is none. The
-  // caller has checked that the point lies in the picture and drawn it from `scene`.
-  PickResult Pick(const Scene& scene, double x, double y, int radius) const;
+  // caller has checked that the point lies in the picture and drawn it from `scene`. `pixel`: its
+  // column and row.
+  PickResult Pick(const Scene& scene, double x, double y, int radius,
+                  std::array<int, 2>& pixel) const;
+  // The label of a pixel; after Draw().
+  std::uint32_t LabelAt(const std::array<int, 2>& pixel) const;
 
 private:
   std::unique_ptr<RenderTarget> Target_;

@@ -11,8 +11,8 @@
 
 namespace dspace {
 
-RenderTarget::RenderTarget(vtkDspaceHubWindow* window, Format format, bool depth)
-    : Window_(window), Format_(format), WithDepth_(depth) {}
+RenderTarget::RenderTarget(vtkDspaceHubWindow* window, Format format, DepthFormat depth)
+    : Window_(window), Format_(format), DepthFormat_(depth) {}
 
 RenderTarget::~RenderTarget() {
   this->Release();
@@ -77,6 +77,10 @@ void RenderTarget::Resize(int width, int height) {
     this->Color_->SetInternalFormat(GL_RGBA16F);
     this->Color_->Allocate2D(width, height, 4, VTK_FLOAT);
     break;
+  case Format::Light:
+    this->Color_->SetInternalFormat(GL_RGBA32F);
+    this->Color_->Allocate2D(width, height, 4, VTK_FLOAT);
+    break;
   case Format::Label:
     this->Color_->SetInternalFormat(GL_R32UI);
     this->Color_->SetFormat(GL_RED_INTEGER);
@@ -85,11 +89,17 @@ void RenderTarget::Resize(int width, int height) {
     break;
   }
   this->Framebuffer_->AddColorAttachment(0, this->Color_);
-  if (this->WithDepth_) {
+  if (this->DepthFormat_ != DepthFormat::None) {
     this->Depth_->SetContext(this->Window_);
     this->Depth_->SetMinificationFilter(vtkTextureObject::Nearest);
     this->Depth_->SetMagnificationFilter(vtkTextureObject::Nearest);
-    this->Depth_->AllocateDepth(width, height, vtkTextureObject::Float32);
+    if (this->DepthFormat_ == DepthFormat::Float) {
+      this->Depth_->AllocateDepth(width, height, vtkTextureObject::Float32);
+    } else if (this->Window_->GetStencilCapable()) {
+      this->Depth_->AllocateDepthStencil(width, height);
+    } else {
+      this->Depth_->AllocateDepth(width, height, vtkTextureObject::Fixed32);
+    }
     this->Framebuffer_->AddDepthAttachment(this->Depth_);
   }
   this->Framebuffer_->Resize(width, height); // tells VTK's object its size
@@ -134,6 +144,10 @@ std::vector<T> RenderTarget::Read(int x, int y, int w, int h, unsigned int forma
 
 std::vector<std::uint8_t> RenderTarget::ReadColor() const {
   return this->Read<std::uint8_t>(0, 0, this->Width_, this->Height_, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+}
+
+std::vector<float> RenderTarget::ReadLight() const {
+  return this->Read<float>(0, 0, this->Width_, this->Height_, GL_RGBA, GL_FLOAT, 4);
 }
 
 std::vector<std::uint32_t> RenderTarget::ReadLabel(int x, int y, int w, int h) const {

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "vtk_glew.h"
 
 #include "Background_frag.h"
 #include "Copy_frag.h"
 #include "Downsample_frag.h"
+#include "PropLight_frag.h"
 
 #include "vtkDspaceHubWindow.h"
 #include "vtkOpenGLFramebufferObject.h"
@@ -15,6 +17,8 @@
 #include "vtkShaderProgram.h"
 
 #include <dspace/Error.h>
+#include <dspace/render/CodedShaders.h>
+#include <dspace/scene/GraphicsObject.h>
 
 namespace dspace {
 namespace {
@@ -53,8 +57,8 @@ private:
 
 SceneDrawer::SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, const CustomDrawers& drawers,
                          RenderStatistics& statistics)
-    : Window_(window), Store_(store), Drawers_(drawers), Statistics_(statistics), Shaders_(window) {
-}
+    : Window_(window), Store_(store), Drawers_(drawers), Statistics_(statistics), Shaders_(window),
+      Shadows_(window) {}
 
 SceneDrawer::~SceneDrawer() {
   this->Release();
@@ -65,6 +69,8 @@ void SceneDrawer::Release() {
     layer.reset();
   }
   this->Sum_.reset();
+  this->Coarse_.reset();
+  this->Shadows_.Release();
   if (this->Window_->GetContext()) {
     this->Window_->MakeCurrent();
     this->Customs_.clear();
@@ -115,14 +121,31 @@ void SceneDrawer::Upload(const DrawList& list) {
   }
 }
 
+vtkShaderProgram* SceneDrawer::ProgramOf(const DrawBatch& batch, const DrawList& list,
+                                         unsigned features) {
+  try {
+    return this->Shaders_.Surface(features, {}, batch.shader);
+  } catch (const Error& error) {
+    if (!batch.shader) {
+      throw;
+    }
+    throw Error(Error::Kind::Internal,
+                "object " + std::to_string(list.Instances()[batch.first].label),
+                std::string("its shader code does not compile with its present meshes and "
+                            "material: ") +
+                    error.what());
+  }
+}
+
 void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool translucent,
                               unsigned features, int samples) {
   vtkOpenGLState* state = this->Window_->GetState();
   std::map<vtkShaderProgram*, bool> prepared;
   const bool labels = (features & SurfaceShaders::Label) != 0;
-  const unsigned lighting = SurfaceShaders::LightFeatures(list);
+  const bool angles = (features & SurfaceShaders::Angles) != 0;
+  const unsigned lighting = SurfaceShaders::LightFeatures(list, view);
   for (const DrawBatch& batch : list.Batches()) {
-    if (!labels && batch.translucent != translucent) {
+    if (!labels && !angles && batch.translucent != translucent) {
       continue;
     }
     const GpuMesh& mesh = this->Store_.MeshOf(batch.mesh);
@@ -130,19 +153,42 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     wanted |= batch.billboard ? SurfaceShaders::Billboard : 0u;
     wanted |= batch.texture ? SurfaceShaders::Texture : 0u;
     if (!labels) {
-      wanted |= batch.lit ? lighting : 0u;
-      wanted |= batch.lit && batch.specular ? SurfaceShaders::Specular : 0u;
-      wanted |= batch.emissive ? SurfaceShaders::Emissive : 0u;
+      wanted |= !batch.lit ? 0u : angles ? SurfaceShaders::ShadowFeatures(view) : lighting;
+      wanted |= batch.lit && batch.specular && !angles ? SurfaceShaders::Specular : 0u;
+      wanted |= angles ? 0u : SurfaceShaders::ReflectanceFeature(batch.reflectance);
+      wanted |= !batch.lit && this->Light_ ? SurfaceShaders::DisplayColor : 0u;
+      wanted |= batch.emissive && !angles ? SurfaceShaders::Emissive : 0u;
+      wanted |= !batch.normalTexture                 ? 0u
+                : batch.normalTexture->channels == 4 ? SurfaceShaders::ObjectNormals
+                                                     : SurfaceShaders::NormalMap;
       wanted |= mesh.hasColors ? SurfaceShaders::VertexColor : 0u;
     }
-    vtkShaderProgram* program = this->Shaders_.Surface(wanted);
+    if (batch.shader) {
+      wanted |= SurfaceShaders::CodeFeatures(*batch.mesh, batch.texture != nullptr);
+      wanted &= ~unsigned(SurfaceShaders::Emissive); // always there
+    }
+    vtkShaderProgram* program = this->ProgramOf(batch, list, wanted);
     if (!prepared[program]) {
       this->Shaders_.SetView(program, list, view, samples, this->FirstLayer_);
       prepared[program] = true;
     }
+    if (batch.shader) {
+      SetCodeUniforms(program, *batch.shader);
+    }
+    if (SurfaceShaders::ReflectanceFeature(batch.reflectance) != 0) {
+      SurfaceShaders::SetReflectance(program, batch.reflectance);
+    }
     if (batch.texture) {
       const unsigned int texture = this->Store_.TextureOf(batch.texture, batch.repeatTexture);
       BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, texture);
+    }
+    if (wanted & (SurfaceShaders::NormalMap | SurfaceShaders::ObjectNormals)) {
+      const unsigned int normals = this->Store_.TextureOf(batch.normalTexture, batch.repeatTexture,
+                                                          GpuStore::Values::Numbers);
+      BindTextureUnit(this->Window_, NormalUnit, GL_TEXTURE_2D, normals);
+      if (wanted & SurfaceShaders::NormalMap) {
+        program->SetUniformf("normalScale", static_cast<float>(batch.normalScale));
+      }
     }
     if (mesh.mode == GL_LINES || batch.wireframe) {
       state->vtkglLineWidth(batch.lineWidth * static_cast<float>(samples));
@@ -188,10 +234,23 @@ void SceneDrawer::Clear(const Background& background) {
   state->vtkglClearDepth(1.0);
 }
 
+void SceneDrawer::ClearLight(const Background& background) {
+  vtkOpenGLState* state = this->Window_->GetState();
+  state->vtkglDepthMask(GL_TRUE);
+  state->vtkglColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  state->vtkglClearDepth(0.0);
+  const std::array<float, 3> color = LinearColor(background.bottom);
+  state->vtkglClearColor(color[0], color[1], color[2], 0.0f); // not exposed
+  state->vtkglClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  state->vtkglClearDepth(1.0);
+}
+
 CustomDrawing SceneDrawer::Drawing(const DrawCustom& object, const DrawList& list,
                                    const DrawView& view, int samples) {
-  return {object,        list,           view,         samples,
-          this->Window_, this->Shaders_, this->Store_, this->Statistics_};
+  CustomDrawing drawing{object,        list,           view,         samples,
+                        this->Window_, this->Shaders_, this->Store_, this->Statistics_};
+  drawing.light = this->Light_;
+  return drawing;
 }
 
 bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int samples, bool labels) {
@@ -211,11 +270,117 @@ bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int sample
   return complete;
 }
 
+void SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView& view,
+                              int samples) {
+  view.shadows.reset();
+  if (!view.look.shadows.shown || !list.Sun()) {
+    return;
+  }
+  double nearest = list.NearestDepth();
+  bool ground = false;
+  for (const DrawCustom& object : list.Customs()) {
+    CustomDrawer& drawer = *this->Customs_[object.object->custom.get()].drawer;
+    const CustomDrawing drawing = this->Drawing(object, list, view, samples);
+    nearest = std::min(nearest, drawer.NearestDepth(drawing));
+    ground = ground || drawer.ShadowsItself(drawing);
+  }
+  // Where the camera is within a thing's bounds, its distance from it is not known.
+  constexpr double Usual = 1.0; // [m]
+  nearest = nearest > 0.0 ? nearest : Usual;
+  const ReversedDepth reversed(this->Window_->GetState());
+  this->Window_->GetState()->vtkglDisable(GL_BLEND);
+  double farthest = std::max(nearest, list.FarthestDepth());
+  if (view.projection.kind == Projection::Kind::Orthographic) {
+    const std::array<double, 2> seen = this->SeenDepths(list, view);
+    nearest = seen[0];
+    farthest = seen[1];
+  }
+  CascadeFit fit = FitCascades(view.projection, view.width, view.height, *list.Sun(), nearest,
+                               farthest, view.look.shadows);
+  fit.ground = ground;
+  this->Shadows_.Update(scene, view, list.Filter(), fit,
+                        [&](const DrawList& casters, const DrawView& seen, bool ofGround) {
+                          this->DrawCasters(casters, seen, ofGround);
+                        });
+  this->Window_->GetState()->vtkglEnable(GL_BLEND);
+  this->Shaders_.SetShadowMaps(this->Shadows_.Texture());
+  view.shadows = std::move(fit);
+}
+
+void SceneDrawer::DrawCasters(const DrawList& list, const DrawView& view, bool ground) {
+  if (!ground) {
+    this->Upload(list);
+    this->DrawBatches(list, view, false, SurfaceShaders::Label, 1);
+  }
+  for (const DrawCustom& object : list.Customs()) {
+    const auto custom = this->Customs_.find(object.object->custom.get());
+    if (custom == this->Customs_.end() || !custom->second.drawer) {
+      continue;
+    }
+    const CustomDrawing drawing = this->Drawing(object, list, view, 1);
+    if (custom->second.drawer->ShadowsItself(drawing) == ground) {
+      custom->second.drawer->DrawLabels(drawing);
+    }
+  }
+}
+
+std::array<double, 2> SceneDrawer::SeenDepths(const DrawList& list, const DrawView& view) {
+  constexpr int Side = 256;
+  const double scale = std::min(1.0, double(Side) / std::max(view.width, view.height));
+  DrawView coarse = view;
+  coarse.width = std::max(1, int(view.width * scale));
+  coarse.height = std::max(1, int(view.height * scale));
+  if (!this->Coarse_) {
+    this->Coarse_ = std::make_unique<RenderTarget>(this->Window_, RenderTarget::Format::Label,
+                                                   RenderTarget::DepthFormat::Float);
+  }
+  RenderTarget& target = *this->Coarse_;
+  target.Resize(coarse.width, coarse.height);
+  vtkOpenGLState* state = this->Window_->GetState();
+  state->PushFramebufferBindings();
+  target.Bind();
+  state->vtkglClearDepth(0.0);
+  state->vtkglClear(GL_DEPTH_BUFFER_BIT);
+  state->vtkglClearDepth(1.0);
+  this->DrawDepths(list, coarse);
+  const std::vector<float> values = target.ReadDepth(0, 0, coarse.width, coarse.height);
+  state->PopFramebufferBindings();
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const float value : values) {
+    if (value > 0.0f) {
+      const double depth = view.projection.DepthFromBuffer(value);
+      least = std::min(least, depth);
+      most = std::max(most, depth);
+    }
+  }
+  if (least > most) {
+    return {0.0, 1.0};
+  }
+  // What lies between the coarse pixels.
+  const double room =
+      0.05 * (most - least) + 2.0 * view.projection.height / std::max(1, coarse.height);
+  return {least - room, most + room};
+}
+
+void SceneDrawer::DrawDepths(const DrawList& list, const DrawView& view) {
+  this->Upload(list);
+  this->DrawBatches(list, view, false, SurfaceShaders::Label, 1);
+  for (const DrawCustom& object : list.Customs()) {
+    const auto custom = this->Customs_.find(object.object->custom.get());
+    if (custom != this->Customs_.end() && custom->second.drawer) {
+      custom->second.drawer->DrawLabels(this->Drawing(object, list, view, 1));
+    }
+  }
+}
+
 void SceneDrawer::DrawBackground(const Background& background, int height) {
   if (background.bottom == background.top) {
     return; // the clear colour is it
   }
-  vtkShaderProgram* program = this->Shaders_.Screen(Background_frag);
+  // Exposure leaves it as it is.
+  const char* alpha = this->Light_ ? "#define DSPACE_ALPHA 0.0\n" : "#define DSPACE_ALPHA 1.0\n";
+  vtkShaderProgram* program = this->Shaders_.Screen(Background_frag, alpha);
   program->SetUniform3f("bottomColor", background.bottom.data());
   program->SetUniform3f("topColor", background.top.data());
   program->SetUniformf("height", static_cast<float>(height));
@@ -227,6 +392,7 @@ void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTa
   vtkOpenGLState* state = this->Window_->GetState();
   const EncodeSrgb encode;
   const ReversedDepth reversed(state);
+  this->Light_ = target.GetFormat() == RenderTarget::Format::Light;
   this->Statistics_.drawCalls = 0;
   this->Statistics_.trianglesDrawn = list.TriangleCount();
   this->Statistics_.translucentLayers = 0;
@@ -240,6 +406,7 @@ void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTa
   if (background) {
     this->DrawBackground(*background, target.Height());
   }
+  this->DrawTranslucentCustoms(list, view, target, samples);
   const auto& batches = list.Batches();
   if (!batches.empty() && batches.back().translucent) { // they stand last
     this->PeelTranslucent(list, view, target, samples);
@@ -247,14 +414,34 @@ void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTa
   state->vtkglEnable(GL_BLEND);
 }
 
+void SceneDrawer::DrawTranslucentCustoms(const DrawList& list, const DrawView& view,
+                                         RenderTarget& target, int samples) {
+  std::vector<std::pair<double, const DrawCustom*>> customs; // distance along the view's axis
+  for (const DrawCustom& object : list.Customs()) {
+    const Eigen::Vector3d center = object.X_VO * object.object->custom->Bounds().center;
+    customs.emplace_back(-center.z(), &object);
+  }
+  std::stable_sort(customs.begin(), customs.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [distance, object] : customs) {
+    this->Customs_[object->object->custom.get()].drawer->DrawTranslucent(
+        this->Drawing(*object, list, view, samples), target);
+  }
+}
+
 void SceneDrawer::PeelTranslucent(const DrawList& list, const DrawView& view, RenderTarget& target,
                                   int samples) {
   vtkOpenGLState* state = this->Window_->GetState();
-  if (!this->Sum_) {
+  const auto format = this->Light_ ? RenderTarget::Format::Light : RenderTarget::Format::Linear;
+  if (!this->Sum_ || this->Sum_->GetFormat() != format) {
     for (auto& layer : this->Layers_) {
-      layer = std::make_unique<RenderTarget>(this->Window_, RenderTarget::Format::Linear, true);
+      layer =
+          std::make_unique<RenderTarget>(this->Window_, format, RenderTarget::DepthFormat::Float);
     }
-    this->Sum_ = std::make_unique<RenderTarget>(this->Window_, RenderTarget::Format::Linear, false);
+    this->Sum_ =
+        std::make_unique<RenderTarget>(this->Window_, format, RenderTarget::DepthFormat::None);
+  }
+  if (!this->Query_) {
     glGenQueries(1, &this->Query_);
   }
   for (auto& layer : this->Layers_) {
@@ -326,15 +513,62 @@ void SceneDrawer::DrawLabels(const DrawList& list, const DrawView& view, RenderT
     state->vtkglClearDepth(0.0);
     state->vtkglClear(GL_DEPTH_BUFFER_BIT);
     state->vtkglClearDepth(1.0);
+    this->DrawDepths(list, view);
+    state->vtkglEnable(GL_BLEND);
+  }
+  state->PopFramebufferBindings();
+}
+
+void SceneDrawer::DrawAngles(const DrawList& list, const DrawView& view, RenderTarget& target) {
+  vtkOpenGLState* state = this->Window_->GetState();
+  state->PushFramebufferBindings();
+  target.Bind();
+  {
+    const ReversedDepth reversed(state);
+    this->Light_ = false;
+    state->vtkglDisable(GL_BLEND);
+    state->vtkglColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    state->vtkglClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    state->vtkglClearDepth(0.0);
+    state->vtkglClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    state->vtkglClearDepth(1.0);
     this->Upload(list);
-    this->DrawBatches(list, view, false, SurfaceShaders::Label, 1);
+    this->DrawBatches(list, view, false, SurfaceShaders::Angles, 1);
+    std::vector<const DrawCustom*> unknown;
     for (const DrawCustom& object : list.Customs()) {
-      this->Customs_[object.object->custom.get()].drawer->DrawLabels(
-          this->Drawing(object, list, view, 1));
+      if (!this->Customs_[object.object->custom.get()].drawer->DrawAngles(
+              this->Drawing(object, list, view, 1))) {
+        unknown.push_back(&object);
+      }
+    }
+    if (!unknown.empty()) {
+      this->HideAngles(unknown, list, view, target);
     }
     state->vtkglEnable(GL_BLEND);
   }
   state->PopFramebufferBindings();
+}
+
+void SceneDrawer::HideAngles(const std::vector<const DrawCustom*>& customs, const DrawList& list,
+                             const DrawView& view, RenderTarget& target) {
+  RenderTarget labels(this->Window_, RenderTarget::Format::Label, RenderTarget::DepthFormat::Float);
+  labels.Resize(target.Width(), target.Height());
+  labels.Bind();
+  vtkOpenGLState* state = this->Window_->GetState();
+  const GLuint nothing[4] = {0, 0, 0, 0};
+  glClearBufferuiv(GL_COLOR, 0, nothing);
+  state->vtkglClearDepth(0.0);
+  state->vtkglClear(GL_DEPTH_BUFFER_BIT);
+  state->vtkglClearDepth(1.0);
+  for (const DrawCustom* object : customs) {
+    this->Customs_[object->object->custom.get()].drawer->DrawLabels(
+        this->Drawing(*object, list, view, 1));
+  }
+  target.Bind();
+  BindTextureUnit(this->Window_, OpaqueDepthUnit, GL_TEXTURE_2D, labels.Depth());
+  this->Shaders_.Screen(PropLight_frag, "#define DSPACE_UNKNOWN\n")
+      ->SetUniformi("depths", OpaqueDepthUnit);
+  this->DrawTriangleOverScreen();
 }
 
 void SceneDrawer::Downsample(const RenderTarget& source, RenderTarget& target, int samples) {

@@ -12,9 +12,11 @@
 #include <dspace/render/DrawList.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/RenderTarget.h>
+#include <dspace/render/ShadowMaps.h>
 #include <dspace/render/SurfaceShaders.h>
 
 class vtkDspaceHubWindow;
+class vtkShaderProgram;
 
 namespace dspace {
 
@@ -34,16 +36,20 @@ public:
   SceneDrawer& operator=(const SceneDrawer&) = delete;
   ~SceneDrawer();
 
-  // Into `target` (Display, with depth), which must be bound and cleared. The background (sRGB, 0
-  // to 1; a vertical gradient) is drawn where nothing opaque is.
+  // Into `target` (Display or Light, with depth), which must be bound and cleared. The background
+  // (sRGB, 0 to 1; a vertical gradient) is drawn where nothing opaque is.
   struct Background {
     std::array<double, 3> bottom = {0.0, 0.0, 0.0};
     std::array<double, 3> top = {0.0, 0.0, 0.0};
   };
   void Clear(const Background& background);
+  void ClearLight(const Background& background); // of a Light target
   // Uploads the data of custom geometry for the next pictures, before any target is bound. Returns
   // false if some data is not loaded yet.
   bool Prepare(const DrawList& list, const DrawView& view, int samples, bool labels = false);
+  // Draws the Sun's shadow maps where the view has shadows, and sets `view.shadows`; after
+  // Prepare(), before any target is bound.
+  void DrawShadows(const Scene& scene, const DrawList& list, DrawView& view, int samples);
   // `samples` is the supersampling factor: lines, points and billboards scale with it.
   void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples,
                  const Background* background = nullptr);
@@ -52,7 +58,10 @@ public:
                                 const RenderTarget& target, int samples);
   // Into `target` (Label, with depth), cleared first.
   void DrawLabels(const DrawList& list, const DrawView& view, RenderTarget& target);
-  // Mean of the samples of `source` into `target` (both Display).
+  // Angles of incidence, emission and phase [deg] and 1 into `target` (Light, with depth), cleared
+  // first; 0 where they are not known. Without a Sun only the emission is defined.
+  void DrawAngles(const DrawList& list, const DrawView& view, RenderTarget& target);
+  // Mean of the samples of `source` into `target` (both Display, or both Light).
   void Downsample(const RenderTarget& source, RenderTarget& target, int samples);
 
   void Release();
@@ -60,11 +69,24 @@ public:
 private:
   CustomDrawing Drawing(const DrawCustom& object, const DrawList& list, const DrawView& view,
                         int samples);
+  // The least and greatest depths [m] along the view's axis of what a coarse picture of the list
+  // shows, with some room; nothing: {0, 1}.
+  std::array<double, 2> SeenDepths(const DrawList& list, const DrawView& view);
+  // The list's labels and depths into what is bound.
+  void DrawDepths(const DrawList& list, const DrawView& view);
+  // Of a shadow map: the custom geometry that shadows itself, or all else.
+  void DrawCasters(const DrawList& list, const DrawView& view, bool ground);
   void DrawBackground(const Background& background, int height);
   void DrawTriangleOverScreen();
   void Upload(const DrawList& list);
+  vtkShaderProgram* ProgramOf(const DrawBatch& batch, const DrawList& list, unsigned features);
   void DrawBatches(const DrawList& list, const DrawView& view, bool translucent, unsigned features,
                    int samples);
+  void DrawTranslucentCustoms(const DrawList& list, const DrawView& view, RenderTarget& target,
+                              int samples);
+  // Puts geometry that has no angles in front of what has.
+  void HideAngles(const std::vector<const DrawCustom*>& customs, const DrawList& list,
+                  const DrawView& view, RenderTarget& target);
   void PeelTranslucent(const DrawList& list, const DrawView& view, RenderTarget& target,
                        int samples);
 
@@ -73,6 +95,7 @@ private:
   const CustomDrawers& Drawers_;
   RenderStatistics& Statistics_;
   SurfaceShaders Shaders_;
+  ShadowMaps Shadows_;
   struct Custom {
     std::weak_ptr<const CustomGeometry> geometry;
     std::unique_ptr<CustomDrawer> drawer;
@@ -84,8 +107,10 @@ private:
   unsigned int EmptyArray_ = 0;
   unsigned int Query_ = 0;
   std::unique_ptr<RenderTarget> Layers_[2]; // Linear, with depth: the layer now and the one before
+  std::unique_ptr<RenderTarget> Coarse_;    // Label, with depth: for SeenDepths()
   std::unique_ptr<RenderTarget> Sum_;       // Linear: layers blended so far, front to back
   bool FirstLayer_ = false;                 // for the peel uniforms
+  bool Light_ = false;                      // the target of the colours is Light
 };
 
 } // namespace dspace

@@ -1,12 +1,17 @@
 #include <dspace/render/SurfaceShaders.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vtk_glew.h"
 
+#include "DepthPeel.h"
 #include "Instance_vert.h"
 #include "Label_frag.h"
+#include "Lighting.h"
+#include "Photometry.h"
 #include "Screen_vert.h"
+#include "Shadow.h"
 #include "Surface_frag.h"
 
 #include "vtkDspaceHubWindow.h"
@@ -15,6 +20,7 @@
 #include "vtkShaderProgram.h"
 
 #include <dspace/Error.h>
+#include <dspace/render/CodedShaders.h>
 
 namespace dspace {
 namespace {
@@ -49,27 +55,63 @@ void BindTextureUnit(vtkDspaceHubWindow* window, int unit, unsigned int target, 
   glBindTexture(target, name);
 }
 
-unsigned SurfaceShaders::LightFeatures(const DrawList& list) {
+unsigned SurfaceShaders::ShadowFeatures(const DrawView& view) {
+  const std::size_t cascades = view.shadows ? view.shadows->cascades.size() : 0;
+  return Lit | static_cast<unsigned>(cascades << CascadeShift) |
+         (view.shadows && view.shadows->ground ? GroundMaps : 0u);
+}
+
+unsigned SurfaceShaders::LightFeatures(const DrawList& list, const DrawView& view) {
   const auto lights = std::min<std::size_t>(list.Lights().size(), MaximumLights);
-  unsigned features = Lit | static_cast<unsigned>(lights << LightShift);
+  unsigned features = ShadowFeatures(view) | static_cast<unsigned>(lights << LightShift);
   for (std::size_t i = 0; i < lights; ++i) {
     features |= list.Lights()[i].kind == Light::Kind::Directional ? 0u : PlacedLights;
   }
   return features;
 }
 
+unsigned SurfaceShaders::ReflectanceFeature(const Reflectance& reflectance) {
+  const auto model = static_cast<unsigned>(reflectance.model);
+  return model > static_cast<unsigned>(Reflectance::Model::Lambert) ? model << ReflectanceShift : 0;
+}
+
+void SurfaceShaders::SetReflectance(vtkShaderProgram* program, const Reflectance& reflectance) {
+  float values[2][4] = {};
+  if (reflectance.model == Reflectance::Model::LunarLambert) {
+    const std::array<double, 4> powers = LunarWeightPowers(reflectance);
+    std::copy(powers.begin(), powers.end(), values[0]);
+  } else if (reflectance.model == Reflectance::Model::Hapke) {
+    const double gamma = std::sqrt(1.0 - reflectance.singleScatteringAlbedo);
+    // Cotangents stay finite: what differs is seen in the last hundredth of a degree.
+    const double tangent = std::tan(std::max(reflectance.roughness_deg, 0.01) * M_PI / 180.0);
+    values[0][0] = float(reflectance.singleScatteringAlbedo);
+    values[0][1] = float(reflectance.phaseAsymmetry);
+    values[0][2] = float(reflectance.phasePartition);
+    values[0][3] = float(reflectance.oppositionAmplitude);
+    values[1][0] = float(reflectance.oppositionWidth);
+    values[1][1] = float(tangent);
+    values[1][2] = float(1.0 / std::sqrt(1.0 + M_PI * tangent * tangent));
+    values[1][3] = float((1.0 - gamma) / (1.0 + gamma));
+  }
+  program->SetUniform4fv("reflectanceValues", 2, values);
+}
+
 void SurfaceShaders::Release() {
   this->Surfaces_.clear();
+  this->Coded_.clear();
   this->Screens_.clear();
 }
 
-vtkShaderProgram* SurfaceShaders::Surface(unsigned features, const ShaderPages& pages) {
-  vtkShaderProgram*& program =
-      this->Surfaces_[{features, pages.vertex, pages.fragment, pages.defines}];
-  if (program) {
-    this->Window_->GetShaderCache()->ReadyShaderProgram(program);
-    return program;
-  }
+unsigned SurfaceShaders::CodeFeatures(const Mesh& mesh, bool textured) {
+  const bool triangles = mesh.primitive == Mesh::Primitive::Triangles;
+  return (textured ? Texture : 0u) | (mesh.colors.empty() ? 0u : VertexColor) |
+         (!mesh.normals.empty() ? Normals
+          : triangles           ? Flat
+                                : 0u);
+}
+
+SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const ShaderPages& pages,
+                                                   const ShaderCode* code) {
   std::string defines = pages.defines;
   const auto define = [&](Feature feature, const char* name) {
     if (features & feature) {
@@ -86,11 +128,51 @@ vtkShaderProgram* SurfaceShaders::Surface(unsigned features, const ShaderPages& 
   define(Specular, "DSPACE_SPECULAR");
   define(PlacedLights, "DSPACE_PLACED_LIGHTS");
   define(Mixed, "DSPACE_MIXED");
-  defines += "#define DSPACE_LIGHT_COUNT " + std::to_string(features >> LightShift) + "\n";
-  std::string fragment = WithDefines(features & Label ? Label_frag : Surface_frag, defines);
-  Replace(fragment, "//DSPACE::Functions", pages.fragment ? pages.fragment : "");
-  program = Ready(this->Window_, WithDefines(pages.vertex ? pages.vertex : Instance_vert, defines),
-                  fragment);
+  define(NormalMap, "DSPACE_NORMAL_MAP");
+  define(ObjectNormals, "DSPACE_OBJECT_NORMALS");
+  define(Normals, "DSPACE_NORMALS");
+  define(Flat, "DSPACE_FLAT");
+  define(GroundMaps, "DSPACE_GROUND_MAPS");
+  define(Angles, "DSPACE_ANGLES");
+  define(DisplayColor, "DSPACE_DISPLAY_COLOR");
+  defines += "#define DSPACE_LIGHT_COUNT " + std::to_string(features >> LightShift & 15u) + "\n";
+  const unsigned model = features >> ReflectanceShift & 7u;
+  if (model != 0) {
+    defines += "#define DSPACE_REFLECTANCE " + std::to_string(model) + "\n";
+  }
+  defines += "#define DSPACE_CASCADES " + std::to_string(features >> CascadeShift & 15u) + "\n";
+  Sources made;
+  if (code) {
+    const CodedSources coded = SourcesOf(*code);
+    made.vertex = WithDefines(coded.vertex.c_str(), defines);
+    made.fragment = WithDefines(coded.fragment.c_str(), defines);
+  } else {
+    made.vertex = WithDefines(pages.vertex ? pages.vertex : Instance_vert, defines);
+    made.fragment = WithDefines(features & Label ? Label_frag : Surface_frag, defines);
+    Replace(made.fragment, "//DSPACE::Functions", pages.fragment ? pages.fragment : "");
+  }
+  Replace(made.fragment, "//DSPACE::Lighting", std::string(Shadow) + Photometry + Lighting);
+  Replace(made.fragment, "//DSPACE::Peeling", DepthPeel);
+  return made;
+}
+
+vtkShaderProgram* SurfaceShaders::Surface(unsigned features, const ShaderPages& pages,
+                                          const std::shared_ptr<const ShaderCode>& code) {
+  if (code && this->Coded_.count(code.get()) == 0) {
+    for (auto it = this->Coded_.begin(); it != this->Coded_.end();) { // code that no object has
+      it = it->second.code.use_count() == 1 ? this->Coded_.erase(it) : std::next(it);
+    }
+    this->Coded_[code.get()].code = code;
+  }
+  vtkShaderProgram*& program =
+      code ? this->Coded_[code.get()].programs[features]
+           : this->Surfaces_[{features, pages.vertex, pages.fragment, pages.defines}];
+  if (program) {
+    this->Window_->GetShaderCache()->ReadyShaderProgram(program);
+  } else {
+    const Sources sources = SourcesFor(features, pages, code.get());
+    program = Ready(this->Window_, sources.vertex, sources.fragment);
+  }
   return program;
 }
 
@@ -106,7 +188,7 @@ vtkShaderProgram* SurfaceShaders::Screen(const char* fragment, const std::string
 
 void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view,
                              int samples, bool firstLayer) {
-  const Eigen::Matrix4f clip = view.projection.ClipFromView(view.width, view.height).cast<float>();
+  const Eigen::Matrix4f clip = view.ClipFromView().cast<float>();
   Eigen::Matrix4f columns = clip; // column-major, as OpenGL reads it
   program->SetUniformMatrix4x4("VCDCMatrix", columns.data());
   // Of the picture, not of the n x n samples that are drawn of it.
@@ -114,12 +196,22 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
                           2.0f * static_cast<float>(samples) / static_cast<float>(view.height)};
   program->SetUniform2f("pixelNDC", pixel);
   program->SetUniformi("colorTexture", ColorUnit);
+  program->SetUniformi("normalTexture", NormalUnit);
   program->SetUniformi("opaqueDepth", OpaqueDepthUnit);
   program->SetUniformi("peeledDepth", PeeledDepthUnit);
   program->SetUniformi("firstLayer", firstLayer ? 1 : 0);
   program->SetUniformi("cameraParallel",
                        view.projection.kind == Projection::Kind::Orthographic ? 1 : 0);
   program->SetUniform3f("ambientLight", list.Ambient().data());
+  if (program->IsUniformUsed("towardsSunVC")) {
+    const Eigen::Vector3f toSun = list.TowardsSun().value_or(Eigen::Vector3f::Zero());
+    program->SetUniform3f("towardsSunVC", toSun.data());
+  }
+
+  if (view.shadows && program->IsUniformUsed("shadowMaps")) {
+    this->SetShadows(program, *view.shadows);
+    program->SetUniformi("cascadeColors", view.look.shadows.cascadeColors ? 1 : 0);
+  }
 
   const int count = std::min<int>(static_cast<int>(list.Lights().size()), MaximumLights);
   if (count == 0 || !program->IsUniformUsed("lightColor")) {
@@ -146,6 +238,29 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
   program->SetUniform3fv("lightPositionVC", count, position);
   program->SetUniform3fv("lightAttenuation", count, attenuation);
   program->SetUniform1fv("lightCosCone", count, cosCone);
+}
+
+void SurfaceShaders::SetShadows(vtkShaderProgram* program, const CascadeFit& fit) const {
+  constexpr int Most = ShadowLook::MaximumCascades;
+  float place[Most][4] = {};
+  float range[Most][2] = {};
+  const int count = int(fit.cascades.size());
+  for (int k = 0; k < count; ++k) {
+    const CascadeFit::Cascade& cascade = fit.cascades[k];
+    place[k][0] = float(cascade.center.x());
+    place[k][1] = float(cascade.center.y());
+    place[k][2] = float(cascade.radius);
+    place[k][3] = float(cascade.end);
+    range[k][0] = float(cascade.low);
+    range[k][1] = float(cascade.high - cascade.low);
+  }
+  Eigen::Matrix3f axes = fit.sun.axes.cast<float>(); // column-major, as OpenGL reads it
+  program->SetUniformMatrix3x3("sunAxesVC", axes.data());
+  program->SetUniform4fv("shadowPlace", count, place);
+  program->SetUniform2fv("shadowRange", count, range);
+  program->SetUniformf("sunRadius", float(std::tan(std::min(fit.sun.radius, 1.5))));
+  program->SetUniformi("shadowMaps", ShadowUnit);
+  BindTextureUnit(this->Window_, ShadowUnit, GL_TEXTURE_2D_ARRAY, this->ShadowMaps_);
 }
 
 } // namespace dspace

@@ -3,6 +3,7 @@
 #define DSPACE_RENDER_SURFACE_SHADERS_H
 
 #include <map>
+#include <memory>
 #include <string>
 #include <tuple>
 
@@ -14,6 +15,8 @@ class vtkShaderProgram;
 namespace dspace {
 
 // Texture units above those that VTK hands out.
+constexpr int ShadowUnit = 8;
+constexpr int NormalUnit = 10;
 constexpr int TerrainUnit = 11; // and 12
 constexpr int ColorUnit = 13;
 constexpr int OpaqueDepthUnit = 14;
@@ -40,29 +43,68 @@ public:
     Label = 32,
     Emissive = 64,
     Specular = 128,
-    PlacedLights = 256, // some light is not directional
-    Mixed = 512         // a function mixedColor() of the pages stands for the texture
+    PlacedLights = 256,     // some light is not directional
+    Mixed = 512,            // a function mixedColor() of the pages stands for the texture
+    Normals = 1024,         // of objects with shader code: the mesh has normals
+    Flat = 2048,            // of objects with shader code: triangles without normals
+    NormalMap = 4096,       // a texture of normals, with Lit
+    ObjectNormals = 8192,   // one in the mesh's own axes, with opacity
+    GroundMaps = 1u << 27,  // CascadeFit::ground
+    Angles = 1u << 28,      // photometric angles in place of the colour; with Lit where it is lit
+    DisplayColor = 1u << 29 // the colour is a display value in a picture that is exposed later
   };
-  static constexpr unsigned LightShift = 16; // above the features: the number of lights
+  static constexpr unsigned LightShift = 16;       // above the features: the number of lights,
+  static constexpr unsigned CascadeShift = 20;     // of the Sun's shadow maps,
+  static constexpr unsigned ReflectanceShift = 24; // and the photometric model, 3 bits
 
   explicit SurfaceShaders(vtkDspaceHubWindow* window) : Window_(window) {}
 
-  // The features that the list's lights require of a lit surface's program.
-  static unsigned LightFeatures(const DrawList& list);
+  // The features that the list's lights and the view's shadows require of a lit surface's program.
+  static unsigned LightFeatures(const DrawList& list, const DrawView& view);
+
+  // Those of a surface that is lit or not by the view's shadows alone, without lights.
+  static unsigned ShadowFeatures(const DrawView& view);
+
+  // The feature of a lit surface's photometric model; 0: that of the default, or of Lambert.
+  static unsigned ReflectanceFeature(const Reflectance& reflectance);
+  // Sets its parameters in a program with this feature.
+  static void SetReflectance(vtkShaderProgram* program, const Reflectance& reflectance);
+
+  // The features that a mesh's program has for shader code, lit or not.
+  static unsigned CodeFeatures(const Mesh& mesh, bool textured);
+
+  // The text of a surface's program. `code`: of the object (CodedShaders.h); null: none.
+  struct Sources {
+    std::string vertex;
+    std::string fragment;
+  };
+  static Sources SourcesFor(unsigned features, const ShaderPages& pages, const ShaderCode* code);
 
   // Ready to draw with. Throws Error(Internal) when the driver rejects it.
-  vtkShaderProgram* Surface(unsigned features, const ShaderPages& pages = {});
+  vtkShaderProgram* Surface(unsigned features, const ShaderPages& pages = {},
+                            const std::shared_ptr<const ShaderCode>& code = nullptr);
   vtkShaderProgram* Screen(const char* fragment, const std::string& defines = "");
 
   // Projection, lights and what else is the same for everything in one picture.
   void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view, int samples,
                bool firstLayer = false);
+  // The view's shadow maps (ShadowMaps), an OpenGL texture array.
+  void SetShadowMaps(unsigned int texture) { this->ShadowMaps_ = texture; }
   void Release();
 
 private:
+  void SetShadows(vtkShaderProgram* program, const CascadeFit& fit) const;
+
   vtkDspaceHubWindow* Window_;
+  unsigned int ShadowMaps_ = 0;
   std::map<std::tuple<unsigned, const char*, const char*, std::string>, vtkShaderProgram*>
       Surfaces_;
+  // By the code, which is kept, so that its address is not used again.
+  struct Coded {
+    std::shared_ptr<const ShaderCode> code;
+    std::map<unsigned, vtkShaderProgram*> programs; // by features
+  };
+  std::map<const ShaderCode*, Coded> Coded_;
   std::map<std::pair<const char*, std::string>, vtkShaderProgram*> Screens_;
 };
 

@@ -7,7 +7,7 @@
 
 #include "vtkDspaceHubWindow.h"
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 namespace dspace {
 namespace {
@@ -60,6 +60,30 @@ void CheckColor(const std::string& viewport, const std::array<double, 3>& color)
              "background component " + std::to_string(c) + " is rejected; accepted: 0 to 1");
     }
   }
+}
+
+void CheckLook(vtkDspaceHubWindow& window, const std::string& viewport, const ViewLook& look) {
+  const ShadowLook& shadows = look.shadows;
+  if (shadows.cascades < 1 || shadows.cascades > ShadowLook::MaximumCascades) {
+    Reject(viewport, "shadow cascades " + std::to_string(shadows.cascades) +
+                         " are rejected; accepted: 1 to " +
+                         std::to_string(ShadowLook::MaximumCascades));
+  }
+  window.MakeCurrent();
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  largest = std::min<GLint>(largest, ShadowLook::MaximumSize);
+  if (shadows.size < ShadowLook::MinimumSize || shadows.size > largest) {
+    Reject(viewport,
+           "shadow maps of " + std::to_string(shadows.size) +
+               " texels a side are rejected; accepted: " + std::to_string(ShadowLook::MinimumSize) +
+               " to " + std::to_string(largest));
+  }
+  Require(shadows.distance >= 0.0 && shadows.distance <= 1e12, viewport, "the distance of shadows",
+          shadows.distance, "0 (as the view requires) to 1e12 metres");
+  RequireFraction(viewport, "its fill light", look.fill);
+  Require(look.exposure > 0.0 && look.exposure <= 1e12, viewport, "its exposure", look.exposure,
+          "above 0, to 1e12");
 }
 
 void CheckPick(const std::string& viewport, double x, double y, int radius, int width, int height) {

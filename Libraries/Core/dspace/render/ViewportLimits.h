@@ -5,6 +5,8 @@
 #include <array>
 #include <string>
 
+#include <dspace/scene/ViewLook.h>
+
 class vtkDspaceHubWindow;
 
 namespace dspace {
@@ -19,6 +21,10 @@ void CheckSamples(vtkDspaceHubWindow& window, const std::string& viewport, int w
 
 // A background's colour, 0 to 1. Throws Error(InvalidArgument) about `viewport`.
 void CheckColor(const std::string& viewport, const std::array<double, 3>& color);
+
+// Ranges are those of ViewLook.h; makes the window current. Throws Error(InvalidArgument) about
+// `viewport`, also for shadow maps that are larger than OpenGL has.
+void CheckLook(vtkDspaceHubWindow& window, const std::string& viewport, const ViewLook& look);
 
 // A place to pick at, in pixels of a picture of this size. Throws Error(InvalidArgument) about
 // `viewport`.

@@ -147,6 +147,15 @@ void ColorBars::Resize(vtkRenderer* overlay, int width, int height) {
   }
 }
 
+void ColorBars::ShowIf(const std::function<bool(const ColorBar&)>& shown) const {
+  for (const auto& entry : this->Placed_) {
+    const bool visible = shown(entry.second.bar);
+    for (const auto& prop : entry.second.props) {
+      prop->SetVisibility(visible);
+    }
+  }
+}
+
 void ColorBars::Raise(vtkRenderer* overlay) const {
   vtkPropCollection* all = overlay->GetViewProps(); // RemoveViewProp would release their textures
   for (const auto& entry : this->Placed_) {

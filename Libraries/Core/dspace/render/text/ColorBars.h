@@ -2,13 +2,14 @@
 #ifndef DSPACE_RENDER_COLOR_BARS_H
 #define DSPACE_RENDER_COLOR_BARS_H
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "vtkSmartPointer.h"
 
-#include <dspace/scene/ColorBar.h>
+#include <dspace/overlay/ColorBar.h>
 
 class vtkProp;
 class vtkRenderer;
@@ -24,6 +25,8 @@ public:
   bool Remove(const std::string& name, vtkRenderer* overlay); // false where there is none
   // Places all of them in the corners of a picture of another size.
   void Resize(vtkRenderer* overlay, int width, int height);
+  // Shows those that `shown` is true for, and hides the others.
+  void ShowIf(const std::function<bool(const ColorBar&)>& shown) const;
   // Draws all of them over everything else in the overlay, in the order of their names, so that a
   // picture does not depend on the order in which they were set.
   void Raise(vtkRenderer* overlay) const;

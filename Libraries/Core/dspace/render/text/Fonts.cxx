@@ -8,9 +8,9 @@
 
 #include "vtkTextProperty.h"
 
+#include <dspace/Checks.h>
 #include <dspace/Error.h>
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/TextCharacters.h>
+#include <dspace/overlay/TextCharacters.h>
 
 namespace dspace {
 namespace {
@@ -62,15 +62,6 @@ bool IsRightToLeft(char32_t c) {
 }
 
 } // namespace
-
-const char* FontFile(Font font) {
-  return font == Font::Sans ? DSPACE_FONT_SANS : DSPACE_FONT_MONO;
-}
-
-void RejectFont(Font font) {
-  throw Error(Error::Kind::Resource, "font '" + std::string(FontFile(font)) + "'",
-              "cannot be read; text needs this file (Debian's package fonts-dejavu-core)");
-}
 
 void RequireGlyphs(const std::string& object, const char* what, const std::string& text,
                    Font font) {

@@ -8,13 +8,13 @@
 #include "vtkTextProperty.h"
 #include "vtkTextRenderer.h"
 
+#include <dspace/Checks.h>
 #include <dspace/Error.h>
+#include <dspace/letters/OutlineFont.h>
+#include <dspace/overlay/TextCharacters.h>
+#include <dspace/overlay/TextLimits.h>
 #include <dspace/render/text/Fonts.h>
 #include <dspace/render/text/OverlayText.h>
-#include <dspace/render/text/TextOutlines.h>
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/TextCharacters.h>
-#include <dspace/scene/TextLimits.h>
 
 namespace dspace {
 namespace {

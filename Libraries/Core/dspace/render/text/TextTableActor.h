@@ -6,7 +6,7 @@
 
 #include "vtkSmartPointer.h"
 
-#include <dspace/scene/Overlay.h>
+#include <dspace/overlay/Overlay.h>
 
 class vtkTextActor;
 

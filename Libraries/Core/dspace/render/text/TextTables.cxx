@@ -4,9 +4,9 @@
 #include "vtkRenderer.h"
 #include "vtkTextActor.h"
 
+#include <dspace/overlay/TextCharacters.h>
 #include <dspace/render/text/Fonts.h>
 #include <dspace/render/text/TextTableActor.h>
-#include <dspace/scene/TextCharacters.h>
 
 namespace dspace {
 

@@ -8,7 +8,7 @@
 
 #include "vtkSmartPointer.h"
 
-#include <dspace/scene/Overlay.h>
+#include <dspace/overlay/Overlay.h>
 
 class vtkRenderer;
 class vtkTextActor;

@@ -19,6 +19,7 @@ public:
   ~VtkErrorTrap();
   // Throws Error(Internal) with the first error message, if there was one.
   void Check(const std::string& object) const;
+  std::string FirstError() const; // empty: there was none
 
 private:
   friend class VtkMessages;

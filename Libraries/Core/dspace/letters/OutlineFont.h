@@ -1,11 +1,11 @@
 // Letters as triangles, from a font's outlines.
-#ifndef DSPACE_RENDER_TEXT_OUTLINES_H
-#define DSPACE_RENDER_TEXT_OUTLINES_H
+#ifndef DSPACE_LETTERS_OUTLINE_FONT_H
+#define DSPACE_LETTERS_OUTLINE_FONT_H
 
 #include <memory>
 
-#include <dspace/render/text/FillContours.h>
-#include <dspace/render/text/Fonts.h>
+#include <dspace/letters/FillContours.h>
+#include <dspace/letters/FontFiles.h>
 
 namespace dspace {
 
@@ -24,6 +24,7 @@ public:
   };
   Letter Read(char32_t character);
   double LineHeight() const; // from baseline to baseline
+  double EmSize() const;     // the nominal size of the font
 
 private:
   struct Face;

@@ -1,4 +1,4 @@
-#include <dspace/render/VtkMessages.h>
+#include <dspace/render/messages/VtkMessages.h>
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 #include "vtkOutputWindow.h"
 #include "vtkWeakPointer.h"
 
-#include <dspace/render/VtkErrorTrap.h>
+#include <dspace/render/messages/VtkErrorTrap.h>
 
 namespace dspace {
 

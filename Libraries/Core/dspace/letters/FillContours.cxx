@@ -1,6 +1,6 @@
 // Areas within contours, cut into bands between the heights of all corners and crossings, in which
 // they are trapezoids.
-#include <dspace/render/text/FillContours.h>
+#include <dspace/letters/FillContours.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
-#include <dspace/render/VtkErrorTrap.h>
+#include <dspace/render/messages/VtkErrorTrap.h>
 
 #include <dspace/Error.h>
-#include <dspace/render/VtkMessages.h>
+#include <dspace/render/messages/VtkMessages.h>
 
 namespace dspace {
 
@@ -13,8 +13,12 @@ VtkErrorTrap::~VtkErrorTrap() {
   this->Messages_.Remove(*this);
 }
 
+std::string VtkErrorTrap::FirstError() const {
+  return this->Messages_.FirstErrorOf(*this);
+}
+
 void VtkErrorTrap::Check(const std::string& object) const {
-  const std::string error = this->Messages_.FirstErrorOf(*this);
+  const std::string error = this->FirstError();
   if (!error.empty()) {
     throw Error(Error::Kind::Internal, object, "VTK reported: " + error);
   }

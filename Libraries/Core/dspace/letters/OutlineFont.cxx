@@ -1,4 +1,4 @@
-#include <dspace/render/text/TextOutlines.h>
+#include <dspace/letters/OutlineFont.h>
 
 #include <cmath>
 
@@ -89,6 +89,10 @@ OutlineFont::~OutlineFont() = default;
 
 double OutlineFont::LineHeight() const {
   return double(this->Face_->face->height) / this->Face_->capital;
+}
+
+double OutlineFont::EmSize() const {
+  return double(this->Face_->face->units_per_EM) / this->Face_->capital;
 }
 
 OutlineFont::Letter OutlineFont::Read(char32_t character) {

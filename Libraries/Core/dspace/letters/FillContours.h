@@ -1,6 +1,6 @@
 // Areas within contours, as triangles.
-#ifndef DSPACE_RENDER_FILL_CONTOURS_H
-#define DSPACE_RENDER_FILL_CONTOURS_H
+#ifndef DSPACE_LETTERS_FILL_CONTOURS_H
+#define DSPACE_LETTERS_FILL_CONTOURS_H
 
 #include <Eigen/Core>
 #include <cstdint>

@@ -1,0 +1,100 @@
+#if DSPACE_LIGHT_COUNT > 0
+uniform int lightKind[DSPACE_LIGHT_COUNT]; // 0 directional, 1 point, 2 spot, 3 head
+uniform vec3 lightColor[DSPACE_LIGHT_COUNT];
+uniform vec3 lightDirectionVC[DSPACE_LIGHT_COUNT]; // the way the light travels
+uniform vec3 lightPositionVC[DSPACE_LIGHT_COUNT];
+uniform vec3 lightAttenuation[DSPACE_LIGHT_COUNT];
+uniform float lightCosCone[DSPACE_LIGHT_COUNT];
+#endif
+uniform vec3 ambientLight;
+uniform int cameraParallel;
+
+// sRGB display value to linear light (IEC 61966-2-1).
+vec3 linearFromSrgb(vec3 c)
+{
+  return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+#ifdef DSPACE_SPECULAR
+// What comes back of light from L: Trowbridge-Reitz distribution with Smith's height-correlated
+// visibility over a Lambertian base; times pi, so that intensity 1 means "white paper shows 1".
+vec3 reflected(vec3 L, vec3 N, vec3 V, float NdL, float NdV, vec3 albedo, vec3 F0, float a2)
+{
+  vec3 H = normalize(L + V);
+  float NdH = clamp(dot(N, H), 0.0, 1.0);
+  float m = 1.0 - clamp(dot(H, V), 0.0, 1.0);
+  float m2 = m * m;
+  vec3 F = F0 + (1.0 - F0) * (m2 * m2 * m);
+  float d = NdH * NdH * (a2 - 1.0) + 1.0;
+  float D = a2 / max(d * d, 1e-7);
+  float vis = 0.5 /
+    max(NdL * sqrt(NdV * NdV * (1.0 - a2) + a2) + NdV * sqrt(NdL * NdL * (1.0 - a2) + a2), 1e-5);
+  return (1.0 - F) * albedo + D * vis * F;
+}
+#endif
+
+#ifdef DSPACE_LIT
+// The light that a surface of this colour sends to the camera, linear. N: unit, view axes.
+// surface: metallic, roughness.
+vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
+{
+  vec3 light = ambientLight * color;
+#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+  vec3 planeVC = cross(dFdx(positionVC), dFdy(positionVC)); // here, where all pixels come by
+#endif
+#if defined(DSPACE_SPECULAR) || defined(DSPACE_PLACED_LIGHTS) || defined(DSPACE_REFLECTANCE)
+  vec3 V = cameraParallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
+#endif
+#ifdef DSPACE_SPECULAR
+  float NdV = max(dot(N, V), 1e-4);
+  float alpha = max(surface.y * surface.y, 0.002);
+  vec3 F0 = mix(vec3(0.04), color, surface.x);
+  vec3 albedo = color * (1.0 - surface.x);
+#endif
+#if DSPACE_LIGHT_COUNT > 0
+  for (int i = 0; i < DSPACE_LIGHT_COUNT; ++i)
+  {
+    vec3 L = -lightDirectionVC[i];
+    vec3 radiance = lightColor[i];
+#ifdef DSPACE_PLACED_LIGHTS
+    if (lightKind[i] == 1 || lightKind[i] == 2)
+    {
+      vec3 toLight = lightPositionVC[i] - positionVC;
+      float distance = length(toLight);
+      L = toLight / distance;
+      radiance /= dot(lightAttenuation[i], vec3(1.0, distance, distance * distance));
+      if (lightKind[i] == 2 && dot(-L, lightDirectionVC[i]) < lightCosCone[i])
+      {
+        radiance = vec3(0.0);
+      }
+    }
+    else if (lightKind[i] == 3)
+    {
+      L = V;
+    }
+#endif
+    float NdL = max(dot(N, L), 0.0);
+#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+    if (i == 0 && NdL > 0.0) // the Sun stands first
+    {
+      radiance *= sunLit(positionVC, planeVC);
+    }
+#endif
+#ifdef DSPACE_SPECULAR
+    light += radiance * NdL * reflected(L, N, V, NdL, NdV, albedo, F0, alpha * alpha);
+#elif defined(DSPACE_REFLECTANCE)
+    if (NdL > 0.0)
+    {
+      light += radiance * color * radianceFactor(L, N, V, NdL, max(dot(N, V), 0.0));
+    }
+#else
+    light += radiance * NdL * color;
+#endif
+  }
+#endif
+#if DSPACE_CASCADES > 0
+  light *= cascadeTint(positionVC);
+#endif
+  return light;
+}
+#endif
