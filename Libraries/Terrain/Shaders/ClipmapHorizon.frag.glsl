@@ -1,0 +1,16 @@
+// How much of the Sun's disc stands above the horizon of the ground.
+#ifdef DSPACE_HORIZON
+in vec2 horizonAt; // [rad] from the horizon up to the Sun's centre: of all ground, of distant ground
+uniform float horizonRadius; // [rad] of the disc
+
+// 0 to 1, a circular segment (dspace/horizon/LitFraction.h).
+float horizonLit()
+{
+  float x = horizonAt.x / max(horizonRadius, 1e-7);
+  if (abs(x) >= 1.0)
+  {
+    return x > 0.0 ? 1.0 : 0.0;
+  }
+  return 0.5 + (x * sqrt(1.0 - x * x) + asin(x)) * 0.31830989;
+}
+#endif

@@ -1,0 +1,93 @@
+#include <dspace/horizon/HorizonKernel.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+// Compiled for two processors, without fused multiplications: both give the same bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+    !defined(__SANITIZE_ADDRESS__)
+#define DSPACE_FOR_PROCESSORS __attribute__((target_clones("avx2", "default")))
+#else
+#define DSPACE_FOR_PROCESSORS
+#endif
+
+namespace dspace {
+
+// The loops over lanes have a fixed length and no branches, so that compilers vectorize them; a
+// comparison with NaN keeps what was there.
+
+DSPACE_FOR_PROCESSORS
+void MarchEdges(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
+                float* tangents) {
+  alignas(32) float best[HorizonLanes];
+  alignas(32) float from[HorizonLanes];
+  std::copy_n(tangents, HorizonLanes, best);
+  std::copy_n(z, HorizonLanes, from);
+  for (const EdgeStep& step : steps) {
+    const float* a = heights + step.first;
+    const float* b = heights + step.second;
+    const HorizonStep g = step.ground;
+    const float share = step.share;
+    for (int i = 0; i < HorizonLanes; ++i) {
+      const float h = a[i] + share * (b[i] - a[i]);
+      const float t = (g.fall + g.rise * h - from[i]) / (g.away + g.spread * h);
+      best[i] = t > best[i] ? t : best[i];
+    }
+  }
+  std::copy_n(best, HorizonLanes, tangents);
+}
+
+DSPACE_FOR_PROCESSORS
+void MarchCells(const std::vector<CellStep>& steps, const float* heights, std::ptrdiff_t width,
+                float lane, const float* z, float* tangents) {
+  alignas(32) float best[HorizonLanes];
+  alignas(32) float from[HorizonLanes];
+  alignas(32) float row[HorizonLanes + 8] = {};
+  std::copy_n(tangents, HorizonLanes, best);
+  std::copy_n(z, HorizonLanes, from);
+  const int columns = int(std::ceil(lane * float(HorizonLanes))) + 2;
+  for (const CellStep& step : steps) {
+    const float* a = heights + step.first;
+    const float* b = a + width;
+    for (int i = 0; i < columns; ++i) {
+      row[i] = a[i] + step.down * (b[i] - a[i]);
+    }
+    const HorizonStep g = step.ground;
+    const float along = step.along;
+    for (int i = 0; i < HorizonLanes; ++i) {
+      const float x = along + float(i) * lane;
+      const int k = int(x);
+      const float h = row[k] + (x - float(k)) * (row[k + 1] - row[k]);
+      const float t = (g.fall + g.rise * h - from[i]) / (g.away + g.spread * h);
+      best[i] = t > best[i] ? t : best[i];
+    }
+  }
+  std::copy_n(best, HorizonLanes, tangents);
+}
+
+DSPACE_FOR_PROCESSORS
+HeightSpan SpanOf(const std::vector<float>& heights) {
+  constexpr std::size_t Width = 16;
+  std::array<float, Width> least;
+  std::array<float, Width> greatest;
+  least.fill(std::numeric_limits<float>::infinity());
+  greatest.fill(-std::numeric_limits<float>::infinity());
+  const std::size_t whole = heights.size() / Width * Width;
+  for (std::size_t i = 0; i < whole; i += Width) {
+    for (std::size_t k = 0; k < Width; ++k) {
+      const float h = heights[i + k];
+      least[k] = h < least[k] ? h : least[k];
+      greatest[k] = h > greatest[k] ? h : greatest[k];
+    }
+  }
+  for (std::size_t i = whole; i < heights.size(); ++i) {
+    least[0] = heights[i] < least[0] ? heights[i] : least[0];
+    greatest[0] = heights[i] > greatest[0] ? heights[i] : greatest[0];
+  }
+  return {*std::min_element(least.begin(), least.end()),
+          *std::max_element(greatest.begin(), greatest.end())};
+}
+
+} // namespace dspace

@@ -1,0 +1,54 @@
+// The inner loops of the sweep: many posts of a row at once. Not for public headers.
+#ifndef DSPACE_TERRAIN_HORIZONKERNEL_H
+#define DSPACE_TERRAIN_HORIZONKERNEL_H
+
+#include <cstddef>
+#include <vector>
+
+namespace dspace {
+
+// Posts of a row that are swept together.
+inline constexpr int HorizonLanes = 32;
+
+// The tangent of the elevation of ground of height h from height z (HorizonPath).
+struct HorizonStep {
+  float fall;
+  float rise;
+  float away;
+  float spread;
+};
+
+// Ground on an edge between two posts: of lane i `first + i` and `second + i` of the heights.
+struct EdgeStep {
+  HorizonStep ground;
+  std::ptrdiff_t first;
+  std::ptrdiff_t second;
+  float share; // of the second
+};
+
+// Ground between four posts of a level whose posts are 1 / `lane` lanes apart: of lane i, `along +
+// i lane` columns from `first`, and `down` of a row below it.
+struct CellStep {
+  HorizonStep ground;
+  std::ptrdiff_t first;
+  float along; // 0 to 1
+  float down;
+};
+
+// Raise `tangents` of HorizonLanes posts of heights `z` to those of the steps. NaN is no ground.
+void MarchEdges(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
+                float* tangents);
+// `width`: of a row of heights. `lane` <= 1.
+void MarchCells(const std::vector<CellStep>& steps, const float* heights, std::ptrdiff_t width,
+                float lane, const float* z, float* tangents);
+
+// Least and greatest, without NaN; least > greatest if there are none.
+struct HeightSpan {
+  float least;
+  float greatest;
+};
+HeightSpan SpanOf(const std::vector<float>& heights);
+
+} // namespace dspace
+
+#endif

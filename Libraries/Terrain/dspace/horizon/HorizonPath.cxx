@@ -1,0 +1,113 @@
+#include <dspace/horizon/HorizonPath.h>
+
+#include <cmath>
+
+namespace dspace {
+namespace {
+
+constexpr double Degree = M_PI / 180.0;
+
+} // namespace
+
+ChartAxes ChartAxesAt(const PostPlacement& placement, const Eigen::Vector2d& post) {
+  if (placement.GetKind() == PostPlacement::Kind::Plane) {
+    return {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
+  }
+  if (placement.GetKind() == PostPlacement::Kind::Sphere) {
+    const Eigen::Vector2d angles = placement.Angles(post);
+    const double sl = std::sin(angles.x()), cl = std::cos(angles.x());
+    const double sp = std::sin(angles.y()), cp = std::cos(angles.y());
+    return {{-sl, cl, 0.0}, {-sp * cl, -sp * sl, cp}, {cp * cl, cp * sl, sp}};
+  }
+  // The stereographic plane keeps angles.
+  const Eigen::Vector2d u = placement.OnPlaneOfPole(post);
+  const double t = 1.0 + u.squaredNorm();
+  const auto inScene = [&](const Eigen::Vector3d& v) {
+    return placement.South() ? Eigen::Vector3d(v.x(), -v.y(), -v.z()) : v;
+  };
+  return {inScene({1.0 - 2.0 * u.x() * u.x() / t, -2.0 * u.x() * u.y() / t, -2.0 * u.x() / t}),
+          inScene({-2.0 * u.x() * u.y() / t, 1.0 - 2.0 * u.y() * u.y() / t, -2.0 * u.y() / t}),
+          inScene({2.0 * u.x() / t, 2.0 * u.y() / t, (2.0 - t) / t})};
+}
+
+ChartDirection ChartDirectionAt(const PostPlacement& placement, const Eigen::Vector2d& post,
+                                const Eigen::Vector3d& direction_S) {
+  const ChartAxes axes = ChartAxesAt(placement, post);
+  const double east = axes.east.dot(direction_S);
+  const double north = axes.north.dot(direction_S);
+  const double azimuth = std::atan2(east, north) / Degree;
+  return {azimuth < 0.0 ? azimuth + 360.0 : azimuth,
+          std::atan2(axes.up.dot(direction_S), std::hypot(east, north)) / Degree};
+}
+
+HorizonPath::HorizonPath(const PostPlacement& placement, const Eigen::Vector2d& post,
+                         double azimuth_deg)
+    : Placement_(placement), Post_(post) {
+  const double east = std::sin(azimuth_deg * Degree);
+  const double north = std::cos(azimuth_deg * Degree);
+  const ChartAxes axes = ChartAxesAt(placement, post);
+  this->Up_ = axes.up;
+  this->Along_ = east * axes.east + north * axes.north;
+  this->AlongNormals_ = this->Along_;
+  if (placement.GetKind() == PostPlacement::Kind::Plane) {
+    this->PerMetre_ = placement.SceneToPost().linear() * Eigen::Vector2d(east, north);
+    return;
+  }
+  this->Longitude_ = placement.Angles(post).x();
+  const BodyEllipsoid& body = placement.Body();
+  if (!body.Spherical()) {
+    this->Foot_ = body.Point(this->Up_, 0.0);
+    // A metre to the east turns the vertical by another angle than one to the north.
+    const double sine = this->Up_.z();
+    const Eigen::Vector3d toPole = Eigen::Vector3d::UnitZ() - sine * this->Up_;
+    if (toPole.norm() > 1e-9) {
+      const Eigen::Vector3d trueNorth = toPole.normalized();
+      const double alongNorth = this->Along_.dot(trueNorth);
+      this->AlongNormals_ = ((this->Along_ - alongNorth * trueNorth) / body.EastRadius(sine) +
+                             alongNorth * trueNorth / body.NorthRadius(sine))
+                                .normalized();
+    }
+  }
+}
+
+HorizonPath::Point HorizonPath::At(double distance) const {
+  if (this->Straight()) {
+    return {this->Post_ + distance * this->PerMetre_, 0.0, 1.0, distance, 0.0};
+  }
+  const double radius = this->Placement_.Radius();
+  const double angle = distance / radius;
+  const double sine = std::sin(angle);
+  const double half = std::sin(0.5 * angle);
+  const double cosine = 1.0 - 2.0 * half * half;
+  const Eigen::Vector3d vertical = cosine * this->Up_ + sine * this->AlongNormals_;
+  Point point;
+  if (this->Placement_.GetKind() == PostPlacement::Kind::Sphere) {
+    const double latitude = std::atan2(vertical.z(), vertical.head<2>().norm());
+    const double cl = std::cos(this->Longitude_), sl = std::sin(this->Longitude_);
+    const double east =
+        std::atan2(cl * vertical.y() - sl * vertical.x(), cl * vertical.x() + sl * vertical.y());
+    point.post = {this->Post_.x() + east / this->Placement_.Step().x(),
+                  (latitude - this->Placement_.First().y()) / this->Placement_.Step().y()};
+  } else {
+    const double side = this->Placement_.South() ? -1.0 : 1.0;
+    // The other pole is infinitely far: a place far outside stands for it.
+    const double down = std::max(1.0 + side * vertical.z(), 1e-9) * this->Placement_.PlaneStep();
+    point.post = {this->Placement_.Half() + vertical.x() / down,
+                  this->Placement_.Half() - side * vertical.y() / down};
+  }
+  if (this->Placement_.Body().Spherical()) {
+    point.fall = -2.0 * radius * half * half;
+    point.rise = cosine;
+    point.away = radius * sine;
+    point.spread = sine;
+    return point;
+  }
+  const Eigen::Vector3d apart = this->Placement_.Body().Point(vertical, 0.0) - this->Foot_;
+  point.fall = apart.dot(this->Up_);
+  point.rise = vertical.dot(this->Up_);
+  point.away = apart.dot(this->Along_);
+  point.spread = vertical.dot(this->Along_);
+  return point;
+}
+
+} // namespace dspace

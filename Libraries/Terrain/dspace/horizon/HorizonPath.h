@@ -1,0 +1,61 @@
+// The ground below a line of sight: a straight line over the posts of a plane, a great circle over
+// those of a body.
+#ifndef DSPACE_TERRAIN_HORIZONPATH_H
+#define DSPACE_TERRAIN_HORIZONPATH_H
+
+#include <dspace/posts/PostPlacement.h>
+
+namespace dspace {
+
+// The axes of a chart at a post, unit, in the scene. `up` is the local vertical; `north` is Y on a
+// plane, the true north on a degree grid, and against the rows of a pole's chart, which has no
+// other direction that is the same across the pole.
+struct ChartAxes {
+  Eigen::Vector3d east;
+  Eigen::Vector3d north;
+  Eigen::Vector3d up;
+};
+ChartAxes ChartAxesAt(const PostPlacement& placement, const Eigen::Vector2d& post);
+
+// A direction as an observer at a post sees it.
+struct ChartDirection {
+  double azimuth_deg;   // clockwise from the chart's north, 0 to 360
+  double elevation_deg; // over the plane that is normal to the local vertical
+};
+ChartDirection ChartDirectionAt(const PostPlacement& placement, const Eigen::Vector2d& post,
+                                const Eigen::Vector3d& direction_S);
+
+// From a post in an azimuth of its chart. The elevation of ground of height h at `At(s)`, seen from
+// height z at the post, has the tangent (fall + rise h - z) / (away + spread h): exact on a plane
+// and on a sphere, on an ellipsoid to second order of its flattening.
+class HorizonPath {
+public:
+  struct Point {
+    Eigen::Vector2d post; // level-0 posts; on a degree grid within half a turn of the path's first
+    double fall;          // [m]
+    double rise;
+    double away; // [m]
+    double spread;
+  };
+
+  HorizonPath(const PostPlacement& placement, const Eigen::Vector2d& post, double azimuth_deg);
+
+  // At a distance along the ground of height 0 [m]; of an ellipsoid along its greatest sphere.
+  Point At(double distance) const;
+  // Straight in posts.
+  bool Straight() const { return !this->Placement_.OnBody(); }
+
+private:
+  const PostPlacement& Placement_;
+  Eigen::Vector2d Post_;
+  Eigen::Vector2d PerMetre_ = Eigen::Vector2d::Zero(); // plane: posts a metre
+  Eigen::Vector3d Up_;
+  Eigen::Vector3d Along_;        // level, in the azimuth
+  Eigen::Vector3d AlongNormals_; // as the directions of verticals turn on the way
+  Eigen::Vector3d Foot_;         // of the post, on an ellipsoid
+  double Longitude_ = 0.0;       // of the post
+};
+
+} // namespace dspace
+
+#endif

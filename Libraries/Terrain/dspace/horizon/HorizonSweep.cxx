@@ -1,0 +1,623 @@
+#include <dspace/horizon/HorizonSweep.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <dspace/Error.h>
+
+#include <dspace/horizon/HorizonKernel.h>
+#include <dspace/horizon/HorizonPath.h>
+
+namespace dspace {
+namespace {
+
+constexpr int Rows = 32;                      // of posts that share what is read
+constexpr int Band = 32;                      // posts of distance that share what is read
+constexpr double PerPost = 2.0;               // places of a coarser level in a post
+constexpr double Widest = 2048;               // columns that are read at once
+constexpr double Polar = 87.0 * M_PI / 180.0; // latitude [rad] from which columns crowd
+constexpr double Farthest = 1.5;              // [rad] along a body
+constexpr float Infinite = std::numeric_limits<float>::infinity();
+
+// A place of the path of a row's first post, in posts of a level.
+struct Knot {
+  double x;
+  double y;
+  double s; // [m]
+  HorizonPath::Point ground;
+};
+
+// Between two knots; `bend` [1/m]: the curvature of the ground's fall.
+HorizonStep StepBetween(const Knot& a, const Knot& b, double t, double bend) {
+  const auto mix = [t](double from, double to) { return from + t * (to - from); };
+  const double length = b.s - a.s;
+  return {float(mix(a.ground.fall, b.ground.fall) + 0.5 * bend * t * (1.0 - t) * length * length),
+          float(mix(a.ground.rise, b.ground.rise)), float(mix(a.ground.away, b.ground.away)),
+          float(mix(a.ground.spread, b.ground.spread))};
+}
+
+// Posts that were read, with a row and a column to spare for every lane.
+struct Ground {
+  PostBlock place;
+  std::vector<float> heights;
+  HeightSpan span = {Infinite, -Infinite};
+
+  std::ptrdiff_t At(std::int64_t c, std::int64_t r) const {
+    return std::ptrdiff_t(r - this->place.row) * this->place.width +
+           std::ptrdiff_t(c - this->place.column);
+  }
+  // Whether it has (c, r) to (c + 1 + lanes, r + 1).
+  bool Has(std::int64_t c, std::int64_t r, int lanes) const {
+    return r >= this->place.row && r + 1 < this->place.row + this->place.height &&
+           c >= this->place.column && c + 1 + lanes < this->place.column + this->place.width;
+  }
+};
+
+// At most HorizonLanes x Rows posts of a level.
+class Piece {
+public:
+  Piece(const HorizonSweep& sweep, const PostBlock& block, double azimuth, double seconds,
+        HorizonReport& report)
+      : Sweep_(sweep), Placement_(sweep.Placement()), Pyramid_(*sweep.Pyramid()),
+        Lattice_(sweep.Pyramid()->Lattice()), Block_(block), Deadline_(Clock::now()),
+        Seconds_(seconds), Report_(report) {
+    this->Spacing_ = std::ldexp(1.0, block.level);
+    this->Lane_ = this->Placement_.GetKind() == PostPlacement::Kind::Pole ? 0.5 * block.width : 0.0;
+    const Eigen::Vector2d middle(
+        double(this->Lattice_.ColumnPlace(block.level, block.column)) +
+            0.5 * this->Spacing_ * block.width,
+        double(this->Lattice_.RowPlace(block.level, block.row + block.height / 2)));
+    this->Cell_ = this->Placement_.CellSize(middle);
+    for (int j = 0; j < block.height; ++j) {
+      this->Starts_.emplace_back(double(this->Lattice_.ColumnPlace(block.level, block.column)),
+                                 double(this->Lattice_.RowPlace(block.level, block.row + j)));
+      this->Paths_.emplace_back(
+          this->Placement_,
+          this->Starts_.back() + Eigen::Vector2d(this->Lane_ * this->Spacing_, 0.0), azimuth);
+    }
+    if (this->Placement_.OnBody()) {
+      const BodyEllipsoid& body = this->Placement_.Body();
+      this->Bend_ = 1.0 / this->Placement_.Radius();
+      this->Flattest_ = body.Equatorial() / (1.0 - body.Squash()); // no curvature is less
+    }
+  }
+
+  // `stride`: of the results' rows.
+  void Run(float* all, float* distant, std::size_t stride) {
+    this->ReadPosts();
+    if (this->Least_ > this->Greatest_) {
+      this->Write(all, stride, this->Tangents_, this->Tangents_);
+      if (distant) {
+        this->Write(distant, stride, this->Tangents_, this->Tangents_);
+      }
+      return;
+    }
+    const HorizonOptions& options = this->Sweep_.Options();
+    const double end = this->Reach();
+    const double near = options.near * this->MetresOf(this->Block_.level);
+    std::vector<float> close; // what is found in the near zone, once it is over
+    int level = this->Block_.level;
+    for (double s = 0.0; s < end;) {
+      while (level < this->Lattice_.levels - 1 &&
+             s >= (options.posts - 1e-6) * this->MetresOf(level)) {
+        ++level;
+      }
+      const double band = s + Band * this->MetresOf(level);
+      const double to = s < near ? std::min(band, near) : band;
+      const bool hidden = s > 0.0 && this->NothingHigherFrom(s);
+      if (s >= near && hidden) {
+        break;
+      }
+      if (!hidden && !this->March(level, s, std::min(to, end))) {
+        break;
+      }
+      s = to;
+      if (distant && s == near) {
+        close = this->Tangents_;
+        this->Clear();
+      }
+    }
+    if (!distant) {
+      this->Write(all, stride, this->Tangents_, this->Tangents_);
+      return;
+    }
+    if (close.empty()) { // the end came before
+      close = this->Tangents_;
+      this->Clear();
+    }
+    this->Write(distant, stride, this->Tangents_, this->Tangents_);
+    this->Write(all, stride, this->Tangents_, close);
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  double MetresOf(int level) const { return std::ldexp(this->Cell_, level); }
+
+  double Left() const {
+    return std::max(0.0, this->Seconds_ -
+                             std::chrono::duration<double>(Clock::now() - this->Deadline_).count());
+  }
+
+  void ReadQuietly(Ground& ground) {
+    const PostBlock& place = ground.place;
+    ground.heights.resize(std::size_t(place.width) * place.height);
+    this->Pyramid_.Read(place, ground.heights.data(), this->Left());
+  }
+
+  void Read(Ground& ground) {
+    this->ReadQuietly(ground);
+    this->Report_.read.push_back(ground.place);
+  }
+
+  void ReadPosts() {
+    Ground ground;
+    ground.place = this->Block_;
+    this->Read(ground);
+    this->Heights_.assign(std::size_t(Rows) * HorizonLanes, 0.0f);
+    this->Valid_.assign(this->Heights_.size(), 0);
+    for (int j = 0; j < this->Block_.height; ++j) {
+      for (int i = 0; i < this->Block_.width; ++i) {
+        const float h = ground.heights[std::size_t(j) * this->Block_.width + i];
+        if (!std::isnan(h)) {
+          const std::size_t at = std::size_t(j) * HorizonLanes + i;
+          this->Heights_[at] = h;
+          this->Valid_[at] = 1;
+          this->Least_ = std::min(this->Least_, h);
+          this->Greatest_ = std::max(this->Greatest_, h);
+        }
+      }
+    }
+    this->Clear();
+  }
+
+  // Posts without data are never below a horizon.
+  void Clear() {
+    this->Tangents_.resize(this->Heights_.size());
+    for (std::size_t k = 0; k < this->Tangents_.size(); ++k) {
+      this->Tangents_[k] = this->Valid_[k] ? HorizonSweep::None : Infinite;
+    }
+  }
+
+  void Write(float* out, std::size_t stride, const std::vector<float>& a,
+             const std::vector<float>& b) const {
+    for (int j = 0; j < this->Block_.height; ++j) {
+      for (int i = 0; i < this->Block_.width; ++i) {
+        const std::size_t at = std::size_t(j) * HorizonLanes + i;
+        out[std::size_t(j) * stride + i] =
+            this->Valid_[at] ? std::max(a[at], b[at]) : std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+  }
+
+  // [m] beyond which nothing can be seen.
+  double Reach() const {
+    const auto [low, high] = this->Sweep_.Options().heights;
+    if (!this->Placement_.OnBody()) {
+      const Eigen::Vector2d last(double(this->Lattice_.columns), double(this->Lattice_.rows));
+      const Eigen::Matrix2d& linear = this->Placement_.PostToScene().linear();
+      return linear.col(0).norm() * last.x() + linear.col(1).norm() * last.y();
+    }
+    const double ground = this->Flattest_ + std::min<double>(low, this->Least_);
+    const auto dip = [&](double height) {
+      return std::acos(std::clamp(ground / (this->Flattest_ + height), -1.0, 1.0));
+    };
+    const double angle = dip(this->Greatest_) + dip(std::max<double>(high, this->Greatest_));
+    return std::min(angle, Farthest) * this->Flattest_ + 2.0 * this->MetresOf(this->Block_.level);
+  }
+
+  // Whether the terrain's greatest height could not raise any post's horizon from there on.
+  bool NothingHigherFrom(double s) const {
+    const float least = *std::min_element(this->Tangents_.begin(), this->Tangents_.end());
+    if (least == HorizonSweep::None) {
+      return false;
+    }
+    const double high = std::max<double>(this->Sweep_.Options().heights[1], this->Greatest_);
+    if (!this->Placement_.OnBody()) {
+      return (high - this->Least_) / s <= double(least);
+    }
+    // (cos a - k) / sin a falls with the distance for k < 1, else from cos a = 1 / k on.
+    const double k = (this->Flattest_ + this->Least_) / (this->Flattest_ + high);
+    const double angle = s / this->Flattest_;
+    return (std::cos(angle) - k) / std::sin(angle) <= double(least);
+  }
+
+  // Places of the path of row j's first lane from s0 to s1 [m], in posts of the level.
+  void Follow(int j, int level, double s0, double s1, std::vector<Knot>& knots) const {
+    int count = 1;
+    if (this->Placement_.OnBody()) {
+      const double posts = (s1 - s0) / this->MetresOf(level);
+      const Eigen::Vector2d angles = this->Placement_.Angles(this->Starts_[std::size_t(j)]);
+      const bool steep = this->Placement_.GetKind() == PostPlacement::Kind::Sphere &&
+                         8.0 * this->MetresOf(level) * std::abs(std::tan(angles.y())) >
+                             0.02 * this->Placement_.Radius();
+      count = std::max(1, int(std::ceil(posts / (steep ? 1.0 : 8.0))));
+    }
+    const double scale = std::ldexp(1.0, -level);
+    const HorizonPath& path = this->Paths_[std::size_t(j)];
+    knots.clear();
+    for (int k = 0; k <= count; ++k) {
+      Knot knot;
+      knot.s = s0 + (s1 - s0) * k / count;
+      knot.ground = path.At(knot.s);
+      knot.x = (knot.ground.post.x() - this->Lane_ * this->Spacing_) * scale;
+      knot.y = knot.ground.post.y() * scale;
+      knots.push_back(knot);
+    }
+  }
+
+  // What the paths may meet between two distances, in posts of a level. Near a pole of a degree
+  // grid that is no box: false.
+  bool FindBox(int level, double s0, double s1, PostBlock& box) const {
+    double left = std::numeric_limits<double>::infinity();
+    double top = left;
+    double right = -left;
+    double bottom = -left;
+    const bool curved = this->Placement_.OnBody();
+    const bool sphere = this->Placement_.GetKind() == PostPlacement::Kind::Sphere;
+    const double scale = std::ldexp(1.0, -level);
+    for (const int j : {0, this->Block_.height / 2, this->Block_.height - 1}) {
+      for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+        if (!curved && t > 0.0 && t < 1.0) {
+          continue;
+        }
+        const Eigen::Vector2d post = this->Paths_[std::size_t(j)].At(s0 + t * (s1 - s0)).post;
+        if (sphere && std::abs(this->Placement_.Angles(post).y()) > Polar) {
+          return false;
+        }
+        const double x = (post.x() - this->Lane_ * this->Spacing_) * scale;
+        left = std::min(left, x);
+        right = std::max(right, x);
+        top = std::min(top, post.y() * scale);
+        bottom = std::max(bottom, post.y() * scale);
+      }
+    }
+    if (right - left > Widest) {
+      return false;
+    }
+    const int margin = curved ? 4 : 2;
+    const int lanes = int(std::ceil(std::ldexp(double(HorizonLanes), this->Block_.level - level)));
+    box.level = level;
+    box.column = std::int64_t(std::floor(left)) - margin;
+    box.row = std::int64_t(std::floor(top)) - margin;
+    box.width = int(std::int64_t(std::floor(right)) + margin + 3 + lanes - box.column);
+    box.height = int(std::int64_t(std::floor(bottom)) + margin + 2 - box.row);
+    return true;
+  }
+
+  // Its posts; false where it is outside the lattice.
+  bool ReadBox(Ground& ground) {
+    const int level = ground.place.level;
+    const std::int64_t columns = this->Lattice_.ColumnsAt(level);
+    const std::int64_t rows = this->Lattice_.RowsAt(level);
+    if (ground.place.row >= rows || ground.place.row + ground.place.height <= 0 ||
+        (!this->Lattice_.periodic &&
+         (ground.place.column >= columns || ground.place.column + ground.place.width <= 0))) {
+      return false;
+    }
+    this->Read(ground);
+    if (level > this->Block_.level) {
+      this->HoldEdges(ground, columns, rows);
+    }
+    ground.span = SpanOf(ground.heights);
+    return true;
+  }
+
+  // Places on a coarse level's last column and row have a cell to lie in.
+  void HoldEdges(Ground& ground, std::int64_t columns, std::int64_t rows) const {
+    const PostBlock& place = ground.place;
+    if (!this->Lattice_.periodic && columns > place.column &&
+        columns < place.column + place.width) {
+      for (std::int64_t r = place.row; r < place.row + place.height; ++r) {
+        ground.heights[std::size_t(ground.At(columns, r))] =
+            ground.heights[std::size_t(ground.At(columns - 1, r))];
+      }
+    }
+    if (rows > place.row && rows < place.row + place.height) {
+      std::copy_n(ground.heights.begin() + ground.At(place.column, rows - 1), place.width,
+                  ground.heights.begin() + ground.At(place.column, rows));
+    }
+  }
+
+  // Whether ground of a span between two places may raise a post of row j.
+  bool MayRaise(int j, const HeightSpan& span, const Knot& first, const Knot& last) const {
+    const HorizonPath::Point& a = first.ground;
+    const HorizonPath::Point& b = last.ground;
+    const double high = span.greatest;
+    // Ground below the sphere falls off less than its foot: |z| (1 - cosine).
+    const double top = a.fall + std::max(a.rise * high, b.rise * high);
+    const double least = a.away + std::min({a.spread * span.least, b.spread * span.least, 0.0});
+    const double most = b.away + std::max({b.spread * high, 0.0});
+    const auto over = float(1.0000005 / std::max(least, 1e-9));
+    const auto under = float(0.9999995 / most);
+    const auto crest = float(top);
+    const float* z = &this->Heights_[std::size_t(j) * HorizonLanes];
+    const float* tangents = &this->Tangents_[std::size_t(j) * HorizonLanes];
+    bool may = false;
+    for (int i = 0; i < HorizonLanes; ++i) {
+      const float up = crest - z[i];
+      may |= (up > 0.0f ? up * over : up * under) > tangents[i];
+    }
+    return may;
+  }
+
+  // A place at a time, of which all lanes are read: where columns crowd.
+  void MarchPlaces(int level, double s0, double s1) {
+    const int count = std::max(1, int(std::lround(4.0 * (s1 - s0) / this->MetresOf(level))));
+    const float lane = std::ldexp(1.0f, this->Block_.level - level);
+    const double scale = std::ldexp(1.0, -level);
+    const double end = double(this->Lattice_.RowsAt(level) - 2);
+    Ground ground;
+    ground.place.level = level;
+    ground.place.width = int(std::ceil(lane * float(HorizonLanes))) + 3;
+    ground.place.height = 2;
+    std::vector<CellStep> cells(1);
+    std::int64_t top = std::numeric_limits<std::int64_t>::max();
+    std::int64_t bottom = 0;
+    for (int j = 0; j < this->Block_.height; ++j) {
+      for (int i = 1; i <= count; ++i) {
+        const HorizonPath::Point p = this->Paths_[std::size_t(j)].At(s0 + (s1 - s0) * i / count);
+        const double x = p.post.x() * scale;
+        const double r = std::clamp(std::floor(p.post.y() * scale), 0.0, end);
+        ground.place.column = std::int64_t(std::floor(x));
+        ground.place.row = std::int64_t(r);
+        this->ReadQuietly(ground);
+        top = std::min(top, ground.place.row);
+        bottom = std::max(bottom, ground.place.row + 2);
+        cells[0] = {{float(p.fall), float(p.rise), float(p.away), float(p.spread)},
+                    0,
+                    float(x - std::floor(x)),
+                    float(p.post.y() * scale - r)};
+        MarchCells(cells, ground.heights.data(), ground.place.width, lane,
+                   &this->Heights_[std::size_t(j) * HorizonLanes],
+                   &this->Tangents_[std::size_t(j) * HorizonLanes]);
+      }
+    }
+    this->Report_.read.push_back(
+        {level, 0, top, int(this->Lattice_.ColumnsAt(level)), int(bottom - top)});
+    this->Report_.steps += std::uint64_t(count) * this->Block_.height * HorizonLanes;
+  }
+
+  // False where the paths have left the data for good.
+  bool March(int level, double s0, double s1) {
+    Ground ground;
+    if (!this->FindBox(level, s0, s1, ground.place)) {
+      this->MarchPlaces(level, s0, s1);
+      return true;
+    }
+    if (!this->ReadBox(ground)) {
+      // On a plane and in a periodic grid what is outside stays outside, but a great circle may
+      // come back.
+      return this->Placement_.OnBody() || s0 == 0.0;
+    }
+    if (!(ground.span.least <= ground.span.greatest)) {
+      return true;
+    }
+    std::vector<Knot> knots;
+    std::vector<EdgeStep> edges;
+    std::vector<CellStep> cells;
+    std::optional<std::int64_t> edgesRow; // the row that the edges are of, on a plane
+    for (int j = 0; j < this->Block_.height; ++j) {
+      this->Follow(j, level, s0, s1, knots);
+      float* tangents = &this->Tangents_[std::size_t(j) * HorizonLanes];
+      const float* z = &this->Heights_[std::size_t(j) * HorizonLanes];
+      if (s0 > 0.0 && !this->MayRaise(j, ground.span, knots.front(), knots.back())) {
+        this->Report_.skipped +=
+            std::uint64_t(HorizonLanes * PerPost * (s1 - s0) / this->MetresOf(level));
+        continue;
+      }
+      if (level > this->Block_.level) {
+        cells.clear();
+        this->AddCells(ground, level, knots, cells);
+        MarchCells(cells, ground.heights.data(), ground.place.width,
+                   std::ldexp(1.0f, this->Block_.level - level), z, tangents);
+        this->Report_.steps += cells.size() * HorizonLanes;
+        continue;
+      }
+      const std::int64_t row = this->Block_.row + j;
+      const bool regular = this->Placement_.GetKind() == PostPlacement::Kind::Plane &&
+                           this->Starts_[std::size_t(j)].y() == double(row) * this->Spacing_;
+      if (!regular || !edgesRow) {
+        edges.clear();
+        this->AddEdges(ground, knots, edges);
+        edgesRow = regular ? std::optional<std::int64_t>(row) : std::nullopt;
+      }
+      const std::ptrdiff_t shift =
+          regular ? ground.At(ground.place.column, row) - ground.At(ground.place.column, *edgesRow)
+                  : 0;
+      MarchEdges(edges, ground.heights.data() + shift, z, tangents);
+      this->Report_.steps += edges.size() * HorizonLanes;
+    }
+    return true;
+  }
+
+  // The edges of the level's triangles that a row crosses between its knots.
+  void AddEdges(const Ground& ground, const std::vector<Knot>& knots,
+                std::vector<EdgeStep>& edges) const {
+    constexpr double Snap = 1e-6; // posts
+    const double least = 1e-6 * this->MetresOf(this->Block_.level);
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+      const Knot& a = knots[k];
+      const Knot& b = knots[k + 1];
+      const double dx = b.x - a.x;
+      const double dy = b.y - a.y;
+      const auto add = [&](double t, std::int64_t c, std::int64_t r, int right, int down,
+                           double share) {
+        if (a.s + t * (b.s - a.s) < least) {
+          return;
+        }
+        // The other end may lie outside the data: on a post it does not count.
+        const std::ptrdiff_t first = ground.At(c, r);
+        const std::ptrdiff_t second = ground.At(c + right, r + down);
+        if (ground.Has(c, r, HorizonLanes - 1)) {
+          edges.push_back({StepBetween(a, b, t, this->Bend_), share > 1.0 - Snap ? second : first,
+                           share < Snap ? first : second, float(share)});
+        }
+      };
+      // Near a pole a step along a parallel crosses any number of columns.
+      const double posts = (b.s - a.s) / this->MetresOf(this->Block_.level);
+      if (std::abs(dx) > 16.0 * posts + 16.0) {
+        const int count = std::max(2, int(4.0 * posts));
+        for (int i = 1; i <= count; ++i) {
+          const double t = double(i) / count;
+          const double y = a.y + t * dy;
+          const auto c = std::int64_t(std::llround(a.x + t * dx));
+          const auto r = std::int64_t(std::floor(y));
+          add(t, c, r, 0, 1, y - double(r));
+        }
+        continue;
+      }
+      // Whole numbers in (from, to], or [to, from) downwards.
+      const auto whole = [](double from, double to, const auto& take) {
+        if (to > from) {
+          for (double v = std::floor(from) + 1.0; v <= to; ++v) {
+            take(v);
+          }
+        } else if (to < from) {
+          for (double v = std::ceil(from) - 1.0; v >= to; --v) {
+            take(v);
+          }
+        }
+      };
+      whole(a.x, b.x, [&](double x) {
+        const double t = (x - a.x) / dx;
+        const double y = a.y + t * dy;
+        const double r = std::floor(y);
+        add(t, std::int64_t(x), std::int64_t(r), 0, 1, y - r);
+      });
+      whole(a.y, b.y, [&](double y) {
+        const double t = (y - a.y) / dy;
+        const double x = a.x + t * dx;
+        const double c = std::floor(x);
+        add(t, std::int64_t(c), std::int64_t(y), 1, 0, x - c);
+      });
+      whole(a.x - a.y, b.x - b.y, [&](double d) {
+        const double t = (d - (a.x - a.y)) / (dx - dy);
+        const double x = a.x + t * dx;
+        const double c = std::floor(x);
+        add(t, std::int64_t(c), std::int64_t(c - d), 1, 1, x - c);
+      });
+    }
+  }
+
+  // Places of a row on a coarser level.
+  void AddCells(const Ground& ground, int level, const std::vector<Knot>& knots,
+                std::vector<CellStep>& cells) const {
+    const int lanes = int(std::ceil(std::ldexp(double(HorizonLanes), this->Block_.level - level)));
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+      const Knot& a = knots[k];
+      const Knot& b = knots[k + 1];
+      const int count =
+          std::max(1, int(std::lround(PerPost * (b.s - a.s) / this->MetresOf(level))));
+      for (int i = 1; i <= count; ++i) {
+        const double t = double(i) / count;
+        const double x = a.x + t * (b.x - a.x);
+        const double y = a.y + t * (b.y - a.y);
+        const double c = std::floor(x);
+        const double r = std::floor(y);
+        if (ground.Has(std::int64_t(c), std::int64_t(r), lanes)) {
+          cells.push_back({StepBetween(a, b, t, this->Bend_),
+                           ground.At(std::int64_t(c), std::int64_t(r)), float(x - c),
+                           float(y - r)});
+        }
+      }
+    }
+  }
+
+  const HorizonSweep& Sweep_;
+  const PostPlacement& Placement_;
+  ElevationPyramid& Pyramid_;
+  const PostLattice& Lattice_;
+  PostBlock Block_;
+  Clock::time_point Deadline_; // counted from then
+  double Seconds_;
+  HorizonReport& Report_;
+  double Spacing_ = 1.0; // level-0 posts between lanes
+  double Lane_ = 0.0;    // from the first to the one whose path is followed
+  double Cell_ = 1.0;    // [m] of level 0
+  double Bend_ = 0.0;
+  double Flattest_ = 0.0;
+  std::vector<Eigen::Vector2d> Starts_; // the first post of each row, level-0 posts
+  std::vector<HorizonPath> Paths_;
+  std::vector<float> Heights_; // rows of HorizonLanes
+  std::vector<char> Valid_;
+  std::vector<float> Tangents_;
+  float Least_ = Infinite;
+  float Greatest_ = -Infinite;
+};
+
+void Check(const PostBlock& block, const PostLattice& lattice, const std::string& name,
+           double azimuth) {
+  if (block.width < 1 || block.height < 1 || block.level < 0 || block.level >= lattice.levels) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "a horizon of " + std::to_string(block.width) + " x " +
+                    std::to_string(block.height) + " posts of level " +
+                    std::to_string(block.level) +
+                    " is rejected; accepted is one post or more of levels 0 to " +
+                    std::to_string(lattice.levels - 1));
+  }
+  if (!std::isfinite(azimuth)) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "azimuth " + std::to_string(azimuth) + " is rejected; accepted is a finite number");
+  }
+}
+
+} // namespace
+
+HorizonSweep::HorizonSweep(std::shared_ptr<ElevationPyramid> pyramid,
+                           const PostPlacement& placement, const HorizonOptions& options)
+    : Pyramid_(std::move(pyramid)), Placement_(placement), Options_(options) {
+  const std::string& name = this->Pyramid_->Source().GetName();
+  const bool power = options.posts > 0 && (options.posts & (options.posts - 1)) == 0;
+  if (!power || options.posts < 64 || options.posts > 4096) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "horizons over " + std::to_string(options.posts) +
+                    " posts a level are rejected; accepted is a power of two from 64 to 4096");
+  }
+  if (options.near < 1 || options.near > options.posts / 2) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "a near zone of " + std::to_string(options.near) +
+                    " posts is rejected; accepted is 1 to " + std::to_string(options.posts / 2));
+  }
+  if (!(options.heights[0] <= options.heights[1]) || !std::isfinite(options.heights[0]) ||
+      !std::isfinite(options.heights[1])) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "its least height must not exceed its greatest");
+  }
+}
+
+HorizonReport HorizonSweep::Sweep(const PostBlock& block, double azimuth_deg, float* all,
+                                  float* distant, double seconds) const {
+  const PostLattice& lattice = this->Pyramid_->Lattice();
+  Check(block, lattice, this->Pyramid_->Source().GetName(), azimuth_deg);
+  HorizonReport report;
+  // The last post of a row may be less than a spacing from the one before it.
+  const std::int64_t last = lattice.ColumnsAt(block.level) - 1;
+  const bool even =
+      lattice.periodic || lattice.ColumnPlace(block.level, last) == last << block.level;
+  for (int r = 0; r < block.height; r += Rows) {
+    for (int c = 0; c < block.width;) {
+      PostBlock part = block;
+      part.column = block.column + c;
+      part.row = block.row + r;
+      part.width = std::min(HorizonLanes, block.width - c);
+      part.height = std::min(Rows, block.height - r);
+      if (!even && part.column < last && part.column + part.width > last) {
+        part.width = int(last - part.column);
+      } else if (!even && part.column == last) {
+        part.width = 1;
+      }
+      const std::size_t at = std::size_t(r) * block.width + c;
+      Piece piece(*this, part, azimuth_deg, seconds, report);
+      piece.Run(all + at, distant ? distant + at : nullptr, std::size_t(block.width));
+      c += part.width;
+    }
+  }
+  return report;
+}
+
+} // namespace dspace
