@@ -17,6 +17,6 @@ void main()
   float above = (ground.here.x - heightHigh) - heightLow;
   Standing standing = standingAt(place, ground.here, above);
   gl_Position = VCDCMatrix * vec4(standing.positionVC, 1.0);
-  putLook(standing, place, ground.missing);
+  putLook(standing, ground, place);
   putStyle(standing, ground, at, place);
 }

@@ -4,8 +4,8 @@ vec4 mixedColor(vec4 color)
 #ifdef DSPACE_POLE_TEXTURE
   color *= poleTexture();
 #endif
-#ifdef DSPACE_LAYERS
-  color.rgb = layered(color.rgb);
+#ifdef DSPACE_PAINT
+  color.rgb = layered(color.rgb, DSPACE_PAINT);
 #endif
 #ifdef DSPACE_DETAILS
   color.rgb = withDetails(color.rgb);
@@ -24,6 +24,9 @@ vec4 mixedColor(vec4 color)
 #endif
 #ifdef DSPACE_GRID
   color.rgb = withGrid(color.rgb);
+#endif
+#ifdef DSPACE_MARKS
+  color.rgb = layered(color.rgb, DSPACE_MARKS);
 #endif
   return color;
 }

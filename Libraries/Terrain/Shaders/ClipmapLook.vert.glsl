@@ -25,8 +25,15 @@ out vec2 tcoord;
 out float hole;
 #endif
 
-void putLook(Standing standing, vec2 place, bool missing)
+#ifdef DSPACE_HORIZON
+out vec2 horizonAt;
+#endif
+
+void putLook(Standing standing, Ground ground, vec2 place)
 {
+#ifdef DSPACE_HORIZON
+  horizonAt = ground.horizon;
+#endif
 #ifdef DSPACE_LABEL
   label = uint(objectLabel);
 #else
@@ -44,6 +51,6 @@ void putLook(Standing standing, vec2 place, bool missing)
   tcoord = originTexture + postTexture * place;
 #endif
 #ifdef DSPACE_HOLES
-  hole = missing ? 1.0 : 0.0;
+  hole = ground.missing ? 1.0 : 0.0;
 #endif
 }

@@ -4,6 +4,9 @@ uniform vec3 columnVC; // a post
 uniform vec3 rowVC;
 uniform vec3 slopeColumnVC; // what a slope of 1 a level-0 post takes from the normal
 uniform vec3 slopeRowVC;
+#ifdef DSPACE_LAYER_NORMALS
+uniform mat3 normalsVC; // takes normals of the scene to the view's
+#endif
 uniform mat2 slopePlane; // slopes east and north of those a level-0 column and row
 
 Standing standingAt(vec2 place, vec4 here, float above)
@@ -13,5 +16,8 @@ Standing standingAt(vec2 place, vec4 here, float above)
   standing.normalVC = upNormalVC - here.y * slopeColumnVC - here.z * slopeRowVC;
   standing.cosSlope = dot(normalize(standing.normalVC), normalize(upNormalVC));
   standing.facing = vec3(-(slopePlane * here.yz), 1.0);
+#ifdef DSPACE_LAYER_NORMALS
+  standing.axesVC = normalsVC;
+#endif
   return standing;
 }

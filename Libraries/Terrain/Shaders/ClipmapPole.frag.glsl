@@ -1,5 +1,5 @@
 // What changes at a pole, where longitude jumps within a triangle: it is found at each pixel.
-#ifdef DSPACE_POLE
+#if defined(DSPACE_POLE) && defined(DSPACE_MIXED)
 in vec3 poleDirection; // Z out of the pole
 uniform float poleSign; // -1 at the south pole
 

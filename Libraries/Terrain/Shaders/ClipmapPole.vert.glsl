@@ -21,21 +21,43 @@ Standing standingAt(vec2 place, vec4 here, float above)
   float more = 2.0 * dot(cameraPlane, d) + dot(d, d);
   float there1 = here1 + more;
   vec3 apart = vec3(2.0 * (d * here1 - cameraPlane * more), -2.0 * more) / (here1 * there1);
+#ifdef DSPACE_ELLIPSOID
+  float side = dot(poleZVC, axisVC) < 0.0 ? -1.0 : 1.0;
+  float rise = side * apart.z;
+  Curvature curvature = curvatureAt(rise);
+  float distance = curvature.east + here.x;
+#else
   float distance = radius + here.x;
+#endif
   Standing standing;
   standing.positionVC = distance * (apart.x * poleXVC + apart.y * poleYVC + apart.z * poleZVC) +
     above * upVC;
+#ifdef DSPACE_ELLIPSOID
+  standing.positionVC += flattening(curvature, rise);
+#endif
 
   vec3 vertical = vec3(2.0 * u, 1.0 - dot(u, u)) / there1;
   vec3 alongX = vec3(1.0 - 2.0 * u.x * u.x / there1, -2.0 * u.x * u.y / there1, -2.0 * u.x / there1);
   vec3 alongY = vec3(-2.0 * u.x * u.y / there1, 1.0 - 2.0 * u.y * u.y / there1, -2.0 * u.y / there1);
   float metres = distance * 2.0 * planeBase / there1; // of ground, a level-0 post
+#ifdef DSPACE_ELLIPSOID
+  vec3 fall = here.y / metres * alongX - here.z / metres * alongY;
+  // A degree along the meridian is another length than one along the parallel.
+  vec2 outward = u / max(length(u), 1e-12);
+  vec3 meridian = outward.x * alongX + outward.y * alongY;
+  fall += (distance / (curvature.north + here.x) - 1.0) * dot(fall, meridian) * meridian;
+  vec3 n = vertical - fall;
+#else
   vec3 n = vertical - here.y / metres * alongX + here.z / metres * alongY;
+#endif
   standing.normalVC = n.x * poleXVC + n.y * poleYVC + n.z * poleZVC;
   standing.cosSlope = dot(n, vertical) / length(n);
   standing.facing = n;
 #ifdef DSPACE_MIXED
   poleDirection = vertical;
+#endif
+#ifdef DSPACE_LAYER_NORMALS
+  standing.axesVC = mat3(poleXVC, poleYVC, poleZVC) * mat3(alongX, alongY, vertical);
 #endif
   return standing;
 }

@@ -3,6 +3,9 @@
 // The heights of one clipmap level: posts are fetched, and near the level's outline turned into the
 // next coarser level's (Losasso and Hoppe 2004).
 uniform sampler2DArray posts; // height, slopes a level-0 column and row, 1 in a hole, else tracks
+#ifdef DSPACE_HORIZON
+uniform sampler2DArray horizons; // ClipmapHorizon's texels, as `posts`
+#endif
 uniform int texelMask;
 uniform int level;
 uniform ivec2 windowTexel; // texel of the window's first post, here and in the coarser level
@@ -15,12 +18,22 @@ struct Ground
 {
   vec4 here; // as in `posts`
   bool missing;
+#ifdef DSPACE_HORIZON
+  vec2 horizon;
+#endif
 };
 
 vec4 postAt(ivec2 texel, int layer)
 {
   return texelFetch(posts, ivec3(texel & texelMask, layer), 0);
 }
+
+#ifdef DSPACE_HORIZON
+vec2 horizonOf(ivec2 texel, int layer)
+{
+  return texelFetch(horizons, ivec3(texel & texelMask, layer), 0).rg;
+}
+#endif
 
 // At a post of the window.
 Ground groundAt(vec2 at)
@@ -29,6 +42,9 @@ Ground groundAt(vec2 at)
   Ground ground;
   ground.here = postAt(windowTexel + post, level);
   ground.missing = ground.here.w > 0.75;
+#ifdef DSPACE_HORIZON
+  ground.horizon = horizonOf(windowTexel + post, level);
+#endif
   vec2 away = abs(at - cameraPost);
   float coarser = clamp((max(max(away.x, away.y), blend.z) - blend.x) * blend.y, 0.0, 1.0);
   if (coarser > 0.0)
@@ -43,6 +59,10 @@ Ground groundAt(vec2 at)
     {
       ground.here = mix(ground.here, 0.5 * (there0 + there1), coarser);
       ground.missing = ground.missing && coarser < 1.0;
+#ifdef DSPACE_HORIZON
+      ground.horizon = mix(ground.horizon, 0.5 * (horizonOf(coarseTexel + before, level + 1) +
+        horizonOf(coarseTexel + after, level + 1)), coarser);
+#endif
     }
   }
   return ground;

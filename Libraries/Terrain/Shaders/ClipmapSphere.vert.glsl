@@ -20,10 +20,21 @@ Standing standingAt(vec2 place, vec4 here, float above)
   float fall = 2.0 * cosLatitude * halfEast * halfEast;
   vec3 direction = vec3(cosLatitude * sin(d.x), sin(d.y) + fall * cameraLatitude.x,
     -2.0 * halfNorth * halfNorth - fall * cameraLatitude.y); // less the camera's vertical
+#ifdef DSPACE_ELLIPSOID
+  float rise = direction.y * cameraLatitude.y + direction.z * cameraLatitude.x;
+  Curvature curvature = curvatureAt(rise);
+  float distance = curvature.east + here.x;
+  float along = curvature.north + here.x;
+#else
   float distance = radius + here.x;
+  float along = distance;
+#endif
   Standing standing;
   standing.positionVC = distance * (direction.x * eastVC + direction.y * northVC + direction.z * upVC) +
     above * upVC;
+#ifdef DSPACE_ELLIPSOID
+  standing.positionVC += flattening(curvature, rise);
+#endif
 
   float sinEast = sin(d.x);
   float cosEast = cos(d.x);
@@ -34,10 +45,14 @@ Standing standingAt(vec2 place, vec4 here, float above)
     cosLatitude * cameraLatitude.x - sinLatitude * cameraLatitude.y * cosEast);
   vec3 n = direction + vec3(0.0, 0.0, 1.0) -
     here.y / (distance * max(cosLatitude, 1e-6) * stepBase.x) * east -
-    here.z / (distance * stepBase.y) * north;
+    here.z / (along * stepBase.y) * north;
   standing.normalVC = n.x * eastVC + n.y * northVC + n.z * upVC;
   standing.cosSlope = dot(n, direction + vec3(0.0, 0.0, 1.0)) / length(n);
   standing.facing = vec3(-here.y / (distance * max(cosLatitude, 1e-6) * stepBase.x),
-    -here.z / (distance * stepBase.y), 1.0);
+    -here.z / (along * stepBase.y), 1.0);
+#ifdef DSPACE_LAYER_NORMALS
+  standing.axesVC = mat3(eastVC, northVC, upVC) *
+    mat3(east, north, direction + vec3(0.0, 0.0, 1.0));
+#endif
   return standing;
 }

@@ -5,6 +5,12 @@ uniform vec2 originLayer; // texels of the finest zoom, from a tile's corner nea
 uniform vec2 postLayer;
 out vec2 layerAt;
 #endif
+#ifdef DSPACE_LAYER_NORMALS
+uniform vec2 originNormal; // as of layers
+uniform vec2 postNormal;
+out vec2 normalAt;
+out mat3 normalAxesVC;
+#endif
 #ifdef DSPACE_MIXED
 uniform vec2 originGrid; // of the first post, from a line near the camera on; 1 from line to line
 uniform mat2 postGrid;
@@ -31,6 +37,10 @@ void putStyle(Standing standing, Ground ground, vec2 at, vec2 place)
 {
 #ifdef DSPACE_LAYERS
   layerAt = originLayer + postLayer * place;
+#endif
+#ifdef DSPACE_LAYER_NORMALS
+  normalAt = originNormal + postNormal * place;
+  normalAxesVC = standing.axesVC;
 #endif
 #ifdef DSPACE_MIXED
   styleAt = vec4(ground.here.x, degrees(acos(clamp(standing.cosSlope, -1.0, 1.0))), 0.0, 0.0);

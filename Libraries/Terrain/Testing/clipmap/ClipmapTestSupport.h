@@ -11,7 +11,7 @@
 #include "RenderingTestSupport.h"
 
 #include <dspace/clipmap/ClipmapTerrain.h>
-#include <dspace/clipmap/gl/ClipmapDrawer.h>
+#include <dspace/clipmap/gl/ClipmapDrawing.h>
 
 namespace dspace::testing {
 

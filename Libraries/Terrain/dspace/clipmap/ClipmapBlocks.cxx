@@ -54,7 +54,10 @@ bool ClipmapBlocks::HiddenOnBody(const ClipmapViewVolume& sight,
   if (placement.GetKind() == PostPlacement::Kind::Pole) {
     step.setConstant(2.0 * placement.PlaneStep());
   }
-  const double angle = 0.5 * block.sizes().dot(step);
+  // Verticals of an ellipsoid turn less than the directions from its centre, at the poles, and the
+  // ground about them is wider.
+  const double stretch = 1.0 / (1.0 - placement.Body().Squash());
+  const double angle = 0.5 * stretch * block.sizes().dot(step);
   if (angle > 0.5) {
     return false; // too much of the body for a ball
   }
@@ -64,7 +67,7 @@ bool ClipmapBlocks::HiddenOnBody(const ClipmapViewVolume& sight,
       return true;
     }
   }
-  const double least = placement.Radius() + heights[0];
+  const double least = placement.Body().Polar() + heights[0];
   const double seen = std::acos(least / std::max(sight.camera.norm(), least)) +
                       std::acos(least / std::max(placement.Radius() + heights[1], least));
   const double apart =

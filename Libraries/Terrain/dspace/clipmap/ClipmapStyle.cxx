@@ -1,8 +1,9 @@
 #include <dspace/clipmap/ClipmapStyle.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 namespace dspace {
 namespace {
@@ -25,6 +26,52 @@ void CheckLines(const std::string& terrain, const std::string& what,
 }
 
 } // namespace
+
+std::vector<CustomGeometry::Member> ClipmapStyle::Members() const {
+  std::vector<CustomGeometry::Member> members;
+  for (const Detail& detail : this->details) {
+    members.push_back({"a detail", detail.member});
+  }
+  if (this->tracks.member.fragment != Membership::Physical().fragment) {
+    members.push_back({"tracks", this->tracks.member});
+  }
+  if (this->ramp) {
+    members.push_back({"the ramp", this->ramp->member});
+  }
+  if (this->levels) {
+    members.push_back({"levels", this->levelsMember});
+  }
+  if (this->contours) {
+    members.push_back({"contours", this->contours->member});
+  }
+  if (this->grid) {
+    members.push_back({"the grid", this->grid->member});
+  }
+  return members;
+}
+
+ClipmapStyle ClipmapStyle::ShownBy(const std::function<bool(const Membership&)>& shown) const {
+  ClipmapStyle style = *this;
+  style.details.erase(std::remove_if(style.details.begin(), style.details.end(),
+                                     [&](const Detail& detail) { return !shown(detail.member); }),
+                      style.details.end());
+  style.tracks.hidden = !shown(style.tracks.member);
+  const auto drop = [&](auto& element) {
+    if (element && !shown(element->member)) {
+      element.reset();
+    }
+  };
+  drop(style.ramp);
+  drop(style.contours);
+  drop(style.grid);
+  if (style.levels && !shown(style.levelsMember)) {
+    style.levels.reset();
+  }
+  if (!style.grid) {
+    style.gridLabels.reset();
+  }
+  return style;
+}
 
 void ClipmapStyle::Check(const std::string& terrain) const {
   if (this->details.size() > Detail::Most) {

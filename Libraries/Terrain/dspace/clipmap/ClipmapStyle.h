@@ -3,6 +3,7 @@
 #define DSPACE_TERRAIN_CLIPMAPSTYLE_H
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,10 +11,12 @@
 
 #include <dspace/import/model/Model.h>
 #include <dspace/layers/PerlinNoise.h>
+#include <dspace/scene/CustomGeometry.h>
 
 namespace dspace {
 
-// Stacked in this order, each with its opacity (0 to 1). Colours are sRGB, 0 to 1.
+// Stacked in this order, each with its opacity (0 to 1). Colours are sRGB, 0 to 1. Each element but
+// the noise, which is the ground's shape, is shown and hidden with its fragment.
 struct ClipmapStyle {
   // A tiling texture that adds structure closer than the posts: the colour times the texture's over
   // its mean, where slope and height are within their ranges (soft over 2 degrees and a fiftieth of
@@ -25,11 +28,15 @@ struct ClipmapStyle {
     std::array<double, 2> slopes = {0, 90};      // [deg]
     std::array<double, 2> heights = {-1e9, 1e9}; // [m] above the vertical datum
     double opacity = 0.5;
+    Membership member = Membership::Physical();
+    Eigen::Vector3d mean = Eigen::Vector3d::Ones(); // of the image, linear light: SetStyle finds it
   };
   // Where wheels have rolled, less so up the walls of their ruts.
   struct Tracks {
     std::array<double, 3> color = {0, 0, 0};
     double opacity = 0.35;
+    Membership member = Membership::Physical();
+    bool hidden = false; // ShownBy() sets it
   };
   struct Ramp {
     enum class By {
@@ -44,12 +51,14 @@ struct ClipmapStyle {
     std::shared_ptr<const Image> image; // a row of pixels: left is the first value; none of Normal
     std::vector<std::array<double, 3>> colors; // that the image shows, evenly spaced: for legends
     double opacity = 1.0;
+    Membership member = {};
   };
   struct Lines {
     double interval = 1.0; // contours: [m]; grid: [map units] (degrees of a degree grid)
     double width = 1.0;    // pixels, (0, 64]
     std::array<double, 3> color = {0, 0, 0};
     double opacity = 1.0;
+    Membership member = {};
   };
   // Heights of noise on what is drawn, below the data's resolution: decoration. Pictures, their
   // depth images and labels, and this style's ramps and lines have it; queries, analyses, tracks
@@ -63,7 +72,7 @@ struct ClipmapStyle {
       return this->options == o.options && this->amplitude == o.amplitude;
     }
   };
-  // The values of the grid's lines, written over the picture.
+  // The values of the grid's lines, written over the picture where the grid is shown.
   struct GridLabels {
     int fontSize = 13; // pixels, 4 to 200
     std::array<double, 3> color = {1, 1, 1};
@@ -75,12 +84,17 @@ struct ClipmapStyle {
   Tracks tracks;               // where there are any
   std::optional<Ramp> ramp;
   std::optional<double> levels; // opacity of a colour for each clipmap level
+  Membership levelsMember = {};
   std::optional<Lines> contours;
   std::optional<Lines> grid;            // along the map's axes
   std::optional<GridLabels> gridLabels; // only with a grid
   std::optional<Noise> noise;           // of the ground's shape
 
   bool Empty() const { return details.empty() && !ramp && !levels && !contours && !grid; }
+  // The elements that there are; the tracks only in a fragment that is not their standard one.
+  std::vector<CustomGeometry::Member> Members() const;
+  // Without the elements whose membership is not shown.
+  ClipmapStyle ShownBy(const std::function<bool(const Membership&)>& shown) const;
   // Throws Error(InvalidArgument) naming `terrain` and the value.
   void Check(const std::string& terrain) const;
 };

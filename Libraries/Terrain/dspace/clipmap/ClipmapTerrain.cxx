@@ -95,6 +95,9 @@ std::uint64_t ClipmapTerrain::Revision() const {
   {
     const std::lock_guard<std::mutex> lock(this->Mutex_);
     revision += this->Tiles_ ? this->Tiles_->Arrivals() : 0;
+    for (const std::shared_ptr<HorizonBlocks>& horizons : this->Horizons_) {
+      revision += horizons ? horizons->Arrivals() : 0;
+    }
   }
   for (const ClipmapChart& chart : this->Charts_) {
     revision += chart.pyramid->Arrivals();
@@ -132,13 +135,69 @@ void ClipmapTerrain::SetStyle(const ClipmapStyle& style) {
     throw Error(Error::Kind::Unsupported, this->Pyramid()->Source().GetName(),
                 "details tile a plane; accepted on a body: none");
   }
-  std::vector<Eigen::Vector3d> means;
-  for (const ClipmapStyle::Detail& detail : style.details) {
-    means.push_back(MeanOf(*detail.image));
+  ClipmapStyle taken = style;
+  for (ClipmapStyle::Detail& detail : taken.details) {
+    detail.mean = MeanOf(*detail.image);
   }
-  this->DetailMeans_ = std::move(means);
-  this->Style_ = style;
+  this->Style_ = std::move(taken);
   ++this->StyleRevision_;
+}
+
+void ClipmapTerrain::SetStyleIn(const std::string& viewport,
+                                const std::optional<ClipmapStyle>& style) {
+  if (!style) {
+    this->StyleRevision_ += this->Styles_.erase(viewport);
+    return;
+  }
+  const std::string& name = this->Pyramid()->Source().GetName();
+  style->Check(name);
+  if (!style->details.empty() || style->noise) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "the style of viewport '" + viewport + "' has " +
+                    (style->noise ? "noise" : "details") +
+                    ", which are the same in all viewports; accepted: none");
+  }
+  this->Styles_[viewport] = *style;
+  ++this->StyleRevision_;
+}
+
+ClipmapStyle ClipmapTerrain::StyleIn(const std::string& viewport) const {
+  const auto found = this->Styles_.find(viewport);
+  if (found == this->Styles_.end()) {
+    return this->Style_;
+  }
+  ClipmapStyle style = found->second;
+  style.details = this->Style_.details;
+  style.noise = this->Style_.noise;
+  return style;
+}
+
+std::shared_ptr<HorizonBlocks> ClipmapTerrain::Horizons(std::size_t chart) const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  this->Horizons_.resize(this->Charts_.size());
+  std::shared_ptr<HorizonBlocks>& horizons = this->Horizons_.at(chart);
+  if (!horizons) {
+    HorizonOptions options;
+    options.heights = this->Options_.heights;
+    horizons = std::make_shared<HorizonBlocks>(
+        HorizonSweep(this->Charts_[chart].pyramid, this->Charts_[chart].placement, options));
+  }
+  return horizons;
+}
+
+std::vector<CustomGeometry::Member> ClipmapTerrain::Members() const {
+  std::vector<Member> members = this->Style_.Members();
+  for (const auto& [viewport, style] : this->Styles_) {
+    for (Member& member : style.Members()) {
+      members.push_back({member.name + " in viewport '" + viewport + "'", member.membership});
+    }
+  }
+  if (this->Layers_) {
+    for (const StackedLayer& layer : this->Layers_->Layers()) {
+      members.push_back({"layer '" + layer.name + "'", layer.member});
+    }
+  }
+  return members;
 }
 
 } // namespace dspace

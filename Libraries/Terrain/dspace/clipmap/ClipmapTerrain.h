@@ -3,11 +3,15 @@
 #define DSPACE_TERRAIN_CLIPMAPTERRAIN_H
 
 #include <array>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <dspace/clipmap/ClipmapStyle.h>
+#include <dspace/horizon/HorizonBlocks.h>
 #include <dspace/layers/ColorTiles.h>
 #include <dspace/posts/PostPlacement.h>
 #include <dspace/pyramid/ElevationPyramid.h>
@@ -46,13 +50,18 @@ public:
 
   BoundingSphere Bounds() const override { return this->Bounds_; }
   std::uint64_t Revision() const override;
+  std::vector<Member> Members() const override; // of its styles and layers
 
   // May change at any time between two pictures. Throws what ClipmapStyle::Check throws, and
   // Error(Unsupported) for details on a body.
   void SetStyle(const ClipmapStyle& style);
   const ClipmapStyle& Style() const { return this->Style_; }
-  // Mean colours of the style's details, linear light.
-  const std::vector<Eigen::Vector3d>& DetailMeans() const { return this->DetailMeans_; }
+  // Another style for one viewport, but for noise and details, which are Style()'s; none: Style()
+  // again. Throws as SetStyle, and Error(InvalidArgument) for noise or details.
+  void SetStyleIn(const std::string& viewport, const std::optional<ClipmapStyle>& style);
+  bool HasStyleIn(const std::string& viewport) const { return this->Styles_.count(viewport) != 0; }
+  // What is drawn in the viewport while all of it is shown.
+  ClipmapStyle StyleIn(const std::string& viewport) const;
 
   // The colour layers, under the style; may change at any time. Null without grids.
   const std::shared_ptr<LayerStack>& Layers() const { return this->Layers_; }
@@ -61,6 +70,9 @@ public:
   ColorTiles& Tiles() const;
   // Statistics of the tiles; zeros before the first picture with layers.
   ColorTilesStatistics TileStatistics() const;
+
+  // The horizons of a chart's posts. The first call creates them and starts threads.
+  std::shared_ptr<HorizonBlocks> Horizons(std::size_t chart) const;
 
   // The terrain's own, which comes first, then the poles'.
   const std::vector<ClipmapChart>& Charts() const { return this->Charts_; }
@@ -75,12 +87,13 @@ private:
   ClipmapOptions Options_;
   BoundingSphere Bounds_;
   ClipmapStyle Style_;
-  std::vector<Eigen::Vector3d> DetailMeans_;
+  std::map<std::string, ClipmapStyle> Styles_; // by viewport
   std::uint64_t StyleRevision_ = 0;
   std::vector<ColorGrid> Grids_;
   std::shared_ptr<LayerStack> Layers_;
   mutable std::mutex Mutex_; // of what follows
   mutable std::unique_ptr<ColorTiles> Tiles_;
+  mutable std::vector<std::shared_ptr<HorizonBlocks>> Horizons_; // one a chart, or null
 };
 
 } // namespace dspace

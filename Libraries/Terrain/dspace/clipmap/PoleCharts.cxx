@@ -5,6 +5,7 @@
 
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/posts/PolarPosts.h>
+#include <dspace/tracks/TrackPosts.h>
 
 namespace dspace {
 
@@ -39,9 +40,9 @@ std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells
   ElevationPyramidOptions quarter = options;
   quarter.byteBudget = std::max(options.byteBudget / 4, std::size_t(4) << 20);
   // Patches are laid on the chart itself: around a pole their posts would be too many columns.
-  const auto* group = dynamic_cast<const GroupPosts*>(&pyramid->Source());
-  const std::shared_ptr<const PostSource> base =
-      group ? group->Base() : std::shared_ptr<const PostSource>(pyramid, &pyramid->Source());
+  const std::shared_ptr<const PostSource>& bare = terrain.BarePosts();
+  const auto* group = dynamic_cast<const GroupPosts*>(bare.get());
+  const std::shared_ptr<const PostSource> base = group ? group->Base() : bare;
   std::vector<ClipmapChart> charts;
   for (const bool south : {false, true}) {
     const auto posts = std::make_shared<const PolarPosts>(base, terrain.Placement(), complete,
@@ -55,7 +56,11 @@ std::vector<ClipmapChart> PoleChartsOf(const StreamedTerrain& terrain, int cells
       source = group->WithBase(posts, PolarCrs(terrain, south),
                                PostToPolarMap(terrain, posts->Placement()), data);
     }
-    charts.push_back({std::make_shared<ElevationPyramid>(source, quarter), posts->Placement()});
+    const std::shared_ptr<const TrackPosts> tracked =
+        terrain.TrackedPosts(source, posts->Placement());
+    const auto over = std::make_shared<ElevationPyramid>(tracked, quarter);
+    terrain.Follow(tracked, over);
+    charts.push_back({over, posts->Placement()});
   }
   return charts;
 }

@@ -117,7 +117,7 @@ private:
       return false;
     }
     const Eigen::Vector3d& camera = this->View_.sight.camera;
-    const double least = placement.Radius() + this->View_.heights[0];
+    const double least = placement.Body().Polar() + this->View_.heights[0];
     const double most = placement.Radius() + this->View_.heights[1];
     const double seen = std::acos(least / std::max(camera.norm(), least)) +
                         std::acos(least / std::max(most, least));

@@ -17,6 +17,7 @@
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/SurfaceShaders.h>
 
+#include <dspace/clipmap/gl/ClipmapDrawing.h>
 #include <dspace/clipmap/gl/ClipmapShaders.h>
 #include <dspace/clipmap/gl/ClipmapUniforms.h>
 #include <dspace/clipmap/gl/GridCaptions.h>
@@ -33,6 +34,8 @@ void RegisterClipmapDrawer(CustomDrawers& drawers) {
 
 namespace {
 
+constexpr int HorizonUnit = NormalUnit; // terrain has no normal texture of that kind
+
 // Sets line or fill mode during its lifetime, also if an exception is thrown.
 class PolygonMode {
 public:
@@ -44,8 +47,7 @@ public:
 
 // The camera's place and the view volume, in the terrain's frame.
 ClipmapViewVolume ViewVolumeOf(const ClipmapCamera& camera, const DrawView& view) {
-  const Eigen::Matrix4d clip =
-      view.projection.ClipFromView(view.width, view.height) * camera.X_VS.matrix();
+  const Eigen::Matrix4d clip = view.ClipFromView() * camera.X_VS.matrix();
   ClipmapViewVolume sight;
   sight.camera = camera.position;
   for (const int axis : {0, 1}) {
@@ -93,12 +95,15 @@ FocusView FocusViewOf(const ClipmapCamera& camera, const DrawView& view) {
 
 ClipmapDrawer::ClipmapDrawer(const ClipmapTerrain& terrain)
     : Terrain_(&terrain), Indices_(terrain.Options().cells), Charts_(terrain.Charts().size()),
-      Layers_(terrain) {}
+      Layers_(terrain, LayerContent::Colors), Normals_(terrain, LayerContent::Normals) {}
 
 ClipmapDrawer::~ClipmapDrawer() {
   for (const auto& chart : this->Charts_) {
     if (chart && chart->texture) {
       glDeleteTextures(1, &chart->texture);
+    }
+    if (chart && chart->horizonTexture) {
+      glDeleteTextures(1, &chart->horizonTexture);
     }
   }
   if (this->VertexArray_) {
@@ -148,6 +153,11 @@ bool ClipmapDrawer::Prepare(const CustomDrawing& drawing) {
   if (!this->VertexArray_) {
     this->Create();
   }
+  const DrawFilter& filter = drawing.list.Filter();
+  this->Style_ =
+      this->Terrain_->StyleIn(drawing.view.viewport).ShownBy([&](const Membership& member) {
+        return filter.Shows(member);
+      });
   this->LoadTextures(drawing);
   const Eigen::Vector3d camera =
       drawing.object.X_VO.inverse(Eigen::Affine) * Eigen::Vector3d::Zero();
@@ -165,7 +175,8 @@ bool ClipmapDrawer::Prepare(const CustomDrawing& drawing) {
     this->Update(*this->Active_, drawing);
   }
   const bool layers = this->PrepareLayers(drawing);
-  return this->Active_ == chart.get() && chart->state.complete && layers;
+  const bool horizon = this->PrepareHorizon(drawing);
+  return this->Active_ == chart.get() && chart->state.complete && layers && horizon;
 }
 
 bool ClipmapDrawer::PrepareLayers(const CustomDrawing& drawing) {
@@ -174,11 +185,77 @@ bool ClipmapDrawer::PrepareLayers(const CustomDrawing& drawing) {
     return true;
   }
   const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
-  const auto index =
+  const ClipmapViewVolume sight = ViewVolumeOf(camera, drawing.view);
+  const auto prepare = [&](LayerDrawing& layers) {
+    return layers.Prepare(drawing, !this->Style_.Empty() || this->ShowsTracks(),
+                          this->ActiveIndex(), chart.levels, chart.state, sight, chart.heights);
+  };
+  const bool colors = prepare(this->Layers_);
+  return (!this->IsLit(drawing) || prepare(this->Normals_)) && colors;
+}
+
+std::size_t ClipmapDrawer::ActiveIndex() const {
+  const auto found =
       std::find_if(this->Charts_.begin(), this->Charts_.end(),
                    [this](const auto& other) { return other.get() == this->Active_; });
-  return this->Layers_.Prepare(drawing, std::size_t(index - this->Charts_.begin()), chart.levels,
-                               chart.state, ViewVolumeOf(camera, drawing.view), chart.heights);
+  return std::size_t(found - this->Charts_.begin());
+}
+
+bool ClipmapDrawer::HasFarShadows(const CustomDrawing& drawing) const {
+  return drawing.view.look.shadows.shown && drawing.list.Sun() && !drawing.view.clip &&
+         !drawing.labels && this->IsLit(drawing);
+}
+
+bool ClipmapDrawer::ShadowsItself(const CustomDrawing& drawing) {
+  return drawing.view.look.shadows.shown && drawing.list.Sun() && this->IsLit(drawing) &&
+         this->Active_ && this->Active_->horizon;
+}
+
+bool ClipmapDrawer::PrepareHorizon(const CustomDrawing& drawing) {
+  Chart& chart = *this->Active_;
+  if (!chart.Drawable() || !this->HasFarShadows(drawing)) {
+    return true;
+  }
+  const int side = chart.levels.Geometry().Texels();
+  if (!chart.horizon) {
+    chart.horizon = std::make_unique<ClipmapHorizon>(this->Terrain_->Horizons(this->ActiveIndex()));
+    glGenTextures(1, &chart.horizonTexture);
+    BindTextureUnit(drawing.window, HorizonUnit, GL_TEXTURE_2D_ARRAY, chart.horizonTexture);
+    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RG32F, side, side, chart.levels.Count(), 0, GL_RG,
+                 GL_FLOAT, nullptr);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+      glTexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_NEAREST);
+    }
+  }
+  BindTextureUnit(drawing.window, HorizonUnit, GL_TEXTURE_2D_ARRAY, chart.horizonTexture);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  const Eigen::Vector3d toSun_V = drawing.list.Sun()->axes.row(2);
+  const Eigen::Vector3d toSun_S = (drawing.object.X_VO.linear().inverse() * toSun_V).normalized();
+  std::optional<double> wait;
+  if (drawing.view.complete) {
+    wait = this->Terrain_->Options().deadline;
+  }
+  return chart.horizon->Update(chart.levels, chart.state, toSun_S, wait,
+                               [&](int level, const std::vector<HorizonTexel>& texels) {
+                                 glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, level, side, side, 1,
+                                                 GL_RG, GL_FLOAT, texels.data());
+                                 drawing.statistics.textureBytesUploaded +=
+                                     texels.size() * sizeof(HorizonTexel);
+                               });
+}
+
+bool ClipmapDrawer::IsLit(const CustomDrawing& drawing) const {
+  const Material& material = *this->Terrain_->Options().material;
+  return drawing.object.object->material.lit.value_or(material.lit);
+}
+
+bool ClipmapDrawer::ShowsTracks() const {
+  const Chart& chart = *this->Active_;
+  bool tracks = false;
+  for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
+    tracks |= chart.levels.HasTracks(level);
+  }
+  return tracks && !this->Style_.tracks.hidden;
 }
 
 // Before any is bound for drawing: an upload ends with its unit unbound.
@@ -187,7 +264,7 @@ void ClipmapDrawer::LoadTextures(const CustomDrawing& drawing) const {
   if (const auto texture = drawing.object.object->material.texture.value_or(material.texture)) {
     drawing.store.TextureOf(texture, material.repeatTexture);
   }
-  const ClipmapStyle& style = this->Terrain_->Style();
+  const ClipmapStyle& style = this->Style_;
   for (const ClipmapStyle::Detail& detail : style.details) {
     drawing.store.TextureOf(detail.image, true);
   }
@@ -199,7 +276,7 @@ void ClipmapDrawer::LoadTextures(const CustomDrawing& drawing) const {
 void ClipmapDrawer::Update(Chart& chart, const CustomDrawing& drawing) const {
   const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
   const FocusView focus = FocusViewOf(camera, drawing.view);
-  chart.levels.SetNoise(this->Terrain_->Style().noise, chart.placement);
+  chart.levels.SetNoise(this->Style_.noise, chart.placement);
   BindTextureUnit(drawing.window, TerrainUnit, GL_TEXTURE_2D_ARRAY, chart.texture);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   // The ground that a zoomed view meets is that which is there: a picture that is kept must not
@@ -242,17 +319,32 @@ void ClipmapDrawer::UpdateAbout(Chart& chart, const Eigen::Vector3d& p_S,
       });
 }
 
+// The camera's height above the ground below it.
+double ClipmapDrawer::NearestDepth(const CustomDrawing& drawing) {
+  const Chart& chart = *this->Active_;
+  const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
+  const double ground = chart.levels.HeightNear(camera.posts.head<2>(), chart.state.finest)
+                            .value_or(chart.state.groundHeight);
+  const double scale = camera.X_VS.linear().col(2).norm();
+  return 0.5 * std::abs(camera.posts.z() - ground) * scale;
+}
+
 void ClipmapDrawer::DrawColor(const CustomDrawing& drawing) {
   const GraphicsObject& object = *drawing.object.object;
   const Material& material = *this->Terrain_->Options().material;
   const MaterialOverride& over = object.material;
   unsigned features = 0;
-  if (over.lit.value_or(material.lit)) {
-    features |= SurfaceShaders::LightFeatures(drawing.list);
-    if (over.metallic.value_or(material.metallic) > 0.0 ||
-        over.roughness.value_or(material.roughness) < 1.0) {
+  if (this->IsLit(drawing)) {
+    features |= SurfaceShaders::LightFeatures(drawing.list, drawing.view);
+    const Reflectance reflectance = over.reflectance.value_or(material.reflectance);
+    features |= SurfaceShaders::ReflectanceFeature(reflectance);
+    if (reflectance.model == Reflectance::Model::MetallicRoughness &&
+        (over.metallic.value_or(material.metallic) > 0.0 ||
+         over.roughness.value_or(material.roughness) < 1.0)) {
       features |= SurfaceShaders::Specular;
     }
+  } else if (drawing.light) {
+    features |= SurfaceShaders::DisplayColor;
   }
   if (const auto texture = over.texture.value_or(material.texture)) {
     features |= SurfaceShaders::Texture;
@@ -267,29 +359,36 @@ void ClipmapDrawer::DrawLabels(const CustomDrawing& drawing) {
   this->Draw(drawing, SurfaceShaders::Label);
 }
 
+bool ClipmapDrawer::DrawAngles(const CustomDrawing& drawing) {
+  unsigned features = SurfaceShaders::Angles;
+  features |= this->IsLit(drawing) ? SurfaceShaders::ShadowFeatures(drawing.view) : 0u;
+  this->Draw(drawing, features);
+  return true;
+}
+
 std::vector<Caption> ClipmapDrawer::Captions(const CustomDrawing& drawing,
                                              const RenderTarget& target) {
   const Chart& chart = *this->Active_;
-  if (!this->Terrain_->Style().grid || !this->Terrain_->Style().gridLabels || !chart.Drawable()) {
+  if (!this->Style_.grid || !this->Style_.gridLabels || !chart.Drawable()) {
     return {};
   }
-  return GridCaptions(drawing, target, *this->Terrain_, chart.placement, chart.levels, chart.state);
+  return GridCaptions(drawing, target, *this->Terrain_, this->Style_, chart.placement, chart.levels,
+                      chart.state);
 }
 
 void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   const Chart& chart = *this->Active_;
   const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
   const bool labels = (features & SurfaceShaders::Label) != 0;
-  const ClipmapStyle& style = this->Terrain_->Style();
+  const ClipmapStyle& style = this->Style_;
   const bool pole = chart.placement.GetKind() == PostPlacement::Kind::Pole;
   // Longitude jumps within a triangle at a pole: there the texture's place is found a pixel.
   const bool poleTexture = pole && (features & SurfaceShaders::Texture) != 0;
-  bool tracks = false; // what mixes colours costs time elsewhere
-  for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
-    tracks |= !labels && chart.levels.HasTracks(level);
-  }
-  const bool layers = !labels && this->Layers_.Shown();
-  const bool mixed = !labels && (poleTexture || tracks || layers || !style.Empty());
+  const bool colors = !labels && (features & SurfaceShaders::Angles) == 0;
+  const bool tracks = colors && this->ShowsTracks(); // what mixes colours costs time elsewhere
+  const bool layers = colors && this->Layers_.Shown();
+  const bool normals = (features & SurfaceShaders::Lit) != 0 && this->Normals_.Shown();
+  const bool mixed = colors && (poleTexture || tracks || layers || !style.Empty());
   ShaderPages pages;
   pages.vertex = ClipmapVertexShader(chart.placement.GetKind());
   pages.defines = ClipmapUniforms::Defines(chart.placement, mixed ? &style : nullptr);
@@ -303,10 +402,20 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     pages.defines += "#define DSPACE_TRACKS\n";
   }
   if (layers) {
-    pages.defines += "#define DSPACE_LAYERS\n";
+    pages.defines += this->Layers_.Defines();
+  }
+  if (normals) {
+    pages.defines += this->Normals_.Defines();
   }
   if (mixed) {
     features |= SurfaceShaders::Mixed;
+  }
+  const bool horizon =
+      (features & SurfaceShaders::Lit) != 0 && this->HasFarShadows(drawing) && chart.horizon;
+  if (horizon) {
+    pages.defines += "#define DSPACE_HORIZON\n";
+  }
+  if (mixed || normals || horizon) {
     pages.fragment = ClipmapFragmentFunctions();
   }
   if (poleTexture) {
@@ -317,12 +426,17 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   drawing.shaders.SetView(program, drawing.list, drawing.view, drawing.samples);
   BindTextureUnit(drawing.window, TerrainUnit, GL_TEXTURE_2D_ARRAY, chart.texture);
   program->SetUniformi("posts", TerrainUnit);
-  const ClipmapUniforms uniforms(program, *this->Terrain_, chart.placement, chart.levels,
+  if (horizon) {
+    BindTextureUnit(drawing.window, HorizonUnit, GL_TEXTURE_2D_ARRAY, chart.horizonTexture);
+    program->SetUniformi("horizons", HorizonUnit);
+    program->SetUniformf("horizonRadius", float(drawing.list.Sun()->radius));
+  }
+  const ClipmapUniforms uniforms(program, *this->Terrain_, style, chart.placement, chart.levels,
                                  chart.state, camera);
   if (labels) {
     program->SetUniformi("objectLabel", int(drawing.object.object->id));
   } else {
-    uniforms.SetLook(*drawing.object.object);
+    uniforms.SetLook(*drawing.object.object, features);
   }
   if (mixed) {
     uniforms.SetStyle(drawing);
@@ -330,6 +444,9 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   uniforms.SetPlacement();
   if (layers) {
     this->Layers_.SetLook(program, drawing.samples);
+  }
+  if (normals) {
+    this->Normals_.SetLook(program, drawing.samples);
   }
 
   vtkOpenGLState* state = drawing.window->GetState();
@@ -357,10 +474,13 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
       continue;
     }
     uniforms.SetLevel(level);
+    const ClipmapWindow& window = chart.levels.Window(level);
+    const Eigen::Vector2d first(double(window.column), double(window.row));
     if (layers) {
-      const ClipmapWindow& window = chart.levels.Window(level);
-      const Eigen::Vector2d first(double(window.column), double(window.row));
       this->Layers_.SetLevel(program, first, std::ldexp(1.0, level));
+    }
+    if (normals) {
+      this->Normals_.SetLevel(program, first, std::ldexp(1.0, level));
     }
     glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_SHORT, firsts.data(),
                         GLsizei(counts.size()));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include <dspace/clipmap/ClipmapHorizon.h>
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
 #include <dspace/clipmap/arithmetic/ClipmapIndices.h>
@@ -13,11 +14,6 @@
 #include <dspace/render/CustomDrawer.h>
 
 namespace dspace {
-
-class CustomDrawers;
-
-// From now on the context with these drawers draws a ClipmapTerrain. Any number of calls.
-void RegisterClipmapDrawer(CustomDrawers& drawers);
 
 // One layer of a texture array holds a level's posts; each level is drawn as a ring around the next
 // finer one with indices that all levels share, in blocks that are left out where the view does not
@@ -29,8 +25,11 @@ public:
   ~ClipmapDrawer() override;
 
   bool Prepare(const CustomDrawing& drawing) override;
+  double NearestDepth(const CustomDrawing& drawing) override;
+  bool ShadowsItself(const CustomDrawing& drawing) override;
   void DrawColor(const CustomDrawing& drawing) override;
   void DrawLabels(const CustomDrawing& drawing) override;
+  bool DrawAngles(const CustomDrawing& drawing) override;
   std::vector<Caption> Captions(const CustomDrawing& drawing, const RenderTarget& target) override;
 
 private:
@@ -44,6 +43,8 @@ private:
     ClipmapLevels::State state;
     std::array<double, 2> heights; // [m] that nothing that is drawn leaves; at first a guess
     unsigned int texture = 0;
+    std::unique_ptr<ClipmapHorizon> horizon; // null: no shadows yet
+    unsigned int horizonTexture = 0;
     // Some level of it is there.
     bool Drawable() const { return this->state.finest < this->levels.Count(); }
   };
@@ -52,15 +53,22 @@ private:
   static void UpdateAbout(Chart& chart, const Eigen::Vector3d& p_S, const CustomDrawing& drawing,
                           double deadline);
   bool PrepareLayers(const CustomDrawing& drawing);
+  bool IsLit(const CustomDrawing& drawing) const;
+  bool ShowsTracks() const; // on the active chart
   void Create();
   static void CreateTexture(Chart& chart);
+  bool HasFarShadows(const CustomDrawing& drawing) const;
+  bool PrepareHorizon(const CustomDrawing& drawing);
+  std::size_t ActiveIndex() const; // of the terrain's charts
   void Draw(const CustomDrawing& drawing, unsigned features);
 
   const ClipmapTerrain* Terrain_;
   ClipmapIndices Indices_;
+  ClipmapStyle Style_;                         // of the picture, without what it hides
   std::vector<std::unique_ptr<Chart>> Charts_; // of the terrain's; null until the camera is there
   Chart* Active_ = nullptr;
   LayerDrawing Layers_;
+  LayerDrawing Normals_; // of lit terrain
   unsigned int VertexArray_ = 0;
   unsigned int VertexBuffer_ = 0;
   unsigned int IndexBuffer_ = 0;

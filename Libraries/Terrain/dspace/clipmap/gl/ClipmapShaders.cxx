@@ -4,6 +4,7 @@
 
 #include "ClipmapColor_frag.h"
 #include "ClipmapDetails_frag.h"
+#include "ClipmapHorizon_frag.h"
 #include "ClipmapLayers_frag.h"
 #include "ClipmapLevels_frag.h"
 #include "ClipmapLines_frag.h"
@@ -48,7 +49,8 @@ const char* ClipmapVertexShader(PostPlacement::Kind kind) {
 const char* ClipmapFragmentFunctions() {
   static const std::string functions = std::string(ClipmapStyle_frag) + ClipmapPole_frag +
                                        ClipmapLayers_frag + ClipmapDetails_frag + ClipmapRamp_frag +
-                                       ClipmapLevels_frag + ClipmapLines_frag + ClipmapColor_frag;
+                                       ClipmapLevels_frag + ClipmapLines_frag +
+                                       ClipmapHorizon_frag + ClipmapColor_frag;
   return functions.c_str();
 }
 

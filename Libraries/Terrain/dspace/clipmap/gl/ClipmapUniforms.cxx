@@ -67,6 +67,9 @@ std::string ClipmapUniforms::Defines(const PostPlacement& placement, const Clipm
   if (placement.GetKind() == PostPlacement::Kind::Pole) {
     defines += "#define DSPACE_POLE\n";
   }
+  if (placement.OnBody() && !placement.Body().Spherical()) {
+    defines += "#define DSPACE_ELLIPSOID\n";
+  }
   if (style) {
     if (!style->details.empty() && placement.GetKind() == PostPlacement::Kind::Plane) {
       defines += "#define DSPACE_DETAILS " + std::to_string(style->details.size()) + "\n";
@@ -83,7 +86,7 @@ std::string ClipmapUniforms::Defines(const PostPlacement& placement, const Clipm
   return defines;
 }
 
-void ClipmapUniforms::SetLook(const GraphicsObject& object) const {
+void ClipmapUniforms::SetLook(const GraphicsObject& object, unsigned features) const {
   const Material& material = *this->Terrain_.Options().material;
   const MaterialOverride& over = object.material;
   const std::array<double, 3> color = over.color.value_or(material.color);
@@ -94,10 +97,14 @@ void ClipmapUniforms::SetLook(const GraphicsObject& object) const {
                             float(over.roughness.value_or(material.roughness)),
                             this->Camera_.mirrored};
   this->Program_->SetUniform3f("objectSurface", surface);
+  const Reflectance reflectance = over.reflectance.value_or(material.reflectance);
+  if (features & SurfaceShaders::ReflectanceFeature(reflectance)) {
+    SurfaceShaders::SetReflectance(this->Program_, reflectance);
+  }
 }
 
 void ClipmapUniforms::SetDetails(const CustomDrawing& drawing) const {
-  const std::vector<ClipmapStyle::Detail>& details = this->Terrain_.Style().details;
+  const std::vector<ClipmapStyle::Detail>& details = this->Style_.details;
   float look[4] = {0, 0, 0, 0};
   for (std::size_t k = 0; k < details.size(); ++k) {
     const ClipmapStyle::Detail& detail = details[k];
@@ -107,7 +114,7 @@ void ClipmapUniforms::SetDetails(const CustomDrawing& drawing) const {
     BindTextureUnit(drawing.window, unit, GL_TEXTURE_2D,
                     drawing.store.TextureOf(detail.image, true));
     this->Program_->SetUniformi(("detailTexture" + number).c_str(), unit);
-    Set(this->Program_, ("detailMean" + number).c_str(), this->Terrain_.DetailMeans()[k]);
+    Set(this->Program_, ("detailMean" + number).c_str(), detail.mean);
     const float range[4] = {float(detail.slopes[0]), float(detail.slopes[1]),
                             float(detail.heights[0]), float(detail.heights[1])};
     this->Program_->SetUniform4f(("detailRange" + number).c_str(), range);
@@ -118,7 +125,7 @@ void ClipmapUniforms::SetDetails(const CustomDrawing& drawing) const {
 }
 
 void ClipmapUniforms::SetStyle(const CustomDrawing& drawing) const {
-  const ClipmapStyle& style = this->Terrain_.Style();
+  const ClipmapStyle& style = this->Style_;
   vtkShaderProgram* program = this->Program_;
   if (program->IsUniformUsed("detailLook")) {
     this->SetDetails(drawing);
@@ -171,6 +178,10 @@ void ClipmapUniforms::SetPlacement() const {
     const Eigen::Matrix3d N = L.inverse().transpose(); // carries normals
     const Eigen::Matrix2d dual = placement.PostToScene().linear().inverse().transpose();
     Set(program, "upVC", Eigen::Vector3d(L.col(2)));
+    if (program->IsUniformUsed("normalsVC")) {
+      const Eigen::Matrix3f normals = N.cast<float>(); // column-major, as OpenGL reads it
+      glUniformMatrix3fv(program->FindUniform("normalsVC"), 1, GL_FALSE, normals.data());
+    }
     Set(program, "upNormalVC", Eigen::Vector3d(N.col(2)));
     Set(program, "slopeColumnVC", Eigen::Vector3d(N.leftCols<2>() * dual.col(0)));
     Set(program, "slopeRowVC", Eigen::Vector3d(N.leftCols<2>() * dual.col(1)));
@@ -180,7 +191,13 @@ void ClipmapUniforms::SetPlacement() const {
   const Eigen::Vector2d angles = placement.Angles(posts.head<2>());
   const double sl = std::sin(angles.x()), cl = std::cos(angles.x());
   const double sp = std::sin(angles.y()), cp = std::cos(angles.y());
-  program->SetUniformf("radius", float(placement.Radius()));
+  const BodyEllipsoid& body = placement.Body();
+  if (body.Spherical()) {
+    program->SetUniformf("radius", float(placement.Radius()));
+  } else {
+    Set(program, "ellipsoid", Eigen::Vector3d(body.Equatorial(), body.Squash(), sp));
+    Set(program, "axisVC", Eigen::Vector3d(L.col(2)));
+  }
   Set(program, "upVC", Eigen::Vector3d(L * Eigen::Vector3d(cp * cl, cp * sl, sp)));
   if (placement.GetKind() == PostPlacement::Kind::Sphere) {
     Set(program, "eastVC", Eigen::Vector3d(L * Eigen::Vector3d(-sl, cl, 0.0)));
@@ -253,7 +270,7 @@ void ClipmapUniforms::SetMaps(int level, const Eigen::Vector2d& first) const {
       lines.linear() = Eigen::Vector2d(this->Placement_.Step() * Degrees).asDiagonal();
       lines.translation() = this->Placement_.First() * Degrees;
     }
-    lines = Eigen::Scaling(1.0 / this->Terrain_.Style().grid->interval) * lines;
+    lines = Eigen::Scaling(1.0 / this->Style_.grid->interval) * lines;
     // Counted from a line near the camera: a float holds well what is near it.
     // Whole turns are taken off: lines need not divide them.
     Eigen::Vector2d turns = Eigen::Vector2d::Zero();
@@ -268,7 +285,7 @@ void ClipmapUniforms::SetMaps(int level, const Eigen::Vector2d& first) const {
     Set(this->Program_, "postGrid", Eigen::Matrix2d(lines.linear() * step));
   }
   if (this->Program_->IsUniformUsed("originDetail")) {
-    const std::vector<ClipmapStyle::Detail>& details = this->Terrain_.Style().details;
+    const std::vector<ClipmapStyle::Detail>& details = this->Style_.details;
     float origin[4] = {0, 0, 0, 0};
     for (std::size_t k = 0; k < details.size(); ++k) {
       const Eigen::Affine2d tiles =

@@ -28,16 +28,18 @@ double CellSizeNear(const PostPlacement& placement, const PostLattice& lattice,
 
 class ClipmapUniforms {
 public:
+  // `style`: what of the terrain's style is drawn.
   ClipmapUniforms(vtkShaderProgram* program, const ClipmapTerrain& terrain,
-                  const PostPlacement& placement, const ClipmapLevels& levels,
-                  const ClipmapLevels::State& state, const ClipmapCamera& camera)
-      : Program_(program), Terrain_(terrain), Placement_(placement), Levels_(levels), State_(state),
-        Camera_(camera) {}
+                  const ClipmapStyle& style, const PostPlacement& placement,
+                  const ClipmapLevels& levels, const ClipmapLevels::State& state,
+                  const ClipmapCamera& camera)
+      : Program_(program), Terrain_(terrain), Style_(style), Placement_(placement), Levels_(levels),
+        State_(state), Camera_(camera) {}
 
   // Lines of definitions that the placement and the style ask of the shaders.
   static std::string Defines(const PostPlacement& placement, const ClipmapStyle* style);
 
-  void SetLook(const GraphicsObject& object) const; // not for labels
+  void SetLook(const GraphicsObject& object, unsigned features) const; // not for labels
   void SetStyle(const CustomDrawing& drawing) const;
   void SetPlacement() const; // the same for all levels
   void SetLevel(int level) const;
@@ -49,6 +51,7 @@ private:
 
   vtkShaderProgram* Program_;
   const ClipmapTerrain& Terrain_;
+  const ClipmapStyle& Style_;
   const PostPlacement& Placement_;
   const ClipmapLevels& Levels_;
   const ClipmapLevels::State& State_;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include <dspace/overlay/RoundNumbers.h>
 #include <dspace/render/RenderTarget.h>
-#include <dspace/scene/RoundNumbers.h>
 
 namespace dspace {
 namespace {
@@ -248,10 +248,11 @@ void Write(Places& places, int family, double interval, const ClipmapStyle::Grid
 } // namespace
 
 std::vector<Caption> GridCaptions(const CustomDrawing& drawing, const RenderTarget& target,
-                                  const ClipmapTerrain& terrain, const PostPlacement& placement,
-                                  const ClipmapLevels& levels, const ClipmapLevels::State& state) {
-  const ClipmapStyle::GridLabels& look = *terrain.Style().gridLabels;
-  const double interval = terrain.Style().grid->interval;
+                                  const ClipmapTerrain& terrain, const ClipmapStyle& style,
+                                  const PostPlacement& placement, const ClipmapLevels& levels,
+                                  const ClipmapLevels::State& state) {
+  const ClipmapStyle::GridLabels& look = *style.gridLabels;
+  const double interval = style.grid->interval;
   const Ground ground(drawing, target, terrain, placement, levels, state);
   const int width = ground.Width();
   const int height = ground.Height();

@@ -15,11 +15,12 @@ class RenderTarget;
 
 // Looks for the lines along a few rows and columns of the picture that was drawn, near its borders
 // first: objects that hide the ground hide the value. Each line has one value, at most 20 a
-// direction (of more, those of round multiples), none over another. The terrain's style has a grid
+// direction (of more, those of round multiples), none over another. The style has a grid
 // and its labels; nothing waits for data.
 std::vector<Caption> GridCaptions(const CustomDrawing& drawing, const RenderTarget& target,
-                                  const ClipmapTerrain& terrain, const PostPlacement& placement,
-                                  const ClipmapLevels& levels, const ClipmapLevels::State& state);
+                                  const ClipmapTerrain& terrain, const ClipmapStyle& style,
+                                  const PostPlacement& placement, const ClipmapLevels& levels,
+                                  const ClipmapLevels::State& state);
 
 } // namespace dspace
 

@@ -1,0 +1,431 @@
+// Every shader program of Dspace is valid GLSL 3.30 of the core profile, by the reference compiler:
+// drivers differ in what they accept. Nothing is drawn.
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <dspace/clipmap/gl/ClipmapShaders.h>
+#include <dspace/clipmap/gl/ClipmapUniforms.h>
+#include <dspace/render/SurfaceShaders.h>
+#include <dspace/scene/ShaderCode.h>
+
+#include "MissingPackage.h"
+#include "ShaderValidator.h"
+
+namespace dspace {
+namespace {
+
+namespace fs = std::filesystem;
+using Shaders = SurfaceShaders;
+
+const std::vector<unsigned> LightCounts = {0, 1, 3, Shaders::MaximumLights};
+
+// Where sources of shaders are.
+const std::vector<std::string> Folders = {"Libraries/Core/Shaders", "Libraries/Terrain/Shaders",
+                                          "Examples/own_object", "Testing/Benchmarks/Shaders"};
+
+std::string TextOf(const fs::path& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::vector<fs::path> ShaderFiles() {
+  std::vector<fs::path> files;
+  for (const std::string& folder : Folders) {
+    for (const auto& entry : fs::directory_iterator(fs::path(DSPACE_SOURCES) / folder)) {
+      if (entry.path().extension() == ".glsl") {
+        files.push_back(entry.path());
+      }
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// The bits that change a program's text: a feature that is added later is among them.
+std::vector<unsigned> FeatureBits(const ShaderCode* code) {
+  const Shaders::Sources none = Shaders::SourcesFor(0, {}, code);
+  std::vector<unsigned> bits;
+  for (unsigned shift = 0; shift < Shaders::LightShift; ++shift) {
+    const Shaders::Sources with = Shaders::SourcesFor(1u << shift, {}, code);
+    if (with.vertex != none.vertex || with.fragment != none.fragment) {
+      bits.push_back(1u << shift);
+    }
+  }
+  return bits;
+}
+
+// Whether the drawing code asks for them together. A feature that is not named here goes with all.
+bool Together(unsigned features, unsigned lights, bool coded) {
+  const auto has = [&](unsigned feature) { return (features & feature) != 0; };
+  const unsigned geometry = Shaders::Texture | Shaders::Normals | Shaders::Flat;
+  if (has(Shaders::Mixed)) { // only with pages that have mixedColor()
+    return false;
+  }
+  if (has(Shaders::Normals) && has(Shaders::Flat)) {
+    return false;
+  }
+  if (coded ? has(Shaders::Billboard | Shaders::Emissive | Shaders::NormalMap |
+                  Shaders::ObjectNormals)
+            : has(Shaders::Normals | Shaders::Flat)) {
+    return false;
+  }
+  if (has(Shaders::Label)) {
+    const unsigned plain = geometry | Shaders::Label | Shaders::Billboard |
+                           (coded ? unsigned(Shaders::VertexColor) : 0u);
+    return lights == 0 && (features & ~plain) == 0;
+  }
+  if (!has(Shaders::Lit)) {
+    return lights == 0 && !has(Shaders::Specular | Shaders::PlacedLights | Shaders::NormalMap |
+                               Shaders::ObjectNormals);
+  }
+  return !has(Shaders::Billboard) && (lights > 0 || !has(Shaders::PlacedLights)) &&
+         !(has(Shaders::NormalMap) && has(Shaders::ObjectNormals));
+}
+
+struct Programs {
+  testing::ShaderValidator validator;
+  int count = 0;
+
+  void Add(const std::string& name, unsigned features, const ShaderPages& pages,
+           const ShaderCode* code, bool link) {
+    std::ostringstream full;
+    full << name << ", features 0x" << std::hex << features;
+    const Shaders::Sources made = Shaders::SourcesFor(features, pages, code);
+    EXPECT_EQ(made.vertex.rfind("#version 330 core\n", 0), 0u) << full.str();
+    EXPECT_EQ(made.fragment.rfind("#version 330 core\n", 0), 0u) << full.str();
+    this->validator.Add(full.str(), made.vertex, made.fragment, link);
+    ++this->count;
+  }
+
+  // Photometric models under lights, angles, and display colours.
+  void AddPhotometry(const std::string& name, const ShaderCode* code) {
+    const unsigned plain = code ? unsigned(Shaders::Normals) : 0u;
+    for (unsigned model = 2; model <= 4; ++model) { // Lommel-Seeliger to Hapke
+      for (const unsigned more : {0u, unsigned(Shaders::PlacedLights), unsigned(Shaders::Peel)}) {
+        this->Add(name,
+                  plain | Shaders::Lit | more | 2u << Shaders::LightShift |
+                      model << Shaders::ReflectanceShift,
+                  {}, code, true);
+      }
+    }
+    for (const unsigned more : {0u, unsigned(Shaders::Lit), unsigned(Shaders::Texture),
+                                Shaders::Lit | Shaders::Texture | Shaders::VertexColor}) {
+      this->Add(name, plain | Shaders::Angles | more, {}, code, true);
+    }
+    this->Add(name, plain | Shaders::DisplayColor, {}, code, true);
+  }
+
+  // All features together that may be. Those with at most one more than a lit, an unlit or a
+  // label's program are linked.
+  void AddSurfaces(const std::string& name, const ShaderCode* code) {
+    const std::vector<unsigned> bits = FeatureBits(code);
+    for (unsigned choice = 0; choice < 1u << bits.size(); ++choice) {
+      unsigned features = 0;
+      int more = 0;
+      for (std::size_t i = 0; i < bits.size(); ++i) {
+        if (choice >> i & 1u) {
+          features |= bits[i];
+          more += bits[i] != Shaders::Lit && bits[i] != Shaders::Label;
+        }
+      }
+      for (const unsigned lights : LightCounts) {
+        if (Together(features, lights, code != nullptr)) {
+          this->Add(name, features | lights << Shaders::LightShift, {}, code,
+                    more <= 1 && lights <= 1);
+        }
+      }
+    }
+  }
+
+  void AddClipmaps();
+  void AddScreens();
+  void AddExample();
+  void AddBenchmark();
+
+  void AddEverything() {
+    this->AddSurfaces("surface", nullptr);
+    this->AddPhotometry("surface", nullptr);
+    for (const auto& code : {ShaderCode(), UsersCode()}) {
+      this->AddSurfaces("surface with code", &code);
+      this->AddPhotometry("surface with code", &code);
+    }
+    this->AddClipmaps();
+    this->AddScreens();
+    this->AddExample();
+    this->AddBenchmark();
+  }
+
+  static ShaderCode UsersCode() {
+    using Stage = ShaderReplacement::Stage;
+    ShaderCode code;
+    code.replacements = {
+        {Stage::Vertex, "//VTK::Normal::Dec", true,
+         "//VTK::Normal::Dec\nout vec3 ours;\nuniform float wave;\n", true},
+        {Stage::Vertex, "//VTK::PositionVC::Impl", true,
+         "  vertexMC.z += wave;\n  ours = vertexMC.xyz;\n//VTK::PositionVC::Impl\n", true},
+        {Stage::Fragment, "//VTK::Normal::Dec", true, "//VTK::Normal::Dec\nin vec3 ours;\n", true},
+        {Stage::Fragment, "//VTK::Color::Impl", true,
+         "//VTK::Color::Impl\n  diffuseColor = abs(ours) * tints[1] * lightColor0;\n", true}};
+    code.uniforms = {{"wave", ShaderUniform::Kind::Float, 1, {0.5}},
+                     {"tints", ShaderUniform::Kind::Vector3, 2, {1, 0, 0, 0, 1, 0}}};
+    return code;
+  }
+};
+
+struct Named {
+  std::string name;
+  std::string defines;
+};
+
+// What the style adds, by ClipmapUniforms, and what ClipmapDrawer and LayerDrawing add beside it.
+std::vector<Named> ClipmapLooks(const PostPlacement& placement) {
+  std::vector<Named> looks;
+  const auto styled = [&](const std::string& name, const ClipmapStyle& style) {
+    looks.push_back({name, ClipmapUniforms::Defines(placement, &style)});
+  };
+  ClipmapStyle all;
+  styled("no style", all);
+  for (const int count : {1, 2}) {
+    ClipmapStyle style;
+    style.details.resize(std::size_t(count));
+    styled(std::to_string(count) + " details", style);
+  }
+  for (const auto by : {ClipmapStyle::Ramp::By::Height, ClipmapStyle::Ramp::By::Slope,
+                        ClipmapStyle::Ramp::By::Aspect, ClipmapStyle::Ramp::By::Normal}) {
+    ClipmapStyle style;
+    style.ramp.emplace();
+    style.ramp->by = by;
+    styled("ramp " + std::to_string(int(by)), style);
+  }
+  ClipmapStyle levels;
+  levels.levels = 0.5;
+  styled("levels", levels);
+  ClipmapStyle contours;
+  contours.contours.emplace();
+  styled("contours", contours);
+  ClipmapStyle grid;
+  grid.grid.emplace();
+  styled("grid", grid);
+  const std::vector<Named> beside = {
+      {"holes", "#define DSPACE_HOLES\n"},
+      {"tracks", "#define DSPACE_TRACKS\n"},
+      {"paint", "#define DSPACE_LAYERS\n#define DSPACE_PAINT 0\n"},
+      {"marks", "#define DSPACE_LAYERS\n#define DSPACE_MARKS 0\n"},
+      {"layers", "#define DSPACE_LAYERS\n#define DSPACE_PAINT 0\n#define DSPACE_MARKS 16\n"},
+      {"normals", "#define DSPACE_LAYER_NORMALS 0\n"},
+      {"horizon", "#define DSPACE_HORIZON\n"}};
+  std::string everything;
+  const std::string plain = ClipmapUniforms::Defines(placement, &all);
+  for (const Named& each : beside) {
+    looks.push_back({each.name, plain + each.defines});
+    everything += each.name == "paint" || each.name == "marks" ? "" : each.defines;
+  }
+  all.details.resize(2);
+  all.ramp.emplace();
+  all.ramp->by = ClipmapStyle::Ramp::By::Aspect;
+  all.levels = 0.5;
+  all.contours.emplace();
+  all.grid.emplace();
+  looks.push_back({"everything", ClipmapUniforms::Defines(placement, &all) + everything});
+  return looks;
+}
+
+void Programs::AddClipmaps() {
+  const BodyEllipsoid oblate(6378137.0, 6356752.3);
+  const Eigen::Vector2d first(-180, 90);
+  const Eigen::Vector2d step(0.1, -0.1);
+  const std::vector<std::pair<std::string, PostPlacement>> placements = {
+      {"plane", PostPlacement::OnPlane(Eigen::Affine2d::Identity())},
+      {"sphere", PostPlacement::OnSphere(first, step, 1737400.0)},
+      {"ellipsoid", PostPlacement::OnEllipsoid(first, step, oblate)},
+      {"pole", PostPlacement::OnPole(false, 100.0, 512.0, 1737400.0)},
+      {"ellipsoid's pole", PostPlacement::OnPole(true, 100.0, 512.0, oblate)}};
+  const unsigned lit = Shaders::Lit | 1u << Shaders::LightShift;
+  const unsigned bright =
+      Shaders::Lit | Shaders::Specular | Shaders::PlacedLights | 3u << Shaders::LightShift;
+  for (const auto& [name, placement] : placements) {
+    const bool pole = placement.GetKind() == PostPlacement::Kind::Pole;
+    const std::string called = "clipmap of a " + name;
+    ShaderPages bare;
+    bare.vertex = ClipmapVertexShader(placement.GetKind());
+    bare.defines = ClipmapUniforms::Defines(placement, nullptr);
+    for (const char* holes : {"", "#define DSPACE_HOLES\n"}) {
+      ShaderPages pages = bare;
+      pages.defines += holes;
+      for (const unsigned features : {0u, lit, bright, unsigned(Shaders::Label)}) {
+        this->Add(called, features, pages, nullptr, !*holes);
+        if (!pole && features != Shaders::Label) {
+          this->Add(called, features | Shaders::Texture, pages, nullptr, false);
+        }
+      }
+    }
+    for (const Named& look : ClipmapLooks(placement)) {
+      ShaderPages pages = bare;
+      pages.fragment = ClipmapFragmentFunctions();
+      for (const char* texture : {"", "#define DSPACE_POLE_TEXTURE\n"}) {
+        if (*texture && !pole) {
+          continue;
+        }
+        pages.defines = look.defines + texture;
+        for (const unsigned features : {0u, lit, bright, lit | 4u << Shaders::CascadeShift}) {
+          if (!(features & Shaders::Lit) &&
+              (pages.defines.find("DSPACE_LAYER_NORMALS") != std::string::npos ||
+               pages.defines.find("DSPACE_HORIZON") != std::string::npos)) {
+            continue; // ClipmapDrawer asks for normals and horizons where there is light
+          }
+          this->Add(called + ", " + look.name, features | Shaders::Mixed, pages, nullptr,
+                    look.name == "everything");
+        }
+      }
+    }
+  }
+}
+
+// Complete fragment shaders of files go with Screen.vert, as SurfaceShaders::Screen joins them.
+void Programs::AddScreens() {
+  const fs::path folder = fs::path(DSPACE_SOURCES) / "Libraries/Core/Shaders";
+  const std::string vertex = TextOf(folder / "Screen.vert.glsl");
+  const std::string marker = "//DSPACE::Defines";
+  for (const fs::path& path : ShaderFiles()) {
+    const std::string name = path.filename().string();
+    const std::string text = TextOf(path);
+    if (path.parent_path() != folder || name.find(".frag.glsl") == std::string::npos ||
+        text.rfind("#version", 0) != 0 || name == "Surface.frag.glsl" ||
+        name == "Label.frag.glsl" || name == "Coded.frag.glsl") {
+      continue;
+    }
+    EXPECT_EQ(text.rfind("#version 330 core\n" + marker, 0), 0u) << name;
+    const std::string numbers = "#define DSPACE_SAMPLES 3\n#define DSPACE_GRID 256\n"
+                                "#define DSPACE_ALPHA 0.0\n";
+    for (const char* more :
+         {"", "#define DSPACE_FILMIC\n", "#define DSPACE_OVER\n", "#define DSPACE_UNKNOWN\n"}) {
+      std::string with = text;
+      with.replace(with.find(marker), marker.size(), numbers + more);
+      if (*more && text.find(std::string(more, 8, std::strlen(more) - 9)) == std::string::npos) {
+        continue;
+      }
+      this->validator.Add(name + " " + more, vertex, with, true);
+      ++this->count;
+    }
+  }
+}
+
+void Programs::AddExample() {
+  const fs::path folder = fs::path(DSPACE_SOURCES) / "Examples/own_object";
+  const std::string vertex = TextOf(folder / "sail.vert.glsl");
+  const std::string fragment = TextOf(folder / "sail.frag.glsl");
+  ShaderPages pages;
+  pages.vertex = vertex.c_str();
+  this->Add("sail", Shaders::Label, pages, nullptr, true);
+  pages.fragment = fragment.c_str();
+  for (const unsigned lights : LightCounts) {
+    this->Add("sail", Shaders::Lit | Shaders::Mixed | lights << Shaders::LightShift, pages, nullptr,
+              true);
+  }
+}
+
+// Of OpenSceneGraph, whose ground is drawn with OpenGL 2's fixed functions: no core profile.
+void Programs::AddBenchmark() {
+  const fs::path folder = fs::path(DSPACE_SOURCES) / "Testing/Benchmarks/Shaders";
+  this->validator.Add("OsgGround", TextOf(folder / "OsgGround.vert.glsl"),
+                      TextOf(folder / "OsgGround.frag.glsl"), true);
+  ++this->count;
+}
+
+// Names of macros after `directive`.
+std::set<std::string> Macros(const std::string& text, const std::regex& directive) {
+  static const std::regex word("DSPACE_[A-Z0-9_]+");
+  std::set<std::string> names;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_search(line, directive)) {
+      for (std::sregex_iterator at(line.begin(), line.end(), word), end; at != end; ++at) {
+        names.insert(at->str());
+      }
+    }
+  }
+  return names;
+}
+
+} // namespace
+
+TEST(ShaderSources, EveryProgramIsValid) {
+  if (!testing::ShaderValidator::Installed()) {
+    DSPACE_MISSING_PACKAGE("glslang-tools");
+  }
+  Programs programs;
+  programs.AddEverything();
+  EXPECT_EQ(programs.validator.Check(), "");
+  std::cout << programs.count << " programs, " << programs.validator.Texts().size()
+            << " different shaders, " << programs.validator.Links() << " programs linked\n";
+}
+
+// A new file or macro of shaders that this test does not reach is an error here.
+TEST(ShaderSources, EveryFileAndFeatureIsAmongThem) {
+  Programs programs;
+  programs.AddEverything();
+  std::string corpus;
+  for (const auto& text : programs.validator.Texts()) {
+    corpus += text.first;
+  }
+  std::set<std::string> lines;
+  std::istringstream stream(corpus);
+  for (std::string line; std::getline(stream, line);) {
+    lines.insert(line);
+  }
+  std::string all;
+  for (const fs::path& path : ShaderFiles()) {
+    const std::string text = TextOf(path);
+    all += text;
+    // Its longest line of code stands for it.
+    std::string longest;
+    std::istringstream own(text);
+    for (std::string line; std::getline(own, line);) {
+      if (line.size() > longest.size() && line.find("//") == std::string::npos &&
+          line.find("{N}") == std::string::npos) {
+        longest = line;
+      }
+    }
+    EXPECT_TRUE(lines.count(longest)) << path << " is in no program: " << longest;
+  }
+  const std::set<std::string> asked = Macros(all, std::regex("^\\s*#\\s*(if|elif)"));
+  const std::set<std::string> defined = Macros(corpus, std::regex("^\\s*#\\s*define"));
+  EXPECT_GE(asked.size(), 20u);
+  for (const std::string& name : asked) {
+    EXPECT_TRUE(defined.count(name)) << name << " is defined in no program of this test";
+  }
+}
+
+TEST(ShaderSources, InvalidProgramsAreFound) {
+  if (!testing::ShaderValidator::Installed()) {
+    DSPACE_MISSING_PACKAGE("glslang-tools");
+  }
+  const std::string head = "#version 330 core\n";
+  const std::string vertex =
+      head + "out vec2 place;\nvoid main() { place = vec2(0.0); gl_Position = vec4(0.0); }\n";
+  const auto errors = [&](const std::string& fragment) {
+    testing::ShaderValidator validator;
+    validator.Add("broken", vertex, head + fragment, true);
+    return validator.Check();
+  };
+  const std::string out = "layout(location = 0) out vec4 color;\n";
+  EXPECT_EQ(errors(out + "in vec2 place;\nvoid main() { color = place.xyxy; }\n"), "");
+  for (const std::string& wrong :
+       {out + "void main() { color = vec4(nothing); }\n", // not declared
+        out + "void main() { color = gl_Color; }\n",      // of the compatibility profile
+        out + "void main() { color = vec4(1 % 2.0); }\n", // float modulo
+        out + "in vec3 place;\nvoid main() { color = place.xyzx; }\n",         // linked: types
+        out + "float f(float x);\nvoid main() { color = vec4(f(1.0)); }\n"}) { // linked: no body
+    const std::string found = errors(wrong);
+    EXPECT_NE(found.find("broken"), std::string::npos) << wrong;
+    EXPECT_NE(found.find("ERROR"), std::string::npos) << wrong;
+  }
+}
+
+} // namespace dspace
