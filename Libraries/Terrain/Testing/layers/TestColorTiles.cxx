@@ -293,6 +293,38 @@ TEST(ColorTiles, TheBudgetHoldsAndEmptyTilesCostNothing) {
   EXPECT_EQ(none.Statistics().reads, 100u);
 }
 
+// Two views, one of which hides a layer: both are served, and neither displaces the other's tiles.
+TEST(ColorTiles, CompositionsOfOneTileAreKeptBesideEachOther) {
+  using Part = dspace::LayerChoice::Part;
+  const auto low = Plain({200, 0, 0, 255}), high = Plain({0, 200, 0, 255});
+  const auto mark = Plain({0, 0, 200, 255});
+  auto stack = std::make_shared<LayerStack>("terrain 'test'");
+  stack->Add({"mark", mark, 1.0, true, {}, true}); // lowest, and yet on top
+  stack->Add({"low", low, 1.0, true, dspace::Membership::Physical()});
+  stack->Add({"high", high, 1.0, true});
+  ColorTiles tiles(stack, {Ground()});
+  const int all = tiles.CompositionOf({});
+  const int physical = tiles.CompositionOf({Part::All, {"ornamental"}});
+  const int unmarked = tiles.CompositionOf({Part::Unmarked, {}});
+  const int marks = tiles.CompositionOf({Part::Marks, {}});
+  EXPECT_EQ(all, 0);
+  EXPECT_EQ(tiles.CompositionOf({Part::All, {"ornamental", "unknown"}}), physical);
+  const std::vector<ColorTile> wanted = {{0, 4, 2, 3}};
+  for (int round = 0; round < 3; ++round) {
+    const auto color = [&](int composition) {
+      const auto tile = tiles.Get(wanted, 60.0, composition)[0];
+      return Texel{At(tile, 7, 9)[0], At(tile, 7, 9)[1], At(tile, 7, 9)[2], At(tile, 7, 9)[3]};
+    };
+    const auto stored = std::uint8_t(Stored(200));
+    EXPECT_EQ(color(all), (Texel{0, 0, stored, 255}));
+    EXPECT_EQ(color(physical), (Texel{stored, 0, 0, 255}));
+    EXPECT_EQ(color(unmarked), (Texel{0, stored, 0, 255}));
+    EXPECT_EQ(color(marks), (Texel{0, 0, stored, 255}));
+  }
+  EXPECT_EQ(tiles.Statistics().compositions, 4u);
+  EXPECT_EQ(tiles.Statistics().reads, 3u); // each layer once
+}
+
 TEST(ColorTiles, AFailingSourceIsTriedAgainAndReported) {
   const auto layer = Plain({1, 2, 3, 255});
   std::atomic<int> bad{2};

@@ -1,4 +1,4 @@
-// Overviews that are made of large files without any: right, used again, and made anew in time.
+// Overviews that are made of large files without any: right, used again, and made again in time.
 #include <cmath>
 #include <fstream>
 #include <thread>

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,9 @@ using dspace::LayerStack;
 
 class Plain : public dspace::ColorLayer {
 public:
-  explicit Plain(double pixel) : Pixel_(pixel) {}
+  explicit Plain(double pixel, dspace::LayerContent content = dspace::LayerContent::Colors)
+      : Pixel_(pixel), Content_(content) {}
+  dspace::LayerContent Content() const override { return this->Content_; }
   const std::string& GetName() const override { return this->Name_; }
   bool Read(const dspace::ColorGrid&, const dspace::ColorBlock&, std::uint8_t*) const override {
     return false;
@@ -26,6 +29,7 @@ public:
 private:
   std::string Name_ = "plain";
   double Pixel_;
+  dspace::LayerContent Content_;
   std::vector<std::string> Warnings_;
 };
 
@@ -121,4 +125,60 @@ TEST(LayerStack, RejectionsNameTheTerrainAndChangeNothing) {
   for (std::size_t i = 2; i < LayerStack::Most; ++i)
     stack.Add(Named("n" + std::to_string(i)));
   ExpectRejected(stack, bad, "64", [&] { stack.Add(Named("c")); });
+}
+
+TEST(LayerStack, AChoiceTakesWhatItsFragmentsAndItsPartLeave) {
+  using dspace::LayerChoice;
+  using Part = LayerChoice::Part;
+  LayerStack stack("terrain 'gale'");
+  stack.Add(Named("a", 8.0));
+  stack.Add(Named("b", 2.0));
+  stack.Add(Named("c", 1.0));
+  stack.Change("a", {}, {}, {}, "photographs");
+  stack.Change("b", {}, {}, {}, "map");
+  const auto size = [&](Part part, const std::set<std::string>& hidden) {
+    return stack.PixelSize({part, hidden});
+  };
+  EXPECT_EQ(size(Part::All, {}), 1.0);
+  EXPECT_EQ(size(Part::All, {"ornamental"}), 2.0);
+  EXPECT_EQ(size(Part::All, {"ornamental", "map"}), 8.0);
+  EXPECT_TRUE(stack.Empty({Part::All, {"ornamental", "map", "photographs"}}));
+  EXPECT_TRUE(stack.Empty({Part::Marks, {}}));
+  // What makes no difference is not named: hiding another fragment composes nothing again.
+  EXPECT_TRUE(stack.Reduced({Part::Unmarked, {"other"}}).hiddenFragments.empty());
+  EXPECT_EQ(stack.Reduced({Part::Unmarked, {"other"}}).part, Part::All);
+  EXPECT_EQ(stack.Reduced({Part::All, {"other", "map"}}).hiddenFragments,
+            std::set<std::string>{"map"});
+  stack.Change("b", {}, false, {});
+  EXPECT_TRUE(stack.Reduced({Part::All, {"map"}}).hiddenFragments.empty());
+
+  dspace::StackedLayer mark = Named("mark", 0.5);
+  mark.mark = true;
+  stack.Add(mark, 0);
+  EXPECT_EQ(size(Part::Marks, {}), 0.5);
+  EXPECT_EQ(size(Part::Unmarked, {}), 1.0);
+  EXPECT_TRUE(stack.Empty({Part::Marks, {"ornamental"}}));
+  EXPECT_EQ(stack.Reduced({Part::Unmarked, {}}).part, Part::Unmarked);
+}
+
+TEST(LayerStack, NormalsAreApartFromColors) {
+  using Part = dspace::LayerChoice::Part;
+  LayerStack stack("terrain 'gale'");
+  stack.Add(Named("color", 4.0));
+  dspace::StackedLayer normals = Named("normals", 1.0);
+  normals.layer = std::make_shared<Plain>(1.0, dspace::LayerContent::Normals);
+  normals.member.fragment = "details";
+  stack.Add(normals);
+  EXPECT_EQ(stack.PixelSize(), 4.0);
+  EXPECT_EQ(stack.PixelSize({Part::Normals, {}}), 1.0);
+  EXPECT_FALSE(stack.Empty({Part::Normals, {}}));
+  EXPECT_TRUE(stack.Empty({Part::Normals, {"details"}}));
+  EXPECT_TRUE(stack.Empty({Part::Marks, {}}));
+  // Colours are composed as before where normals alone are hidden.
+  EXPECT_TRUE(stack.Reduced({Part::All, {"details"}}).hiddenFragments.empty());
+  EXPECT_EQ(stack.Reduced({Part::Normals, {"details"}}).hiddenFragments.size(), 1u);
+  stack.Change("normals", 0.0, {}, {});
+  EXPECT_TRUE(stack.Empty({Part::Normals, {}}));
+  stack.Remove("color");
+  EXPECT_TRUE(stack.Empty());
 }

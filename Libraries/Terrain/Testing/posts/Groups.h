@@ -110,6 +110,17 @@ inline Base Region() { // lon 20 to 30, lat 72 to 78
   return base;
 }
 
+inline Base WholeMoon() {
+  Base base;
+  base.width = 192;
+  base.height = 96;
+  base.step = 360.0 / 192.0;
+  base.west = -180.0;
+  base.globe = true;
+  base.formula = Plain;
+  return base;
+}
+
 inline PatchFile Polar() {
   PatchFile patch;
   patch.projection = PolarStereographic(10.0);
@@ -135,6 +146,33 @@ inline PatchFile Cylindrical() {
   patch.formula = [](const Eigen::Vector2d& m) {
     return -300.0 + 20.0 * std::cos(m.x() / 500.0 + m.y() / 1300.0);
   };
+  return patch;
+}
+
+// With a round hole and a hole of one pixel. Its heights refer to a sphere 40 m below the base's.
+inline PatchFile PolarWithHoles() {
+  PatchFile patch = Polar();
+  patch.added = -40.0;
+  patch.hole = [](int c, int r) {
+    return (c - 90) * (c - 90) + (r - 130) * (r - 130) < 500 || (c == 200 && r == 100);
+  };
+  return patch;
+}
+
+inline PatchFile AcrossTheDateLine(double lon) {
+  PatchFile patch = Cylindrical();
+  patch.projection = EquidistantCylindrical(180.0, 0.0);
+  patch.middle = {lon, 20.0};
+  patch.size = 1200.0;
+  patch.margin = 40000.0;
+  return patch;
+}
+
+inline PatchFile OnThePole() {
+  PatchFile patch = Polar();
+  patch.middle = {10.0, 89.0};
+  patch.size = 500.0;
+  patch.margin = 20000.0;
   return patch;
 }
 

@@ -157,11 +157,7 @@ void ExpectAsByHand(const Group& group, const std::vector<PatchFile>& files,
 TEST(GroupPosts, OverlappingPatchesWithHolesAreThoseByHand) {
   const TemporaryFolder folder;
   const Base base = Region();
-  PatchFile first = Polar();
-  first.added = -40.0;
-  first.hole = [](int c, int r) {
-    return (c - 90) * (c - 90) + (r - 130) * (r - 130) < 500 || (c == 200 && r == 100);
-  };
+  const PatchFile first = PolarWithHoles();
   const PatchFile second = Cylindrical();
   const std::vector<TerrainPatch> patches = {first.Write(folder / "first.tif"),
                                              second.Write(folder / "second.tif")};
@@ -189,12 +185,7 @@ TEST(GroupPosts, OverlappingPatchesWithHolesAreThoseByHand) {
 }
 
 Base Globe() {
-  Base base;
-  base.width = 192;
-  base.height = 96;
-  base.step = 360.0 / 192.0;
-  base.west = -180.0;
-  base.globe = true;
+  Base base = WholeMoon();
   base.formula = [](double lon, double lat) {
     return 1000.0 * std::sin(2.0 * lon * Deg) * std::cos(lat * Deg);
   };
@@ -205,11 +196,7 @@ TEST(GroupPosts, APatchAcrossTheDateLineHasNoSeam) {
   const TemporaryFolder folder;
   const Base base = Globe();
   const std::string path = base.Write(folder / "base.tif");
-  PatchFile patch = Cylindrical();
-  patch.projection = EquidistantCylindrical(180.0, 0.0);
-  patch.middle = {180.3, 20.0};
-  patch.size = 1200.0;
-  patch.margin = 40000.0;
+  const PatchFile patch = AcrossTheDateLine(180.3);
   const TerrainPatch written = patch.Write(folder / "patch.tif");
   const Group group(base, path, {written});
   ExpectAsByHand(group, {patch}, {written}, {-179.9, 20.0}, 0.5);
@@ -237,10 +224,7 @@ TEST(GroupPosts, APatchAcrossTheDateLineHasNoSeam) {
 TEST(GroupPosts, APatchOnAPoleHasOneHeightThere) {
   const TemporaryFolder folder;
   const Base base = Globe();
-  PatchFile patch = Polar();
-  patch.middle = {10.0, 89.0};
-  patch.size = 500.0;
-  patch.margin = 20000.0;
+  PatchFile patch = OnThePole();
   patch.formula = [](const Eigen::Vector2d& m) { return 300.0 + 1e-3 * m.x() + 2e-3 * m.y(); };
   const TerrainPatch written = patch.Write(folder / "patch.tif");
   const Group group(base, base.Write(folder / "base.tif"), {written});

@@ -82,7 +82,7 @@ TEST(OverviewBuild, FarGroundIsTheMeanOnceTheyAreThere) {
   const PyramidChanges changes = pyramid.Changes(before);
   ASSERT_EQ(changes.rectangles.size(), 1u);
   EXPECT_EQ(changes.rectangles[0].from, 4);
-  // Coarse tiles are read anew, fine ones are still there.
+  // Coarse tiles are read again, fine ones are still there.
   std::vector<float> heights(16 * 16);
   EXPECT_TRUE(pyramid.TryRead({0, 4, 4, 16, 16}, heights.data()));
   EXPECT_EQ(heights, near);

@@ -315,7 +315,7 @@ TEST_F(StreamedTracks, FilesThatAreNoTracksAreRejectedAndChangeNothing) {
   EXPECT_THROW(terrain->SaveTracks(folder / "no/such/folder.geojson"), Error);
 }
 
-TEST_F(StreamedTracks, SubdivisionsAndTracksAreRejectedOnABody) {
+TEST_F(StreamedTracks, SubdivisionsOutOfRangeAreRejected) {
   RasterFile file;
   file.width = 64;
   file.height = 32;
@@ -325,11 +325,12 @@ TEST_F(StreamedTracks, SubdivisionsAndTracksAreRejectedOnABody) {
   const std::string path = file.Write(folder / "moon.tif");
   StreamedTerrainOptions body;
   body.onBody = true;
-  const auto moon = StreamedTerrain::Open(path, body);
-  EXPECT_THROW(moon->AddTracks({Straight()}), Error);
-  EXPECT_EQ(&moon->Undisturbed(), moon.get());
-  body.subdivisions = 1;
-  EXPECT_THROW(StreamedTerrain::Open(path, body), Error);
+  for (const int wrong : {-1, 25}) {
+    body.subdivisions = wrong;
+    EXPECT_THROW(StreamedTerrain::Open(path, body), Error);
+  }
+  body.subdivisions = 1; // fewer than the body's size asks
+  EXPECT_GT(StreamedTerrain::Open(path, body)->Subdivisions(), 8);
   options.subdivisions = 13;
   EXPECT_THROW(StreamedTerrain::Open(folder / "slope.tif", options), Error);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <dspace/groups/GroupProbe.h>
 #include <dspace/groups/Patch.h>
 #include <dspace/posts/PostFacets.h>
 #include <dspace/raster/RandomPixels.h>
@@ -93,6 +94,25 @@ void GroupPosts::ReadUpTo(std::size_t count, const PostBlock& block, float* heig
 
 void GroupPosts::Read(const PostBlock& block, float* heights) const {
   this->ReadUpTo(this->Patches_.size(), block, heights);
+}
+
+std::unique_ptr<GroupProbe> GroupPosts::MakeGroupProbe() const {
+  std::unique_ptr<PostProbe> base = this->Data_ ? nullptr : this->Base_->MakeProbe();
+  if (!base) {
+    return nullptr;
+  }
+  std::vector<PatchProbe> patches;
+  for (const std::shared_ptr<Patch>& patch : this->Patches_) {
+    if (!PatchProbe::Reads(*patch)) {
+      return nullptr;
+    }
+    patches.emplace_back(*patch);
+  }
+  return std::make_unique<GroupProbe>(this->GetLattice(), std::move(base), std::move(patches));
+}
+
+std::unique_ptr<PostProbe> GroupPosts::MakeProbe() const {
+  return this->MakeGroupProbe();
 }
 
 bool GroupPosts::Reaches(const Eigen::Vector2d& post, int level) const {

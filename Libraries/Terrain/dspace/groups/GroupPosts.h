@@ -15,6 +15,7 @@
 
 namespace dspace {
 
+class GroupProbe;
 class Patch;
 
 struct TerrainPatch {
@@ -85,6 +86,11 @@ public:
   const std::string& GetName() const override { return this->Name_; }
   const PostLattice& GetLattice() const override { return this->Base_->GetLattice(); }
   void Read(const PostBlock& block, float* heights) const override;
+
+  // Null where only blocks are read: the base has no probe, holes are filled, or a patch is finer
+  // than the posts.
+  std::unique_ptr<PostProbe> MakeProbe() const override;
+  std::unique_ptr<GroupProbe> MakeGroupProbe() const;
 
   // Whether any patch may change the cell of a level that a place in level 0 is in: elsewhere the
   // posts of the base are all there is.

@@ -12,8 +12,6 @@
 namespace dspace {
 namespace {
 
-constexpr double Tolerance = 0.005; // pixels, at the places that are looked at
-
 // Of the sphere that heights are above.
 std::optional<double> ZeroRadius(const VerticalDatum& datum, const BodyAxes& axes) {
   switch (datum.kind) {
@@ -121,7 +119,36 @@ bool Patch::Reattach(const PostLattice& lattice, const Eigen::Affine2d& postToMa
   return this->Place_.Inside();
 }
 
-// The level of its own posts that are about as far apart as those of a level of the lattice.
+PatchPlace::Corners Patch::CornersAbout(std::int64_t column, std::int64_t row) const {
+  PatchPlace::Corners square;
+  for (square.size = PatchPlace::SquareSize;; square.size /= 2) {
+    square.column = FloorDiv(column, square.size) * square.size;
+    square.row = FloorDiv(row, square.size) * square.size;
+    if (!this->Place_.Projects()) {
+      if (this->Place_.Interpolates(square, Tolerance)) {
+        return square;
+      }
+      continue;
+    }
+    const std::array<std::int64_t, 3> key = {square.size, square.column, square.row};
+    {
+      const std::lock_guard<std::mutex> lock(this->Mutex_);
+      if (const std::optional<PatchPlace::Corners>* kept = this->Corners_.Find(key)) {
+        if (*kept) {
+          return **kept;
+        }
+        continue;
+      }
+    }
+    const bool good = this->Place_.Interpolates(square, Tolerance);
+    const std::lock_guard<std::mutex> lock(this->Mutex_);
+    this->Corners_.Insert(key, good ? std::optional(square) : std::nullopt);
+    if (good) {
+      return square;
+    }
+  }
+}
+
 int Patch::LevelFor(int level) const {
   return std::max(0, int(std::lround(std::log2(this->PostPixels_) + level)));
 }
@@ -241,7 +268,7 @@ void Patch::Blend(const PostBlock& block, float* heights, const FilledMask& fill
     const double height = own.At(pixels[i]) + this->Report_.addedTo;
     const double under = heights[i];
     if (!std::isnan(height)) {
-      const bool alone = std::isnan(under) || (made && (*made)[i]);
+      const bool alone = weights[i] >= Whole || std::isnan(under) || (made && (*made)[i]);
       heights[i] = float(alone ? height : under + weights[i] * (height - under));
       if (made) {
         (*made)[i] = 0;

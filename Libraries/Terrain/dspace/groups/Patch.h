@@ -5,11 +5,14 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <dspace/groups/GroupPosts.h>
 #include <dspace/posts/RasterPosts.h>
+#include <dspace/raster/LruCache.h>
 
 #include <dspace/groups/PatchPlace.h>
 #include <dspace/groups/PatchWeight.h>
@@ -18,6 +21,9 @@ namespace dspace {
 
 class Patch {
 public:
+  static constexpr double Whole = 1.0 - 1e-9; // from this weight on, it is shown alone
+  static constexpr double Tolerance = 0.005;  // pixels, at the places that are looked at
+
   // Throws what OpenPatches throws. Appends doubts to `warnings`.
   Patch(const ElevationInfo& base, const TerrainPatch& options, std::vector<std::string>& warnings);
 
@@ -29,6 +35,12 @@ public:
   const PatchPlace& Place() const { return this->Place_; }
   const PatchWeight& Weight() const { return *this->Weight_; }
   PatchReport& Report() { return this->Report_; }
+  const RasterPosts& Posts() const { return *this->Posts_; } // its own
+  double AddedTo() const { return this->Report_.addedTo; }   // its heights [m]
+  // The level of its own posts that are about as far apart as those of a level of the lattice.
+  int LevelFor(int level) const;
+  // The square of level 0 that pixels are interpolated in; kept where it is costly.
+  PatchPlace::Corners CornersAbout(std::int64_t column, std::int64_t row) const;
 
   // Sets the lattice and, if the patch lies within, reads it for its weights. Returns false, with a
   // warning, if the patch adds nothing.
@@ -47,7 +59,6 @@ public:
 
 private:
   class Heights;
-  int LevelFor(int level) const;
 
   std::string Object_;
   std::shared_ptr<const ElevationSource> Source_;
@@ -55,7 +66,10 @@ private:
   PatchReport Report_;
   std::shared_ptr<const RasterPosts> Posts_;
   std::shared_ptr<const PatchWeight> Weight_;
-  double PostPixels_ = 1.0; // of the patch, between level-0 posts
+  double PostPixels_ = 1.0;  // of the patch, between level-0 posts
+  mutable std::mutex Mutex_; // of what follows
+  // By size and first post; none where places are not interpolated. 4 MB.
+  mutable LruCache<std::array<std::int64_t, 3>, std::optional<PatchPlace::Corners>> Corners_{16384};
 };
 
 } // namespace dspace

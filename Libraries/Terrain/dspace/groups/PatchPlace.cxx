@@ -14,7 +14,6 @@ namespace dspace {
 namespace {
 
 constexpr double Degree = M_PI / 180.0;
-constexpr int SquareSize = 64;   // posts
 constexpr double OneBody = 0.01; // of an axis: what spheres of one body differ by at most
 const Eigen::Vector2d Nowhere = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
@@ -274,6 +273,40 @@ struct PatchPlace::Square {
   std::int64_t kToColumn = 0, jToRow = 0;              // to places in the block
 };
 
+// Finds the pixels at the corners; false where places between them depart by more than `tolerance`.
+bool PatchPlace::Interpolates(Corners& square, double tolerance) const {
+  if (square.size == 1) {
+    square.pixels[0] =
+        this->PixelOfPost({double(this->Lattice_.ColumnPlace(square.level, square.column)),
+                           double(this->Lattice_.RowPlace(square.level, square.row))});
+    return true;
+  }
+  const double step = std::ldexp(1.0, square.level);
+  const Eigen::Vector2d first(double(square.column) * step, double(square.row) * step);
+  const double side = double(square.size) * step;
+  const auto exact = [&](double u, double v) {
+    return this->PixelOfPost(first + Eigen::Vector2d(u, v) * side);
+  };
+  square.pixels = {exact(0, 0), exact(1, 0), exact(0, 1), exact(1, 1)};
+  if (!this->Transform_ && this->PatchTurn_ == 0.0) {
+    return true; // the map from posts to pixels is affine
+  }
+  bool good = true;
+  for (const auto& [u, v] : {std::pair(0.5, 0.5),
+                             {0.5, 0.0},
+                             {0.5, 1.0},
+                             {0.0, 0.5},
+                             {1.0, 0.5},
+                             {0.25, 0.25},
+                             {0.75, 0.25},
+                             {0.25, 0.75},
+                             {0.75, 0.75}}) {
+    // Written so that what is not finite fails.
+    good = good && (square.At(u, v) - exact(u, v)).norm() <= tolerance;
+  }
+  return good;
+}
+
 void PatchPlace::Fill(const Square& s, double tolerance, const PostBlock& block,
                       std::vector<Eigen::Vector2d>& pixels) const {
   const std::int64_t k0 = std::max(s.k, s.kFrom);
@@ -312,22 +345,8 @@ void PatchPlace::Fill(const Square& s, double tolerance, const PostBlock& block,
   const double step = std::ldexp(1.0, s.level);
   const Eigen::Vector2d first(double(s.k) * step, double(s.j) * step);
   const double side = double(s.size) * step;
-  const auto exact = [&](double u, double v) {
-    return this->PixelOfPost(first + Eigen::Vector2d(u, v) * side);
-  };
-  const Eigen::Vector2d a = exact(0, 0);
-  const Eigen::Vector2d b = exact(1, 0);
-  const Eigen::Vector2d c = exact(0, 1);
-  const Eigen::Vector2d d = exact(1, 1);
-  const auto between = [&](double u, double v) -> Eigen::Vector2d {
-    return (1.0 - v) * (a + u * (b - a)) + v * (c + u * (d - c));
-  };
-  bool good = true;
-  for (const auto& [u, v] : {std::pair(0.5, 0.5), {0.5, 0.0}, {0.5, 1.0}, {0.0, 0.5}, {1.0, 0.5}}) {
-    // Written so that what is not finite fails.
-    good = good && (between(u, v) - exact(u, v)).norm() <= tolerance;
-  }
-  if (!good) {
+  Corners corners{s.level, s.k, s.j, s.size, {}};
+  if (!this->Interpolates(corners, tolerance)) {
     Square quarter = s;
     quarter.size = s.size / 2;
     for (const int y : {0, 1}) {
@@ -343,7 +362,7 @@ void PatchPlace::Fill(const Square& s, double tolerance, const PostBlock& block,
     const double v = (double(lattice.RowPlace(s.level, j)) - first.y()) / side;
     for (std::int64_t k = k0; reachesRow(j) && k < k1; ++k) {
       if (reachesColumn(k)) {
-        put(k, j, between((double(lattice.ColumnPlace(s.level, k)) - first.x()) / side, v));
+        put(k, j, corners.At((double(lattice.ColumnPlace(s.level, k)) - first.x()) / side, v));
       }
     }
   }

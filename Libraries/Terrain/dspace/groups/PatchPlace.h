@@ -2,6 +2,8 @@
 #ifndef DSPACE_TERRAIN_PATCHPLACE_H
 #define DSPACE_TERRAIN_PATCHPLACE_H
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +19,8 @@ namespace dspace {
 // Pixels count from the patch's corner: (0.5, 0.5) is its first pixel's centre.
 class PatchPlace {
 public:
+  static constexpr int SquareSize = 512; // posts a side of one interpolation, at most
+
   // `object` names the patch. Throws Error(InvalidArgument) for a patch of another body than the
   // base's, or where only one of the two has a CRS.
   PatchPlace(const std::string& object, const ElevationInfo& base, const ElevationInfo& patch);
@@ -41,6 +45,33 @@ public:
   bool Reaches(const Eigen::Vector2d& post, int level, double sides) const;
   // Whether it may change posts of level 0 in a box of places.
   bool Touches(const Eigen::AlignedBox2d& posts) const;
+  // A square of posts of a level with the pixels at its corners. Places between are interpolated;
+  // a square of one post is that post's place.
+  struct Corners {
+    int level = 0;
+    std::int64_t column = 0; // of its first post
+    std::int64_t row = 0;
+    std::int64_t size = 0; // posts a side
+    std::array<Eigen::Vector2d, 4> pixels;
+    // (u, v) in shares of the side.
+    Eigen::Vector2d At(double u, double v) const {
+      const auto& [a, b, c, d] = this->pixels;
+      return (1.0 - v) * (a + u * (b - a)) + v * (c + u * (d - c));
+    }
+  };
+  // PixelsOf interpolates in the largest square about a post for which this is true: of
+  // SquareSize, or halved; those of one post are its place. Finds the corners' pixels.
+  bool Interpolates(Corners& square, double tolerance) const;
+  // Whether PixelsOf finds pixels for a post of level 0.
+  bool ReachesColumn(std::int64_t column) const {
+    return this->Inside_ &&
+           this->Columns_.Has(this->Unwrapped(double(column)), this->Widening_.x());
+  }
+  bool ReachesRow(std::int64_t row) const {
+    return this->Inside_ && this->Rows_.Has(double(row), this->Widening_.y());
+  }
+  // Whether places are costly: a projection is computed.
+  bool Projects() const { return this->Transform_ != nullptr; }
   // A box of pixels that holds those of all places in a box of level 0. Found by places in it: how
   // it bends between them is allowed for. Without end where they bend too much.
   Eigen::AlignedBox2d PixelBox(const Eigen::AlignedBox2d& posts) const;

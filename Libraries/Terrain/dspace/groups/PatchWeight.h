@@ -25,6 +25,8 @@ public:
 
   // At a place in pixels from the raster's corner; its mean over 2^level pixels about there.
   double At(const Eigen::Vector2d& pixel, int level) const;
+  // Bounds of At(pixel, 0) in a box; 1 exactly where all of it is.
+  std::array<double, 2> Over(const Eigen::AlignedBox2d& pixels) const;
 
   bool Empty() const { return !(this->Heights_[0] <= this->Heights_[1]); } // no pixel has data
   double Greatest() const { return this->Greatest_; }
@@ -48,6 +50,7 @@ private:
   double Greatest_ = 0.0;
   bool Exact_ = true;
   PatchRanges Ranges_;
+  PatchRanges Shares_; // of the finest weights
 };
 
 } // namespace dspace

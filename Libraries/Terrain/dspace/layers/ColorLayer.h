@@ -1,4 +1,4 @@
-// Interface of colour layers on a terrain: an image, a raster in false colour, shapes, noise.
+// Interface of layers on a terrain: an image, a raster in false colour, shapes, noise, normals.
 #ifndef DSPACE_LAYERS_COLORLAYER_H
 #define DSPACE_LAYERS_COLORLAYER_H
 
@@ -20,14 +20,24 @@ struct ColorBlock {
   int height = 0;
 };
 
+// What a layer changes: the ground's colour, or the normal that light falls on (NormalTexels.h).
+enum class LayerContent : std::uint8_t { Colors, Normals };
+
+// Bytes of a texel: sRGB colour and opacity; or of normals four numbers of 16 bits.
+constexpr int TexelBytes(LayerContent content) {
+  return content == LayerContent::Normals ? 8 : 4;
+}
+
 // Abstract. Immutable; called from several threads at once.
 class ColorLayer {
 public:
   virtual ~ColorLayer() = default;
   virtual const std::string& GetName() const = 0; // for messages: "image 'mars.tif'"
+  virtual LayerContent Content() const { return LayerContent::Colors; }
   // Fills `rgba`, 4 bytes a texel, row by row: sRGB colour and straight opacity; where that is 0
-  // the colour is 0, too. A texel is the mean over its area. Returns false, and writes nothing,
-  // if the whole block is transparent. Throws Error when the data cannot be read.
+  // the colour is 0, too. Of normals: NormalTexels, 8 bytes a texel, in the axes of ChartAxes. A
+  // texel is the mean over its area. Returns false, and writes nothing, if the whole block is
+  // transparent. Throws Error when the data cannot be read.
   virtual bool Read(const ColorGrid& grid, const ColorBlock& block, std::uint8_t* rgba) const = 0;
   // Size of its finest detail [m] on the ground: closer texels show nothing more. Infinity where
   // any zoom will do.

@@ -12,6 +12,7 @@
 #include <dspace/posts/PostLattice.h>
 
 #include <dspace/layers/LayerTiles.h>
+#include <dspace/layers/NormalComposer.h>
 #include <dspace/pyramid/TileQueue.h>
 
 namespace dspace {
@@ -20,11 +21,14 @@ namespace {
 constexpr std::uint64_t StaleAfter = 120; // later calls
 constexpr std::size_t Overhead = 256;     // bytes, of a tile without texels: they are bounded, too
 
-struct Nothing {};
-using Queue = TileQueue<ColorTile, Nothing>;
+// A tile of a composition, by the composition's number.
+using Composed = std::pair<int, ColorTile>;
 
-// A layer's own tile, or with no layer a composed one.
-using Key = std::pair<const ColorLayer*, ColorTile>;
+struct Nothing {};
+using Queue = TileQueue<Composed, Nothing>;
+
+// A layer's own tile (composition 0), or with no layer a composed one.
+using Key = std::pair<const ColorLayer*, Composed>;
 
 struct Resident {
   std::shared_ptr<const ColorLayer> layer; // keeps its address from being another's
@@ -32,6 +36,16 @@ struct Resident {
   std::list<Key>::iterator use;
   std::size_t Bytes() const { return Overhead + this->tile->texels.size(); }
 };
+
+using Parts = std::vector<std::pair<ColorTiles::TilePointer, double>>; // with their opacities
+
+template<class Composer> std::vector<std::uint8_t> ComposedBy(const Parts& parts) {
+  Composer composer;
+  for (const auto& [tile, opacity] : parts) {
+    composer.Add(tile->texels, opacity);
+  }
+  return composer.Encode();
+}
 
 struct Snapshot {
   std::uint64_t revision = 0;
@@ -45,8 +59,10 @@ struct ColorTiles::Implementation {
   std::vector<ColorGrid> grids;
   ColorTilesOptions options;
   mutable std::mutex mutex;
-  std::condition_variable wanted;  // a worker may have something to do
-  std::condition_variable arrived; // a tile came, or an attempt failed
+  std::condition_variable wanted;                          // a worker may have something to do
+  std::condition_variable arrived;                         // a tile came, or an attempt failed
+  std::vector<LayerChoice> compositions = {LayerChoice()}; // by number
+  std::map<LayerChoice, int> numbers = {{LayerChoice(), 0}};
   std::map<Key, Resident> tiles;
   std::list<Key> uses; // latest first
   Queue queue;
@@ -98,7 +114,7 @@ struct ColorTiles::Implementation {
   }
 
   // With the lock held, as all below.
-  TilePointer Find(const ColorLayer* layer, const ColorTile& tile) {
+  TilePointer Find(const ColorLayer* layer, const Composed& tile) {
     const auto found = this->tiles.find({layer, tile});
     if (found == this->tiles.end()) {
       return nullptr;
@@ -113,8 +129,7 @@ struct ColorTiles::Implementation {
     return this->tiles.erase(found);
   }
 
-  void Store(const std::shared_ptr<const ColorLayer>& layer, const ColorTile& at,
-             TilePointer tile) {
+  void Store(const std::shared_ptr<const ColorLayer>& layer, const Composed& at, TilePointer tile) {
     const Key key(layer.get(), at);
     const auto old = this->tiles.find(key);
     if (old != this->tiles.end()) {
@@ -153,7 +168,7 @@ struct ColorTiles::Implementation {
       if (this->queue.IsNone(next)) {
         return;
       }
-      const ColorTile at = next->first;
+      const Composed at = next->first;
       next->second.reading = true;
       try {
         TilePointer tile = this->Compose(lock, at);
@@ -169,25 +184,29 @@ struct ColorTiles::Implementation {
   }
 
   // Lets the lock go while it reads and composes; holds it when it returns or throws.
-  TilePointer Compose(std::unique_lock<std::mutex>& lock, const ColorTile& at) {
+  TilePointer Compose(std::unique_lock<std::mutex>& lock, const Composed& wanted) {
     this->TakeStack();
-    const Snapshot snapshot = this->latest;
+    Snapshot snapshot = this->latest;
+    const LayerChoice choice = this->compositions[std::size_t(wanted.first)];
+    const ColorTile& at = wanted.second;
+    std::stable_partition(snapshot.layers.begin(), snapshot.layers.end(),
+                          [](const StackedLayer& layer) { return !layer.mark; });
     const ColorGrid& grid = this->grids[std::size_t(at.chart)];
     auto composed = std::make_shared<Tile>();
     composed->revision = snapshot.revision;
-    std::vector<std::pair<TilePointer, double>> parts;
+    Parts parts;
     for (const StackedLayer& layer : snapshot.layers) {
-      if (!layer.visible || layer.opacity <= 0.0 || !HasGround(grid, at)) {
+      if (!choice.Takes(layer) || !HasGround(grid, at)) {
         continue;
       }
-      TilePointer own = this->Find(layer.layer.get(), at);
+      TilePointer own = this->Find(layer.layer.get(), {0, at});
       if (!own) {
         auto read = std::make_shared<Tile>();
         Unlocked(lock, [&] { read->texels = ReadLayerTile(*layer.layer, grid, at); });
         ++this->statistics.reads;
         own = std::move(read);
         if (this->IsInLatest(layer.layer)) { // it may have been removed since
-          this->Store(layer.layer, at, own);
+          this->Store(layer.layer, {0, at}, own);
         }
       }
       if (!own->texels.empty()) {
@@ -195,11 +214,9 @@ struct ColorTiles::Implementation {
       }
     }
     Unlocked(lock, [&] {
-      TileComposer composer;
-      for (const auto& [tile, opacity] : parts) {
-        composer.Add(tile->texels, opacity);
-      }
-      composed->texels = composer.Encode();
+      composed->texels = choice.part == LayerChoice::Part::Normals
+                             ? ComposedBy<NormalComposer>(parts)
+                             : ComposedBy<TileComposer>(parts);
     });
     ++this->statistics.compositions;
     return composed;
@@ -216,9 +233,18 @@ struct ColorTiles::Implementation {
     lock.lock();
   }
 
+  static std::vector<Composed> Of(int composition, const std::vector<ColorTile>& tiles) {
+    std::vector<Composed> composed;
+    composed.reserve(tiles.size());
+    for (const ColorTile& tile : tiles) {
+      composed.emplace_back(composition, tile);
+    }
+    return composed;
+  }
+
   // What is there, of `revision` or later, joins what is held; false, and the rest asked for, where
   // not all is. Older ones are held as well where `old` says so.
-  bool Serve(const std::vector<ColorTile>& asked, std::uint64_t revision, bool old,
+  bool Serve(const std::vector<Composed>& asked, std::uint64_t revision, bool old,
              std::vector<TilePointer>& held) {
     bool complete = true;
     held.resize(asked.size());
@@ -272,9 +298,21 @@ const std::vector<ColorGrid>& ColorTiles::Grids() const {
   return this->Impl_->grids;
 }
 
-std::vector<ColorTiles::TilePointer> ColorTiles::TryGet(const std::vector<ColorTile>& tiles) {
+int ColorTiles::CompositionOf(const LayerChoice& choice) {
   Implementation& impl = *this->Impl_;
-  const std::vector<ColorTile> asked = impl.Checked(tiles);
+  const LayerChoice reduced = impl.stack->Reduced(choice);
+  const std::lock_guard<std::mutex> lock(impl.mutex);
+  const auto number = impl.numbers.emplace(reduced, int(impl.compositions.size()));
+  if (number.second) {
+    impl.compositions.push_back(reduced);
+  }
+  return number.first->second;
+}
+
+std::vector<ColorTiles::TilePointer> ColorTiles::TryGet(const std::vector<ColorTile>& tiles,
+                                                        int composition) {
+  Implementation& impl = *this->Impl_;
+  const std::vector<Composed> asked = Implementation::Of(composition, impl.Checked(tiles));
   std::vector<TilePointer> held;
   {
     const std::lock_guard<std::mutex> lock(impl.mutex);
@@ -289,9 +327,9 @@ std::vector<ColorTiles::TilePointer> ColorTiles::TryGet(const std::vector<ColorT
 }
 
 std::vector<ColorTiles::TilePointer> ColorTiles::Get(const std::vector<ColorTile>& tiles,
-                                                     double seconds) {
+                                                     double seconds, int composition) {
   Implementation& impl = *this->Impl_;
-  const std::vector<ColorTile> asked = impl.Checked(tiles);
+  const std::vector<Composed> asked = Implementation::Of(composition, impl.Checked(tiles));
   // Tiles are held as they come: more of them than the budget has room for are served all the same.
   std::vector<TilePointer> held;
   const bool forever = !(seconds < 1e9);

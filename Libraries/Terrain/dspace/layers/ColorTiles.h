@@ -1,4 +1,5 @@
-// Composes and caches tiles of a stack of colour layers, in its own threads, under a byte budget.
+// Composes and caches tiles of a stack of layers, colours and normals apart, in its own threads,
+// under a byte budget.
 #ifndef DSPACE_LAYERS_COLORTILES_H
 #define DSPACE_LAYERS_COLORTILES_H
 
@@ -42,7 +43,7 @@ public:
     // linear light, then opacity. Interpolated, the first one's square over the second is linear
     // light times opacity, right between colours of one opacity and towards transparency; a
     // software renderer takes half of the time of sRGB textures for it. Empty where all of it is
-    // transparent.
+    // transparent. Of LayerChoice::Part::Normals: NormalTexels, eight bytes.
     std::vector<std::uint8_t> texels;
   };
   using TilePointer = std::shared_ptr<const Tile>;
@@ -57,13 +58,18 @@ public:
   const LayerStack& Stack() const;
   const std::vector<ColorGrid>& Grids() const;
 
+  // The number of a composition, for the functions below; it stays the same. 0: all layers. Several
+  // compositions of one tile are kept beside each other, under the one budget.
+  int CompositionOf(const LayerChoice& choice);
+
   // Returns one entry per requested tile, in order of priority: the tile in memory, of this or an
   // earlier revision; null if there is none. Missing and outdated tiles are requested. Requests of
   // earlier calls that are not among these are served later.
-  std::vector<TilePointer> TryGet(const std::vector<ColorTile>& tiles);
+  std::vector<TilePointer> TryGet(const std::vector<ColorTile>& tiles, int composition = 0);
   // Returns all tiles, of the revision at the time of the call or a later one. Throws the error of
   // the last failed attempt, or Error(DeadlineExceeded) after `seconds`.
-  std::vector<TilePointer> Get(const std::vector<ColorTile>& tiles, double seconds);
+  std::vector<TilePointer> Get(const std::vector<ColorTile>& tiles, double seconds,
+                               int composition = 0);
 
   // Increases with each loaded tile and with each change of the stack.
   std::uint64_t Arrivals() const;

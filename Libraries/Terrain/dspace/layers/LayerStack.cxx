@@ -33,7 +33,19 @@ bool Seen(const StackedLayer& layer) {
   return layer.visible && layer.opacity > 0.0;
 }
 
+bool HasContent(const LayerChoice& choice, const StackedLayer& layer) {
+  return (choice.part == LayerChoice::Part::Normals) ==
+         (layer.layer->Content() == LayerContent::Normals);
+}
+
 } // namespace
+
+bool LayerChoice::Takes(const StackedLayer& layer) const {
+  return Seen(layer) && HasContent(*this, layer) &&
+         (this->part == Part::All || this->part == Part::Normals ||
+          (this->part == Part::Marks) == layer.mark) &&
+         this->hiddenFragments.count(layer.member.fragment) == 0;
+}
 
 void LayerStack::Add(StackedLayer layer, std::optional<std::size_t> position) {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
@@ -67,7 +79,8 @@ void LayerStack::Add(StackedLayer layer, std::optional<std::size_t> position) {
 }
 
 void LayerStack::Change(const std::string& name, std::optional<double> opacity,
-                        std::optional<bool> visible, std::optional<std::size_t> position) {
+                        std::optional<bool> visible, std::optional<std::size_t> position,
+                        const std::optional<std::string>& fragment) {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   const std::size_t from = this->Find(name);
   const std::size_t to = position.value_or(from);
@@ -76,6 +89,7 @@ void LayerStack::Change(const std::string& name, std::optional<double> opacity,
   CheckOpacity(this->Terrain_, name, opacity.value_or(layer.opacity));
   layer.opacity = opacity.value_or(layer.opacity);
   layer.visible = visible.value_or(layer.visible);
+  layer.member.fragment = fragment.value_or(layer.member.fragment);
   const auto begin = this->Layers_.begin();
   const auto at = [&](std::size_t i) { return begin + static_cast<std::ptrdiff_t>(i); };
   if (to > from) {
@@ -105,16 +119,35 @@ std::uint64_t LayerStack::Revision() const {
   return this->Revision_;
 }
 
-bool LayerStack::Empty() const {
+bool LayerStack::Empty(const LayerChoice& choice) const {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
-  return std::none_of(this->Layers_.begin(), this->Layers_.end(), Seen);
+  return std::none_of(this->Layers_.begin(), this->Layers_.end(),
+                      [&](const StackedLayer& layer) { return choice.Takes(layer); });
 }
 
-double LayerStack::PixelSize() const {
+LayerChoice LayerStack::Reduced(const LayerChoice& choice) const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  LayerChoice reduced;
+  bool marks = false;
+  for (const StackedLayer& layer : this->Layers_) {
+    if (!Seen(layer) || !HasContent(choice, layer)) {
+      continue;
+    }
+    marks = marks || layer.mark;
+    if (choice.hiddenFragments.count(layer.member.fragment)) {
+      reduced.hiddenFragments.insert(layer.member.fragment);
+    }
+  }
+  const bool same = choice.part == LayerChoice::Part::Unmarked && !marks;
+  reduced.part = same ? LayerChoice::Part::All : choice.part;
+  return reduced;
+}
+
+double LayerStack::PixelSize(const LayerChoice& choice) const {
   const std::lock_guard<std::mutex> lock(this->Mutex_);
   double finest = std::numeric_limits<double>::infinity();
   for (const StackedLayer& layer : this->Layers_) {
-    if (Seen(layer)) {
+    if (choice.Takes(layer)) {
       finest = std::min(finest, layer.layer->PixelSize());
     }
   }

@@ -7,10 +7,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <dspace/layers/ColorLayer.h>
+#include <dspace/scene/Membership.h>
 
 namespace dspace {
 
@@ -19,6 +21,27 @@ struct StackedLayer {
   std::shared_ptr<const ColorLayer> layer;
   double opacity = 1.0; // 0 to 1
   bool visible = true;
+  Membership member = {};
+  // Marks what the others show: painted over all of them and over the terrain's style, wherever it
+  // stands in the stack.
+  bool mark = false;
+};
+
+// Which layers of a stack are composed, of those that are visible with an opacity over 0.
+struct LayerChoice {
+  enum class Part {
+    All,      // of the colours
+    Unmarked, // without marks
+    Marks,    // marks alone
+    Normals   // layers of normals, which no other part has
+  };
+  Part part = Part::All;
+  std::set<std::string> hiddenFragments; // layers in these are left out
+
+  bool Takes(const StackedLayer& layer) const;
+  bool operator<(const LayerChoice& o) const {
+    return this->part != o.part ? this->part < o.part : this->hiddenFragments < o.hiddenFragments;
+  }
 };
 
 // Any thread may call. Each change makes a new revision.
@@ -33,18 +56,21 @@ public:
   // Most layers.
   void Add(StackedLayer layer, std::optional<std::size_t> position = std::nullopt);
   // Changes a layer; absent values stay. Throws as Add does, and NotFound for an unknown name. An
-  // error changes nothing.
+  // error changes nothing. The caller has checked the fragment.
   void Change(const std::string& name, std::optional<double> opacity, std::optional<bool> visible,
-              std::optional<std::size_t> position);
+              std::optional<std::size_t> position,
+              const std::optional<std::string>& fragment = std::nullopt);
   void Remove(const std::string& name); // throws Error(NotFound)
 
   // A copy, bottom first; into `revision`, where it is given, which one they are of.
   std::vector<StackedLayer> Layers(std::uint64_t* revision = nullptr) const;
   std::uint64_t Revision() const;
-  // Whether no layer is visible with an opacity over 0.
-  bool Empty() const;
-  // The least PixelSize() of the visible layers; infinity without any.
-  double PixelSize() const;
+  // Whether the choice takes no layer.
+  bool Empty(const LayerChoice& choice = {}) const;
+  // The least PixelSize() of the layers that the choice takes; infinity without any.
+  double PixelSize(const LayerChoice& choice = {}) const;
+  // The choice of the same layers that names nothing that makes no difference.
+  LayerChoice Reduced(const LayerChoice& choice) const;
 
 private:
   std::size_t Find(const std::string& name) const;

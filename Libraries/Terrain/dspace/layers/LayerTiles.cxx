@@ -50,7 +50,8 @@ bool HasGround(const ColorGrid& grid, const ColorTile& tile) {
 
 std::vector<std::uint8_t> ReadLayerTile(const ColorLayer& layer, const ColorGrid& grid,
                                         const ColorTile& tile) {
-  std::vector<std::uint8_t> rgba(Count * 4);
+  const int bytes = TexelBytes(layer.Content());
+  std::vector<std::uint8_t> rgba(Count * std::size_t(bytes));
   const ColorBlock block{tile.zoom, tile.column * ColorGrid::TileTexels - 1,
                          tile.row * ColorGrid::TileTexels - 1, Side, Side};
   if (!layer.Read(grid, block, rgba.data())) {
@@ -58,13 +59,13 @@ std::vector<std::uint8_t> ReadLayerTile(const ColorLayer& layer, const ColorGrid
   }
   const Eigen::AlignedBox2d ground = GroundIn(grid, tile);
   const auto texel = [&](int x, int y) {
-    return rgba.begin() + 4 * (std::ptrdiff_t(y) * Side + x);
+    return rgba.begin() + bytes * (std::ptrdiff_t(y) * Side + x);
   };
   const auto copy = [&](int axis, double from, int to) { // a column or a row of the block
     if (from >= 0.0 && from < Side && to >= 0 && to < Side) {
       for (int i = 0; i < Side; ++i) {
-        axis == 0 ? std::copy_n(texel(int(from), i), 4, texel(to, i))
-                  : std::copy_n(texel(i, int(from)), 4, texel(i, to));
+        axis == 0 ? std::copy_n(texel(int(from), i), bytes, texel(to, i))
+                  : std::copy_n(texel(i, int(from)), bytes, texel(i, to));
       }
     }
   };

@@ -12,7 +12,8 @@ namespace dspace {
 // Whether any ground lies in the tile or next to it.
 bool HasGround(const ColorGrid& grid, const ColorTile& tile);
 
-// ColorTiles::Side x Side texels as ColorLayer::Read gives them; empty where there is nothing. The
+// ColorTiles::Side x Side texels as ColorLayer::Read gives them, of colours or of normals; empty
+// where there is nothing. The
 // first texels outside the ground are those of its edge, so that interpolation does not bring in
 // what is outside.
 std::vector<std::uint8_t> ReadLayerTile(const ColorLayer& layer, const ColorGrid& grid,

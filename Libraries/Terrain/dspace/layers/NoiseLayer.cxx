@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 #include <dspace/layers/TexelSides.h>
 

@@ -29,6 +29,7 @@ void MeshQuadtree::BuildLevel(int k) {
   }
   level.split.assign(count, 0);
   level.zone.assign(count, 0);
+  level.pinned.assign(count, 0);
   level.error.assign(count, 0.0f);
   const Level& finer = this->Levels_[k - 1];
   for (int r = 0; r < level.rows; ++r)
@@ -82,15 +83,34 @@ void MeshQuadtree::MarkZone(double c0, double r0, double c1, double r1,
     }
 }
 
-void MeshQuadtree::Refine(double tolerance) {
+void MeshQuadtree::ClearPins() {
+  for (Level& level : this->Levels_)
+    std::fill(level.pinned.begin(), level.pinned.end(), std::uint8_t{0});
+}
+
+void MeshQuadtree::Pin(int c, int r) {
+  for (const int cc : {c - 1, c})
+    for (const int rr : {r - 1, r})
+      for (int k = 1; k <= this->Top_; ++k) {
+        Level& level = this->Levels_[k];
+        if (!level.Inside(cc >> k, rr >> k))
+          break;
+        std::uint8_t& pinned = level.pinned[level.Index(cc >> k, rr >> k)];
+        if (pinned)
+          break; // as are those around it
+        pinned = 1;
+      }
+}
+
+void MeshQuadtree::Refine(double tolerance, bool pins) {
   for (Level& level : this->Levels_)
     std::fill(level.split.begin(), level.split.end(), std::uint8_t{0});
   for (int r = 0; r < this->GetRootRows(); ++r)
     for (int c = 0; c < this->GetRootColumns(); ++c)
-      this->RefineNode(this->Top_, c, r, tolerance);
+      this->RefineNode(this->Top_, c, r, tolerance, pins);
 }
 
-void MeshQuadtree::RefineNode(int k, int c, int r, double tolerance) {
+void MeshQuadtree::RefineNode(int k, int c, int r, double tolerance, bool pins) {
   Level& level = this->Levels_[k];
   if (k == 0 || !level.Inside(c, r))
     return;
@@ -99,11 +119,12 @@ void MeshQuadtree::RefineNode(int k, int c, int r, double tolerance) {
     return;
   // Errors are nested (a square's holds for all within it), so that what is not split here need
   // not be looked into.
-  if (level.state[i] == Full && level.error[i] <= tolerance && !level.zone[i])
+  if (level.state[i] == Full && level.error[i] <= tolerance && !level.zone[i] &&
+      !(pins && level.pinned[i]))
     return;
   this->Split(k, c, r);
   for (int q = 0; q < 4; ++q)
-    this->RefineNode(k - 1, 2 * c + (q & 1), 2 * r + (q >> 1), tolerance);
+    this->RefineNode(k - 1, 2 * c + (q & 1), 2 * r + (q >> 1), tolerance, pins);
 }
 
 // Splits a square, and whatever must be split so that its neighbours are at most one level coarser
@@ -188,13 +209,18 @@ double MeshQuadtree::LeafError(const Leaf& leaf) const {
   double worst = 0.0;
   if (!leaf.fan) {
     // Its diagonal runs along the grid's: edges cross at posts only.
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i) {
-        const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
-        const double flat =
-            v > u ? nw + v * (sw - nw) + u * (se - sw) : nw + u * (ne - nw) + v * (se - ne);
-        worst = std::max(worst, std::abs(flat - at(i, j)));
-      }
+    const double* heights = g.GetHeights().data();
+    const double share = 1.0 / n; // exact
+    for (int j = 0; j <= n; ++j) {
+      const double* row = heights + static_cast<std::size_t>(leaf.r + j) * g.GetColumns() + leaf.c;
+      const double v = j * share;
+      const double west = nw + v * (sw - nw), south = share * (se - sw);
+      const double start = nw + v * (se - ne), north = share * (ne - nw);
+      for (int i = 0; i < j; ++i)
+        worst = std::max(worst, std::abs(west + i * south - row[i]));
+      for (int i = j; i <= n; ++i)
+        worst = std::max(worst, std::abs(start + i * north - row[i]));
+    }
     return worst;
   }
   const double middle = at(h, h);

@@ -46,9 +46,14 @@ public:
   void MarkZone(double c0, double r0, double c1, double r1,
                 const std::function<bool(int c, int r)>& touches);
 
-  // Splits every square whose error exceeds `tolerance` [m], or that has a marked one in it, and
-  // what must follow. The result depends on these alone, not on what was there before.
-  void Refine(double tolerance);
+  // Posts that are always drawn, with all four cells around each, as if marked.
+  void ClearPins();
+  void Pin(int c, int r);
+
+  // Splits every square whose error exceeds `tolerance` [m], or that has a marked one or, if
+  // `pins`, a pinned post in it, and what must follow. The result depends on these alone, not on
+  // what was there before.
+  void Refine(double tolerance, bool pins = true);
 
   std::size_t CountTriangles() const;
   // Leaves of one root, always in the same order.
@@ -65,8 +70,9 @@ private:
     int columns = 0;
     int rows = 0;
     std::vector<std::uint8_t> state;
-    std::vector<std::uint8_t> split; // level 1 and up, as the next two
+    std::vector<std::uint8_t> split; // level 1 and up, as the next three
     std::vector<std::uint8_t> zone;
+    std::vector<std::uint8_t> pinned;
     std::vector<float> error; // of this square and all within it
 
     std::size_t Index(int c, int r) const {
@@ -78,7 +84,7 @@ private:
   };
 
   void BuildLevel(int level);
-  void RefineNode(int level, int c, int r, double tolerance);
+  void RefineNode(int level, int c, int r, double tolerance, bool pins);
   void Split(int level, int c, int r);
   void Require(int level, int c, int r);
   template<typename Visitor> void VisitLeaves(int level, int c, int r, Visitor&& visit) const;

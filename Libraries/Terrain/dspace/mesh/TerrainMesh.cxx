@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <tuple>
 
 #include <dspace/Error.h>
@@ -46,61 +45,74 @@ TerrainMesh::TerrainMesh(std::shared_ptr<const GridTerrain> terrain,
     : Terrain_(terrain
                    ? std::move(terrain)
                    : throw Error(Error::Kind::InvalidArgument, "terrain mesh", "no terrain given")),
-      Options_(options), Tree_(this->Terrain_->Grid(), TopOf(*this->Terrain_, options)) {
+      Options_(options),
+      Tree_(this->Terrain_->Undisturbed().Grid(), TopOf(*this->Terrain_, options)) {
   this->ChooseSteps();
   const double share = 1.0 - options.zoneShare;
   this->FarTolerance_ = this->ToleranceFor(
       static_cast<std::size_t>(share * static_cast<double>(options.triangleBudget)));
   this->Tiles_.resize(static_cast<std::size_t>(this->GetTileColumns()) * this->GetTileRows());
-  this->Rebuild();
+  this->Tracks_.resize(this->Tiles_.size());
+  const HeightGrid& grid = this->Terrain_->Grid();
+  this->FollowTracks({{0, 0, grid.GetColumns(), grid.GetRows(), 1, 0}});
 }
 
 void TerrainMesh::ChooseSteps() {
-  const HeightGrid& grid = this->Terrain_->Grid();
+  const HeightGrid& grid = this->Terrain_->Undisturbed().Grid();
   const Eigen::Matrix2d m = grid.GetGridToScene().linear();
   // 24 bits hold every multiple of the step up to half a tile's extent, with a bit to spare for
   // the rounding of its origin.
   const auto step = [](double half) { return std::exp2(std::ceil(std::log2(half)) + 1.0 - 24.0); };
   const double half = 0.5 * (1 << this->Tree_.GetTop());
   this->StepXY_ = step(half * (m.cwiseAbs() * Eigen::Vector2d::Ones()).maxCoeff());
-  // The greatest half range of heights in one tile.
-  double range = 1e-3;
+  // The greatest half range of heights in one tile, with the deepest ruts.
+  constexpr double ruts =
+      TrackProfile::MaximumSinkage + TrackProfile::MaximumTread + TrackProfile::MaximumRim;
+  double range = 0.0;
   const int cells = 1 << this->Tree_.GetTop();
   for (int row = 0; row < this->GetTileRows(); ++row)
     for (int column = 0; column < this->GetTileColumns(); ++column)
-      range = std::max(range, 0.5 * TileHeights(grid, column, row, cells).Size());
+      range = std::max(range, 0.5 * (TileHeights(grid, column, row, cells).Size() + ruts));
   this->StepZ_ = step(range);
   this->Report_.budget = this->Options_.triangleBudget;
   this->Report_.roundingXY = 0.5 * this->StepXY_;
   this->Report_.roundingZ = 0.5 * this->StepZ_;
 }
 
-// The least tolerance whose mesh keeps the budget: fewer triangles with every greater one.
+// A tolerance whose mesh keeps the budget and nearly uses it up: fewer triangles with every greater
+// one.
 double TerrainMesh::ToleranceFor(std::size_t budget) {
-  const auto fits = [&](float tolerance) {
-    this->Tree_.Refine(tolerance);
-    return this->Tree_.CountTriangles() <= budget;
+  const auto count = [&](double tolerance) {
+    this->Tree_.Refine(tolerance, false);
+    return static_cast<double>(this->Tree_.CountTriangles());
   };
-  if (fits(0.0f))
-    return 0.0;
-  // Bit patterns of positive floats are ordered as the floats are.
-  const auto bits = [](float f) {
-    std::uint32_t b;
-    std::memcpy(&b, &f, sizeof b);
-    return b;
-  };
-  const auto value = [](std::uint32_t b) {
-    float f;
-    std::memcpy(&f, &b, sizeof f);
-    return f;
-  };
-  std::uint32_t low = 0, high = bits(static_cast<float>(this->Tree_.GetGreatestError()));
-  // 1 in 2^12 of the error is as near as it need be.
-  while (high - low > (1u << 11)) {
-    const std::uint32_t middle = low + (high - low) / 2;
-    (fits(value(middle)) ? high : low) = middle;
+  const double wanted = static_cast<double>(budget);
+  double low = 0.0, high = this->Tree_.GetGreatestError();
+  double most = count(low), least = count(high);
+  if (most <= wanted)
+    return low;
+  // Counts fall nearly as a power of the tolerance, and jump where many squares have the same
+  // error: interpolation between logarithms, and halves where that narrows the bracket too slowly.
+  // A tolerance within 1 in 2^12, or a count within 1 in 2^9, is as near as it need be.
+  constexpr double Fine = 1.0 / (1 << 12);
+  for (int step = 0; high - low > Fine * high && least < wanted * (1.0 - 1.0 / (1 << 9)); ++step) {
+    double middle = 0.5 * (low + high);
+    if (low > 0.0 && step % 3 != 2 && most > least) {
+      const double share = std::log(most / wanted) / std::log(most / least);
+      middle = low * std::pow(high / low, std::clamp(share + 1e-3, 0.02, 0.98));
+    } else if (low == 0.0) {
+      middle = high / 16.0;
+    }
+    const double triangles = count(middle);
+    if (triangles <= wanted) {
+      high = middle;
+      least = triangles;
+    } else {
+      low = middle;
+      most = triangles;
+    }
   }
-  return value(high);
+  return high;
 }
 
 std::vector<TerrainMesh::Disc> TerrainMesh::Discs(const std::vector<TerrainZone>& zones) const {
@@ -183,15 +195,68 @@ std::vector<std::size_t> TerrainMesh::SetZones(const std::vector<TerrainZone>& z
     return {};
   }
   this->Discs_ = std::move(discs);
+  this->Chosen_ = false;
   return this->Rebuild();
+}
+
+std::vector<std::size_t> TerrainMesh::FollowTracks(const std::vector<PostRectangle>& changed) {
+  if (changed.empty()) {
+    this->Report_.tilesBuilt = 0;
+    return {};
+  }
+  const std::int64_t cells = std::int64_t(1) << this->Tree_.GetTop();
+  std::vector<bool> reached(this->Tiles_.size(), false);
+  for (const PostRectangle& posts : changed) {
+    // Tiles with these posts or those beside them.
+    const auto tile = [cells](std::int64_t post, int count) {
+      return int(std::clamp<std::int64_t>(FloorDiv(post, cells), 0, count - 1));
+    };
+    const int lastColumn = tile(posts.column + posts.width + 1, this->GetTileColumns());
+    const int lastRow = tile(posts.row + posts.height + 1, this->GetTileRows());
+    for (int row = tile(posts.row - 2, this->GetTileRows()); row <= lastRow; ++row)
+      for (int column = tile(posts.column - 2, this->GetTileColumns()); column <= lastColumn;
+           ++column)
+        reached[static_cast<std::size_t>(row) * this->GetTileColumns() + column] = true;
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    if (reached[i]) {
+      const int columns = this->GetTileColumns();
+      this->Tracks_[i] = TracksId(*this->Terrain_, int(i) % columns, int(i) / columns, int(cells));
+    }
+  this->PinTracks();
+  return this->Rebuild();
+}
+
+// Those of the whole grid: what is pinned does not depend on the order of changes.
+void TerrainMesh::PinTracks() {
+  const HeightGrid& grid = this->Terrain_->Grid();
+  this->Tree_.ClearPins();
+  const int cells = 1 << this->Tree_.GetTop();
+  for (std::size_t i = 0; i < this->Tiles_.size(); ++i) {
+    if (this->Tracks_[i] == 0)
+      continue;
+    const int c0 = int(i) % this->GetTileColumns() * cells;
+    const int r0 = int(i) / this->GetTileColumns() * cells;
+    for (int r = r0; r <= std::min(r0 + cells, grid.GetRows() - 1); ++r)
+      for (int c = c0; c <= std::min(c0 + cells, grid.GetColumns() - 1); ++c)
+        if (this->Terrain_->Rolled(c, r) >= 0.0f)
+          this->Tree_.Pin(c, r);
+  }
 }
 
 std::vector<std::size_t> TerrainMesh::Rebuild() {
   const std::size_t budget = this->Options_.triangleBudget;
-  this->MarkDiscs();
-  this->Tree_.Refine(this->FarTolerance_);
-  if (this->Tree_.CountTriangles() > budget)
-    this->Tree_.Refine(this->ToleranceFor(budget));
+  if (!this->Chosen_) {
+    this->MarkDiscs();
+    this->Tolerance_ = this->FarTolerance_;
+    this->Tree_.Refine(this->Tolerance_, false);
+    if (this->Tree_.CountTriangles() > budget)
+      this->Tolerance_ = this->ToleranceFor(budget);
+    this->Tree_.Refine(this->Tolerance_, false);
+    this->Bare_ = this->Tree_.CountTriangles();
+    this->Chosen_ = true;
+  }
+  this->Tree_.Refine(this->Tolerance_);
 
   std::vector<std::size_t> changed;
   TerrainMeshReport& report = this->Report_;
@@ -202,14 +267,14 @@ std::vector<std::size_t> TerrainMesh::Rebuild() {
       const std::size_t i = static_cast<std::size_t>(row) * this->GetTileColumns() + column;
       const std::vector<MeshQuadtree::Leaf> leaves = this->Tree_.Leaves(column, row);
       std::shared_ptr<const TerrainTile>& tile = this->Tiles_[i];
-      if (!tile || tile->id != ContentId(column, row, leaves)) {
+      if (!tile || tile->id != ContentId(column, row, leaves, this->Tracks_[i])) {
         tile = std::make_shared<const TerrainTile>(this->Build(column, row, leaves));
         changed.push_back(i);
       }
       report.triangles += tile->TriangleCount();
       report.verticalError = std::max(report.verticalError, tile->verticalError);
     }
-  report.budgetMet = report.triangles <= budget;
+  report.budgetMet = this->Bare_ <= budget;
   report.tilesBuilt = changed.size();
   return changed;
 }
@@ -224,7 +289,9 @@ TerrainTile TerrainMesh::Build(int column, int row,
     error = std::max(error, this->Tree_.LeafError(leaf));
   }
   TerrainTile tile = builder.Take();
-  tile.id = ContentId(column, row, leaves);
+  tile.id =
+      ContentId(column, row, leaves,
+                this->Tracks_[static_cast<std::size_t>(row) * this->GetTileColumns() + column]);
   tile.verticalError = error;
   return tile;
 }

@@ -3,6 +3,7 @@
 #define DSPACE_TERRAIN_TERRAINMESH_H
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace dspace {
 struct TerrainMeshOptions {
   // Triangles of the whole mesh. Far terrain is decimated to what the zones leave of it; zones, the
   // rims of holes and the right and bottom border are kept even where they alone exceed it.
+  // Ground with wheel tracks comes on top of it.
   std::size_t triangleBudget = 200000;
   // Part of the budget kept for zones, in [0, 1). While zones fit into it, far terrain stays as it
   // is when they move, and only tiles near them change.
@@ -41,11 +43,12 @@ struct TerrainMeshReport {
 };
 
 // The triangles: MeshQuadtree's, hence without cracks or T-junctions, with holes where there is no
-// data. Within a zone they are GridTerrain's own. Texture coordinates run over the whole raster,
-// pixel edge to pixel edge, so that an image of the raster's extent lies right.
+// data. Within a zone, and where wheel tracks reach, they are GridTerrain's own. Texture
+// coordinates run over the whole raster, pixel edge to pixel edge, so that an image of the raster's
+// extent lies right.
 //
-// The mesh depends only on the options and the current zones, not on their history. Not
-// synchronised. Tiles are immutable and may be kept.
+// The mesh depends only on the options, the current zones and the current tracks, not on history.
+// Not synchronised. Tiles are immutable and may be kept.
 class TerrainMesh {
 public:
   // Throws Error(InvalidArgument) for an option out of range.
@@ -58,6 +61,10 @@ public:
   // Throws Error(InvalidArgument) for a path that is empty or not finite, or a radius that is not
   // positive; the mesh is then as before.
   std::vector<std::size_t> SetZones(const std::vector<TerrainZone>& zones);
+
+  // Wheel tracks have changed posts in rectangles of the terrain; returns the indices of the tiles
+  // whose content changed.
+  std::vector<std::size_t> FollowTracks(const std::vector<PostRectangle>& changed);
 
   // Row by row; the same number for the life of the mesh.
   const std::vector<std::shared_ptr<const TerrainTile>>& Tiles() const { return this->Tiles_; }
@@ -79,6 +86,7 @@ private:
   double ToleranceFor(std::size_t budget);
   void MarkDiscs();
   std::vector<std::size_t> Rebuild();
+  void PinTracks();
   TerrainTile Build(int column, int row, const std::vector<MeshQuadtree::Leaf>& leaves) const;
   void ChooseSteps();
 
@@ -86,9 +94,13 @@ private:
   TerrainMeshOptions Options_;
   MeshQuadtree Tree_;
   double FarTolerance_ = 0.0; // [m] of the mesh without zones
+  double Tolerance_ = 0.0;    // [m] of the mesh with its zones, without tracks
+  std::size_t Bare_ = 0;      // triangles of that mesh
+  bool Chosen_ = false;       // both are of the current zones
   double StepXY_ = 0.0;       // [m] what positions are multiples of
   double StepZ_ = 0.0;
   std::vector<Disc> Discs_;
+  std::vector<std::uint64_t> Tracks_; // a tile's TracksId
   std::vector<std::shared_ptr<const TerrainTile>> Tiles_;
   TerrainMeshReport Report_;
 };

@@ -22,6 +22,7 @@ struct TerrainTile {
   std::vector<float> normals;         // x y z a vertex, unit, from the full-resolution grid
   std::vector<float> tcoords;         // u v a vertex; (0, 0) the raster's bottom-left CORNER
   std::vector<std::uint32_t> indices; // three a triangle, counter-clockwise seen from above
+  std::vector<float> rolled;          // a vertex: how much wheels rolled over it, 0 to 1; or empty
   double verticalError = 0.0; // [m] greatest difference between these triangles and the grid's
 
   std::size_t VertexCount() const { return this->positions.size() / 3; }

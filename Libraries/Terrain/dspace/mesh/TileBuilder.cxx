@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace dspace {
@@ -13,6 +14,15 @@ constexpr std::uint32_t None = std::numeric_limits<std::uint32_t>::max();
 double Rounded(double value, double step) {
   return std::round(value / step) * step;
 }
+
+// FNV-1a, a word at a time.
+struct Hash {
+  std::uint64_t value = 14695981039346656037ull;
+  void Mix(std::uint64_t word) {
+    this->value = (this->value ^ word) * 1099511628211ull;
+    this->value ^= this->value >> 32;
+  }
+};
 
 } // namespace
 
@@ -31,20 +41,45 @@ HeightRange TileHeights(const HeightGrid& grid, int column, int row, int cells) 
   return range.least <= range.greatest ? range : HeightRange{};
 }
 
-std::uint64_t ContentId(int column, int row, const std::vector<MeshQuadtree::Leaf>& leaves) {
+std::uint64_t TracksId(const GridTerrain& terrain, int column, int row, int cells) {
+  const HeightGrid& grid = terrain.Grid();
+  const int r0 = std::max(row * cells - 1, 0), c0 = std::max(column * cells - 1, 0);
+  const int r1 = std::min((row + 1) * cells + 1, grid.GetRows() - 1);
+  const int c1 = std::min((column + 1) * cells + 1, grid.GetColumns() - 1);
+  Hash hash;
+  bool any = false;
+  for (int r = r0; r <= r1; ++r)
+    for (int c = c0; c <= c1; ++c) {
+      const float rolled = terrain.Rolled(c, r);
+      if (rolled < 0.0f)
+        continue;
+      any = true;
+      const double height = grid.At(c, r);
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &height, sizeof bits);
+      hash.Mix(bits);
+      std::uint32_t share = 0;
+      std::memcpy(&share, &rolled, sizeof share);
+      hash.Mix(share);
+      hash.Mix(static_cast<std::uint64_t>(c) << 32 | static_cast<std::uint32_t>(r));
+    }
+  return !any ? 0 : hash.value == 0 ? 1 : hash.value;
+}
+
+std::uint64_t ContentId(int column, int row, const std::vector<MeshQuadtree::Leaf>& leaves,
+                        std::uint64_t tracks) {
   if (leaves.empty())
     return 0;
-  std::uint64_t hash = 14695981039346656037ull; // FNV-1a, a word at a time
-  const auto mix = [&hash](std::uint64_t word) {
-    hash = (hash ^ word) * 1099511628211ull;
-    hash ^= hash >> 32;
-  };
+  Hash hash;
+  const auto mix = [&hash](std::uint64_t word) { hash.Mix(word); };
   mix(static_cast<std::uint64_t>(column) << 32 | static_cast<std::uint32_t>(row));
   for (const MeshQuadtree::Leaf& leaf : leaves) {
     mix(static_cast<std::uint64_t>(leaf.level) << 4 | leaf.fan);
     mix(static_cast<std::uint64_t>(leaf.c) << 32 | static_cast<std::uint32_t>(leaf.r));
   }
-  return hash == 0 ? 1 : hash;
+  if (tracks != 0)
+    mix(tracks);
+  return hash.value == 0 ? 1 : hash.value;
 }
 
 TileBuilder::TileBuilder(const GridTerrain& terrain, int column, int row, int cells, double stepXY,
@@ -83,7 +118,16 @@ std::uint32_t TileBuilder::Vertex(int c, int r) {
   tile.tcoords.push_back(static_cast<float>((c + 0.5) / grid.GetColumns()));
   tile.tcoords.push_back(static_cast<float>(1.0 - (r + 0.5) / grid.GetRows()));
   tile.bounds_S.extend(p);
+  this->Rolled_.push_back(this->Terrain_.Rolled(c, r));
   return index;
+}
+
+TerrainTile TileBuilder::Take() {
+  if (std::any_of(this->Rolled_.begin(), this->Rolled_.end(), [](float r) { return r > 0.0f; })) {
+    for (const float rolled : this->Rolled_)
+      this->Tile_.rolled.push_back(std::max(rolled, 0.0f));
+  }
+  return std::move(this->Tile_);
 }
 
 void TileBuilder::Triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {

@@ -19,8 +19,13 @@ struct HeightRange {
 };
 HeightRange TileHeights(const HeightGrid& grid, int column, int row, int cells);
 
-// Of a tile's place and triangles; 0 when it has none. The grid itself never changes.
-std::uint64_t ContentId(int column, int row, const std::vector<MeshQuadtree::Leaf>& leaves);
+// Of the wheel tracks on a tile's posts and on those beside them, which turn its normals; 0 where
+// there are none.
+std::uint64_t TracksId(const GridTerrain& terrain, int column, int row, int cells);
+
+// Of a tile's place, triangles and tracks; 0 when it has no triangles.
+std::uint64_t ContentId(int column, int row, const std::vector<MeshQuadtree::Leaf>& leaves,
+                        std::uint64_t tracks);
 
 class TileBuilder {
 public:
@@ -29,7 +34,7 @@ public:
               double stepZ);
 
   void Add(const MeshQuadtree::Leaf& leaf);
-  TerrainTile Take() { return std::move(this->Tile_); }
+  TerrainTile Take();
 
 private:
   std::uint32_t Vertex(int c, int r);
@@ -43,6 +48,7 @@ private:
   double StepZ_;
   bool Mirrored_;                    // the grid's (c, r) and the scene's (x, y) turn the same way
   std::vector<std::uint32_t> Index_; // a post's vertex, or none
+  std::vector<float> Rolled_;        // a vertex
   TerrainTile Tile_;
 };
 

@@ -103,6 +103,17 @@ double HeightGrid::Slope(const Facet& facet) const {
 Eigen::Vector3d HeightGrid::PostNormal(int c, int r) const {
   // All triangles have the same area in the map, so that the area-weighted mean of their normals
   // is the mean of their gradients: (-gx, -gy, 1) is a triangle's normal times its area.
+  if (c > 0 && r > 0 && c < this->Columns_ - 1 && r < this->Rows_ - 1) {
+    const double* at = &this->Heights_[static_cast<std::size_t>(r) * this->Columns_ + c];
+    const double* north = at - this->Columns_;
+    const double* south = at + this->Columns_;
+    Facet mean;
+    mean.dc = (south[1] - south[0] + 2.0 * (at[1] - at[-1]) + north[0] - north[-1]) / 6.0;
+    mean.dr = (south[1] - at[1] + 2.0 * (south[0] - north[0]) + at[-1] - north[-1]) / 6.0;
+    if (std::isfinite(mean.dc + mean.dr + at[0])) { // all six triangles exist
+      return this->Normal(mean);
+    }
+  }
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
   const auto add = [&](int cc, int rr, bool below) {

@@ -40,12 +40,18 @@ public:
 
   int GetColumns() const { return this->Columns_; } // posts a row
   int GetRows() const { return this->Rows_; }
-  double GetMinimum() const { return this->Minimum_; } // [m] over posts with data
+  double GetMinimum() const { return this->Minimum_; } // [m] over posts with data, as given
   double GetMaximum() const { return this->Maximum_; }
   std::size_t GetHoleCount() const { return this->Holes_; } // posts without data
   const std::vector<double>& GetHeights() const {
     return this->Heights_;
   } // row by row from the top
+
+  // Moves a post that has data, within 1e9 m. GetMinimum() and GetMaximum() stay those of the
+  // heights given.
+  void Move(int c, int r, double height) {
+    this->Heights_[static_cast<std::size_t>(r) * this->Columns_ + c] = height;
+  }
 
   double At(int c, int r) const {
     return this->Heights_[static_cast<std::size_t>(r) * this->Columns_ + c];

@@ -20,6 +20,8 @@ public:
   std::vector<double> Read(std::int64_t column, std::int64_t row, int width, int height,
                            int factor) const;
   const RasterWindow& Whole() const { return this->Source_->Info().window; }
+  bool Periodic() const { return this->Periodic_; }
+  const PixelTiles& Tiles() const { return this->Few_; } // of the raster at full resolution
 
 private:
   std::shared_ptr<const ElevationSource> Source_;

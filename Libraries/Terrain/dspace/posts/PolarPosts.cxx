@@ -36,9 +36,8 @@ PolarPosts::PolarPosts(std::shared_ptr<const PostSource> base, const PostPlaceme
     : Base_(std::move(base)), Placement_(placement),
       Lattice_(LatticeAround(0.5 * std::abs(placement.Step().y()), coarsest)),
       Complete_(std::min(complete, Base_->GetLattice().levels - 1)) {
-  this->Polar_ =
-      PostPlacement::OnPole(south, placement.Radius() * std::abs(placement.Step().y()),
-                            0.5 * double(this->Lattice_.columns - 1), placement.Radius());
+  this->Polar_ = PostPlacement::OnPole(south, placement.Radius() * std::abs(placement.Step().y()),
+                                       0.5 * double(this->Lattice_.columns - 1), placement.Body());
 }
 
 void PolarPosts::Read(const PostBlock& block, float* heights) const {

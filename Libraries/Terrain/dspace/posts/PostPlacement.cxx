@@ -39,7 +39,16 @@ PostPlacement PostPlacement::OnSphere(const Eigen::Vector2d& first_deg,
   placement.First_ = first_deg * Degree;
   placement.Step_ = step_deg * Degree;
   placement.Radius_ = radius;
+  placement.Body_ = BodyEllipsoid(radius, radius);
   placement.MiddleColumn_ = middleColumn;
+  return placement;
+}
+
+PostPlacement PostPlacement::OnEllipsoid(const Eigen::Vector2d& first_deg,
+                                         const Eigen::Vector2d& step_deg, const BodyEllipsoid& body,
+                                         double middleColumn) {
+  PostPlacement placement = OnSphere(first_deg, step_deg, body.Equatorial(), middleColumn);
+  placement.Body_ = body;
   return placement;
 }
 
@@ -55,6 +64,14 @@ PostPlacement PostPlacement::OnPole(bool south, double spacing, double half, dou
   placement.PlaneStep_ = 0.5 * spacing / radius;
   placement.Half_ = half;
   placement.Radius_ = radius;
+  placement.Body_ = BodyEllipsoid(radius, radius);
+  return placement;
+}
+
+PostPlacement PostPlacement::OnPole(bool south, double spacing, double half,
+                                    const BodyEllipsoid& body) {
+  PostPlacement placement = OnPole(south, spacing, half, body.Equatorial());
+  placement.Body_ = body;
   return placement;
 }
 
@@ -76,13 +93,19 @@ Eigen::Vector3d PostPlacement::ToScene(const Eigen::Vector2d& post, double heigh
     const Eigen::Vector2d u = this->OnPlaneOfPole(post);
     const double q = u.squaredNorm();
     const Eigen::Vector3d p =
-        (this->Radius_ + height) / (1.0 + q) * Eigen::Vector3d(2.0 * u.x(), 2.0 * u.y(), 1.0 - q);
+        this->Body_.Spherical()
+            ? Eigen::Vector3d((this->Radius_ + height) / (1.0 + q) *
+                              Eigen::Vector3d(2.0 * u.x(), 2.0 * u.y(), 1.0 - q))
+            : this->Body_.Point(Eigen::Vector3d(2.0 * u.x(), 2.0 * u.y(), 1.0 - q) / (1.0 + q),
+                                height);
     return this->South_ ? Eigen::Vector3d(p.x(), -p.y(), -p.z()) : p;
   }
   const Eigen::Vector2d angles = this->First_ + post.cwiseProduct(this->Step_);
   const double c = std::cos(angles.y());
-  return (this->Radius_ + height) *
-         Eigen::Vector3d(c * std::cos(angles.x()), c * std::sin(angles.x()), std::sin(angles.y()));
+  const Eigen::Vector3d up(c * std::cos(angles.x()), c * std::sin(angles.x()),
+                           std::sin(angles.y()));
+  return this->Body_.Spherical() ? Eigen::Vector3d((this->Radius_ + height) * up)
+                                 : this->Body_.Point(up, height);
 }
 
 Eigen::Vector3d PostPlacement::ToPosts(const Eigen::Vector3d& p_S) const {
@@ -93,6 +116,13 @@ Eigen::Vector3d PostPlacement::ToPosts(const Eigen::Vector3d& p_S) const {
   const double distance = p_S.norm();
   if (distance == 0.0) {
     return {0.0, 0.0, -this->Radius_};
+  }
+  if (!this->Body_.Spherical()) { // the place of a sphere with the same vertical
+    const BodyEllipsoid::Foot foot = this->Body_.FootOf(p_S);
+    PostPlacement sphere = *this;
+    sphere.Body_ = BodyEllipsoid(this->Radius_, this->Radius_);
+    const Eigen::Vector3d post = sphere.ToPosts(foot.up * this->Radius_);
+    return {post.x(), post.y(), foot.height};
   }
   if (this->Kind_ == Kind::Pole) {
     Eigen::Vector3d d = p_S / distance;
@@ -114,6 +144,9 @@ Eigen::Vector3d PostPlacement::ToPosts(const Eigen::Vector3d& p_S) const {
 
 Eigen::Vector3d PostPlacement::Up(const Eigen::Vector3d& p_S) const {
   const double distance = p_S.norm();
+  if (this->OnBody() && !this->Body_.Spherical()) {
+    return this->Body_.FootOf(p_S).up;
+  }
   return this->Kind_ == Kind::Plane || distance == 0.0 ? Eigen::Vector3d(0.0, 0.0, 1.0)
                                                        : Eigen::Vector3d(p_S / distance);
 }
@@ -166,9 +199,17 @@ double PostPlacement::CellSize(const Eigen::Vector2d& post) const {
                     this->PostToScene_.linear().col(1).norm());
   }
   if (this->Kind_ == Kind::Pole) {
-    return 2.0 * this->Radius_ * this->PlaneStep_ / (1.0 + this->OnPlaneOfPole(post).squaredNorm());
+    const double q = this->OnPlaneOfPole(post).squaredNorm();
+    const double radius =
+        this->Body_.Spherical() ? this->Radius_ : this->Body_.EastRadius((1.0 - q) / (1.0 + q));
+    return 2.0 * radius * this->PlaneStep_ / (1.0 + q);
   }
   const double latitude = this->First_.y() + post.y() * this->Step_.y();
+  if (!this->Body_.Spherical()) {
+    const double sine = std::sin(latitude);
+    return std::max(this->Body_.EastRadius(sine) * std::abs(this->Step_.x() * std::cos(latitude)),
+                    this->Body_.NorthRadius(sine) * std::abs(this->Step_.y()));
+  }
   return this->Radius_ *
          std::max(std::abs(this->Step_.x() * std::cos(latitude)), std::abs(this->Step_.y()));
 }

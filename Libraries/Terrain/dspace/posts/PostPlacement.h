@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include <dspace/crs/BodyEllipsoid.h>
+
 namespace dspace {
 
 // Post coordinates (c, r) count level-0 posts; height is metres above the vertical datum.
@@ -11,7 +13,8 @@ class PostPlacement {
 public:
   enum class Kind {
     Plane,  // scene: X east, Y north, Z up; z = height - originHeight
-    Sphere, // scene: the body-fixed frame, Z to the north pole, X to longitude 0; a degree grid
+    Sphere, // scene: the body-fixed frame, Z to the north pole, X to longitude 0; a degree grid on
+            // a sphere or, by geodetic latitude, on an ellipsoid
     Pole    // the same scene; a square in the stereographic plane of a pole
   };
 
@@ -22,11 +25,17 @@ public:
   // `middleColumn`.
   static PostPlacement OnSphere(const Eigen::Vector2d& first_deg, const Eigen::Vector2d& step_deg,
                                 double radius, double middleColumn = 0.0);
+  static PostPlacement OnEllipsoid(const Eigen::Vector2d& first_deg,
+                                   const Eigen::Vector2d& step_deg, const BodyEllipsoid& body,
+                                   double middleColumn = 0.0);
 
   // Stereographic (Snyder 1987, p. 154; scale 1 at the pole), posts `spacing` [m] apart, post
   // (half, half) at the pole. Columns run along longitude 0 from the pole, rows against the axis
   // that completes it seen from outside: longitude 90 at the north pole, -90 at the south pole.
+  // On an ellipsoid the directions of its normals are projected, with `spacing` on a sphere of its
+  // equatorial radius.
   static PostPlacement OnPole(bool south, double spacing, double half, double radius);
+  static PostPlacement OnPole(bool south, double spacing, double half, const BodyEllipsoid& body);
 
   Kind GetKind() const { return this->Kind_; }
   // Plane: its map; its origin's height.
@@ -36,7 +45,8 @@ public:
   // Sphere [rad].
   const Eigen::Vector2d& First() const { return this->First_; }
   const Eigen::Vector2d& Step() const { return this->Step_; }
-  double Radius() const { return this->Radius_; }
+  double Radius() const { return this->Radius_; } // of an ellipsoid at the equator
+  const BodyEllipsoid& Body() const { return this->Body_; }
   bool OnBody() const { return this->Kind_ != Kind::Plane; }
   // Pole: which; post spacing at the pole over twice the radius; its column and row.
   bool South() const { return this->South_; }
@@ -71,6 +81,7 @@ private:
   Eigen::Vector2d First_ = Eigen::Vector2d::Zero(); // [rad]
   Eigen::Vector2d Step_ = Eigen::Vector2d::Ones();
   double Radius_ = 0.0;
+  BodyEllipsoid Body_;
   double MiddleColumn_ = 0.0;
   bool South_ = false;
   double PlaneStep_ = 0.0;

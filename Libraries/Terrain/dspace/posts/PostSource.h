@@ -3,11 +3,14 @@
 #define DSPACE_TERRAIN_POSTSOURCE_H
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include <dspace/posts/PostLattice.h>
 
 namespace dspace {
+
+class PostProbe;
 
 // A block of posts of one level.
 struct PostBlock {
@@ -62,6 +65,8 @@ public:
     this->Read(block, heights);
     return false;
   }
+  // For reading single posts of level 0; null if blocks are all there is.
+  virtual std::unique_ptr<PostProbe> MakeProbe() const;
 };
 
 } // namespace dspace

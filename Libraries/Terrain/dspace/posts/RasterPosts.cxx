@@ -9,6 +9,7 @@
 #include <dspace/posts/PixelWindows.h>
 #include <dspace/posts/PostsBetween.h>
 #include <dspace/posts/RasterMeans.h>
+#include <dspace/posts/RasterProbe.h>
 
 namespace dspace {
 namespace {
@@ -22,7 +23,7 @@ PostLattice LatticeOf(const ElevationInfo& info, const RasterPostsOptions& optio
                 std::to_string(width) + " x " + std::to_string(height) +
                     " posts span no surface; at least 2 x 2 are needed");
   }
-  if (options.subdivisions < 0 || options.subdivisions > 24) {
+  if (options.subdivisions < 0 || options.subdivisions > RasterPosts::Most) {
     throw Error(Error::Kind::InvalidArgument, object,
                 "subdivisions " + std::to_string(options.subdivisions) +
                     " is rejected; accepted is 0 to 24");
@@ -101,6 +102,12 @@ RasterPosts::RasterPosts(std::shared_ptr<const ElevationSource> source,
 }
 
 RasterPosts::~RasterPosts() = default;
+
+std::unique_ptr<PostProbe> RasterPosts::MakeProbe() const {
+  return this->Stretch_ == 1.0
+             ? std::make_unique<RasterProbe>(*this->Pixels_, this->Subdivisions_, this->Poles_)
+             : nullptr;
+}
 
 int RasterPosts::FirstReducedLevel() const {
   return this->Means_->FirstReducedLevel();

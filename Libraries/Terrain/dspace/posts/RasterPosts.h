@@ -52,6 +52,8 @@ public:
   const std::string& GetName() const override { return this->Name_; }
   const PostLattice& GetLattice() const override { return this->Lattice_; }
   void Read(const PostBlock& block, float* heights) const override;
+  // Null where the columns are stretched.
+  std::unique_ptr<PostProbe> MakeProbe() const override;
   // The same, and writes to `shares` how much of each post's cell has data, 0 to 1. At poles, and
   // in levels that are not means, it is 0 or 1.
   void ReadWithShares(const PostBlock& block, float* heights, float* shares) const;
@@ -59,8 +61,9 @@ public:
 
   const ElevationSource& Source() const { return *this->Source_; }
   int Subdivisions() const { return this->Subdivisions_; }
-  // Halvings of a pixel that posts on columns of one's own choice are taken at.
+  // Halvings of a pixel that posts on chosen columns are taken at.
   static constexpr int Finer = 2;
+  static constexpr int Most = 24; // subdivisions
   // The first level that is read from overviews, if the source has any.
   int FirstReducedLevel() const;
   // Clears cached reduced posts after the source has loaded other overviews.

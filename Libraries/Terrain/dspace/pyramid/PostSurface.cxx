@@ -8,13 +8,15 @@
 
 #include <dspace/Error.h>
 
+#include <dspace/posts/PostProbe.h>
 #include <dspace/pyramid/PyramidTiles.h>
 #include <dspace/raster/LruCache.h>
 
 namespace dspace {
 namespace {
 
-constexpr std::size_t MaximumSinglePosts = 16; // of a tile; for more, the tile is read
+constexpr std::size_t MaximumSinglePosts = 16; // of a tile, in blocks; for more, the tile is read
+constexpr std::size_t MaximumProbed = 1000;    // places in a tile, with a probe
 
 // Posts with one of margin, so that the rims of holes can look around.
 struct Block {
@@ -52,8 +54,8 @@ PostSurface::PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, b
 PostSurface::~PostSurface() = default;
 
 // Whether `count` more places of a tile should be read as single posts: not after many others.
-bool PostSurface::PrefersSinglePosts(std::size_t count, std::int64_t tileColumn,
-                                     std::int64_t tileRow) const {
+bool PostSurface::PrefersSingleBlocks(std::size_t count, std::int64_t tileColumn,
+                                      std::int64_t tileRow) const {
   if (!this->SinglePostCounts_ || count > MaximumSinglePosts) {
     return false;
   }
@@ -107,6 +109,12 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
     return a.tileRow != b.tileRow ? a.tileRow < b.tileRow : a.tileColumn < b.tileColumn;
   };
   std::sort(items.begin(), items.end(), before);
+  const std::unique_ptr<PostProbe> probe =
+      this->SinglePostCounts_ && this->Level_ == 0 ? this->Pyramid_->Source().MakeProbe() : nullptr;
+  const auto probed = [&](std::int64_t c, std::int64_t r, bool below, double u, double v) {
+    const auto at = [&](std::int64_t i, std::int64_t j) -> double { return probe->At(i, j); };
+    return this->OfCell(at, c, r, below, u, v);
+  };
   Block block;
   std::vector<Facet> facets;
   for (std::size_t from = 0; from < items.size();) {
@@ -120,6 +128,13 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
         high[k] = std::max(high[k], cell[k]);
       }
     }
+    if (probe && to - from <= MaximumProbed && probe->HasRows(low[1] - 1, high[1] + 2)) {
+      for (; from < to; ++from) {
+        const std::size_t i = items[from].index;
+        take(i, FacetNear(cells, posts[i] * scale, probed));
+      }
+      continue;
+    }
     block.place = {this->Level_, low[0] - 1, low[1] - 1, int(high[0] - low[0]) + 4,
                    int(high[1] - low[1]) + 4};
     block.heights.resize(std::size_t(block.place.width) * block.place.height);
@@ -130,7 +145,7 @@ void PostSurface::At(const std::vector<Eigen::Vector2d>& posts,
     };
     const bool singly =
         left > 0.0 &&
-        this->PrefersSinglePosts(to - from, items[from].tileColumn, items[from].tileRow) &&
+        this->PrefersSingleBlocks(to - from, items[from].tileColumn, items[from].tileRow) &&
         !this->Pyramid_->ReadHeld(block.place, block.heights.data());
     if (singly) {
       try {

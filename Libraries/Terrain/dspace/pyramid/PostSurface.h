@@ -22,9 +22,10 @@ public:
   using Facet = HeightGrid::Facet;
 
   // `level` has all information and divides the lattice evenly. `poles`: the first and the last row
-  // are poles. `deadline` [s]: longest wait for tiles. `scattered`: if few places lie in a tile
-  // that is not in memory, the calling thread reads only their posts. Use it if tiles are expensive
-  // and the source is not on a server.
+  // are poles. `deadline` [s]: longest wait for tiles. `scattered`: if few places lie in a tile,
+  // the calling thread reads only their posts: with the source's probe or, if it has none and the
+  // tile is not in memory, in blocks. Use it if tiles are expensive and the source is not on a
+  // server.
   PostSurface(std::shared_ptr<ElevationPyramid> pyramid, int level, bool poles, double deadline,
               bool scattered = false);
   ~PostSurface();
@@ -50,7 +51,7 @@ public:
 
 private:
   struct SinglePostCounts;
-  bool PrefersSinglePosts(std::size_t count, std::int64_t tileColumn, std::int64_t tileRow) const;
+  bool PrefersSingleBlocks(std::size_t count, std::int64_t tileColumn, std::int64_t tileRow) const;
   std::shared_ptr<ElevationPyramid> Pyramid_;
   int Level_;
   bool Poles_;

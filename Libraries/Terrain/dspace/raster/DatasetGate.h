@@ -39,8 +39,8 @@ enum class DatasetKind : std::uint8_t { Raster, Shapes, Any };
 //   metadata) is rejected.
 // - The guard checks every file that belongs to the dataset, with links resolved.
 // - Datasets that GDAL opens by itself during the call, or later in a thread with a guard
-// (overviews,
-//   masks, sources), pass the same checks. One that fails them makes the whole opening fail.
+//   (overviews, masks, sources), pass the same checks. One that fails them makes the whole opening
+//   fail.
 //
 // Throws Error under a guard: what the guard throws; NotFound; InvalidArgument (a name that is
 // rejected, see above); Unsupported (none of the accepted formats). Each names the file.

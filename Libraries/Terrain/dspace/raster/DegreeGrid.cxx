@@ -15,7 +15,7 @@ constexpr double Degree = M_PI / 180.0;
 constexpr double Near = 0.01; // of a pixel
 constexpr const char* Accepted =
     "accepted on a body is a north-up grid in longitude and latitude, or in an equidistant "
-    "cylindrical projection, on a sphere; or draw it on a plane";
+    "cylindrical projection of a sphere; or draw it on a plane";
 
 [[noreturn]] void Reject(const ElevationInfo& info, Error::Kind kind, const std::string& message) {
   throw Error(kind, "raster '" + info.path + "'", message);
@@ -70,11 +70,47 @@ MapToDegrees ToDegrees(const ElevationInfo& info) {
   return map;
 }
 
-double RadiusOf(const ElevationInfo& info) {
+// Stretches columns (axis 0) or rows about the middle of `size` pixels, so that one is `exact` map
+// units.
+void Stretch(ElevationInfo& info, int axis, int size, double exact) {
+  Eigen::Affine2d& map = info.pixelToMap;
+  map.translation()[axis] += 0.5 * size * (map.linear()(axis, axis) - exact);
+  map.linear()(axis, axis) = exact;
+}
+
+bool Rotated(const ElevationInfo& info) {
+  const Eigen::Matrix2d m = info.pixelToMap.linear();
+  return std::abs(m(0, 1)) * info.window.height > Near * std::abs(m(0, 0)) ||
+         std::abs(m(1, 0)) * info.window.width > Near * std::abs(m(1, 1));
+}
+
+BodyEllipsoid BodyOf(const ElevationInfo& info) {
+  const BodyAxes& axes = info.crs.GetAxes();
   const VerticalDatum& datum = info.verticalDatum;
   const bool stated =
-      datum.kind == VerticalDatum::Kind::Sphere || datum.kind == VerticalDatum::Kind::Radius;
-  return stated && datum.radius > 0.0 ? datum.radius : info.crs.GetAxes().semiMajor;
+      (datum.kind == VerticalDatum::Kind::Sphere || datum.kind == VerticalDatum::Kind::Radius) &&
+      datum.radius > 0.0;
+  const bool sphere = std::abs(axes.semiMajor - axes.semiMinor) <= 1e-9 * axes.semiMajor;
+  if (sphere) {
+    const double radius = stated ? datum.radius : axes.semiMajor;
+    return {radius, radius};
+  }
+  const std::string ellipsoid = "its CRS '" + info.crs.GetName() + "' stands on an ellipsoid of " +
+                                Number(axes.semiMajor) + " by " + Number(axes.semiMinor) + " m";
+  if (datum.kind == VerticalDatum::Kind::Sphere || datum.kind == VerticalDatum::Kind::Radius) {
+    Reject(info, Error::Kind::Unsupported,
+           ellipsoid + ", but its heights count from a sphere (vertical datum '" + datum.Text() +
+               "'); accepted on an ellipsoid are heights above it (vertical_datum='ellipsoid')");
+  }
+  if (info.crs.GetKind() != Crs::Kind::Geographic) {
+    Reject(info, Error::Kind::Unsupported, ellipsoid + " and is a projection; " + Accepted);
+  }
+  if (!(axes.semiMinor < axes.semiMajor && axes.semiMinor >= 0.5 * axes.semiMajor)) {
+    Reject(info, Error::Kind::Unsupported,
+           ellipsoid + "; accepted is a polar radius of half the equatorial one or more, and not "
+                       "over it");
+  }
+  return {axes.semiMajor, axes.semiMinor};
 }
 
 } // namespace
@@ -85,23 +121,17 @@ DegreeGrid DegreeGridOf(const ElevationInfo& info) {
     Reject(info, Error::Kind::Unsupported,
            std::string("it has no longitude and latitude; ") + Accepted);
   }
-  const BodyAxes& axes = crs.GetAxes();
-  if (!(std::abs(axes.semiMajor - axes.semiMinor) <= 1e-9 * axes.semiMajor)) {
-    Reject(info, Error::Kind::Unsupported,
-           "its CRS '" + crs.GetName() + "' stands on an ellipsoid of " + Number(axes.semiMajor) +
-               " by " + Number(axes.semiMinor) + " m; " + Accepted);
-  }
+  const BodyEllipsoid body = BodyOf(info);
   const Eigen::Matrix2d m = info.pixelToMap.linear();
   const int width = info.window.width;
   const int height = info.window.height;
   const MapToDegrees toDegrees = ToDegrees(info);
   DegreeGrid grid;
-  grid.radius = RadiusOf(info);
+  grid.body = body;
   grid.step_deg = m.diagonal().cwiseProduct(toDegrees.factor);
   grid.first_deg = (info.pixelToMap * Eigen::Vector2d(0.5, 0.5)).cwiseProduct(toDegrees.factor) +
                    toDegrees.shift;
-  const bool rotated = std::abs(m(0, 1)) * height > Near * std::abs(m(0, 0)) ||
-                       std::abs(m(1, 0)) * width > Near * std::abs(m(1, 1));
+  const bool rotated = Rotated(info);
   if (rotated || !(grid.step_deg.y() < 0.0)) {
     Reject(
         info, Error::Kind::Unsupported,
@@ -142,6 +172,62 @@ DegreeGrid DegreeGridOf(const ElevationInfo& info) {
                "; accepted is 90 to -90");
   }
   return grid;
+}
+
+void CloseAround(ElevationInfo& info) {
+  if (!info.crs.HasGeographic() || !info.georeferenced || Rotated(info)) {
+    return;
+  }
+  const MapToDegrees toDegrees = ToDegrees(info);
+  const Eigen::Vector2d factor = toDegrees.factor;
+  const int width = info.window.width;
+  const int height = info.window.height;
+  const double column = std::abs(info.pixelToMap.linear()(0, 0) * factor.x());
+  const double overlap = width - 360.0 / column;
+  const int around = overlap > 0.5 ? width - 1 : width; // without a column that is there twice
+  if (around > 1 && overlap > -1.0 - Near && overlap < 1.0 + Near) {
+    const double off = overlap - (width - around);
+    info.overlapColumns = off;
+    const double exact = std::copysign(360.0 / around / factor.x(), info.pixelToMap.linear()(0, 0));
+    Stretch(info, 0, around, exact);
+    if (std::abs(off) > Near) {
+      info.warnings.push_back("its " + std::to_string(around) + " columns of " + Number(column) +
+                              " degrees go around the body with " +
+                              (off > 0.0 ? "an overlap" : "a gap") + " of " +
+                              Number(std::abs(off)) +
+                              " of a column: they are taken to go around exactly, which moves a "
+                              "column by up to " +
+                              Number(0.5 * std::abs(off)) + " of its width");
+    }
+  }
+  // Rows whose edges are at the poles, or past them.
+  const double row = std::abs(info.pixelToMap.linear()(1, 1) * factor.y());
+  const double middle = (info.pixelToMap * Eigen::Vector2d(0.5 * width, 0.5 * height)).y();
+  const double centre = middle * factor.y() + toDegrees.shift.y();
+  const double beyond = height - 180.0 / row;
+  const double top = centre + 0.5 * height * row - 90.0;
+  const double bottom = -90.0 - (centre - 0.5 * height * row);
+  const auto there = [&](double degrees) { return std::abs(degrees) < row; };
+  const auto onPole = [&](double degrees) {
+    return std::abs(degrees - 0.5 * row) < Near * row; // a row's centre
+  };
+  if (std::abs(beyond) < 1.0 - Near && there(top) && there(bottom) &&
+      !(onPole(top) && onPole(bottom))) {
+    const double exact = std::copysign(180.0 / height / factor.y(), info.pixelToMap.linear()(1, 1));
+    Stretch(info, 1, height, exact);
+    info.pixelToMap.translation().y() -=
+        (info.pixelToMap * Eigen::Vector2d(0.0, 0.5 * height)).y() +
+        toDegrees.shift.y() / factor.y();
+    const double moved = std::max(std::abs(top), std::abs(bottom)) / row;
+    if (moved > Near) {
+      info.warnings.push_back("its " + std::to_string(height) + " rows of " + Number(row) +
+                              " degrees end " + Number(top / row) +
+                              " of a row beyond the north "
+                              "pole and " +
+                              Number(bottom / row) +
+                              " beyond the south pole: they are taken to go from pole to pole");
+    }
+  }
 }
 
 } // namespace dspace

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <sstream>
 
 #include <gdal_priv.h>
 
 #include <dspace/Error.h>
 #include <dspace/Utf8.h>
+
+#include <dspace/crs/MapTurn.h>
+#include <dspace/raster/DegreeGrid.h>
 
 namespace dspace {
 
@@ -58,6 +62,58 @@ void WarnOfAnotherBody(const OGRSpatialReference* own, ElevationInfo& info) {
                             "', of one of " + std::to_string(a) + " m");
 }
 
+std::string Corners(const std::array<double, 4>& window) {
+  std::ostringstream text;
+  text.precision(12);
+  text << "(" << window[0] << ", " << window[1] << ", " << window[2] << ", " << window[3] << ")";
+  return text.str();
+}
+
+// The pixels that meet a part of the map; `toMap` is of the whole raster.
+RasterWindow PixelsOf(std::array<double, 4> map, const Eigen::Affine2d& toMap, int width,
+                      int height, ElevationInfo& info) {
+  constexpr double Tiny = 1e-6; // of a pixel: what lies on an edge does not reach beyond it
+  if (!std::isfinite(map[0] + map[1] + map[2] + map[3]) || map[0] == map[2] || map[1] == map[3])
+    Reject(info, "window " + Corners(map) +
+                     " given; accepted is left, top, right, bottom in map "
+                     "coordinates, finite, with an area");
+  const double turn = MapTurn(info.crs);
+  const Eigen::Vector2d middle = toMap * Eigen::Vector2d(0.5 * width, 0.5 * height);
+  const double shift =
+      turn > 0.0 ? -turn * std::round((0.5 * (map[0] + map[2]) - middle.x()) / turn) : 0.0;
+  map[0] += shift;
+  map[2] += shift;
+  const Eigen::Affine2d toPixel = toMap.inverse();
+  Eigen::AlignedBox2d box;
+  for (const double x : {map[0], map[2]})
+    for (const double y : {map[1], map[3]})
+      box.extend(Eigen::Vector2d(toPixel * Eigen::Vector2d(x, y)));
+  const Eigen::Vector2d first = (box.min().array() + Tiny).floor();
+  const Eigen::Vector2d last = (box.max().array() - Tiny).ceil();
+  const Eigen::Vector2d all(width, height);
+  const Eigen::Vector2d from = first.cwiseMax(0.0);
+  const Eigen::Vector2d to = last.cwiseMin(all);
+  const Eigen::Vector2d topLeft = toMap * from, bottomRight = toMap * to;
+  if (!(from.array() < to.array()).all()) {
+    const Eigen::Vector2d start = toMap * Eigen::Vector2d::Zero(), end = toMap * all;
+    Reject(info, "window " + Corners(map) + " does not meet it; accepted is a part of " +
+                     Corners({start.x(), start.y(), end.x(), end.y()}));
+  }
+  const RasterWindow window{int(from.x()), int(from.y()), int(to.x() - from.x()),
+                            int(to.y() - from.y())};
+  const bool cut = from != first || to != last;
+  const bool moved = (box.min() - from).cwiseAbs().maxCoeff() > Tiny ||
+                     (box.max() - to).cwiseAbs().maxCoeff() > Tiny;
+  if (moved)
+    info.warnings.push_back("window " + Corners(map) + " is " +
+                            (cut ? "cut at the raster's edge" : "widened to whole pixels") + ": " +
+                            std::to_string(window.width) + " x " + std::to_string(window.height) +
+                            " pixels from (" + std::to_string(window.column) + ", " +
+                            std::to_string(window.row) + ") on, " +
+                            Corners({topLeft.x(), topLeft.y(), bottomRight.x(), bottomRight.y()}));
+  return window;
+}
+
 // Latitudes beyond the poles mean a wrong geotransform, and would be drawn at a wrong place.
 void CheckLatitudes(const ElevationInfo& info) {
   if (info.crs.GetKind() != Crs::Kind::Geographic)
@@ -98,7 +154,8 @@ double MetresOfUnit(const std::string& unit) {
 
 void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, ElevationInfo& info) {
   const int width = dataset.GetRasterXSize(), height = dataset.GetRasterYSize();
-  info.window = CheckedWindow(options, width, height, info);
+  if (options.window && options.mapWindow)
+    Reject(info, "a window in pixels and one on the map are given; accepted is one of them");
   if (options.pixelSize && (!(*options.pixelSize > 0.0) || !std::isfinite(*options.pixelSize)))
     Reject(info, "pixel size " + std::to_string(*options.pixelSize) +
                      " given; accepted is a positive number");
@@ -141,11 +198,15 @@ void ReadGeoreference(GDALDataset& dataset, const ElevationOptions& options, Ele
     Reject(info, "its geotransform is degenerate (pixel vectors " + std::to_string(g[1]) + ", " +
                      std::to_string(g[4]) + " and " + std::to_string(g[2]) + ", " +
                      std::to_string(g[5]) + " span no area)");
-  Eigen::Matrix2d linear;
-  linear << g[1], g[2], g[4], g[5];
-  info.pixelToMap.linear() = linear;
+  info.pixelToMap.linear() << g[1], g[2], g[4], g[5];
+  info.pixelToMap.translation() << g[0], g[3];
+  info.window = options.mapWindow
+                    ? PixelsOf(*options.mapWindow, info.pixelToMap, width, height, info)
+                    : CheckedWindow(options, width, height, info);
   info.pixelToMap.translation() =
-      Eigen::Vector2d(g[0], g[3]) + linear * Eigen::Vector2d(info.window.column, info.window.row);
+      info.pixelToMap * Eigen::Vector2d(info.window.column, info.window.row);
+  if (options.closesAround)
+    CloseAround(info);
   CheckLatitudes(info);
 }
 

@@ -2,6 +2,7 @@
 #ifndef DSPACE_TERRAIN_ELEVATIONSOURCE_H
 #define DSPACE_TERRAIN_ELEVATIONSOURCE_H
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -49,6 +50,13 @@ struct ElevationOptions {
   std::optional<std::string> crs;     // replaces the file's; see Crs::FromText
   std::optional<double> pixelSize;    // [map units], for a raster without georeference; default 1
   std::optional<RasterWindow> window; // only these pixels; must lie within the raster
+  // Only the pixels that meet this part of the map: x, y of its corners: left, top, right, bottom.
+  // Whole turns of longitude are added to it towards the raster. Not with `window`.
+  std::optional<std::array<double, 4>> mapWindow;
+  // Of a degree grid: columns that go once around the body, and rows from pole to pole, do so
+  // exactly. Each may be off by up to a pixel, since files round their pixel sizes; pixelToMap is
+  // stretched about the middle then, and a warning states by how much.
+  bool closesAround = false;
   NetworkLimits network;
   // A folder of ElevationCache: its overviews are read if the raster has none. Empty: no cache.
   std::string overviewCache;
@@ -65,6 +73,7 @@ struct ElevationInfo {
   // (column, row) of the window to map (x, y); (0, 0) is the top-left CORNER of its first pixel,
   // (0.5, 0.5) the pixel's centre, where its post stands.
   Eigen::Affine2d pixelToMap = Eigen::Affine2d::Identity();
+  double overlapColumns = 0.0; // by which the columns overlapped before they were closed around
   bool georeferenced = true;   // false: pixelToMap is made up from the pixel size
   double verticalScale = 1.0;  // metres = value * verticalScale + verticalOffset
   double verticalOffset = 0.0; // [m]; with a Radius datum the heights returned are less its radius

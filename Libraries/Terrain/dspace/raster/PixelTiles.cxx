@@ -3,11 +3,6 @@
 #include <algorithm>
 
 namespace dspace {
-namespace {
-
-constexpr int Size = 64; // pixels a side
-
-} // namespace
 
 PixelTiles::Tile PixelTiles::TileAt(int column, int row) const {
   const std::pair<int, int> key(column, row);

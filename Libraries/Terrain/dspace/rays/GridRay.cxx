@@ -52,40 +52,56 @@ struct GridRay::March {
 
 GridRay::GridRay(const HeightGrid& grid) : Grid_(grid) {
   int columns = grid.GetColumns() - 1, rows = grid.GetRows() - 1; // cells
-  const Level* finer = nullptr;
-  while (true) {
+  do {
     Level level;
-    level.columns = (columns + 1) / 2;
-    level.rows = (rows + 1) / 2;
+    level.columns = columns = (columns + 1) / 2;
+    level.rows = rows = (rows + 1) / 2;
     const std::size_t count = static_cast<std::size_t>(level.columns) * level.rows;
-    level.least.assign(count, FloatInfinity);
-    level.greatest.assign(count, -FloatInfinity);
-    for (int r = 0; r < level.rows; ++r)
-      for (int c = 0; c < level.columns; ++c) {
-        float& least = level.least[static_cast<std::size_t>(r) * level.columns + c];
-        float& greatest = level.greatest[static_cast<std::size_t>(r) * level.columns + c];
-        if (!finer) {
-          for (int rr = 2 * r; rr <= std::min(2 * r + 2, rows); ++rr)
-            for (int cc = 2 * c; cc <= std::min(2 * c + 2, columns); ++cc)
-              if (grid.HasPost(cc, rr)) {
-                least = std::min(least, RoundedDown(grid.At(cc, rr)));
-                greatest = std::max(greatest, RoundedUp(grid.At(cc, rr)));
-              }
-          continue;
-        }
-        for (int rr = 2 * r; rr < std::min(2 * r + 2, finer->rows); ++rr)
-          for (int cc = 2 * c; cc < std::min(2 * c + 2, finer->columns); ++cc) {
-            const std::size_t i = static_cast<std::size_t>(rr) * finer->columns + cc;
-            least = std::min(least, finer->least[i]);
-            greatest = std::max(greatest, finer->greatest[i]);
-          }
-      }
-    columns = level.columns;
-    rows = level.rows;
+    level.least.resize(count);
+    level.greatest.resize(count);
     this->Levels_.push_back(std::move(level));
-    finer = &this->Levels_.back();
-    if (columns == 1 && rows == 1)
-      break;
+    this->Build(this->Levels_.size() - 1, 0, 0, columns - 1, rows - 1);
+  } while (columns > 1 || rows > 1);
+}
+
+// Blocks c0..c1, r0..r1 of a level, from those of the finer one.
+void GridRay::Build(std::size_t index, int c0, int r0, int c1, int r1) {
+  Level& level = this->Levels_[index];
+  const Level* finer = index == 0 ? nullptr : &this->Levels_[index - 1];
+  const int columns = this->Grid_.GetColumns() - 1, rows = this->Grid_.GetRows() - 1; // cells
+  for (int r = r0; r <= r1; ++r)
+    for (int c = c0; c <= c1; ++c) {
+      float& least = level.least[static_cast<std::size_t>(r) * level.columns + c];
+      float& greatest = level.greatest[static_cast<std::size_t>(r) * level.columns + c];
+      least = FloatInfinity;
+      greatest = -FloatInfinity;
+      if (!finer) {
+        for (int rr = 2 * r; rr <= std::min(2 * r + 2, rows); ++rr)
+          for (int cc = 2 * c; cc <= std::min(2 * c + 2, columns); ++cc)
+            if (this->Grid_.HasPost(cc, rr)) {
+              least = std::min(least, RoundedDown(this->Grid_.At(cc, rr)));
+              greatest = std::max(greatest, RoundedUp(this->Grid_.At(cc, rr)));
+            }
+        continue;
+      }
+      for (int rr = 2 * r; rr < std::min(2 * r + 2, finer->rows); ++rr)
+        for (int cc = 2 * c; cc < std::min(2 * c + 2, finer->columns); ++cc) {
+          const std::size_t i = static_cast<std::size_t>(rr) * finer->columns + cc;
+          least = std::min(least, finer->least[i]);
+          greatest = std::max(greatest, finer->greatest[i]);
+        }
+    }
+}
+
+void GridRay::Update(const Eigen::Vector2i& first, const Eigen::Vector2i& last) {
+  // Cells that have the posts as corners, then the blocks that hold them.
+  int c0 = first.x() - 1, r0 = first.y() - 1, c1 = last.x(), r1 = last.y();
+  for (std::size_t k = 0; k < this->Levels_.size(); ++k) {
+    c0 = std::max(c0, 0) / 2;
+    r0 = std::max(r0, 0) / 2;
+    c1 = std::min(c1 / 2, this->Levels_[k].columns - 1);
+    r1 = std::min(r1 / 2, this->Levels_[k].rows - 1);
+    this->Build(k, c0, r0, c1, r1);
   }
 }
 
@@ -97,8 +113,9 @@ GridRay::Hit GridRay::Intersect(const Eigen::Vector3d& origin, const Eigen::Vect
 
   const double lastC = this->Grid_.GetColumns() - 1, lastR = this->Grid_.GetRows() - 1;
   double t0 = 0.0, t1 = maximum;
-  const double pad = 1e-6 * (1.0 + this->Grid_.GetMaximum() - this->Grid_.GetMinimum());
-  const double low = this->Grid_.GetMinimum() - pad, high = this->Grid_.GetMaximum() + pad;
+  const std::array<double, 2> range = this->Range();
+  const double pad = 1e-6 * (1.0 + range[1] - range[0]);
+  const double low = range[0] - pad, high = range[1] + pad;
   if (march.d.head<2>().isZero(0.0)) {
     Hit hit;
     hit.facet = this->Grid_.FacetAt(march.o.head<2>());

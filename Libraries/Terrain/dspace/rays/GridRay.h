@@ -2,6 +2,7 @@
 #ifndef DSPACE_TERRAIN_GRIDRAY_H
 #define DSPACE_TERRAIN_GRIDRAY_H
 
+#include <array>
 #include <vector>
 
 #include <dspace/posts/HeightGrid.h>
@@ -26,6 +27,14 @@ public:
   // Keeps a reference to `grid`, which must outlive it.
   explicit GridRay(const HeightGrid& grid);
 
+  // Posts first..last have moved.
+  void Update(const Eigen::Vector2i& first, const Eigen::Vector2i& last);
+
+  // Least and greatest height, rounded outwards to floats.
+  std::array<double, 2> Range() const {
+    return {this->Levels_.back().least[0], this->Levels_.back().greatest[0]};
+  }
+
   // First crossing for 0 <= t <= maximum of origin + t * direction, both in scene coordinates but
   // with z a height above the vertical datum. The direction is finite and not zero.
   Hit Intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
@@ -41,6 +50,7 @@ private:
     std::vector<float> greatest;
   };
 
+  void Build(std::size_t level, int c0, int r0, int c1, int r1);
   bool Visit(March& march, int level, int c, int r, double t0, double t1) const;
   bool VisitCell(March& march, int c, int r, double t0, double t1) const;
   bool Observe(March& march, double t, double above, const HeightGrid::Facet& facet) const;

@@ -27,7 +27,8 @@ RayPath::RayPath(const PostPlacement& placement, const PostLattice& lattice,
                  const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S, double maximum,
                  double low, double high)
     : Placement_(placement), Curved_(placement.GetKind() == PostPlacement::Kind::Sphere),
-      Last_(maximum), Origin_(origin_S), Direction_(unit_S) {
+      Flattened_(Curved_ && !placement.Body().Spherical()), Last_(maximum), Origin_(origin_S),
+      Direction_(unit_S) {
   // The bounds are of heights as doubles, posts are floats.
   const double pad = 1e-6 * (1.0 + high - low) + 1.2e-7 * std::max(std::abs(low), std::abs(high));
   low -= pad;
@@ -69,12 +70,31 @@ RayPath::RayPath(const PostPlacement& placement, const PostLattice& lattice,
     return;
   }
   this->Slack_ = 1e-14 * (placement.Radius() + std::abs(high)) + 1e-9;
+  if (this->Flattened_) {
+    this->FindNearest();
+    return;
+  }
   this->Nearest_ = -this->Origin_.dot(this->Direction_);
   const Eigen::Vector3d nearest = this->Origin_ + this->Nearest_ * this->Direction_;
   this->NearestRadius_ = nearest.norm();
   const double z = this->NearestRadius_ > 0.0 ? nearest.z() / this->NearestRadius_ : 0.0;
   this->Amplitude_ = std::hypot(z, this->Direction_.z());
   this->Phase_ = std::atan2(this->Direction_.z(), z);
+}
+
+// Where its height above an ellipsoid is least, which is convex along a line: there the vertical is
+// square to the ray.
+void RayPath::FindNearest() {
+  const BodyEllipsoid& body = this->Placement_.Body();
+  const Eigen::Vector3d scale(1.0, 1.0, body.Equatorial() / body.Polar());
+  const Eigen::Vector3d o = this->Origin_.cwiseProduct(scale);
+  const Eigen::Vector3d d = this->Direction_.cwiseProduct(scale);
+  this->Nearest_ = -o.dot(d) / d.squaredNorm();
+  for (int i = 0; i < 6; ++i) {
+    const BodyEllipsoid::Foot foot = this->FootAt(this->Nearest_);
+    const double radius = std::max(body.Equatorial() + foot.height, body.Polar());
+    this->Nearest_ -= radius * foot.up.dot(this->Direction_);
+  }
 }
 
 Eigen::Vector2d RayPath::Post(double t, double column) const {
@@ -84,12 +104,16 @@ Eigen::Vector2d RayPath::Post(double t, double column) const {
   }
   const Eigen::Vector2d& step = this->Placement_.Step();
   const double longitude = std::atan2(p.y(), p.x()) - this->Placement_.First().x();
-  const double latitude = std::atan2(p.z(), p.head<2>().norm());
+  const Eigen::Vector3d up = this->Flattened_ ? this->FootAt(t).up : p; // any length
+  const double latitude = std::atan2(up.z(), up.head<2>().norm());
   const double c = std::remainder(longitude - column * step.x(), 2.0 * M_PI) / step.x() + column;
   return {c, (latitude - this->Placement_.First().y()) / step.y()};
 }
 
 double RayPath::Height(double t) const {
+  if (this->Flattened_) {
+    return this->FootAt(t).height;
+  }
   const Eigen::Vector3d p = this->Origin_ + t * this->Direction_;
   return this->Curved_ ? p.norm() - this->Placement_.Radius() : p.z();
 }
@@ -128,7 +152,12 @@ void RayPath::RowCrossings(double row, std::vector<double>& t) const {
     }
     return;
   }
-  const double sine = std::sin(this->Placement_.First().y() + row * this->Placement_.Step().y());
+  const double latitude = this->Placement_.First().y() + row * this->Placement_.Step().y();
+  if (this->Flattened_) {
+    this->RowCrossingsOfEllipsoid(latitude, t);
+    return;
+  }
+  const double sine = std::sin(latitude);
   if (std::abs(sine) > this->Amplitude_ || this->Amplitude_ == 0.0) {
     return;
   }
@@ -138,6 +167,34 @@ void RayPath::RowCrossings(double row, std::vector<double>& t) const {
     if (std::abs(angle) < 0.5 * M_PI) { // seen from the centre the ray spans half a turn
       t.push_back(this->Nearest_ + this->NearestRadius_ * std::tan(angle));
     }
+  }
+}
+
+// Normals of one latitude form a cone whose tip is on the axis.
+void RayPath::RowCrossingsOfEllipsoid(double latitude, std::vector<double>& t) const {
+  const double sine = std::sin(latitude);
+  const double cosine = std::cos(latitude);
+  const BodyEllipsoid& body = this->Placement_.Body();
+  const double z = this->Origin_.z() + body.Squash() * body.EastRadius(sine) * sine;
+  const double s = sine * sine;
+  const double c = cosine * cosine;
+  const Eigen::Vector2d o = this->Origin_.head<2>();
+  const Eigen::Vector2d d = this->Direction_.head<2>();
+  // a t^2 + 2 b t + e = 0: distances from the tip along the axis and across.
+  const double a = c * this->Direction_.z() * this->Direction_.z() - s * d.squaredNorm();
+  const double b = c * z * this->Direction_.z() - s * o.dot(d);
+  const double e = c * z * z - s * o.squaredNorm();
+  double root = b * b - a * e;
+  if (root < -1e-12 * (b * b + std::abs(a * e))) {
+    return;
+  }
+  root = std::sqrt(std::max(root, 0.0));
+  const double q = -(b + std::copysign(root, b));
+  if (q != 0.0) {
+    t.push_back(e / q);
+  }
+  if (a != 0.0) {
+    t.push_back(q / a);
   }
 }
 

@@ -11,7 +11,7 @@
 namespace dspace {
 
 // t is the distance [m] along the ray from an origin of its own. Lines of the lattice are lines on
-// a plane, and half-planes of longitude and cones of latitude on a sphere.
+// a plane, and half-planes of longitude and cones of latitude on a body.
 class RayPath {
 public:
   // `unit_S` is of length 1. Heights outside [low, high] are of no interest.
@@ -40,18 +40,24 @@ public:
 
 private:
   bool Clip(double o, double d, double low, double high);
+  BodyEllipsoid::Foot FootAt(double t) const { // of an ellipsoid
+    return this->Placement_.Body().FootOf(this->Origin_ + t * this->Direction_);
+  }
+  void FindNearest();
+  void RowCrossingsOfEllipsoid(double latitude, std::vector<double>& t) const;
 
   const PostPlacement& Placement_;
   bool Curved_;
+  bool Flattened_; // on an ellipsoid
   double Entry_ = 0.0;
   double First_ = 0.0;
   double Last_ = 0.0;
   double Slack_ = 0.0;
-  // Plane: (c, r, height) and its change a metre. Sphere: in the scene.
+  // Plane: (c, r, height) and its change a metre. Body: in the scene.
   Eigen::Vector3d Origin_;
   Eigen::Vector3d Direction_;
-  // Sphere: the ray's closest place to the centre, its t, and the sine of latitude at angle a past
-  // it, Amplitude cos(a - Phase).
+  // Body: the t of the ray's lowest place. Sphere: how far it is from the centre, and the sine of
+  // latitude at angle a past it, Amplitude cos(a - Phase).
   double Nearest_ = 0.0;
   double NearestRadius_ = 0.0;
   double Amplitude_ = 0.0;

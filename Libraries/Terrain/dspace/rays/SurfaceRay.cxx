@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include <dspace/groups/GroupProbe.h>
+
 namespace dspace {
 namespace {
 
@@ -42,6 +44,8 @@ struct SurfaceRay::March {
   Hit hit;
   RayLayer::Hold hold;      // of the surface
   RayLayer::Hold plainHold; // of the plain one
+  std::unique_ptr<GroupProbe> probe;
+  bool asked = false; // for the probe
   std::vector<double> crossings;
 
   void Meet(double t, const HeightGrid::Facet& facet) {
@@ -62,7 +66,7 @@ SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
   const auto remaining = [start, deadline = this->Layer_->Surface().Deadline()] {
     return std::max(0.0, deadline - std::chrono::duration<double>(Clock::now() - start).count());
   };
-  March march{path, 0, {}, {nullptr, remaining}, {nullptr, remaining}, {}};
+  March march{path, 0, {}, {nullptr, remaining}, {nullptr, remaining}, nullptr, false, {}};
   this->Layer_->Refresh();
   if (this->Plain_) {
     this->Plain_->Refresh();
@@ -99,7 +103,7 @@ SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
                         g.y() <= lastRow + border;
     if (!inside) {
       march.side = 0;
-    } else if (this->Visit(march, bits, 0, 0, cuts[i], cuts[i + 1], false)) {
+    } else if (this->Visit(march, bits, 0, 0, cuts[i], cuts[i + 1], Way::Tiles)) {
       return march.hit;
     }
   }
@@ -108,43 +112,64 @@ SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
 
 // Whether the ray passes a block wholly above or below, as far as that is known without its cells.
 bool SurfaceRay::Misses(March& march, int bits, std::int64_t c, std::int64_t r, double t0,
-                        double t1, bool plain) const {
+                        double t1, Way way) const {
   const RayPath& path = march.path;
   const auto [low, high] = path.Heights(t0, t1);
   const auto misses = [&, low = low, high = high](const RayTile::Range& range) {
     return low - path.Slack() > range.greatest || high + path.Slack() < range.least;
   };
-  if (plain) {
-    return bits <= this->Plain_->Bits() &&
-           misses(this->Plain_->RangeOf(march.plainHold, bits, c, r));
+  const auto plain = [&] { return this->Plain_->RangeOf(march.plainHold, bits, c, r); };
+  if (way == Way::Plain) {
+    return bits <= this->Plain_->Bits() && misses(plain());
+  }
+  if (way == Way::Single) {
+    return misses(this->Cover_->Over(*march.probe, bits, c, r, plain));
   }
   if (bits < this->Layer_->Bits()) {
     return misses(this->Layer_->RangeOf(march.hold, bits, c, r));
   }
   // What the cover says spares reading the tile.
   if (this->Plain_ && bits <= this->Plain_->Bits() &&
-      misses(this->Cover_->Over(bits, c, r, this->Plain_->RangeOf(march.plainHold, bits, c, r)))) {
+      misses(this->Cover_->Over(bits, c, r, plain()))) {
     return true;
   }
   return bits == this->Layer_->Bits() && misses(this->Layer_->RangeOf(march.hold, bits, c, r));
 }
 
+// Of a block as wide as a tile of the surface, or wider.
+SurfaceRay::Way SurfaceRay::WayOf(March& march, int bits, std::int64_t c, std::int64_t r) const {
+  if (!this->Cover_->Reaches(bits, c, r)) {
+    return Way::Plain;
+  }
+  if (bits > PatchProbe::Bits || this->Cover_->ReachedByTracks(bits, c, r)) {
+    return Way::Tiles;
+  }
+  if (!march.asked) {
+    march.asked = true;
+    march.probe = this->Cover_->MakeProbe();
+  }
+  const std::int64_t size = std::int64_t(1) << bits;
+  const bool reads = march.probe && march.probe->HasRows(r * size, (r + 1) * size) &&
+                     this->Layer_->Surface().Level() == 0;
+  return reads ? Way::Single : Way::Tiles;
+}
+
 // (c, r) counts blocks of 2^bits cells. True once something is hit.
 bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1,
-                       bool plain) const {
+                       Way way) const {
   const PostLattice& lattice = this->Layer_->Surface().Lattice();
   // A ray along the last line belongs to the last cells.
   const std::int64_t lastColumn = lattice.columns - (lattice.periodic ? 1 : 2);
   c = std::clamp<std::int64_t>(c, 0, lastColumn >> bits);
   r = std::clamp<std::int64_t>(r, 0, (lattice.rows - 2) >> bits);
-  if (!plain && this->Plain_ && bits >= this->Layer_->Bits()) {
-    plain = !this->Cover_->Reaches(bits, c, r);
+  if (way == Way::Tiles && this->Plain_ && bits >= this->Layer_->Bits()) {
+    way = this->WayOf(march, bits, c, r);
   }
   if (bits == 0) {
-    return this->VisitCell(march, c, r, t0, t1, plain);
+    return this->VisitCell(march, c, r, t0, t1, way);
   }
   const RayPath& path = march.path;
-  if (this->Misses(march, bits, c, r, t0, t1, plain)) {
+  if (this->Misses(march, bits, c, r, t0, t1, way)) {
     march.side = 0; // known without looking, or there is only a hole
     return false;
   }
@@ -173,7 +198,7 @@ bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, d
     const Eigen::Vector2d g = path.Post(0.5 * (cuts[k] + cuts[k + 1]), near);
     const std::int64_t cc = 2 * c + (g.x() >= middleColumn ? 1 : 0);
     const std::int64_t rr = 2 * r + (g.y() >= middleRow ? 1 : 0);
-    if (this->Visit(march, bits - 1, cc, rr, cuts[k], cuts[k + 1], plain)) {
+    if (this->Visit(march, bits - 1, cc, rr, cuts[k], cuts[k + 1], way)) {
       return true;
     }
   }
@@ -181,11 +206,25 @@ bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, d
 }
 
 bool SurfaceRay::VisitCell(March& march, std::int64_t c, std::int64_t r, double t0, double t1,
-                           bool plain) const {
+                           Way way) const {
+  if (way == Way::Single) { // level 0
+    const auto at = [&](std::int64_t i, std::int64_t j) -> double { return march.probe->At(i, j); };
+    return this->Follow(march, this->Layer_->Surface(), at, c, r, t0, t1);
+  }
+  RayLayer& layer = way == Way::Plain ? *this->Plain_ : *this->Layer_;
+  const int level = layer.Surface().Level() + RayTile::Bits;
+  return this->Follow(
+      march, layer.Surface(),
+      layer.TileOf(way == Way::Plain ? march.plainHold : march.hold, c >> level, r >> level), c, r,
+      t0, t1);
+}
+
+// Through a cell of level 0; `posts(c, r)` are the surface's.
+template<typename Posts>
+bool SurfaceRay::Follow(March& march, const PostSurface& surface, const Posts& posts,
+                        std::int64_t c, std::int64_t r, double t0, double t1) const {
   const RayPath& path = march.path;
   // The cell between posts that it is part of, and its place in it.
-  RayLayer& layer = plain ? *this->Plain_ : *this->Layer_;
-  const PostSurface& surface = layer.Surface();
   const int level = surface.Level();
   const std::int64_t column = c >> level;
   const std::int64_t row = r >> level;
@@ -193,8 +232,6 @@ bool SurfaceRay::VisitCell(March& march, std::int64_t c, std::int64_t r, double 
   const Eigen::Vector2d corner = {double(c), double(r)};
   const Eigen::Vector2d within = {double(c - (column << level)) * size,
                                   double(r - (row << level)) * size};
-  const RayTile& tile = layer.TileOf(plain ? march.plainHold : march.hold, column >> RayTile::Bits,
-                                     row >> RayTile::Bits);
   const auto placeAt = [&](double t) {
     return Eigen::Vector2d(path.Post(t, corner.x() + 0.5) - corner);
   };
@@ -222,7 +259,7 @@ bool SurfaceRay::VisitCell(March& march, std::int64_t c, std::int64_t r, double 
     HeightGrid::Facet facet;
     const auto over = [&](double t) {
       const Eigen::Vector2d g = within + placeAt(t).cwiseMax(0.0).cwiseMin(1.0) * size;
-      facet = surface.OfCell(tile, column, row, below, g.x(), g.y());
+      facet = surface.OfCell(posts, column, row, below, g.x(), g.y());
       return path.Height(t) - facet.height;
     };
     const double fa = over(a);

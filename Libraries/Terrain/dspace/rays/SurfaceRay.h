@@ -27,7 +27,8 @@ public:
 
   // Keeps references to the surfaces, which must outlive it. Of ground that differs from a plain
   // surface of coarser posts only where `cover` says so, the rest is followed on the plain one;
-  // where it does, blocks are skipped by the plain one's heights and what the cover makes of them.
+  // where it does, blocks are skipped by the plain one's heights and what the cover makes of them,
+  // and posts are read one by one where the cover allows it.
   explicit SurfaceRay(const PostSurface& surface, const PostSurface* plain = nullptr,
                       std::unique_ptr<const RayCover> cover = nullptr);
 
@@ -35,12 +36,21 @@ public:
 
 private:
   struct March;
+  // How a block is followed.
+  enum class Way {
+    Tiles,  // of the surface
+    Single, // posts, one by one; at most 2^PatchProbe::Bits cells
+    Plain   // tiles of the plain surface
+  };
   bool Visit(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1,
-             bool plain) const;
-  bool VisitCell(March& march, std::int64_t c, std::int64_t r, double t0, double t1,
-                 bool plain) const;
+             Way way) const;
+  bool VisitCell(March& march, std::int64_t c, std::int64_t r, double t0, double t1, Way way) const;
+  template<typename Posts>
+  bool Follow(March& march, const PostSurface& surface, const Posts& posts, std::int64_t c,
+              std::int64_t r, double t0, double t1) const;
   bool Misses(March& march, int bits, std::int64_t c, std::int64_t r, double t0, double t1,
-              bool plain) const;
+              Way way) const;
+  Way WayOf(March& march, int bits, std::int64_t c, std::int64_t r) const;
 
   std::unique_ptr<RayLayer> Layer_;
   std::unique_ptr<RayLayer> Plain_; // null: there is none; nor a cover

@@ -61,7 +61,7 @@ Eigen::Vector2d PixelRoughness::Reach(const Eigen::Vector3d& p_S, double radius)
     const Eigen::Matrix2d m = placement.SceneToPost().linear();
     return radius / posts * Eigen::Vector2d(m.row(0).norm(), m.row(1).norm());
   }
-  const double angle = radius / placement.Radius();
+  const double angle = radius / placement.Body().NorthRadius(0.0); // at most
   const Eigen::Vector2d step = placement.Step().cwiseAbs() * posts;
   const double parallel = placement.Up(p_S).head<2>().norm();
   const double aside = angle < 0.5 * M_PI && std::sin(angle) < parallel
@@ -121,6 +121,8 @@ double PixelRoughness::At(const Eigen::Vector3d& p_S, double radius) const {
   const Eigen::Vector3d up = placement.Up(p_S);
   const Eigen::Vector3d north = placement.North(p_S);
   const Eigen::Vector3d east = north.cross(up);
+  const Eigen::Vector3d foot = // on the body
+      placement.OnBody() ? placement.Body().Point(up, 0.0) : Eigen::Vector3d(p_S);
   Footprint footprint;
   for (int r = 0; r < block.height; ++r) {
     for (int c = 0; c < block.width; ++c) {
@@ -135,7 +137,16 @@ double PixelRoughness::At(const Eigen::Vector3d& p_S, double radius) const {
       const Eigen::Vector3d there =
           placement.ToScene(Eigen::Vector2d(double(column), double(row)) * posts, 0.0);
       Eigen::Vector2d at;
-      if (placement.OnBody()) { // distance and direction along the sphere
+      if (placement.OnBody() && !placement.Body().Spherical()) {
+        // Along a circle of its radius, to some 1e-6 of a radius of 100 km.
+        const Eigen::Vector3d chord = there - foot;
+        const Eigen::Vector2d aside(chord.dot(east), chord.dot(north));
+        const double part = chord.norm() / placement.Radius();
+        const double level = aside.norm();
+        at = level > 0.0 ? Eigen::Vector2d(aside * (chord.norm() * (1.0 + part * part / 24.0) /
+                                                    (level * radius)))
+                         : Eigen::Vector2d::Zero();
+      } else if (placement.OnBody()) { // distance and direction along the sphere
         const Eigen::Vector3d d = there / placement.Radius();
         const Eigen::Vector2d aside(d.dot(east), d.dot(north));
         const double sine = aside.norm();

@@ -29,10 +29,37 @@ Eigen::Vector2d MiddleOf(const ElevationInfo& info) {
 
 // A square of side s departs from the sphere most in its middle, by (s sqrt 2)^2 / 8R.
 int SubdivisionsFor(const DegreeGrid& grid) {
-  const double side = grid.radius * grid.step_deg.cwiseAbs().maxCoeff() * Degree;
-  const double allowed = std::sqrt(4.0 * grid.radius * Departure);
+  // An ellipsoid bends most along the meridian at the equator.
+  const double least = grid.body.NorthRadius(0.0);
+  const double side = grid.body.Equatorial() * grid.step_deg.cwiseAbs().maxCoeff() * Degree;
+  const double allowed = std::sqrt(4.0 * least * Departure);
   const int needed = int(std::ceil(std::log2(std::max(1.0, side / allowed))));
   return std::max(needed, grid.poles ? 1 : 0);
+}
+
+// A CRS given by hand stands for a file's wrong one, but no other body has this ellipsoid.
+void RequireOwnEllipsoid(const std::string& path, const ElevationOptions& options,
+                         const ElevationInfo& info) {
+  const BodyAxes& given = info.crs.GetAxes();
+  if (!options.crs || given.semiMajor == given.semiMinor) {
+    return;
+  }
+  Crs own;
+  try {
+    ElevationOptions plain = options;
+    plain.crs.reset();
+    own = ElevationSource(path, plain).Info().crs;
+  } catch (const Error&) { // what is wrong with it is replaced
+    return;
+  }
+  const double radius = own.GetAxes().semiMajor;
+  if (radius > 0.0 && std::abs(radius - given.semiMajor) > 0.005 * radius) {
+    throw Error(Error::Kind::InvalidArgument, "raster '" + path + "'",
+                "the CRS given, '" + info.crs.GetName() +
+                    "', is of an ellipsoid with a radius of " + std::to_string(given.semiMajor) +
+                    " m; the file's own, '" + own.GetName() + "', is of a body of " +
+                    std::to_string(radius) + " m; accepted is a CRS of that body");
+  }
 }
 
 void RequireResults(const std::string& name, bool finite, Eigen::Index n, Eigen::Index results) {
@@ -95,15 +122,22 @@ std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
                 "deadline " + std::to_string(options.deadline) +
                     " s given; accepted is a positive number");
   }
-  if (options.subdivisions < 0 || options.subdivisions > (options.onBody ? 0 : 12)) {
+  if (options.subdivisions < 0 ||
+      options.subdivisions > (options.onBody ? RasterPosts::Most : 12)) {
     throw Error(Error::Kind::InvalidArgument, name,
                 std::to_string(options.subdivisions) + " subdivisions are rejected; accepted is " +
-                    (options.onBody ? "0: on a body they follow from its size" : "0 to 12"));
+                    (options.onBody ? "0 to 24" : "0 to 12"));
   }
   ClipmapGeometry geometry(options.cells); // rejects what is out of range
-  auto source = std::make_shared<ElevationSource>(path, options.elevation);
+  ElevationOptions elevation = options.elevation;
+  elevation.closesAround = options.onBody;
+  auto source = std::make_shared<ElevationSource>(path, elevation);
+  if (options.onBody) {
+    RequireOwnEllipsoid(path, options.elevation, source->Info());
+  }
   if (options.onBody && DegreeGridOf(source->Info()).repeats) {
-    ElevationOptions once = options.elevation;
+    ElevationOptions once = elevation;
+    once.mapWindow.reset();
     once.window = source->Info().window;
     --once.window->width;
     source = std::make_shared<ElevationSource>(path, once);
@@ -119,7 +153,7 @@ std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
   }
   terrain->FindHeightBounds();
   terrain->AddPatchReports();
-  terrain->Rays_ = terrain->Posts_->MakeRays(terrain->Placement_.PostToScene());
+  terrain->Rays_ = terrain->Posts_->MakeRays(terrain->Placement_);
   return terrain;
 }
 
@@ -137,7 +171,7 @@ void StreamedTerrain::InitOnPlane(const StreamedTerrainOptions& options) {
 void StreamedTerrain::InitOnBody(const StreamedTerrainOptions& options) {
   const DegreeGrid grid = DegreeGridOf(this->Info());
   TerrainPosts::Layout layout;
-  layout.subdivisions = SubdivisionsFor(grid);
+  layout.subdivisions = std::max(SubdivisionsFor(grid), options.subdivisions);
   layout.periodic = grid.periodic;
   layout.poles = grid.poles;
   const RasterWindow& window = this->Info().window;
@@ -145,36 +179,34 @@ void StreamedTerrain::InitOnBody(const StreamedTerrainOptions& options) {
                                      CoarsestFor(options.cells)) != window.width) {
     layout.subdivisions = std::max(layout.subdivisions, RasterPosts::Finer);
   }
-  this->Posts_ =
-      std::make_shared<TerrainPosts>(this->GetName(), this->Source_, options, layout, nullptr);
-  const double parts = std::ldexp(1.0, this->Subdivisions());
-  const PostLattice& lattice = this->Posts_->Lattice();
-  Eigen::Vector2d step = grid.step_deg / parts;
-  if (grid.periodic) {
-    step.x() = std::copysign(360.0 / double(lattice.columns), step.x());
-  }
-  Eigen::Vector2d first = grid.first_deg;
-  if (grid.poles) {
-    first.y() = 90.0;
-  }
-  this->Placement_ =
-      PostPlacement::OnSphere(first, step, grid.radius, 0.5 * double(lattice.columns - 1));
+  const auto placementOf = [&grid](const PostLattice& lattice, int subdivisions) {
+    Eigen::Vector2d step = grid.step_deg / std::ldexp(1.0, subdivisions);
+    if (grid.periodic) {
+      step.x() = std::copysign(360.0 / double(lattice.columns), step.x());
+    }
+    Eigen::Vector2d first = grid.first_deg;
+    if (grid.poles) {
+      first.y() = 90.0;
+    }
+    return PostPlacement::OnEllipsoid(first, step, grid.body, 0.5 * double(lattice.columns - 1));
+  };
+  this->Posts_ = std::make_shared<TerrainPosts>(this->GetName(), this->Source_, options, layout,
+                                                nullptr, placementOf);
+  this->Placement_ = placementOf(this->Posts_->Lattice(), this->Subdivisions());
   if (this->Posts_->Raster().Stretch() != 1.0) {
     this->Resample(grid, options.pyramid);
   }
 }
 
-// Its own pixels, for what is asked of them, and what the others cost.
+// Prepares queries of the raster's own pixels, and measures the error of the resampled posts.
 void StreamedTerrain::Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options) {
   RasterPostsOptions own;
   own.periodic = true;
   own.levels = 1;
-  ElevationPyramidOptions small = options;
-  small.byteBudget = std::max(options.byteBudget / 16, std::size_t(4) << 20);
   const auto pixels = std::make_shared<const RasterPosts>(this->Source_, own);
-  this->Pixels_ = std::make_shared<ElevationPyramid>(pixels, small);
-  this->PixelPlacement_ = PostPlacement::OnSphere(grid.first_deg, grid.step_deg, grid.radius,
-                                                  0.5 * double(pixels->GetLattice().columns - 1));
+  this->Pixels_ = std::make_shared<ElevationPyramid>(pixels, TerrainPosts::SmallPyramid(options));
+  this->PixelPlacement_ = PostPlacement::OnEllipsoid(
+      grid.first_deg, grid.step_deg, grid.body, 0.5 * double(pixels->GetLattice().columns - 1));
   this->Resampling_ = MeasureResampling(this->Posts_->Raster());
   std::ostringstream text;
   text.precision(3);
@@ -197,7 +229,7 @@ void StreamedTerrain::FindHeightBounds() {
   }
 }
 
-// Their warnings and heights.
+// Adds the warnings of the patches, and widens the range of heights by theirs.
 void StreamedTerrain::AddPatchReports() {
   const GroupReport* group = this->Group();
   if (!group) {
@@ -266,15 +298,19 @@ Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
     const Eigen::Vector2d g = this->Placement_.SceneToPost().linear().transpose() * rise;
     return Eigen::Vector3d(-g.x(), -g.y(), 1.0).normalized();
   }
-  // p = (R + h(c, r)) up(c, r): its derivatives by c and r span the tangent plane.
-  const double distance = this->Placement_.Radius() + facet.height;
+  // p = (R + h(c, r)) up(c, r): its derivatives by c and r span the tangent plane. On an ellipsoid
+  // the radii are those of curvature.
   const Eigen::Vector3d up = this->Placement_.Up(p_S);
+  const BodyEllipsoid& body = this->Placement_.Body();
+  const bool sphere = body.Spherical();
+  const double distance = (sphere ? body.Equatorial() : body.EastRadius(up.z())) + facet.height;
+  const double along = (sphere ? body.Equatorial() : body.NorthRadius(up.z())) + facet.height;
   const double parallel = std::max(up.head<2>().norm(), 1e-12); // cosine of the latitude
   const Eigen::Vector3d north = this->DoNorth(p_S);
   const Eigen::Vector3d east = north.cross(up);
   const Eigen::Vector2d& step = this->Placement_.Step();
   const double toEast = rise.x() == 0.0 ? 0.0 : rise.x() / (distance * parallel * step.x());
-  const double toNorth = rise.y() / (distance * step.y());
+  const double toNorth = rise.y() / (along * step.y());
   return (up - toEast * east - toNorth * north).normalized();
 }
 
@@ -292,7 +328,9 @@ SurfaceSample StreamedTerrain::SampleAt(const Eigen::Vector2d& post,
   sample.height = facet.height;
   const Eigen::Vector3d up = this->Placement_.Up(vertical_S);
   if (this->OnBody()) {
-    sample.position_S = (this->Placement_.Radius() + facet.height) * up;
+    const BodyEllipsoid& body = this->Placement_.Body();
+    sample.position_S = body.Spherical() ? Eigen::Vector3d((body.Equatorial() + facet.height) * up)
+                                         : body.Point(up, facet.height);
   } else {
     sample.position_S << vertical_S.head<2>(), facet.height - this->Placement_.OriginHeight();
   }
@@ -457,33 +495,35 @@ void StreamedTerrain::Roughness(const Eigen::Ref<const Rows3>& points_S, double 
 GroundTracks& StreamedTerrain::RequireTracks() const {
   if (!this->Posts_->Tracks()) {
     throw Error(Error::Kind::Unsupported, this->GetName(),
-                "it stands on a body; wheel tracks are accepted on a plane");
+                "it is the ground without wheel tracks; accepted: the terrain itself");
   }
   return *this->Posts_->Tracks();
 }
 
-const WheelTracks& StreamedTerrain::Tracks() const {
-  return *this->RequireTracks().Tracks();
+void StreamedTerrain::TracksChanged(const std::vector<TrackReach>& changed) {
+  this->Pyramid()->Invalidate(GroundTracks::RectanglesOf(*this->RequireTracks().Posts(), changed));
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  for (const auto& [posts, pyramid] : this->Followers_) {
+    if (const auto over = pyramid.lock()) {
+      over->Invalidate(GroundTracks::RectanglesOf(*posts, changed));
+    }
+  }
 }
 
-void StreamedTerrain::AddTracks(const std::vector<TrackAddition>& additions) {
-  this->Pyramid()->Invalidate(this->RequireTracks().Add(additions));
+const std::shared_ptr<const PostSource>& StreamedTerrain::BarePosts() const {
+  return this->RequireTracks().Bare();
 }
 
-void StreamedTerrain::RestoreTracks(const std::vector<TrackStroke>& strokes, bool continues) {
-  this->Pyramid()->Invalidate(this->RequireTracks().Restore(strokes, continues));
+std::shared_ptr<const TrackPosts>
+StreamedTerrain::TrackedPosts(std::shared_ptr<const PostSource> bare,
+                              const PostPlacement& placement) const {
+  return this->RequireTracks().PostsOn(std::move(bare), placement);
 }
 
-void StreamedTerrain::ClearTracks() {
-  this->Pyramid()->Invalidate(this->RequireTracks().Clear());
-}
-
-void StreamedTerrain::SaveTracks(const std::string& path) const {
-  this->RequireTracks().Save(path);
-}
-
-void StreamedTerrain::LoadTracks(const std::string& path, std::size_t most) {
-  this->AddTracks(this->RequireTracks().Read(path, most));
+void StreamedTerrain::Follow(std::shared_ptr<const TrackPosts> posts,
+                             const std::shared_ptr<ElevationPyramid>& pyramid) const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  this->Followers_.emplace_back(std::move(posts), pyramid);
 }
 
 std::array<double, 2> StreamedTerrain::DrawnHeights() const {
@@ -508,7 +548,10 @@ const StreamedTerrain& StreamedTerrain::Undisturbed() const {
     bare->Deadline_ = this->Deadline_;
     bare->HeightRange_ = this->HeightRange_;
     bare->HeightRangeIsExact_ = this->HeightRangeIsExact_;
-    bare->Rays_ = bare->Posts_->MakeRays(bare->Placement_.PostToScene());
+    bare->Resampling_ = this->Resampling_;
+    bare->Pixels_ = this->Pixels_;
+    bare->PixelPlacement_ = this->PixelPlacement_;
+    bare->Rays_ = bare->Posts_->MakeRays(bare->Placement_);
     this->Undisturbed_ = std::move(bare);
   }
   return *this->Undisturbed_;
@@ -516,6 +559,11 @@ const StreamedTerrain& StreamedTerrain::Undisturbed() const {
 
 int StreamedTerrain::LoadOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others) {
   return this->Posts_->LoadOverviews(others);
+}
+
+RasterPlace PlaceOf(const StreamedTerrain& terrain) {
+  const ElevationInfo& info = terrain.Info();
+  return {terrain.GetName(), info.crs, info.pixelToMap, info.window.width, info.window.height};
 }
 
 } // namespace dspace

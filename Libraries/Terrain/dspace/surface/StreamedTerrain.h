@@ -9,6 +9,8 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <dspace/crs/SceneFrame.h>
 #include <dspace/groups/GroupPosts.h>
@@ -16,13 +18,15 @@
 #include <dspace/posts/PostPlacement.h>
 #include <dspace/pyramid/ElevationPyramid.h>
 #include <dspace/raster/ElevationSource.h>
+#include <dspace/raster/RasterPlace.h>
 #include <dspace/surface/TerrainSurface.h>
-#include <dspace/tracks/WheelTracks.h>
+#include <dspace/tracks/TrackedGround.h>
 
 namespace dspace {
 
 struct DegreeGrid;
 class GroundTracks;
+class TrackPosts;
 class TerrainPosts;
 class TerrainRays;
 
@@ -32,14 +36,15 @@ struct StreamedTerrainOptions {
   std::optional<Eigen::Vector2d> origin;
   double originHeight = 0.0; // [m] above the vertical datum, where scene z = 0
   // The terrain stands on the body: the scene is the body-fixed frame (Z to the north pole, X to
-  // longitude 0). Height 0 is the sphere with the radius of the vertical datum or, if it states
-  // none, the semi-major axis of the CRS. Requires a degree grid on a sphere. A grid that goes once
+  // longitude 0). Height 0 is the CRS's sphere, with the radius of the vertical datum if it states
+  // one, or its ellipsoid of revolution, along whose normals heights count. Requires a degree grid.
+  // A grid that goes once
   // around is closed across its edge, and over the poles if it reaches them.
   bool onBody = false;
-  // On a plane, each cell between pixels is halved this many times. Wheel tracks need posts some
-  // centimetres apart. 0 to 12. On a body it follows from the body's size.
+  // Each cell between pixels is halved this many times; on a body at least as often as its size
+  // asks. Wheel tracks need posts some centimetres apart. 0 to 12, on a body to 24.
   int subdivisions = 0;
-  WheelTracksOptions tracks; // on a plane
+  WheelTracksOptions tracks;
   // Fills holes that are within this many pixels of data (FilledPosts); infinity: all. Filled
   // ground is drawn and answers queries like other ground; Filled() distinguishes it. Patches lie
   // on it; over holes of the raster they are shown alone, without a margin. > 0; absent: holes
@@ -68,7 +73,7 @@ struct ResamplingReport {
 // posts of level 0 are the triangles of HeightGrid: heights are linear in post coordinates. Queries
 // read missing tiles and wait for them; results do not depend on what was drawn before. Any thread
 // but a drawing one may query.
-class StreamedTerrain : public TerrainSurface {
+class StreamedTerrain : public TerrainSurface, public TrackedGround {
 public:
   // Reads the raster's header and a sample for HeightRange(). Throws what ElevationSource throws,
   // and Error(Unsupported) for a raster that cannot stand on a body.
@@ -107,19 +112,17 @@ public:
   // The finest level with information of the raster; patches of a group have finer posts.
   int FullLevel() const;
 
-  // Adds ruts of wheels, which change drawing and queries from now on. Places are in the scene's
-  // frame. Throws what WheelTracks::Add throws, and Error(Unsupported) on a body.
-  void AddTracks(const std::vector<TrackAddition>& additions);
-  void ClearTracks();
-  // Throws what WheelTracks::Restore throws, and Error(Unsupported) on a body.
-  void RestoreTracks(const std::vector<TrackStroke>& strokes, bool continues = false);
-  // See TrackFile.h. Loaded tracks are added. A wheel of the same name continues
-  // its loaded track.
-  void SaveTracks(const std::string& path) const;
-  // Throws Error(Resource) for a file of more contacts than `most`.
-  void LoadTracks(const std::string& path,
-                  std::size_t most = std::numeric_limits<std::size_t>::max());
-  const WheelTracks& Tracks() const; // throws Error(Unsupported) on a body
+  // Wheel tracks: TrackedGround's functions.
+
+  // Posts without wheel tracks.
+  const std::shared_ptr<const PostSource>& BarePosts() const;
+  // Other posts of a body with its wheel tracks; a pyramid over them, which Follow() names, is read
+  // again where tracks change.
+  std::shared_ptr<const TrackPosts> TrackedPosts(std::shared_ptr<const PostSource> bare,
+                                                 const PostPlacement& placement) const;
+  void Follow(std::shared_ptr<const TrackPosts> posts,
+              const std::shared_ptr<ElevationPyramid>& pyramid) const;
+
   // The ground without wheel tracks. Valid as long as this.
   const StreamedTerrain& Undisturbed() const;
   // HeightRange() widened by the greatest depth of ruts and height of rims.
@@ -142,6 +145,8 @@ public:
                  Eigen::Ref<Eigen::VectorXd> roughness) const;
 
 protected:
+  GroundTracks& RequireTracks() const override;
+  void TracksChanged(const std::vector<TrackReach>& changed) override;
   TerrainBounds DoGetBounds() const override;
   SurfaceSample DoSample(const Eigen::Vector3d& p_S) const override;
   SurfaceSample DoSampleMap(const Eigen::Vector2d& map) const override;
@@ -163,7 +168,6 @@ private:
   void InitOnPlane(const StreamedTerrainOptions& options);
   void InitOnBody(const StreamedTerrainOptions& options);
   void Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options);
-  GroundTracks& RequireTracks() const; // throws Error(Unsupported) on a body
   std::vector<Eigen::Vector2d> PostsOf(const Eigen::Ref<const Rows3>& points_S) const;
   void FindHeightBounds();
   void AddPatchReports();
@@ -182,9 +186,14 @@ private:
   double Deadline_ = 60.0;
   std::array<double, 2> HeightRange_ = {0.0, 0.0};
   bool HeightRangeIsExact_ = false;
-  mutable std::mutex Mutex_; // of Undisturbed_
+  mutable std::mutex Mutex_; // of what follows
+  mutable std::vector<std::pair<std::shared_ptr<const TrackPosts>, std::weak_ptr<ElevationPyramid>>>
+      Followers_;
   mutable std::unique_ptr<StreamedTerrain> Undisturbed_;
 };
+
+// Where its raster lies.
+RasterPlace PlaceOf(const StreamedTerrain& terrain);
 
 } // namespace dspace
 

@@ -18,12 +18,6 @@ namespace {
 
 constexpr std::size_t SmallestBudget = std::size_t(4) << 20;
 
-ElevationPyramidOptions SmallPyramid(const ElevationPyramidOptions& options) {
-  ElevationPyramidOptions small = options;
-  small.byteBudget = std::max(options.byteBudget / 16, SmallestBudget);
-  return small;
-}
-
 bool IsLocal(const std::string& path) {
   return !IsRemote(GdalPath(path));
 }
@@ -32,7 +26,7 @@ bool IsLocal(const std::string& path) {
 
 TerrainPosts::TerrainPosts(const std::string& name, std::shared_ptr<ElevationSource> source,
                            const StreamedTerrainOptions& options, const Layout& layout,
-                           const SceneFrame* frame)
+                           const SceneFrame* frame, const PlacementOf& placementOf)
     : Source_(std::move(source)), Poles_(layout.poles), Subdivisions_(layout.subdivisions),
       Deadline_(options.deadline) {
   const ElevationInfo& info = this->Source_->Info();
@@ -87,6 +81,11 @@ TerrainPosts::TerrainPosts(const std::string& name, std::shared_ptr<ElevationSou
     this->Tracks_ = std::make_unique<GroundTracks>(name, top, this->PostToScene(*frame), *frame,
                                                    info.crs, options.tracks);
     top = this->Tracks_->Posts();
+  } else {
+    this->Tracks_ = std::make_unique<GroundTracks>(
+        name, top, placementOf(top->GetLattice(), this->Subdivisions_), this->MapToPost_, info.crs,
+        options.tracks);
+    top = this->Tracks_->Posts();
   }
   this->Pyramid_ = std::make_shared<ElevationPyramid>(top, options.pyramid);
   // A tile of a group has far more posts than pixels are read: single posts are cheaper.
@@ -106,9 +105,16 @@ TerrainPosts::TerrainPosts(const std::string& name, std::shared_ptr<ElevationSou
   this->RayGround_ = RayGround{base, options.pyramid, this->FullLevel_, poles, options.deadline};
   this->RayGround_.options.byteBudget = SmallestBudget; // rays have a cache of their own
   this->RayGround_.options.threads = 1;
+  this->RayGround_.probes = scattered;
 }
 
 TerrainPosts::~TerrainPosts() = default;
+
+ElevationPyramidOptions TerrainPosts::SmallPyramid(const ElevationPyramidOptions& options) {
+  ElevationPyramidOptions small = options;
+  small.byteBudget = std::max(options.byteBudget / 16, SmallestBudget);
+  return small;
+}
 
 Eigen::Affine2d TerrainPosts::PostToScene(const SceneFrame& frame) const {
   // SceneFrame::PostToScene() places posts half a unit from the corner.
@@ -181,10 +187,10 @@ void TerrainPosts::ReadPixels(const PostBlock& block, float* heights) const {
   }
 }
 
-std::unique_ptr<TerrainRays> TerrainPosts::MakeRays(const Eigen::Affine2d& postToScene) const {
+std::unique_ptr<TerrainRays> TerrainPosts::MakeRays(const PostPlacement& placement) const {
   return std::make_unique<TerrainRays>(
       this->RayGround_, *this->Surface_, this->Group_, this->Tracked_.get(),
-      this->Tracks_ ? this->Tracks_->Tracks() : nullptr, postToScene);
+      this->Tracks_ ? this->Tracks_->Tracks() : nullptr, placement);
 }
 
 std::shared_ptr<TerrainPosts> TerrainPosts::Bare() const {

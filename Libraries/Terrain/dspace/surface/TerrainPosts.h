@@ -3,6 +3,7 @@
 #ifndef DSPACE_TERRAIN_TERRAINPOSTS_H
 #define DSPACE_TERRAIN_TERRAINPOSTS_H
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -14,7 +15,6 @@
 #include <dspace/pyramid/ElevationPyramid.h>
 #include <dspace/pyramid/PostSurface.h>
 #include <dspace/raster/ElevationSource.h>
-
 #include <dspace/surface/TerrainRays.h>
 
 namespace dspace {
@@ -34,11 +34,14 @@ public:
     bool poles = false;
   };
 
-  // `name` is for messages. `frame` is the scene on a plane, where there can be wheel tracks; null
-  // on a body. Throws what RasterPosts, OpenPatches, FilledPosts and WheelTracks throw.
+  using PlacementOf = std::function<PostPlacement(const PostLattice& lattice, int subdivisions)>;
+
+  // `name` is for messages. `frame` is the scene on a plane; null on a body, where
+  // `placementOf` says how posts of a lattice with so many subdivisions stand. Throws what
+  // RasterPosts, OpenPatches, FilledPosts and WheelTracks throw.
   TerrainPosts(const std::string& name, std::shared_ptr<ElevationSource> source,
-               const StreamedTerrainOptions& options, const Layout& layout,
-               const SceneFrame* frame);
+               const StreamedTerrainOptions& options, const Layout& layout, const SceneFrame* frame,
+               const PlacementOf& placementOf = {});
   ~TerrainPosts();
   TerrainPosts(const TerrainPosts&) = delete;
   TerrainPosts& operator=(const TerrainPosts&) = delete;
@@ -77,11 +80,14 @@ public:
   // posts.
   void ReadPixels(const PostBlock& block, float* heights) const;
   // For rays on these posts; this must outlive them.
-  std::unique_ptr<TerrainRays> MakeRays(const Eigen::Affine2d& postToScene) const;
+  std::unique_ptr<TerrainRays> MakeRays(const PostPlacement& placement) const;
 
   // The same posts without wheel tracks, with a small pyramid of their own. Created on demand.
   // Requires Tracks().
   std::shared_ptr<TerrainPosts> Bare() const;
+
+  // The options of a second pyramid of the same terrain, with a sixteenth of the memory.
+  static ElevationPyramidOptions SmallPyramid(const ElevationPyramidOptions& options);
 
   // See StreamedTerrain::LoadOverviews.
   int LoadOverviews(const std::vector<std::shared_ptr<ElevationPyramid>>& others);
@@ -95,7 +101,7 @@ private:
   std::shared_ptr<const FilledPosts> Filled_;
   std::shared_ptr<const PostSurface> Holed_; // the surface without filled posts
   std::shared_ptr<const GroupPosts> Group_;
-  std::unique_ptr<GroundTracks> Tracks_; // on a plane
+  std::unique_ptr<GroundTracks> Tracks_;
   std::shared_ptr<ElevationPyramid> Pyramid_;
   std::unique_ptr<PostSurface> Surface_;
   std::unique_ptr<PostSurface> Plain_;   // of a group: the raster's posts, where no patch reaches

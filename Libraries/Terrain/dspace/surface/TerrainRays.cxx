@@ -6,10 +6,9 @@ namespace dspace {
 
 TerrainRays::TerrainRays(RayGround ground, const PostSurface& surface,
                          std::shared_ptr<const GroupPosts> group, const PostSurface* tracked,
-                         std::shared_ptr<const WheelTracks> tracks,
-                         const Eigen::Affine2d& postToScene)
+                         std::shared_ptr<const WheelTracks> tracks, const PostPlacement& placement)
     : Ground_(std::move(ground)), Surface_(surface), Group_(std::move(group)), Tracked_(tracked),
-      Tracks_(std::move(tracks)), PostToScene_(postToScene) {}
+      Tracks_(std::move(tracks)), Placement_(placement) {}
 
 const PostSurface& TerrainRays::Bottom() const {
   std::call_once(this->BottomOnce_, [this] {
@@ -22,9 +21,10 @@ const PostSurface& TerrainRays::Bottom() const {
 
 std::unique_ptr<SurfaceRay> TerrainRays::Covered(const PostSurface& surface,
                                                  std::shared_ptr<const WheelTracks> tracks) const {
-  return std::make_unique<SurfaceRay>(
-      surface, &this->Bottom(),
-      std::make_unique<RayCover>(this->Group_, std::move(tracks), this->PostToScene_));
+  return std::make_unique<SurfaceRay>(surface, &this->Bottom(),
+                                      std::make_unique<RayCover>(this->Group_, std::move(tracks),
+                                                                 this->Placement_,
+                                                                 this->Ground_.probes));
 }
 
 const SurfaceRay& TerrainRays::Get() const {

@@ -20,16 +20,16 @@ struct RayGround {
   int level = 0; // whose posts say all
   bool poles = false;
   double deadline = 60.0; // [s]
+  bool probes = false;    // the calling thread may read single posts
 };
 
 class TerrainRays {
 public:
   // The surfaces must outlive this. `group` is null without patches; `tracked` and `tracks` are
-  // null where there can be no wheel tracks. `postToScene` takes level-0 posts to the tracks'
-  // coordinates.
+  // null where there can be no wheel tracks. `placement` is that of level-0 posts.
   TerrainRays(RayGround ground, const PostSurface& surface, std::shared_ptr<const GroupPosts> group,
               const PostSurface* tracked, std::shared_ptr<const WheelTracks> tracks,
-              const Eigen::Affine2d& postToScene);
+              const PostPlacement& placement);
 
   // For the surface as it is now. Any thread may call.
   const SurfaceRay& Get() const;
@@ -44,7 +44,7 @@ private:
   std::shared_ptr<const GroupPosts> Group_;
   const PostSurface* Tracked_;
   std::shared_ptr<const WheelTracks> Tracks_;
-  Eigen::Affine2d PostToScene_;
+  PostPlacement Placement_;
   mutable std::once_flag BottomOnce_;
   mutable std::unique_ptr<PostSurface> Bottom_;
   mutable std::once_flag RayOnce_;

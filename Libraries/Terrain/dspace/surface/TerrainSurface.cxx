@@ -195,6 +195,24 @@ Eigen::Vector3d TerrainSurface::CrsToMap(const Eigen::Vector3d& p, const Crs& cr
   return {map.x(), map.y(), p.z()};
 }
 
+std::vector<BodyCoordinates> TerrainSurface::Locate(const Eigen::Ref<const Rows3>& map) const {
+  CheckRows(this->Name_, "map points", map, map.rows());
+  std::vector<BodyCoordinates> places(std::size_t(map.rows()));
+  if (!this->Crs_.HasGeographic())
+    return places;
+  Eigen::Matrix2Xd points = map.leftCols<2>().transpose();
+  if (this->Geographic_)
+    this->Geographic_->TryApply(points);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Eigen::Vector2d p =
+        points.col(Eigen::Index(i)).cwiseProduct(this->GeographicSigns_) * this->GeographicUnit_;
+    if (p.allFinite())
+      places[i] = BodyCoordinatesOf(this->Crs_.GetAxes(), this->VerticalDatum_, Wrapped(p.x()),
+                                    p.y(), map(Eigen::Index(i), 2));
+  }
+  return places;
+}
+
 // A grid may run from 0 to 360 or from -180 to 180, or past the edge of a cylindrical map: whole
 // turns are added until the point is within half a turn of its middle.
 Eigen::Vector2d TerrainSurface::TowardsData(const Eigen::Vector2d& map) const {

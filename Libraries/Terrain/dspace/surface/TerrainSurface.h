@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include <dspace/crs/BodyCoordinates.h>
 #include <dspace/crs/Crs.h>
 #include <dspace/crs/CrsTransform.h>
 #include <dspace/crs/VerticalDatum.h>
@@ -115,6 +116,10 @@ public:
   // CrsTransform.
   Eigen::Vector3d MapToCrs(const Eigen::Vector3d& map, const Crs& crs) const;
   Eigen::Vector3d CrsToMap(const Eigen::Vector3d& p, const Crs& crs) const;
+
+  // Map points (x, y, height [m]) in the coordinates of their body, on the CRS's own ellipsoid; NaN
+  // where the CRS has no longitude and latitude, and where the projection has no value.
+  std::vector<BodyCoordinates> Locate(const Eigen::Ref<const Rows3>& map) const;
 
   // The local vertical, unit.
   Eigen::Vector3d Up(const Eigen::Vector3d& p_S) const;

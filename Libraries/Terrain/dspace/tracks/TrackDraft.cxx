@@ -31,7 +31,7 @@ bool OnLine(const KeptContact& from, const KeptContact& to, const KeptContact& c
 
 } // namespace
 
-void TrackDraft::Append(const TrackContact& given, bool exact, double tolerance) {
+void TrackDraft::Append(const TrackContact& given, bool exact, double tolerance, double scale) {
   std::vector<KeptContact>& line = this->contacts;
   KeptContact c{given.place.x(), given.place.y(), given.rolled, float(given.heading),
                 float(given.sinkage)};
@@ -42,7 +42,7 @@ void TrackDraft::Append(const TrackContact& given, bool exact, double tolerance)
   }
   const double moved = std::hypot(c.x - line.back().x, c.y - line.back().y);
   if (std::isnan(c.rolled)) {
-    c.rolled = line.back().rolled + moved;
+    c.rolled = line.back().rolled + moved / scale;
   }
   if (exact) {
     this->skipped.clear();

@@ -30,8 +30,8 @@ struct TrackDraft {
   std::vector<KeptContact> skipped; // on the last line, which were left out
 
   // Leaves out contacts that lie on the line between others to `tolerance` (WheelTracksOptions),
-  // unless all are kept (`exact`).
-  void Append(const TrackContact& given, bool exact, double tolerance);
+  // unless all are kept (`exact`). `scale`: metres of the tracks' plane per metre.
+  void Append(const TrackContact& given, bool exact, double tolerance, double scale = 1.0);
 };
 
 } // namespace dspace

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <dspace/pyramid/ElevationPyramid.h>
 
 #include <dspace/raster/LruCache.h>
+#include <dspace/tracks/TrackMap.h>
+#include <dspace/tracks/TrackProbe.h>
 
 namespace dspace {
 namespace {
@@ -25,8 +28,8 @@ public:
       : Lattice_(lattice), Block_(block), Places_(places),
         First_(std::size_t(block.width) * block.height, None) {}
 
-  void Draw(const TrackSegment& segment, const Eigen::Affine2d& postToScene,
-            const Eigen::Affine2d& sceneToPost);
+  // `heights` are those of the ground, without tracks.
+  void Draw(const TrackSegment& segment, const TrackMap& map, const float* heights);
   // Lowers heights and sets weights.
   void Apply(float* heights, float* weights) const;
 
@@ -39,14 +42,10 @@ private:
   std::vector<TrackDepth> Depths_;
 };
 
-void Canvas::Draw(const TrackSegment& segment, const Eigen::Affine2d& postToScene,
-                  const Eigen::Affine2d& sceneToPost) {
-  const Eigen::AlignedBox2d box = segment.Box();
-  Eigen::AlignedBox2d posts;
-  for (int i = 0; i < 4; ++i) {
-    posts.extend(sceneToPost * box.corner(Eigen::AlignedBox2d::CornerType(i)));
-  }
+void Canvas::Draw(const TrackSegment& segment, const TrackMap& map, const float* heights) {
   const double step = std::ldexp(1.0, this->Block_.level);
+  const Eigen::AlignedBox2d posts =
+      map.PostsIn(segment.Box(), step * (double(this->Block_.column) + 0.5 * this->Block_.width));
   const double half = this->Block_.level == 0 ? 0.0 : 0.5;
   // Posts whose cells may reach into it; the lattice's last one stands nearer than its number says.
   const auto first = [&](double place, std::int64_t from, int count) {
@@ -67,12 +66,14 @@ void Canvas::Draw(const TrackSegment& segment, const Eigen::Affine2d& postToScen
       const auto c =
           double(this->Lattice_.ColumnPlace(this->Block_.level, this->Block_.column + i));
       std::size_t& at = this->First_[std::size_t(j) * this->Block_.width + i];
+      const float height = heights[std::size_t(j) * this->Block_.width + i];
+      const double scale = map.Scale({c, r}, std::isnan(height) ? 0.0 : double(height));
       for (int k = 0; k < n * n; ++k) {
         const int place[2] = {k % n, k / n};
         const double dc = n == 1 ? 0.0 : ((place[0] + 0.5) / n - 0.5) * step;
         const double dr = n == 1 ? 0.0 : ((place[1] + 0.5) / n - 0.5) * step;
         TrackDepth depth;
-        if (!segment.At(postToScene * Eigen::Vector2d(c + dc, r + dr), depth)) {
+        if (!segment.At(map.ToTracks({c + dc, r + dr}), depth, scale)) {
           continue;
         }
         if (at == None) {
@@ -110,29 +111,52 @@ void Canvas::Apply(float* heights, float* weights) const {
 TrackPosts::TrackPosts(std::shared_ptr<const PostSource> source,
                        std::shared_ptr<const WheelTracks> tracks,
                        const Eigen::Affine2d& postToScene)
-    : Source_(std::move(source)), Tracks_(std::move(tracks)), PostToScene_(postToScene),
-      SceneToPost_(postToScene.inverse()),
+    : TrackPosts(std::move(source), std::move(tracks), PostPlacement::OnPlane(postToScene)) {}
+
+TrackPosts::TrackPosts(std::shared_ptr<const PostSource> source,
+                       std::shared_ptr<const WheelTracks> tracks, const PostPlacement& placement)
+    : Source_(std::move(source)), Tracks_(std::move(tracks)), Placement_(placement),
       Tiles_(
           std::make_unique<LruCache<Key, std::shared_ptr<const std::vector<float>>>>(KeptTiles)) {}
 
 TrackPosts::~TrackPosts() = default;
 
 double TrackPosts::Spacing(int level) const {
-  return std::ldexp(this->PostToScene_.linear().colwise().norm().minCoeff(), level);
+  // Columns of a body crowd at its poles: its rows count.
+  using Kind = PostPlacement::Kind;
+  const double own = this->Placement_.GetKind() == Kind::Plane
+                         ? this->Placement_.PostToScene().linear().colwise().norm().minCoeff()
+                     : this->Placement_.GetKind() == Kind::Pole
+                         ? 2.0 * this->Placement_.Radius() * this->Placement_.PlaneStep()
+                         : this->Placement_.Radius() * std::abs(this->Placement_.Step().y());
+  return std::ldexp(own, level);
 }
 
-// What reaches into the cells of its posts.
-std::vector<TrackSegment> TrackPosts::Near(const PostBlock& block, double width) const {
+Eigen::AlignedBox2d TrackPosts::Around(const PostBlock& block, const TrackMap& map) const {
   const double step = std::ldexp(1.0, block.level);
   const Eigen::Vector2d first(double(block.column) - 2.0, double(block.row) - 2.0);
   const Eigen::Vector2d last(double(block.column + block.width) + 1.0,
                              double(block.row + block.height) + 1.0);
-  const Eigen::AlignedBox2d posts(first * step, last * step);
-  Eigen::AlignedBox2d box;
-  for (int i = 0; i < 4; ++i) {
-    box.extend(this->PostToScene_ * posts.corner(Eigen::AlignedBox2d::CornerType(i)));
+  return map.BoxOf({first * step, last * step});
+}
+
+bool TrackPosts::Reaches(const PostBlock& block) const {
+  const std::optional<TrackMap> map = TrackMap::Of(this->Placement_, *this->Tracks_);
+  return map && this->Tracks_->Reaches(this->Around(block, *map));
+}
+
+// What reaches into the cells of its posts.
+std::vector<TrackSegment> TrackPosts::Near(const PostBlock& block, const TrackMap& map,
+                                           double width) const {
+  return this->Tracks_->Near(this->Around(block, map), width);
+}
+
+std::unique_ptr<PostProbe> TrackPosts::MakeProbe() const {
+  std::unique_ptr<PostProbe> bare = this->Source_->MakeProbe();
+  if (!bare || this->Tracks_->Empty()) {
+    return bare;
   }
-  return this->Tracks_->Near(box, width);
+  return std::make_unique<TrackProbe>(*this, std::move(bare));
 }
 
 std::shared_ptr<const std::vector<float>> TrackPosts::TileOf(const Key& key) const {
@@ -168,7 +192,11 @@ void TrackPosts::Read(const PostBlock& block, float* heights) const {
 }
 
 bool TrackPosts::ReadWithTracks(const PostBlock& block, float* heights, float* tracks) const {
-  const std::vector<TrackSegment> segments = this->Near(block, this->Spacing(block.level) / Widest);
+  const std::optional<TrackMap> map = TrackMap::Of(this->Placement_, *this->Tracks_);
+  std::vector<TrackSegment> segments;
+  if (map) {
+    segments = this->Near(block, *map, this->Spacing(block.level) / Widest);
+  }
   if (segments.empty()) {
     this->Source_->Read(block, heights);
     return false;
@@ -176,7 +204,7 @@ bool TrackPosts::ReadWithTracks(const PostBlock& block, float* heights, float* t
   this->ReadSource(block, heights);
   Canvas canvas(this->GetLattice(), block, std::min(1 << std::min(block.level, 16), MaximumPlaces));
   for (const TrackSegment& segment : segments) {
-    canvas.Draw(segment, this->PostToScene_, this->SceneToPost_);
+    canvas.Draw(segment, *map, heights);
   }
   if (tracks) {
     std::fill_n(tracks, std::size_t(block.width) * block.height, 0.0f);
@@ -185,29 +213,40 @@ bool TrackPosts::ReadWithTracks(const PostBlock& block, float* heights, float* t
   return true;
 }
 
-void TrackPosts::Lower(const PostBlock& block, float* heights) const {
-  Canvas canvas(this->GetLattice(), block, 1);
-  for (const TrackSegment& segment : this->Near(block, this->Spacing(0) / Widest)) {
-    canvas.Draw(segment, this->PostToScene_, this->SceneToPost_);
+void TrackPosts::Lower(const PostBlock& block, float* heights, float* tracks) const {
+  const std::optional<TrackMap> map = TrackMap::Of(this->Placement_, *this->Tracks_);
+  if (!map) {
+    return;
   }
-  canvas.Apply(heights, nullptr);
+  Canvas canvas(this->GetLattice(), block, 1);
+  for (const TrackSegment& segment : this->Near(block, *map, this->Spacing(0) / Widest)) {
+    canvas.Draw(segment, *map, heights);
+  }
+  canvas.Apply(heights, tracks);
 }
 
 std::vector<PostRectangle> TrackPosts::RectanglesOf(const std::vector<TrackReach>& changed) const {
   const PostLattice& lattice = this->GetLattice();
   std::vector<PostRectangle> rectangles;
+  const std::optional<TrackMap> map = TrackMap::Of(this->Placement_, *this->Tracks_);
+  if (!map) {
+    return rectangles;
+  }
   for (const TrackReach& reach : changed) {
-    Eigen::AlignedBox2d posts;
-    for (int i = 0; i < 4; ++i) {
-      posts.extend(this->SceneToPost_ * reach.box.corner(Eigen::AlignedBox2d::CornerType(i)));
-    }
+    const Eigen::AlignedBox2d posts = map->PostsIn(reach.box, 0.5 * double(lattice.columns - 1));
     const auto clamped = [](double v, std::int64_t count) {
       return std::int64_t(std::clamp(std::floor(v), -1.0, double(count)));
     };
     PostRectangle rectangle;
-    rectangle.column = clamped(posts.min().x(), lattice.columns);
+    if (lattice.periodic) { // they may begin in any turn
+      rectangle.column = std::int64_t(std::floor(posts.min().x()));
+      rectangle.width = std::min(std::int64_t(std::floor(posts.max().x())) + 2 - rectangle.column,
+                                 lattice.columns);
+    } else {
+      rectangle.column = clamped(posts.min().x(), lattice.columns);
+      rectangle.width = clamped(posts.max().x(), lattice.columns) + 2 - rectangle.column;
+    }
     rectangle.row = clamped(posts.min().y(), lattice.rows);
-    rectangle.width = clamped(posts.max().x(), lattice.columns) + 2 - rectangle.column;
     rectangle.height = clamped(posts.max().y(), lattice.rows) + 2 - rectangle.row;
     rectangle.levels = 0;
     while (rectangle.levels < lattice.levels &&

@@ -14,9 +14,9 @@ bool TrackProfile::operator==(const TrackProfile& o) const {
 }
 
 TrackSegment::TrackSegment(const TrackProfile& profile, const TrackContact& from,
-                           const TrackContact& to)
+                           const TrackContact& to, double stretch)
     : Profile_(profile), From_(from), To_(to), Along_(to.place - from.place),
-      Squared_(Along_.squaredNorm()) {
+      Squared_(Along_.squaredNorm()), Stretch_(stretch) {
   const Eigen::Vector2d path =
       this->Squared_ > 0.0 ? Eigen::Vector2d(this->Along_.normalized()) : Eigen::Vector2d(1.0, 0.0);
   const auto axis = [&path](double heading) {
@@ -29,15 +29,15 @@ TrackSegment::TrackSegment(const TrackProfile& profile, const TrackContact& from
 Eigen::AlignedBox2d TrackSegment::Box() const {
   Eigen::AlignedBox2d box(this->From_.place);
   box.extend(this->To_.place);
-  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(this->Profile_.Reach());
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(this->Profile_.Reach() * this->Stretch_);
   return {box.min() - reach, box.max() + reach};
 }
 
-bool TrackSegment::At(const Eigen::Vector2d& place, TrackDepth& depth) const {
+bool TrackSegment::At(const Eigen::Vector2d& place, TrackDepth& depth, double scale) const {
   const Eigen::Vector2d offset = place - this->From_.place;
   const double t =
       this->Squared_ > 0.0 ? std::clamp(offset.dot(this->Along_) / this->Squared_, 0.0, 1.0) : 0.0;
-  const Eigen::Vector2d away = offset - t * this->Along_;
+  const Eigen::Vector2d away = (offset - t * this->Along_) / scale;
   const TrackProfile& p = this->Profile_;
   const double aside = away.norm() - 0.5 * p.width; // of the floor's edge
   if (aside > p.wall + p.rimWidth) {

@@ -55,10 +55,12 @@ struct TrackDepth {
 // Between two contacts all values change evenly; the ends are round.
 class TrackSegment {
 public:
-  TrackSegment(const TrackProfile& profile, const TrackContact& from, const TrackContact& to);
+  // `stretch`: metres of the tracks' plane per metre of the profile, at most; for Box().
+  TrackSegment(const TrackProfile& profile, const TrackContact& from, const TrackContact& to,
+               double stretch = 1.0);
 
-  // False beyond its reach.
-  bool At(const Eigen::Vector2d& place, TrackDepth& depth) const;
+  // False beyond its reach. `scale`: metres of the tracks' plane per metre on the ground there.
+  bool At(const Eigen::Vector2d& place, TrackDepth& depth, double scale = 1.0) const;
   Eigen::AlignedBox2d Box() const; // all that it reaches
 
 private:
@@ -67,6 +69,7 @@ private:
   TrackContact To_;
   Eigen::Vector2d Along_;
   double Squared_; // length
+  double Stretch_;
   Eigen::Vector2d FromHeading_;
   Eigen::Vector2d ToHeading_;
 };

@@ -64,7 +64,34 @@ TrackContact WheelTracks::Whole(const KeptContact& c) {
 
 TrackSegment WheelTracks::SegmentOf(const Stroke& stroke, std::size_t index) const {
   const std::size_t next = std::min(index + 1, stroke.contacts.size() - 1);
-  return {stroke.profile, Whole(stroke.contacts[index]), Whole(stroke.contacts[next])};
+  return this->SegmentOf(stroke.profile, stroke.contacts[index], stroke.contacts[next]);
+}
+
+TrackSegment WheelTracks::SegmentOf(const TrackProfile& profile, const KeptContact& from,
+                                    const KeptContact& to) const {
+  double stretch = 1.0;
+  if (this->Chart_) {
+    stretch = 1.01 * TrackChart::Widest *
+              std::max(this->ScaleAt(from.x, from.y), this->ScaleAt(to.x, to.y));
+  }
+  return {profile, Whole(from), Whole(to), stretch};
+}
+
+double WheelTracks::ScaleAt(double x, double y) const {
+  return this->Chart_ ? this->Chart_->Scale(Eigen::Vector2d(x, y)) : 1.0;
+}
+
+void WheelTracks::SetChart(std::shared_ptr<const TrackChart> chart) {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  if (!this->Strokes_.empty()) {
+    throw Error(Error::Kind::Internal, this->Name_, "it has wheel tracks in another chart");
+  }
+  this->Chart_ = std::move(chart);
+}
+
+std::shared_ptr<const TrackChart> WheelTracks::Chart() const {
+  const std::lock_guard<std::mutex> lock(this->Mutex_);
+  return this->Chart_;
 }
 
 // At most, and no more where all its lines are new: of its new contacts and of every cell that they
@@ -79,8 +106,8 @@ std::size_t WheelTracks::CostOf(const TrackDraft& draft, std::unordered_set<Cell
   const std::size_t lines = std::max<std::size_t>(draft.contacts.size(), 2) - 1;
   for (std::size_t i = 0; i < lines; ++i) {
     const std::size_t next = std::min(i + 1, draft.contacts.size() - 1);
-    const TrackSegment segment(draft.profile, Whole(draft.contacts[i]),
-                               Whole(draft.contacts[next]));
+    const TrackSegment segment =
+        this->SegmentOf(draft.profile, draft.contacts[i], draft.contacts[next]);
     const CellRange range(segment.Box());
     if (range.Count() * double(EntryBytes) > double(this->Options_.byteBudget)) {
       return this->Options_.byteBudget + 1; // a line around the world
@@ -258,7 +285,8 @@ std::vector<TrackReach> WheelTracks::Add(const std::vector<TrackAddition>& addit
     }
     TrackDraft draft = this->Begin(addition);
     for (const TrackContact& contact : addition.contacts) {
-      draft.Append(contact, addition.exact, this->Options_.tolerance);
+      draft.Append(contact, addition.exact, this->Options_.tolerance,
+                   this->ScaleAt(contact.place.x(), contact.place.y()));
     }
     cost += this->CostOf(draft, taken);
     this->RequireBudget(cost);
@@ -372,8 +400,9 @@ TrackStatistics WheelTracks::Statistics() const {
   for (const Stroke& stroke : this->Strokes_) {
     statistics.contacts += stroke.contacts.size();
     for (std::size_t i = 1; i < stroke.contacts.size(); ++i) {
-      statistics.length += std::hypot(stroke.contacts[i].x - stroke.contacts[i - 1].x,
-                                      stroke.contacts[i].y - stroke.contacts[i - 1].y);
+      const KeptContact& from = stroke.contacts[i - 1];
+      const KeptContact& to = stroke.contacts[i];
+      statistics.length += std::hypot(to.x - from.x, to.y - from.y) / this->ScaleAt(to.x, to.y);
     }
   }
   return statistics;

@@ -8,12 +8,14 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
+#include <dspace/tracks/TrackChart.h>
 #include <dspace/tracks/TrackDraft.h>
 #include <dspace/tracks/TrackSegment.h>
 #include <dspace/tracks/TrackStroke.h>
@@ -67,6 +69,11 @@ public:
   // profile. They need the same budget as in the original. Throws as Add.
   std::vector<TrackReach> Restore(const std::vector<TrackStroke>& strokes, bool continues = false);
 
+  // On a body: the chart that places are in, whose scale ruts, lengths and distances rolled follow.
+  // Only where there are no tracks; null: a plane.
+  void SetChart(std::shared_ptr<const TrackChart> chart);
+  std::shared_ptr<const TrackChart> Chart() const;
+
   bool Empty() const;
   TrackStatistics Statistics() const;
   std::size_t StrokeCount() const;
@@ -91,7 +98,10 @@ private:
 
   static TrackContact Whole(const KeptContact& contact);
   TrackDraft Begin(const TrackAddition& addition) const;
+  double ScaleAt(double x, double y) const;
   TrackSegment SegmentOf(const Stroke& stroke, std::size_t index) const;
+  TrackSegment SegmentOf(const TrackProfile& profile, const KeptContact& from,
+                         const KeptContact& to) const;
   std::size_t CostOf(const TrackDraft& draft, std::unordered_set<Cell>& taken) const;
   void RequireBudget(std::size_t cost) const;
   void Commit(TrackDraft& draft, std::vector<TrackReach>& changed);
@@ -102,6 +112,7 @@ private:
   std::string Name_;
   WheelTracksOptions Options_;
   mutable std::mutex Mutex_; // of what follows
+  std::shared_ptr<const TrackChart> Chart_;
   std::vector<Stroke> Strokes_;
   std::map<std::string, std::size_t> Latest_;                  // of a name
   std::unordered_map<Cell, std::vector<std::uint64_t>> Cells_; // stroke << 32 | first contact

@@ -20,8 +20,8 @@ double GreatestColor(GDALRasterBand& band) {
 
 } // namespace
 
-RasterContent RasterContent::Of(GDALDataset& file, int band, const std::string& object,
-                                std::vector<std::string>& warnings) {
+RasterContent RasterContent::Of(GDALDataset& file, int band, RasterShown shown,
+                                const std::string& object, std::vector<std::string>& warnings) {
   RasterContent content;
   content.band = band;
   GdalErrors errors;
@@ -32,7 +32,9 @@ RasterContent RasterContent::Of(GDALDataset& file, int band, const std::string& 
     throw Error(Error::Kind::Unsupported, object,
                 "it holds no band itself; name one of its subdatasets (gdalinfo lists them)");
   }
-  if (content.band > 0) {
+  if (shown == RasterShown::Vectors) {
+    content.InspectVectors(file, object);
+  } else if (content.band > 0) {
     if (content.band > content.bands) {
       throw Error(Error::Kind::InvalidArgument, object,
                   "band " + std::to_string(content.band) + " asked for; accepted are 1 to " +
@@ -79,6 +81,44 @@ void RasterContent::InspectBand(GDALRasterBand& first, const std::string& object
   }
   this->alphaScale = 1.0 / 255.0;
   this->unit = ToUtf8(first.GetUnitType() ? first.GetUnitType() : "");
+}
+
+// 8 and 16 bits without a scale are coded from -1 to 1.
+void RasterContent::InspectVectors(GDALDataset& file, const std::string& object) {
+  this->vectors = true;
+  this->channels = 3;
+  if (this->bands != this->channels) {
+    throw Error(Error::Kind::Unsupported, object,
+                "it has " + std::to_string(this->bands) + (this->bands == 1 ? " band" : " bands") +
+                    "; accepted are 3: x, y and z of a normal");
+  }
+  const auto inspect = [&](int number) {
+    GDALRasterBand& band = *file.GetRasterBand(number);
+    RasterContent one;
+    one.InspectBand(band, object);
+    int stated[2] = {0, 0};
+    band.GetScale(&stated[0]);
+    band.GetOffset(&stated[1]);
+    const bool coded = one.type == GDT_Byte || one.type == GDT_UInt16;
+    if (coded && !(stated[0] && one.scale != 1.0) && !(stated[1] && one.offset != 0.0)) {
+      one.scale = 2.0 / GreatestColor(band);
+      one.offset = -1.0;
+    }
+    return one;
+  };
+  const RasterContent first = inspect(1);
+  this->type = first.type;
+  this->scale = first.scale;
+  this->offset = first.offset;
+  this->alphaScale = first.alphaScale;
+  for (int k = 2; k <= this->channels; ++k) {
+    const RasterContent other = inspect(k);
+    if (other.type != this->type || other.scale != this->scale || other.offset != this->offset) {
+      throw Error(Error::Kind::Unsupported, object,
+                  "its bands 1 and " + std::to_string(k) +
+                      " have different types, scales or offsets; accepted are 3 bands alike");
+    }
+  }
 }
 
 void RasterContent::InspectImage(GDALDataset& file, const std::string& object,

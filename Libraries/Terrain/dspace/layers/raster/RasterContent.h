@@ -15,8 +15,9 @@
 
 namespace dspace {
 
-// How a band is shown: its values, opaque where there is data; or 0, opaque where there is none.
-enum class RasterShown : std::uint8_t { Data, Holes };
+// How a band is shown: its values, opaque where there is data; or 0, opaque where there is none. Or
+// how a raster is: three bands as the numbers of a vector, opaque where there is data.
+enum class RasterShown : std::uint8_t { Data, Holes, Vectors };
 
 // Cells of a raster whose columns are reduced by 2^levelX and rows by 2^levelY: there are
 // ceil(width / 2^levelX) of them side by side, all of one size, which together cover the raster.
@@ -49,12 +50,13 @@ struct RasterHandle {
 
 // Describes one band of a raster, or a raster as an image.
 struct RasterContent {
-  int band = 0; // from 1; 0: the raster is an image
+  int band = 0; // from 1; 0: the raster is an image, or vectors
+  bool vectors = false;
   int width = 0;
   int height = 0;
   int bands = 0; // of the file
   GDALDataType type = GDT_Byte;
-  int channels = 1; // 3: RGB; 1: grey or values
+  int channels = 1; // 3: RGB or a vector; 1: grey or values
   bool alpha = false;
   std::vector<std::array<float, 4>> palette; // r g b 0 to 255, opacity 0 to 1
   double scale = 1.0;
@@ -72,7 +74,7 @@ struct RasterContent {
 
   // Reads the header. Appends to `warnings`. Throws Error(Unsupported, InvalidArgument, Corrupt)
   // that names `object`.
-  static RasterContent Of(GDALDataset& file, int band, const std::string& object,
+  static RasterContent Of(GDALDataset& file, int band, RasterShown shown, const std::string& object,
                           std::vector<std::string>& warnings);
 
   // Whether `file` still has this size, number of bands and type.
@@ -89,6 +91,7 @@ private:
   void InspectImage(GDALDataset& file, const std::string& object,
                     std::vector<std::string>& warnings);
   void InspectBand(GDALRasterBand& first, const std::string& object);
+  void InspectVectors(GDALDataset& file, const std::string& object);
 };
 
 } // namespace dspace

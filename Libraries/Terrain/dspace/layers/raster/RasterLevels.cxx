@@ -52,7 +52,7 @@ RasterLevels::RasterLevels(std::string object, std::string path, int band,
   DatasetPointer file = OpenRaster(this->Path_, this->Network_, this->Warnings_, this->Object_);
   const NetworkScope scope(this->Network_, this->Path_);
   this->Remote_ = IsRemote(this->Path_) || IsRemoteMosaic(*file);
-  this->Content_ = RasterContent::Of(*file, band, this->Object_, this->Warnings_);
+  this->Content_ = RasterContent::Of(*file, band, shown, this->Object_, this->Warnings_);
   auto handle = std::make_unique<RasterHandle>();
   handle->levels = this->Content_.LevelsOf(*file);
   this->FileLevels_ = handle->levels.size();
@@ -138,6 +138,28 @@ void RasterLevels::Read(const LevelWindow& window, float* cells) const {
   };
   this->Overviews_->Make(window, {[this] { return this->Open(); }, read, this->Bias()});
   this->WithHandle([&](RasterHandle& handle) { this->ReadCells(handle, window, cells); });
+}
+
+void RasterLevels::ReadValues(const RasterWindow& part, double* values) const {
+  const std::size_t count = std::size_t(part.width) * part.height;
+  std::vector<float> opacities(count);
+  this->WithHandle([&](RasterHandle& handle) {
+    const RasterLevel& level = handle.levels[0];
+    if (const auto kept = this->Pixels_->CachedLevel(level, 0)) {
+      for (int y = 0; y < part.height; ++y) {
+        const std::size_t to = std::size_t(y) * part.width;
+        this->Pixels_->Values(level, *kept, std::size_t(part.row + y) * level.width + part.column,
+                              part.width, values + to, &opacities[to]);
+      }
+      return;
+    }
+    RasterPixels::Raw raw;
+    this->Pixels_->Read(level, part, part.width, part.height, raw);
+    this->Pixels_->Values(level, raw, 0, count, values, opacities.data());
+  });
+  for (std::size_t i = 0; i < count; ++i) {
+    values[i] = opacities[i] > 0.0f ? values[i] : std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 void RasterLevels::ReadCells(RasterHandle& handle, const LevelWindow& window, float* cells) const {

@@ -22,7 +22,8 @@ struct RasterLayerOptions;
 // Safe to call from several threads. Each call uses a GDAL handle of its own.
 class RasterLevels {
 public:
-  // `band`: its values, scaled, less Bias(); 0: the raster is an image, with colours 0 to 255.
+  // `band`: its values, scaled, less Bias(); 0: the raster is an image, with colours 0 to 255, or
+  // holds vectors, with numbers of -1 to 1.
   // Throws Error that names `object`, see ImageLayer.h.
   RasterLevels(std::string object, std::string path, int band, const RasterLayerOptions& options,
                RasterShown shown = RasterShown::Data);
@@ -33,7 +34,7 @@ public:
   const std::string& Object() const { return this->Object_; }
   int Width() const { return this->Content_.width; }
   int Height() const { return this->Content_.height; }
-  int Channels() const { return this->Content_.channels; } // 3: RGB; 1: grey or values
+  int Channels() const { return this->Content_.channels; } // 3: RGB, vectors; 1: grey or values
   int ColumnsAt(int level) const { return this->Content_.ColumnsAt(level); }
   int RowsAt(int level) const { return this->Content_.RowsAt(level); }
 
@@ -41,6 +42,9 @@ public:
   // row. Each is the mean over the cell, from the file's overviews if they are as fine. Throws
   // Error(Io, Corrupt).
   void Read(const LevelWindow& window, float* cells) const;
+  // Writes the values of pixels of one band, row by row, in full resolution and precision; NaN
+  // where there is no data. `part` lies in the raster. Throws Error(Io, Corrupt).
+  void ReadValues(const RasterWindow& part, double* values) const;
   // Bytes of decoded pixels that stay in memory, see RasterPixels::PlanCaching.
   std::size_t KeptBytes() const;
 

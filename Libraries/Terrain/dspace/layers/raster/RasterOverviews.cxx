@@ -43,10 +43,13 @@ void RasterOverviews::Plan(GDALDataset& file, const std::string& folder) {
     return;
   }
   const bool holes = this->Shown_ == RasterShown::Holes;
-  this->Identity_ = std::string("1: ") + (holes ? "holes of " : "") + "band " +
-                    std::to_string(content.band) + " of " + std::to_string(content.width) + " x " +
-                    std::to_string(content.height) + " x " + std::to_string(content.bands) +
-                    FilesOf(file);
+  this->Identity_ = std::string("1: ") +
+                    (holes             ? "holes of "
+                     : content.vectors ? "vectors of "
+                                       : "") +
+                    "band " + std::to_string(content.band) + " of " +
+                    std::to_string(content.width) + " x " + std::to_string(content.height) + " x " +
+                    std::to_string(content.bands) + FilesOf(file);
   this->InMemory_ = folder.empty();
   this->Folder_ = folder;
   if (this->InMemory_) {
@@ -55,7 +58,9 @@ void RasterOverviews::Plan(GDALDataset& file, const std::string& folder) {
     this->Folder_ = own.str();
   }
   const std::string name = ElevationCache::FileFor(this->Folder_, this->Path_, content.band);
-  this->Stem_ = name.substr(0, name.rfind('.')) + (holes ? "-layer-holes-" : "-layer-");
+  this->Stem_ = name.substr(0, name.rfind('.')) + (holes             ? "-layer-holes-"
+                                                   : content.vectors ? "-layer-vectors-"
+                                                                     : "-layer-");
 }
 
 bool RasterOverviews::IsCoarsest(int level) const {
@@ -141,7 +146,7 @@ void RasterOverviews::Make(const LevelWindow& window, const Access& access) {
   this->Ready_ = true;
 }
 
-// Straight colours of 8 bits, or values as doubles; opacity 0 to 255.
+// Straight colours of 8 bits, or values or vectors as doubles; opacity 0 to 255.
 void RasterOverviews::WriteLevel(RasterHandle& handle, int level, const Access& access) {
   const int step = this->Content_.channels + 1;
   const int columns = this->Content_.ColumnsAt(level);
@@ -170,7 +175,9 @@ void RasterOverviews::WriteLevel(RasterHandle& handle, int level, const Access& 
                                  "BIGTIFF=IF_SAFER", "INTERLEAVE=BAND",  nullptr};
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   DatasetPointer file(driver ? driver->Create(part.c_str(), columns, rows, step,
-                                              this->Content_.band > 0 ? GDT_Float64 : GDT_Byte,
+                                              this->Content_.band > 0 || this->Content_.vectors
+                                                  ? GDT_Float64
+                                                  : GDT_Byte,
                                               const_cast<char**>(options))
                              : nullptr);
   check(file != nullptr);

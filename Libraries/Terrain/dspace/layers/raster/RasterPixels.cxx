@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 #include <dspace/Error.h>
 #include <dspace/layers/raster/RasterOverviews.h>
@@ -137,6 +138,79 @@ std::shared_ptr<const RasterPixels::Raw> RasterPixels::CachedLevel(const RasterL
   return cached;
 }
 
+void RasterPixels::Values(const RasterLevel& level, const Raw& raw, std::size_t first,
+                          std::size_t count, double* values, float* opacities) const {
+  const GDALDataType type = level.colors[0]->GetRasterDataType();
+  const int samples = int(level.colors.size()) + (level.alpha ? 1 : 0);
+  const int size = GDALGetDataTypeSizeBytes(type);
+  const std::uint8_t* from = raw.samples.data() + first * std::size_t(samples * size);
+  const auto copy = [&](const std::uint8_t* of, double* to) {
+    GDALCopyWords64(of, type, samples * size, to, GDT_Float64, sizeof(double), GPtrDiff_t(count));
+  };
+  copy(from, values);
+  std::fill_n(opacities, count, 1.0f);
+  if (level.alpha) {
+    std::vector<double> alpha(count);
+    copy(from + size, alpha.data());
+    std::transform(alpha.begin(), alpha.end(), opacities,
+                   [](double value) { return float(value) * (1.0f / 255.0f); });
+  } else if (!raw.mask.empty()) {
+    std::transform(raw.mask.begin() + std::ptrdiff_t(first),
+                   raw.mask.begin() + std::ptrdiff_t(first + count), opacities,
+                   [](std::uint8_t value) { return value / 255.0f; });
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    values[i] = level.cached ? values[i] : values[i] * this->Content_.scale + this->Content_.offset;
+    opacities[i] = std::isfinite(values[i]) ? opacities[i] : 0.0f;
+  }
+}
+
+void RasterPixels::ConvertVectors(const RasterLevel& level, const Raw& raw, std::size_t first,
+                                  std::size_t count, float* pixels) const {
+  const GDALDataType type = level.colors[0]->GetRasterDataType();
+  const int samples = level.alpha ? 4 : 3;
+  const int size = GDALGetDataTypeSizeBytes(type);
+  const std::uint8_t* from = raw.samples.data() + first * std::size_t(samples * size);
+  std::vector<double> numbers(count * std::size_t(samples));
+  GDALCopyWords64(from, type, size, numbers.data(), GDT_Float64, sizeof(double),
+                  GPtrDiff_t(numbers.size()));
+  const std::uint8_t* mask = raw.mask.empty() ? nullptr : raw.mask.data() + first;
+  // Overviews hold means, which are shorter.
+  const bool whole =
+      !level.cached && level.width == this->Content_.width && level.height == this->Content_.height;
+  for (std::size_t i = 0; i < count; ++i, pixels += 4) {
+    const double* number = &numbers[i * std::size_t(samples)];
+    double n[3];
+    for (int k = 0; k < 3; ++k) {
+      n[k] = level.cached ? number[k] : number[k] * this->Content_.scale + this->Content_.offset;
+    }
+    float opacity = level.alpha ? float(number[3] / 255.0) : mask ? mask[i] / 255.0f : 1.0f;
+    opacity = std::isfinite(n[0] + n[1] + n[2]) ? opacity : 0.0f;
+    if (whole && opacity > 0.0f) {
+      this->CheckNormal(n);
+    }
+    for (int k = 0; k < 3; ++k) {
+      pixels[k] = opacity > 0.0f ? float(n[k]) * opacity : 0.0f;
+    }
+    pixels[3] = opacity;
+  }
+}
+
+void RasterPixels::CheckNormal(const double (&n)[3]) const {
+  constexpr double Rounding = 0.01; // of 8 bits
+  constexpr double Shortest = 0.5;
+  const double length = std::hypot(n[0], n[1], n[2]);
+  if (length >= Shortest && length <= 1.0 + 10.0 * Rounding && n[2] >= -Rounding) {
+    return;
+  }
+  std::ostringstream text;
+  text << "it holds the vector (" << n[0] << ", " << n[1] << ", " << n[2]
+       << "), which is no normal of ground; accepted are lengths of " << Shortest << " to "
+       << 1.0 + 10.0 * Rounding
+       << " with z (the third band) from 0, coded as -1 to 1, or 0 to 255 or 65535 for it";
+  throw Error(Error::Kind::Corrupt, this->Object_, text.str());
+}
+
 void RasterPixels::Convert(const RasterLevel& level, const Raw& raw, std::size_t first,
                            std::size_t count, float* pixels) const {
   const GDALDataType type = level.colors[0]->GetRasterDataType();
@@ -147,14 +221,12 @@ void RasterPixels::Convert(const RasterLevel& level, const Raw& raw, std::size_t
   const int step = this->Content_.channels + 1;
   if (this->Content_.band > 0) {
     // A value may need more digits than a float has, until the bias is gone.
-    std::vector<double> values(count * std::size_t(samples));
-    GDALCopyWords64(from, type, size, values.data(), GDT_Float64, sizeof(double),
-                    GPtrDiff_t(values.size()));
+    std::vector<double> values(count);
+    std::vector<float> opacities(count);
+    this->Values(level, raw, first, count, values.data(), opacities.data());
     for (std::size_t i = 0; i < count; ++i) {
-      const double* p = &values[i * std::size_t(samples)];
-      const double value = level.cached ? *p : *p * this->Content_.scale + this->Content_.offset;
-      float opacity = level.alpha ? float(p[1]) * (1.0f / 255.0f) : mask ? mask[i] / 255.0f : 1.0f;
-      opacity = std::isfinite(value) ? opacity : 0.0f;
+      const double value = values[i];
+      const float opacity = opacities[i];
       if (this->Shown_ == RasterShown::Holes && !level.cached) {
         pixels[2 * i] = 0.0f;
         pixels[2 * i + 1] = 1.0f - opacity;
@@ -163,6 +235,10 @@ void RasterPixels::Convert(const RasterLevel& level, const Raw& raw, std::size_t
       pixels[2 * i] = opacity > 0.0f ? float(value - this->Bias_) * opacity : 0.0f;
       pixels[2 * i + 1] = opacity;
     }
+    return;
+  }
+  if (this->Content_.vectors) {
+    this->ConvertVectors(level, raw, first, count, pixels);
     return;
   }
   const float scale = level.cached ? 1.0f : float(this->Content_.scale);

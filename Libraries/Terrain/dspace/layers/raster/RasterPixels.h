@@ -48,13 +48,21 @@ public:
   // The whole level from memory; null if levels are not cached. `index`: of the level in its
   // handle.
   std::shared_ptr<const Raw> CachedLevel(const RasterLevel& level, std::size_t index);
+  // The values of one band of `count` pixels from pixel `first` on, scaled, and their opacity, 0
+  // to 1. A value without opacity has no meaning.
+  void Values(const RasterLevel& level, const Raw& raw, std::size_t first, std::size_t count,
+              double* values, float* opacities) const;
   // Converts `count` pixels from pixel `first` on: channels times opacity, then opacity, 0 to 1.
+  // Throws Error(Corrupt) for a vector that is no normal, see NormalsLayer.h.
   void Convert(const RasterLevel& level, const Raw& raw, std::size_t first, std::size_t count,
                float* pixels) const;
   // Bytes of cached levels.
   std::size_t CachedBytes() const { return this->CachedBytes_; }
 
 private:
+  void ConvertVectors(const RasterLevel& level, const Raw& raw, std::size_t first,
+                      std::size_t count, float* pixels) const;
+  void CheckNormal(const double (&n)[3]) const;
   std::string Object_;
   std::string Path_;
   const RasterContent& Content_;

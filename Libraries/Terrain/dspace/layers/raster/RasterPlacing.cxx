@@ -80,8 +80,8 @@ void CloseAround(RasterPosition& position, Eigen::Affine2d& pixelToMap) {
     return;
   }
   position.turn = MapTurn(position.crs) / std::abs(pixelToMap.linear()(0, 0));
-  const double off = position.turn - position.width;
-  position.periodic = position.turn > 0.0 && std::abs(off) < 0.5;
+  const double off = position.turn - position.width; // a gap, or less than 0 an overlap
+  position.periodic = position.turn > 0.0 && off > -0.5 && off < 1.01;
   if (position.periodic && std::abs(off) < 0.01) {
     const double step = pixelToMap.linear()(0, 0);
     const double exact = step * position.turn / position.width;

@@ -5,7 +5,7 @@
 #include <map>
 #include <mutex>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 #include <dspace/layers/vector/VectorTracer.h>
 

@@ -6,13 +6,13 @@
 
 #include <ogrsf_frmts.h>
 
+#include <dspace/Checks.h>
 #include <dspace/Utf8.h>
 #include <dspace/crs/MapTurn.h>
 #include <dspace/gdal/OfflineScope.h>
 #include <dspace/raster/DatasetFiles.h>
 #include <dspace/raster/NetworkScope.h>
 #include <dspace/raster/OpenRaster.h>
-#include <dspace/scene/Checks.h>
 
 #include <dspace/layers/vector/VectorCrs.h>
 #include <dspace/layers/vector/VectorPlaces.h>
