@@ -8,10 +8,10 @@
 
 #include <google/protobuf/descriptor.h>
 
+#include <dspace/Checks.h>
 #include <dspace/Error.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/proto/commands.pb.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -31,10 +31,12 @@ TextKind KindOf(const FieldDescriptor& field) {
     return TextKind::NewFile;
   case v1::TextOptions::CRS:
     return TextKind::Crs;
+  case v1::TextOptions::DATA:
+    return TextKind::Data;
   default:
     throw Error(Error::Kind::Internal, "field " + field.full_name(),
                 "the option `(holds)` is missing: say whether the text is PLAIN, READ_FILE, "
-                "NEW_FILE or CRS "
+                "NEW_FILE, DATA or CRS "
                 "(options.proto)");
   }
 }
@@ -118,6 +120,9 @@ void ChangeTexts(Message& message, const ChangeText& change) {
     const bool one = !field->is_repeated();
     const int n = one ? (reflection->HasField(message, field) ? 1 : 0)
                       : reflection->FieldSize(message, field);
+    if (IsText(*field) && TextTree::Get().Kind(field) == TextKind::Data) {
+      continue;
+    }
     for (int i = 0; i < n; ++i) {
       if (!IsText(*field)) {
         ChangeTexts(one ? *reflection->MutableMessage(&message, field)

@@ -15,7 +15,7 @@ class Message;
 namespace dspace::session {
 
 // As TextOptions in options.proto.
-enum class TextKind { Plain, ReadFile, NewFile, Crs };
+enum class TextKind { Plain, ReadFile, NewFile, Crs, Data };
 
 // Whether the message has a text field of this kind at any depth. Throws Error(Internal) for a text
 // field without the option `(holds)`, naming it.
@@ -26,7 +26,7 @@ using VisitText = std::function<void(
     const std::string& text, const google::protobuf::FieldDescriptor& field, TextKind kind)>;
 void ForEachText(const google::protobuf::Message& message, const VisitText& visit);
 
-// Replaces every present text by the result of `change`.
+// Replaces every present text, except DATA, by the result of `change`.
 using ChangeText = std::function<std::string(
     const std::string& text, const google::protobuf::FieldDescriptor& field, TextKind kind)>;
 void ChangeTexts(google::protobuf::Message& message, const ChangeText& change);

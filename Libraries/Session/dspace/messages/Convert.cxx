@@ -2,13 +2,28 @@
 
 #include <cmath>
 
+#include <dspace/Checks.h>
 #include <dspace/FrameRules.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
 
-constexpr double OrthographicFar = 1e4; // [m]; finite, and near enough for depth to a millimetre
+Light::Kind ToKind(v1::SetLight::Kind kind, const std::string& light) {
+  switch (kind) {
+  case v1::SetLight::DIRECTIONAL:
+    return Light::Kind::Directional;
+  case v1::SetLight::POINT:
+    return Light::Kind::Point;
+  case v1::SetLight::SPOT:
+    return Light::Kind::Spot;
+  case v1::SetLight::HEAD:
+    return Light::Kind::Head;
+  case v1::SetLight::AMBIENT:
+    return Light::Kind::Ambient;
+  default:
+    Reject(light, "its kind is " + std::to_string(int(kind)) + "; accepted: 0 to 4");
+  }
+}
 
 } // namespace
 
@@ -64,6 +79,36 @@ std::array<double, 3> ToColor(const v1::Color& color, const std::string& object)
   return {color.r(), color.g(), color.b()};
 }
 
+Light ToLight(const v1::SetLight& from) {
+  const std::string label = "light '" + from.name() + "'";
+  Light light;
+  light.name = from.name();
+  light.kind = ToKind(from.kind(), label);
+  light.frame = ToFrame(from.frame());
+  if (from.has_direction()) {
+    light.direction = ToVector(from.direction());
+  }
+  light.position = ToVector(from.position());
+  if (from.has_cone_deg()) {
+    light.cone_deg = from.cone_deg();
+  }
+  if (from.has_color()) {
+    light.color = ToColor(from.color(), label);
+  }
+  if (from.has_intensity()) {
+    light.intensity = from.intensity();
+  }
+  if (from.has_attenuation()) {
+    const v1::Vector3& a = from.attenuation();
+    light.attenuation = {a.x(), a.y(), a.z()};
+  }
+  light.enabled = !from.disabled();
+  if (from.has_radius_deg()) {
+    light.radius_deg = from.radius_deg();
+  }
+  return light;
+}
+
 Nature ToNature(v1::Nature nature, const std::string& object) {
   if (nature != v1::PHYSICAL && nature != v1::ORNAMENTAL) {
     Reject(object, "its nature is " + std::to_string(int(nature)) +
@@ -96,7 +141,6 @@ Projection ToProjection(const v1::Projection& from) {
   case v1::Projection::kOrthographic:
     to.kind = Projection::Kind::Orthographic;
     to.height = from.orthographic().height();
-    to.farDistance = OrthographicFar;
     break;
   case v1::Projection::kFrustum:
     to.kind = Projection::Kind::Frustum;
@@ -135,8 +179,12 @@ void Put(const Projection& from, v1::Projection* to) {
     to->mutable_frustum()->set_bottom(from.bottom);
     break;
   }
-  to->set_near(from.nearDistance);
-  to->set_far(from.farDistance);
+  if (from.nearDistance) {
+    to->set_near(*from.nearDistance);
+  }
+  if (from.farDistance) {
+    to->set_far(*from.farDistance);
+  }
 }
 
 namespace {
@@ -161,12 +209,56 @@ void Put(const CameraMount& from, v1::Mount* to) {
     Put(from.X_FC, to->mutable_pose());
     return;
   }
+  if (from.kind == CameraMount::Kind::Pointing) {
+    v1::Mount::Pointing* pointing = to->mutable_pointing();
+    Put(from.X_FC.position, pointing->mutable_eye());
+    pointing->set_aim(from.aim);
+    Put(from.target, pointing->mutable_target());
+    Put(from.up, pointing->mutable_up());
+    pointing->set_smoothing_s(from.smoothing_s);
+    return;
+  }
   v1::Mount::Chase* chase = to->mutable_chase();
   chase->set_axes(FromAxes(from.axes));
   Put(from.offset, chase->mutable_offset());
   Put(from.target, chase->mutable_target());
   Put(from.up, chase->mutable_up());
   chase->set_smoothing_s(from.smoothing_s);
+}
+
+namespace {
+
+v1::SetLight::Kind FromLightKind(Light::Kind kind) {
+  switch (kind) {
+  case Light::Kind::Point:
+    return v1::SetLight::POINT;
+  case Light::Kind::Spot:
+    return v1::SetLight::SPOT;
+  case Light::Kind::Head:
+    return v1::SetLight::HEAD;
+  case Light::Kind::Ambient:
+    return v1::SetLight::AMBIENT;
+  case Light::Kind::Directional:
+    break;
+  }
+  return v1::SetLight::DIRECTIONAL;
+}
+
+} // namespace
+
+void Put(const Light& from, v1::SetLight* to) {
+  to->set_name(from.name);
+  to->set_kind(FromLightKind(from.kind));
+  to->set_frame(from.frame);
+  Put(from.direction, to->mutable_direction());
+  Put(from.position, to->mutable_position());
+  to->set_cone_deg(from.cone_deg);
+  Put(from.color, to->mutable_color());
+  to->set_intensity(from.intensity);
+  Put(Eigen::Vector3d(from.attenuation[0], from.attenuation[1], from.attenuation[2]),
+      to->mutable_attenuation());
+  to->set_disabled(!from.enabled);
+  to->set_radius_deg(from.radius_deg);
 }
 
 void Put(const Eigen::Vector3d& from, v1::Vector3* to) {
@@ -189,6 +281,19 @@ void Put(const std::array<double, 3>& from, v1::Color* to) {
   to->set_r(from[0]);
   to->set_g(from[1]);
   to->set_b(from[2]);
+}
+
+void MergeMaterial(const v1::Material& later, v1::Material* material) {
+  if (later.has_color()) { // whole: zeros of its channels are values too
+    material->clear_color();
+  }
+  if (later.has_emissive()) {
+    material->clear_emissive();
+  }
+  if (later.has_reflectance()) {
+    material->clear_reflectance();
+  }
+  material->MergeFrom(later);
 }
 
 v1::Nature FromNature(Nature nature) {

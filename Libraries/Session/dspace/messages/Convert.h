@@ -15,8 +15,10 @@
 #include <dspace/Pose.h>
 #include <dspace/proto/cameras.pb.h>
 #include <dspace/proto/common.pb.h>
+#include <dspace/proto/objects.pb.h>
 #include <dspace/scene/Camera.h>
 #include <dspace/scene/GraphicsObject.h>
+#include <dspace/scene/Light.h>
 
 namespace dspace::session {
 
@@ -26,6 +28,7 @@ Eigen::Quaterniond ToRotation(const v1::Quaternion& q, const std::string& object
 Pose ToPose(const v1::Pose& pose, const std::string& object);                      // checked
 Eigen::Affine3d ToAffine(const v1::Offset& offset, const std::string& object);     // checked
 std::array<double, 3> ToColor(const v1::Color& color, const std::string& object);  // checked
+Light ToLight(const v1::SetLight& from); // Scene::SetLight checks the rest
 Nature ToNature(v1::Nature nature, const std::string& object);
 inline FrameId ToFrame(FrameId frame) {
   return frame == NoFrame ? RootFrame : frame;
@@ -39,7 +42,10 @@ void Put(const Pose& from, v1::Pose* to);
 void Put(const std::array<double, 3>& from, v1::Color* to);
 void Put(const Projection& from, v1::Projection* to);
 void Put(const CameraMount& from, v1::Mount* to);
+void Put(const Light& from, v1::SetLight* to);
 v1::Nature FromNature(Nature nature);
+// Overrides the material with the later one, field by field.
+void MergeMaterial(const v1::Material& later, v1::Material* material);
 v1::Error::Kind FromKind(Error::Kind kind);
 
 // The number of rows of `size` values; throws Error(InvalidArgument) if `values` is not a multiple

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/TextCharacters.h>
+#include <dspace/Checks.h>
+#include <dspace/overlay/TextCharacters.h>
 
 namespace dspace::session {
 

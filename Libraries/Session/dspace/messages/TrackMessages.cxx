@@ -29,6 +29,12 @@ void PutContact(const TrackContact& contact, Stroke* message) {
   message->add_sinkage(float(contact.sinkage));
 }
 
+void PutAnchor(const std::optional<Eigen::Vector3d>& anchor, v1::RestoreTracks* message) {
+  if (anchor) {
+    message->mutable_anchor()->Add(anchor->data(), anchor->data() + 3);
+  }
+}
+
 void PutSkipped(const TrackStroke& stroke, Stroke* message) {
   for (const TrackContact& contact : stroke.skipped) {
     PutContact(contact, message);
@@ -69,7 +75,9 @@ std::vector<TrackStroke> ToStrokes(const v1::RestoreTracks& message) {
   return strokes;
 }
 
-void Put(const std::vector<TrackStroke>& strokes, v1::RestoreTracks* message) {
+void Put(const std::vector<TrackStroke>& strokes, const std::optional<Eigen::Vector3d>& anchor,
+         v1::RestoreTracks* message) {
+  PutAnchor(anchor, message);
   for (const TrackStroke& stroke : strokes) {
     Stroke* put = message->add_stroke();
     PutHead(stroke, put);
@@ -80,8 +88,9 @@ void Put(const std::vector<TrackStroke>& strokes, v1::RestoreTracks* message) {
   }
 }
 
-void PutTracks(const WheelTracks& tracks, const std::string& scene, const std::string& terrain,
+void PutTracks(const TrackedGround& ground, const std::string& scene, const std::string& terrain,
                std::vector<v1::Command>& out) {
+  const std::optional<Eigen::Vector3d> anchor = ground.TracksAnchor();
   v1::RestoreTracks* restore = nullptr;
   std::size_t room = 0;
   const auto begin = [&](bool continues) {
@@ -89,10 +98,11 @@ void PutTracks(const WheelTracks& tracks, const std::string& scene, const std::s
     command.set_scene(scene);
     restore = command.mutable_restore_tracks();
     restore->set_terrain(terrain);
+    PutAnchor(anchor, restore);
     restore->set_goes_on(continues);
     room = MostContacts;
   };
-  for (const TrackStroke& stroke : tracks.Strokes()) {
+  for (const TrackStroke& stroke : ground.Tracks().Strokes()) {
     constexpr std::size_t Fewest = 2; // so that a stroke's first line is whole where it is cut
     if (room < Fewest) {
       begin(false);
