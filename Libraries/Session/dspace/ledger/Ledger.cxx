@@ -52,7 +52,19 @@ struct LedgerScene {
       return true;
     case C::kLoadRobot:
       this->frames.Load(command, reply.robot());
-      this->objects.Load(command.load_robot(), reply.robot());
+      this->objects.Load(command.load_robot().name(), command, reply.robot());
+      return true;
+    case C::kImportNodes:
+      this->objects.Load(ModelKey(reply.nodes().base()), command,
+                         this->frames.Import(command, reply.nodes()));
+      for (const v1::SetLight& light : reply.nodes().light()) {
+        v1::Command set;
+        *set.mutable_set_light() = light;
+        this->names.Add(set, {});
+      }
+      return true;
+    case C::kPoseNodes:
+      this->frames.PoseNodes(command.pose_nodes(), reply.poses());
       return true;
     case C::kRemoveRobot:
       this->Remove(this->frames.Robots().at(command.remove_robot().robot()).about.base());
@@ -76,6 +88,12 @@ struct LedgerScene {
       return true;
     case C::kCreateText:
       this->objects.Create(command, command.create_text().object());
+      return true;
+    case C::kCreateMesh:
+      this->objects.Create(command, command.create_mesh().object());
+      return true;
+    case C::kCreateDrawn:
+      this->objects.Create(command, command.create_drawn().object());
       return true;
     case C::kCreateTrail:
       this->objects.Create(command, command.create_trail().object());
@@ -157,6 +175,16 @@ struct Ledger::Impl {
 
   void Apply(const v1::Command& accepted, const v1::Reply& reply, const std::string& name);
   void Fail(const v1::Command& command, const std::string& name, const std::string& why);
+  LedgerViewports::SceneView ViewOf(const std::string& scene) const {
+    const auto found = this->scenes.find(scene.empty() ? DefaultScene() : scene);
+    if (found == this->scenes.end()) {
+      return {{}, [](const std::string&) { return 0u; }};
+    }
+    return {found->second.names.Fragments(),
+            [&objects = found->second.objects](const std::string& terrain) {
+              return objects.TerrainObject(terrain).value_or(0);
+            }};
+  }
   // The scene that the command changes; empty for viewports, which belong to the session.
   static std::string FaultKey(const v1::Command& command) {
     const CommandTraits* traits = CommandTraits::Find(command.command_case());
@@ -189,7 +217,11 @@ void Ledger::Impl::Apply(const v1::Command& accepted, const v1::Reply& reply,
     this->others.push_back(accepted);
     return;
   }
-  if (this->viewports.Add(accepted)) {
+  const auto terrain = [&](const std::string& of) {
+    return this->ViewOf(this->viewports.SceneOf(accepted.style_terrain_in_viewport().viewport()))
+        .terrain(of);
+  };
+  if (this->viewports.Add(accepted, terrain)) {
     return;
   }
   const auto found = this->scenes.find(name);
@@ -250,12 +282,7 @@ std::vector<v1::Command> Ledger::Commands() const {
     scene.Put(name, this->Impl_->state, out);
   }
   this->Impl_->viewports.Put(
-      [this](const std::string& scene) {
-        const auto found = this->Impl_->scenes.find(scene.empty() ? DefaultScene() : scene);
-        return found == this->Impl_->scenes.end() ? std::vector<std::string>()
-                                                  : found->second.names.Fragments();
-      },
-      out);
+      [this](const std::string& scene) { return this->Impl_->ViewOf(scene); }, out);
   out.insert(out.end(), this->Impl_->others.begin(), this->Impl_->others.end());
   return out;
 }

@@ -23,6 +23,12 @@ void PutRename(const std::string& scene, LedgerId frame, const std::string& name
   rename->set_name(name);
 }
 
+// The name that its base frame gets.
+const std::string& LoadedName(const v1::Command& load) {
+  return load.has_load_robot() ? load.load_robot().name()
+                               : load.import_nodes().import().object().name();
+}
+
 // Has the effect of Robot::FollowMimics.
 void FollowMimics(const v1::RobotReply& robot, std::vector<double>& positions) {
   std::vector<char> done(positions.size(), 0);
@@ -47,6 +53,24 @@ void FollowMimics(const v1::RobotReply& robot, std::vector<double>& positions) {
 }
 
 } // namespace
+
+void PlaceLoad(v1::Command& load, LedgerId frame, const std::vector<std::string>& fragments) {
+  const auto place = [&](auto& settings) {
+    settings.set_frame(frame);
+    if (std::find(fragments.begin(), fragments.end(), settings.fragment()) == fragments.end()) {
+      settings.clear_fragment();
+    }
+  };
+  if (load.has_load_robot()) {
+    place(*load.mutable_load_robot());
+  } else {
+    place(*load.mutable_import_nodes()->mutable_import()->mutable_object());
+  }
+}
+
+std::string ModelKey(LedgerId base) {
+  return "\n" + std::to_string(base); // a line break is in no name of a frame
+}
 
 LedgerFrames::LedgerFrames() {
   this->Nodes_[RootFrame];
@@ -84,7 +108,7 @@ LedgerFrames::Removed LedgerFrames::Remove(LedgerId frame) {
       ++it;
       continue;
     }
-    removed.robots.push_back(it->second.load);
+    removed.robots.emplace(it->first, it->second.load);
     it = this->Robots_.erase(it);
   }
   this->LastIds_.clear();
@@ -134,19 +158,64 @@ void LedgerFrames::Load(const v1::Command& command, const v1::RobotReply& reply)
   LedgerRobot robot;
   robot.load = command;
   robot.about = reply;
-  this->AddNode(load.base_id(), load.frame(), load.name(), load.name());
-  this->Nodes_[load.base_id()].created = load.pose();
-  std::vector<LedgerId> parents(std::size_t(reply.link_size()), load.base_id());
   for (const v1::JointInfo& joint : reply.joint()) {
     robot.initial.push_back(joint.position());
-    parents[joint.child_link()] = reply.link(int(joint.parent_link())).frame();
-  }
-  for (int i = 0; i < reply.link_size(); ++i) { // the order in which the interpreter makes them
-    this->AddNode(reply.link(i).frame(), parents[std::size_t(i)], reply.link(i).name(),
-                  load.name());
   }
   robot.position = robot.initial;
-  this->Robots_[load.name()] = std::move(robot);
+  this->AddRobot(load.name(), std::move(robot), load.frame(), load.name());
+}
+
+const v1::RobotReply& LedgerFrames::Import(const v1::Command& command,
+                                           const v1::NodesReply& reply) {
+  LedgerRobot model;
+  model.load = command;
+  model.load.mutable_import_nodes()->clear_lights(); // they are stored as lights
+  model.about.set_base(reply.base());
+  for (int i = 0; i < reply.node_size(); ++i) {
+    const v1::NodesReply::Node& node = reply.node(i);
+    v1::LinkInfo* link = model.about.add_link();
+    link->set_name(node.frame_name());
+    link->set_frame(node.frame());
+    if (node.object() != 0) {
+      link->add_object(node.object());
+    }
+    if (node.parent() >= 0) {
+      v1::JointInfo* joint = model.about.add_joint();
+      joint->set_parent_link(std::uint32_t(node.parent()));
+      joint->set_child_link(std::uint32_t(i));
+      model.initial.push_back(0.0);
+    }
+  }
+  model.position = model.initial;
+  const v1::ObjectSettings& settings = command.import_nodes().import().object();
+  const std::string key = ModelKey(reply.base());
+  this->AddRobot(key, std::move(model), settings.frame(), settings.name());
+  return this->Robots_.at(key).about;
+}
+
+void LedgerFrames::PoseNodes(const v1::PoseNodes& command, const v1::PosesReply& poses) {
+  const v1::RobotReply& model = this->Robots_.at(ModelKey(command.base())).about;
+  for (int i = 0; i < model.link_size() && PoseSize * (i + 1) <= poses.pose_size(); ++i) {
+    const double* row = poses.pose().data() + std::ptrdiff_t(PoseSize) * i;
+    std::copy(row, row + PoseSize, this->Nodes_[model.link(i).frame()].pose.emplace().begin());
+  }
+}
+
+void LedgerFrames::AddRobot(const std::string& key, LedgerRobot robot, LedgerId frame,
+                            const std::string& name) {
+  v1::RobotReply& about = robot.about;
+  this->AddNode(about.base(), frame, name, key);
+  if (robot.load.has_load_robot()) {
+    this->Nodes_[about.base()].created = robot.load.load_robot().pose();
+  }
+  std::vector<LedgerId> parents(std::size_t(about.link_size()), about.base());
+  for (const v1::JointInfo& joint : about.joint()) {
+    parents[joint.child_link()] = about.link(int(joint.parent_link())).frame();
+  }
+  for (int i = 0; i < about.link_size(); ++i) { // the order in which the interpreter makes them
+    this->AddNode(about.link(i).frame(), parents[std::size_t(i)], about.link(i).name(), key);
+  }
+  this->Robots_[key] = std::move(robot);
 }
 
 void LedgerFrames::SetJoints(const v1::SetJoints& command) {
@@ -203,7 +272,7 @@ void LedgerFrames::PutTree(const std::string& scene, const std::vector<std::stri
       const Node& child = this->Nodes_.at(id);
       names.insert(child.name);
       if (!child.robot.empty() && this->Robots_.at(child.robot).about.base() == id) {
-        loaded.insert(child.robot);
+        loaded.insert(LoadedName(this->Robots_.at(child.robot).load));
       }
     }
     names.insert(loaded.begin(), loaded.end());
@@ -230,12 +299,8 @@ void LedgerFrames::PutTree(const std::string& scene, const std::vector<std::stri
       if (robot.about.base() == id) {
         v1::Command& load = out.emplace_back(robot.load);
         load.set_scene(scene);
-        load.mutable_load_robot()->set_frame(parent);
-        if (std::find(fragments.begin(), fragments.end(), load.load_robot().fragment()) ==
-            fragments.end()) {
-          load.mutable_load_robot()->clear_fragment();
-        }
-        present.emplace_back(id, child.robot);
+        PlaceLoad(load, parent, fragments);
+        present.emplace_back(id, LoadedName(load));
         continue;
       }
       for (const v1::LinkInfo& link : robot.about.link()) {

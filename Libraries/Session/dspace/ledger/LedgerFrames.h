@@ -16,12 +16,20 @@ namespace dspace::session {
 
 using LedgerId = std::uint64_t;
 
+// A robot, or a model whose nodes are frames: its nodes are links with fixed joints. Its key among
+// the robots is its name, of a model ModelKey of its base frame.
 struct LedgerRobot {
-  v1::Command load;
+  v1::Command load;             // LoadRobot or ImportNodes
   v1::RobotReply about;         // as loaded
   std::vector<double> initial;  // of each joint
   std::vector<double> position; // now
 };
+
+std::string ModelKey(LedgerId base); // no robot has such a name
+
+// Sets the frame of a command that loads a robot or model, and drops its fragment if there is none
+// of that name.
+void PlaceLoad(v1::Command& load, LedgerId frame, const std::vector<std::string>& fragments);
 
 class LedgerFrames {
 public:
@@ -31,7 +39,7 @@ public:
   void Create(const v1::Command& command);
   struct Removed {
     std::unordered_set<LedgerId> frames;
-    std::vector<v1::Command> robots; // the commands that loaded them
+    std::map<std::string, v1::Command> robots; // by key, the commands that loaded them
   };
   // Removes the frame with its subtree.
   Removed Remove(LedgerId frame);
@@ -39,6 +47,9 @@ public:
   void Rename(const v1::RenameFrame& command);
   void SetPoses(const v1::SetPoses& command);
   void Load(const v1::Command& command, const v1::RobotReply& reply);
+  // Returns the model as a robot.
+  const v1::RobotReply& Import(const v1::Command& command, const v1::NodesReply& reply);
+  void PoseNodes(const v1::PoseNodes& command, const v1::PosesReply& poses);
   void SetJoints(const v1::SetJoints& command);
 
   const std::map<std::string, LedgerRobot>& Robots() const { return this->Robots_; }
@@ -60,6 +71,7 @@ private:
     std::optional<Row> pose; // set since
     std::string robot;       // whose base or link it is
   };
+  void AddRobot(const std::string& key, LedgerRobot robot, LedgerId frame, const std::string& name);
   void AddNode(LedgerId id, LedgerId parent, const std::string& name, const std::string& robot);
   void PutTree(const std::string& scene, const std::vector<std::string>& fragments, Emit out) const;
   void PutRenames(const std::string& scene, std::vector<std::pair<LedgerId, std::string>> present,

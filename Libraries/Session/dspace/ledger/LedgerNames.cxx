@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <dspace/messages/SunMessages.h>
+#include <dspace/scene/Light.h>
 #include <dspace/state/State.h>
 
 namespace dspace::session {
@@ -35,7 +37,7 @@ LedgerNames::LedgerNames(v1::CreateScene create) : Create_(std::move(create)) {
                       {"ornamental", v1::ORNAMENTAL, false, {}}};
   this->Vantages_.push_back({DefaultVantage, true, {}, {}});
   if (!this->Create_.no_lights()) {
-    this->Lights_ = {{"sun", true, {}}, {"sky", true, {}}};
+    this->Lights_ = {{SunName, true, {}}};
   }
 }
 
@@ -75,8 +77,22 @@ bool LedgerNames::AddLight(const v1::Command& command) {
     }
     return true;
   }
+  if (command.has_set_sun()) {
+    auto found = FindName(this->Lights_, SunName);
+    if (found == this->Lights_.end()) {
+      found = this->Lights_.insert(found, {SunName, false, {}});
+    }
+    if (!found->set) {
+      found->set = DefaultSun();
+    }
+    ChangeSun(command.set_sun().sun(), *found->set);
+    return true;
+  }
   if (command.has_remove_light()) {
-    this->Lights_.erase(FindName(this->Lights_, command.remove_light().name()));
+    const auto found = FindName(this->Lights_, command.remove_light().name());
+    if (found != this->Lights_.end()) { // "sky" may be removed where there is none
+      this->Lights_.erase(found);
+    }
     return true;
   }
   return false;
@@ -177,11 +193,9 @@ void LedgerNames::PutFirst(const std::string& scene, Emit out) const {
 
 void LedgerNames::PutLast(const std::string& scene, Emit out) const {
   if (!this->Create_.no_lights()) {
-    for (const char* name : {"sun", "sky"}) {
-      const auto found = FindName(this->Lights_, name);
-      if (found == this->Lights_.end() || !found->first) {
-        NewCommand(scene, out).mutable_remove_light()->set_name(name);
-      }
+    const auto found = FindName(this->Lights_, SunName);
+    if (found == this->Lights_.end() || !found->first) {
+      NewCommand(scene, out).mutable_remove_light()->set_name(SunName);
     }
   }
   for (const Light& light : this->Lights_) {
@@ -209,9 +223,11 @@ void LedgerNames::PutLast(const std::string& scene, Emit out) const {
   // Also where there is none: a step back has taken them all, and cameras that are set begin one.
   const bool lags =
       std::any_of(this->Vantages_.begin(), this->Vantages_.end(), [](const Vantage& vantage) {
-        return std::any_of(
-            vantage.cameras.begin(), vantage.cameras.end(),
-            [](const v1::SetCamera& camera) { return camera.mount().chase().smoothing_s() > 0.0; });
+        return std::any_of(vantage.cameras.begin(), vantage.cameras.end(),
+                           [](const v1::SetCamera& camera) {
+                             return camera.mount().chase().smoothing_s() > 0.0 ||
+                                    camera.mount().pointing().smoothing_s() > 0.0;
+                           });
       });
   if (lags) {
     v1::SetTime* time = NewCommand(scene, out).mutable_set_time();

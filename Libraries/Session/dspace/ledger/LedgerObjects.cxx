@@ -4,6 +4,7 @@
 
 #include <dspace/FrameTree.h>
 #include <dspace/messages/CommandTraits.h>
+#include <dspace/messages/Convert.h>
 
 namespace dspace::session {
 namespace {
@@ -25,22 +26,18 @@ std::string Existing(const std::string& name, const std::vector<std::string>& fr
   return there ? name : std::string();
 }
 
-// Overrides the earlier material with the later one, field by field as the interpreter does.
-void Overlay(const v1::Material& later, v1::Material* material) {
-  if (later.has_color()) { // whole: zeros of its channels are values too
-    material->clear_color();
-  }
-  material->MergeFrom(later);
-}
-
 v1::ObjectSettings* SettingsOf(v1::Command& command) {
   switch (command.command_case()) {
   case v1::Command::kImportObject:
     return command.mutable_import_object()->mutable_object();
   case v1::Command::kCreatePrimitive:
     return command.mutable_create_primitive()->mutable_object();
+  case v1::Command::kCreateDrawn:
+    return command.mutable_create_drawn()->mutable_object();
   case v1::Command::kCreateText:
     return command.mutable_create_text()->mutable_object();
+  case v1::Command::kCreateMesh:
+    return command.mutable_create_mesh()->mutable_object();
   default:
     return command.mutable_create_trail()->mutable_object();
   }
@@ -65,16 +62,24 @@ void LedgerObjects::Create(const v1::Command& command, v1::ObjectSettings settin
   }
 }
 
-void LedgerObjects::Load(const v1::LoadRobot& load, const v1::RobotReply& reply) {
-  for (const v1::LinkInfo& link : reply.link()) {
-    for (const std::uint32_t id : link.object()) {
-      ObjectEntry& entry = this->Objects_[id];
-      entry.robot = load.name();
-      entry.askedFragment = load.fragment();
-      entry.frame = entry.createdOn = link.frame();
-      entry.nature = load.nature();
-      entry.fragment = DefaultFragment(load.fragment(), load.nature());
+void LedgerObjects::Load(const std::string& key, const v1::Command& load,
+                         const v1::RobotReply& about) {
+  const auto add = [&](const auto& settings) {
+    for (const v1::LinkInfo& link : about.link()) {
+      for (const std::uint32_t id : link.object()) {
+        ObjectEntry& entry = this->Objects_[id];
+        entry.robot = key;
+        entry.askedFragment = settings.fragment();
+        entry.frame = entry.createdOn = link.frame();
+        entry.nature = settings.nature();
+        entry.fragment = DefaultFragment(settings.fragment(), settings.nature());
+      }
     }
+  };
+  if (load.has_load_robot()) {
+    add(load.load_robot());
+  } else {
+    add(load.import_nodes().import().object());
   }
 }
 
@@ -116,11 +121,11 @@ void LedgerObjects::RemoveOn(const LedgerFrames::Removed& removed) {
       this->RemoveObject(id);
     }
   }
-  for (const v1::Command& load : removed.robots) {
-    this->LostVisuals_.erase(load.load_robot().name());
+  for (const auto& [key, load] : removed.robots) {
+    this->LostVisuals_.erase(key);
     OrphanedVisuals orphans{load, {}};
     for (auto& [id, entry] : this->Objects_) {
-      if (entry.robot == load.load_robot().name()) {
+      if (entry.robot == key) {
         entry.robot.clear();
         entry.createdOn = RootFrame;
         orphans.ids.insert(id);
@@ -156,7 +161,37 @@ bool LedgerObjects::ChangeLook(ObjectEntry& entry, const v1::Command& command) {
     if (set.replace() || !entry.material) {
       entry.material = set;
     } else {
-      Overlay(set.material(), entry.material->mutable_material());
+      MergeMaterial(set.material(), entry.material->mutable_material());
+    }
+    break;
+  }
+  case C::kSetMesh: {
+    // In place of the former arrays, which may be large.
+    v1::CreateMesh& create = *entry.create->mutable_create_mesh();
+    *create.mutable_level() = command.set_mesh().level();
+    std::set<std::string> names;
+    for (const v1::MeshLevel& level : create.level()) {
+      for (const v1::MeshData& mesh : level.mesh()) {
+        names.insert(mesh.part());
+      }
+    }
+    for (auto it = entry.parts.begin(); it != entry.parts.end();) {
+      it = names.count(it->first) ? std::next(it) : entry.parts.erase(it);
+    }
+    break;
+  }
+  case C::kSetPart: {
+    const v1::SetPart& set = command.set_part();
+    const auto [it, isNew] = entry.parts.emplace(set.part(), set);
+    if (!isNew) {
+      v1::SetPart& kept = it->second;
+      if (set.replace()) {
+        kept.clear_material();
+      }
+      MergeMaterial(set.material(), kept.mutable_material());
+      if (set.has_visible()) {
+        kept.set_visible(set.visible());
+      }
     }
     break;
   }
@@ -220,6 +255,9 @@ void LedgerObjects::PutObject(const std::string& scene, std::uint32_t id, const 
   if (entry.tilt) {
     *add().mutable_set_tilt() = *entry.tilt;
   }
+  for (const auto& [name, part] : entry.parts) {
+    *add().mutable_set_part() = part;
+  }
 }
 
 // A visual of a robot cannot be removed alone: it was removed with a frame that it was attached to.
@@ -250,10 +288,10 @@ void LedgerObjects::PutLostVisuals(const std::string& scene, const LedgerFrames&
 void LedgerObjects::PutOrphanedVisuals(const std::string& scene,
                                        const std::vector<std::string>& fragments, Emit out) const {
   for (const OrphanedVisuals& orphans : this->Orphans_) {
-    v1::LoadRobot* load = out.emplace_back(orphans.load).mutable_load_robot();
-    load->set_frame(RootFrame);
-    load->set_fragment(Existing(load->fragment(), fragments));
-    const LedgerId base = load->base_id();
+    v1::Command& load = out.emplace_back(orphans.load);
+    PlaceLoad(load, RootFrame, fragments);
+    const LedgerId base =
+        load.has_load_robot() ? load.load_robot().base_id() : load.import_nodes().frame(0);
     for (const std::uint32_t id : orphans.ids) {
       v1::Command& attach = out.emplace_back();
       attach.set_scene(scene);

@@ -22,15 +22,21 @@ class LedgerObjects {
 public:
   using Emit = std::vector<v1::Command>&;
 
-  // Adds an import, primitive, text or trail.
+  // Adds an import, primitive, mesh, text or trail.
   void Create(const v1::Command& command, v1::ObjectSettings settings);
-  void Load(const v1::LoadRobot& load, const v1::RobotReply& reply);
+  // The objects of a robot, or of a model, with its key (LedgerRobot).
+  void Load(const std::string& key, const v1::Command& load, const v1::RobotReply& about);
   void Open(const v1::Command& command);
   void RemoveObject(std::uint32_t id);
   void RemoveTerrain(const std::string& name);
   void RemoveOn(const LedgerFrames::Removed& removed);
   // Applies a command that changes one object or terrain. False for other commands.
   bool Change(const v1::Command& command, const v1::Reply& reply);
+
+  // The id of the object that draws the terrain. Empty: there is no such terrain.
+  std::optional<std::uint32_t> TerrainObject(const std::string& terrain) const {
+    return this->Terrains_.ObjectOf(terrain);
+  }
 
   // Appends the commands for visuals of removed robots. They come before those for frames.
   void PutOrphanedVisuals(const std::string& scene, const std::vector<std::string>& fragments,
@@ -52,6 +58,7 @@ private:
     LatestCommands latest;
     std::optional<v1::SetMaterial> material;
     std::optional<v1::SetTilt> tilt; // after the material
+    std::map<std::string, v1::SetPart> parts;
     std::optional<Trail> trail;
   };
   // A removed robot whose visuals stay because they are attached to other frames.

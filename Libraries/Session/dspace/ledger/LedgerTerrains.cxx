@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <dspace/Error.h>
-#include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/messages/TrackMessages.h>
 #include <dspace/state/State.h>
@@ -11,16 +10,14 @@
 namespace dspace::session {
 namespace {
 
-const WheelTracks& TracksOf(const State* state, const std::string& scene,
-                            const std::string& terrain) {
+const TrackedGround& GroundOf(const State* state, const std::string& scene,
+                              const std::string& terrain) {
   if (state) {
     const auto of = state->scenes.find(scene);
     if (of != state->scenes.end()) {
       const auto found = of->second.terrains.find(terrain);
       if (found != of->second.terrains.end()) {
-        if (const auto* clipmap = dynamic_cast<ClipmapTerrainObject*>(found->second.get())) {
-          return clipmap->Surface().Tracks();
-        }
+        return found->second->Ground();
       }
     }
   }
@@ -78,6 +75,7 @@ bool LedgerTerrains::Change(const v1::Command& command, const v1::Reply& reply) 
     added.clear_position();
     added.set_opacity(reply.terrain_layer().opacity());
     added.set_hidden(!reply.terrain_layer().visible());
+    added.set_fragment(reply.terrain_layer().fragment());
   };
   const CommandTraits* traits = CommandTraits::Find(command.command_case());
   if (traits && traits->GetOwner() == CommandTraits::Owner::Terrain && traits->LatestIsKept()) {
@@ -97,6 +95,19 @@ bool LedgerTerrains::Change(const v1::Command& command, const v1::Reply& reply) 
   case C::kClearTracks:
     terrain(command.clear_tracks().terrain()).tracked = false;
     return true;
+  case C::kAddTerrainField:
+    terrain(command.add_terrain_field().terrain()).fields.push_back(command.add_terrain_field());
+    return true;
+  case C::kRemoveTerrainField: {
+    std::vector<v1::AddTerrainField>& fields =
+        terrain(command.remove_terrain_field().terrain()).fields;
+    fields.erase(std::remove_if(fields.begin(), fields.end(),
+                                [&](const v1::AddTerrainField& field) {
+                                  return field.name() == command.remove_terrain_field().name();
+                                }),
+                 fields.end());
+    return true;
+  }
   case C::kAddTerrainLayer:
     insert(terrain(command.add_terrain_layer().terrain()), command.add_terrain_layer());
     return true;
@@ -140,6 +151,9 @@ void LedgerTerrains::Put(const std::string& scene, const State* state,
         out.back().mutable_remove_terrain_layer()->set_name(opened);
       }
     }
+    for (const v1::AddTerrainField& field : terrain.fields) { // before layers that show them
+      *add().mutable_add_terrain_field() = field;
+    }
     for (std::size_t i = 0; i < terrain.layers.size(); ++i) {
       const v1::AddTerrainLayer& layer = terrain.layers[i];
       if (layer.kind_case() != v1::AddTerrainLayer::KIND_NOT_SET) {
@@ -153,11 +167,12 @@ void LedgerTerrains::Put(const std::string& scene, const State* state,
         change->set_position(std::uint32_t(i));
         change->set_opacity(layer.opacity());
         change->set_visible(!layer.hidden());
+        change->set_fragment(layer.fragment());
       }
     }
     terrain.latest.Put(scene, out);
     if (terrain.tracked) {
-      PutTracks(TracksOf(state, scene, name), scene, name, out);
+      PutTracks(GroundOf(state, scene, name), scene, name, out);
     }
   }
 }

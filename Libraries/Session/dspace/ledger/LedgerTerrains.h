@@ -43,6 +43,7 @@ private:
     v1::Command open;
     LatestCommands latest;
     bool tracked = false; // it has wheel tracks
+    std::vector<v1::AddTerrainField> fields;
     // Bottom first. A layer without a kind is one that the terrain opened with.
     std::vector<v1::AddTerrainLayer> layers;
     std::vector<std::string> opened; // names of the layers that it opened with: "drape", "filled"

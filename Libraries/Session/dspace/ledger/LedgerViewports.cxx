@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/CommandTraits.h>
 #include <dspace/state/State.h>
 
@@ -24,9 +25,38 @@ template<class Message> void RemoveNamed(const std::string& name, std::vector<Me
             all.end());
 }
 
+bool HasElementIn(const v1::StyleTerrain& style, const std::string& fragment) {
+  const auto in = [&](const v1::StyleTerrain::Membership& member) {
+    return member.fragment() == fragment;
+  };
+  return (style.has_ramp() && in(style.ramp().member())) ||
+         (style.has_levels() && in(style.levels_member())) ||
+         (style.has_contours() && in(style.contours().member())) ||
+         (style.has_grid() && in(style.grid().member())) ||
+         (style.has_tracks() && in(style.tracks().member()));
+}
+
 } // namespace
 
-bool LedgerViewports::Add(const v1::Command& command) {
+std::string LedgerViewports::SceneOf(const std::string& viewport) const {
+  const auto found = this->Viewports_.find(viewport);
+  return found == this->Viewports_.end() ? std::string() : found->second.create.scene();
+}
+
+std::vector<v1::StyleTerrainInViewport>
+LedgerViewports::StylesIn(const std::string& scene, const std::string& fragment) const {
+  std::vector<v1::StyleTerrainInViewport> styles;
+  for (const auto& [name, viewport] : this->Viewports_) {
+    for (const auto& [terrain, style] : viewport.styles) {
+      if (SceneName(viewport.create) == scene && HasElementIn(style.first.style(), fragment)) {
+        styles.push_back(style.first);
+      }
+    }
+  }
+  return styles;
+}
+
+bool LedgerViewports::Add(const v1::Command& command, const TerrainObject& terrain) {
   using C = v1::Command;
   const CommandTraits* traits = CommandTraits::Find(command.command_case());
   if (!traits || traits->GetOwner() != CommandTraits::Owner::Viewport) {
@@ -60,6 +90,16 @@ bool LedgerViewports::Add(const v1::Command& command) {
       hidden.erase(set.fragment());
     } else {
       hidden.insert(set.fragment());
+    }
+    return true;
+  }
+  case C::kStyleTerrainInViewport: {
+    const v1::StyleTerrainInViewport& set = command.style_terrain_in_viewport();
+    auto& styles = this->Find(set.viewport()).styles;
+    if (set.has_style()) {
+      styles[set.terrain()] = {set, terrain ? terrain(set.terrain()) : 0};
+    } else {
+      styles.erase(set.terrain());
     }
     return true;
   }
@@ -109,16 +149,19 @@ void LedgerViewports::Set(Viewport& viewport, const v1::SetViewport& command) {
   if (command.has_background_top()) {
     *set.mutable_background_top() = command.background_top();
   }
-  if (command.has_ornaments()) {
-    set.set_ornaments(command.ornaments());
-  }
-  if (command.has_corner_axes()) {
-    set.set_corner_axes(command.corner_axes());
-  }
+  v1::SetViewport others = command;
+  others.clear_viewport();
+  others.clear_vantage();
+  others.clear_camera();
+  others.clear_visible();
+  others.clear_samples();
+  others.clear_background();
+  others.clear_background_top();
+  set.MergeFrom(others);
 }
 
 void LedgerViewports::PutOne(const std::string& name, const Viewport& viewport,
-                             const std::vector<std::string>& fragments, Emit out) {
+                             const SceneView& scene, Emit out) {
   const auto add = [&]() -> v1::Command& {
     out.emplace_back().set_scene(viewport.create.scene());
     return out.back();
@@ -132,7 +175,8 @@ void LedgerViewports::PutOne(const std::string& name, const Viewport& viewport,
   viewport.latest.Put(viewport.create.scene(), out);
   for (const std::string& fragment : viewport.hidden) {
     // A viewport continues to hide the name of a removed fragment.
-    const bool gone = std::find(fragments.begin(), fragments.end(), fragment) == fragments.end();
+    const bool gone = std::find(scene.fragments.begin(), scene.fragments.end(), fragment) ==
+                      scene.fragments.end();
     if (gone) {
       add().mutable_create_fragment()->set_name(fragment);
     }
@@ -141,6 +185,12 @@ void LedgerViewports::PutOne(const std::string& name, const Viewport& viewport,
     hide->set_fragment(fragment);
     if (gone) {
       add().mutable_remove_fragment()->set_name(fragment);
+    }
+  }
+  for (const auto& [terrain, style] : viewport.styles) {
+    const std::uint32_t object = scene.terrain(terrain);
+    if (object != 0 && (style.second == 0 || style.second == object)) {
+      *add().mutable_style_terrain_in_viewport() = style.first;
     }
   }
   for (const v1::SetTextTable& table : viewport.tables) {

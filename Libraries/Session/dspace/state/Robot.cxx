@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <dspace/scene/Checks.h>
+#include <dspace/Checks.h>
 
 namespace dspace::session {
 namespace {

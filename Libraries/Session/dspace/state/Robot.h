@@ -36,7 +36,7 @@ public:
 
   // Sets n joints and moves the frames of their child links and of the joints that mimic them. All
   // values are checked before any joint moves. Throws Error(InvalidArgument), naming the joint, for
-  // by joint without its own position (fixed, floating, planar, mimic), for a value that is not
+  // a joint without its own position (fixed, floating, planar, mimic), for a value that is not
   // finite, and for a value beyond the limits unless `clamp` (a value within 1e-6 rad or m of a
   // limit becomes the limit); NotFound for an index out of range.
   void SetPositions(FrameTree& frames, const std::uint32_t* joints, const double* positions,

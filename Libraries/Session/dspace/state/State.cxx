@@ -26,6 +26,21 @@ SceneState& State::FindScene(const std::string& name) {
   return found->second;
 }
 
+const TerrainObject* SceneState::TerrainOf(ObjectId object) const {
+  for (const auto& [name, terrain] : this->terrains) {
+    if (terrain->Object() == object) {
+      return terrain.get();
+    }
+  }
+  return nullptr;
+}
+
+std::vector<Part> SceneState::GroundOf(const GraphicsObject& object,
+                                       std::size_t triangleBudget) const {
+  const TerrainObject* terrain = this->TerrainOf(object.id);
+  return terrain ? terrain->Triangles(triangleBudget) : std::vector<Part>();
+}
+
 void SceneState::EraseRemoved() {
   const auto& objects = this->scene->Objects();
   const auto gone = [&objects](ObjectId id) { return objects.count(id) == 0; };
@@ -33,14 +48,21 @@ void SceneState::EraseRemoved() {
     const bool stays = this->scene->Frames().Contains(it->second->Base());
     it = stays ? std::next(it) : this->robots.erase(it);
   }
+  for (auto it = this->models.begin(); it != this->models.end();) {
+    const bool stays = this->scene->Frames().Contains(it->first);
+    it = stays ? std::next(it) : this->models.erase(it);
+  }
   for (auto it = this->terrains.begin(); it != this->terrains.end();) {
     it = gone(it->second->Object()) ? this->terrains.erase(it) : std::next(it);
   }
   EraseKeys(this->trails, gone);
   EraseKeys(this->tilts, gone);
   EraseKeys(this->texts, gone);
-  for (auto it = this->primitives.begin(); it != this->primitives.end();) {
-    it = gone(*it) ? this->primitives.erase(it) : std::next(it);
+  EraseKeys(this->drawn, gone);
+  for (std::set<ObjectId>* set : {&this->primitives, &this->meshes}) {
+    for (auto it = set->begin(); it != set->end();) {
+      it = gone(*it) ? set->erase(it) : std::next(it);
+    }
   }
 }
 

@@ -13,9 +13,12 @@
 #include <dspace/proto/objects.pb.h>
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/Trail.h>
+#include <dspace/state/DrawnGeometries.h>
 #include <dspace/state/FrameEventLog.h>
+#include <dspace/state/MeshCache.h>
 #include <dspace/state/MessageLog.h>
 #include <dspace/state/ModelCache.h>
+#include <dspace/state/ModelNodes.h>
 #include <dspace/state/Robot.h>
 #include <dspace/state/Telemetry.h>
 #include <dspace/state/TerrainObject.h>
@@ -24,18 +27,33 @@ namespace dspace::session {
 
 constexpr const char* DefaultVantage = "main";
 
+// An object of CreateDrawn.
+struct DrawnObject {
+  std::string drawer;
+  bool leftOut = false; // this process has no such drawer
+  bool IsProp() const { return this->drawer.compare(0, 4, "vtk:") == 0; }
+};
+
 // One scene with its robots, terrains and trails, by name or object.
 struct SceneState {
   std::shared_ptr<Scene> scene;
   std::map<std::string, std::unique_ptr<Robot>> robots;
+  std::map<FrameId, ModelNodes> models; // whose nodes are frames, by their base frame
   std::map<std::string, std::unique_ptr<TerrainObject>> terrains;
   std::map<ObjectId, Trail> trails;
   std::set<ObjectId> primitives;                       // objects whose shape may be replaced
+  std::set<ObjectId> meshes;                           // objects whose arrays may be replaced
   std::map<ObjectId, std::pair<double, double>> tilts; // warning and limit of tilt markers [deg]
   std::map<ObjectId, v1::CreateText> texts;            // with their style
+  std::map<ObjectId, DrawnObject> drawn;
   Telemetry telemetry;
   MessageLog messages;
   std::unique_ptr<FrameFollower> follower; // null while the frames are not followed
+
+  // The terrain that an object is; null for others.
+  const TerrainObject* TerrainOf(ObjectId object) const;
+  // The ground of an object that is a terrain, as TerrainObject::Triangles; empty for others.
+  std::vector<Part> GroundOf(const GraphicsObject& object, std::size_t triangleBudget) const;
 
   // Removes the robots, terrains, trails and primitives whose frames or objects were removed.
   void EraseRemoved();
@@ -60,6 +78,8 @@ struct State {
   std::map<std::string, SceneState> scenes;
   std::map<std::string, ViewportState> viewports;
   ModelCache models;
+  MeshCache meshes;
+  DrawnGeometries drawers;           // that CreateDrawn may name
   std::uint64_t lastTelemetryId = 0; // of all scenes, including removed ones
   CommandFiles files;
 

@@ -5,10 +5,10 @@
 #include <cstring>
 #include <set>
 
+#include <dspace/Checks.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/TextChecks.h>
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/TextCharacters.h>
+#include <dspace/overlay/TextCharacters.h>
 
 namespace dspace::session {
 namespace {
