@@ -41,17 +41,31 @@ Interpreter::Interpreter() {
   AddObjectCommands(this->Registry_);
   AddObjectRequests(this->Registry_);
   AddPrimitiveCommands(this->Registry_);
+  AddMeshCommands(this->Registry_);
+  AddDrawnCommands(this->Registry_);
   AddTrailCommands(this->Registry_);
   AddRobotCommands(this->Registry_);
+  AddNodeCommands(this->Registry_);
   AddFragmentCommands(this->Registry_);
+  AddSunCommands(this->Registry_);
   AddCameraCommands(this->Registry_);
   AddTerrainCommands(this->Registry_);
+  AddExportCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);
   AddMessageCommands(this->Registry_);
   this->Registry_.AddUnimplemented();
 }
 
 v1::Reply Interpreter::Execute(v1::Command& command) {
+  if (!this->Around_) {
+    return this->Attempt(command);
+  }
+  v1::Reply reply;
+  this->Around_(reply, [&] { reply = this->Attempt(command); });
+  return reply;
+}
+
+v1::Reply Interpreter::Attempt(v1::Command& command) {
   v1::Reply reply;
   FrameEventLog& events = this->State_.frameEvents;
   const std::size_t before = events.Close();

@@ -34,6 +34,11 @@ public:
   Token AddListener(Listener listener);
   bool RemoveListener(Token token);
 
+  // Surrounds the execution of every command: calls `run`, which never throws, and may add warnings
+  // to the reply. Empty: nothing surrounds it.
+  using Around = std::function<void(v1::Reply& reply, const std::function<void()>& run)>;
+  void SetAround(Around around) { this->Around_ = std::move(around); }
+
   // The registry, to which a session may add commands.
   Registry& Commands() { return this->Registry_; }
   State& GetState() { return this->State_; }
@@ -42,11 +47,13 @@ public:
 
 private:
   void Run(v1::Command& command, v1::Reply& reply);
+  v1::Reply Attempt(v1::Command& command);
   void NotifyListeners(const v1::Command& command, v1::Reply& reply);
   State State_;
   Registry Registry_;
   std::vector<std::pair<Token, Listener>> Listeners_;
   Token LastToken_ = 0;
+  Around Around_;
   int Depth_ = 0; // number of nested calls of Execute: listeners may execute commands
 };
 

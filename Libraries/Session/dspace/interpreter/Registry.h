@@ -62,11 +62,16 @@ void AddFrameCommands(Registry& registry);
 void AddObjectCommands(Registry& registry);
 void AddObjectRequests(Registry& registry);
 void AddPrimitiveCommands(Registry& registry);
+void AddMeshCommands(Registry& registry);
+void AddDrawnCommands(Registry& registry);
 void AddTrailCommands(Registry& registry);
 void AddRobotCommands(Registry& registry);
+void AddNodeCommands(Registry& registry);
 void AddFragmentCommands(Registry& registry);
+void AddSunCommands(Registry& registry);
 void AddCameraCommands(Registry& registry);
 void AddTerrainCommands(Registry& registry);
+void AddExportCommands(Registry& registry);
 void AddTelemetryCommands(Registry& registry);
 void AddMessageCommands(Registry& registry);
 void AddTextCommands(Registry& registry); // needs VTK: in the VTK module, not in the plain library

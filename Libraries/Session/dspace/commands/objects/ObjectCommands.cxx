@@ -2,57 +2,24 @@
 #include <cmath>
 #include <filesystem>
 
-#include <dspace/FrameRules.h>
+#include <dspace/Checks.h>
+#include <dspace/commands/objects/ImportTools.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
 
-// Files seldom say their unit: a size that no vehicle or building has is pointed out, not changed.
-void WarnOfSize(const Model& model, double scale, v1::Reply& reply) {
-  const Eigen::AlignedBox3d bounds = model.Bounds();
-  const double size = bounds.isEmpty() ? 0.0 : scale * bounds.sizes().maxCoeff();
-  if (size > 1000.0 || (size > 0.0 && size < 1e-3)) {
-    reply.add_warning("file '" + model.path + "': the model is " + NumberText(size) +
-                      " m across; give `scale` if its unit is not the metre");
-  }
-}
-
-DetailLevel LoadLevel(const Context& context, v1::ImportObject& command,
-                      v1::ImportObject::Level& level, const Eigen::Quaterniond& rotation) {
-  level.set_path(AbsolutePath(level.path()));
-  const double scale = command.has_scale() ? command.scale() : 1.0;
-  ImportOptions options;
-  options.strict = command.strict();
-  options.pointCloud = command.point_cloud();
-  const std::shared_ptr<const Model> model = context.state.models.LoadModel(level.path(), options);
-  for (const std::string& warning : model->warnings) {
-    context.reply.add_warning(warning);
-  }
-  WarnOfSize(*model, scale, context.reply);
-  DetailLevel made;
-  made.parts = PartsOf(model, scale, rotation);
-  made.minimumPixels = level.minimum_pixels();
-  return made;
-}
-
 void ImportObject(const Context& context, v1::ImportObject& command) {
-  if (command.level_size() == 0 || command.level(0).path().empty()) {
-    Reject("command import_object", "it names no file; accepted: at least one level with a path");
-  }
-  const std::string file = "file '" + command.level(0).path() + "'";
-  const double scale = command.has_scale() ? command.scale() : 1.0;
-  Require(scale >= MinimumScale && scale <= MaximumScale, file, "the scale", scale,
-          "1e-12 to 1e12");
-  Eigen::Quaterniond rotation = RotationToZUp(command.up(), file);
-  if (command.has_rotation()) {
-    rotation = ToRotation(command.rotation(), file) * rotation;
-  }
+  ImportLabel(command);
+  const double scale = ImportScale(command);
+  const Eigen::Quaterniond rotation = ImportRotation(command);
   std::vector<DetailLevel> levels;
   for (v1::ImportObject::Level& level : *command.mutable_level()) {
-    levels.push_back(LoadLevel(context, command, level, rotation));
+    DetailLevel made;
+    made.parts = PartsOf(ImportLevel(context, command, level, false, false), scale, rotation);
+    made.minimumPixels = level.minimum_pixels();
+    levels.push_back(std::move(made));
   }
   const std::string stem = std::filesystem::path(command.level(0).path()).stem().string();
   AddObject(context, *command.mutable_object(), stem, std::move(levels));
@@ -65,6 +32,13 @@ void RemoveObject(const Context& context, v1::RemoveObject& command) {
     if (robot->HasObject(id)) {
       Reject(ObjectLabel(*state.scene, id),
              "it belongs to robot '" + name + "'; accepted: hide it, or remove the robot");
+    }
+  }
+  for (const auto& [base, model] : state.models) {
+    if (model.HasObject(id)) {
+      Reject(ObjectLabel(*state.scene, id),
+             "it belongs to a model whose nodes are frames; accepted: hide it, or remove frame '" +
+                 state.scene->Frames().Path(base) + "'");
     }
   }
   for (const auto& [name, terrain] : state.terrains) {
@@ -83,6 +57,11 @@ void SetObjectVisible(const Context& context, v1::SetObjectVisible& command) {
 
 void SetMaterial(const Context& context, v1::SetMaterial& command) {
   Scene& scene = context.GetScene();
+  const auto drawn = context.scene->drawn.find(command.object());
+  if (drawn != context.scene->drawn.end() && drawn->second.IsProp()) {
+    Reject(ObjectLabel(scene, command.object()),
+           "it is a prop of VTK; accepted: the vtkProperty of the prop");
+  }
   const MaterialOverride imported;
   const MaterialOverride& old = scene.Object(command.object()).material;
   const MaterialOverride& base = command.replace() ? imported : old;

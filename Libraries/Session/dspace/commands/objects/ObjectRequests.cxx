@@ -1,5 +1,8 @@
 // What objects there are, and what they are like.
+#include <set>
+
 #include <dspace/commands/objects/ObjectTools.h>
+#include <dspace/commands/objects/ShaderMessages.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/scene/CustomGeometry.h>
 
@@ -16,7 +19,24 @@ std::uint64_t TrianglesOf(const DetailLevel& level) {
   return triangles;
 }
 
-void Describe(const GraphicsObject& object, v1::ObjectInfo* info) {
+void DescribeParts(const GraphicsObject& object, v1::ObjectInfo* info) {
+  std::set<std::string> named = {""};
+  for (const DetailLevel& level : object.levels) {
+    for (const Part& part : level.parts) {
+      if (named.insert(part.name).second) {
+        info->add_part(part.name);
+      }
+    }
+  }
+  for (const auto& [name, over] : object.parts) {
+    v1::SetPart* part = info->add_part_override();
+    part->set_part(name);
+    PutMaterial(over.material, part->mutable_material());
+    part->set_visible(over.visible);
+  }
+}
+
+void Describe(const GraphicsObject& object, const SceneState& scene, v1::ObjectInfo* info) {
   info->set_id(object.id);
   info->set_name(object.name);
   info->set_frame(object.frame);
@@ -24,10 +44,14 @@ void Describe(const GraphicsObject& object, v1::ObjectInfo* info) {
   info->set_fragment(object.fragment);
   info->set_visible(object.visible);
   PutMaterial(object.material, info->mutable_material());
+  DescribeParts(object, info);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
       info->add_offset(object.X_FO(row, column));
     }
+  }
+  if (object.shader) {
+    PutShader(*object.shader, info->mutable_shader());
   }
   for (const DetailLevel& level : object.levels) {
     info->add_level(level.minimumPixels);
@@ -41,6 +65,10 @@ void Describe(const GraphicsObject& object, v1::ObjectInfo* info) {
       Put(Eigen::Vector3d(box.min()), info->mutable_box_minimum());
       Put(Eigen::Vector3d(box.max()), info->mutable_box_maximum());
     }
+  }
+  if (const auto drawn = scene.drawn.find(object.id); drawn != scene.drawn.end()) {
+    info->set_drawer(drawn->second.drawer);
+    info->set_left_out(drawn->second.leftOut);
   }
   if (object.custom) {
     const BoundingSphere bounds = object.custom->Bounds();
@@ -63,13 +91,14 @@ void FindObject(const Context& context, v1::FindObject& command) {
 }
 
 void DescribeObject(const Context& context, v1::DescribeObject& command) {
-  Describe(context.GetScene().Object(command.object()), context.reply.mutable_object_info());
+  Describe(context.GetScene().Object(command.object()), *context.scene,
+           context.reply.mutable_object_info());
 }
 
 void ListObjects(const Context& context, v1::ListObjects&) {
   v1::ObjectList* list = context.reply.mutable_objects();
   for (const auto& [id, object] : context.GetScene().Objects()) {
-    Describe(object, list->add_object());
+    Describe(object, *context.scene, list->add_object());
   }
 }
 

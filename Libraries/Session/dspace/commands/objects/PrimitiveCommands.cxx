@@ -1,8 +1,8 @@
 // Objects made of primitives.
+#include <dspace/Checks.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/objects/PrimitiveParts.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 #include <dspace/scene/Markers.h>
 
 namespace dspace::session {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <memory>
 
+#include <dspace/Checks.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 #include <dspace/scene/Markers.h>
 #include <dspace/scene/Primitives.h>
 

@@ -1,11 +1,11 @@
 // Robots: loaded from URDF, moved by their joints.
 #include <filesystem>
 
+#include <dspace/Checks.h>
 #include <dspace/FrameRules.h>
 #include <dspace/commands/objects/ObjectTools.h>
-#include <dspace/commands/objects/UrdfVisuals.h>
+#include <dspace/commands/objects/RobotLevels.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
@@ -48,6 +48,7 @@ void Describe(const Robot& robot, v1::RobotReply* reply) {
   for (std::size_t i = 0; i < urdf.links.size(); ++i) {
     v1::LinkInfo* link = reply->add_link();
     link->set_name(urdf.links[i].name);
+    link->set_original_name(urdf.links[i].originalName);
     link->set_frame(robot.LinkFrame(i));
     for (const ObjectId id : robot.LinkObjects(i)) {
       link->add_object(id);
@@ -101,6 +102,12 @@ void CheckIds(const v1::LoadRobot& command, const Urdf& urdf, const std::string&
   }
 }
 
+// A visual of a link: its object in the link's frame, and its levels of detail.
+struct RobotVisual {
+  Eigen::Affine3d X_LO;
+  std::vector<DetailLevel> levels;
+};
+
 // Creates the frames and objects of a robot with loaded geometry.
 class RobotBuilder {
 public:
@@ -108,14 +115,14 @@ public:
       : Context_(context), Command_(command), Urdf_(urdf), LinkFrames_(urdf.links.size()),
         LinkObjects_(urdf.links.size()) {}
 
-  std::unique_ptr<Robot> Build(std::vector<std::vector<UrdfGeometry>> geometry, const Pose& X_FB) {
+  std::unique_ptr<Robot> Build(std::vector<std::vector<RobotVisual>> visuals, const Pose& X_FB) {
     FrameTree& frames = this->Context_.Frames();
     const std::string& name = this->Command_.name();
     const FrameId base =
         frames.Create(ToFrame(this->Command_.frame()), name, X_FB, this->Command_.base_id());
     try {
       for (std::size_t i = 0; i < this->Urdf_.links.size(); ++i) {
-        this->AddLink(i, base, std::move(geometry[i]));
+        this->AddLink(i, base, std::move(visuals[i]));
       }
       auto robot =
           std::make_unique<Robot>(name, this->Urdf_, base, this->LinkFrames_, this->LinkObjects_);
@@ -129,7 +136,7 @@ public:
   }
 
 private:
-  void AddLink(std::size_t index, FrameId base, std::vector<UrdfGeometry> geometry) {
+  void AddLink(std::size_t index, FrameId base, std::vector<RobotVisual> visuals) {
     const UrdfLink& link = this->Urdf_.links[index];
     const FrameId parent = link.parentJoint < 0
                                ? base
@@ -138,12 +145,12 @@ private:
     const int at = int(index);
     const FrameId id = at < this->Command_.link_id_size() ? this->Command_.link_id(at) : NoFrame;
     this->LinkFrames_[index] = this->Context_.Frames().Create(parent, link.name, {}, id);
-    for (UrdfGeometry& visual : geometry) {
+    for (RobotVisual& visual : visuals) {
       this->LinkObjects_[index].push_back(this->AddVisual(index, std::move(visual)));
     }
   }
 
-  ObjectId AddVisual(std::size_t link, UrdfGeometry geometry) {
+  ObjectId AddVisual(std::size_t link, RobotVisual visual) {
     Scene& scene = this->Context_.GetScene();
     GraphicsObject object;
     object.id = this->NextVisual_ < this->Command_.object_id_size()
@@ -157,8 +164,8 @@ private:
     object.frame = this->LinkFrames_[link];
     object.nature = ToNature(this->Command_.nature(), RobotLabel(this->Command_.name()));
     object.fragment = this->Command_.fragment();
-    object.X_FO = geometry.X_LO;
-    object.levels.push_back({std::move(geometry.parts), 0.0});
+    object.X_FO = visual.X_LO;
+    object.levels = std::move(visual.levels);
     return scene.AddObject(std::move(object));
   }
 
@@ -189,9 +196,10 @@ void LoadRobot(const Context& context, v1::LoadRobot& command) {
   ImportOptions options;
   options.strict = command.strict();
   const Urdf urdf = ReadUrdf(path, options);
-  std::string name = command.name().empty() ? urdf.name : command.name();
+  std::string name = command.name();
   if (name.empty()) {
-    name = std::filesystem::path(path).stem().string();
+    name = MappedFrameName(urdf.name.empty() ? std::filesystem::path(path).stem().string()
+                                             : urdf.name);
   }
   const std::string label = RobotLabel(name);
   if (context.scene->robots.count(name)) {
@@ -199,19 +207,21 @@ void LoadRobot(const Context& context, v1::LoadRobot& command) {
   }
   ToNature(command.nature(), label);
   CheckIds(command, urdf, label);
-  for (const UrdfLink& link : urdf.links) {
-    if (!IsValidFrameName(link.name)) {
-      RejectFrameName("file '" + path + "': link '" + link.name + "'", link.name);
-    }
-  }
   const Pose X_FB = ToPose(command.pose(), label);
   for (const std::string& warning : UrdfWarnings(urdf)) {
     context.reply.add_warning(warning);
   }
-  auto geometry = LoadVisuals(context, urdf, options);
+  const auto geometry = LoadVisuals(context, urdf, options);
+  auto levels = RobotLevels(context, command, urdf, geometry, options);
+  std::vector<std::vector<RobotVisual>> visuals(geometry.size());
+  for (std::size_t link = 0; link < geometry.size(); ++link) {
+    for (std::size_t i = 0; i < geometry[link].size(); ++i) {
+      visuals[link].push_back({geometry[link][i].X_LO, std::move(levels[link][i])});
+    }
+  }
   command.set_path(path);
   command.set_name(name);
-  auto robot = RobotBuilder(context, command, urdf).Build(std::move(geometry), X_FB);
+  auto robot = RobotBuilder(context, command, urdf).Build(std::move(visuals), X_FB);
   Describe(*robot, context.reply.mutable_robot());
   context.scene->robots[name] = std::move(robot);
 }

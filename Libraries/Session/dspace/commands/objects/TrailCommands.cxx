@@ -1,8 +1,8 @@
 // Trails.
+#include <dspace/Checks.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/objects/PrimitiveParts.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -109,6 +109,10 @@ UrdfGeometry MeshOf(const Context& context, const UrdfVisual& visual,
   for (const std::string& warning : model->warnings) {
     context.reply.add_warning(warning);
   }
+  const std::string leftOut = LeftOutWarning(*model, false, false);
+  if (!leftOut.empty()) {
+    context.reply.add_warning(leftOut);
+  }
   UrdfGeometry made;
   made.X_LO = ToAffine(visual.X_LV) * Eigen::Scaling(visual.size);
   made.parts = PartsOf(model);

@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/scene/CameraTools.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
+#include <dspace/scene/CustomGeometry.h>
+#include <dspace/scene/Stretch.h>
+#include <dspace/scene/controls/CameraFit.h>
 
 namespace dspace::session {
 namespace {
@@ -84,6 +87,16 @@ CameraMount ToMount(const v1::Mount& from, const std::string& name) {
     to.smoothing_s = chase.smoothing_s();
     break;
   }
+  case v1::Mount::kPointing: {
+    const v1::Mount::Pointing& pointing = from.pointing();
+    to.kind = CameraMount::Kind::Pointing;
+    to.X_FC.position = ToVector(pointing.eye());
+    to.aim = ToFrame(pointing.aim());
+    to.target = ToVector(pointing.target());
+    to.up = UpOr(pointing.has_up(), pointing.up());
+    to.smoothing_s = pointing.smoothing_s();
+    break;
+  }
   case v1::Mount::KIND_NOT_SET:
     break;
   }
@@ -128,6 +141,73 @@ void SetActiveCamera(const Context& context, v1::SetActiveCamera& command) {
 void AnswerCamera(const Context& context, v1::DescribeCamera& command) {
   DescribeCamera(context.sceneName, context.GetScene(), VantageName(command.vantage()),
                  command.name(), context.reply.mutable_camera());
+}
+
+// The objects that a command names, or all visible ones.
+std::vector<ObjectId> ObjectsToFit(const Scene& scene, const v1::FitCamera& command) {
+  const FrameTree& frames = scene.Frames();
+  for (const FrameId frame : command.frame()) {
+    frames.Path(frame); // throws where there is none
+  }
+  std::vector<ObjectId> ids;
+  for (const ObjectId id : command.object()) {
+    ids.push_back(scene.Object(id).id); // throws where there is none
+  }
+  for (const auto& [id, object] : scene.Objects()) {
+    bool wanted = command.object_size() == 0 && command.frame_size() == 0;
+    for (FrameId at = object.frame; command.frame_size() > 0 && !wanted; at = frames.Parent(at)) {
+      wanted =
+          std::find(command.frame().begin(), command.frame().end(), at) != command.frame().end();
+      if (at == RootFrame) {
+        break;
+      }
+    }
+    if (wanted && object.visible) {
+      ids.push_back(id);
+    }
+  }
+  return ids;
+}
+
+// What contains the object, in frame A: the corners of its box, or a sphere.
+void AddBounds(const Scene& scene, const GraphicsObject& object, FrameId A,
+               std::vector<BoundingSphere>& spheres) {
+  const Pose X_AF = scene.Frames().RelativePose(A, object.frame);
+  if (object.billboard) {
+    spheres.push_back({X_AF.Apply(object.X_FO.translation()), 0.0});
+  } else if (object.custom) {
+    const BoundingSphere sphere = object.custom->Bounds();
+    const double stretch = LargestStretch(object.X_FO) * X_AF.scale;
+    spheres.push_back({X_AF.Apply(object.X_FO * sphere.center), sphere.radius * stretch});
+  } else if (!object.levels.empty() && !object.levels.front().box.isEmpty()) {
+    for (int i = 0; i < 8; ++i) {
+      const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(i);
+      spheres.push_back({X_AF.Apply(object.X_FO * object.levels.front().box.corner(corner)), 0.0});
+    }
+  }
+}
+
+void AnswerFit(const Context& context, v1::FitCamera& command) {
+  const Scene& scene = context.GetScene();
+  const std::string vantage = VantageName(command.vantage());
+  const SceneVantage& views = scene.Vantage(vantage);
+  const Camera& camera =
+      command.name().empty() ? views.ActiveCamera() : views.GetCamera(command.name());
+  const CameraPose pose = scene.PlaceCamera(vantage, camera.name);
+  std::vector<BoundingSphere> spheres;
+  for (const ObjectId id : ObjectsToFit(scene, command)) {
+    AddBounds(scene, scene.Object(id), pose.frame, spheres);
+  }
+  const double margin = command.has_margin() ? command.margin() : 0.1;
+  const double aspect = command.aspect() == 0.0 ? 16.0 / 9.0 : command.aspect();
+  const Camera fitted = FitCamera(camera, pose, spheres, margin, aspect);
+  v1::CameraInfo* info = context.reply.mutable_camera();
+  info->set_scene(context.sceneName);
+  info->set_vantage(vantage);
+  info->set_name(camera.name);
+  info->set_active(views.ActiveCamera().name == camera.name);
+  Put(fitted.projection, info->mutable_projection());
+  Put(fitted.mount, info->mutable_mount());
 }
 
 void GetCameraPose(const Context& context, v1::GetCameraPose& command) {
@@ -182,6 +262,7 @@ void AddCameraCommands(Registry& registry) {
   registry.Add(C::kSetActiveCamera, &C::mutable_set_active_camera, SetActiveCamera);
   registry.Add(C::kDescribeCamera, &C::mutable_describe_camera, AnswerCamera);
   registry.Add(C::kGetCameraPose, &C::mutable_get_camera_pose, GetCameraPose);
+  registry.Add(C::kFitCamera, &C::mutable_fit_camera, AnswerFit);
 }
 
 } // namespace dspace::session

@@ -1,9 +1,10 @@
 // Fragments and lights.
+#include <algorithm>
 #include <set>
 
+#include <dspace/Checks.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
@@ -36,88 +37,35 @@ void ListFragments(const Context& context, v1::ListFragments&) {
     for (const ObjectId id : objects) {
       info->add_object(id);
     }
+    for (const std::string& member : context.GetScene().MembersOf(name)) {
+      info->add_member(member);
+    }
   }
-}
-
-Light::Kind ToKind(v1::SetLight::Kind kind, const std::string& light) {
-  switch (kind) {
-  case v1::SetLight::DIRECTIONAL:
-    return Light::Kind::Directional;
-  case v1::SetLight::POINT:
-    return Light::Kind::Point;
-  case v1::SetLight::SPOT:
-    return Light::Kind::Spot;
-  case v1::SetLight::HEAD:
-    return Light::Kind::Head;
-  case v1::SetLight::AMBIENT:
-    return Light::Kind::Ambient;
-  default:
-    Reject(light, "its kind is " + std::to_string(int(kind)) + "; accepted: 0 to 4");
-  }
-}
-
-v1::SetLight::Kind FromLightKind(Light::Kind kind) {
-  switch (kind) {
-  case Light::Kind::Point:
-    return v1::SetLight::POINT;
-  case Light::Kind::Spot:
-    return v1::SetLight::SPOT;
-  case Light::Kind::Head:
-    return v1::SetLight::HEAD;
-  case Light::Kind::Ambient:
-    return v1::SetLight::AMBIENT;
-  case Light::Kind::Directional:
-    break;
-  }
-  return v1::SetLight::DIRECTIONAL;
 }
 
 void SetLight(const Context& context, v1::SetLight& command) {
-  const std::string label = "light '" + command.name() + "'";
-  Light light;
-  light.name = command.name();
-  light.kind = ToKind(command.kind(), label);
-  light.frame = ToFrame(command.frame());
-  if (command.has_direction()) {
-    light.direction = ToVector(command.direction());
-  }
-  light.position = ToVector(command.position());
-  if (command.has_cone_deg()) {
-    light.cone_deg = command.cone_deg();
-  }
-  if (command.has_color()) {
-    light.color = ToColor(command.color(), label);
-  }
-  if (command.has_intensity()) {
-    light.intensity = command.intensity();
-  }
-  if (command.has_attenuation()) {
-    const v1::Vector3& a = command.attenuation();
-    light.attenuation = {a.x(), a.y(), a.z()};
-  }
-  light.enabled = !command.disabled();
-  context.GetScene().SetLight(light);
+  context.GetScene().SetLight(ToLight(command));
 }
 
+// Scenes once had this light from the start, and snapshots of that time remove it.
+constexpr const char* FormerLight = "sky";
+
 void RemoveLight(const Context& context, v1::RemoveLight& command) {
+  const std::vector<Light>& lights = context.GetScene().Fragments().Lights();
+  if (command.name() == FormerLight &&
+      std::none_of(lights.begin(), lights.end(),
+                   [](const Light& light) { return light.name == FormerLight; })) {
+    context.reply.add_warning("light 'sky': new scenes have no such light; a viewport's fill light "
+                              "is in its place, and nothing is removed");
+    return;
+  }
   context.GetScene().RemoveLight(command.name());
 }
 
 void ListLights(const Context& context, v1::ListLights&) {
   v1::LightList* list = context.reply.mutable_lights();
   for (const Light& light : context.GetScene().Fragments().Lights()) {
-    v1::SetLight* out = list->add_light();
-    out->set_name(light.name);
-    out->set_kind(FromLightKind(light.kind));
-    out->set_frame(light.frame);
-    Put(light.direction, out->mutable_direction());
-    Put(light.position, out->mutable_position());
-    out->set_cone_deg(light.cone_deg);
-    Put(light.color, out->mutable_color());
-    out->set_intensity(light.intensity);
-    Put(Eigen::Vector3d(light.attenuation[0], light.attenuation[1], light.attenuation[2]),
-        out->mutable_attenuation());
-    out->set_disabled(!light.enabled);
+    Put(light, list->add_light());
   }
 }
 

@@ -1,7 +1,7 @@
 // The frame tree.
+#include <dspace/Checks.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
@@ -21,13 +21,21 @@ void CreateFrame(const Context& context, v1::CreateFrame& command) {
   context.reply.mutable_frame()->set_frame(id);
 }
 
-// A link's frame belongs to its robot: poses may be set, the linkage may not be taken apart.
+// The frame of a link or of a model's node belongs to the whole: poses may be set, the tree may
+// not be taken apart.
 void RejectRobotsLink(const Context& context, FrameId frame, const char* what) {
   for (const auto& [name, robot] : context.scene->robots) {
     if (frame != robot->Base() && robot->HasFrame(frame)) {
       Reject("frame '" + context.Frames().Path(frame) + "'",
              std::string("it is a link of robot '") + name + "' and cannot be " + what +
                  "; accepted: the robot's base frame");
+    }
+  }
+  for (const auto& [base, model] : context.scene->models) {
+    if (model.HasFrame(frame)) {
+      Reject("frame '" + context.Frames().Path(frame) + "'",
+             std::string("it is a node of a model and cannot be ") + what + "; accepted: frame '" +
+                 context.Frames().Path(base) + "', which holds its nodes");
     }
   }
 }

@@ -1,9 +1,9 @@
 // Events of a simulation, and questions to the operator.
 #include <algorithm>
 
+#include <dspace/Checks.h>
 #include <dspace/interpreter/Registry.h>
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/TextCharacters.h>
+#include <dspace/overlay/TextCharacters.h>
 
 namespace dspace::session {
 namespace {

@@ -1,28 +1,14 @@
 // Scenes and time.
 #include <algorithm>
-#include <cmath>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/scene/CameraTools.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
+#include <dspace/messages/SunMessages.h>
 
 namespace dspace::session {
 namespace {
-
-void AddDefaultLights(Scene& scene) {
-  Light sun;
-  sun.name = "sun";
-  // From the north-west, 45 degrees high, as shaded relief is lit by default.
-  sun.direction = Eigen::Vector3d(0.5, -0.5, -std::sqrt(0.5));
-  sun.intensity = 0.9;
-  scene.SetLight(sun);
-  Light sky;
-  sky.name = "sky";
-  sky.kind = Light::Kind::Ambient;
-  sky.intensity = 0.25;
-  scene.SetLight(sky);
-}
 
 void CreateScene(const Context& context, v1::CreateScene& command) {
   RequireName("scene", context.sceneName);
@@ -36,7 +22,7 @@ void CreateScene(const Context& context, v1::CreateScene& command) {
     scene->CreateVantage(DefaultVantage);
   }
   if (!command.no_lights()) {
-    AddDefaultLights(*scene);
+    scene->SetLight(ToLight(DefaultSun()));
   }
   context.state.scenes[context.sceneName].scene = std::move(scene);
   context.reply.mutable_scenes()->add_name(context.sceneName);

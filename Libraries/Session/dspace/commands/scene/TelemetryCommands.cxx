@@ -1,8 +1,8 @@
 // Telemetry: named values of a simulation.
 #include <algorithm>
 
+#include <dspace/Checks.h>
 #include <dspace/interpreter/Registry.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

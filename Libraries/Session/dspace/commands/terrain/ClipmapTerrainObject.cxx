@@ -1,12 +1,14 @@
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include <dspace/Checks.h>
 #include <dspace/clipmap/ColorGridsOf.h>
 #include <dspace/clipmap/PoleCharts.h>
+#include <dspace/commands/terrain/ClipmapMesh.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
@@ -29,6 +31,10 @@ ClipmapTerrainObject::ClipmapTerrainObject(std::string name,
     : TerrainObject(std::move(name)), Surface_(std::move(surface)),
       Clipmap_(MakeClipmap(*Surface_, options, pyramid)), Layers_(this->Name(), Clipmap_->Layers()),
       CacheFolder_(std::move(cacheFolder)) {}
+
+std::vector<Part> ClipmapTerrainObject::Triangles(std::size_t triangleBudget) const {
+  return ClipmapMesh(*this->Clipmap_, triangleBudget);
+}
 
 void ClipmapTerrainObject::DescribeLayers(v1::TerrainLayerList& list) const {
   this->Layers_.Describe(list);
@@ -62,6 +68,7 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   reply.set_subdivisions(std::uint32_t(surface.Subdivisions()));
   reply.set_post_columns(std::uint64_t(surface.Pyramid()->Lattice().columns));
   reply.set_post_rows(std::uint64_t(surface.Pyramid()->Lattice().rows));
+  reply.set_overlap_columns(info.overlapColumns);
   reply.set_vertical_scale(info.verticalScale);
   reply.set_vertical_offset(info.verticalOffset);
   const int built = this->Overviews_;
@@ -87,12 +94,10 @@ void ClipmapTerrainObject::Describe(v1::TerrainReply& reply) const {
   reply.set_tile_loads(statistics.loads);
   reply.set_tile_failures(statistics.failures);
   reply.set_last_failure(statistics.lastFailure);
-  if (!reply.on_body()) {
-    const TrackStatistics tracks = surface.Tracks().Statistics();
-    reply.set_track_bytes(tracks.bytes);
-    reply.set_track_contacts(tracks.contacts);
-    reply.set_track_length(tracks.length);
-  }
+  const TrackStatistics tracks = surface.Tracks().Statistics();
+  reply.set_track_bytes(tracks.bytes);
+  reply.set_track_contacts(tracks.contacts);
+  reply.set_track_length(tracks.length);
   for (std::size_t i = 0; surface.Group() && i < surface.Group()->patches.size(); ++i) {
     const PatchReport& from = surface.Group()->patches[i];
     v1::PatchReply* patch = reply.add_patch();
@@ -133,6 +138,17 @@ bool ClipmapTerrainObject::Focus(const std::vector<Eigen::Vector2d>& points_S, d
     Reject(label, "the radius of the focus is " + NumberText(radius) + "; accepted: > 0 m, finite");
   }
   return false;
+}
+
+bool ClipmapTerrainObject::Explains(const std::string& viewport, const std::string& layer,
+                                    const std::function<bool(const Membership&)>& shown) const {
+  if (layer.empty()) {
+    return this->Clipmap_->StyleIn(viewport).ShownBy(shown).ramp.has_value();
+  }
+  const std::vector<StackedLayer> layers = this->Clipmap_->Layers()->Layers();
+  return std::any_of(layers.begin(), layers.end(), [&](const StackedLayer& each) {
+    return each.name == layer && LayerChoice().Takes(each) && shown(each.member);
+  });
 }
 
 } // namespace dspace::session

@@ -3,7 +3,9 @@
 #define DSPACE_SESSION_CLIPMAP_TERRAIN_OBJECT_H
 
 #include <atomic>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,14 +33,21 @@ public:
   void DescribeLayers(v1::TerrainLayerList& list) const;
   bool OnBody() const override { return this->Surface_->Placement().OnBody(); }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
-  StreamedTerrain& ChangedSurface() { return *this->Surface_; } // wheel tracks change it
+  TrackedGround& Ground() override { return *this->Surface_; }
   const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
+  RasterPlace Place() const override { return PlaceOf(*this->Surface_); }
   void Draw(GraphicsObject& object) const override { object.custom = this->Clipmap_; }
+  std::vector<Part> Triangles(std::size_t triangleBudget) const override;
   void Describe(v1::TerrainReply& reply) const override;
   // Builds overviews in the background into `folder`; `options` as for ElevationCache::Build.
   void BuildOverviews(const std::string& folder, const ElevationOptions& options);
   // Checks its arguments only: a clipmap's posts follow the cameras.
   bool Focus(const std::vector<Eigen::Vector2d>& points_S, double radius) override;
+  void ForgetViewport(const std::string& viewport) override {
+    this->Clipmap_->SetStyleIn(viewport, std::nullopt);
+  }
+  bool Explains(const std::string& viewport, const std::string& layer,
+                const std::function<bool(const Membership&)>& shown) const override;
   void EndBackgroundWork() override { this->Build_.reset(); }
 
 private:

@@ -2,15 +2,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/commands/terrain/MeshTerrain.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
 #include <dspace/layers/ColorRamp.h>
+#include <dspace/mesh/DrapeImage.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/raster/ElevationCache.h>
-#include <dspace/scene/Checks.h>
+#include <dspace/state/SunPlace.h>
 
 namespace dspace::session {
 
@@ -49,6 +51,20 @@ template<typename Message> ElevationOptions ToElevation(const Message& command) 
   return elevation;
 }
 
+// Of a terrain, with its window.
+ElevationOptions ToTerrainElevation(const v1::OpenTerrain& command, const std::string& label) {
+  ElevationOptions elevation = ToElevation(command);
+  if (command.window_size() != 0) {
+    if (command.window_size() != 4) {
+      Reject(label, "its window holds " + std::to_string(command.window_size()) +
+                        " numbers; accepted: 4 (left, top, right, bottom) or none");
+    }
+    elevation.mapWindow = {command.window(0), command.window(1), command.window(2),
+                           command.window(3)};
+  }
+  return elevation;
+}
+
 TerrainPatch ToPatch(v1::OpenTerrain::Patch& from) {
   TerrainPatch patch;
   from.set_path(AbsoluteRaster(from.path()));
@@ -61,15 +77,42 @@ TerrainPatch ToPatch(v1::OpenTerrain::Patch& from) {
   return patch;
 }
 
+// Absent angles of the shaded relief become those of the scene's Sun at the middle of the terrain,
+// where it is on and above the horizon.
+void PutReliefSun(const Context& context, const GridTerrain& grid, v1::OpenTerrain& command) {
+  const Light* sun = FindSunLight(context.GetScene());
+  if (command.has_color() || command.has_drape() || !sun || !IsSun(*sun) || !sun->enabled) {
+    return;
+  }
+  const Eigen::Vector3d towards_S = TowardsSun(context.GetScene(), *sun, ToFrame(command.frame()));
+  const Eigen::Vector2d angles =
+      ToHorizontal(HorizontalAxes(grid, PlaceOf(grid)).transpose() * towards_S);
+  if (!(angles[1] > 0.0)) {
+    return;
+  }
+  v1::OpenTerrain::ShadedRelief* relief = command.mutable_relief();
+  if (!relief->has_sun_azimuth_deg()) {
+    relief->set_sun_azimuth_deg(angles[0]);
+  }
+  if (!relief->has_sun_elevation_deg()) {
+    relief->set_sun_elevation_deg(angles[1]);
+  }
+}
+
 std::unique_ptr<TerrainObject> OpenMesh(const Context& context, const std::string& name,
                                         const std::string& path, v1::OpenTerrain& command) {
   GridTerrainOptions options;
-  options.elevation = ToElevation(command);
+  options.elevation = ToTerrainElevation(command, "terrain '" + name + "'");
   if (command.has_map_origin()) {
     options.origin = Eigen::Vector2d(command.map_origin().x(), command.map_origin().y());
     options.originHeight = command.map_origin().z();
   }
+  if (command.track_byte_budget() != 0) {
+    options.tracks.byteBudget = std::size_t(command.track_byte_budget());
+  }
+  options.subdivisions = int(std::min<std::uint32_t>(command.subdivisions(), 1u << 30));
   const auto grid = GridTerrain::Load(path, options);
+  PutReliefSun(context, *grid, command);
   auto terrain = std::make_unique<MeshTerrain>(name, grid, MeshMaterial(context, *grid, command),
                                                std::size_t(command.triangle_budget()));
   if (!terrain->Report().budgetMet) {
@@ -143,7 +186,7 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
                                            const std::string& path, v1::OpenTerrain& command) {
   const std::string label = "terrain '" + name + "'";
   StreamedTerrainOptions options;
-  options.elevation = ToElevation(command);
+  options.elevation = ToTerrainElevation(command, label);
   options.elevation.overviewCache = CacheFolder(command);
   options.onBody = command.on_body();
   if (command.has_map_origin()) {
@@ -226,9 +269,6 @@ v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
   if (command.patch_size() != 0 && command.mode() == Command::TRIANGLES) {
     Reject(label, "triangles use one raster; accepted with patches: a clipmap");
   }
-  if (command.subdivisions() != 0 && command.mode() == Command::TRIANGLES) {
-    Reject(label, "triangles have no posts between pixels; accepted with subdivisions: a clipmap");
-  }
   if (command.has_fill_holes() && command.mode() == Command::TRIANGLES) {
     Reject(label, "triangles keep their holes; accepted with filled holes: a clipmap");
   }
@@ -239,7 +279,8 @@ v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
       command.has_fill_holes()) {
     return Command::CLIPMAP;
   }
-  const RasterWindow window = ElevationSource(path, ToElevation(command)).Info().window;
+  const RasterWindow window =
+      ElevationSource(path, ToTerrainElevation(command, label)).Info().window;
   return std::int64_t(window.width) * window.height > MeshPixels ? Command::CLIPMAP
                                                                  : Command::TRIANGLES;
 }
@@ -325,6 +366,8 @@ void AddTerrainCommands(Registry& registry) {
   AddTerrainTrackCommands(registry);
   AddTerrainCacheCommands(registry);
   AddTerrainLayerCommands(registry);
+  AddTerrainFieldCommands(registry);
+  AddGeodesyRequests(registry);
 }
 
 } // namespace dspace::session

@@ -1,17 +1,21 @@
-// The colour layers of a clipmap: added, changed, removed, listed.
+// The layers of a terrain, colours and normals: added, changed, removed, listed.
 #include <algorithm>
+#include <functional>
 #include <utility>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
+#include <dspace/commands/terrain/MeshTerrain.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
 #include <dspace/layers/NoiseLayer.h>
 #include <dspace/layers/raster/FalseColorLayer.h>
 #include <dspace/layers/raster/FilledLayer.h>
 #include <dspace/layers/raster/ImageLayer.h>
+#include <dspace/layers/raster/NormalsLayer.h>
+#include <dspace/layers/raster/RasterField.h>
 #include <dspace/layers/vector/VectorLayer.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
@@ -24,18 +28,34 @@ struct Opened {
   v1::TerrainLayerReply about;
 };
 
-ClipmapTerrainObject& FindLayered(const Context& context, const std::string& name) {
-  auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&FindTerrain(context, name));
-  if (!terrain) {
-    throw Error(Error::Kind::Unsupported, "terrain '" + name + "'",
-                "it is drawn as triangles, which take no colour layers; accepted: mode clipmap");
-  }
-  return *terrain;
+ClipmapTerrainObject* AsClipmap(TerrainObject& terrain) {
+  return dynamic_cast<ClipmapTerrainObject*>(&terrain);
 }
 
-RasterPlace PlaceOf(const StreamedTerrain& surface) {
-  const ElevationInfo& info = surface.Info();
-  return {surface.GetName(), info.crs, info.pixelToMap, info.window.width, info.window.height};
+// Both modes have them.
+TerrainLayers& LayersOf(TerrainObject& terrain) {
+  if (ClipmapTerrainObject* clipmap = AsClipmap(terrain)) {
+    return clipmap->Layers();
+  }
+  return dynamic_cast<MeshTerrain&>(terrain).Layers();
+}
+
+// Draws what a change of the layers made; a clipmap follows its stack. Where they cannot be read,
+// `undo` is called and the error goes on.
+void ShowChange(const Context& context, TerrainObject& terrain, const std::function<void()>& undo) {
+  auto* mesh = dynamic_cast<MeshTerrain*>(&terrain);
+  if (!mesh) {
+    return;
+  }
+  try {
+    mesh->ShowLayers();
+  } catch (...) {
+    undo();
+    throw;
+  }
+  GraphicsObject drawn;
+  mesh->Draw(drawn);
+  context.GetScene().SetObjectLevels(mesh->Object(), std::move(drawn.levels));
 }
 
 // Of an image, false colour or a drape. Makes the path absolute.
@@ -64,6 +84,27 @@ template<class Message> Opened OpenImage(const ClipmapTerrainObject& terrain, Me
   opened.about.set_kind(v1::TerrainLayerReply::IMAGE);
   opened.about.set_path(from.path());
   return opened;
+}
+
+// Fills in the raster of a field.
+Add::FalseColor ColorOfField(const ClipmapTerrainObject& terrain, const Add& command,
+                             const std::string& label) {
+  if (!command.has_false_color()) {
+    Reject(label, "a layer of another kind is to show field '" + command.field() +
+                      "'; accepted: false colour");
+  }
+  Add::FalseColor color = command.false_color();
+  if (!color.path().empty() || !color.crs().empty() || color.extent_size() != 0 ||
+      color.band() != 0) {
+    Reject(label, "field '" + command.field() +
+                      "' and a path, crs, extent or band are given; accepted: one of both");
+  }
+  const v1::AddTerrainField& field = terrain.Fields().Get(command.field()).source;
+  color.set_path(field.path());
+  color.set_crs(field.crs());
+  *color.mutable_extent() = field.extent();
+  color.set_band(field.band());
+  return color;
 }
 
 Opened OpenFalseColor(const ClipmapTerrainObject& terrain, Add::FalseColor& from) {
@@ -96,6 +137,15 @@ Opened OpenFalseColor(const ClipmapTerrainObject& terrain, Add::FalseColor& from
     Put(color, opened.about.add_color());
   }
   opened.about.set_unit(layer->Unit());
+  return opened;
+}
+
+Opened OpenField(const ClipmapTerrainObject& terrain, const Add& command,
+                 const std::string& label) {
+  Add::FalseColor color = ColorOfField(terrain, command, label);
+  Opened opened = OpenFalseColor(terrain, color);
+  opened.about.set_field(command.field());
+  opened.about.set_unit(terrain.Fields().Get(command.field()).field->Units());
   return opened;
 }
 
@@ -152,6 +202,31 @@ Opened MakeNoise(const Add::Noise& from) {
   return opened;
 }
 
+Opened OpenNormals(const TerrainObject& terrain, Add::Normals& from, const std::string& cacheFolder,
+                   const std::string& label) {
+  if (!Add::Normals::Axes_IsValid(from.axes())) {
+    Reject(label, "axes " + std::to_string(from.axes()) +
+                      " of normals are not known; accepted: 0 (of the map), 1 (local)");
+  }
+  from.set_path(AbsoluteRaster(from.path()));
+  const bool local = from.axes() == Add::Normals::LOCAL;
+  Opened opened;
+  opened.layer =
+      OpenNormalsLayer(from.path(), terrain.Place(), local ? NormalAxes::Local : NormalAxes::Map,
+                       ToRaster(from, cacheFolder));
+  opened.about.set_kind(v1::TerrainLayerReply::NORMALS);
+  opened.about.set_path(from.path());
+  return opened;
+}
+
+Membership MemberOf(const Scene& scene, const Add& command, const std::string& label) {
+  const bool image = command.kind_case() == Add::kImage || command.kind_case() == Add::kNormals;
+  const Nature standard = image ? Nature::Physical : Nature::Ornamental;
+  return scene.Fragments().Member(
+      label, command.has_nature() ? ToNature(command.nature(), label) : standard,
+      command.fragment());
+}
+
 const char* WordFor(Add::KindCase kind) {
   switch (kind) {
   case Add::kImage:
@@ -160,12 +235,17 @@ const char* WordFor(Add::KindCase kind) {
     return "false color";
   case Add::kShapes:
     return "shapes";
+  case Add::kNormals:
+    return "normals";
   default:
     return "noise";
   }
 }
 
 Opened Open(const ClipmapTerrainObject& terrain, Add& command, const std::string& label) {
+  if (!command.field().empty()) {
+    return OpenField(terrain, command, label);
+  }
   switch (command.kind_case()) {
   case Add::kImage:
     return OpenImage(terrain, *command.mutable_image());
@@ -175,8 +255,11 @@ Opened Open(const ClipmapTerrainObject& terrain, Add& command, const std::string
     return OpenShapes(terrain, *command.mutable_shapes());
   case Add::kNoise:
     return MakeNoise(command.noise());
+  case Add::kNormals:
+    return OpenNormals(terrain, *command.mutable_normals(), terrain.CacheFolder(), label);
   default:
-    Reject(label, "the layer has no kind; accepted: an image, false colour, shapes, noise");
+    Reject(label,
+           "the layer has no kind; accepted: an image, false colour, shapes, noise, normals");
   }
 }
 
@@ -186,7 +269,8 @@ void Warn(const Context& context, const ColorLayer& layer) {
   }
 }
 
-// The layer that marks interpolated ground stays on top, unless a command moves it.
+// The layer that marks interpolated ground is listed last, as it is painted, unless a command moves
+// another there.
 std::optional<std::size_t> UnderFilled(const TerrainLayers& layers) {
   v1::TerrainLayerList list;
   layers.Describe(list);
@@ -197,10 +281,29 @@ std::optional<std::size_t> UnderFilled(const TerrainLayers& layers) {
   return std::nullopt;
 }
 
+// Triangles have one image of normals for all viewports.
+void RequireForTriangles(const Add& command, const std::string& label) {
+  if (command.kind_case() != Add::kNormals || !command.field().empty()) {
+    throw Error(Error::Kind::Unsupported, label,
+                "it is drawn as triangles, which take no colour layers; accepted: layers of "
+                "normals, or mode clipmap");
+  }
+  const bool own =
+      !command.fragment().empty() && command.fragment() != Membership::Physical().fragment;
+  if (own || (command.has_nature() && command.nature() != v1::PHYSICAL)) {
+    throw Error(Error::Kind::Unsupported, label,
+                "it is drawn as triangles, whose layers are shown in all viewports; accepted: "
+                "physical layers without a fragment of their own, or mode clipmap");
+  }
+}
+
 void AddTerrainLayer(const Context& context, Add& command) {
-  ClipmapTerrainObject& terrain = FindLayered(context, command.terrain());
-  TerrainLayers& layers = terrain.Layers();
+  TerrainObject& terrain = FindTerrain(context, command.terrain());
+  TerrainLayers& layers = LayersOf(terrain);
   const std::string label = "terrain '" + command.terrain() + "'";
+  if (!AsClipmap(terrain)) {
+    RequireForTriangles(command, label);
+  }
   StackedLayer stacked;
   stacked.name =
       command.name().empty() ? layers.FreeName(WordFor(command.kind_case())) : command.name();
@@ -212,22 +315,27 @@ void AddTerrainLayer(const Context& context, Add& command) {
   RequireFraction(label, "the opacity of a layer", command.has_opacity() ? command.opacity() : 1.0);
   stacked.opacity = command.has_opacity() ? command.opacity() : stacked.opacity;
   stacked.visible = !command.hidden();
+  stacked.member = MemberOf(context.GetScene(), command, label + ", layer '" + stacked.name + "'");
   std::optional<std::size_t> position;
   if (command.has_position()) {
     position = command.position();
   } else {
     position = UnderFilled(layers);
   }
-  Opened opened = Open(terrain, command, label);
+  ClipmapTerrainObject* clipmap = AsClipmap(terrain);
+  Opened opened = clipmap ? Open(*clipmap, command, label)
+                          : OpenNormals(terrain, *command.mutable_normals(), "", label);
   stacked.layer = opened.layer;
   command.set_name(stacked.name);
   layers.Add(std::move(stacked), position, std::move(opened.about));
+  ShowChange(context, terrain, [&] { layers.Remove(command.name()); });
   Warn(context, *opened.layer);
   *context.reply.mutable_terrain_layer() = layers.Describe(command.name());
 }
 
 void ChangeTerrainLayer(const Context& context, v1::ChangeTerrainLayer& command) {
-  TerrainLayers& layers = FindLayered(context, command.terrain()).Layers();
+  TerrainObject& terrain = FindTerrain(context, command.terrain());
+  TerrainLayers& layers = LayersOf(terrain);
   std::optional<double> opacity;
   std::optional<bool> visible;
   std::optional<std::size_t> position;
@@ -240,19 +348,44 @@ void ChangeTerrainLayer(const Context& context, v1::ChangeTerrainLayer& command)
   if (command.has_position()) {
     position = command.position();
   }
-  layers.Describe(command.name()); // throws where there is none
-  layers.Stack().Change(command.name(), opacity, visible, position);
+  const v1::TerrainLayerReply present = layers.Describe(command.name()); // throws: there is none
+  std::optional<std::string> fragment;
+  if (!command.fragment().empty()) {
+    const std::string label = "terrain '" + command.terrain() + "', layer '" + command.name() + "'";
+    if (!AsClipmap(terrain) && command.fragment() != present.fragment()) {
+      throw Error(Error::Kind::Unsupported, label,
+                  "its terrain is drawn as triangles, whose layers are shown in all viewports; "
+                  "accepted: no fragment, or mode clipmap");
+    }
+    fragment = context.GetScene()
+                   .Fragments()
+                   .Member(label, ToNature(present.nature(), label), command.fragment())
+                   .fragment;
+  }
+  layers.Stack().Change(command.name(), opacity, visible, position, fragment);
+  ShowChange(context, terrain, [&] {
+    layers.Stack().Change(command.name(), present.opacity(), present.visible(), present.position());
+  });
   *context.reply.mutable_terrain_layer() = layers.Describe(command.name());
 }
 
 void RemoveTerrainLayer(const Context& context, v1::RemoveTerrainLayer& command) {
-  TerrainLayers& layers = FindLayered(context, command.terrain()).Layers();
-  layers.Describe(command.name()); // throws where there is none
+  TerrainObject& terrain = FindTerrain(context, command.terrain());
+  TerrainLayers& layers = LayersOf(terrain);
+  const v1::TerrainLayerReply present = layers.Describe(command.name()); // throws: there is none
+  const StackedLayer removed = layers.Stack().Layers()[present.position()];
   layers.Remove(command.name());
+  ShowChange(context, terrain, [&] { layers.Add(removed, present.position(), present); });
 }
 
 void ListTerrainLayers(const Context& context, v1::ListTerrainLayers& command) {
-  FindLayered(context, command.terrain()).DescribeLayers(*context.reply.mutable_terrain_layers());
+  TerrainObject& terrain = FindTerrain(context, command.terrain());
+  v1::TerrainLayerList& list = *context.reply.mutable_terrain_layers();
+  if (const ClipmapTerrainObject* clipmap = AsClipmap(terrain)) {
+    clipmap->DescribeLayers(list);
+  } else {
+    dynamic_cast<MeshTerrain&>(terrain).DescribeLayers(list);
+  }
 }
 
 } // namespace
@@ -263,6 +396,7 @@ void AddDrape(const Context& context, ClipmapTerrainObject& terrain,
   Warn(context, *opened.layer);
   StackedLayer stacked;
   stacked.name = "drape";
+  stacked.member = Membership::Physical();
   stacked.layer = opened.layer;
   terrain.Layers().Add(std::move(stacked), 0, std::move(opened.about));
 }
@@ -279,6 +413,7 @@ void AddFilled(const Context& context, ClipmapTerrainObject& terrain,
   const ElevationInfo& info = terrain.Surface().Info();
   StackedLayer stacked;
   stacked.name = "filled";
+  stacked.mark = true;
   stacked.opacity = 0.4;
   stacked.layer = OpenFilledLayer(info.path, options.elevation.band, PlaceOf(terrain.Surface()),
                                   info.window, holes, patches);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <dspace/Error.h>
+#include <dspace/messages/Convert.h>
 
 namespace dspace::session {
 
@@ -34,6 +35,8 @@ v1::TerrainLayerReply TerrainLayers::Describe(const StackedLayer& layer,
   reply.set_opacity(layer.opacity);
   reply.set_visible(layer.visible);
   reply.set_position(std::uint32_t(position));
+  reply.set_nature(FromNature(layer.member.nature));
+  reply.set_fragment(layer.member.fragment);
   reply.set_pixel_size(layer.layer->PixelSize());
   return reply;
 }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/mesh/DrapeImage.h>
 #include <dspace/mesh/ShadedRelief.h>
 #include <dspace/mesh/WarpImage.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 
@@ -77,12 +77,15 @@ std::shared_ptr<const Image> ToImage(const Context& context, DrapeImage drape,
   return image;
 }
 
-std::shared_ptr<Material> MattMaterial(const v1::OpenTerrain& command) {
+std::shared_ptr<Material> MattMaterial(const v1::OpenTerrain& command, const std::string& terrain) {
   auto material = std::make_shared<Material>();
   material->name = "terrain";
   material->roughness = 1.0;
   material->repeatTexture = false;
   material->lit = !command.unlit();
+  if (command.has_reflectance()) {
+    material->reflectance = ToReflectance(command.reflectance(), terrain);
+  }
   return material;
 }
 
@@ -109,7 +112,7 @@ std::shared_ptr<const Image> RampImage(const ColorRamp& ramp) {
 
 std::shared_ptr<const Material> MeshMaterial(const Context& context, const GridTerrain& grid,
                                              v1::OpenTerrain& command) {
-  auto material = MattMaterial(command);
+  auto material = MattMaterial(command, grid.GetName());
   if (command.has_color()) {
     material->color = ToColor(command.color(), grid.GetName());
     return material;
@@ -125,7 +128,7 @@ std::shared_ptr<const Material> MeshMaterial(const Context& context, const GridT
 ClipmapOptions ClipmapLook(const StreamedTerrain& surface, const v1::OpenTerrain& command) {
   ClipmapOptions options;
   options.postToMap = surface.Info().pixelToMap * surface.PixelToPost().inverse();
-  auto material = MattMaterial(command);
+  auto material = MattMaterial(command, surface.GetName());
   material->color = ShadedReliefOptions().ramp.front();
   if (command.has_color()) {
     material->color = ToColor(command.color(), surface.GetName());

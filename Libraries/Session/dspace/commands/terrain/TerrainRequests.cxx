@@ -3,9 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/terrain/TerrainTools.h>
+#include <dspace/layers/raster/RasterField.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
+#include <dspace/state/TerrainPlaces.h>
 #include <dspace/surface/StreamedTerrain.h>
 
 namespace dspace::session {
@@ -46,7 +48,7 @@ Rows3 PointsOf(const TerrainSurface& surface, const v1::QueryTerrain& command, s
 
 using Values = google::protobuf::RepeatedField<double>;
 
-void Put(const Eigen::Ref<const Eigen::VectorXd>& values, Values* field) {
+void PutValues(const Eigen::Ref<const Eigen::VectorXd>& values, Values* field) {
   *field = {values.data(), values.data() + values.size()};
 }
 
@@ -60,7 +62,21 @@ void Heights(const TerrainSurface& surface, const v1::QueryTerrain& command, con
     // In a plane's frame a height is a place along Z.
     heights.array() -= body ? 0.0 : surface.SceneToMap(Eigen::Vector3d::Zero()).z();
   }
-  Put(heights, field);
+  PutValues(heights, field);
+}
+
+// Values of fields at the command's points.
+void FieldValues(const TerrainObject& terrain, const v1::QueryTerrain& command, const Rows3& points,
+                 Values* field) {
+  Eigen::Matrix2Xd map(2, points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    map.col(i) = command.map() ? Eigen::Vector2d(command.point().data() + 2 * i)
+                               : terrain.Surface().SceneToMap(points.row(i)).head<2>();
+  }
+  for (const std::string& name : command.field()) {
+    const Eigen::VectorXd values = terrain.Fields().Get(name).field->Values(map);
+    field->Add(values.data(), values.data() + values.size());
+  }
 }
 
 void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
@@ -77,9 +93,12 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   const int size = command.spatial() ? 3 : 2;
   const std::size_t n = RowsOf(command.point_size(), size, label, "point");
   if (!command.height() && !command.normal() && !command.slope() && !command.aspect() &&
-      !command.has_roughness_radius() && !command.filled()) {
-    Reject(label,
-           "no quantity is requested; accepted: height, normal, slope, aspect, roughness, filled");
+      !command.has_roughness_radius() && !command.filled() && command.field_size() == 0) {
+    Reject(label, "no quantity is requested; accepted: height, normal, slope, aspect, roughness, "
+                  "filled, fields");
+  }
+  for (const std::string& name : command.field()) {
+    terrain.Fields().Get(name); // throws where there is none
   }
   RequireFinitePoints(label, command.point().data(), size, n);
   const auto* streamed = dynamic_cast<const StreamedTerrain*>(&surface);
@@ -104,15 +123,15 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
   }
   if (command.slope()) {
     surface.Slopes(points, values);
-    Put(values, reply.mutable_slope_deg());
+    PutValues(values, reply.mutable_slope_deg());
   }
   if (command.aspect()) {
     surface.Aspects(points, values);
-    Put(values, reply.mutable_aspect_deg());
+    PutValues(values, reply.mutable_aspect_deg());
   }
   if (command.has_roughness_radius()) {
     streamed->Roughness(points, command.roughness_radius(), values);
-    Put(values, reply.mutable_roughness());
+    PutValues(values, reply.mutable_roughness());
   }
   if (command.filled()) {
     const auto* drawn = static_cast<const StreamedTerrain*>(&terrain.Surface());
@@ -121,7 +140,10 @@ void QueryTerrain(const Context& context, v1::QueryTerrain& command) {
     } else {
       drawn->Filled(points, values);
     }
-    Put(values, reply.mutable_filled());
+    PutValues(values, reply.mutable_filled());
+  }
+  if (command.field_size() != 0) {
+    FieldValues(terrain, command, points, reply.mutable_field());
   }
   context.reply.mutable_terrain_values()->Swap(&reply);
 }
@@ -141,7 +163,7 @@ void IntersectTerrain(const Context& context, v1::IntersectTerrain& command) {
   const Rows3 directions = rays.rightCols<3>();
   Eigen::VectorXd distances(origins.rows());
   surface.Intersect(origins, directions, maximum, distances);
-  Put(distances, context.reply.mutable_terrain_rays()->mutable_distance());
+  PutValues(distances, context.reply.mutable_terrain_rays()->mutable_distance());
 }
 
 void ConvertTerrain(const Context& context, v1::ConvertTerrain& command) {
@@ -156,6 +178,23 @@ void ConvertTerrain(const Context& context, v1::ConvertTerrain& command) {
       reply->add_point(value);
     }
   }
+}
+
+void LocateTerrain(const Context& context, v1::LocateTerrain& command) {
+  const TerrainObject& terrain = FindTerrain(context, command.terrain());
+  const TerrainSurface& surface = terrain.Surface();
+  const std::string label = "terrain '" + command.terrain() + "'";
+  const std::size_t n = RowsOf(command.point_size(), 3, label, "point");
+  RequireFinitePoints(label, command.point().data(), 3, n);
+  const Rows3 given = Eigen::Map<const Rows3>(command.point().data(), Eigen::Index(n), 3);
+  Rows3 other(given.rows(), 3);
+  for (Eigen::Index i = 0; i < given.rows(); ++i) {
+    other.row(i) =
+        command.map() ? surface.MapToScene(given.row(i)) : surface.SceneToMap(given.row(i));
+  }
+  const FrameId frame = context.GetScene().Object(terrain.Object()).frame;
+  PutCoordinates(terrain, context.Frames().WorldPose(frame), command.map() ? other : given,
+                 command.map() ? given : other, *context.reply.mutable_coordinates());
 }
 
 void DescribeTerrain(const Context& context, v1::DescribeTerrain& command) {
@@ -176,6 +215,7 @@ void AddTerrainRequests(Registry& registry) {
   registry.Add(C::kQueryTerrain, &C::mutable_query_terrain, QueryTerrain);
   registry.Add(C::kIntersectTerrain, &C::mutable_intersect_terrain, IntersectTerrain);
   registry.Add(C::kConvertTerrain, &C::mutable_convert_terrain, ConvertTerrain);
+  registry.Add(C::kLocateTerrain, &C::mutable_locate_terrain, LocateTerrain);
   registry.Add(C::kDescribeTerrain, &C::mutable_describe_terrain, DescribeTerrain);
   registry.Add(C::kListTerrains, &C::mutable_list_terrains, ListTerrains);
 }

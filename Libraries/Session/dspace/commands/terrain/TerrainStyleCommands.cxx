@@ -1,19 +1,31 @@
 // The overlays of a terrain's own colour.
 #include <algorithm>
+#include <optional>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
 #include <dspace/layers/ColorRamp.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
 
-ClipmapStyle::Lines ToLines(const v1::StyleTerrain::Lines& lines, const std::string& label) {
+// `what`: "its contours".
+Membership ToMember(const Scene& scene, const v1::StyleTerrain::Membership& member, Nature standard,
+                    const std::string& label, const std::string& what) {
+  const std::string object = label + ", " + what;
+  return scene.Fragments().Member(
+      object, member.has_nature() ? ToNature(member.nature(), object) : standard,
+      member.fragment());
+}
+
+ClipmapStyle::Lines ToLines(const Scene& scene, const v1::StyleTerrain::Lines& lines,
+                            const std::string& label, const std::string& what) {
   ClipmapStyle::Lines result;
+  result.member = ToMember(scene, lines.member(), Nature::Ornamental, label, what);
   result.interval = lines.interval();
   result.width = lines.width();
   result.color = ToColor(lines.color(), label);
@@ -49,10 +61,11 @@ ColorRamp AspectRamp() {
           {0.23, 0.40, 0.85}};
 }
 
-ClipmapStyle::Ramp ToRamp(const v1::StyleTerrain::Ramp& ramp, const StreamedTerrain& surface,
-                          const std::string& label) {
+ClipmapStyle::Ramp ToRamp(const Scene& scene, const v1::StyleTerrain::Ramp& ramp,
+                          const StreamedTerrain& surface, const std::string& label) {
   using Ramp = v1::StyleTerrain::Ramp;
   ClipmapStyle::Ramp result;
+  result.member = ToMember(scene, ramp.member(), Nature::Ornamental, label, "its ramp");
   if (!Ramp::By_IsValid(ramp.by())) {
     Reject(label, "a ramp by " + std::to_string(ramp.by()) +
                       " is not known; accepted: height, slope, aspect, normal");
@@ -99,8 +112,10 @@ ClipmapStyle::Noise ToNoise(const v1::StyleTerrain::Noise& noise) {
   return result;
 }
 
-ClipmapStyle::Detail ToDetail(const Context& context, v1::StyleTerrain::Detail& detail) {
+ClipmapStyle::Detail ToDetail(const Context& context, const Scene& scene,
+                              v1::StyleTerrain::Detail& detail, const std::string& label) {
   ClipmapStyle::Detail result;
+  result.member = ToMember(scene, detail.member(), Nature::Physical, label, "a detail");
   detail.set_path(AbsolutePath(detail.path()));
   result.image = context.state.models.LoadImage(detail.path());
   result.size = detail.size();
@@ -115,18 +130,31 @@ ClipmapStyle::Detail ToDetail(const Context& context, v1::StyleTerrain::Detail& 
   return result;
 }
 
-ClipmapTerrain& FindClipmap(const Context& context, const std::string& name) {
-  auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&FindTerrain(context, name));
+ClipmapTerrainObject& FindClipmap(TerrainObject& found) {
+  auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&found);
   if (!terrain) {
-    throw Error(Error::Kind::Unsupported, "terrain '" + name + "'",
+    throw Error(Error::Kind::Unsupported, "terrain '" + found.Name() + "'",
                 "it is drawn as triangles, which have no style; accepted: mode clipmap");
   }
-  return terrain->Clipmap();
+  return *terrain;
+}
+
+const ViewportState& FindViewport(const Context& context, const std::string& name) {
+  const auto found = context.state.viewports.find(name);
+  if (found == context.state.viewports.end()) {
+    throw Error(Error::Kind::NotFound, "viewport '" + name + "'", "there is no such viewport");
+  }
+  return found->second;
 }
 
 void DescribeTerrainStyle(const Context& context, v1::DescribeTerrainStyle& command) {
-  const ClipmapStyle& style = FindClipmap(context, command.terrain()).Style();
+  const ClipmapTerrain& terrain = FindClipmap(FindTerrain(context, command.terrain())).Clipmap();
   v1::TerrainStyleReply* reply = context.reply.mutable_terrain_style();
+  if (!command.viewport().empty()) {
+    FindViewport(context, command.viewport());
+    reply->set_own(terrain.HasStyleIn(command.viewport()));
+  }
+  const ClipmapStyle style = terrain.StyleIn(command.viewport());
   if (style.ramp) {
     v1::StyleTerrain::Ramp* ramp = reply->mutable_ramp();
     ramp->set_by(static_cast<v1::StyleTerrain::Ramp::By>(style.ramp->by));
@@ -141,43 +169,73 @@ void DescribeTerrainStyle(const Context& context, v1::DescribeTerrainStyle& comm
       to->set_b(color[2]);
     }
     ramp->set_opacity(style.ramp->opacity);
+    ramp->mutable_member()->set_nature(FromNature(style.ramp->member.nature));
+    ramp->mutable_member()->set_fragment(style.ramp->member.fragment);
   }
 }
 
-void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
-  const std::string label = "terrain '" + command.terrain() + "'";
-  FindClipmap(context, command.terrain());
-  auto* terrain = dynamic_cast<ClipmapTerrainObject*>(&FindTerrain(context, command.terrain()));
+ClipmapStyle ToStyle(const Context& context, const Scene& scene, const StreamedTerrain& surface,
+                     v1::StyleTerrain& command, const std::string& label) {
   ClipmapStyle style;
   for (v1::StyleTerrain::Detail& detail : *command.mutable_detail()) {
-    style.details.push_back(ToDetail(context, detail));
+    style.details.push_back(ToDetail(context, scene, detail, label));
   }
   if (command.has_ramp()) {
-    style.ramp = ToRamp(command.ramp(), terrain->Surface(), label);
+    style.ramp = ToRamp(scene, command.ramp(), surface, label);
   }
   if (command.has_tracks()) {
     style.tracks.color = ToColor(command.tracks().color(), label);
     style.tracks.opacity = command.tracks().opacity();
+    style.tracks.member =
+        ToMember(scene, command.tracks().member(), Nature::Physical, label, "its tracks");
   }
   if (command.has_levels()) {
     style.levels = command.levels();
+    style.levelsMember =
+        ToMember(scene, command.levels_member(), Nature::Ornamental, label, "its levels");
   }
   if (command.has_contours()) {
-    style.contours = ToLines(command.contours(), label);
+    style.contours = ToLines(scene, command.contours(), label, "its contours");
   }
   if (command.has_grid()) {
-    style.grid = ToLines(command.grid(), label);
+    style.grid = ToLines(scene, command.grid(), label, "its grid");
   }
   if (command.has_grid_labels()) {
     style.gridLabels = ToGridLabels(command.grid_labels(), label);
-    style.gridLabels->degrees = terrain->Surface().Placement().OnBody() ||
-                                terrain->Surface().GetCrs().GetKind() == Crs::Kind::Geographic;
+    style.gridLabels->degrees =
+        surface.Placement().OnBody() || surface.GetCrs().GetKind() == Crs::Kind::Geographic;
   }
   if (command.has_noise()) {
     style.noise = ToNoise(command.noise());
   }
   style.Check(label);
-  terrain->Clipmap().SetStyle(style);
+  return style;
+}
+
+void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
+  ClipmapTerrainObject& terrain = FindClipmap(FindTerrain(context, command.terrain()));
+  terrain.Clipmap().SetStyle(ToStyle(context, context.GetScene(), terrain.Surface(), command,
+                                     "terrain '" + command.terrain() + "'"));
+}
+
+void StyleTerrainInViewport(const Context& context, v1::StyleTerrainInViewport& command) {
+  const std::string sceneName = FindViewport(context, command.viewport()).scene;
+  SceneState& scene = context.state.FindScene(sceneName);
+  const Context within{context.state, &scene, sceneName, context.reply};
+  ClipmapTerrainObject& terrain = FindClipmap(FindTerrain(within, command.terrain()));
+  std::optional<ClipmapStyle> style;
+  if (command.has_style()) {
+    const std::string label =
+        "terrain '" + command.terrain() + "' in viewport '" + command.viewport() + "'";
+    if (command.style().has_noise() || command.style().detail_size() > 0) {
+      Reject(label, std::string("it is given ") +
+                        (command.style().has_noise() ? "noise" : "details") +
+                        ", which are the same in all viewports; accepted: a ramp, levels, "
+                        "contours, a grid with its labels, tracks");
+    }
+    style = ToStyle(within, *scene.scene, terrain.Surface(), *command.mutable_style(), label);
+  }
+  terrain.Clipmap().SetStyleIn(command.viewport(), style);
 }
 
 } // namespace
@@ -185,6 +243,8 @@ void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
 void AddTerrainStyleCommands(Registry& registry) {
   using C = v1::Command;
   registry.Add(C::kStyleTerrain, &C::mutable_style_terrain, StyleTerrain);
+  registry.Add(C::kStyleTerrainInViewport, &C::mutable_style_terrain_in_viewport,
+               StyleTerrainInViewport, Needs::Nothing); // viewports are the session's
   registry.Add(C::kDescribeTerrainStyle, &C::mutable_describe_terrain_style, DescribeTerrainStyle);
 }
 

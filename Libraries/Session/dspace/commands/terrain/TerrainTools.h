@@ -37,6 +37,8 @@ void AddTerrainStyleCommands(Registry& registry);
 void AddTerrainTrackCommands(Registry& registry);
 void AddTerrainCacheCommands(Registry& registry);
 void AddTerrainLayerCommands(Registry& registry);
+void AddTerrainFieldCommands(Registry& registry);
+void AddGeodesyRequests(Registry& registry);
 
 } // namespace dspace::session
 

@@ -1,9 +1,9 @@
 // Colour bars over a viewport's picture.
 #include <algorithm>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
 
 #include "vtkDspaceViewport.h"
 
@@ -53,6 +53,12 @@ ColorBar ToColorBar(const v1::SetColorBar& command) {
   if (command.has_background_opacity()) {
     bar.backgroundColor[3] = command.background_opacity();
   }
+  if (command.terrain().empty() && !command.layer().empty()) {
+    Reject(label, "it explains layer '" + command.layer() +
+                      "' of no terrain; accepted: a terrain with it, or neither");
+  }
+  bar.terrain = command.terrain();
+  bar.layer = command.layer();
   return bar;
 }
 

@@ -4,11 +4,11 @@
 #include <array>
 #include <functional>
 
+#include <dspace/Checks.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/overlay/Overlay.h>
+#include <dspace/overlay/TextCharacters.h>
 #include <dspace/render/text/Fonts.h>
-#include <dspace/scene/Checks.h>
-#include <dspace/scene/Overlay.h>
-#include <dspace/scene/TextCharacters.h>
 
 #include "vtkDspaceViewport.h"
 

@@ -1,10 +1,10 @@
 // Letters and labels in the scene.
 #include <algorithm>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/render/text/TextShapes.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
-#include <dspace/clipmap/gl/ClipmapDrawer.h>
+#include <dspace/Checks.h>
+#include <dspace/clipmap/gl/ClipmapDrawing.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/scene/Checks.h>
+#include <dspace/render/props/VtkPropDrawer.h>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"
@@ -24,6 +25,56 @@ std::string FreeName(const std::map<std::string, ViewportState>& viewports) {
   return name;
 }
 
+// The settings of a picture's light that the command gives, over the present ones.
+ViewLook ToLook(const v1::SetViewport& from, ViewLook look, const std::string& label) {
+  if (from.has_shadows()) {
+    look.shadows.shown = from.shadows();
+  }
+  if (from.has_shadow_cascades()) {
+    look.shadows.cascades = ToInt(from.shadow_cascades());
+  }
+  if (from.has_shadow_map_size()) {
+    look.shadows.size = ToInt(from.shadow_map_size());
+  }
+  if (from.has_shadow_distance()) {
+    look.shadows.distance = from.shadow_distance();
+  }
+  if (from.has_cascade_colors()) {
+    look.shadows.cascadeColors = from.cascade_colors();
+  }
+  if (from.has_fill()) {
+    look.fill = from.fill();
+  }
+  if (from.has_exposure()) {
+    look.exposure = from.exposure();
+  }
+  if (from.has_automatic_exposure()) {
+    look.automaticExposure = from.automatic_exposure();
+  }
+  if (from.has_tone()) {
+    if (!v1::SetViewport::Tone_IsValid(from.tone())) {
+      Reject(label, "its tone is " + std::to_string(int(from.tone())) +
+                        "; accepted: LINEAR (0), FILMIC (1)");
+    }
+    look.tone = from.tone() == v1::SetViewport::FILMIC ? ToneCurve::Filmic : ToneCurve::Linear;
+  }
+  return look;
+}
+
+void PutLook(const ViewLook& from, v1::ViewportInfo& to) {
+  to.set_shadows(from.shadows.shown);
+  to.set_shadow_cascades(std::uint32_t(from.shadows.cascades));
+  to.set_shadow_map_size(std::uint32_t(from.shadows.size));
+  to.set_shadow_distance(from.shadows.distance);
+  to.set_cascade_colors(from.shadows.cascadeColors);
+  to.set_fill(from.fill);
+  to.set_exposure(from.exposure);
+  to.set_automatic_exposure(from.automaticExposure);
+  to.set_tone(from.tone == ToneCurve::Filmic ? v1::SetViewport::FILMIC : v1::SetViewport::LINEAR);
+}
+
+constexpr double DefaultFill = 0.2; // of new viewports: shadowed sides are not black
+
 void RequireCamera(const Scene& scene, const std::string& vantage, const std::string& camera) {
   const SceneVantage& found = scene.Vantage(vantage);
   if (!camera.empty()) {
@@ -41,6 +92,7 @@ ViewportCommands::~ViewportCommands() {
 void ViewportCommands::Clear() {
   for (const auto& [name, viewport] : this->Viewports_) {
     viewport->SetBeforeDrawing({}); // other code may still own it
+    viewport->SetBarShown({});
   }
   this->Viewports_.clear();
   this->RenderContext_ = nullptr;
@@ -63,6 +115,17 @@ void ViewportCommands::SetRenderContext(vtkDspaceRenderContext* context) {
   this->RenderContext_ = context;
   if (context) {
     RegisterClipmapDrawer(context->GetDrawers());
+    RegisterVtkPropDrawer(context->GetDrawers());
+    for (const auto& [geometry, maker] : this->Drawers_) {
+      context->GetDrawers().Register(geometry, maker);
+    }
+  }
+}
+
+void ViewportCommands::AddDrawer(std::type_index geometry, const CustomDrawers::Maker& maker) {
+  this->Drawers_[geometry] = maker;
+  if (this->RenderContext_) {
+    this->RenderContext_->GetDrawers().Register(geometry, maker);
   }
 }
 
@@ -71,6 +134,12 @@ vtkDspaceRenderContext* ViewportCommands::GetRenderContext() {
     this->SetRenderContext(vtkSmartPointer<vtkDspaceRenderContext>::New());
   }
   return this->RenderContext_;
+}
+
+void ViewportCommands::ReleaseRenderContext() {
+  if (this->RenderContext_) {
+    this->RenderContext_->Release();
+  }
 }
 
 void ViewportCommands::Create(const Context& context, v1::CreateViewport& command) {
@@ -91,6 +160,9 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
     viewport->SetCamera(command.camera());
   }
   viewport->SetVisible(!command.hidden());
+  ViewLook look = viewport->GetLook();
+  look.fill = DefaultFill;
+  viewport->SetLook(look);
   const State& state = context.state;
   viewport->SetBeforeDrawing(
       [this, &state, name, scene = context.sceneName, drawn = viewport.Get()] {
@@ -98,6 +170,18 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
         if (found != state.scenes.end()) {
           this->LiveTables_.Update(name, found->second.telemetry, *drawn);
         }
+      });
+  viewport->SetBarShown(
+      [&state, name, scene = context.sceneName](const ColorBar& bar, const DrawFilter& filter) {
+        const auto found = state.scenes.find(scene);
+        if (found == state.scenes.end() || found->second.terrains.count(bar.terrain) == 0) {
+          return false;
+        }
+        const TerrainObject& terrain = *found->second.terrains.at(bar.terrain);
+        const GraphicsObject& object = found->second.scene->Object(terrain.Object());
+        const auto shown = [&](const Membership& member) { return filter.Shows(member); };
+        return object.visible && shown({object.nature, object.fragment}) &&
+               terrain.Explains(name, bar.layer, shown);
       });
   command.set_name(name);
   this->Viewports_[name] = viewport;
@@ -110,9 +194,16 @@ void ViewportCommands::Create(const Context& context, v1::CreateViewport& comman
 
 void ViewportCommands::Remove(const Context& context, v1::RemoveViewport& command) {
   this->Get(command.viewport()).SetBeforeDrawing({});
+  this->Get(command.viewport()).SetBarShown({});
   this->LiveTables_.RemoveViewport(command.viewport());
   this->Controllers_.erase(command.viewport());
   this->Viewports_.erase(command.viewport());
+  const auto scene = context.state.scenes.find(context.state.viewports[command.viewport()].scene);
+  if (scene != context.state.scenes.end()) {
+    for (const auto& [name, terrain] : scene->second.terrains) {
+      terrain->ForgetViewport(command.viewport());
+    }
+  }
   context.state.viewports.erase(command.viewport());
 }
 
@@ -150,6 +241,7 @@ void ViewportCommands::Set(const Context& context, v1::SetViewport& command) {
   if (command.has_background_top()) {
     top = ToColor(command.background_top(), label);
   }
+  viewport.SetLook(ToLook(command, viewport.GetLook(), label)); // the last that can fail
   if (vantage != place.vantage) {
     viewport.SetCamera("");
     viewport.SetVantage(vantage);
@@ -215,6 +307,7 @@ void ViewportCommands::Describe(const Context& context, v1::DescribeViewport& co
   info->set_samples(std::uint32_t(viewport.GetSamples()));
   info->set_ornaments(place.ornaments);
   info->set_corner_axes(place.cornerAxes);
+  PutLook(viewport.GetLook(), *info);
   for (const std::string& fragment : place.hiddenFragments) {
     info->add_hidden_fragment(fragment);
   }
@@ -249,6 +342,7 @@ void ViewportCommands::AddTo(Registry& registry) {
   registry.Add(C::kDescribeViewport, &C::mutable_describe_viewport, bind(&V::Describe), none);
   registry.Add(C::kListViewports, &C::mutable_list_viewports, bind(&V::List), none);
   this->AddColorBarsTo(registry);
+  this->AddShadersTo(registry);
   this->AddRequestsTo(registry);
 }
 

@@ -5,13 +5,15 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <typeindex>
 
 #include <vtkSmartPointer.h>
 
 #include <dspace/commands/viewports/LiveTables.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/render/Capture.h>
-#include <dspace/scene/OrbitController.h>
+#include <dspace/render/CustomDrawers.h>
+#include <dspace/scene/controls/OrbitController.h>
 
 class vtkDspaceRenderContext;
 class vtkDspaceViewport;
@@ -32,14 +34,17 @@ public:
   vtkDspaceViewport* Find(const std::string& name) const;
   void SetRenderContext(vtkDspaceRenderContext* context);
   vtkDspaceRenderContext* GetRenderContext(); // made on demand
+  void ReleaseRenderContext();                // vtkDspaceRenderContext::Release(), if it is there
+  // Registers a drawer with the context, and with one that is set later.
+  void AddDrawer(std::type_index geometry, const CustomDrawers::Maker& maker);
 
   // The planes of the last capture command. The caller may move them.
   dspace::Capture& LastCapture() { return this->LastCapture_; }
-  void Clear(); // viewports first, then the context
+  void Clear();                       // viewports first, then the context
+  void AddWarnings(v1::Reply& reply); // warnings of VTK while drawing, since the last call
 
 private:
   vtkDspaceViewport& Get(const std::string& name) const; // throws Error(NotFound)
-  void AddWarnings(v1::Reply& reply);                    // warnings of VTK while drawing
 
   void Create(const Context& context, v1::CreateViewport& command);
   void Remove(const Context& context, v1::RemoveViewport& command);
@@ -57,6 +62,10 @@ private:
   void SetBar(const Context& context, v1::SetColorBar& command);
   void RemoveBar(const Context& context, v1::RemoveColorBar& command);
 
+  // ShaderCommands.cxx
+  void AddShadersTo(Registry& registry);
+  void SetShader(const Context& context, v1::SetShader& command);
+
   void Event(const Context& context, v1::ViewportEvent& command); // ViewportEvents.cxx
 
   // ViewportRequests.cxx
@@ -65,9 +74,11 @@ private:
   void SaveImage(const Context& context, v1::SaveImage& command);
   void Render(const Context& context, v1::Render& command);
   void Pick(const Context& context, v1::Pick& command);
+  void Explain(const Context& context, v1::ExplainViewport& command);
   void Statistics(const Context& context, v1::GetStatistics& command);
 
   vtkSmartPointer<vtkDspaceRenderContext> RenderContext_;
+  std::map<std::type_index, CustomDrawers::Maker> Drawers_; // of plug-ins
   std::map<std::string, vtkSmartPointer<vtkDspaceViewport>> Viewports_;
   std::map<std::string, OrbitController> Controllers_; // of viewports that have received events
   LiveTables LiveTables_;

@@ -1,10 +1,9 @@
 // What a person does in a viewport moves its camera.
-#include <Eigen/Eigenvalues> // operatorNorm
-
+#include <dspace/Checks.h>
 #include <dspace/commands/scene/CameraTools.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
-#include <dspace/scene/Checks.h>
 #include <dspace/scene/CustomGeometry.h>
+#include <dspace/scene/Stretch.h>
 
 #include "vtkDspaceViewport.h"
 
@@ -59,7 +58,7 @@ std::optional<BoundingSphere> SceneBounds(const Scene& scene, FrameId F) {
     const BoundingSphere sphere =
         object.custom ? object.custom->Bounds() : object.levels.front().sphere;
     const Pose X = scene.Frames().RelativePose(F, object.frame);
-    const double stretch = object.X_FO.linear().operatorNorm() * X.scale;
+    const double stretch = LargestStretch(object.X_FO) * X.scale;
     const Eigen::Vector3d center = X.Apply(object.X_FO * sphere.center);
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant(sphere.radius * stretch);
     box.extend(Eigen::Vector3d(center - reach));
@@ -95,13 +94,29 @@ void ViewportCommands::Event(const Context& context, v1::ViewportEvent& command)
   if (result.changed) {
     scene.SetCamera(place.vantage, result.camera);
   }
-  if (result.picked) {
+  const bool unusedKey = event.type == InputEvent::Type::Key &&
+                         event.key == InputEvent::Key::None && !command.key().empty();
+  if (result.picked || result.clicked != InputEvent::Button::None) {
     v1::Pick pick;
     pick.set_viewport(command.viewport());
     pick.set_x(result.x);
     pick.set_y(result.y);
     this->Pick(context, pick);
-  } else if (result.changed) {
+  }
+  if (result.clicked != InputEvent::Button::None || unusedKey) {
+    v1::InputReply input;
+    if (!unusedKey) {
+      *input.mutable_pick() = context.reply.pick();
+      input.set_button(command.button());
+    }
+    input.set_key(unusedKey ? command.key() : "");
+    input.set_x(command.x());
+    input.set_y(command.y());
+    input.set_shift(command.shift());
+    input.set_control(command.control());
+    input.set_alt(command.alt());
+    *context.reply.mutable_input() = input;
+  } else if (!result.picked && result.changed) {
     DescribeCamera(place.scene, scene, place.vantage, result.camera.name,
                    context.reply.mutable_camera());
   }

@@ -1,11 +1,15 @@
 // Pictures and picks.
 #include <algorithm>
+#include <limits>
+#include <set>
 
+#include <dspace/Checks.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
+#include <dspace/layers/raster/RasterField.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/render/ImageWriter.h>
-#include <dspace/render/VtkMessages.h>
-#include <dspace/scene/Checks.h>
+#include <dspace/render/messages/VtkMessages.h>
+#include <dspace/state/TerrainPlaces.h>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"
@@ -16,7 +20,7 @@ namespace {
 // Takes the same members from a capture and from a save command.
 template<class Command> CaptureRequest ToRequest(const Command& command, const Scene& scene) {
   CaptureRequest request;
-  request.color = request.depth = request.label = false;
+  request.color = request.depth = request.range = request.label = false;
   request.physicalOnly = command.physical_only();
   for (const std::string& fragment : command.hidden_fragment()) {
     scene.Fragments().Get(fragment); // throws where there is none
@@ -40,17 +44,132 @@ void AddPlane(v1::CaptureReply* reply, const char* name, v1::Plane::Type type, i
   }
 }
 
+v1::ExplanationReply::Reason FromReason(ObjectVisibility::Reason reason) {
+  using From = ObjectVisibility::Reason;
+  using To = v1::ExplanationReply;
+  switch (reason) {
+  case From::Hidden:
+    return To::HIDDEN;
+  case From::FragmentHidden:
+    return To::FRAGMENT_HIDDEN;
+  case From::OrnamentsHidden:
+    return To::ORNAMENTS_HIDDEN;
+  case From::Empty:
+    return To::EMPTY;
+  case From::Transparent:
+    return To::TRANSPARENT;
+  case From::Behind:
+    return To::BEHIND;
+  case From::BeforeNear:
+    return To::BEFORE_NEAR;
+  case From::BeyondFar:
+    return To::BEYOND_FAR;
+  case From::Outside:
+    return To::OUTSIDE;
+  case From::TooSmall:
+    return To::TOO_SMALL;
+  case From::Occluded:
+    return To::OCCLUDED;
+  case From::Seen:
+    break;
+  }
+  return To::SEEN;
+}
+
+// How far a point is above the terrain's surface, along the local vertical [m]; NaN where the
+// terrain has no height.
+double HeightAbove(const TerrainObject& terrain, const Eigen::Vector3d& p_S) {
+  const Eigen::Vector3d map = terrain.Surface().SceneToMap(p_S);
+  if (!map.allFinite()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const SurfaceSample ground = terrain.Surface().SampleMap(map.head<2>());
+  return ground.valid ? map.z() - ground.height : std::numeric_limits<double>::quiet_NaN();
+}
+
+void RemarkOnCamera(const Scene& scene, const SceneState& state, const CameraPose& camera,
+                    v1::ExplanationReply& reply) {
+  std::set<ObjectId> ground;
+  for (const auto& [name, terrain] : state.terrains) {
+    const GraphicsObject& object = scene.Object(terrain->Object());
+    ground.insert(object.id);
+    const Eigen::Vector3d p_S =
+        scene.Frames().RelativePose(object.frame, camera.frame).Apply(camera.X_FC.position);
+    const double above = HeightAbove(*terrain, p_S);
+    if (above < 0.0) {
+      reply.add_remark("The camera is " + NumberText(-above) + " m below the ground of terrain '" +
+                       name + "'.");
+    }
+  }
+  for (const auto& [id, object] : scene.Objects()) {
+    if (object.levels.empty() || object.billboard || !object.visible ||
+        object.nature != Nature::Physical || ground.count(id)) {
+      continue;
+    }
+    const Eigen::Vector3d p_F =
+        scene.Frames().RelativePose(object.frame, camera.frame).Apply(camera.X_FC.position);
+    if (object.levels.front().box.contains(object.X_FO.inverse() * p_F)) {
+      reply.add_remark("The camera is inside the box around object '" + object.name + "'.");
+    }
+  }
+}
+
 } // namespace
+
+void ViewportCommands::Explain(const Context& context, v1::ExplainViewport& command) {
+  vtkDspaceViewport& viewport = this->Get(command.viewport());
+  const Scene& scene = *viewport.GetScene();
+  const ViewportState& place = context.state.viewports[command.viewport()];
+  v1::ExplanationReply& reply = *context.reply.mutable_explanation();
+  bool any = false;
+  int ornaments = 0;
+  for (const ObjectVisibility& from : viewport.Explain()) {
+    v1::ExplanationReply::Item* to = reply.add_object();
+    to->set_object(from.object);
+    to->set_name(scene.Object(from.object).name);
+    to->set_reason(FromReason(from.reason));
+    to->set_text(from.text);
+    to->set_pixels(from.pixels);
+    any = any || from.pixels > 0;
+    ornaments += from.reason == ObjectVisibility::Reason::OrnamentsHidden;
+  }
+  if (scene.Objects().empty()) {
+    reply.add_remark("The scene has no object.");
+  } else if (!any) {
+    reply.add_remark("No pixel shows an object.");
+  }
+  if (ornaments > 0) {
+    reply.add_remark("Everything ornamental is hidden: " + std::to_string(ornaments) +
+                     (ornaments == 1 ? " object." : " objects."));
+  }
+  const std::vector<Light>& lights = scene.Fragments().Lights();
+  if (std::none_of(lights.begin(), lights.end(),
+                   [](const Light& light) { return light.enabled && light.intensity > 0.0; })) {
+    reply.add_remark("No light is on: lit surfaces are black.");
+  }
+  RemarkOnCamera(scene, context.state.FindScene(scene.Name()),
+                 scene.PlaceCamera(place.vantage, place.camera), reply);
+}
 
 void ViewportCommands::Capture(const Context& context, v1::Capture& command) {
   vtkDspaceViewport& viewport = this->Get(command.viewport());
   CaptureRequest request = ToRequest(command, *viewport.GetScene());
   request.color = command.color();
   request.depth = command.depth();
+  request.range = command.range();
   request.label = command.label();
-  if (!request.color && !request.depth && !request.label) {
-    Reject("capture of viewport '" + command.viewport() + "'",
-           "it requests no plane; accepted: color, depth, label");
+  request.radiance = command.radiance();
+  request.litFraction = command.lit_fraction();
+  request.incidence = command.incidence();
+  request.emission = command.emission();
+  request.phase = command.phase();
+  const std::string label = "capture of viewport '" + command.viewport() + "'";
+  const bool any = request.color || request.depth || request.range || request.label ||
+                   request.radiance || request.litFraction || request.incidence ||
+                   request.emission || request.phase;
+  if (!any) {
+    Reject(label, "it requests no plane; accepted: color, depth, range, label, radiance, "
+                  "lit_fraction, incidence, emission, phase");
   }
   this->LastCapture_ = viewport.GetCapture(request);
   const dspace::Capture& taken = this->LastCapture_;
@@ -60,7 +179,13 @@ void ViewportCommands::Capture(const Context& context, v1::Capture& command) {
   const bool data = command.inline_data();
   AddPlane(reply, "color", v1::Plane::UINT8, 4, taken.color, data);
   AddPlane(reply, "depth", v1::Plane::FLOAT32, 1, taken.depth, data);
+  AddPlane(reply, "range", v1::Plane::FLOAT32, 1, taken.range, data);
   AddPlane(reply, "label", v1::Plane::UINT32, 1, taken.label, data);
+  AddPlane(reply, "radiance", v1::Plane::FLOAT32, 3, taken.radiance, data);
+  AddPlane(reply, "lit_fraction", v1::Plane::FLOAT32, 1, taken.litFraction, data);
+  AddPlane(reply, "incidence", v1::Plane::FLOAT32, 1, taken.incidence, data);
+  AddPlane(reply, "emission", v1::Plane::FLOAT32, 1, taken.emission, data);
+  AddPlane(reply, "phase", v1::Plane::FLOAT32, 1, taken.phase, data);
 }
 
 void ViewportCommands::SaveImage(const Context&, v1::SaveImage& command) {
@@ -80,19 +205,25 @@ void ViewportCommands::SaveImage(const Context&, v1::SaveImage& command) {
     CheckImageFile(path, ImagePlane::Depth, options);
     request.depth = true;
     break;
+  case v1::SaveImage::RANGE:
+    CheckImageFile(path, ImagePlane::Range, options);
+    request.range = true;
+    break;
   case v1::SaveImage::LABEL:
     CheckImageFile(path, ImagePlane::Label, options);
     request.label = true;
     break;
   default:
     Reject("file '" + path + "'", "the plane is " + std::to_string(int(command.plane())) +
-                                      "; accepted: COLOR (0), DEPTH (1), LABEL (2)");
+                                      "; accepted: COLOR (0), DEPTH (1), LABEL (2), RANGE (3)");
   }
   const dspace::Capture taken = viewport.GetCapture(request);
   if (request.color) {
     WriteColor(path, taken.width, taken.height, taken.color, options);
   } else if (request.depth) {
     WriteDepth(path, taken.width, taken.height, taken.depth);
+  } else if (request.range) {
+    WriteRange(path, taken.width, taken.height, taken.range);
   } else {
     WriteLabel(path, taken.width, taken.height, taken.label);
   }
@@ -129,6 +260,7 @@ void ViewportCommands::Pick(const Context& context, v1::Pick& command) {
   reply->set_object_name(scene.Object(pick.object).name);
   reply->set_frame(pick.frame);
   reply->set_depth(pick.depth);
+  reply->set_part(pick.part);
   Put(pick.p_camera, reply->mutable_in_camera());
   Put(pick.p_frame, reply->mutable_in_object_frame());
   Put(pick.p_root, reply->mutable_in_root());
@@ -140,7 +272,20 @@ void ViewportCommands::Pick(const Context& context, v1::Pick& command) {
   for (const auto& [name, terrain] : state.terrains) {
     if (terrain->Object() == pick.object) {
       reply->set_terrain(name);
-      Put(terrain->Surface().SceneToMap(pick.p_frame), reply->mutable_map());
+      const Rows3 point_S = pick.p_frame.transpose();
+      const Rows3 map = terrain->Surface().SceneToMap(pick.p_frame).transpose();
+      Put(map.row(0).transpose(), reply->mutable_map());
+      if (terrain->Surface().GetCrs().HasGeographic()) {
+        v1::CoordinatesReply coordinates;
+        PutCoordinates(*terrain, scene.Frames().WorldPose(pick.frame), point_S, map, coordinates);
+        reply->mutable_coordinates()->Swap(coordinates.mutable_point(0));
+      }
+      for (const TerrainField& from : terrain->Fields().All()) {
+        v1::FieldValue* value = reply->add_field();
+        value->set_name(from.source.name());
+        value->set_value(from.field->Values(map.leftCols<2>().transpose())[0]);
+        value->set_units(from.field->Units());
+      }
     }
   }
 }
@@ -183,6 +328,7 @@ void ViewportCommands::AddRequestsTo(Registry& registry) {
   registry.Add(C::kSaveImage, &C::mutable_save_image, bind(&V::SaveImage), none);
   registry.Add(C::kRender, &C::mutable_render, bind(&V::Render), none);
   registry.Add(C::kPick, &C::mutable_pick, bind(&V::Pick), none);
+  registry.Add(C::kExplainViewport, &C::mutable_explain_viewport, bind(&V::Explain), none);
   registry.Add(C::kGetStatistics, &C::mutable_get_statistics, bind(&V::Statistics), none);
 }
 
