@@ -161,6 +161,7 @@ void Playback::Execute(v1::Command command, const char* table, std::uint64_t seq
         "command " + CommandName(command) + ": it changes nothing; recordings contain only changes";
   } else {
     this->Files_.Map(command);
+    this->Files_.FillIn(command);
     rejected = this->Interpreter_.Execute(command).error().message();
   }
   if (!rejected.empty()) {

@@ -16,6 +16,7 @@
 #include <dspace/crs/ProjFolders.h>
 #include <dspace/messages/CommandFiles.h>
 #include <dspace/messages/Confinement.h>
+#include <dspace/messages/Sha256.h>
 #include <dspace/recording/RecordedNames.h>
 #include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingFile.h>
@@ -24,6 +25,12 @@ namespace dspace::session {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::vector<RecordingAsset> FilesOf(RecordingReader& reader, std::int64_t after) {
+  std::vector<RecordingAsset> assets = reader.Assets(after);
+  assets.erase(std::remove_if(assets.begin(), assets.end(), IsArrays), assets.end());
+  return assets;
+}
 
 // Whether the files that there were are in the recording, all of them.
 bool IsPacked(const std::vector<RecordingAsset>& assets) {
@@ -123,20 +130,21 @@ private:
   const pid_t Process_ = getpid();
 };
 
-RecordedFiles::RecordedFiles(RecordingReader& reader, bool check) : Reader_(reader), Check_(check) {
+RecordedFiles::RecordedFiles(RecordingReader& reader, bool check)
+    : Reader_(reader), Arrays_(reader), Check_(check) {
   this->Update();
 }
 
 RecordedFiles::~RecordedFiles() = default;
 
 void RecordedFiles::Update() {
-  const std::vector<RecordingAsset> assets = this->Reader_.Assets(this->Seen_);
+  const std::vector<RecordingAsset> assets = FilesOf(this->Reader_, this->Seen_);
   if (assets.empty()) {
     return;
   }
   if (this->Owned_) {
     this->Unpack(assets);
-  } else if (const auto all = this->Reader_.Assets(); IsPacked(all)) {
+  } else if (const auto all = FilesOf(this->Reader_, 0); IsPacked(all)) {
     this->Owned_ = std::make_unique<OwnFolder>(RecordingName(this->Reader_.Path()));
     this->Folder_ = this->Owned_->Path;
     this->Confinement_ = std::make_shared<const Confinement>(

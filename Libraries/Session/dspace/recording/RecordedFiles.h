@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
+#include <dspace/recording/RecordedArrays.h>
 #include <dspace/recording/RecordingReader.h>
 
 namespace dspace {
@@ -58,6 +59,9 @@ public:
   // cache of the recording machine is not available: terrains build overviews in the folder.
   void Map(v1::Command& command) const;
 
+  // Puts the arrays into the meshes of a recorded command (RecordedArrays).
+  void FillIn(v1::Command& command) { this->Arrays_.FillIn(command); }
+
 private:
   void Check(const std::vector<RecordingAsset>& assets) const;
   void Unpack(const std::vector<RecordingAsset>& assets);
@@ -66,6 +70,7 @@ private:
 
   class OwnFolder;
   RecordingReader& Reader_;
+  RecordedArrays Arrays_;
   const bool Check_;
   std::int64_t Seen_ = 0; // the last processed row
   std::unique_ptr<OwnFolder> Owned_;

@@ -7,16 +7,23 @@
 
 namespace dspace::session {
 
-// A file that commands need. The checksum is not included.
+// A file that commands need, or the arrays of a mesh (IsArrays). The checksum is not included.
 struct RecordingAsset {
   std::int64_t id = 0;
-  std::string path;  // absolute, as it was opened
+  std::string path;  // absolute, as it was opened; of arrays: "arrays:" and the hash as text
   std::string state; // "read"; "absent", "unreadable" (a folder, a server's file), "changed" (it
-                     // is not what the commands were carried out with): these without the rest
+                     // is not what the commands were carried out with): these without the rest;
+                     // "arrays"
   std::int64_t size = 0; // bytes
   std::string sha256;    // 32 bytes
   bool packed = false;   // its content is in the recording
 };
+
+// Whether it is what TakeArrays returns for the meshes with this hash as digest (MeshMessages.h).
+// Always packed.
+inline bool IsArrays(const RecordingAsset& asset) {
+  return asset.state == "arrays";
+}
 
 // Maximum number of bytes of a packed file per row.
 constexpr std::int64_t RecordingPartBytes = 4 << 20;

@@ -82,6 +82,22 @@ void RecordingAssets::PutOne(const std::string& path, const FileStamp& stamp) {
   this->File_.Put(asset);
 }
 
+void RecordingAssets::PutArrays(const std::string& digest, const std::string& bytes) {
+  RecordingAsset asset;
+  asset.id = ++this->Assets_;
+  asset.path = "arrays:" + Hexadecimal(digest);
+  asset.state = "arrays";
+  asset.sha256 = digest;
+  asset.packed = true;
+  this->Incompressible_ = 0;
+  while (asset.size < std::int64_t(bytes.size())) {
+    const std::string part = bytes.substr(std::size_t(asset.size), PartBytes);
+    this->PutPart(asset, part);
+    asset.size += std::int64_t(part.size());
+  }
+  this->File_.Put(asset);
+}
+
 bool RecordingAssets::Pack(const RecordingAsset& noted, const CancelCheck& checkCancel) {
   this->File_.RemoveContent(noted.id); // of a run that was broken off
   this->Parts_ = this->File_.LastContent();

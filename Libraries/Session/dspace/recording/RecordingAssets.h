@@ -25,6 +25,9 @@ public:
   // Error(Io) if the recording cannot be written. An unreadable file is recorded as unreadable.
   void Put(const std::string& path, const FileStamp& stamp);
 
+  // Stores the arrays of meshes with this digest. Call it within a transaction, as above.
+  void PutArrays(const std::string& digest, const std::string& bytes);
+
   // Packs the content of a recorded file. Call it within a transaction, as above. Returns false and
   // stores nothing if the file has changed.
   bool Pack(const RecordingAsset& noted, const CancelCheck& checkCancel);

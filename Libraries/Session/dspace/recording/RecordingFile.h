@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include <dspace/messages/Sha256.h>
 #include <dspace/recording/RecordingAsset.h>
 #include <dspace/recording/RecordingCheckpoints.h>
 
@@ -13,19 +16,6 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 namespace dspace::session {
-
-class Sha256 {
-public:
-  Sha256();
-  ~Sha256();
-  Sha256(const Sha256&) = delete;
-  Sha256& operator=(const Sha256&) = delete;
-  void Add(const void* data, std::size_t size);
-  std::string Finish(); // 32 bytes; ready for the next one
-
-private:
-  void* Context_;
-};
 
 // A row before its checksum.
 struct RecordingRow {
@@ -35,6 +25,9 @@ struct RecordingRow {
   double wall_s = 0.0;   // seconds past 1970 UTC
   std::int32_t kind = 0; // field number of the command; of a snapshot: the number of its commands
   std::string payload;
+  // Arrays of meshes that the recording does not have yet: their digest and bytes
+  // (MeshMessages.h). They are not part of the row.
+  std::vector<std::pair<std::string, std::string>> arrays = {};
 };
 
 // The first 16 bytes of the SHA-256 of the letter C (a command) or S (a snapshot), seq (8 bytes),

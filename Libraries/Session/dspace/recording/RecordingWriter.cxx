@@ -6,17 +6,19 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <set>
 #include <sstream>
 #include <thread>
 
 #include <google/protobuf/util/delimited_message_util.h>
 #include <unistd.h>
 
+#include <dspace/Checks.h>
 #include <dspace/Error.h>
+#include <dspace/messages/MeshMessages.h>
 #include <dspace/recording/RecordingAssets.h>
 #include <dspace/recording/RecordingChecksums.h>
 #include <dspace/recording/RecordingFile.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
@@ -55,7 +57,8 @@ void CheckSize(const std::vector<v1::Command>& commands, const RecordingOptions&
                const std::string& path) {
   std::size_t bytes = 0;
   for (const v1::Command& command : commands) {
-    bytes += command.ByteSizeLong() + 8;
+    bytes +=
+        (HoldsMeshes(command) ? 0 : command.ByteSizeLong()) + 8; // arrays are rows of their own
   }
   if (bytes > options.largestSnapshot) {
     throw Error(Error::Kind::Resource, "recording '" + path + "'",
@@ -85,8 +88,9 @@ struct RecordingWriter::Impl {
   std::size_t lastSnapshot = 0;
   bool told = false;
   const CommandFiles* files = nullptr;
-  FilesRead handed; // to be noted
-  std::string lost; // ranges of commands
+  FilesRead handed;             // to be noted
+  std::set<std::string> arrays; // digests of those that the file has, or that are queued
+  std::string lost;             // ranges of commands
 
   mutable std::mutex mutex;
   std::condition_variable news; // for the thread
@@ -128,6 +132,23 @@ struct RecordingWriter::Impl {
     }
   }
 
+  // Takes the arrays out of the command. The row brings those that the file does not have yet.
+  void TakeArraysOf(v1::Command& command, RecordingRow& row) {
+    ForEachMesh(command, [&](v1::MeshData& mesh) {
+      std::string bytes = TakeArrays(mesh);
+      if (this->arrays.insert(mesh.digest()).second) {
+        row.arrays.emplace_back(mesh.digest(), std::move(bytes));
+      }
+    });
+  }
+
+  // The row is not written, so that its arrays are not in the file.
+  void Forget(const RecordingRow& row) {
+    for (const auto& [digest, bytes] : row.arrays) {
+      this->arrays.erase(digest);
+    }
+  }
+
   // Blocks while the queue is full; nothing after a failure.
   void Enqueue(RecordingRow row) {
     std::unique_lock<std::mutex> lock(this->mutex);
@@ -138,6 +159,9 @@ struct RecordingWriter::Impl {
       return;
     }
     this->queued += row.payload.size() + 64;
+    for (const auto& [digest, bytes] : row.arrays) {
+      this->queued += bytes.size();
+    }
     this->counts.accepted += row.snapshot ? 0 : 1;
     this->queue.push_back(std::move(row));
     lock.unlock();
@@ -155,17 +179,20 @@ struct RecordingWriter::Impl {
     row.wall_s = this->WallTime();
     try {
       std::ostringstream out;
-      const std::vector<v1::Command> commands = ledger.Commands();
-      for (const v1::Command& command : commands) {
+      std::vector<v1::Command> commands = ledger.Commands();
+      for (v1::Command& command : commands) {
+        this->TakeArraysOf(command, row);
         google::protobuf::util::SerializeDelimitedToOstream(command, &out);
       }
       row.kind = std::int32_t(commands.size());
       row.payload = out.str();
     } catch (const std::exception& error) {
+      this->Forget(row);
       return error.what();
     }
     this->lastSnapshot = row.payload.size();
     if (this->lastSnapshot > this->options.largestSnapshot) {
+      this->Forget(row);
       return "the state has " + std::to_string(this->lastSnapshot) + " bytes; accepted: up to " +
              std::to_string(this->options.largestSnapshot);
     }
@@ -187,6 +214,13 @@ struct RecordingWriter::Impl {
     }
     this->EnqueueFiles(*recorded);
     RecordingRow row;
+    if (HoldsMeshes(*recorded)) {
+      if (recorded != &made) {
+        made = *recorded;
+        recorded = &made;
+      }
+      this->TakeArraysOf(made, row);
+    }
     row.seq = ++this->seq;
     row.time_s = this->time_s;
     row.wall_s = this->WallTime();
@@ -222,6 +256,9 @@ struct RecordingWriter::Impl {
         this->assets.Put(path, stamp);
       }
       for (std::size_t i = 0; i < rows.size(); ++i) {
+        for (const auto& [digest, bytes] : rows[i].arrays) {
+          this->assets.PutArrays(digest, bytes);
+        }
         this->file.Put(rows[i], sums.Of(i));
       }
       if (!ranges.empty()) {

@@ -81,7 +81,7 @@ struct RemoteClient::Link {
   // The activity of the user's thread, and its data.
   enum class Activity { Nothing, Pace, Earlier, Window, Reply, Flush, Done };
   Activity activity = Activity::Nothing;
-  v1::Command command; // of Pace, BeginWaitForEarlier and Room
+  v1::Command command; // of Pace, Earlier and Window
   std::size_t bytes = 0;
   bool noReply = false;
   LinkClock::time_point due;      // of Pace
@@ -121,17 +121,6 @@ struct RemoteClient::Link {
   void TakeReply(std::uint64_t number, v1::Reply& reply);
   v1::Reply Resume(const v1::Opened& opened); // returns an error if it cannot resume
 };
-
-// Throws the message as an Error.
-[[noreturn]] void Raise(const v1::Error& error);
-// Makes a channel for a client or a viewer.
-std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const LinkSecurity& security,
-                                           double keepalive_s = 20);
-// Converts a status to an error. Sets `final` if a retry is useless.
-v1::Error ToError(const std::string& address, const grpc::Status& status, bool& final);
-std::string RandomKey();
-// Serializes the message.
-grpc::ByteBuffer ToBytes(const v1::DriveRequest& request);
 
 } // namespace dspace::session
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <dspace/Error.h>
+#include <dspace/link/LinkChannel.h>
 #include <dspace/link/LinkDiagnosis.h>
 #include <dspace/link/client/ClientLink.h>
 #include <dspace/messages/CommandLimits.h>

@@ -13,9 +13,9 @@
 
 #include <grpcpp/resource_quota.h>
 
+#include <dspace/Checks.h>
 #include <dspace/Error.h>
 #include <dspace/link/server/ServerService.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

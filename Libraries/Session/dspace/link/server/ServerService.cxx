@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <thread>
 
+#include <dspace/Checks.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/ErrorReply.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {

@@ -225,6 +225,9 @@ bool ViewerViews::RemoveConflicting(Interpreter& interpreter, const v1::Command&
   if (rejected.has_remove_vantage()) {
     return this->DetachViewports(interpreter, scene, rejected.remove_vantage().name(), "");
   }
+  if (rejected.has_remove_fragment()) {
+    return this->RemoveStyles(interpreter, scene, rejected.remove_fragment().name());
+  }
   if (rejected.has_remove_camera()) {
     const std::string& vantage = rejected.remove_camera().vantage();
     return this->DetachViewports(interpreter, scene, vantage.empty() ? DefaultVantage : vantage,
@@ -246,7 +249,8 @@ bool ViewerViews::DetachCameras(Interpreter& interpreter, const std::string& nam
     }
     for (const std::string& camera : scene->Vantage(vantage).CameraNames()) {
       const auto mount = scene->Vantage(vantage).GetCamera(camera).mount;
-      if (IsBelow(scene->Frames(), mount.frame, frame)) {
+      if (IsBelow(scene->Frames(), mount.frame, frame) ||
+          (mount.aim != NoFrame && IsBelow(scene->Frames(), mount.aim, frame))) {
         v1::Command command;
         command.set_scene(name);
         command.mutable_set_camera()->set_vantage(vantage);
@@ -255,6 +259,20 @@ bool ViewerViews::DetachCameras(Interpreter& interpreter, const std::string& nam
         any = !this->Execute(interpreter, command).has_error() || any;
       }
     }
+  }
+  return any;
+}
+
+// Of viewports, those that have an element in a fragment that will be removed.
+bool ViewerViews::RemoveStyles(Interpreter& interpreter, const std::string& scene,
+                               const std::string& fragment) {
+  bool any = false;
+  for (v1::StyleTerrainInViewport& style : this->Ledger_.StylesIn(scene, fragment)) {
+    style.clear_style();
+    v1::Command command;
+    command.set_scene(scene);
+    *command.mutable_style_terrain_in_viewport() = style;
+    any = !this->Execute(interpreter, command).has_error() || any;
   }
   return any;
 }
@@ -312,8 +330,12 @@ void ViewerViews::BeforeSnapshot(Interpreter& interpreter) {
     }
     const std::shared_ptr<Scene> at = interpreter.FindScene(scene);
     const FrameId frame = ToFrame(set->mount().frame());
-    return LastPose{set->projection(), RootMount(*at, vantage, set->name()),
-                    frame == RootFrame ? std::string() : at->Frames().Path(frame)};
+    const FrameId aim = ToFrame(set->mount().pointing().aim());
+    const auto path = [&at](FrameId of) {
+      return of == RootFrame ? std::string() : at->Frames().Path(of);
+    };
+    return LastPose{set->projection(), RootMount(*at, vantage, set->name()), path(frame),
+                    path(aim)};
   };
   for (const auto& [scene, vantage] : this->Vantages_) {
     // A scene may have been removed and created again.
@@ -347,8 +369,17 @@ std::vector<v1::Command> ViewerViews::Commands(Interpreter& interpreter) const {
   }
   this->Ledger_.Put(
       [&](const std::string& scene) {
-        const auto found = interpreter.FindScene(scene.empty() ? DefaultScene() : scene);
-        return found ? found->Fragments().Names() : std::vector<std::string>();
+        const State& state = interpreter.GetState();
+        const auto found = state.scenes.find(scene.empty() ? DefaultScene() : scene);
+        LedgerViewports::SceneView view{{}, [](const std::string&) { return 0u; }};
+        if (found != state.scenes.end()) {
+          view.fragments = found->second.scene->Fragments().Names();
+          view.terrain = [&terrains = found->second.terrains](const std::string& terrain) {
+            const auto of = terrains.find(terrain);
+            return of == terrains.end() ? 0u : of->second->Object();
+          };
+        }
+        return view;
       },
       commands);
   return commands;
@@ -445,13 +476,20 @@ void ViewerViews::Restore(Interpreter& interpreter, v1::Command& command) {
   if (command.has_set_camera() && command.set_camera().has_mount()) {
     v1::SetCamera& set = *command.mutable_set_camera();
     const auto at = this->Cameras_.find({{SceneName(command), set.vantage()}, set.name()});
-    if (at != this->Cameras_.end() && !at->second.path.empty()) {
+    if (at != this->Cameras_.end() && !(at->second.path.empty() && at->second.aim.empty())) {
       const FrameTree& frames = interpreter.FindScene(SceneName(command))->Frames();
-      const FrameId frame = frames.Find(at->second.path); // ids may have changed
-      if (frame == NoFrame) {
+      const auto find = [&frames](const std::string& path) { // ids may have changed
+        return path.empty() ? RootFrame : frames.Find(path);
+      };
+      const FrameId frame = find(at->second.path);
+      const FrameId aim = find(at->second.aim);
+      if (frame == NoFrame || aim == NoFrame) {
         *set.mutable_mount() = at->second.mount;
       } else {
         set.mutable_mount()->set_frame(frame);
+        if (set.mount().has_pointing()) {
+          set.mutable_mount()->mutable_pointing()->set_aim(aim);
+        }
       }
     }
   }

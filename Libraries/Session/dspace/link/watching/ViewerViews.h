@@ -52,6 +52,7 @@ private:
     v1::Projection projection;
     v1::Mount mount;  // pose in the root
     std::string path; // of its frame; empty: the root
+    std::string aim;  // path of the frame that it points at; empty: none, or the root
   };
   struct Suspended {
     std::vector<v1::Command> commands;
@@ -76,6 +77,8 @@ private:
   std::vector<v1::Command> Commands(Interpreter& interpreter) const;
   std::vector<std::string> ViewportsIn(Interpreter& interpreter, const std::string& scene) const;
   bool DetachCameras(Interpreter& interpreter, const std::string& scene, std::uint64_t frame);
+  bool RemoveStyles(Interpreter& interpreter, const std::string& scene,
+                    const std::string& fragment);
   bool DetachViewports(Interpreter& interpreter, const std::string& scene,
                        const std::string& vantage, const std::string& camera);
 

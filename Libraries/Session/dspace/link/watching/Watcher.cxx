@@ -5,14 +5,15 @@
 
 #include <unistd.h>
 
+#include <dspace/Checks.h>
 #include <dspace/Error.h>
+#include <dspace/link/LinkChannel.h>
 #include <dspace/link/LinkDiagnosis.h>
 #include <dspace/link/SnapshotMessages.h>
 #include <dspace/link/client/ClientLink.h>
 #include <dspace/link/watching/ViewerEventCall.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/messages/TextFields.h>
-#include <dspace/scene/Checks.h>
 
 namespace dspace::session {
 namespace {
