@@ -63,6 +63,12 @@ dspace::FilesGuard::Check vtkDspaceRecordedFiles::GetLook() const {
   return this->Impl->files ? this->Impl->files->Look() : dspace::FilesGuard::Check();
 }
 
+void vtkDspaceRecordedFiles::FillIn(dspace::v1::Command& command) {
+  if (this->Impl->files) {
+    this->Impl->files->FillIn(command);
+  }
+}
+
 void vtkDspaceRecordedFiles::Close() {
   this->Impl->files.reset();
   this->Impl->reader.reset();

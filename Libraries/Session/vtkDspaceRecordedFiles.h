@@ -16,6 +16,7 @@
 
 #ifndef __VTK_WRAP__
 #include <dspace/FilesRead.h>
+#include <dspace/proto/commands.pb.h>
 #endif
 
 class VTKDSPACESESSION_EXPORT vtkDspaceRecordedFiles : public vtkObject {
@@ -38,6 +39,8 @@ public:
 #ifndef __VTK_WRAP__
   /// See RecordedFiles::Look; empty if nothing is open.
   dspace::FilesGuard::Check GetLook() const;
+  /// See RecordedFiles::FillIn; throws Error. Nothing if nothing is open.
+  void FillIn(dspace::v1::Command& command);
 #endif
   /// Removes the unpacked files. Calling it twice is no error.
   void Close();

@@ -1,7 +1,10 @@
 #include "vtkDspaceScene.h"
 
+#include <algorithm>
 #include <map>
 
+#include "vtkActorCollection.h"
+#include "vtkDspaceActors.h"
 #include "vtkDspaceFrame.h"
 #include "vtkObjectFactory.h"
 #include "vtkSmartPointer.h"
@@ -15,6 +18,8 @@ struct vtkDspaceScene::Internals {
   std::shared_ptr<dspace::Scene> scene;
   std::map<dspace::FrameId, vtkSmartPointer<vtkDspaceFrame>> frames;
   dspace::FrameNotifier::Token token = 0;
+  Ground ground;
+  std::map<std::string, vtkSmartPointer<vtkDspaceActors>> actors; // by fragment
 
   void SetPose(vtkDspaceFrame* frame, vtkTransform* transform) const {
     const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> m =
@@ -31,8 +36,33 @@ vtkDspaceScene::~vtkDspaceScene() {
   }
 }
 
-void vtkDspaceScene::SetScene(std::shared_ptr<dspace::Scene> scene) {
+vtkActorCollection* vtkDspaceScene::GetActors(const std::string& fragment) {
+  vtkSmartPointer<vtkDspaceActors>& actors = this->Impl->actors[fragment];
+  if (!actors) {
+    constexpr int StandardTriangles = 200000;
+    actors.TakeReference(this->MakeActors(fragment, StandardTriangles));
+  }
+  actors->Update();
+  return actors->GetActors();
+}
+
+vtkDspaceActors* vtkDspaceScene::MakeActors(const std::string& fragment, int triangleBudget) {
+  vtkDspaceActors* made = vtkDspaceActors::New();
+  const Ground& ground = this->Impl->ground;
+  vtkDspaceActors::Terrains terrains;
+  if (ground) {
+    terrains = [ground, triangleBudget](const dspace::GraphicsObject& object) {
+      return ground(object, static_cast<std::size_t>(std::max(1, triangleBudget)));
+    };
+  }
+  made->SetSource(this, this->Impl->scene, fragment, std::move(terrains));
+  made->Update();
+  return made;
+}
+
+void vtkDspaceScene::SetScene(std::shared_ptr<dspace::Scene> scene, Ground ground) {
   this->Impl->scene = std::move(scene);
+  this->Impl->ground = std::move(ground);
   Internals& impl = *this->Impl;
   impl.token = impl.scene->Frames().AddListener([this, &impl](const dspace::FrameEvent& event) {
     for (const dspace::FrameId id : event.ids) {

@@ -1,6 +1,6 @@
 /**
  * @class vtkDspaceScene
- * @brief A scene's frames as vtkTransforms, for VTK code that attaches props to them.
+ * @brief A scene for VTK code: its frames as vtkTransforms, its objects as vtkActors.
  *
  * A frame is mirrored with its ancestors on first access, and then follows every change of the
  * tree.
@@ -15,9 +15,14 @@
 #include "vtkObject.h"
 
 #ifndef __VTK_WRAP__
+#include <functional>
+#include <vector>
+
 #include <dspace/scene/Scene.h>
 #endif
 
+class vtkActorCollection;
+class vtkDspaceActors;
 class vtkDspaceFrame;
 
 class VTKDSPACESESSION_EXPORT vtkDspaceScene : public vtkObject {
@@ -31,9 +36,19 @@ public:
   vtkDspaceFrame* GetFrame(unsigned long long id);
   vtkDspaceFrame* GetFrame(const std::string& path);
 
+  /// Actors of the visible objects and terrains of a fragment (empty: of all), which follow the
+  /// frames at once. Later calls return the same collection, brought up to date. Terrains are
+  /// meshes of at most 200,000 triangles.
+  vtkActorCollection* GetActors(const std::string& fragment);
+  /// New actors, which the caller owns; see vtkDspaceActors. `triangleBudget`: of each terrain.
+  VTK_NEWINSTANCE vtkDspaceActors* MakeActors(const std::string& fragment, int triangleBudget);
+
 #ifndef __VTK_WRAP__
+  /// The ground of an object that is a terrain, as triangles in its axes; empty for others.
+  using Ground =
+      std::function<std::vector<dspace::Part>(const dspace::GraphicsObject&, std::size_t budget)>;
   /// Call once, before anything else.
-  void SetScene(std::shared_ptr<dspace::Scene> scene);
+  void SetScene(std::shared_ptr<dspace::Scene> scene, Ground ground = {});
   bool Mirrors(const dspace::Scene& scene) const;
 #endif
 

@@ -16,6 +16,23 @@
 
 vtkStandardNewMacro(vtkDspaceServer);
 
+namespace {
+
+// A drawer is code, and a prop an object, of the process that has the session.
+void RejectDrawn(const dspace::v1::Command& command) {
+  if (command.has_create_drawn()) {
+    const std::string& name = command.create_drawn().object().name();
+    throw dspace::Error(dspace::Error::Kind::Unsupported,
+                        name.empty() ? "command create_drawn" : "object '" + name + "'",
+                        "'" + command.create_drawn().drawer() +
+                            "' is drawn by code of one process, which a server does not take from "
+                            "its clients; accepted: a session in process (dspace.Session), or "
+                            "meshes");
+  }
+}
+
+} // namespace
+
 struct vtkDspaceServer::Internals {
   dspace::session::ServerOptions options;
   std::vector<std::string> roots;
@@ -39,6 +56,7 @@ struct vtkDspaceServer::Internals {
   dspace::v1::Reply Execute(dspace::v1::Command& command) {
     return dspace::session::Catch([&] {
       this->confinement->Apply(command);
+      RejectDrawn(command);
       this->CheckFrames(command);
       if (command.has_capture()) {
         command.mutable_capture()->set_inline_data(true); // the planes are wanted elsewhere

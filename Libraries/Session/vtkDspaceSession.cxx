@@ -1,13 +1,24 @@
 #include "vtkDspaceSession.h"
 
+#include <algorithm>
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <vector>
 
+#include <dlfcn.h>
+
+#include <dspace/Utf8.h>
+#include <dspace/commands/viewports/DrawerPlugIn.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/messages/ErrorReply.h>
+#include <dspace/messages/MeshMessages.h>
+#include <dspace/messages/TextFields.h>
 #include <dspace/raster/ConfinedDrivers.h>
 #include <dspace/recording/RecordingWriter.h>
+#include <dspace/render/messages/VtkErrorTrap.h>
+#include <dspace/render/messages/VtkMessages.h>
+#include <dspace/render/props/VtkPropGeometry.h>
 
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
@@ -17,9 +28,13 @@
 #include "vtkDspaceViewport.h"
 #include "vtkFloatArray.h"
 #include "vtkObjectFactory.h"
+#include "vtkProp3D.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnsignedIntArray.h"
+#include "vtkWeakPointer.h"
+
+#include "VtkShaderCode.h"
 
 vtkStandardNewMacro(vtkDspaceSession);
 
@@ -42,6 +57,7 @@ vtkSmartPointer<vtkDataArray> ToArray(const char* name, const std::vector<T>& va
 } // namespace
 
 struct vtkDspaceSession::Internals {
+  dspace::VtkMessages messages; // what VTK reports during any command
   // In this order: viewports are destroyed before the scenes that they show.
   dspace::session::Interpreter interpreter;
   std::map<std::string, vtkSmartPointer<vtkDspaceScene>> scenes;
@@ -52,6 +68,34 @@ struct vtkDspaceSession::Internals {
   double time_s = 0.0; // the last one set, of any scene
   std::unique_ptr<dspace::session::RecordingWriter> recording;
   dspace::session::RecordingCounts counts; // of the last one
+  vtkSmartPointer<vtkProp3D> offered;      // for the next CreateDrawn
+
+  // Executes a command. What VTK reports meanwhile and no one else has put into the reply becomes a
+  // warning: the command may have changed the scene, so that it is too late for an error.
+  void Watch(dspace::v1::Reply& reply, const std::function<void()>& run) {
+    std::string error;
+    {
+      const dspace::VtkErrorTrap trap(this->messages);
+      run();
+      error = trap.FirstError();
+      error.erase(error.find_last_not_of(" \n\r\t") + 1);
+    }
+    const auto add = [&reply](const std::string& text, const std::string& message) {
+      const auto& all = reply.warning();
+      const bool known = std::any_of(all.begin(), all.end(), [&](const std::string& warning) {
+        return warning.find(text) != std::string::npos;
+      });
+      if (!known) {
+        reply.add_warning(message + text);
+      }
+    };
+    if (!error.empty() && !reply.has_error()) {
+      add(dspace::ToUtf8(error), "the command was executed, but VTK reported an error: ");
+    }
+    for (const std::string& warning : this->messages.TakeWarnings()) {
+      add(dspace::ToUtf8(warning), "VTK reported: ");
+    }
+  }
 
   // Records the command even if the ledger fails, which only snapshots depend on. An exception
   // becomes a warning in the reply; another listener sends the command to a server's viewers.
@@ -83,12 +127,41 @@ struct vtkDspaceSession::Internals {
     }
   }
 
+  // The triangles of a terrain; none for other objects.
+  std::vector<dspace::Part> GroundOf(const std::string& scene, const dspace::GraphicsObject& object,
+                                     std::size_t budget) {
+    const auto found = this->interpreter.GetState().scenes.find(scene);
+    return found == this->interpreter.GetState().scenes.end()
+               ? std::vector<dspace::Part>()
+               : found->second.GroundOf(object, budget);
+  }
+
+  // A recording has the name of the drawer, not what it draws.
+  std::string LeftOut(const std::string& object, const std::string& drawer) const {
+    return "recording '" + this->recording->Path() + "': object '" + object + "' is drawn by '" +
+           drawer +
+           "'; the recording leaves out what it draws, and a playback without the drawer shows an "
+           "empty object";
+  }
+  void WarnOfRecording(const dspace::v1::Command& accepted, dspace::v1::Reply& reply) const {
+    if (this->recording && accepted.has_create_drawn() && !reply.has_error()) {
+      const dspace::v1::CreateDrawn& drawn = accepted.create_drawn();
+      reply.add_warning(this->LeftOut(drawn.object().name(), drawn.drawer()));
+    }
+  }
+
   void TakePlanes() {
     dspace::Capture& capture = this->viewports.LastCapture();
     this->planes.clear();
     this->planes["color"] = ToArray<vtkUnsignedCharArray>("color", capture.color, 4);
+    this->planes["range"] = ToArray<vtkFloatArray>("range", capture.range, 1);
     this->planes["depth"] = ToArray<vtkFloatArray>("depth", capture.depth, 1);
     this->planes["label"] = ToArray<vtkUnsignedIntArray>("label", capture.label, 1);
+    this->planes["radiance"] = ToArray<vtkFloatArray>("radiance", capture.radiance, 3);
+    this->planes["lit_fraction"] = ToArray<vtkFloatArray>("lit_fraction", capture.litFraction, 1);
+    this->planes["incidence"] = ToArray<vtkFloatArray>("incidence", capture.incidence, 1);
+    this->planes["emission"] = ToArray<vtkFloatArray>("emission", capture.emission, 1);
+    this->planes["phase"] = ToArray<vtkFloatArray>("phase", capture.phase, 1);
     capture = {};
   }
 };
@@ -97,6 +170,18 @@ vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
   dspace::session::Registry& commands = this->Impl->interpreter.Commands();
   this->Impl->viewports.AddTo(commands);
   dspace::session::AddTextCommands(commands);
+  this->Impl->interpreter.SetAround(
+      [this](dspace::v1::Reply& reply, const std::function<void()>& run) {
+        this->Impl->Watch(reply, run);
+      });
+  this->Impl->interpreter.GetState().drawers.Register(
+      "vtk",
+      [impl = this->Impl.get()](const dspace::session::DrawnRequest& request)
+          -> std::shared_ptr<const dspace::CustomGeometry> {
+        const vtkSmartPointer<vtkProp3D> prop = std::move(impl->offered);
+        impl->offered = nullptr;
+        return prop ? std::make_shared<dspace::VtkPropGeometry>(prop, request.object) : nullptr;
+      });
   this->Impl->interpreter.AddListener(
       [this](const dspace::v1::Command& command, const dspace::v1::Reply& reply) {
         this->Impl->OnCommand(command, reply);
@@ -104,6 +189,51 @@ vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
 }
 
 vtkDspaceSession::~vtkDspaceSession() = default;
+
+void vtkDspaceSession::OfferProp(vtkProp3D* prop) {
+  this->Impl->offered = prop;
+}
+
+std::string vtkDspaceSession::GetDrawerNames() {
+  std::string lines;
+  for (const std::string& name : this->Impl->interpreter.GetState().drawers.Names()) {
+    if (name != "vtk") {
+      lines += (lines.empty() ? "" : "\n") + name;
+    }
+  }
+  return lines;
+}
+
+void vtkDspaceSession::AddDrawer(const dspace::session::DrawerPlugIn& plugIn) {
+  if (!plugIn.drawer) {
+    throw dspace::Error(dspace::Error::Kind::InvalidArgument, "drawer '" + plugIn.name + "'",
+                        "it has no function that makes the drawer of a geometry");
+  }
+  this->Impl->interpreter.GetState().drawers.Register(plugIn.name, plugIn.geometry);
+  this->Impl->viewports.AddDrawer(plugIn.type, plugIn.drawer);
+}
+
+std::string vtkDspaceSession::LoadPlugIn(const std::string& path) {
+  const std::string label = "plug-in '" + path + "': ";
+  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library) {
+    const char* why = dlerror();
+    return label + (why ? why : "it cannot be loaded");
+  }
+  using Function = void (*)(vtkDspaceSession*);
+  const auto function = reinterpret_cast<Function>(dlsym(library, "DspacePlugIn"));
+  if (!function) {
+    dlclose(library);
+    return label + "it has no function DspacePlugIn; accepted: a library with `extern \"C\" void "
+                   "DspacePlugIn(vtkDspaceSession*)`";
+  }
+  try {
+    function(this);
+  } catch (const std::exception& error) {
+    return label + error.what();
+  }
+  return {};
+}
 
 std::string vtkDspaceSession::Execute(const std::string& bytes) {
   dspace::v1::Reply reply;
@@ -113,6 +243,8 @@ std::string vtkDspaceSession::Execute(const std::string& bytes) {
     reply = dspace::session::NotACommand();
   } else {
     reply = this->Impl->interpreter.Execute(command);
+    this->Impl->viewports.ReleaseRenderContext();
+    this->Impl->WarnOfRecording(command, reply);
   }
   if (reply.has_capture()) {
     this->Impl->TakePlanes();
@@ -138,9 +270,27 @@ vtkDspaceScene* vtkDspaceSession::GetScene(const std::string& name) {
   vtkSmartPointer<vtkDspaceScene>& mirror = this->Impl->scenes[name];
   if (!mirror || !mirror->Mirrors(*scene)) {
     mirror = vtkSmartPointer<vtkDspaceScene>::New();
-    mirror->SetScene(scene);
+    const vtkWeakPointer<vtkDspaceSession> self = this;
+    mirror->SetScene(scene, [self, name](const dspace::GraphicsObject& object, std::size_t budget) {
+      return self ? self->Impl->GroundOf(name, object, budget) : std::vector<dspace::Part>();
+    });
   }
   return mirror;
+}
+
+std::string vtkDspaceSession::CheckShader(vtkShaderProperty* property) {
+  try {
+    dspace::session::ToSetShader(property);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::string vtkDspaceSession::SerializeShader(vtkShaderProperty* property) {
+  return this->CheckShader(property).empty()
+             ? dspace::session::ToSetShader(property).SerializeAsString()
+             : std::string();
 }
 
 vtkDspaceViewport* vtkDspaceSession::GetViewport(const std::string& name) {
@@ -157,7 +307,15 @@ std::string vtkDspaceSession::RunInViewport(const std::string& name) {
   } catch (const std::exception& error) {
     return error.what();
   }
+  this->Impl->viewports.ReleaseRenderContext();
   return {};
+}
+
+std::string vtkDspaceSession::TakeWarnings() {
+  dspace::v1::Reply reply;
+  this->Impl->viewports.AddWarnings(reply);
+  dspace::session::MakeTextUtf8(reply);
+  return reply.SerializeAsString();
 }
 
 void vtkDspaceSession::SetRenderContext(vtkDspaceRenderContext* context) {
@@ -235,6 +393,20 @@ std::string vtkDspaceSession::GetRecordingMissing() {
   return lines;
 }
 
+std::string vtkDspaceSession::GetRecordingLeftOut() {
+  std::string lines;
+  if (!this->Impl->recording) {
+    return lines;
+  }
+  for (const auto& [name, scene] : this->Impl->interpreter.GetState().scenes) {
+    for (const auto& [id, drawn] : scene.drawn) {
+      lines += (lines.empty() ? "" : "\n") +
+               this->Impl->LeftOut(scene.scene->Object(id).name, drawn.drawer);
+    }
+  }
+  return lines;
+}
+
 std::string vtkDspaceSession::Replay(const std::string& bytes, vtkDspaceRecordedFiles* files) {
   const dspace::FilesGuard::Check look = files ? files->GetLook() : dspace::FilesGuard::Check();
   if (!look) {
@@ -255,6 +427,14 @@ std::string vtkDspaceSession::Replay(const std::string& bytes, vtkDspaceRecorded
                                        "command " + name +
                                            ": it changes nothing; recordings contain only changes")
         .SerializeAsString();
+  }
+  if (entry && dspace::session::HoldsMeshes(command)) {
+    const dspace::v1::Reply filled = dspace::session::Catch([&] {
+      files->FillIn(command);
+      return dspace::v1::Reply();
+    });
+    return filled.has_error() ? filled.SerializeAsString()
+                              : this->Execute(command.SerializeAsString());
   }
   return this->Execute(bytes);
 }

@@ -18,6 +18,10 @@
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/ledger/Ledger.h>
 #include <dspace/recording/RecordingWriter.h>
+
+namespace dspace::session {
+struct DrawerPlugIn;
+}
 #endif
 
 class vtkDataArray;
@@ -25,6 +29,8 @@ class vtkDspaceRecordedFiles;
 class vtkDspaceRenderContext;
 class vtkDspaceScene;
 class vtkDspaceViewport;
+class vtkShaderProperty;
+class vtkProp3D;
 
 class VTKDSPACESESSION_EXPORT vtkDspaceSession : public vtkObject {
 public:
@@ -37,23 +43,40 @@ public:
   std::string Execute(const std::string& command);
   std::string GetCommand();
 
-  /// A plane of the last capture ("color", "depth", "label"): rows from the top, one tuple per
-  /// pixel. Null if the capture did not request it. The caller may keep it: the next capture
-  /// creates a new one.
+  /// A plane of the last capture, by the name of its field in Capture (viewports.proto): rows from
+  /// the top, one tuple per pixel. Null if the capture did not request it. The caller may keep it:
+  /// the next capture creates a new one.
   vtkDataArray* GetPlane(const std::string& name);
 
   /// The objects of these names; null if there are none.
   vtkDspaceScene* GetScene(const std::string& name);
   vtkDspaceViewport* GetViewport(const std::string& name);
 
+  /// Why a vtkShaderProperty has no counterpart as shader code of an object; empty if it has one.
+  std::string CheckShader(vtkShaderProperty* property);
+  /// Its replacements and uniforms as a serialized SetShader without an object; empty if
+  /// CheckShader() returns an error.
+  std::string SerializeShader(vtkShaderProperty* property);
+
   /// Makes a viewport the current one of the render window and invokes UserEvent on the observers
   /// of this object, for custom VTK code. Returns the error, or an empty string.
   std::string RunInViewport(const std::string& name);
+  /// A serialized Reply with the warnings of VTK that no reply had yet, as after RunInViewport.
+  std::string TakeWarnings();
 
   /// The render context, which sessions of one process may share. Set it before the first viewport
   /// is created; otherwise the session creates its own.
   void SetRenderContext(vtkDspaceRenderContext* context);
   vtkDspaceRenderContext* GetRenderContext();
+
+  /// Gives the prop to the next CreateDrawn command whose drawer is "vtk:CLASS". Null: none.
+  void OfferProp(vtkProp3D* prop);
+  /// The names of the drawers that plug-ins added, one per line.
+  std::string GetDrawerNames();
+  /// Loads a shared library with `extern "C" void DspacePlugIn(vtkDspaceSession*)`, which calls
+  /// AddDrawer(), and calls that function. The library stays loaded. Returns the error, or an empty
+  /// string.
+  std::string LoadPlugIn(const std::string& path);
 
   /// Cancels background work (overviews). Call it before the process ends, unless the session is
   /// destroyed before.
@@ -77,6 +100,9 @@ public:
   std::string GetRecordingPath();
   std::string GetRecordingFailure();
   std::string GetRecordingMissing();
+  /// Warnings of a recording that has just begun, one per line: the objects of all scenes that code
+  /// of this process draws, whose drawing it leaves out.
+  std::string GetRecordingLeftOut();
 
   /// Executes a command of a recording with these files, which must be open. Commands that change
   /// nothing are rejected, because recordings never contain them and some write files.
@@ -88,6 +114,10 @@ public:
 
 #ifndef __VTK_WRAP__
   dspace::session::Interpreter& GetInterpreter();
+  /// Adds a user-defined drawer (<dspace/commands/viewports/DrawerPlugIn.h>), which the command
+  /// CreateDrawn then names. Throws Error(InvalidArgument) for a name that is not accepted, and
+  /// Error(AlreadyExists) for one that is in use.
+  void AddDrawer(const dspace::session::DrawerPlugIn& plugIn);
   /// The ledger of the present state.
   const dspace::session::Ledger& GetLedger();
   /// The counters of the present or last recording.

@@ -40,6 +40,7 @@ struct vtkDspaceWatcher::Internals {
   dspace::session::LinkBanner banner;
   std::set<std::string> followed; // scenes with frame events
   dspace::v1::Reply changes;      // their pending events
+  std::set<std::string> leftOut;  // objects whose drawers are missing here, that were told of
 
   dspace::session::Interpreter& Interpreter() { return this->session->GetInterpreter(); }
 
@@ -116,6 +117,10 @@ struct vtkDspaceWatcher::Internals {
       this->session->AddFailed(command, reply.error().message());
       this->error = this->error.empty() ? reply.error().message() : this->error;
     }
+    if (command.has_create_drawn() && this->leftOut.insert(command.create_drawn().object().name())
+                                          .second) { // once, however many snapshots come
+      this->changes.mutable_warning()->MergeFrom(reply.warning());
+    }
     this->changes.mutable_frame_event()->MergeFrom(reply.frame_event());
     if (this->changes.frame_event_size() > MostChanges) {
       this->changes.mutable_frame_event()->DeleteSubrange(0, MostChanges / 2);
@@ -175,6 +180,9 @@ struct vtkDspaceWatcher::Internals {
     if (command.has_viewport_event() && reply.pick().object() != 0) {
       this->SendPick(command.viewport_event().viewport(), reply.pick());
     }
+    if (command.has_viewport_event() && reply.has_input()) {
+      this->SendInput(command.viewport_event().viewport(), reply.input());
+    }
     if (command.has_create_viewport() || command.has_resize_viewport()) {
       this->ShowBanner();
     }
@@ -183,13 +191,26 @@ struct vtkDspaceWatcher::Internals {
 
   // Sends a pick to the simulation. Without a driver, only the viewer receives it.
   void SendPick(const std::string& viewport, const dspace::v1::PickReply& pick) {
-    if (!this->watcher || !this->watcher->Connected() || !this->writerConnected) {
-      return;
-    }
     dspace::v1::ViewerEvent event;
     event.mutable_picked()->set_scene(this->Interpreter().GetState().viewports[viewport].scene);
     event.mutable_picked()->set_viewport(viewport);
     *event.mutable_picked()->mutable_pick() = pick;
+    this->Send(event);
+  }
+
+  // The same of a key or a click that did not move the camera.
+  void SendInput(const std::string& viewport, const dspace::v1::InputReply& input) {
+    dspace::v1::ViewerEvent event;
+    event.mutable_input()->set_scene(this->Interpreter().GetState().viewports[viewport].scene);
+    event.mutable_input()->set_viewport(viewport);
+    *event.mutable_input()->mutable_input() = input;
+    this->Send(event);
+  }
+
+  void Send(const dspace::v1::ViewerEvent& event) {
+    if (!this->watcher || !this->watcher->Connected() || !this->writerConnected) {
+      return;
+    }
     dspace::session::Catch([&] {
       this->watcher->SendEvent(event, PickTimeout);
       return dspace::v1::Reply();

@@ -58,7 +58,7 @@ public:
   std::string Execute(const std::string& command);
   /// A serialized Reply with the frame events of followed scenes (FollowFrames) since the last
   /// call, in order. Snapshots cause no events. The queue holds at most 100,000 events; older ones
-  /// are dropped.
+  /// are dropped. Its warnings name objects that this process cannot draw, each once.
   std::string TakeFrameEvents();
   /// Sends a serialized ViewerEvent to the simulation: call BeginSendEvent, then WaitForSendEvent
   /// with a timeout until it returns 1 (delivered) or -1 (failed: TakeReply returns the error,

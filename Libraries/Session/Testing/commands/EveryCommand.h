@@ -9,8 +9,8 @@
 namespace dspace::testing {
 
 // Commands are v1::Command in protobuf's text format. FOLDER stands for a folder that the test may
-// write into: it holds arm.urdf, ground.asc, box.obj and tracks.json. VIEW is a viewport of 48 x 32
-// pixels.
+// write into: it holds arm.urdf, array.gltf, ground.asc, box.obj and tracks.json. VIEW is a
+// viewport of 48 x 32 pixels.
 struct CommandInstance {
   const char* command;             // the command's name is the name of its field
   std::vector<const char*> before; // given first, after Everything()
@@ -31,7 +31,12 @@ inline const std::vector<const char*>& Everything() {
       R"(create_primitive { object { id: 3 name: "tilt" } tilt { radius: 1 tilt_deg: 5 } })",
       R"(create_text { object { id: 4 name: "words" } text: "words" solid { height: 1 } })",
       R"(create_text { object { id: 5 name: "label" } text: "label" label { font_size: 20 } })",
+      R"(create_mesh { object { id: 6 name: "wings" frame: 10 } level { mesh { part: "wing" primitive: POINTS
+           position: "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00" } } })",
       R"(load_robot { path: "FOLDER/arm.urdf" name: "arm" })",
+      R"(import_nodes { import { object { name: "array" frame: 10 } level { path: "FOLDER/array.gltf" } }
+           lights: true frame: [60, 61, 62, 63] })",
+      R"(pose_nodes { base: 60 time_s: 1 })",
       R"(create_fragment { name: "parts" nature: PHYSICAL })",
       R"(create_fragment { name: "empty" nature: PHYSICAL })",
       R"(set_light { name: "lamp" kind: POINT position { z: 5 } })",
@@ -40,10 +45,13 @@ inline const std::vector<const char*>& Everything() {
       R"(set_camera { vantage: "side" name: "chase"
            mount { frame: 10 chase { offset { x: -5 z: 2 } smoothing_s: 1 } } })",
       R"(set_camera { vantage: "side" name: "still" mount { frame: 11 pose {} } })",
+      R"(set_camera { vantage: "side" name: "pointing"
+           mount { pointing { eye { x: -3 z: 4 } aim: 11 smoothing_s: 2 } } })",
       R"(set_camera { name: "eye" mount { look_at { eye { x: 6 y: -7 z: 5 } target { z: 1 } } } })",
       R"(open_terrain { name: "ground" path: "FOLDER/ground.asc" mode: CLIPMAP subdivisions: 5
            fill_holes: 4 build_overviews: false overview_cache: "" })",
       R"(add_terrain_layer { terrain: "ground" name: "dust" noise {} })",
+      R"(add_terrain_field { terrain: "ground" name: "soil" path: "FOLDER/ground.asc" })",
       R"(track_wheels { terrain: "ground" width: 0.3
            wheel { name: "left" contact: [-2, -2, 0, 0.1, 0, 1, -2, 0, 0.1, 3] } })",
       R"(create_telemetry { id: 1 name: "rover/power" unit: "W" })",
@@ -83,15 +91,37 @@ inline const std::vector<CommandInstance>& EveryCommand() {
 
       {R"(import_object { object { id: 50 name: "model" frame: 10 } level { path: "FOLDER/box.obj" } })",
        {}},
+      {R"(import_nodes { import { object { name: "array" material { color { g: 1 } } }
+            level { path: "FOLDER/array.gltf" } scale: 2 up: UP_Y } lights: true })",
+       {}},
+      {R"(pose_nodes { base: 60 animation: "turn" time_s: 0.5 })", {}},
       {R"(create_primitive { object { id: 50 name: "ball" } sphere { radius: 0.5 resolution: 8 } })",
        {}},
       {R"(set_primitive { object: 1 shape { sphere { radius: 0.7 resolution: 8 } } })", {}},
       {R"(create_trail { object { id: 50 name: "way" } capacity: 5 minimum_spacing: 0.1 })", {}},
       {R"(append_trail { object: 2 point: [2, 1, 0] })", {}},
       {R"(clear_trail { object: 2 })", {}},
+      {R"(create_mesh { object { id: 50 name: "sheet" frame: 10 } level { minimum_pixels: 0 mesh { part: "left"
+            origin { x: 1e6 } position: "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x80\x3f\x00\x00\x00\x00"
+            material { color { r: 1 } } } } })",
+       {}},
+      {R"(set_mesh { object: 6 level { mesh { part: "wing" primitive: LINES
+            position: "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00" } } })",
+       {}},
+      {R"(get_mesh { object: 6 })", {}},
+      {R"(set_part { object: 6 part: "wing" material { emissive { g: 1 } } visible: false })", {}},
       {R"(remove_object { object: 1 })", {}},
       {R"(set_object_visible { object: 1 visible: false })", {}},
-      {R"(set_material { object: 1 material { color { r: 1 } opacity: 1 metallic: 0.5 roughness: 0.5 } })",
+      {R"(set_material { object: 1 material { color { r: 1 } opacity: 1 metallic: 0.5 roughness: 0.5
+            reflectance { model: HAPKE single_scattering_albedo: 0.2 roughness_deg: 20 } } })",
+       {}},
+      {R"(set_shader { object: 1
+            replacement { stage: FRAGMENT original: "//VTK::Light::Impl"
+                          replacement: "//VTK::Light::Impl\n  fragOutput0.rgb *= tint;" }
+            uniform { name: "tint" type: VECTOR3 value: [1, 0.5, 0] } })",
+       {}},
+      {R"(export_scene { path: "FOLDER/scene.glb" time_s: [0, 1] frame: 11
+            pose: [0, 0, 3, 1, 0, 0, 0, 1, 0, 0, 4, 1, 0, 0, 0, 1] })",
        {}},
       {R"(set_object_offset { object: 1 offset { position { x: 0.5 } } })", {}},
       {R"(attach_object { object: 1 frame: 10 })", {}},
@@ -103,8 +133,12 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(create_text { object { id: 50 name: "more" } text: "more" label { font_size: 16 } })",
        {}},
       {R"(set_text { object: 4 text: "other" })", {}},
+      {R"(create_drawn { object { id: 50 name: "cloud" frame: 10 } drawer: "fog" parameters: "thick" })",
+       {}},
 
-      {R"(load_robot { path: "FOLDER/arm.urdf" name: "second" frame: 10 })", {}},
+      {R"(load_robot { path: "FOLDER/arm.urdf" name: "second" frame: 10 minimum_pixels: 50
+          level { path: "FOLDER/arm.urdf" } })",
+       {}},
       {R"(remove_robot { robot: "arm" })", {}},
       {R"(set_joints { robot: "arm" joint: 0 position: 30 })", {}},
       {R"(describe_robot { robot: "arm" })", {}},
@@ -117,6 +151,10 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(set_light { name: "lamp" kind: SPOT position { z: 6 } cone_deg: 20 })", {}},
       {R"(remove_light { name: "sun" })", {}},
       {R"(list_lights {})", {}},
+      {R"(set_sun { sun { horizontal { azimuth_deg: 80 elevation_deg: -3 terrain: "ground"
+            map_x: 103 map_y: 205 } radius_deg: 0.3 irradiance: 590 } })",
+       {}},
+      {R"(get_sun {})", {}},
 
       {R"(create_vantage { name: "top" })", {}},
       {R"(remove_vantage { name: "spare" })", {}},
@@ -128,19 +166,29 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(set_active_camera { vantage: "side" name: "still" })", {}},
       {R"(describe_camera { vantage: "side" name: "chase" })", {}},
       {R"(get_camera_pose { vantage: "side" name: "chase" relative_to: 10 })", {}},
+      {R"(fit_camera { name: "eye" object: 1 frame: 10 margin: 0.2 aspect: 1.5 })", {}},
 
       {R"(create_viewport { name: "more" width: 16 height: 16 samples: 1 vantage: "side" })", {}},
       {R"(remove_viewport { viewport: "hidden" })", {}},
+      {R"(style_terrain_in_viewport { viewport: "VIEW" terrain: "ground" style { ramp { opacity: 0.5
+            member { nature: ORNAMENTAL } } contours { interval: 1 width: 1 opacity: 1 } } })",
+       {}},
       {R"(resize_viewport { viewport: "VIEW" width: 40 height: 40 })", {}},
       {R"(move_viewport { viewport: "VIEW" x: 5 y: 6 })", {}},
-      {R"(set_viewport { viewport: "VIEW" samples: 2 background { b: 1 } ornaments: false })", {}},
+      {R"(set_viewport { viewport: "VIEW" samples: 2 background { b: 1 } ornaments: false
+            shadows: true shadow_cascades: 3 shadow_map_size: 512 shadow_distance: 50 fill: 0.5
+            exposure: 2 automatic_exposure: true tone: FILMIC cascade_colors: true })",
+       {}},
       {R"(set_viewport_fragment { viewport: "VIEW" fragment: "physical" visible: false })", {}},
       {R"(set_text_table { viewport: "VIEW" name: "table" row { label: "b" value: "2" digits: 3 }
             font_size: 14 opacity: 1 background_opacity: 0.5 margin: 0 })",
        {}},
       {R"(remove_text_table { viewport: "VIEW" name: "table" })", {}},
       {R"(viewport_event { viewport: "VIEW" type: WHEEL x: 20 y: 15 wheel: 1 })", {}},
-      {R"(capture { viewport: "VIEW" color: true depth: true label: true inline_data: true })", {}},
+      {R"(capture { viewport: "VIEW" color: true depth: true label: true range: true
+            inline_data: true })",
+       {}},
+      {R"(explain_viewport { viewport: "VIEW" })", {}},
       {R"(save_image { viewport: "VIEW" path: "FOLDER/view.jpg" quality: 90 })", {}},
       {R"(render { viewport: "VIEW" })", {}, true},
       {R"(pick { viewport: "VIEW" x: 24 y: 16 radius: 4 })", {}},
@@ -160,6 +208,12 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(query_terrain { terrain: "ground" point: [0.5, 0.25, -2, -2] height: true normal: true
             slope: true })",
        {}},
+      {R"(add_terrain_field { terrain: "ground" name: "hazard" path: "FOLDER/ground.asc"
+            extent: [101, 209, 109, 201] band: 1 units: "W/m2" nearest: true })",
+       {}},
+      {R"(remove_terrain_field { terrain: "ground" name: "soil" })", {}},
+      {R"(list_terrain_fields { terrain: "ground" })", {}},
+      {R"(locate_terrain { terrain: "ground" point: [1, 2, 3] map: true })", {}},
       {R"(convert_terrain { terrain: "ground" point: [1, 2, 3] to_map: true })", {}},
       {R"(describe_terrain { terrain: "ground" })", {}, true},
       {R"(list_terrains {})", {}},
@@ -206,6 +260,13 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(close_question { name: "go" answer: "yes" from: "operator" })", {}},
       {R"(list_events {})", {}},
       {R"(list_questions {})", {}},
+
+      {R"(measure_geodesics { ellipsoid { axes { equatorial_radius: 1737400 } } start: [1, 2] end: [3, 4] })",
+       {}},
+      {R"(follow_geodesics { start: [1, 2] azimuth_deg: 30 distance: 1000 })", {}},
+      {R"(get_grid_references { place: [177, 83.8] mgrs_precision: 4 })", {}},
+      {R"(find_grid_references { mgrs: "38SMB4488" })", {}},
+      {R"(get_geoid_heights { place: [1, 2] geoid: "egm96_15.gtx" })", {}},
 
       {R"(line_of_sight {})", {}},
       {R"(lit_area {})", {}},

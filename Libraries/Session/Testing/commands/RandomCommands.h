@@ -44,6 +44,7 @@ private:
   void Put(v1::ObjectSettings* to);
   void Put(v1::Material* to);
   void Frames(v1::Command& c);
+  template<class Command> void Mesh(Command* command);
   void Objects(v1::Command& c);
   void Looks(v1::Command& c);
   void Names(v1::Command& c);
@@ -156,8 +157,19 @@ inline void RandomCommands::Frames(v1::Command& c) {
   }
 }
 
+// One or two parts of one triangle each.
+template<class Command> void RandomCommands::Mesh(Command* command) {
+  v1::MeshLevel* level = command->add_level();
+  for (std::uint32_t n = 1 + this->Up(2); n > 0; --n) {
+    v1::MeshData* mesh = level->add_mesh();
+    mesh->set_part(this->Name("p", 3));
+    const std::vector<float> points = {0, 0, 0, 1, 0, 0, 0, float(1 + this->Up(3)), 0};
+    mesh->set_position(std::string(reinterpret_cast<const char*>(points.data()), 36));
+  }
+}
+
 inline void RandomCommands::Objects(v1::Command& c) {
-  switch (this->Up(6)) {
+  switch (this->Up(8)) {
   case 0: {
     this->Put(c.mutable_create_primitive()->mutable_object());
     this->Put(c.mutable_create_primitive()->mutable_box()->mutable_size());
@@ -183,6 +195,14 @@ inline void RandomCommands::Objects(v1::Command& c) {
   case 4:
     c.mutable_clear_trail()->set_object(this->Object());
     return;
+  case 5:
+    this->Put(c.mutable_create_mesh()->mutable_object());
+    this->Mesh(c.mutable_create_mesh());
+    return;
+  case 6:
+    c.mutable_set_mesh()->set_object(this->Object());
+    this->Mesh(c.mutable_set_mesh());
+    return;
   default:
     c.mutable_append_trail()->set_object(this->Object());
     for (std::uint32_t i = 0; i < 3 * (1 + this->Up(4)); ++i) {
@@ -193,7 +213,7 @@ inline void RandomCommands::Objects(v1::Command& c) {
 
 inline void RandomCommands::Looks(v1::Command& c) {
   const std::uint32_t id = this->Object();
-  switch (this->Up(8)) {
+  switch (this->Up(10)) {
   case 0:
     c.mutable_set_object_visible()->set_object(id);
     c.mutable_set_object_visible()->set_visible(this->Up(2));
@@ -216,6 +236,16 @@ inline void RandomCommands::Looks(v1::Command& c) {
     c.mutable_move_to_fragment()->set_object(id);
     c.mutable_move_to_fragment()->set_fragment(this->Fragment());
     return;
+  case 8:
+  case 9:
+    c.mutable_set_part()->set_object(id);
+    c.mutable_set_part()->set_part(this->Name("p", 3));
+    this->Put(c.mutable_set_part()->mutable_material());
+    c.mutable_set_part()->set_replace(this->Up(4) == 0);
+    if (this->Up(2)) {
+      c.mutable_set_part()->set_visible(this->Up(2));
+    }
+    return;
   case 6:
     c.mutable_set_tilt()->set_object(id);
     c.mutable_set_tilt()->set_tilt_deg(this->Up(90));
@@ -232,7 +262,7 @@ inline void RandomCommands::Looks(v1::Command& c) {
 
 inline void RandomCommands::Names(v1::Command& c) {
   static const char* const lights[] = {"sun", "sky", "l0", "l1"};
-  switch (this->Up(8)) {
+  switch (this->Up(9)) {
   case 0:
     c.mutable_create_fragment()->set_name(this->Name("f", 3));
     c.mutable_create_fragment()->set_nature(v1::Nature(this->Up(2)));
@@ -254,6 +284,20 @@ inline void RandomCommands::Names(v1::Command& c) {
   case 5:
     c.mutable_remove_light()->set_name(lights[this->Up(4)]);
     return;
+  case 6: {
+    v1::SunState* sun = c.mutable_set_sun()->mutable_sun();
+    if (this->Up(2)) {
+      this->Put(sun->mutable_direction());
+      sun->set_frame(this->Up(2) ? this->Frame() : 0);
+    }
+    if (this->Up(2)) {
+      sun->set_radius_deg(this->Up(9));
+    }
+    if (this->Up(2)) {
+      sun->set_irradiance(this->Up(3000));
+    }
+    return;
+  }
   default:
     this->Time_ += this->Up(12) == 0 ? -2.0 : 0.25 * this->Up(3);
     c.mutable_set_time()->set_time_s(this->Time_);

@@ -41,6 +41,23 @@ const char* const Ground =
     "0 1 2 1 0\n0 1 2 1 0\n0 1 3 1 0\n0 1 2 -9 0\n0 1 2 1 0\n";
 const char* const Box = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n";
 
+// A triangle that its animation "turn" turns a quarter about Z in a second, and a lamp.
+const char* const Array = R"({"asset": {"version": "2.0"},
+  "extensions": {"KHR_lights_punctual": {"lights": [{"name": "lamp", "type": "point"}]}},
+  "buffers": [{"byteLength": 76, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAADzBDU/8wQ1Pw=="}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+                  {"buffer": 0, "byteOffset": 44, "byteLength": 32}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"},
+                {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC4"}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "nodes": [{"name": "bus", "children": [1, 2]},
+            {"name": "wing", "translation": [1, 0, 0], "mesh": 0},
+            {"name": "wing", "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+  "animations": [{"name": "turn", "channels": [{"sampler": 0, "target": {"node": 1, "path": "rotation"}}],
+                  "samplers": [{"input": 1, "output": 2}]}],
+  "scenes": [{"nodes": [0]}]})";
+
 // A command in two sessions of which one was made from the other's snapshot. All sessions draw in
 // one context.
 class EveryCommandTest : public ::testing::Test {
@@ -71,6 +88,7 @@ protected:
     std::ofstream(this->Folder_ / "arm.urdf") << Arm;
     std::ofstream(this->Folder_ / "ground.asc") << Ground;
     std::ofstream(this->Folder_ / "box.obj") << Box;
+    std::ofstream(this->Folder_ / "array.gltf") << Array;
   }
 
   v1::Command Parse(std::string text) const {

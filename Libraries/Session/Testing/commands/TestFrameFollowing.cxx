@@ -205,7 +205,7 @@ TEST_F(FrameFollowing, DirectPosesThatPileUpAreJoined) {
   }
   EXPECT_EQ(reply.frame_event(int(full) - 1).revision(), 2u + 100000u);
   EXPECT_EQ(reply.frame_event(int(full) + 2).revision(), tree.Revision());
-  move(a, 0); // what waits next begins anew
+  move(a, 0); // what waits next starts again
   move(b, 0);
   EXPECT_EQ(EventsOf(this->Ask()),
             (Events{{v1::FrameEvent::POSES_CHANGED, {a}}, {v1::FrameEvent::POSES_CHANGED, {b}}}));

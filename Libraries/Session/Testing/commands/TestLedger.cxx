@@ -108,7 +108,7 @@ protected:
 
 TEST_F(LedgerTest, RandomCommandsAreRebuilt) {
   std::map<int, int> kinds;
-  for (unsigned seed = 1; seed <= 40; ++seed) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
     this->Ledger_ = session::Ledger();
     v1::Command remove;
     remove.mutable_remove_scene();
@@ -143,7 +143,8 @@ TEST_F(LedgerTest, RandomCommandsAreRebuilt) {
         C::kRemoveLight,     C::kSetTime,          C::kCreateVantage,      C::kRemoveVantage,
         C::kSetCamera,       C::kRemoveCamera,     C::kSetActiveCamera,    C::kCreateTelemetry,
         C::kRemoveTelemetry, C::kSetTelemetry,     C::kSetTelemetryTexts,  C::kSetTelemetryLimits,
-        C::kLogEvent,        C::kAskOperator,      C::kCloseQuestion}) {
+        C::kLogEvent,        C::kAskOperator,      C::kCloseQuestion,      C::kCreateMesh,
+        C::kSetMesh,         C::kSetPart}) {
     EXPECT_GE(this->Kinds_[kind], 10) << "command " << kind;
   }
 }

@@ -178,7 +178,7 @@ TEST_F(TelemetryTest, IdsAreNeverUsedAgain) {
   again.mutable_create_telemetry()->set_id(50);
   this->Accept(again);
   EXPECT_EQ(this->Add("d"), 51u);
-  // Nor by a scene of the same name that is made anew.
+  // Nor by a scene of the same name that is made again.
   v1::Command gone;
   gone.mutable_remove_scene();
   this->Accept(gone);

@@ -1,5 +1,5 @@
-// Colour layers through commands: what the interpreter chose is recorded, what is refused changes
-// nothing.
+// Colour layers through commands: the interpreter's choices are recorded, and a rejected command
+// changes nothing.
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -258,10 +258,10 @@ TEST_F(TerrainLayers, BadInputIsRejectedAndChangesNothing) {
   EXPECT_EQ(LayersOf(this->Interpreter_).DebugString(), before);
 }
 
-TEST_F(TerrainLayers, AreOfClipmaps) {
+TEST_F(TerrainLayers, ThoseOfColoursAreOfClipmaps) {
   this->OpenGround(v1::OpenTerrain::TRIANGLES);
   this->Reject(Noise(), v1::Error::UNSUPPORTED, "clipmap");
-  EXPECT_EQ(this->Change("noise", [](auto&) {}).error().kind(), v1::Error::UNSUPPORTED);
+  EXPECT_EQ(this->Change("noise", [](auto&) {}).error().kind(), v1::Error::NOT_FOUND);
 }
 
 TEST_F(TerrainLayers, AreAtMost64) {

@@ -17,9 +17,12 @@ namespace fs = std::filesystem;
 class TrackLedger : public CommandTest {
 protected:
   TrackLedger()
-      : Ground_("tracked.asc", "ncols 5\nnrows 5\nxllcorner 100\nyllcorner 200\ncellsize 2\n"
-                               "0 1 2 1 0\n0 1 2 1 0\n0 1 3 1 0\n0 1 2 1 0\n0 1 2 1 0\n"),
-        Ledger_(&this->Interpreter_.GetState()) {
+      : TrackLedger("ncols 5\nnrows 5\nxllcorner 100\nyllcorner 200\ncellsize 2\n"
+                    "0 1 2 1 0\n0 1 2 1 0\n0 1 3 1 0\n0 1 2 1 0\n0 1 2 1 0\n",
+                    v1::OpenTerrain::CLIPMAP, 6) {} // 3 cm
+
+  TrackLedger(const std::string& ground, v1::OpenTerrain::Mode mode, unsigned subdivisions)
+      : Ground_("tracked.asc", ground), Ledger_(&this->Interpreter_.GetState()) {
     this->Interpreter_.AddListener([this](const v1::Command& command, const v1::Reply& reply) {
       this->Ledger_.Add(command, reply);
       this->Last_ = command;
@@ -31,8 +34,8 @@ protected:
     this->Accept(anew);
     v1::Command open;
     open.mutable_open_terrain()->set_path(this->Ground_.Path());
-    open.mutable_open_terrain()->set_mode(v1::OpenTerrain::CLIPMAP);
-    open.mutable_open_terrain()->set_subdivisions(6); // 3 cm
+    open.mutable_open_terrain()->set_mode(mode);
+    open.mutable_open_terrain()->set_subdivisions(subdivisions);
     this->Accept(open);
   }
 
@@ -92,6 +95,7 @@ protected:
     v1::TerrainReply said = interpreter.Execute(describe).terrain();
     said.clear_tile_loads(); // depends on what was asked
     said.clear_tile_bytes();
+    said.clear_tiles_built();
     const v1::Reply heights = interpreter.Execute(query);
     EXPECT_EQ(heights.terrain_values().height_size(), 5000);
     const v1::Reply hits = interpreter.Execute(rays);
@@ -110,6 +114,72 @@ protected:
   session::Ledger Ledger_;
   v1::Command Last_;
 };
+
+// Triangles between posts 5 cm apart.
+class TriangleTrackLedger : public TrackLedger {
+protected:
+  TriangleTrackLedger() : TrackLedger(Hills(), v1::OpenTerrain::TRIANGLES, 0) {}
+
+  static std::string Hills() {
+    constexpr int Side = 161;
+    std::string text = "ncols 161\nnrows 161\nxllcorner 100\nyllcorner 200\ncellsize 0.05\n";
+    for (int r = 0; r < Side; ++r) {
+      for (int c = 0; c < Side; ++c) {
+        text +=
+            std::to_string(std::sin(0.07 * c) * std::cos(0.05 * r)) + (c + 1 < Side ? " " : "\n");
+      }
+    }
+    return text;
+  }
+
+  // All that is drawn of the terrain.
+  static std::string Drawn(session::Interpreter& interpreter) {
+    const session::SceneState& scene = interpreter.GetState().scenes.at("scene");
+    GraphicsObject object;
+    scene.terrains.at("terrain")->Draw(object);
+    const GraphicsObject& shown =
+        scene.scene->Object(scene.terrains.at("terrain")->Object()); // as the scene has it
+    std::string bytes;
+    const auto add = [&bytes](const auto& values) {
+      bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+    };
+    EXPECT_EQ(object.levels.at(0).parts.size(), shown.levels.at(0).parts.size());
+    for (std::size_t i = 0; i < object.levels[0].parts.size(); ++i) {
+      const Part& part = object.levels[0].parts[i];
+      EXPECT_EQ(part.mesh, shown.levels[0].parts.at(i).mesh) << i;
+      add(part.mesh->positions);
+      add(part.mesh->normals);
+      add(part.mesh->colors);
+      add(part.mesh->indices);
+    }
+    return bytes;
+  }
+};
+
+TEST_F(TriangleTrackLedger, RebuildsTheRutsToTheByteAndTheyGoOnAlike) {
+  const std::string bare = Answers(this->Interpreter_);
+  const std::string plain = Drawn(this->Interpreter_);
+  this->Wander(this->Interpreter_, 200, 0.0);
+  session::Interpreter second;
+  this->Rebuild(second);
+  EXPECT_NE(Answers(this->Interpreter_), bare);
+  EXPECT_NE(Drawn(this->Interpreter_), plain);
+  EXPECT_TRUE(Answers(second) == Answers(this->Interpreter_));
+  EXPECT_TRUE(Drawn(second) == Drawn(this->Interpreter_));
+  this->Wander(this->Interpreter_, 50, 4.0);
+  this->Wander(second, 50, 4.0);
+  EXPECT_TRUE(Answers(second) == Answers(this->Interpreter_));
+  EXPECT_TRUE(Drawn(second) == Drawn(this->Interpreter_));
+  v1::Command clear;
+  clear.mutable_clear_tracks()->set_terrain("terrain");
+  this->Accept(clear);
+  session::Interpreter third;
+  this->Rebuild(third);
+  EXPECT_TRUE(Answers(third) == bare);
+  EXPECT_TRUE(Answers(this->Interpreter_) == bare);
+  EXPECT_TRUE(Drawn(third) == plain);
+  EXPECT_TRUE(Drawn(this->Interpreter_) == plain);
+}
 
 TEST_F(TrackLedger, RebuildsTheRutsToTheByteAndTheyGoOnAlike) {
   const std::string bare = Answers(this->Interpreter_);

@@ -186,7 +186,7 @@ TEST_F(LinkReservations, WhatAFormerWriterLeftBehindIsNotCarriedOut) {
   EXPECT_TRUE(done[0].has_create_scene());
 }
 
-// A simulation that comes back to a server that was started anew does not keep others out while it
+// A simulation that comes back to a restarted server does not keep others out while it
 // finds out.
 TEST_F(LinkReservations, AnUnknownWriterGetsNoReservation) {
   this->StartServer();

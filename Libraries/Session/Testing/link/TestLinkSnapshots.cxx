@@ -2,8 +2,8 @@
 // large.
 #include "LinkTestSupport.h"
 
+#include <dspace/link/LinkChannel.h>
 #include <dspace/link/SnapshotMessages.h>
-#include <dspace/link/client/ClientLink.h>
 
 namespace dspace::testing {
 namespace {
@@ -211,7 +211,7 @@ TEST_F(SnapshotTest, AViewerReportsWhyItIsRejected) {
     }
     Accept(client.Flush());
     if (this->Server->GetCounts().waitingBytes < 20000) {
-      while (watcher.Take(message, 0.0)) { // until it begins anew
+      while (watcher.Take(message, 0.0)) { // until it starts again
       }
     }
     why = watcher.Rejection();

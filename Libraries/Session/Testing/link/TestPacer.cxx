@@ -22,10 +22,10 @@ TEST(Pacer, WaitsForWhatIsLeftOfTheTimeSinceTheFirst) {
   EXPECT_EQ(pacer.Ahead("scene", 7, 109), 0);    // late by 8 s:
   EXPECT_EQ(pacer.Ahead("scene", 23, 109), 0);   // it catches up,
   EXPECT_EQ(pacer.Ahead("scene", 24, 109), 0.5); // and no more
-  EXPECT_EQ(pacer.Ahead("scene", 4, 109.5), 0);  // back: counted anew
+  EXPECT_EQ(pacer.Ahead("scene", 4, 109.5), 0);  // back: the count starts again
   EXPECT_EQ(pacer.Ahead("scene", 6, 109.5), 1);
   pacer.SetRate(1);
-  EXPECT_EQ(pacer.Ahead("scene", 8, 200), 0); // anew
+  EXPECT_EQ(pacer.Ahead("scene", 8, 200), 0); // again
   EXPECT_EQ(pacer.Ahead("scene", 9, 200), 1);
   EXPECT_EQ(pacer.Ahead("scene", std::nan(""), 200), 0);
   pacer.SetRate(0);
@@ -44,7 +44,7 @@ TEST(Pacer, EachSceneHasItsClockAndAnotherEpochIsNotWaitedFor) {
   EXPECT_EQ(pacer.Ahead("b", 4, 101), 1.5);
   EXPECT_EQ(pacer.Ahead("a", 3601, 101), 3600); // an hour is waited for, more is not
   EXPECT_EQ(pacer.Ahead("a", 3602, 101), 0);
-  EXPECT_EQ(pacer.Ahead("a", 3603, 101), 1); // and that is where it begins anew
+  EXPECT_EQ(pacer.Ahead("a", 3603, 101), 1); // and there it starts again
   EXPECT_EQ(pacer.Ahead("a", 7e8, 101), 0);
   EXPECT_EQ(pacer.Ahead("a", 1e300, 101), 0);
   pacer.SetRate(1e-300);

@@ -2,7 +2,7 @@
 // unpacked, steps are gone to, and what survives is put into a new recording, which must be sound.
 // A fuzz target: input is a .dspace file's bytes. Nothing in it may crash, hang, throw anything but
 // Error, or end in an error of Dspace's own (INTERNAL); and no command and no file of a row is
-// accepted whose checksum, worked out here anew from Documentation/Recording.md, does not hold.
+// accepted whose checksum, worked out here from Documentation/Recording.md, does not hold.
 //
 // With clang and -DDSPACE_LIBFUZZER=ON it is libFuzzer's program; else it has a driver of its own
 // (FuzzDriver.h). That changes bytes of a recording, and values of its rows, to which it gives the
