@@ -8,6 +8,7 @@ from dspace.frames.frame import Frame
 from dspace.objects.assemblies import Assembly
 from dspace.objects.fragments import Fragment
 from dspace.objects.robots import Robot
+from dspace.scene.viewport import Viewport
 
 
 class SceneMembership:
@@ -18,7 +19,7 @@ class SceneMembership:
 
     def require_own(self, thing, what, about=None):
         """Rejects a thing of another scene, also of a scene of the same name in another session."""
-        other = thing._scene
+        other = thing.scene if isinstance(thing, Viewport) else thing._scene
         if other != self._scene:
             where = "" if other._client is self._scene._client else " of another session"
             raise InvalidArgument(named(about, f"{what} is in another scene, {other.name!r}{where}; "
@@ -63,6 +64,12 @@ class SceneMembership:
             reject(f"scene {self._scene.name!r}", "the fragment", None, "a dspace.Fragment or its name",
                    WrongType)
         return self.name_of(fragment, Fragment, "fragment")
+
+    def viewport_name(self, viewport, about=None):
+        if viewport is None:
+            reject(about or f"scene {self._scene.name!r}", "the viewport", None, "a dspace.Viewport or its name",
+                   WrongType)
+        return self.name_of(viewport, Viewport, "viewport", about)
 
     def vantage_name(self, vantage, about=None):
         return self.name_of(vantage, Vantage, "vantage", about)

@@ -3,20 +3,24 @@ import numpy as np
 
 from dspace._core import wire
 from dspace._core.delegates import delegate
-from dspace._core.fields import (Named, about, array_of, flag, integers, keywords, put, put_given, put_vector, reject,
+from dspace._core.fields import (Named, about, array_of, flag, integers, items, keywords, put, put_given, put_vector, reject,
                                  shown)
 from dspace._core.strict import Strict
-from dspace.cameras.camera import CHASE, Camera, put_chase, put_projection
+from dspace.cameras.camera import CHASE, POINT_AT, Camera, put_chase, put_point_at, put_projection
 from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
-from dspace.objects.factory import ObjectFactory
 from dspace.objects.fragments import Fragment, Light, put_light
+from dspace.objects.assemblies import Assembly
+from dspace.objects.factory import ObjectFactory
 from dspace.objects.graphics import GraphicsObject
+from dspace.objects.models import Model
 from dspace.objects.robots import Robot
 from dspace.proto import commands_pb2 as pb
+from dspace.scene.exports import SceneExports
 from dspace.scene.membership import SceneMembership
+from dspace.scene.sun import Sun
 from dspace.scene.viewport import SIZE, Viewport
 from dspace.telemetry.messages import SceneMessages
 from dspace.telemetry.telemetry import Telemetry
@@ -31,7 +35,8 @@ class Scene(Strict):
     Functions that make an object take, besides their own arguments: frame (a Frame, a path; default
     the root), name, ornamental, fragment; position [m], quaternion and stretch of the object in its
     frame; visible, pickable; line_width and point_size [pixels]; and the material: color (sRGB, 0 to
-    1, or '#rrggbb', or a CSS name), opacity, metallic, roughness, texture (an image file), lit, wireframe.
+    1, or '#rrggbb', or a CSS name), opacity, metallic, roughness, texture (an image file), lit, wireframe,
+    emissive, reflectance (a photometric model, see GraphicsObject.reflectance).
     """
 
     def __init__(self, client, name):
@@ -60,6 +65,7 @@ class Scene(Strict):
     _name_of = delegate(SceneMembership, "name_of")
     _fragment_name = delegate(SceneMembership, "fragment_name")
     _vantage_name = delegate(SceneMembership, "vantage_name")
+    _viewport_name = delegate(SceneMembership, "viewport_name")
 
     def _frame_of(self, id):
         return Frame(self, id)
@@ -205,6 +211,10 @@ class Scene(Strict):
     add_text = delegate(ObjectFactory, "add_text")
     add_label = delegate(ObjectFactory, "add_label")
     add_trail = delegate(ObjectFactory, "add_trail")
+    add_mesh = delegate(ObjectFactory, "add_mesh")
+    add_polydata = delegate(ObjectFactory, "add_polydata")
+    add_prop = delegate(ObjectFactory, "add_prop")
+    add_drawn = delegate(ObjectFactory, "add_drawn")
 
     def object(self, name):
         """The object of that name."""
@@ -226,6 +236,7 @@ class Scene(Strict):
 
     add_terrain = delegate(TerrainFactory, "add_terrain")
     terrains = delegate(TerrainFactory, "terrains")
+    geodesy = delegate(TerrainFactory, "geodesy")
 
     # --- Fragments and lights ------------------------------------------------------------------
 
@@ -243,7 +254,7 @@ class Scene(Strict):
     def add_light(self, name, kind="directional", **values):
         """A new light. kind: "directional", "point", "spot", "head" or "ambient"; values: see Light.set.
 
-        To change an existing light, also "sun" and "sky", use scene.lights[name].set(...)."""
+        To change an existing light, also "sun", use scene.lights[name].set(...)."""
         command = self._command()
         put(command.set_light, "new light", name=name)
         put_light(self, command.set_light, {"kind": kind, **values})
@@ -256,9 +267,15 @@ class Scene(Strict):
 
     @property
     def lights(self):
-        """All lights, by name. A new scene has "sun" and "sky"."""
+        """All lights, by name. A new scene has "sun", which `sun` also changes."""
         return Named("light", {info.name: Light(self, info.name)
                                for info in self._ask("list_lights").lights.light})
+
+    @property
+    def sun(self):
+        """The Sun of the scene: Sun.set takes a direction, or azimuth and elevation on a terrain, irradiance or
+        distance, and the size of its disc."""
+        return Sun(self)
 
     # --- Views ---------------------------------------------------------------------------------
 
@@ -274,18 +291,20 @@ class Scene(Strict):
 
     def add_camera(self, name="camera", frame=None, eye=None, target=None, up=(0, 0, 1), pose=None,
                    chase=None, fov_deg=None, height=None, tangents=None, near=None, far=None,
-                   vantage=MAIN):
+                   vantage=MAIN, point_at=None):
         """A camera, or a new setting of the one of that name.
 
         It stands on `frame` (default: root) at `eye` looking at `target`, or at `pose`; or it chases
-        `frame`, with chase a dict of what Camera.chase takes. The projection is as in
+        `frame`, with chase a dict of what Camera.chase takes; or it points at a frame, with point_at a dict of what
+        Camera.point_at takes (aim, eye, target, up, smoothing_s). The projection is as in
         Camera.set_projection; the default is perspective, 45 degrees. All is one command."""
         label = f"camera {shown(name)}"
-        given = [word for word, value in (("eye", eye), ("pose", pose), ("chase", chase))
+        given = [word for word, value in (("eye", eye), ("pose", pose), ("chase", chase),
+                                            ("point_at", point_at))
                  if value is not None]
         if len(given) > 1:
-            raise InvalidArgument(f"{label}: {' and '.join(given)} are given; accepted: one of eye, pose "
-                                  "and chase", label)
+            raise InvalidArgument(f"{label}: {' and '.join(given)} are given; accepted: one of eye, pose, "
+                                  "chase and point_at", label)
         if (eye is None) != (target is None):
             raise InvalidArgument(f"{label}: eye is {eye!r}, target {target!r}; accepted: both, or none "
                                   "of them", label)
@@ -306,11 +325,32 @@ class Scene(Strict):
                 reject(label, "chase", chase, f"a dict of {', '.join(CHASE)}", WrongType)
             keywords(chase, CHASE, f"{label}, chase")
             put_chase(mount.chase, **chase, about=label)
+        elif point_at is not None:
+            if not isinstance(point_at, dict) or "aim" not in point_at:
+                reject(label, "point_at", point_at, f"a dict of {', '.join(POINT_AT)}, with aim", WrongType)
+            keywords(point_at, POINT_AT, f"{label}, point_at")
+            put_point_at(mount.pointing, self, **point_at, about=label)
         else:
             with about(label):
                 put_pose(mount.pose, to_pose(pose=pose) if pose is not None else to_pose())
         self._execute(command)
         return Camera(self, vantage, name)
+
+    def _put_things(self, message, things, about):
+        """Writes objects and frames, one or several, into a message that takes both; None: neither. Robots, models and
+        assemblies count as their base frames."""
+        bases = (Robot, Model, Assembly)
+        if isinstance(things, (Frame, GraphicsObject, *bases)):
+            things = [things]
+        for each in items(() if things is None else things, "what it is to show", about, "objects and frames"):
+            if isinstance(each, GraphicsObject):
+                message.object.append(each.id)
+            elif isinstance(each, (Frame, *bases)):
+                message.frame.append(self._frame_id(each if isinstance(each, Frame) else each.frame))
+            else:
+                reject(about, "what it is to show", each, "objects, frames, robots, models and assemblies", WrongType)
+        if things is not None and not message.frame and not message.object:
+            reject(about, "what it is to show", things, "one object or frame, or more")
 
     @property
     def cameras(self):
@@ -336,6 +376,12 @@ class Scene(Strict):
         put_given(message, label, samples=samples)
         message.hidden = not flag(visible, "visible", label)
         return Viewport(self._client, self._execute(command).viewport.name)
+
+    # --- Other programs ------------------------------------------------------------------------
+
+    export = delegate(SceneExports, "export")
+    to_vtk = delegate(SceneExports, "to_vtk")
+    to_actors = delegate(SceneExports, "to_actors")
 
     @property
     def vtk(self):

@@ -5,17 +5,19 @@ import numpy as np
 
 from dspace._core.delegates import delegate
 from dspace._core.fields import file_path, flag, integers, items, put, put_color, put_given, reject, word
-from dspace._core.strict import Strict
+from dspace._core.replies import to_reply, warn
 from dspace._core.traits import SIDE
 from dspace.cameras.camera import Camera
-from dspace.errors import Internal, WrongType
+from dspace.errors import Internal, NotFound, WrongType
 from dspace.objects.fragments import Fragment
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
 from dspace.scene.legends import ViewportLegends, put_value
+from dspace.scene.look import ViewportLook
+from dspace.terrain.coordinates import coordinates_of
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
-PLANES = {"color": 0, "depth": 1, "label": 2}
+PLANES = {"color": 0, "depth": 1, "range": 3, "label": 2}
 SIZE = f"(width, height), two integers from {SIDE[0]} to {SIDE[1]}"
 EVENTS = {"move": 0, "press": 1, "release": 2, "wheel": 3, "key": 4}
 BUTTONS = {None: 0, "left": 1, "middle": 2, "right": 3}
@@ -38,9 +40,12 @@ class Pick:
     in_given: object = None  # in the frame that was asked for
     terrain: object = None  # Terrain, where one was hit
     map: object = None  # its map x, y and height
+    part: str = ""  # the name of the object's part; may be empty
+    coordinates: object = None  # Coordinates, on terrain with a CRS that has longitude and latitude
+    fields: object = None  # on terrain: the values of its fields, a dict by name; NaN: no data
 
 
-class Viewport(Strict):
+class Viewport(ViewportLook):
     """A picture of a scene. Pixel (0, 0) is the centre of the top-left pixel."""
 
     def __init__(self, client, name):
@@ -80,18 +85,21 @@ class Viewport(Strict):
 
     # --- Pictures ------------------------------------------------------------------------------
 
-    def capture(self, color=True, depth=False, label=False, physical_only=False, hide=()):
+    def capture(self, color=True, depth=False, label=False, physical_only=False, hide=(), range=False,
+                radiance=False, lit_fraction=False, incidence=False, emission=False, phase=False):
         """Planes of one picture as a dict of arrays, row 0 on top.
 
         "color": (h, w, 4) uint8, sRGB and alpha 255. "depth": (h, w) float32, metres along the
-        camera's Z, +infinity where nothing was hit. "label": (h, w) uint32, GraphicsObject.id, 0
-        where nothing was hit.
+        camera's Z, +infinity where nothing was hit. "range": the same along each pixel's ray, see range().
+        "label": (h, w) uint32, GraphicsObject.id, 0 where nothing was hit. "radiance": (h, w, 3), "lit_fraction",
+        "incidence", "emission" and "phase": (h, w), all float32, see the methods of these names.
         physical_only: no ornamental object and no overlay. hide: fragments (or one) left out of this
         one."""
         command = pb.Command()
         message = command.capture
         self._put_capture(message, physical_only, hide)
-        put(message, self._label, color=color, depth=depth, label=label)
+        put(message, self._label, color=color, depth=depth, label=label, range=range, radiance=radiance,
+            lit_fraction=lit_fraction, incidence=incidence, emission=emission, phase=phase)
         reply = self._client.execute(command).capture
         return {plane.name: self._plane(plane, reply) for plane in reply.plane}
 
@@ -118,6 +126,14 @@ class Viewport(Strict):
         Of physical objects only, unlike image() and pick(); physical_only=False: of all that is drawn."""
         return self.capture(False, depth=True, physical_only=physical_only, hide=hide)["depth"]
 
+    def range(self, physical_only=True, hide=()):
+        """(h, w) float32: metres from the camera to what each pixel shows, along the ray through the pixel's centre,
+        +infinity where nothing was hit. For an orthographic camera the rays start at its plane Z = 0, so that
+        range and depth are equal.
+
+        Of physical objects only, as depth()."""
+        return self.capture(False, range=True, physical_only=physical_only, hide=hide)["range"]
+
     def labels(self, physical_only=True, hide=()):
         """(h, w) uint32: GraphicsObject.id, 0 where nothing was hit.
 
@@ -125,7 +141,7 @@ class Viewport(Strict):
         return self.capture(False, label=True, physical_only=physical_only, hide=hide)["label"]
 
     def save(self, path, plane="color", physical_only=False, hide=(), quality=None):
-        """Writes the picture to .png, .jpg, .tif or .exr; plane "depth" [m] to .tif or .exr, "label"
+        """Writes the picture to .png, .jpg, .tif or .exr; plane "depth" or "range" [m] to .tif or .exr, "label"
         to .png, .tif or .exr. quality: 1 to 100, JPEG."""
         command = pb.Command()
         message = command.save_image
@@ -157,7 +173,25 @@ class Viewport(Strict):
         return Pick(scene._object(reply.object), scene._frame_of(reply.frame), reply.depth,
                     _point(reply.in_camera), _point(reply.in_object_frame), _point(reply.in_root),
                     _point(reply.in_frame) if in_frame else None, terrain,
-                    _point(reply.map) if terrain else None)
+                    _point(reply.map) if terrain else None,
+                    reply.part,
+                    coordinates_of([reply.coordinates]) if reply.HasField("coordinates") else None,
+                    {field.name: field.value for field in reply.field} if terrain else None)
+
+    def explain(self):
+        """Says why objects are seen in this picture, or not: an Explanation, which can be printed.
+
+            print(view.explain())"""
+        from dspace.scene.explanation import explanation_of
+        return explanation_of(self, self._do("explain_viewport").explanation)
+
+    def fit(self, things=None, margin=0.1):
+        """Moves its camera, without turning it, so that objects or frames fill the picture; see Camera.fit."""
+        width, height = self.size
+        camera = self.camera or self.scene.vantages[self.vantage].active
+        if camera is None:
+            raise NotFound(f"{self._label()}: it looks through no camera; accepted: one with a camera", self._name)
+        camera.fit(things, margin, width / height)
 
     # --- What it shows -------------------------------------------------------------------------
 
@@ -232,8 +266,8 @@ class Viewport(Strict):
 
     @property
     def ornaments(self):
-        """Whether ornamental objects are drawn. Text tables and corner axes stay: see remove_table and
-        corner_axes; a capture with physical_only leaves them out as well."""
+        """Whether ornamental objects, ornamental elements of terrain, and corner axes are drawn. Text tables and color
+        bars stay, but for legends of what is hidden; a capture with physical_only leaves all of them out."""
         return self._info().ornaments
 
     @ornaments.setter
@@ -306,12 +340,27 @@ class Viewport(Strict):
               alt=False):
         """What a person does: type "move", "press", "release", "wheel" or "key"; pixels.
 
-        Drags, the wheel and keys move the camera; a left click picks and returns a Pick's numbers.
-        See ViewportEvent in viewports.proto."""
-        reply = self._do("viewport_event", type=word(type, EVENTS, "type", self._label), x=x, y=y,
-                         button=word(button, BUTTONS, "button", self._label), wheel=wheel, key=key,
-                         shift=shift, control=control, alt=alt)
+        Drags, the wheel and keys move the camera; a left click picks and returns a Pick's numbers. Other keys and
+        all clicks reach the callbacks of on_key and on_click. See ViewportEvent in viewports.proto."""
+        command = pb.Command()
+        message = command.viewport_event
+        put(message, self._label, viewport=self._name, type=word(type, EVENTS, "type", self._label), x=x, y=y,
+            button=word(button, BUTTONS, "button", self._label), wheel=wheel, key=key, shift=shift, control=control,
+            alt=alt)
+        reply = self._client.execute(command)
+        self._client.inputs.tell(self, message, reply)
         return reply.pick if reply.HasField("pick") else None
+
+    def on_key(self, callback):
+        """Registers `callback`, which event() calls with a dspace.Input for each key that the camera does not use:
+        all but the arrows, "+", "-", "f" and "r". It stays until the viewport is removed.
+
+        A watcher's own views also send the key to the simulation, which gets it by Session.on_event(kind="input")."""
+        self._client.inputs.add(self._name, "key", callback)
+
+    def on_click(self, callback):
+        """The same for each click without a drag, of any button, with what it hit (Input.pick)."""
+        self._client.inputs.add(self._name, "click", callback)
 
     def remove(self):
         self._do("remove_viewport")
@@ -340,6 +389,8 @@ class Viewport(Strict):
             message = session.RunInViewport(self._name)
         finally:
             session.RemoveObserver(tag)
+        for warning in to_reply(session.TakeWarnings()).warning:
+            warn(warning)
         if result and result[0][1] is not None:
             raise result[0][1]
         if message:
