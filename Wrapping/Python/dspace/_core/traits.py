@@ -1,4 +1,4 @@
-"""The traits that the .proto files state of commands and their fields (options.proto): traits, ranges and defaults."""
+"""The options of commands and their fields in the .proto files (options.proto): traits, ranges and defaults."""
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import options_pb2
 from dspace.proto import viewports_pb2

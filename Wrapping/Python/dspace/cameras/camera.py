@@ -6,6 +6,7 @@ from dspace.frames.poses import Pose, to_pose
 
 AXES = {"heading": 0, "followed": 1, "parent": 2}
 CHASE = ("offset", "target", "axes", "up", "smoothing_s")
+POINT_AT = ("aim", "eye", "target", "up", "smoothing_s")
 
 
 class Camera(Strict):
@@ -69,6 +70,33 @@ class Camera(Strict):
         put_chase(command.set_camera.mount.chase, offset, target, axes, up, smoothing_s, self._label)
         self._scene._execute(command)
 
+    def point_at(self, aim, frame=None, eye=(0, 0, 0), target=(0, 0, 0), up=(0, 0, 1), smoothing_s=0.0):
+        """Stands at `eye` on `frame` (default: root) and keeps pointing at `target` on the frame `aim` [m].
+
+        up: the direction of the picture's top, in `frame`. smoothing_s: time constant of the lag of the direction in
+        `frame`, in simulation time; when that goes back, the camera points at its target at once."""
+        command = self._command()
+        command.set_camera.mount.frame = self._scene._frame_id(frame)
+        put_point_at(command.set_camera.mount.pointing, self._scene, aim, eye, target, up, smoothing_s, self._label)
+        self._scene._execute(command)
+
+    def fit(self, things=None, margin=0.1, aspect=16 / 9):
+        """Moves the camera, without turning it, so that `things` are whole in its picture and fill it.
+
+        things: a GraphicsObject, Frame, Robot, Model or Assembly, or several; a frame means the visible objects on it and below. None: all
+        visible objects. margin: free space on each side, as a fraction of their size, 0 to 10. aspect: width / height
+        of the picture. An orthographic camera gets another height. A camera that chased or pointed stands still after
+        this, in the frame that it was in."""
+        command = self._scene._command()
+        message = command.fit_camera
+        put(message, self._label, vantage=self._vantage, name=self._name, margin=margin, aspect=aspect)
+        self._scene._put_things(message, things, self._label)
+        found = self._scene._execute(command).camera
+        command = self._command()
+        command.set_camera.projection.CopyFrom(found.projection)
+        command.set_camera.mount.CopyFrom(found.mount)
+        self._scene._execute(command)
+
     @property
     def frame(self):
         """The frame that it stands on or follows."""
@@ -76,7 +104,7 @@ class Camera(Strict):
 
     @property
     def pose(self):
-        """X_FC on its frame, which may be set; None for a chase camera (see pose_in())."""
+        """X_FC on its frame, which may be set; None for a camera that chases or points (see pose_in())."""
         mount = self._info().mount
         if not mount.HasField("pose"):
             return None
@@ -88,7 +116,7 @@ class Camera(Strict):
         self.attach(self.frame, pose)
 
     def pose_in(self, frame=None):
-        """X_GC now, in `frame` G (default: the root), also of a camera that chases: with the lag that it has at
+        """X_GC now, in `frame` G (default: the root), also of a camera that chases or points: with the lag that it has at
         the scene's time. Its scale is 1."""
         reply = self._scene._ask("get_camera_pose", vantage=self._vantage, name=self._name,
                                  relative_to=self._scene._frame_id(frame))
@@ -101,17 +129,20 @@ class Camera(Strict):
         """One of: fov_deg, the vertical full angle (perspective); height, metres from top to bottom
         (orthographic); tangents X / Z and Y / Z of the edges (left, right, top, bottom), left and
         top negative about the axis since Y is down (off-axis frustum).
-        near and far: metres along Z (default: 0.05 and infinity; 1e4 for orthographic,
-        whose depth is resolved to a ten-millionth of far)."""
+        near and far: metres along Z. None: automatic, they follow what is drawn, so that nothing in view is cut.
+        For perspective and off-axis cameras, whose depth is resolved to a ten-millionth of itself at any distance,
+        that is 0.05, or less where an object begins nearer, and infinity. For orthographic ones it is the
+        extent of what is drawn from Z = 0 on; depth is resolved to a ten-millionth of far - near, so set them for a
+        finer one. near may be negative for orthographic cameras, which then see what is behind them."""
         command = self._command()
         put_projection(command.set_camera.projection, fov_deg, height, tangents, near, far, self._label)
         self._scene._execute(command)
 
     @property
     def projection(self):
-        """A dict of what set_projection takes."""
+        """A dict of what set_projection takes; near and far are None where they are automatic."""
         p = self._info().projection
-        out = {"near": p.near, "far": p.far}
+        out = {name: getattr(p, name) if p.HasField(name) else None for name in ("near", "far")}
         kind = p.WhichOneof("kind")
         if kind == "orthographic":
             out["height"] = p.orthographic.height
@@ -135,7 +166,7 @@ class Camera(Strict):
 
     @property
     def near(self):
-        """Metres along Z."""
+        """Metres along Z; None: automatic (see set_projection)."""
         return self.projection["near"]
 
     @near.setter
@@ -144,7 +175,7 @@ class Camera(Strict):
 
     @property
     def far(self):
-        """Metres along Z; may be infinite."""
+        """Metres along Z; may be infinite. None: automatic (see set_projection)."""
         return self.projection["far"]
 
     @far.setter
@@ -184,6 +215,15 @@ def put_chase(message, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=(
     """Writes what Camera.chase takes into a Chase message."""
     message.axes = word(axes, AXES, "axes", about)
     put_vector(message.offset, offset, "the offset", about)
+    put_vector(message.target, target, "the target", about)
+    put_vector(message.up, up, "up", about)
+    put(message, about, smoothing_s=smoothing_s)
+
+
+def put_point_at(message, scene, aim, eye=(0, 0, 0), target=(0, 0, 0), up=(0, 0, 1), smoothing_s=0.0, about=None):
+    """Writes what Camera.point_at takes, without the frame, into a Pointing message."""
+    message.aim = scene._frame_id(aim)
+    put_vector(message.eye, eye, "the eye", about)
     put_vector(message.target, target, "the target", about)
     put_vector(message.up, up, "up", about)
     put(message, about, smoothing_s=smoothing_s)

@@ -7,7 +7,9 @@ from dspace._core.replies import make_error, to_reply, warn
 from dspace._core.traits import scene_name
 from dspace._core.wire import encode
 from dspace.clients.listeners import EventQueue, FrameListeners
+from dspace.clients.pipelines import Pipelines
 from dspace.errors import Closed, WrongThread
+from dspace.scene.inputs import ViewportInputs
 
 
 class LocalClient:
@@ -19,7 +21,9 @@ class LocalClient:
         self._background = weakref.finalize(self, self.vtk.EndBackgroundWork)
         self.frame_listeners = FrameListeners()
         self.events = EventQueue()
+        self.inputs = ViewportInputs()
         self.recording = None  # the latest one
+        self.pipelines = Pipelines()
         self.telemetry = {}  # by scene: {name: (id, kind)} of the known channels
 
     def _end_background_work_by(self, end):
@@ -44,6 +48,8 @@ class LocalClient:
     def execute(self, command):
         """Returns the Reply to a Command. Raises the error of the reply. If a callback raises, its exception is
         raised, and the change stays made."""
+        if self.pipelines:
+            self.pipelines.before(command)
         return self._finish(command, self._carry(command))
 
     def _carry(self, command):
@@ -52,6 +58,8 @@ class LocalClient:
     def _finish(self, command, reply):
         if reply.HasField("error"):
             raise make_error(reply.error)
+        if command.HasField("remove_viewport"):
+            self.inputs.forget(command.remove_viewport.viewport)
         if command.HasField("remove_scene"):
             self.telemetry.pop(scene_name(command), None)
         listeners = self.frame_listeners
@@ -80,5 +88,6 @@ class LocalClient:
             self._require_thread()
         self._background()
         self.vtk = None
+        self.pipelines.clear()
         self.frame_listeners.clear()
         self.events.clear()

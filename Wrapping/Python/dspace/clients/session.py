@@ -1,12 +1,13 @@
 """Sessions, which own scenes and viewports."""
 from dspace._core.delegates import delegate
-from dspace._core.fields import Named, flag, reject, text
+from dspace._core.fields import Named, file_path, flag, reject, text
 from dspace._core.traits import DEFAULT_SCENE
 from dspace.clients.local import LocalClient
-from dspace.errors import AlreadyExists, WrongType
+from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.proto import commands_pb2 as pb
 from dspace.recording.recording import Recording
 from dspace.scene.scene import Scene
+from dspace.scene.sheet import sheet_of
 from dspace.scene.viewport import Viewport
 from dspace.telemetry.viewer_events import ViewerEvents
 
@@ -43,7 +44,7 @@ class Session:
     def scene(self, name=DEFAULT_SCENE, lights=True):
         """Returns the scene of that name. It is made if it does not exist.
 
-        lights: whether a new scene has the lights "sun" and "sky".
+        lights: whether a new scene has the light "sun" (Scene.sun).
         """
         text(name, "the scene's name", "session")
         if not name:
@@ -79,6 +80,18 @@ class Session:
         command.render.SetInParent()
         return self._client.execute(command).render.drawn
 
+    def sheet(self, viewports=None, size=None, background=(0, 0, 0), path=None, physical_only=False):
+        """Draws viewports into one picture, each at its Viewport.position: (h, w, 3) uint8, sRGB.
+
+        viewports: Viewports, later ones over earlier ones; None: all visible ones, by name. size: (width, height) in
+        pixels, into which all must fit; None: as large as they need. background: sRGB, 0 to 1, '#rrggbb' or a CSS
+        name, where no viewport is. path: also writes the picture to this file (.png). physical_only: as in
+        Viewport.image. Raises dspace.InvalidArgument for a viewport at a negative position or beyond the size, and
+        then writes nothing."""
+        if viewports is None:
+            viewports = [each for each in self.viewports.values() if each.visible]
+        return sheet_of(viewports, size, background, path, flag(physical_only, "physical_only", "sheet"))
+
     def record(self, path, commit_every=0.1, pack=False):
         """Records into a new file, beginning with the present state. Returns the Recording. It ends with its `with`
         statement, with stop(), or with the session.
@@ -99,6 +112,15 @@ class Session:
         """The Recording in progress, or None."""
         recording = self._client.recording
         return recording if recording is not None and recording.active else None
+
+    def load_plugin(self, path):
+        """Loads a shared library that registers drawers of user-defined objects, for Scene.add_drawn.
+
+        The library stays loaded until the process ends."""
+        path = file_path(path, "the path", "plug-in")
+        problem = self._client.local().LoadPlugIn(path)
+        if problem:
+            raise InvalidArgument(problem, f"plug-in {path!r}")
 
     # --- Events of viewers ---------------------------------------------------------------------
 

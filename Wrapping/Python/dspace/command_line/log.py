@@ -67,6 +67,9 @@ def show(options):
         for asset in file.assets:
             state = f"{asset.size} bytes, SHA-256 {asset.sha256.hex()}" if asset.state == "read" else asset.state
             print(f"file {asset.path}: {state}{', packed' if asset.packed else ''}")
+        arrays = file.arrays
+        if arrays:
+            print(f"arrays of {len(arrays)} meshes: {sum(each.size for each in arrays)} bytes")
         for first, last in file.lost:
             print(f"lost: commands {first} to {last}")
     return 0

@@ -18,6 +18,9 @@ def add_arguments(parser):
                                "drawn.")
     add_raster(info)
     info.add_argument("--json", action="store_true", help="print JSON: a list with one entry for each file")
+    info.add_argument("--field", type=field, action="append", dest="fields", metavar="NAME=FILE[:BAND]",
+                      help="a raster of values that lies on FILE: what it holds, and how much of FILE it covers; may be "
+                      "given several times")
     info.set_defaults(run=terrain_info.run)
 
     render = commands.add_parser(
@@ -36,6 +39,7 @@ def add_arguments(parser):
                         help="extent of the image in map coordinates, if its file does not state one")
     render.add_argument("--sun", type=sun, default=(315.0, 45.0), metavar="AZ,EL",
                         help="degrees clockwise from north and above the horizon, at the target or the middle (315,45)")
+    render.add_argument("--shadows", action="store_true", help="draw the shadows that the sun casts")
     render.add_argument("--eye", type=numbers(3, "LON,LAT,HEIGHT"), metavar="LON,LAT,HEIGHT",
                         help="position of the camera of a perspective view; height in metres above the vertical "
                         "datum; map x,y,height without a CRS")
@@ -105,6 +109,14 @@ def fov(text):
     if not 0.001 <= value <= 170:
         raise argparse.ArgumentTypeError(f"'{text}'; accepted: 0.001 to 170 degrees")
     return value
+
+
+def field(text):
+    """Returns the name and the file of a field."""
+    name, equals, path = text.partition("=")
+    if not name or not path:
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: NAME=FILE[:BAND]")
+    return name, path
 
 
 def patch(text):

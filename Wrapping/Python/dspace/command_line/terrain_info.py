@@ -2,15 +2,18 @@
 import json
 import math
 import sys
+import warnings
 
 import numpy as np
 
 from dspace.command_line import Failed, tell
+from dspace.command_line.terrain_layers import file_and_band
 from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, lines, mebibytes, open_raster
 
 MESH_PIXELS = 4_000_000  # the largest raster that mode "auto" draws as triangles
 STATISTICS_PIXELS = 4_000_000  # the largest number of pixels that statistics read
 TILE = 128
+PROBES = 65  # places along a side of the terrain where fields are asked for values
 
 
 def run(options):
@@ -49,6 +52,7 @@ def describe(scene, path, options):
     terrain, warned = add(scene, path, options, name="plane")
     info = terrain._info()
     data, to_map = open_raster(gdal, path, options)
+    fields = [describe_field(gdal, terrain, name, path, warned) for name, path in options.fields or ()]
     band = data.GetRasterBand(options.band or 1)
     crs = degrees(osr, info.crs)
     to_map = np.array(to_map)
@@ -72,6 +76,7 @@ def describe(scene, path, options):
         "plane": pyramid(info, options),
         "body": on_body(dspace, scene, path, options),
         "patches": terrain.patches,
+        "fields": fields,
         "auto_mode": ("triangles" if data.RasterXSize * data.RasterYSize <= MESH_PIXELS and not options.patches
                       else "clipmap"),
         "warnings": warned,
@@ -125,27 +130,61 @@ def bounds(osr, crs, to_map, columns, rows):
 
 # --- What it holds ---------------------------------------------------------------------------------
 
-def statistics(data, band, info):
-    """Returns statistics of the heights, in metres above the vertical datum."""
+def sample(data, band):
+    """Returns values of a band, and how they were taken, as a dict. Values without data are left out."""
     columns, rows = data.RasterXSize, data.RasterYSize
     shrink = max(1, math.ceil(math.sqrt(columns * rows / STATISTICS_PIXELS)))
     size = (math.ceil(columns / shrink), math.ceil(rows / shrink))
     values = band.ReadAsArray(buf_xsize=size[0], buf_ysize=size[1]).astype(float)
     seen = band.GetMaskBand().ReadAsArray(buf_xsize=size[0], buf_ysize=size[1]) != 0
     seen &= np.isfinite(values)
-    heights = values[seen] * info.vertical_scale + info.vertical_offset
+    return values[seen], {
+        "of": "all pixels" if shrink == 1 else "a sample", "pixels": int(seen.size), "every": shrink,
+        "from_overviews": shrink > 1 and band.GetOverviewCount() > 0, "holes": int(seen.size - seen.sum()),
+        "hole_fraction": float(1.0 - seen.mean())}
+
+
+def statistics(data, band, info):
+    """Returns statistics of the heights, in metres above the vertical datum."""
+    values, found = sample(data, band)
+    heights = values * info.vertical_scale + info.vertical_offset
     datum = info.vertical_datum.split(":")
     if datum[0] == "radius" and len(datum) > 1:
         heights = heights - float(datum[1])
-    holes = 1.0 - seen.mean()
-    found = {"of": "all pixels" if shrink == 1 else "a sample", "pixels": int(seen.size),
-             "every": shrink, "from_overviews": shrink > 1 and band.GetOverviewCount() > 0,
-             "minimum_m": None, "maximum_m": None, "mean_m": None, "holes": int(seen.size - seen.sum()),
-             "hole_fraction": float(holes)}
+    found.update(minimum_m=None, maximum_m=None, mean_m=None)
     if len(heights):
         found.update(minimum_m=float(heights.min()), maximum_m=float(heights.max()),
                      mean_m=float(heights.mean()))
     return found
+
+
+def describe_field(gdal, terrain, name, given, warned):
+    """Adds a field to the terrain. Returns what its raster holds, and how much of the terrain it covers, as a dict."""
+    path, band_number = file_and_band(given)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        field = terrain.add_field(name, path, band=band_number)
+    warned.extend(str(warning.message) for warning in caught)
+    data = gdal.Open(field.path)
+    band = data.GetRasterBand(field.band)
+    values, statistic = sample(data, band)
+    scale, offset = band.GetScale(), band.GetOffset()
+    values = values * (1.0 if scale is None else scale) + (offset or 0.0)
+    classes = np.unique(values[:: max(1, len(values) // STATISTICS_PIXELS)]) if band.DataType == gdal.GDT_Byte else ()
+    left, top, right, bottom = terrain.map_extent
+    inside = (np.arange(PROBES) + 0.5) / PROBES
+    x, y = np.meshgrid(left + inside * (right - left), top + inside * (bottom - top))
+    there = terrain.value(name, x, y, map=True)
+    return {
+        "name": name, "path": field.path, "driver": data.GetDriver().ShortName,
+        "columns": field.size[0], "rows": field.size[1], "type": gdal.GetDataTypeName(band.DataType),
+        "band": field.band, "bands": data.RasterCount, "units": field.units or None, "crs_wkt": field.crs or None,
+        "pixel_size_m": field.pixel_size, "no_data": number_or_none(band.GetNoDataValue()),
+        "description": band.GetDescription() or None, "different_values": len(classes) or None,
+        "statistics": {**statistic, **{key: float(find(values)) if len(values) else None for key, find in (
+            ("minimum", np.min), ("maximum", np.max), ("mean", np.mean))}},
+        "covered_fraction": float(np.isfinite(there).mean()),
+    }
 
 
 # --- How it is drawn -------------------------------------------------------------------------------
@@ -220,6 +259,7 @@ def as_text(found):
                   f"at most {mebibytes(found['plane']['byte_budget'])} of them in memory"),
     ]
     rows += [("patch", patch_text(patch)) for patch in found["patches"]]
+    rows += [("field", field_text(field)) for field in found["fields"]]
     rows += [("warning", warning) for warning in found["warnings"]]
     return lines(found["path"], rows)
 
@@ -229,6 +269,23 @@ def patch_text(patch):
     return [f"{patch['name']}: a pixel is {patch['pixel_size']:.6g} m, {low:.6g} to {high:.6g} m, blended over "
             f"{patch['margin']:.6g} m" if patch["used"] else f"{patch['name']}: adds nothing",
             f"drawn within {patch['greatest_error']:.3g} m of its own posts (rms {patch['rms_error']:.3g} m)"]
+
+
+def field_text(field):
+    statistic = field["statistics"]
+    units = f" {field['units']}" if field["units"] else " (no units stated)"
+    values = "no data at all" if statistic["mean"] is None else (
+        f"{statistic['minimum']:.6g} to {statistic['maximum']:.6g}{units}, mean {statistic['mean']:.6g}")
+    if field["different_values"]:
+        values += f"; {field['different_values']} different values"
+    values += f"; {statistic['holes']} holes ({100 * statistic['hole_fraction']:.3g} %)" if statistic["holes"] else ""
+    no_data = "none stated" if field["no_data"] is None else f"{field['no_data']:.9g}"
+    return [f"{field['name']}: {field['path']}" + (f", {field['description']}" if field["description"] else ""),
+            f"{field['driver']}, {field['columns']} x {field['rows']} pixels of {field['type']}, band {field['band']} of "
+            f"{field['bands']}, a pixel is {field['pixel_size_m']:.6g} m, no-data {no_data}",
+            values + ("" if statistic["every"] == 1 else f" (one value for {statistic['every']} x {statistic['every']} "
+                      "pixels)"),
+            f"covers {100 * field['covered_fraction']:.3g} % of the terrain"]
 
 
 def span(pair, name):

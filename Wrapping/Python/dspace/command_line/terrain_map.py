@@ -9,6 +9,7 @@ import numpy as np
 
 BESIDE = (1.0, 1.0, 1.0)
 SKY = (0.0, 0.0, 0.0)
+FILL = 0.046  # of the sun
 # In posts of a level of 252 cells. Within 90 posts of the camera a level is drawn without blending; below 60 posts a
 # finer level is drawn as well.
 REACH = 80
@@ -33,7 +34,12 @@ def tiles(size, side):
             yield x, y, min(side, size[0] - x), min(side, size[1] - y)
 
 
-def draw_tiles(session, scene, ground, size, pixel, background, camera_at):
+def light_view(view, options):
+    """Sets the light of a viewport as the options ask for it."""
+    view.set(fill=FILL, shadows=options.shadows)
+
+
+def draw_tiles(session, scene, ground, options, size, pixel, background, camera_at):
     """Draws a picture tile by tile. camera_at(x, y, width, height, above) returns the eye, the direction of the
     picture's top, and the viewing direction of a tile's camera."""
     level = level_of(ground, pixel)
@@ -48,6 +54,7 @@ def draw_tiles(session, scene, ground, size, pixel, background, camera_at):
         if view is None:
             view = scene.add_viewport((width, height), "above", samples=2)
             view.set_background(background)
+            light_view(view, options)
         elif view.size != (width, height):
             view.size = (width, height)
         picture[y:y + height, x:x + width] = view.image()
@@ -79,7 +86,7 @@ def draw_map(session, scene, ground, options, longer):
         z = max(highest + 0.01 * above, lowest + above)
         return np.array([*middle, z]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, -1.0])
 
-    picture, told = draw_tiles(session, scene, ground, size, pixel, BESIDE, camera_at)
+    picture, told = draw_tiles(session, scene, ground, options, size, pixel, BESIDE, camera_at)
     edges = ground.terrains[0].to_map(np.array([[left, top, 0.0], [left + size[0] * pixel,
                                                                     top - size[1] * pixel, 0.0]]))
     return picture, (f"map x {edges[0, 0]:.9g} to {edges[1, 0]:.9g}, y {edges[1, 1]:.9g} to {edges[0, 1]:.9g}; "
@@ -109,5 +116,5 @@ def draw_disc(session, scene, ground, options, longer):
         here = math.sqrt(max(ground.radius**2 - u**2 - v**2, 0.0)) + above
         return np.array([u, v, max(up, here)]) @ axes, axes[1], -axes[2]
 
-    picture, told = draw_tiles(session, scene, ground, size, pixel, SKY, camera_at)
+    picture, told = draw_tiles(session, scene, ground, options, size, pixel, SKY, camera_at)
     return picture, f"the body from above its middle; a pixel is {pixel:.6g} m; {told}"

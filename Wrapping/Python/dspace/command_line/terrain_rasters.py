@@ -38,6 +38,8 @@ def check(options):
     """Rejects wrong combinations of arguments."""
     if options.patches and len(options.files) > 1:
         raise Failed(f"--patch is given with {len(options.files)} files; accepted: patches on one")
+    if getattr(options, "fields", None) and len(options.files) > 1:
+        raise Failed(f"--field is given with {len(options.files)} files; accepted: fields on one")
 
 
 def add(scene, path, options, **more):

@@ -7,12 +7,13 @@ import numpy as np
 
 from dspace._core.files import atomic_write
 from dspace.command_line import Failed, terrain_layers
-from dspace.command_line.terrain_map import draw_disc, draw_map
+from dspace.command_line.terrain_map import draw_disc, draw_map, light_view
 from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, open_raster
 
 LONGER_SIDE = 1024
 GROUND = (0.72, 0.69, 0.65)
 SKY = (0.0, 0.0, 0.0)
+BRIGHTNESS = 1.3  # of the sun, so that level ground at the default angles has about its own color
 
 
 def run(options):
@@ -165,8 +166,7 @@ def set_sun(scene, ground, options):
     azimuth, elevation = np.radians(options.sun)
     toward = np.array([np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation),
                        np.sin(elevation)]) @ ground.axes(place)
-    scene.lights["sun"].set(direction=tuple(-toward), intensity=1.3)
-    scene.lights["sky"].set(intensity=0.06)
+    scene.sun.set(direction=toward, irradiance=BRIGHTNESS * 1361)
 
 
 def draw_perspective(session, scene, ground, options):
@@ -196,6 +196,7 @@ def draw_perspective(session, scene, ground, options):
                      near=near)
     view = scene.add_viewport((width, height), "eye", samples=3 if width * height < 3_000_000 else 2)
     view.set_background(SKY)
+    light_view(view, options)
     picture = view.image().copy()
     place = ground.terrains[0].to_map(np.array([eye]))[0]
     return picture, (f"seen from map {place[0]:.9g}, {place[1]:.9g}, height {place[2]:.6g} m; "

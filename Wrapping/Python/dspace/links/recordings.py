@@ -34,6 +34,7 @@ class ServedRecording(Recording):
         self._process = os.getpid()
         self._last = None
         self._failure, self._told, self._missing = "", False, []
+        client.pipelines.update()
         client.flush()  # the recording begins with the effect of all commands sent so far
         self._recorder = client.prepared(_vtk.vtkDspaceRecorder())
         try:
@@ -102,7 +103,10 @@ class ServedRecording(Recording):
         raised. A second call does nothing."""
         if self._last is None:
             self._open()
-            self._stop(None)
+            try:
+                self._client.pipelines.update()
+            finally:
+                self._stop(None)
 
     def __exit__(self, kind, *exception):
         if kind is None:

@@ -134,6 +134,7 @@ class RemoteClient(LocalClient):
             finally:
                 self.link.Close()
                 self.link = None
+        self.pipelines.clear()
         self.frame_listeners.clear()
         self.events.clear()
 

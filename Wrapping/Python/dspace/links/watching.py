@@ -3,7 +3,7 @@ import time
 
 from dspace import vtk as _vtk
 from dspace._core.fields import real, reject, text
-from dspace._core.replies import make_error, to_reply
+from dspace._core.replies import make_error, to_reply, warn
 from dspace._core.signals import SLICE, check_signals
 from dspace._core.wire import encode
 from dspace.clients.local import LocalClient
@@ -48,10 +48,14 @@ class WatchClient(LocalClient):
         while count == 0 and time.monotonic() < end:
             check_signals()
             count = watcher.Update(min(SLICE, max(0.0, end - time.monotonic())))
-        listeners = self.frame_listeners
-        if listeners:
-            listeners.put(to_reply(watcher.TakeFrameEvents()).frame_event)
-            listeners.deliver()
+        reply = to_reply(watcher.TakeFrameEvents())
+        try:
+            for warning in reply.warning:  # of objects that this process cannot draw
+                warn(warning)
+        finally:
+            if self.frame_listeners:
+                self.frame_listeners.put(reply.frame_event)
+                self.frame_listeners.deliver()
         return count
 
     def send_event(self, event):
@@ -90,7 +94,7 @@ class Watcher(Session):
     or lost with its server, return when the scene does. Every other change to the scene raises dspace.Unsupported.
 
     The watcher sends actions of a person to the driver: send_event(), answer(), edited(), select(), dragged(),
-    Viewport.pick(send=True), and clicks in its own viewports (Viewport.event).
+    Viewport.pick(send=True), and clicks and unused keys in its own viewports (Viewport.event).
     """
 
     def __init__(self, client):

@@ -10,8 +10,8 @@ import time as clock
 
 from dspace import __version__
 from dspace._core.files import atomic_write
+from dspace._core.png import is_whole
 from dspace.errors import Error, Internal, InvalidArgument, Io, NotFound
-from dspace.movies.draw import is_whole
 from dspace.movies.folder import FRAME, SCRIPT, files_of, states_of
 from dspace.movies.make import finish, worker
 

@@ -4,9 +4,7 @@ import importlib.util
 import os
 import re
 import secrets
-import struct
 import warnings
-import zlib
 
 import numpy as np
 
@@ -241,9 +239,9 @@ class Stage:
         def relative(path, base):
             return find(path).pose_in(find(base))
 
-        path, position, quaternion, fov_deg = self.paths[view.name].at(time, relative)
+        path, position, quaternion, projection = self.paths[view.name].at(time, relative)
         scene.add_camera(self.names[view.name], frame=find(path), pose=Pose(position, quaternion),
-                         fov_deg=fov_deg, near=view.near, far=view.far, vantage=view.vantage)
+                         near=view.near, far=view.far, vantage=view.vantage, **projection)
 
     def _write(self, viewport, scene, view, first, time, run):
         """Updates the tables of the overlays that this view shows at this time."""
@@ -291,44 +289,3 @@ def fill(text, values):
                                   "such as {run:.2f}", match[1]) from None
 
     return FIELD.sub(put, text)
-
-
-# --- PNG -------------------------------------------------------------------------------------------
-
-_MAGIC = b"\x89PNG\r\n\x1a\n"
-_END = b"\x00\x00\x00\x00IEND\xaeB`\x82"
-
-
-def png(picture):
-    """Returns an array (h, w, 3) of sRGB bytes as the bytes of a PNG file. Equal pictures have equal bytes."""
-    height, width = picture.shape[:2]
-    rows = np.ascontiguousarray(picture[..., :3]).reshape(height, width * 3)
-    filtered = np.empty((height, width * 3 + 1), np.uint8)
-    filtered[:, 0] = 2  # PNG filter "up": the difference to the row above
-    filtered[0, 1:] = rows[0]
-    filtered[1:, 1:] = rows[1:] - rows[:-1]
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    return (_MAGIC + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
-            + chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(filtered.tobytes(), 1)) + _END)
-
-
-def is_whole(path):
-    """Returns whether a file is a complete PNG: every chunk's checksum matches."""
-    try:
-        with open(path, "rb") as file:
-            data = file.read()
-    except OSError:
-        return False
-    if not data.startswith(_MAGIC) or not data.endswith(_END):
-        return False
-    at = len(_MAGIC)
-    while at + 12 <= len(data):
-        length, = struct.unpack(">I", data[at:at + 4])
-        end = at + 12 + length
-        if end > len(data) or struct.unpack(">I", data[end - 4:end])[0] != zlib.crc32(data[at + 4:end - 4]):
-            return False
-        at = end
-    return at == len(data)

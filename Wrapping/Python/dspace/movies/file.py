@@ -24,7 +24,7 @@ def _value(value):
 def table_of(thing, skip=()):
     """Returns the fields of a dataclass, as a dict, that differ from their defaults."""
     return {each.name: getattr(thing, each.name) for each in fields(thing)
-            if each.name not in skip and getattr(thing, each.name) != each.default}
+            if each.name not in skip and getattr(thing, each.name) not in (None, each.default)}
 
 
 def _lines(values):

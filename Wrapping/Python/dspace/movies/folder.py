@@ -7,8 +7,8 @@ import re
 
 from dspace import __version__
 from dspace._core.files import atomic_write
+from dspace._core.png import is_whole
 from dspace.errors import Error, InvalidArgument, Io, Resource
-from dspace.movies.draw import is_whole
 
 FRAME = "frame_%06d.png"
 SCRIPT = "movie.toml"

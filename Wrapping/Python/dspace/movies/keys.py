@@ -6,7 +6,7 @@ import numpy as np
 from dspace._core.fields import flag, number, numbers, reject, text
 from dspace.errors import InvalidArgument
 from dspace.frames.poses import Pose
-from dspace.movies.path import FovPath, PlacePath, TurnPath, looking
+from dspace.movies.path import FovPath, HeightPath, PlacePath, TangentPath, TurnPath, looking
 
 EASINGS = ("through", "rest")
 
@@ -18,7 +18,9 @@ class Key:
     time: of the movie [s], from 0. run: time of the run [s]; None: see Movie. frame: path of the frame in which
     position, quaternion, target and up are given ("": the root). Give either quaternion (X right, Y down, Z forward)
     or target; target_frame: another frame for the target. up: the direction of the picture's top, used with a
-    target. fov_deg: full vertical angle, 1e-6 to 179. easing: "through" passes the key at an even rate, "rest" stops
+    target. fov_deg: full vertical angle, 1e-6 to 179 (default: 45); or height: metres from top to bottom of an
+    orthographic camera, 1e-9 to 1e18; or tangents: those of the edges of an off-axis camera (left, right, top, bottom;
+    see Camera.set_projection). Keys between two cuts have the same one of these. easing: "through" passes the key at an even rate, "rest" stops
     at it. cut: a new shot begins at this key, which may have the same time as the key before it. Raises
     dspace.InvalidArgument for other values.
     """
@@ -33,6 +35,13 @@ class Key:
     run: float = None
     easing: str = "through"
     cut: bool = False
+    height: float = None
+    tangents: tuple = None
+
+    @property
+    def lens(self):
+        """Which of "fov_deg", "height" and "tangents" it has."""
+        return "height" if self.height is not None else "tangents" if self.tangents is not None else "fov_deg"
 
     def __post_init__(self):
         about = f"the key at {self.time!r} s"
@@ -40,9 +49,7 @@ class Key:
         put("time", _finite(self.time, "time", about, low=0.0))
         if self.run is not None:
             put("run", _finite(self.run, "run", about))
-        put("fov_deg", _finite(self.fov_deg, "fov_deg", about))
-        if not 1e-6 <= self.fov_deg <= 179:
-            reject(about, "fov_deg", self.fov_deg, "1e-6 to 179 degrees")
+        self._check_lens(about, put)
         if (self.quaternion is None) == (self.target is None):
             reject(about, "what it looks at", (self.quaternion, self.target), "one of quaternion and target")
         if self.easing not in EASINGS:
@@ -67,6 +74,29 @@ class Key:
             if looking(self.position, self.target, self.up) is None:
                 reject(about, "the target", self.target, f"another place than {self.position}, and not along "
                        f"up, {self.up}")
+
+
+    def _check_lens(self, about, put):
+        others = {name: getattr(self, name) for name in ("height", "tangents") if getattr(self, name) is not None}
+        if len(others) > 1 or others and self.fov_deg not in (None, Key.fov_deg):
+            reject(about, "its projection", {**others, "fov_deg": self.fov_deg}, "one of fov_deg, height and tangents")
+        if others:
+            put("fov_deg", None)
+        else:
+            put("fov_deg", _finite(self.fov_deg, "fov_deg", about))
+            if not 1e-6 <= self.fov_deg <= 179:
+                reject(about, "fov_deg", self.fov_deg, "1e-6 to 179 degrees")
+        if self.height is not None:
+            put("height", _finite(self.height, "height", about))
+            if not 1e-9 <= self.height <= 1e18:
+                reject(about, "height", self.height, "1e-9 to 1e18 metres")
+        if self.tangents is not None:
+            accepted = "left, right, top, bottom, -1e6 to 1e6, left < right and top < bottom by 1e-9 and more"
+            tangents = tuple(map(float, numbers(self.tangents, 4, "tangents", about, accepted)))
+            left, right, top, bottom = tangents
+            if not (all(abs(each) <= 1e6 for each in tangents) and right - left >= 1e-9 and bottom - top >= 1e-9):
+                reject(about, "tangents", self.tangents, accepted)
+            put("tangents", tangents)
 
 
 def _finite(value, what, about, low=-np.inf):
@@ -115,22 +145,31 @@ class Shot:
         # A path through keys in other frames changes whenever those frames move.
         self.moves = any(key.frame != self.frame or key.target_frame not in (None, self.frame)
                          for key in keys)
-        self._fov = FovPath(self.times, [key.fov_deg for key in keys], self.rests)
+        lens = keys[0].lens
+        for key in keys:
+            if key.lens != lens:
+                reject(f"the key at {key.time:g} s", "its projection", key.lens, f"{lens}, as of the key at "
+                       f"{keys[0].time:g} s, or a cut between them")
+        self._lens, kind = lens, {"fov_deg": FovPath, "height": HeightPath, "tangents": TangentPath}[lens]
+        self._lenses = kind(self.times, [getattr(key, lens) for key in keys], self.rests)
         self._paths = None
 
     def at(self, time, relative):
-        """(position, quaternion, fov_deg) in `frame`; relative(frame, base): a Pose, X_base_frame."""
+        """(position, quaternion, projection) in `frame`; relative(frame, base): a Pose, X_base_frame."""
         if self._paths is None or self.moves:
             self._paths = self._build(relative)
         places, turns, targets, ups = self._paths
         position = places.at(time)
         if turns is not None:
-            return position, turns.at(time), self._fov.at(time)
+            return position, turns.at(time), self._projection(time)
         quaternion = looking(position, targets.at(time), ups.at(time))
         if quaternion is None:
             raise InvalidArgument(f"at {time:g} s of the movie the camera is at its target or looks along up; "
                                   "accepted: keys with another target or up, or with quaternions")
-        return position, quaternion, self._fov.at(time)
+        return position, quaternion, self._projection(time)
+
+    def _projection(self, time):
+        return {self._lens: self._lenses.at(time)}
 
     def _build(self, relative):
         known = {self.frame: Pose()}
@@ -177,7 +216,8 @@ class CameraPath:
         self.shots = [Shot(keys) for keys in shots_of(self.keys)]
 
     def at(self, time, relative=None):
-        """(frame, position, quaternion, fov_deg) at a time of the movie [s].
+        """(frame, position, quaternion, projection) at a time of the movie [s]; projection: a dict of one of fov_deg,
+        height and tangents, as Camera.set_projection takes it.
 
         relative(frame, base): the Pose of a frame in another one, now; needed for keys on several."""
         shot = self.shots[0]

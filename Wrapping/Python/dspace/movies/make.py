@@ -16,8 +16,9 @@ import time as clock
 
 from dspace._core.fields import integer, path as path_of, reject, text
 from dspace._core.files import AtomicFile, atomic_write
+from dspace._core.png import png
 from dspace.errors import Error, Io
-from dspace.movies.draw import Stage, open_run, png, require_run
+from dspace.movies.draw import Stage, open_run, require_run
 from dspace.movies.encode import codec_of, encode, programs
 from dspace.movies.folder import FRAME, SCRIPT, Folder, absolute
 

@@ -12,6 +12,7 @@ from dspace.movies.views import Overlay, View
 from dspace.scene.viewport import Viewport
 
 SETTINGS = {"size": (1280, 720), "rate": 30.0, "samples": DEFAULT_SAMPLES, "start": None, "speed": 1.0, "duration": None}
+LENSES = ("fov_deg", "height", "tangents")  # of a key: one of them
 
 
 class Movie:
@@ -64,7 +65,7 @@ class Movie:
         return view
 
     def add_key(self, viewport=None, time=0.0, view=None, **values):
-        """Adds a Key at a movie time [s] and returns it. The key has the present pose and field of view of a
+        """Adds a Key at a movie time [s] and returns it. The key has the present pose and projection of a
         viewport's camera (or of a Camera); values replace them.
 
         view: a view's name (default: the first view, which is created if the movie has none). values: see Key;
@@ -77,7 +78,10 @@ class Movie:
             raise NotFound(f"view {view!r}: there is no such view; there are: {', '.join(map(repr, self.views))}",
                            view)
         if viewport is not None:
-            values = {**_seen(viewport, values.pop("frame", None)), **values}
+            seen = _seen(viewport, values.pop("frame", None))
+            if any(name in values for name in LENSES):
+                seen = {name: value for name, value in seen.items() if name not in LENSES}
+            values = {**seen, **values}
         key = movie_file.take(Key, {"time": time, **values}, f"the key at {time!r} s")
         target = self._view_of(viewport) if view is None else self.views[view]
         target.keys = in_order([*target.keys, key], f"view {target.name!r}")
@@ -226,16 +230,14 @@ def _seen(viewport, frame):
         camera = viewport.scene.vantages[viewport.vantage].active
     if camera is None:
         raise NotFound(f"{viewport!r}: it looks through no camera; accepted: one with a camera")
-    scene, fov_deg = camera._scene, camera.fov_deg
-    if fov_deg is None:
-        raise InvalidArgument(f"camera {camera.name!r}: it has no field of view; accepted: a perspective camera",
-                              camera.name)
+    scene, lens = camera._scene, camera.projection
+    lens = {name: lens[name] for name in LENSES if name in lens}
     base, pose = camera.frame, camera.pose
-    if pose is None:  # a chase camera: its present pose, in a frame that does not move with its target
+    if pose is None:  # a camera that chases or points: its present pose, in a frame that does not move with its target
         base = scene.root if frame is None else frame
         pose = camera.pose_in(base)
     elif frame is not None:
         base, pose = frame, camera.pose_in(frame)
     base = base if isinstance(base, str) else base.path
-    return {"position": tuple(pose.position), "quaternion": tuple(pose.quaternion), "fov_deg": fov_deg,
+    return {"position": tuple(pose.position), "quaternion": tuple(pose.quaternion), **lens,
             "frame": "" if base == "/" else base}

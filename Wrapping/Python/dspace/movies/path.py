@@ -4,7 +4,8 @@ Positions lie on a centripetal Catmull-Rom spline (Yuksel, Schaefer and Keyser 2
 separate: the arc length is a monotone cubic of time (Fritsch and Butland 1984), so the speed has no jumps, and a
 constant speed stays constant for any distances between keys. Rotations are cubic curves (Kim, Kim and Shin 1995) whose
 angular rate at a key is the mean of both sides, weighted by time. Fields of view are a monotone cubic in the
-logarithm of tan(fov / 2). The path meets the keys exactly. The camera stands still before the first key and after the
+logarithm of tan(fov / 2), heights of orthographic pictures in the logarithm of the height, and each tangent of an
+off-axis picture is a monotone cubic. The path meets the keys exactly. The camera stands still before the first key and after the
 last.
 """
 import numpy as np
@@ -246,6 +247,30 @@ class FovPath:
         if len(exact):
             return float(self.fovs[exact[0]])
         return float(2 * np.degrees(np.arctan(np.exp(self.path.at(time)))))
+
+
+class HeightPath:
+    """A height of an orthographic picture [m] as a function of time. It interpolates the logarithm, so that a zoom
+    looks even."""
+
+    def __init__(self, times, heights, rests):
+        self.heights = np.asarray(heights, float)
+        self.path = MonotonePath(times, np.log(self.heights), rests)
+
+    def at(self, time):
+        times = self.path.times
+        exact = np.flatnonzero(times == np.clip(time, times[0], times[-1]))
+        return float(self.heights[exact[0]] if len(exact) else np.exp(self.path.at(time)))
+
+
+class TangentPath:
+    """The tangents of an off-axis picture (left, right, top, bottom) as a function of time."""
+
+    def __init__(self, times, tangents, rests):
+        self.paths = [MonotonePath(times, side, rests) for side in np.asarray(tangents, float).T]
+
+    def at(self, time):
+        return tuple(path.at(time) for path in self.paths)
 
 
 def looking(eye, target, up):

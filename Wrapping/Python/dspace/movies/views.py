@@ -32,7 +32,7 @@ class View:
 
     rectangle: left, top, width, height as fractions of the picture, 0 to 1. scene, vantage: their names.
     camera: the name of a camera of the scene; "": the view follows its keys. near, far: clip distances in metres
-    along Z (default: 0.05, infinity). hide: names of fragments that the view does not draw. ornaments: whether
+    along Z (default: automatic, see Camera.set_projection). hide: names of fragments that the view does not draw. ornaments: whether
     ornamental objects are drawn. background: sRGB, 0 to 1, or a color name; background_top: the top color of a
     gradient. corner_axes: whether the root's axes are drawn in the corner. Raises dspace.InvalidArgument or
     dspace.WrongType for other values."""

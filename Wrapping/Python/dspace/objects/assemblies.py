@@ -4,13 +4,13 @@ import os
 import numpy as np
 
 from dspace._core.fields import Named, reject
-from dspace._core.strict import Strict
 from dspace.errors import WrongType
 from dspace.kinematics.frames_file import FILE_NAME, path_of, read_frames_file
 from dspace.kinematics.rotations import to_quaternion
+from dspace.objects.placed import Placed
 
 
-class Assembly(Strict):
+class Assembly(Placed):
     """A vehicle of a frames.json: a frame a part, at rest until its frames are moved."""
 
     def __init__(self, scene, name, frame, frames, objects):
@@ -25,22 +25,9 @@ class Assembly(Strict):
         return self._name
 
     @property
-    def scene(self):
-        return self._scene
-
-    @property
     def frame(self):
         """The base frame, by which the whole vehicle is placed."""
         return self._frame
-
-    @property
-    def pose(self):
-        """The pose of the base frame in its parent; may be set."""
-        return self._frame.pose
-
-    @pose.setter
-    def pose(self, pose):
-        self._frame.pose = pose
 
     @property
     def frames(self):

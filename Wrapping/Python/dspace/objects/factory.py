@@ -6,11 +6,14 @@ from dspace._core.fields import (about, array_of, file_path, flag, integers, key
                                  put_color, put_given, put_vector, reject, shown, word)
 from dspace._core.replies import warn
 from dspace.cameras.camera import put_projection
-from dspace.errors import InvalidArgument, WrongType
+from dspace.errors import InvalidArgument, NotFound, WrongType
 from dspace.frames.frame import put_pose
 from dspace.frames.poses import Pose, quaternion_of_axis, to_pose
 from dspace.objects.assemblies import is_assembly, load_assembly
 from dspace.objects.graphics import UP, GraphicsObject, Primitive, Text, TiltMarker, Trail, put_rotation, put_settings
+from dspace.objects.meshes import Mesh, put_mesh_levels
+from dspace.objects.models import Model
+from dspace.objects.polydata import make_polydata
 from dspace.objects.robots import Robot
 
 # The rotation that turns a file's axis to Z.
@@ -36,7 +39,7 @@ class ObjectFactory:
         self._scene = scene
 
     def load(self, path, frame=None, ornamental=False, scale=1.0, up=None, rotation=None,
-             levels=(), strict=False, point_cloud=False, **settings):
+             levels=(), strict=False, point_cloud=False, frames=False, lights=False, **settings):
         """A model file (glTF, GLB, VRML, OBJ, STL, PLY) as a GraphicsObject; a URDF as a Robot; the
         folder of a frames.json, or that file, as an Assembly.
 
@@ -44,12 +47,16 @@ class ObjectFactory:
         files usually need "y". rotation: a quaternion that turns the model further. levels: coarser files as (path,
         pixels) pairs; each is drawn while the object appears larger than `pixels`. The last one should have 0, and
         `path` is then also a (path, pixels) pair.
-        strict: a missing texture or mesh raises an error. Otherwise it gives a warning, and an orange cube, or the
-        edges of a box of the size stated in its glTF, replaces a URDF's mesh.
+        strict: a missing texture or mesh, and damage that could be repaired, raise an error. Otherwise they give a
+        warning, and an orange cube, or the edges of a box of the size stated in its glTF, replaces a URDF's mesh.
+        frames: a frame for each node of the file, so that parts can be moved; the result is then a Model. Its settings
+        are those of each object; `position`, `quaternion` and a uniform `stretch` place the model.
+        lights: with frames, the lights of a glTF become lights of the scene; their lux or candela become `intensity`.
         point_cloud: shows a file of points, `point_size` pixels large; a file without faces is otherwise rejected.
         A URDF (links to frames, joints as `robot.joints[name].position` in degrees or metres, meshes
         from beside it) and a frames.json take frame, scale, up, rotation, ornamental, strict, name,
-        fragment, and position, quaternion or `pose` of their base frame."""
+        fragment, and position, quaternion or `pose` of their base frame. A URDF takes levels too: URDF files of the same
+        links with coarser visuals, as many for each link or none; each visual changes by its own size."""
         first, pixels = path if isinstance(path, tuple) and len(path) == 2 else (path, 0.0)
         first = file_path(first, "the path", "model")
         label = f"file {first!r}"
@@ -61,30 +68,45 @@ class ObjectFactory:
         if kind:
             pixels, scale = (number(value, name, label)
                              for name, value in (("pixels", pixels), ("the scale", scale)))
-            if len(levels) or pixels or flag(point_cloud, "point_cloud", label):
-                raise InvalidArgument(f"{label}: levels {levels!r}, {pixels:g} pixels and "
-                                      f"point_cloud={point_cloud!r}; accepted for a {kind}: none of these")
+            if (flag(point_cloud, "point_cloud", label) or flag(frames, "frames", label)
+                    or flag(lights, "lights", label)):
+                raise InvalidArgument(f"{label}: point_cloud={point_cloud!r}, frames={frames!r} and lights={lights!r}; "
+                                      f"accepted for a {kind}: none of these")
+            if kind != "URDF" and (len(levels) or pixels):
+                raise InvalidArgument(f"{label}: levels {levels!r} and {pixels:g} pixels; accepted for a {kind}: neither")
             keywords(settings, _ROBOT, f"{label}, a {kind}")
-            load = self._load_robot if kind == "URDF" else self._load_assembly
             base = self._base_pose(label, scale, up or "z", rotation, settings)
-            return load(first, base, frame, ornamental, strict, **settings)
+            if kind == "URDF":
+                return self._load_robot(first, pixels, levels, base, frame, ornamental, strict, **settings)
+            return self._load_assembly(first, base, frame, ornamental, strict, **settings)
         command = self._scene._command()
-        message = command.import_object
+        if flag(frames, "frames", label):
+            command.import_nodes.lights = flag(lights, "lights", label)
+            message = getattr(command.import_nodes, "import")
+        elif flag(lights, "lights", label):
+            raise InvalidArgument(f"{label}: lights=True; accepted with frames=True")
+        else:
+            message = command.import_object
         put_settings(self._scene, message.object, label, frame=frame, ornamental=ornamental, **settings)
         put(message.level.add(), label, path=first, minimum_pixels=pixels)
+        self._put_levels(message, levels, label)
+        put(message, label, scale=scale, up=turn, strict=strict, point_cloud=point_cloud)
+        if rotation is not None:
+            put_rotation(message.rotation, rotation, "the rotation", label)
+        reply = self._scene._execute(command)
+        made = Model(self._scene, reply.nodes) if frames else GraphicsObject(self._scene, reply.object.object)
+        if up is None and first.lower().endswith((".gltf", ".glb")):
+            warn(f"{label}: in glTF Y is up, and nothing is turned unasked; if it lies on its side give "
+                 "up='y', else up='z'")
+        return made
+
+    @staticmethod
+    def _put_levels(message, levels, label):
         for level in levels:
             if not isinstance(level, (tuple, list)) or len(level) != 2:
                 raise WrongType(f"{label}: a level is {shown(level)}; accepted: (path, pixels)")
             put(message.level.add(), label, path=file_path(level[0], "a level's path", label),
                 minimum_pixels=level[1])
-        put(message, label, scale=scale, up=turn, strict=strict, point_cloud=point_cloud)
-        if rotation is not None:
-            put_rotation(message.rotation, rotation, "the rotation", label)
-        made = GraphicsObject(self._scene, self._scene._execute(command).object.object)
-        if up is None and first.lower().endswith((".gltf", ".glb")):
-            warn(f"{label}: in glTF Y is up, and nothing is turned unasked; if it lies on its side give "
-                 "up='y', else up='z'")
-        return made
 
     @staticmethod
     def _base_pose(label, scale, up, rotation, settings):
@@ -100,12 +122,13 @@ class ObjectFactory:
     def _load_assembly(self, path, base, frame, ornamental, strict, **settings):
         return load_assembly(self._scene, path, base, frame, ornamental=ornamental, strict=strict, **settings)
 
-    def _load_robot(self, path, base, frame, ornamental, strict, name=None, fragment=None):
+    def _load_robot(self, path, pixels, levels, base, frame, ornamental, strict, name=None, fragment=None):
         label = f"file {path!r}"
         command = self._scene._command()
         message = command.load_robot
         put(message, label, path=path, name="" if name is None else name, frame=self._scene._frame_id(frame),
-            fragment=self._scene._fragment_name(fragment), strict=strict)
+            fragment=self._scene._fragment_name(fragment), strict=strict, minimum_pixels=pixels)
+        self._put_levels(message, levels, label)
         put_pose(message.pose, base)
         message.nature = 1 if flag(ornamental, "ornamental", label) else 0
         return Robot(self._scene, self._scene._execute(command).robot)
@@ -234,6 +257,58 @@ class ObjectFactory:
             label.offset_x, label.offset_y = numbers(offset, 2, "the offset", "label")
         return self._make(command, Text)
 
+    def add_prop(self, prop, **settings):
+        """Shows a vtkProp3D of this process as an object of the scene: a volume, a glyph mapper's actor, an image slice.
+
+        VTK draws it in every viewport, after its own pipeline is brought up to date. Its coordinates, with its position
+        and user matrix, are those of the object. The scene's lights shade it (ambient light does not), its vtkProperty
+        gives its look. Opaque props are in depth and label planes and can be picked; translucent ones and volumes are
+        blended over what is behind them and are in no plane.
+
+        Accepted: vtkActor, vtkVolume with a vtkGPUVolumeRayCastMapper or a vtkSmartVolumeMapper, vtkImageSlice, and
+        vtkAssembly of these, each in no renderer and no other scene. settings: as for other objects, but for materials,
+        line_width and point_size. In process only: recordings and servers leave props out."""
+        client = self._scene._client
+        session = client.local()
+        kind = "vtkProp3D"
+        if not hasattr(prop, "IsA") or not prop.IsA(kind):
+            reject(f"scene {self._scene.name!r}", "the prop", prop, f"a {kind}: a volume, an actor, an image slice",
+                   WrongType)
+        mapper = prop.GetMapper() if prop.IsA("vtkVolume") else None
+        if mapper is not None and mapper.IsA("vtkSmartVolumeMapper") and mapper.GetRequestedRenderMode() not in (0, 2):
+            raise InvalidArgument(f"scene {self._scene.name!r}: the vtkSmartVolumeMapper draws on the CPU, which does "
+                                  "not see the scene's depth; accepted: SetRequestedRenderModeToGPU(), or the default")
+        command = self._scene._command()
+        put_settings(self._scene, command.create_drawn.object, "prop", **settings)
+        command.create_drawn.drawer = f"vtk:{prop.GetClassName()}"
+        session.OfferProp(prop)
+        try:
+            return self._make(command, GraphicsObject)
+        finally:
+            session.OfferProp(None)
+
+    def add_drawn(self, drawer, parameters=b"", **settings):
+        """An object that a plug-in of this process draws (see Session.load_plugin and Documentation/OwnObjects.md).
+
+        drawer: the name that the plug-in registered. parameters: bytes, whose meaning is the plug-in's.
+        settings: as for other objects. A recording has the name and the parameters, not what is drawn."""
+        label = f"scene {self._scene.name!r}"
+        session = self._scene._client.local()
+        if not isinstance(drawer, str) or not drawer or drawer.startswith("vtk:"):
+            reject(label, "the drawer", drawer, "the name that a plug-in registered")
+        if not isinstance(parameters, (bytes, bytearray, memoryview)):
+            reject(label, "the parameters", parameters, "bytes", WrongType)
+        names = session.GetDrawerNames().splitlines()
+        if drawer not in names:
+            known = ", ".join(map(repr, names)) or "none"
+            raise NotFound(f"{label}: no plug-in has registered drawer {shown(drawer)}; registered: {known} "
+                           "(Session.load_plugin)", label)
+        command = self._scene._command()
+        put_settings(self._scene, command.create_drawn.object, "drawn", **settings)
+        command.create_drawn.drawer = drawer
+        command.create_drawn.parameters = bytes(parameters)
+        return self._make(command, GraphicsObject)
+
     def add_trail(self, capacity=10000, minimum_spacing=0.0, fade=False, ornamental=True,
                   **settings):
         """Adds a line through the last `capacity` points given to Trail.append, each at least `minimum_spacing` [m]
@@ -243,3 +318,44 @@ class ObjectFactory:
         label = put_settings(self._scene, message.object, "trail", ornamental=ornamental, **settings)
         put(message, label, capacity=capacity, minimum_spacing=minimum_spacing, fade=fade)
         return self._make(command, Trail)
+
+    def add_mesh(self, points, triangles=None, lines=None, normals=None, colors=None, scalars=None, colormap=None,
+                 low=None, high=None, tcoords=None, pixels=0.0, levels=(), **settings):
+        """Adds an object made of arrays. Returns a Mesh, whose update() replaces them.
+
+        points: (n, 3) [m]. Positions far from the origin keep the precision of doubles: an origin is subtracted before
+        they become single precision. triangles: (m, 3) indices of points, counter-clockwise seen from outside. lines:
+        (k, 2). Without both, points are drawn, point_size pixels large. A dict {name: indices} makes named parts
+        (GraphicsObject.part). normals: (n, 3), unit; without them they are computed, with creases at edges sharper than
+        30 degrees. tcoords: (n, 2) of the `texture`, v = 0 is the image's bottom row.
+        colors: (n, 3 or 4), bytes or numbers from 0 to 1, sRGB, one for each point; or one for each triangle (then each
+        line). scalars: (n,), likewise, mapped to colors: colormap is a list of colors, evenly spaced from `low` to
+        `high` (default: viridis, least to greatest value); NaN is grey. If there are as many points as triangles, the
+        values are those of points.
+        levels: coarser meshes as (dict of these arrays, pixels) pairs; each is drawn while the object appears larger than
+        `pixels`, and the finest while it appears larger than the argument `pixels`."""
+        given = {"points": points, "triangles": triangles, "lines": lines, "normals": normals, "colors": colors,
+                 "scalars": scalars, "colormap": colormap, "low": low, "high": high, "tcoords": tcoords}
+        command = self._scene._command()
+        label = put_settings(self._scene, command.create_mesh.object, "mesh", **settings)
+        put_mesh_levels(command.create_mesh, label, given, pixels, levels)
+        return Mesh(self._scene, self._scene._execute(command).object.object, given, pixels, levels)
+
+    def add_polydata(self, source, array=None, lookup_table=None, low=None, high=None, part="", live=True, pixels=0.0,
+                     levels=(), **settings):
+        """Adds the geometry of VTK as an object. Returns a PolyData, whose update() reads it again.
+
+        source: a vtkPolyData, a VTK algorithm, its output port, or a PyVista mesh (of another type than PolyData: its
+        surface). Vertices, lines, triangle strips and polygons, also concave ones, are drawn, with normals and texture
+        coordinates. Points without normals get computed ones, with creases at edges sharper than 30 degrees.
+        array: the name of an array of the points, or else of the cells, that colors it; None: the active scalars of the
+        points, or else of the cells; "": none. Arrays of bytes with 3 or 4 components are colors. lookup_table: a
+        vtkScalarsToColors; None: VTK's default table, from the array's least to its greatest value (of vectors: the
+        magnitude). low, high: its range.
+        part: name of the part. levels: coarser sources as (source, pixels) pairs, as in add_mesh.
+        live: an algorithm is updated when it, what is upstream, or the lookup table has changed: before each picture,
+        pick and new time of this session, and before a recording begins or ends. A pipeline that raises or reports an
+        error raises dspace.InvalidArgument there, once, and the object stays as it was. A vtkPolyData that changes is
+        read again by update()."""
+        return make_polydata(self._scene, source, settings, array=array, lookup_table=lookup_table, low=low, high=high,
+                             part=part, live=live, pixels=pixels, levels=levels)

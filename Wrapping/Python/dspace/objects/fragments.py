@@ -6,11 +6,11 @@ from dspace.errors import NotFound
 KINDS = {"directional": 0, "point": 1, "spot": 2, "head": 3, "ambient": 4}
 
 LIGHT = ("kind", "frame", "direction", "position", "cone_deg", "color", "intensity", "attenuation",
-         "enabled")
+         "enabled", "radius_deg")
 
 
 class Fragment(Strict):
-    """A named group of objects."""
+    """A named group of objects, and of elements of styles and layers of terrain."""
 
     def __init__(self, scene, name):
         self._scene = scene
@@ -45,8 +45,18 @@ class Fragment(Strict):
     def objects(self):
         return [self._scene._object(id) for id in self._info().object]
 
+    @property
+    def members(self):
+        """Elements of styles and layers of terrain in it, as texts: "contours of object 'gale'"."""
+        return list(self._info().member)
+
+    def to_actors(self, triangle_budget=200_000):
+        """vtkActors of its visible objects, which follow their frames: see Scene.to_vtk. SceneActors.actors is the
+        vtkActorCollection."""
+        return self._scene.to_actors(self._name, triangle_budget)
+
     def remove(self):
-        """Removes the fragment, which must be empty."""
+        """Removes the fragment, which must be empty: without objects and members."""
         self._scene._do("remove_fragment", name=self._name)
 
     def __repr__(self):
@@ -72,7 +82,8 @@ class Light(Strict):
         return self._name
 
     def set(self, **values):
-        """Changes any of kind, frame, direction, position, cone_deg, color, intensity, attenuation and enabled."""
+        """Changes any of kind, frame, direction, position, cone_deg, color, intensity, attenuation, enabled and
+        radius_deg."""
         command = self._scene._command()
         command.set_light.CopyFrom(self._info())
         put_light(self._scene, command.set_light, values)
@@ -113,6 +124,15 @@ class Light(Strict):
         self.set(color=color)
 
     @property
+    def radius_deg(self):
+        """Of a directional light: the angular radius of its disc, 0 (a point) to 90."""
+        return self._info().radius_deg
+
+    @radius_deg.setter
+    def radius_deg(self, radius_deg):
+        self.set(radius_deg=radius_deg)
+
+    @property
     def enabled(self):
         return not self._info().disabled
 
@@ -141,6 +161,7 @@ def put_light(scene, message, values):
             put_vector(getattr(message, key), values[key], key, about)
     if "color" in values:
         put_color(message.color, values["color"], "the colour", about)
-    put_given(message, about, cone_deg=values.get("cone_deg"), intensity=values.get("intensity"))
+    put_given(message, about, cone_deg=values.get("cone_deg"), intensity=values.get("intensity"),
+              radius_deg=values.get("radius_deg"))
     if "enabled" in values:
         message.disabled = not flag(values["enabled"], "enabled", about)

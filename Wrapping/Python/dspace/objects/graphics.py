@@ -2,12 +2,15 @@
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, file_path, flag, keywords, numbers, put, put_color, put_given, put_vector
+from dspace._core.fields import (array_of, file_path, flag, keywords, numbers, put, put_color, put_given, put_vector,
+                                 reject)
+from dspace._core.reflectance import put_reflectance, reflectance_of
 from dspace._core.strict import Strict
 from dspace.errors import Error, InvalidArgument
+from dspace.objects.shaders import put_shader, put_uniform, read_shader
 
 UP = {"z": 0, "y": 1, "x": 2, "-z": 3}
-MATERIAL = ("color", "opacity", "metallic", "roughness", "texture", "lit", "wireframe")
+MATERIAL = ("color", "opacity", "metallic", "roughness", "texture", "lit", "wireframe", "emissive", "reflectance")
 SETTINGS = ("frame", "name", "ornamental", "fragment", "position", "quaternion", "stretch",
             "visible", "pickable", "line_width", "point_size") + MATERIAL
 
@@ -15,11 +18,13 @@ SETTINGS = ("frame", "name", "ornamental", "fragment", "position", "quaternion",
 def put_material(message, values, about=None):
     """Writes the given ones of MATERIAL into a Material message."""
     for key, value in values.items():
-        if key == "color":
-            put_color(message.color, value, "the colour", about)
+        if key in ("color", "emissive"):
+            put_color(getattr(message, key), value, "the colour" if key == "color" else key, about)
         elif key == "texture":
             none = isinstance(value, str) and value == ""
             message.texture = "" if none else file_path(value, "texture", about)
+        elif key == "reflectance":
+            put_reflectance(message.reflectance, value, about)
         else:
             put(message, about, **{key: value})
 
@@ -62,13 +67,21 @@ def put_settings(scene, message, about=None, frame=None, name=None, ornamental=F
     return about
 
 
+def material_of(message):
+    """The properties that a Material message has, as a dict."""
+    found = {}
+    for key in MATERIAL:
+        if message.HasField(key):
+            value = getattr(message, key)
+            if key in ("color", "emissive"):
+                value = (value.r, value.g, value.b)
+            found[key] = reflectance_of(value) if key == "reflectance" else value
+    return found
+
+
 def _material_property(key, text):
     def get(self):
-        material = self._info().material
-        if not material.HasField(key):
-            return None
-        value = getattr(material, key)
-        return (value.r, value.g, value.b) if key == "color" else value
+        return material_of(self._info().material).get(key)
 
     def set(self, value):
         self.set_material(**{key: value})
@@ -143,6 +156,17 @@ class GraphicsObject(Strict):
     texture = _material_property("texture", "Path of an image; '' for no texture.")
     lit = _material_property("lit", "Whether lights shade it.")
     wireframe = _material_property("wireframe", "Whether only edges are drawn.")
+    emissive = _material_property("emissive", "sRGB light that the surface adds to what it reflects, as color.")
+    reflectance = _material_property("reflectance", """How it reflects light: a model's name, or a dict with "model" and its
+        parameters. Reads as a dict; None: metallic-roughness.
+
+        "metallic-roughness" (glTF 2.0), "lambert", "lommel-seeliger"; "lunar-lambert" (McEwen 1991) with lunar_weight,
+        0 to 1 (default: that of the Moon by the phase angle, McEwen 1996); "hapke" (Hapke 1993, 2012) with
+        single_scattering_albedo w (0 to 1, default 0.3), phase_asymmetry b (0 to 0.99, default 0.24) and
+        phase_partition c (-1 to 1, default 0.3; 1: all backwards) of two Henyey-Greenstein lobes, opposition_amplitude
+        B0 (0 to 100, default 1.8), opposition_width h (1e-6 to 100, default 0.07) and roughness_deg, the mean slope
+        theta bar (0 to 60, default 23.4). The colour is the normal albedo; with "hapke" it multiplies the model.
+        Documentation/Conventions.md states the formulas' normalisation.""")
 
     def set_material(self, **values):
         """Changes several material properties at once; None restores a property."""
@@ -157,6 +181,44 @@ class GraphicsObject(Strict):
                 if value is None:
                     change.material.ClearField(key)
         put_material(change.material, {k: v for k, v in values.items() if v is not None}, self._label)
+        self._scene._execute(command)
+
+    @property
+    def shader(self):
+        """Code in its surface shader; None: none. May be set.
+
+        A dict: "vertex" and "fragment" have replacements at the tags of VTK's shaders, either a dict of code by tag
+        ("//VTK::Color::Impl", "//VTK::Normal::Impl", "//VTK::PositionVC::Impl", ...) or a list of dicts with tag, code,
+        after (default False: before the shader's own code goes in) and first_only (default False). "uniforms" has
+        values by name: an int, a float, 2 to 4 numbers, a 3 x 3 or 4 x 4 matrix, or an array of one of them.
+        Documentation/VTK.md lists the tags and the variables. Code that the driver rejects raises
+        dspace.InvalidArgument with the driver's messages, and the object keeps its earlier code."""
+        info = self._info()
+        return read_shader(info.shader) if info.HasField("shader") else None
+
+    @shader.setter
+    def shader(self, shader):
+        self.set_shader(shader)
+
+    def set_shader(self, shader):
+        """Sets the code of a vtkShaderProperty (a copy of its replacements and uniforms, in the session's process), or
+        what the property `shader` accepts. None removes it."""
+        command = self._scene._command()
+        command.set_shader.object = self._id
+        put_shader(command.set_shader, shader, self._label, self._scene._client.local)
+        self._scene._execute(command)
+
+    def set_uniform(self, name, value):
+        """Sets one uniform of its shader, and adds it if there is none of this name."""
+        command = self._scene._command()
+        info = self._info()
+        command.set_shader.CopyFrom(info.shader)
+        command.set_shader.object = self._id
+        for index, each in enumerate(info.shader.uniform):
+            if each.name == name:
+                del command.set_shader.uniform[index]
+                break
+        put_uniform(command.set_shader.uniform.add(), name, value, self._label)
         self._scene._execute(command)
 
     @property
@@ -192,6 +254,42 @@ class GraphicsObject(Strict):
         """The least and greatest corner of its bounding box along its own axes [m], an array (2, 3)."""
         info = self._info()
         return np.array([[c.x, c.y, c.z] for c in (info.box_minimum, info.box_maximum)])
+
+    @property
+    def parts(self):
+        """The names of its parts, as in its file or in Scene.add_mesh, each once."""
+        return list(self._info().part)
+
+    def part(self, name):
+        """The Part of that name: `rover.part("solar_left").set(color="blue")`. Several parts may share one name."""
+        from dspace.objects.parts import part_of
+        return part_of(self, name)
+
+    def to_polydata(self, triangles=None):
+        """Returns its finest level as a vtkPolyData in its own axes [m]: points in double precision, normals, texture
+        coordinates, colors as the point scalars "Colors", and, if parts have names, their names as the cell array
+        "Part". Triangles that had no normals when it was made have computed ones.
+
+        Of a terrain: its ground, in the terrain's frame, in at most `triangles` triangles (200000). Those of a clipmap
+        are between the posts of the finest level that is within it, which are those of queries where that is level 0;
+        the coarsest level may exceed it. Holes stay. Waits for the data. Other objects ignore `triangles`."""
+        from dspace.objects.polydata import polydata_of
+        command = self._scene._command()
+        command.get_mesh.object = self._id
+        put_given(command.get_mesh, self._label, triangle_budget=triangles)
+        if triangles is not None and command.get_mesh.triangle_budget == 0:
+            reject(self._label, "triangles", triangles, "an integer from 1 on")
+        return polydata_of(self._scene._execute(command).mesh.mesh)
+
+    @property
+    def drawer(self):
+        """What draws it, for an object of Scene.add_prop ("vtk:CLASS") or Scene.add_drawn; "" for others."""
+        return self._info().drawer
+
+    @property
+    def left_out(self):
+        """Whether nothing of it is drawn, because this process lacks its drawer: in a playback or a viewer."""
+        return self._info().left_out
 
     def remove(self):
         self._scene._do("remove_object", object=self._id)

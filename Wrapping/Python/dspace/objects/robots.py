@@ -5,6 +5,7 @@ from dspace._core.fields import Named, flag, number, reject, text
 from dspace._core.strict import Strict
 from dspace.errors import WrongType
 from dspace.frames.poses import Pose
+from dspace.objects.placed import Placed
 
 TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
 
@@ -90,7 +91,7 @@ class Joints(Mapping):
         return f"<dspace.Joints {list(self._joints)}>"
 
 
-class Robot(Strict):
+class Robot(Placed):
     """A robot of a scene: a frame a link, moved by joints."""
 
     _own = ("joints",)
@@ -130,28 +131,16 @@ class Robot(Strict):
         return self._name
 
     @property
-    def scene(self):
-        return self._scene
-
-    @property
-    def frame(self):
-        """The base frame, by which the whole robot is placed."""
-        return self._scene._frame_of(self._base)
-
-    @property
-    def pose(self):
-        """The pose of the base frame in its parent; may be set."""
-        return self.frame.pose
-
-    @pose.setter
-    def pose(self, pose):
-        self.frame.pose = pose
-
-    @property
     def links(self):
         """The frame of each link, by name."""
         return Named("link", {name: self._scene._frame_of(link.frame)
                               for name, link in self._links.items()})
+
+    @property
+    def original_names(self):
+        """The name of each link in the file, by the name of its frame. They differ where the file's name has a slash or
+        another character that a path of frames cannot hold."""
+        return {name: link.original_name for name, link in self._links.items()}
 
     @property
     def objects(self):

@@ -17,6 +17,7 @@ from dspace.recording.assets import RecordedFiles
 from dspace.recording.file import RecordingFile, commands_of
 
 BUILDING = terrain_pb2.TerrainReply.BUILDING
+MOST_KEYS = 100_000
 AT_ONCE = 3600.0  # longest single sleep [s]; the operating system limits the argument
 SET_TIME = pb.Command.SET_TIME_FIELD_NUMBER
 
@@ -56,6 +57,7 @@ class Playback:
                 warn(f"{self.file.label}: commands are lost, and nothing is shown from "
                      + ", nor from ".join(str(gap) for gap in self.gaps))
             self.session = Session()
+            self._left_out = set()  # warnings that were given
             self._at = None  # the last command that the session has executed
             self.index = 0
             self._go(0)
@@ -176,6 +178,40 @@ class Playback:
             if on_step is not None and on_step(self) is False:
                 return
 
+    def export(self, path, start=None, end=None, step=None, scene="scene", **options):
+        """Writes a scene with the recorded motion of its frames into a binary glTF file (.glb); see Scene.export, which
+        takes `options`.
+
+        start and end [s]: of the animation, default: the first and the last step. step [s]: between key frames, at most
+        100,000 of them; default: every recorded step. Objects are those at `end`, where the playback then is. A frame
+        that comes later than `start` stands still until then; frames that move to another parent keep their last
+        one."""
+        label = self.file.label
+        start = min(self.times) if start is None else real(start, "start", label)
+        end = max(self.times) if end is None else real(end, "end", label)
+        if not start <= end < math.inf:
+            raise InvalidArgument(f"{label}: start is {start!r} s and end {end!r} s; accepted: start not after end", label)
+        times = sorted({time for time in self.times if start < time < end} | {start, end})
+        if step is not None:
+            step = real(step, "step", label)
+            if not step > 0 or (end - start) / step > MOST_KEYS:
+                raise InvalidArgument(f"{label}: step is {step!r} s; accepted: > 0, at most {MOST_KEYS} key frames", label)
+            times = [start + i * step for i in range(int((end - start) / step * (1 + 1e-12)) + 1)]
+            times += [end] if end - times[-1] > 1e-6 * step else []
+        rows = []  # the poses by frame id, at each time
+        for time_s in times:
+            self.seek(time_s)
+            shown = self.session.scenes[scene]
+            ids = [frame.id for frame in shown.frames.values()]
+            rows.append(dict(zip(ids, shown.poses(ids))))
+        poses, later = [], dict(rows[-1])
+        for row in reversed(rows):
+            later.update((id, pose) for id, pose in row.items() if id in later)
+            poses.append([later[id] for id in ids])
+        poses.reverse()
+        moving = {"times": times, "frames": ids, "poses": poses} if ids and len(times) > 1 else {}
+        shown.export(path, **moving, **options)
+
     def telemetry(self, name=None, scene=None):
         """Returns the dspace.playback.telemetry.Series of a channel over the complete recording, or a dict of all
         channels without a name. A Series unpacks into times and values. The file is read once.
@@ -260,8 +296,17 @@ class Playback:
         reply = to_reply(self.session.vtk.Replay(payload, self._files.vtk))
         if reply.HasField("error"):
             raise Corrupt(f"{self.file.label}: {what} is rejected: {reply.error.message}", self.file.label)
+        if reply.warning and command_of(payload).HasField("create_drawn"):
+            self._tell_left_out(reply.warning)
         if self._files.folder and b"/overviews" in payload:
             self._wait_for_overviews(command_of(payload))
+
+    def _tell_left_out(self, texts):
+        """Warns of objects whose drawers this process lacks, once each, however often the playback jumps."""
+        for each in texts:
+            if each not in self._left_out:
+                self._left_out.add(each)
+                warn(f"{self.file.label}: {each}")
 
     def _wait_for_overviews(self, opened):
         """Waits until the overviews of an unpacked raster are built again. The recorded pictures showed overviews."""

@@ -12,6 +12,7 @@ from dspace.errors import Closed, Corrupt, WrongThread
 from dspace.proto import recordings_pb2 as pb
 
 LAST = 2 ** 62  # more commands than any recording has
+_ARRAYS = "arrays"  # the state of an asset that is no file but the arrays of a mesh
 
 
 def path_of(path):
@@ -200,6 +201,14 @@ class RecordingFile:
     @property
     def assets(self):
         """The files that its commands need, by path."""
+        return [each for each in self._assets() if each.state != _ARRAYS]
+
+    @property
+    def arrays(self):
+        """The arrays of meshes, each once: Assets whose `sha256` is MeshData.digest in the commands."""
+        return [each for each in self._assets() if each.state == _ARRAYS]
+
+    def _assets(self):
         return [Asset(each.id, os.fsdecode(each.path), each.state.decode(errors="replace"), each.size, each.sha256,
                       each.packed) for each in self._ask("Assets").asset]
 

@@ -38,8 +38,11 @@ class Recording:
                                 "accepted: one recording at a time", "recording")
         self.path = path = new_file(path)
         every = checked_time(commit_every, path)
+        client.pipelines.update()
         self._raise(client.local().Record(path, every, flag(pack, "pack", "recording")))
         client.recording = self
+        for warning in filter(None, client.local().GetRecordingLeftOut().split("\n")):
+            warn(warning)
 
     def _raise(self, problem):
         if problem:
@@ -78,6 +81,12 @@ class Recording:
         """Writes the remaining commands and closes the file. A second call does nothing."""
         if self._last is not None or self._client.vtk is None:
             return
+        try:
+            self._client.pipelines.update()
+        finally:
+            self._end()
+
+    def _end(self):
         problem = self._client.local().StopRecording()
         self._last = {name: self._client.local().GetRecordingCount(name) for name in COUNTS}
         missing = self._client.local().GetRecordingMissing()

@@ -10,7 +10,7 @@ from dspace.frames.poses import Pose, to_pose
 from dspace.objects.graphics import GraphicsObject
 from dspace.proto import service_pb2
 
-KINDS = {kind: kind for kind in ("picked", "selection", "answer", "edited", "dragged")}
+KINDS = {kind: kind for kind in ("picked", "selection", "answer", "edited", "dragged", "input")}
 
 
 def _value(name, about):
@@ -49,7 +49,7 @@ class ViewerEvents:
     def on_event(self, callback, kind=None):
         """Registers `callback`, which process_events() calls with each ViewerEvent (dspace.proto.service_pb2).
 
-        kind: "picked", "selection", "answer", "edited" or "dragged"; None: all kinds. Callbacks stay until the
+        kind: "picked", "selection", "answer", "edited", "dragged" or "input" (a key or a click that moved no camera); None: all kinds. Callbacks stay until the
         session is closed. Raises dspace.WrongType or dspace.InvalidArgument."""
         if not callable(callback):
             reject("session", "the callback", callback, "a function of one ViewerEvent", WrongType)

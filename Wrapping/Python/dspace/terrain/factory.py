@@ -1,7 +1,9 @@
 """Opens the terrain of a scene."""
 from dspace._core.fields import (Named, array_of, file_path, flag, items, keywords, numbers, put, put_color, put_given,
                                  put_vector, reject, shown, word)
+from dspace._core.reflectance import put_reflectance
 from dspace.errors import InvalidArgument, WrongType
+from dspace.terrain.geodesy import Geodesy
 from dspace.terrain.terrain import MODES, Terrain
 
 
@@ -37,23 +39,31 @@ class TerrainFactory:
                     image_extent=None, band=None, crs=None, vertical_datum=None,
                     vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
                     on_body=False, level_size=None, byte_budget=None, deadline=None, patches=(),
-                    subdivisions=None, track_budget=None, cache=None, build_overviews=True, fill_holes=False):
+                    subdivisions=None, track_budget=None, cache=None, build_overviews=True, fill_holes=False,
+                    window=None, reflectance=None):
         """Opens a raster of heights (any format that GDAL reads) as a physical object. Returns the Terrain.
 
         Appearance: give at most one of image, color and relief. image: a file to drape over the terrain (on a clipmap
         the layer "drape" in full resolution, see add_image()); image_crs and image_extent (left, top, right, bottom in
         map coordinates) replace what the file lacks. color: one color. relief: shaded relief (the default), a dict of
-        sun_azimuth_deg, sun_elevation_deg, color_by_height. lit: whether the scene's lights also shade the terrain.
+        sun_azimuth_deg, sun_elevation_deg (both of triangles only; default: Scene.sun as it is now, if it is above the
+        horizon, else 315 and 45), color_by_height. lit: whether the scene's lights also shade the terrain.
+        reflectance: how the ground reflects their light, such as "lunar-lambert" (see GraphicsObject.reflectance;
+        default: Lambert's law).
 
         Geometry: origin: map x, y[, height] of the frame's origin (default: the raster's middle at height 0).
         triangles: the budget (200000). mode: "triangles" (completely in memory, within the budget), "clipmap" (any
         size; tiles are read as needed and triangles follow each camera) or "auto" (triangles for up to four million
         pixels on a plane). on_body: places the terrain on its body instead of on a plane, for degree grids of a
-        sphere; its frame is body-fixed (Z to the north pole, X to longitude 0, the center at the origin). level_size:
-        cells along a side of a clipmap level (124; 252 is finer and slower). byte_budget: bytes of tiles in memory
-        (256 MiB). deadline: seconds that images and queries wait for tiles (60). subdivisions: how many times a
-        clipmap on a plane halves the cells between pixels; wheel tracks (track()) need posts some centimetres apart.
-        track_budget: bytes for wheel tracks (64 MiB).
+        sphere or an ellipsoid (WGS 84); its frame is body-fixed (Z to the north pole, X to longitude 0, the center at
+        the origin). level_size: cells along a side of a clipmap level (124; 252 is finer and slower). byte_budget: bytes of tiles in memory
+        (256 MiB). deadline: seconds that images and queries wait for tiles (60). subdivisions: how many times the
+        cells between pixels are halved (0 to 12; on a body to 24, at least as often as its size asks); wheel tracks
+        (track()) need posts some centimetres apart. Triangles keep all posts in memory, 100 million at most; "auto"
+        chooses a clipmap. track_budget: bytes for wheel tracks (64 MiB).
+
+        window: opens only the pixels that meet this part of the map (left, top, right, bottom in map coordinates). It
+        is widened to whole pixels and cut at the raster's edge, with a warning; Terrain.map_extent is the result.
 
         Overviews: cache: the folder of averaged overviews that a clipmap reads if a raster has none (default: the
         user's cache folder, which `dspace terrain cache FILE` fills); False: do not read any. build_overviews: builds
@@ -100,6 +110,8 @@ class TerrainFactory:
             put_vector(message.map_origin, [*values, 0.0][:3], "the origin", label)
         message.fragment = self._scene._fragment_name(fragment)
         message.unlit = not flag(lit, "lit", label)
+        if reflectance is not None:
+            put_reflectance(message.reflectance, reflectance, label)
         message.mode = word(mode, {known: i for i, known in enumerate(MODES)}, "the mode", label)
         message.on_body = flag(on_body, "on_body", label)
         put_given(message, label, triangle_budget=triangles, band=band, crs=crs,
@@ -107,6 +119,8 @@ class TerrainFactory:
                   vertical_offset=vertical_offset, pixel_size=pixel_size,
                   level_size=level_size, byte_budget=byte_budget, deadline=deadline,
                   subdivisions=subdivisions, track_byte_budget=track_budget)
+        if window is not None:
+            message.window.extend(numbers(window, 4, "the window", label, "left, top, right, bottom"))
         if cache is not None:
             message.overview_cache = "" if cache is False else _folder(cache, label)
         if fill_holes is not False:
@@ -120,3 +134,8 @@ class TerrainFactory:
         """All terrains, by name."""
         return Named("terrain", {name: Terrain(self._scene, name)
                                  for name in self._scene._ask("list_terrains").terrains.name})
+
+    def geodesy(self, ellipsoid="WGS84"):
+        """Distances, grid references and geoid heights on an ellipsoid: a Geodesy. ellipsoid: "WGS84", or the equatorial
+        radius [m] and the flattening (0 to 0.5; 0: a sphere). terrain.geodesy is that of a terrain's CRS."""
+        return Geodesy(self._scene, ellipsoid)

@@ -1,14 +1,16 @@
-"""Color layers of terrain: images, false color, shapes and noise."""
+"""Layers of terrain: images, false color, shapes and noise, and normals."""
 from dspace._core.fields import color, file_path, flag, items, numbers, put, put_color, put_given, reject, shown
 from dspace._core.strict import Strict
 from dspace.errors import NotFound, WrongType
+from dspace.terrain.members import put_member
 
-KINDS = ("image", "false_color", "shapes", "noise", "filled")  # in the order of TerrainLayerReply.Kind
+KINDS = ("image", "false_color", "shapes", "noise", "filled", "normals")  # in the order of TerrainLayerReply.Kind
+AXES = ("map", "local")  # in the order of AddTerrainLayer.Normals.Axes
 _SHADE = "a colour, or red, green, blue and opacity from 0 to 1, or None"
 
 
 class TerrainLayer(Strict):
-    """One of a terrain's colour layers. Its opacity, visible and position may be set at any time."""
+    """One of a terrain's layers. Its opacity, visible and position may be set at any time."""
 
     def __init__(self, terrain, name):
         self._terrain = terrain
@@ -35,8 +37,13 @@ class TerrainLayer(Strict):
         return self._name
 
     @property
+    def terrain(self):
+        """The Terrain that it lies on."""
+        return self._terrain
+
+    @property
     def kind(self):
-        """"image", "false_color", "shapes", "noise" or "filled" (add_terrain's fill_holes)."""
+        """"image", "false_color", "shapes", "noise", "normals" or "filled" (add_terrain's fill_holes)."""
         return KINDS[self._info().kind]
 
     @property
@@ -46,7 +53,8 @@ class TerrainLayer(Strict):
 
     @property
     def opacity(self):
-        """The opacity, 0 to 1. Colors are blended with those below in linear light."""
+        """The opacity, 0 to 1. Colors are blended with those below in linear light, normals with those below as
+        vectors."""
         return self._info().opacity
 
     @opacity.setter
@@ -69,6 +77,21 @@ class TerrainLayer(Strict):
     @position.setter
     def position(self, position):
         self._set(position=position)
+
+    @property
+    def ornamental(self):
+        """Whether it is an ornament, which physical pictures leave out."""
+        return self._info().nature == 1
+
+    @property
+    def fragment(self):
+        """The name of the fragment with which it is shown and hidden. Set it to a Fragment of the layer's nature or to
+        a name."""
+        return self._info().fragment
+
+    @fragment.setter
+    def fragment(self, fragment):
+        self._set(fragment=self._scene._fragment_name(fragment, None))
 
     @property
     def pixel_size(self):
@@ -95,6 +118,11 @@ class TerrainLayer(Strict):
         info = self._info()
         return info.unit if KINDS[info.kind] == "false_color" else None
 
+    @property
+    def field(self):
+        """The name of the terrain's field that it shows; None: it shows a file of its own, or none."""
+        return self._info().field or None
+
     def remove(self):
         self._scene._do("remove_terrain_layer", terrain=self._terrain.name, name=self._name)
 
@@ -109,16 +137,17 @@ class TerrainLayer(Strict):
 
 
 class TerrainLayers:
-    """The color layers of a Terrain, which delegates to it. A clipmap has up to 64 layers. They lie over the terrain's
-    own color and under that of set_style(). A file is opened at once and read as pictures need it. A missing property
-    of a file gives a warning. Raises dspace.NotFound for an absent file, dspace.Corrupt for a damaged one,
-    dspace.Unsupported for one of another body or kind, and dspace.InvalidArgument for one that does not overlap the
-    terrain and for values out of range."""
+    """The layers of a Terrain, which delegates to it. A clipmap has up to 64 layers; a terrain of triangles has those
+    of normals alone. Colors lie over the terrain's own color and under that of set_style(); normals shade both. A file
+    is opened at once and read as pictures need it. A missing property of a file gives a warning. Raises
+    dspace.NotFound for an absent file, dspace.Corrupt for a damaged one, dspace.Unsupported for one of another body or
+    kind, and dspace.InvalidArgument for one that does not overlap the terrain and for values out of range."""
 
     def __init__(self, terrain):
         self._terrain, self._scene, self._name = terrain, terrain._scene, terrain.name
 
-    def add_image(self, path, name=None, crs=None, extent=None, opacity=1.0, visible=True, position=None):
+    def add_image(self, path, name=None, crs=None, extent=None, opacity=1.0, visible=True, position=None,
+                  fragment=None, ornamental=None):
         """Adds an image file of any size and in any CRS, and returns its TerrainLayer. Pixels without data, and the
         image's own transparency, show the layers below.
 
@@ -127,23 +156,36 @@ class TerrainLayers:
         without either is stretched over the terrain. opacity: 0 to 1. visible: whether it is drawn. position: index
         from the bottom, 0 (default: on top)."""
         label = self._terrain._label()
-        command = self._adding(label, name, opacity, visible, position)
+        command = self._adding(label, name, opacity, visible, position, fragment, ornamental)
         _put_raster(command.add_terrain_layer.image, label, path, crs, extent)
         return self._added(command)
 
-    def add_false_color(self, path, band=1, colors=None, low=None, high=None, name=None, crs=None,
-                        extent=None, opacity=1.0, visible=True, position=None):
+    def add_false_color(self, path=None, band=None, colors=None, low=None, high=None, name=None, crs=None,
+                        extent=None, opacity=1.0, visible=True, position=None, field=None,
+                        fragment=None, ornamental=None):
         """Adds the values of a raster as colors of a ramp, and returns the TerrainLayer. Pixels without data are
         transparent.
 
-        band: counted from 1. colors: evenly spaced, interpolated linearly (default: green through ochre to white).
+        field: the name of a field of the terrain (add_field()) to show, in place of path, band, crs and extent. band:
+        counted from 1 (default: the first). colors: evenly spaced, interpolated linearly (default: green through ochre
+        to white).
         low, high: values of the first and the last color, in the band's unit after the file's own scale and offset
         (default: the least and greatest value); values beyond have the end colors. A legend needs the layer's range,
         colors and unit. The other arguments are those of add_image()."""
         label = self._terrain._label()
-        command = self._adding(label, name, opacity, visible, position)
+        command = self._adding(label, name, opacity, visible, position, fragment, ornamental)
         message = command.add_terrain_layer.false_color
-        _put_raster(message, label, path, crs, extent)
+        if (path is None) == (field is None):
+            reject(label, "path, field", (path, field), "one of both")
+        if field is None:
+            _put_raster(message, label, path, crs, extent)
+        else:
+            given = {"crs": crs, "extent": extent, "band": band}
+            for what, value in given.items():
+                if value is not None:
+                    reject(label, what, value, f"None with field {field!r}, which has its own")
+            put(command.add_terrain_layer, label, field=field)
+            message.SetInParent()
         put_given(message, label, band=band, low=low, high=high)
         if band is not None and message.band == 0:
             reject(label, "band", band, "an integer from 1 on")
@@ -154,7 +196,8 @@ class TerrainLayers:
         return self._added(command)
 
     def add_shapes(self, path, line=(1, 1, 0), fill=(1, 1, 0, 0.25), width=None, pixels=2.0, point=6.0,
-                   layer=None, crs=None, name=None, opacity=1.0, visible=True, position=None):
+                   layer=None, crs=None, name=None, opacity=1.0, visible=True, position=None,
+                   fragment=None, ornamental=None):
         """Adds the polygons, lines and points of a file (GeoJSON, GeoPackage, Shapefile, ...), and returns the
         TerrainLayer.
 
@@ -166,7 +209,7 @@ class TerrainLayers:
         GeoJSON without one is in longitude and latitude of the terrain's body (WGS 84 for the Earth). The other
         arguments are those of add_image()."""
         label = self._terrain._label()
-        command = self._adding(label, name, opacity, visible, position)
+        command = self._adding(label, name, opacity, visible, position, fragment, ornamental)
         message = command.add_terrain_layer.shapes
         put(message, label, path=file_path(path, "the path", label))
         put_given(message, label, crs=crs, layer=layer, width=width, pixels=pixels, point=point)
@@ -177,7 +220,8 @@ class TerrainLayers:
         return self._added(command)
 
     def add_noise(self, wavelength=10.0, octaves=6, gain=0.5, seed=0, contrast=0.25, name=None,
-                  opacity=1.0, visible=True, position=None):
+                  opacity=1.0, visible=True, position=None,
+                  fragment=None, ornamental=None):
         """Adds gradient noise and returns its TerrainLayer. The noise adds visual structure finer than the data; it is
         not measured data.
 
@@ -186,16 +230,34 @@ class TerrainLayers:
         2**32 - 1; equal seeds give equal noise. contrast: the largest change of brightness, 0 to 1. The other
         arguments are those of add_image()."""
         label = self._terrain._label()
-        command = self._adding(label, name, opacity, visible, position)
+        command = self._adding(label, name, opacity, visible, position, fragment, ornamental)
         put(command.add_terrain_layer.noise, label, wavelength=wavelength, octaves=octaves, gain=gain,
             seed=seed, contrast=contrast)
         return self._added(command)
 
+    def add_normals(self, path, axes="map", name=None, crs=None, extent=None, opacity=1.0, visible=True, position=None,
+                    fragment=None, ornamental=None):
+        """Adds a raster of normals and returns its TerrainLayer. Light falls on these normals in place of those of the
+        terrain's heights, in pictures of lit terrain. They change no color, depth, label, or query.
+        Pixels without data show the normals below.
+
+        path: three bands of one type: x, y and z (up) of unit vectors. 8 or 16 bits are coded, n = 2 v / 255 - 1 or
+        2 v / 65535 - 1; other types, or with a scale or offset of the file's own, are values from -1 to 1. Lengths from
+        0.5 to 1.1 are made 1; z is 0 or more, to 0.01. axes: which way x and y run: "map", along x and y of the
+        raster's own CRS, or "local", east and north. Vectors are turned where the terrain's axes differ. opacity: 0 to
+        1; 0.5 is the middle of the two normals. The other arguments are those of add_image()."""
+        label = self._terrain._label()
+        command = self._adding(label, name, opacity, visible, position, fragment, ornamental)
+        message = command.add_terrain_layer.normals
+        _put_raster(message, label, path, crs, extent)
+        if axes not in AXES:
+            reject(label, "axes", axes, '"map" or "local"')
+        put(message, label, axes=AXES.index(axes))
+        return self._added(command)
+
     @property
     def layers(self):
-        """The color layers, bottom first. "drape" is the layer of add_terrain's `image`."""
-        if self._terrain.mode != "clipmap":
-            return []
+        """The layers, bottom first. "drape" is the layer of add_terrain's `image`."""
         return [TerrainLayer(self._terrain, layer.name) for layer in self.info().layer]
 
     def layer(self, name):
@@ -210,7 +272,7 @@ class TerrainLayers:
 
     @property
     def layer_tiles(self):
-        """Counters of the color layers' tiles, a dict: bytes (in memory), kept_bytes (of JPEG, PNG and other files that
+        """Counters of the layers' tiles, a dict: bytes (in memory), kept_bytes (of JPEG, PNG and other files that
         must be decoded completely), reads (of one tile of one layer), compositions (tiles combined from all layers),
         failures, last_failure (a message, or "")."""
         info = self.info()
@@ -222,11 +284,12 @@ class TerrainLayers:
         """Returns the TerrainLayersReply."""
         return self._scene._ask("list_terrain_layers", terrain=self._name).terrain_layers
 
-    def _adding(self, label, name, opacity, visible, position):
+    def _adding(self, label, name, opacity, visible, position, fragment, ornamental):
         command = self._scene._command()
         message = command.add_terrain_layer
         put(message, label, terrain=self._name, opacity=opacity, hidden=not flag(visible, "visible", label))
         put_given(message, label, name=name, position=position)
+        put_member(message, self._scene, {}, {"fragment": fragment, "ornamental": ornamental}, label)
         if name == "":
             reject(label, "the name of a layer", name, "a str that is not empty, or None")
         return command

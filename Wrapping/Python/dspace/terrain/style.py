@@ -1,5 +1,6 @@
 """The style of a clipmap: false color, lines, details and noise over its own color."""
 from dspace._core.fields import file_path, flag, items, keywords, numbers, put, put_color, put_given, reject, word
+from dspace.terrain.members import MEMBER, put_member
 from dspace.errors import InvalidArgument, WrongType
 
 COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.Ramp.By
@@ -12,7 +13,8 @@ class TerrainStyle:
         self._terrain, self._scene, self._name = terrain, terrain._scene, terrain.name
 
     def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
-                  contours=None, grid=None, details=(), tracks=None, noise=None, grid_labels=False):
+                  contours=None, grid=None, details=(), tracks=None, noise=None, grid_labels=False,
+                  fragment=None, ornamental=None, viewport=None):
         """Sets what is drawn over a clipmap's own color. Each call replaces the previous style; set_style() removes it.
 
         color_by: "height", "slope" (degrees from level), "aspect" (azimuth of steepest descent in degrees clockwise
@@ -20,7 +22,7 @@ class TerrainStyle:
         local east, north, up). range: (low, high) of the ramp (default: the terrain's heights, 0 to 45, 0 to 360).
         colors: of the ramp, evenly spaced (default: green through ochre to white; a ramp for the aspect is circular and
         should end with its first color). opacity: of the ramp, 0 to 1. levels: opacity of a color for each clipmap
-        level.
+        level, or a dict of opacity.
 
         contours: metres of height between lines, or a dict of interval, width (pixels), color, opacity. grid: the same
         for lines along the map's axes, in map units; on a body meridians and parallels, in degrees. grid_labels: their
@@ -35,14 +37,31 @@ class TerrainStyle:
         leaves the data's posts unchanged), amplitude (the largest change in metres), octaves of halved wavelength (4),
         gain of each octave relative to the one before (0.5), seed (0). Pictures, depth images, contours and ramps
         include the noise. Queries such as height(), analyses, ruts and robots do not, so do not use it where you
-        measure in pictures."""
+        measure in pictures.
+
+        fragment: the Fragment with which the ramp, levels, contours and grid are shown and hidden (default:
+        "ornamental"). ornamental: whether they are ornaments, which physical pictures leave out (default: True). The
+        dicts of levels, contours, grid, tracks and details may have a `fragment` and `ornamental` of their own; tracks
+        and details are physical unless theirs say otherwise. A grid's labels are ornaments and shown with the grid.
+
+        viewport: a Viewport or its name. The style is then drawn in that viewport instead of the terrain's own, except
+        for details and noise, which are the same in all viewports. set_style(viewport=view) shows the terrain there
+        without a style; remove_style(view) shows the terrain's own style there again."""
         label = self._terrain._label()
         command = self._scene._command()
-        style = command.style_terrain
-        put(style, label, terrain=self._name)
+        if viewport is None:
+            style = command.style_terrain
+            put(style, label, terrain=self._name)
+        else:
+            message = command.style_terrain_in_viewport
+            put(message, label, terrain=self._name, viewport=self._scene._viewport_name(viewport, label))
+            style = message.style
+            style.SetInParent()
+        common = {"fragment": fragment, "ornamental": ornamental}
         if color_by is not None:
             style.ramp.by = word(color_by, COLOR_BY, "color_by", label)
             put(style.ramp, label, opacity=opacity)
+            put_member(style.ramp.member, self._scene, {}, common, f"{label}, color_by")
             if range is not None:
                 low, high = numbers(range, 2, "the range", label, "low, high")
                 put(style.ramp, label, low=low, high=high)
@@ -52,38 +71,58 @@ class TerrainStyle:
             raise InvalidArgument(f"{label}: a range and colours need color_by, which is not given; "
                                   f"accepted: color_by {', '.join(map(repr, COLOR_BY))}", label)
         for detail in items(details, "details", label, "a list of dicts"):
-            _put_detail(style.detail.add(), detail, f"{label}, a detail")
+            _put_detail(style.detail.add(), detail, self._scene, f"{label}, a detail")
         if tracks is not None:
             look = tracks if isinstance(tracks, dict) else {"color": tracks, "opacity": 1.0}
-            keywords(look, ("color", "opacity"), f"{label}, tracks")
+            keywords(look, ("color", "opacity", *MEMBER), f"{label}, tracks")
             put_color(style.tracks.color, look.get("color", (0, 0, 0)), "the colour of its tracks", label)
             put(style.tracks, f"{label}, tracks", opacity=look.get("opacity", 0.35))
-        put_given(style, label, levels=levels)
-        _put_lines(style.contours, contours, "contours", label)
-        _put_lines(style.grid, grid, "grid", label)
+            put_member(style.tracks.member, self._scene, look, {}, f"{label}, tracks")
+        if levels is not None:
+            look = levels if isinstance(levels, dict) else {"opacity": levels}
+            keywords(look, ("opacity", *MEMBER), f"{label}, levels")
+            put(style, f"{label}, levels", levels=look.get("opacity", 1.0))
+            put_member(style.levels_member, self._scene, look, common, f"{label}, levels")
+        for what, lines in (("contours", contours), ("grid", grid)):
+            _put_lines(getattr(style, what), lines, what, self._scene, common, label)
         _put_grid_labels(style.grid_labels, grid_labels, label)
         if noise is not None:
             _put_noise(style.noise, noise, f"{label}, noise")
         self._scene._execute(command)
 
+    def remove_style(self, viewport):
+        """Shows the terrain's own style in the viewport again. Does nothing if the viewport has no style of its own."""
+        label = self._terrain._label()
+        command = self._scene._command()
+        put(command.style_terrain_in_viewport, label, terrain=self._name,
+            viewport=self._scene._viewport_name(viewport, label))
+        self._scene._execute(command)
+
     @property
     def style(self):
-        """The false color of a clipmap as it is drawn: a dict of color_by, range (None for "normal"), colors (r, g, b)
-        and opacity; {} without false color."""
-        reply = self._scene._ask("describe_terrain_style", terrain=self._name).terrain_style
+        """The false color of a clipmap as it is drawn: a dict of color_by, range (None for "normal"), colors (r, g, b),
+        opacity, fragment (a name) and ornamental; {} without false color."""
+        return self.style_in(None)
+
+    def style_in(self, viewport):
+        """The false color in one viewport: a dict as `style`. The terrain's own, if the viewport has no style."""
+        name = "" if viewport is None else self._scene._viewport_name(viewport, self._terrain._label())
+        reply = self._scene._ask("describe_terrain_style", terrain=self._name, viewport=name).terrain_style
         if not reply.HasField("ramp"):
             return {}
         ramp = reply.ramp
         return {"color_by": list(COLOR_BY)[ramp.by],
                 "range": (ramp.low, ramp.high) if ramp.HasField("low") else None,
-                "colors": [(color.r, color.g, color.b) for color in ramp.color], "opacity": ramp.opacity}
+                "colors": [(color.r, color.g, color.b) for color in ramp.color], "opacity": ramp.opacity,
+                "fragment": ramp.member.fragment, "ornamental": ramp.member.nature == 1}
 
 
-def _put_detail(message, detail, label):
+def _put_detail(message, detail, scene, label):
     """Writes a dict into a Detail."""
     if not isinstance(detail, dict):
         reject(label, "it", detail, "a dict of image, size, slope, height, opacity", WrongType)
-    keywords(detail, ("image", "size", "slope", "height", "opacity"), label)
+    keywords(detail, ("image", "size", "slope", "height", "opacity", *MEMBER), label)
+    put_member(message.member, scene, detail, {}, label)
     for needed in ("image", "size"):
         if needed not in detail:
             reject(label, "it", detail, f"a dict with {needed!r}", WrongType)
@@ -107,12 +146,13 @@ def _put_noise(message, noise, label):
     put(message, label, **{"octaves": 4, "gain": 0.5, "seed": 0, **noise})
 
 
-def _put_lines(message, lines, what, label):
+def _put_lines(message, lines, what, scene, common, label):
     """Writes a number or a dict into Lines. Does nothing for None."""
     if lines is None:
         return
     lines = lines if isinstance(lines, dict) else {"interval": lines}
-    keywords(lines, ("interval", "width", "color", "opacity"), f"{label}, {what}")
+    keywords(lines, ("interval", "width", "color", "opacity", *MEMBER), f"{label}, {what}")
+    put_member(message.member, scene, lines, common, f"{label}, {what}")
     if "interval" not in lines:
         reject(label, what, lines, "an interval, or a dict with one", WrongType)
     put(message, f"{label}, {what}", interval=lines["interval"], width=lines.get("width", 1.0),

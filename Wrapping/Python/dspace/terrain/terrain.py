@@ -3,9 +3,12 @@ import numpy as np
 
 from dspace._core import wire
 from dspace._core.delegates import delegate
-from dspace._core.fields import array_of, flag, put, put_given
+from dspace._core.fields import array_of, flag, put, put_given, text
 from dspace._core.strict import Strict
 from dspace.errors import InvalidArgument
+from dspace.terrain.coordinates import coordinates_of
+from dspace.terrain.fields import TerrainFields
+from dspace.terrain.geodesy import Geodesy
 from dspace.terrain.layers import TerrainLayers
 from dspace.terrain.style import TerrainStyle
 from dspace.terrain.tracks import TerrainTracks
@@ -25,6 +28,7 @@ class Terrain(Strict):
         self._scene = scene
         self._name = name
         self._undisturbed = undisturbed  # queries leave wheel tracks out
+        self._stands_on_body = None  # not asked yet
 
     def _info(self):
         return self._scene._ask("describe_terrain", terrain=self._name).terrain
@@ -132,17 +136,34 @@ class Terrain(Strict):
         """The same terrain without wheel tracks: its height(), normal(), ... ignore ruts."""
         return type(self)(self._scene, self._name, undisturbed=True)
 
+    @property
+    def map_extent(self):
+        """(left, top, right, bottom): map x, y of the outer corners of its pixels."""
+        return tuple(self._info().map_extent)
+
+    @property
+    def overlap_columns(self):
+        """On its body, if its columns go once around: by how many columns the ends of the file overlap; negative: a
+        gap. The columns are stretched so that they go around exactly. Otherwise 0."""
+        return self._info().overlap_columns
+
     # --- Layers, style and tracks --------------------------------------------------------------
 
     add_image = delegate(TerrainLayers, "add_image")
     add_false_color = delegate(TerrainLayers, "add_false_color")
     add_shapes = delegate(TerrainLayers, "add_shapes")
     add_noise = delegate(TerrainLayers, "add_noise")
+    add_normals = delegate(TerrainLayers, "add_normals")
     layers = delegate(TerrainLayers, "layers")
     layer = delegate(TerrainLayers, "layer")
     layer_tiles = delegate(TerrainLayers, "layer_tiles")
+    add_field = delegate(TerrainFields, "add_field")
+    fields = delegate(TerrainFields, "fields")
+    value = delegate(TerrainFields, "value")
     set_style = delegate(TerrainStyle, "set_style")
+    remove_style = delegate(TerrainStyle, "remove_style")
     style = delegate(TerrainStyle, "style")
+    style_in = delegate(TerrainStyle, "style_in")
     track = delegate(TerrainTracks, "track")
     clear_tracks = delegate(TerrainTracks, "clear_tracks")
     save_tracks = delegate(TerrainTracks, "save_tracks")
@@ -170,7 +191,10 @@ class Terrain(Strict):
         message.terrain = self._name
         message.map = flag(map, "map", self._label)
         message.undisturbed = self._undisturbed
-        put(message, self._label, **{what: asked})
+        if what == "field":
+            message.field.extend(text(name, "the field", self._label) for name in asked)
+        else:
+            put(message, self._label, **{what: asked})
         message.spatial = z is not None
         wire.put_array(message, "point", np.stack(given, axis=-1))
         return given[0].shape, self._scene._execute(command).terrain_values
@@ -255,11 +279,34 @@ class Terrain(Strict):
         wire.put_array(message, "ray", np.concatenate(given, axis=-1))
         return _unpack(self._scene._execute(command).terrain_rays, "distance", given[0].shape[:-1])
 
-    def _convert(self, points, to_map):
+    def _xyz(self, points):
         points = array_of(points, "the points", "an array (..., 3)", self._label)
         if points.shape[-1:] != (3,):
             raise InvalidArgument(f"{self._label()}: the points have shape {points.shape}; accepted: "
                                   "(..., 3)", self._label())
+        return points
+
+    def locate(self, points, map=False):
+        """Returns the Coordinates of points (..., 3) in the terrain's frame, or with map=True of map x, y and height
+        above the datum: longitude, latitude and height on the CRS's ellipsoid, body-fixed, map and root coordinates.
+
+        Longitude and latitude are those of the CRS's own geographic base. Heights above a geoid or an areoid are taken
+        as heights above the ellipsoid."""
+        points = self._xyz(points)
+        command = self._scene._command()
+        command.locate_terrain.terrain = self._name
+        command.locate_terrain.map = flag(map, "map", self._label)
+        wire.put_array(command.locate_terrain, "point", points)
+        return coordinates_of(self._scene._execute(command).coordinates.point, points.shape[:-1])
+
+    @property
+    def geodesy(self):
+        """Distances, grid references and geoid heights on the ellipsoid of its CRS: a Geodesy. It takes longitudes and
+        latitudes: those of locate(). Its methods raise dspace.Unsupported where the CRS has no ellipsoid."""
+        return Geodesy(self._scene, terrain=self._name)
+
+    def _convert(self, points, to_map):
+        points = self._xyz(points)
         command = self._scene._command()
         command.convert_terrain.terrain = self._name
         command.convert_terrain.to_map = to_map
@@ -292,8 +339,9 @@ class Terrain(Strict):
     def __repr__(self):
         try:
             info = self._info()
+            fields = ", ".join(map(repr, self.fields))
             return (f"<dspace.Terrain {self._name!r}, {info.columns} x {info.rows} posts, "
-                    f"{info.minimum_height:g} to {info.maximum_height:g} m>")
+                    f"{info.minimum_height:g} to {info.maximum_height:g} m" + (f", fields {fields}>" if fields else ">"))
         except Exception:  # a repr never raises
             return f"<dspace.Terrain {self._name!r}, removed>"
 

@@ -3,8 +3,8 @@ import vtkmodules.vtkCommonCore  # noqa: F401 - the classes that ours derive fro
 import vtkmodules.vtkCommonTransforms  # noqa: F401
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 
-# All messages before the compiled part, which has the same ones: protobuf would find those that are imported later
-# there, with other classes for the messages in them.
+# The messages are imported before the compiled part, which contains the same messages. Protobuf would give a module
+# that is imported later other classes for them.
 from dspace.proto import recordings_pb2, service_pb2  # noqa: F401
 
 from .vtkDspaceCore import *  # noqa: F401,F403
