@@ -2,7 +2,7 @@
 import numpy as np
 
 from dspace._core.files import atomic_write
-from dspace.movies.draw import png
+from dspace._core.png import png
 
 
 def save_image(path, picture):

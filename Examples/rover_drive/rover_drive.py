@@ -19,6 +19,7 @@ from dspace.rover import Path, load_vehicle
 from dspace.links.serving import ServerProcess
 
 from movie import save_image, tile
+from shipped_field import add_field, floor_of_ruts, roll
 from vehicle import Ground, PlacedVehicle
 from views import Views
 
@@ -91,9 +92,19 @@ def open_session(options):
         yield session
 
 
+def of_shipped_field(options):
+    return options.terrain.resolve() == (DATA / "field" / "field.tif").resolve()
+
+
+def in_detail(options):
+    """Whether the drive is on the shipped field with its detail, in which wheels leave ruts."""
+    given = (options.image, options.vertical_scale, options.pixel_size)
+    return of_shipped_field(options) and options.mode == "clipmap" and all(value is None for value in given)
+
+
 def route(options, terrain, length):
     """Way points: the shipped route on the shipped field, else an S about the terrain's middle."""
-    if options.terrain.resolve() == (DATA / "field" / "field.tif").resolve():
+    if of_shipped_field(options):
         import json
         with open(DATA / "field" / "route.json") as file:
             return np.array(json.load(file)["way_points_m"], float)
@@ -134,14 +145,16 @@ def main():
         route_line = np.column_stack(way.sample(np.linspace(0, way.length, 400))[:2])
         terrain.focus(route_line[::8], radius=1.5 * length)
         ground = Ground(terrain)
-        states = description.vehicle.drive(way, times, ground)
+        ruts = in_detail(options) and description.wheeled
+        below = floor_of_ruts(terrain, route_line, reach=2.0 * length) if ruts else ground
+        states = description.vehicle.drive(way, times, below)
         placed = PlacedVehicle(scene, description)
         placed.move(states[0], pan_deg=0.0)
-        views = Views(scene, placed, terrain, options.size, way_points[-1], route_line, ground)
+        views = Views(scene, placed, terrain, options.size, way_points[-1], route_line, ground, in_detail(options))
         print(f"dspace demo: {description.vehicle!r} on {terrain!r}; "
               f"set up in {time.perf_counter() - began:.1f} s", flush=True)
 
-        worst = max(state.residual for state in states)
+        worst = 0.0
         with Encoder(options.out / "demo.mp4", options.size, STEPS_PER_SECOND / STEPS_PER_FRAME,
                      quick=True) as movie:
             sheet = []
@@ -151,8 +164,11 @@ def main():
                 scene.time = state.time
                 placed.move(state, pan_deg=40.0 * np.sin(2 * np.pi * state.time / 8.0))
                 views.update(state)
+                if ruts:
+                    roll(terrain, description.vehicle, [state])
                 if step % STEPS_PER_FRAME:
                     continue
+                worst = max(worst, off_ground(state, ground))
                 pictures = views.pictures()
                 movie.add(tile(pictures))
                 frame = step // STEPS_PER_FRAME
@@ -169,13 +185,23 @@ def main():
         report(options, session, terrain, description, views, way, states, frames, drawn, worst)
 
 
+def off_ground(state, ground):
+    """[m] by which the lowest point of a wheel misses the ground that is drawn, ruts included."""
+    if not state.contacts:
+        return 0.0
+    contacts = np.array(list(state.contacts.values()))
+    return float(np.abs(contacts[:, 2] - ground.heights(contacts[:, :2])).max())
+
+
 def add_terrain(scene, options):
+    if in_detail(options):
+        return add_field(scene, DATA / "field")
     settings = {"mode": options.mode}
     if options.mode == "triangles":
         settings["triangles"] = 60000  # a software renderer draws them twenty times a second
     if options.image:
         settings["image"] = options.image
-    elif options.terrain.resolve() == (DATA / "field" / "field.tif").resolve():
+    elif of_shipped_field(options):
         settings["image"] = DATA / "field" / "field_color.tif"
     elif options.mode == "clipmap":
         settings["color"] = (0.58, 0.54, 0.49)  # lit by the scene's sun; triangles show shaded relief

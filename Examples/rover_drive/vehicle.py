@@ -90,7 +90,7 @@ class PlacedVehicle:
         if described.robot is not None:
             joints = dict(state.joints)
             if described.wheeled:
-                joints.update(self.vehicle.look(pan_deg, 18.0))
+                joints.update(self.vehicle.look(pan_deg, 14.0))
             described.robot.set_joints(joints, clamp=True)
 
     def _on_ground(self, state):

@@ -3,25 +3,28 @@ import numpy as np
 
 from dspace import Pose
 
+from shipped_field import LIGHT, SUN
+
 SKY = (0.03, 0.035, 0.05)
 HAZE = (0.16, 0.15, 0.14)
+BLACK = (0.0, 0.0, 0.0)  # without air
 
 
 class Views:
     """Chase; mast camera (physical objects only); overhead map; free view with read-outs."""
 
-    def __init__(self, scene, placed, terrain, size, goal, route, ground):
+    def __init__(self, scene, placed, terrain, size, goal, route, ground, in_detail):
         self.scene = scene
         self.placed = placed
         self.terrain = terrain
         self.ground = ground
         length = placed.length
         half = (size[0] // 2, size[1] // 2)
-        scene.lights["sun"].set(direction=(0.75, 0.45, -0.5), intensity=1.5)
-        scene.lights["sky"].set(intensity=0.12)
+        towards, sun, fill = (SUN, *LIGHT) if in_detail else ((-0.75, -0.45, 0.5), 1.5, 0.08)
+        scene.sun.set(direction=towards, irradiance=sun * 1361)
 
-        chase = scene.add_camera("chase", frame=placed.frame, fov_deg=42, near=0.02 * length, chase=dict(
-            offset=(-2.1 * length, -1.2 * length, 1.1 * length), target=(0.3 * length, 0, 0.2 * length),
+        chase = scene.add_camera("chase", frame=placed.frame, fov_deg=38, near=0.02 * length, chase=dict(
+            offset=(-1.6 * length, -0.95 * length, 0.68 * length), target=(0.2 * length, -0.05 * length, 0.15 * length),
             axes="heading", smoothing_s=0.5))
         mast = self._mast_camera(scene, placed)
         x, y = route.min(axis=0), route.max(axis=0)
@@ -32,14 +35,16 @@ class Views:
         overhead = scene.add_camera("overhead", eye=(*middle, top), target=(*middle, top - 1),
                                     up=(0, 1, 0), height=float(span), near=1.0, far=100.0 * length)
         free = scene.add_camera("free", frame=placed.frame, fov_deg=40, near=0.02 * length, chase=dict(
-            offset=(1.6 * length, -4.2 * length, 2.4 * length), target=(0, 0, 0.5 * length),
+            offset=(1.2 * length, -2.7 * length, 1.2 * length), target=(0, 0, 0.35 * length),
             axes="parent", smoothing_s=1.0))
 
         self.views = {name: scene.add_viewport(size=half, camera=camera, name=name, samples=1)
                       for name, camera in (("chase", chase), ("mast", mast), ("overhead", overhead),
                                            ("free", free))}
         for view in self.views.values():
-            view.set_background(HAZE, top=SKY)
+            view.set_background(*((BLACK,) if in_detail else (HAZE, SKY)))
+            view.fill = fill
+            view.shadows = True
         self.views["mast"].ornaments = False
         self.views["chase"].hide(self._helpers(scene, placed, goal, route, ground))
         self.views["free"].corner_axes = True
@@ -66,25 +71,25 @@ class Views:
         helpers = scene.add_fragment("helpers", ornamental=True)
         length = placed.length
         z = lambda xy: ground.heights(np.atleast_2d(xy))
-        scene.add_axes(0.8 * length, frame=placed.frame, name="vehicle axes", fragment=helpers,
-                       position=(0, 0, 0.9 * length))
+        scene.add_axes(0.4 * length, frame=placed.frame, name="vehicle axes", fragment=helpers,
+                       position=(0, 0, 0.75 * length))
         goal_frame = scene.add_frame("goal", position=(*goal, float(z(goal)[0])))
         scene.add_goal(1.2 * length, frame=goal_frame, name="goal", fragment=helpers)
-        self.tilt = scene.add_tilt_marker(0.35 * length, warn_deg=8, limit_deg=20, frame=placed.frame,
-                                          name="tilt", fragment=helpers, position=(0, 0, 1.1 * length))
-        scene.add_lines(np.column_stack((route, z(route) + 0.04 * length)), name="planned route",
+        self.tilt = scene.add_tilt_marker(0.25 * length, warn_deg=8, limit_deg=20, frame=placed.frame,
+                                          name="tilt", fragment=helpers, position=(0, 0, 0.85 * length))
+        scene.add_lines(np.column_stack((route, z(route) + 0.1 * length)), name="planned route",
                         color=(0.35, 0.75, 1.0), line_width=1.5, fragment=helpers)
         self.trail = scene.add_trail(capacity=5000, minimum_spacing=0.02 * length, name="trail",
                                      color=(1.0, 0.75, 0.1), line_width=2.5, fragment=helpers)
         scene.add_label("rover", frame=placed.frame, name="label", fragment=helpers, font_size=14,
-                        position=(0, 0, 1.5 * length))
+                        position=(0, 0, 1.25 * length))
         return helpers
 
     def update(self, state):
         length = self.placed.length
         on_ground = (np.mean(list(state.contacts.values()), axis=0) if state.contacts
                      else np.asarray(state.position))
-        self.trail.append([on_ground + (0, 0, 0.05 * length)])
+        self.trail.append([on_ground + (0, 0, 0.12 * length)])
         self.tilt.set(state.tilt_deg)
         rows = [("time", f"{state.time:7.2f} s"),
                 ("x, y", f"{on_ground[0]:8.2f} {on_ground[1]:8.2f} m"),

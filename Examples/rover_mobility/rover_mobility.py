@@ -23,6 +23,7 @@ from model import RoverModel  # noqa: E402
 from skeleton import build  # noqa: E402
 
 STEP = 1e-3  # s
+PRINT = 50  # steps from one contact of the tracks to the next: 2 cm at full speed
 POSTS, SPACING = 241, 0.1  # of the ground that is drawn, about the start [m]
 
 
@@ -41,9 +42,10 @@ class Simulation:
         self.scene = session.scene()
         self.frames = build(self.scene, self.model)
         self.terrain = self._terrain(folder)
-        self.scene.lights["sun"].set(direction=(0.75, 0.45, -0.5), intensity=1.5)
+        self.scene.sun.set(direction=(-0.75, -0.45, 0.5), irradiance=1.5 * 1361)
         self.steps = 0
         self.send()
+        self.print()
 
     def _terrain(self, folder):
         """The ground as a raster: its heights at posts, straight between."""
@@ -60,7 +62,14 @@ class Simulation:
             path.write_text(text)
         return self.scene.add_terrain(path, name="ground", mode="clipmap", vertical_datum="relative",
                                       crs='LOCAL_CS["ground",UNIT["metre",1]]', vertical_scale=1.0,
-                                      color=(0.62, 0.48, 0.38))
+                                      color=(0.62, 0.48, 0.38), subdivisions=3)
+
+    def print(self):
+        """The wheels leave their tread and a rim on the ground; the floor of a track is where a wheel rolls."""
+        names = [self.model.bodies[k].name for k in self.model.wheels]
+        self.terrain.track({name: contact[:2] for name, contact in zip(names, self.mobility.contacts)},
+                           width=self.model.wheel_width, rim_width=0.04, rim_height=0.012, tread_pitch=0.08,
+                           tread_depth=0.008)
 
     def send(self):
         """The whole rover's poses: one message."""
@@ -71,6 +80,8 @@ class Simulation:
         self.mobility.step(STEP, *command(self.mobility.time))
         self.steps += 1
         self.send()
+        if self.steps % PRINT == 0:
+            self.print()
 
     def advance(self, at):
         """Steps until a time [s], to a millisecond."""
