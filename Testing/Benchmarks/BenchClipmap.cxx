@@ -21,7 +21,7 @@
 #include <gdal_priv.h>
 #include <unistd.h>
 
-#include <dspace/clipmap/gl/ClipmapDrawer.h>
+#include <dspace/clipmap/gl/ClipmapDrawing.h>
 
 #include "Alternate.h"
 #include "BenchGround.h"

@@ -187,7 +187,7 @@ void Drive(const std::string& folder, pid_t servers) {
   const std::size_t bytes = MakeStep(1).ByteSizeLong();
   std::vector<double> linkCpu; // microseconds a step, of each turn
   std::vector<double> rawCpu;
-  // Both make their message anew each step, from the simulation's numbers.
+  // Both make a new message each step, from the simulation's numbers.
   const auto turns = bench::Alternate(
       Pairs,
       [&] {

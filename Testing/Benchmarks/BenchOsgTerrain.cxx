@@ -13,7 +13,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include <dspace/clipmap/gl/ClipmapDrawer.h>
+#include <dspace/clipmap/gl/ClipmapDrawing.h>
 
 #include "Alternate.h"
 #include "BenchGround.h"

@@ -112,7 +112,7 @@ void ScatteredHeights(const StreamedTerrain& group, const StreamedTerrain& plain
   const bench::Turns turns = bench::Alternate(
       5, [&] { ask(group); }, [&] { ask(plain); });
   char behind[160];
-  std::snprintf(behind, sizeof behind, "%.3g a second against %.3g; goal <= 10",
+  std::snprintf(behind, sizeof behind, "%.3g a second against %.3g; goal <= 4",
                 Count / bench::Median(turns.subject), Count / bench::Median(turns.reference));
   bench::Print("scattered heights in a coarse patch against the plain raster", turns, Count,
                behind);

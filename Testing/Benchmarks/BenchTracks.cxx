@@ -15,7 +15,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
-#include <dspace/clipmap/gl/ClipmapDrawer.h>
+#include <dspace/clipmap/gl/ClipmapDrawing.h>
 #include <dspace/surface/StreamedTerrain.h>
 
 #include "Alternate.h"

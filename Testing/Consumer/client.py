@@ -8,7 +8,7 @@ from dspace.links.serving import ServerProcess
 
 drive = sys.argv[1]
 with ServerProcess([]) as server:
-    for _ in range(2):  # the second run makes the scene of the first one anew
+    for _ in range(2):  # the second run makes the first one's scene again
         said = subprocess.run([drive, server.address, "0.5"], stdout=subprocess.PIPE, text=True, timeout=120, check=True)
     place = [float(each) for each in said.stdout.split("cart at ")[1].split()]
     expected = [4 * math.cos(0.25), 4 * math.sin(0.25), 0.25]

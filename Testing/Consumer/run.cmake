@@ -21,6 +21,21 @@ message(STATUS "${output}")
 if(NOT output MATCHES "^[1-9][0-9]* triangles, picked model at ")
   message(FATAL_ERROR "the consumer printed: ${output}")
 endif()
+# A program in process with terrain, a model, moving frames, a picture and a pick.
+get_filename_component(data "${MODEL}" DIRECTORY)
+step("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}/../../Examples/cpp_local" -B "${consumer}/local"
+  "-DDspace_ROOT=${PREFIX}" -DCMAKE_BUILD_TYPE=Debug)
+step("${CMAKE_COMMAND}" --build "${consumer}/local")
+step("${consumer}/local/cpp_local" "${data}/../field/field.tif" "${MODEL}" "${consumer}/local.png")
+message(STATUS "${output}")
+if(NOT output MATCHES "^41 pictures, picked body and ground, whose .* differ by [0-9]([.][0-9e-]*)? mm"
+    OR NOT EXISTS "${consumer}/local.png")
+  message(FATAL_ERROR "cpp_local printed: ${output}")
+endif()
+# A plug-in with an object of its own.
+step("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}/../../Examples/own_object" -B "${consumer}/own"
+  "-DDspace_ROOT=${PREFIX}" -DCMAKE_BUILD_TYPE=Debug)
+step("${CMAKE_COMMAND}" --build "${consumer}/own")
 # Clients in other languages are made of the .proto files alone.
 file(GLOB protos "${PREFIX}/share/dspace/proto/dspace/proto/*.proto")
 file(MAKE_DIRECTORY "${consumer}/stubs")
@@ -33,13 +48,16 @@ if(PYTHON)
   set(ENV{PYTHONDONTWRITEBYTECODE} 1)
   step("${PYTHON}" "${SOURCE}/consumer.py" "${PREFIX}" "${MODEL}")
   message(STATUS "${output}")
+  step("${PYTHON}" "${SOURCE}/../../Examples/own_object/own_object.py" "${consumer}/own/libsolar_sail.so"
+    "${consumer}/own.png")
+  message(STATUS "${output}")
+  step("${PYTHON}" "${SOURCE}/own_object.py" "${consumer}/own/libsolar_sail.so" "${consumer}")
   step("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}/../../Examples/cpp_client" -B "${consumer}/client"
     "-DDspace_ROOT=${PREFIX}" -DCMAKE_BUILD_TYPE=Debug)
   step("${CMAKE_COMMAND}" --build "${consumer}/client")
   step("${PYTHON}" -W ignore "${SOURCE}/client.py" "${consumer}/client/drive")
   message(STATUS "${output}")
   unset(ENV{PYTHONPATH}) # the command finds the package beside itself
-  get_filename_component(data "${MODEL}" DIRECTORY)
   step("${PREFIX}/bin/dspace" terrain info "${data}/../field/field.tif")
   if(NOT output MATCHES "1001 x 1001 pixels of Float32")
     message(FATAL_ERROR "dspace terrain info printed: ${output}")

@@ -42,6 +42,19 @@ def scene(session):
     return session.scene()
 
 
+@pytest.fixture(params=["local", "served"])
+def anywhere(request, tmp_path):
+    """A session of this process, then one that is connected to a server."""
+    import dspace
+    from served_support import Served
+    if request.param == "local":
+        with dspace.Session() as session:
+            yield session
+    else:
+        with Served(tmp_path) as served, dspace.connect(served.address) as session:
+            yield session
+
+
 def picture_of(scene):
     """All that can be asked about a scene, as text."""
     parts = []

@@ -17,12 +17,15 @@ FOUND = {"assimp": "libassimp-dev", "Coin": "libcoin-dev", "console_bridge": "li
          "OpenSceneGraph": "libopenscenegraph-dev", "OpenSSL": "libssl-dev", "PkgConfig": "pkg-config",
          "PROJ": "libproj-dev", "Protobuf": "libprotobuf-dev", "Python3": "libpython3-dev", "SQLite3": "libsqlite3-dev",
          "Threads": "g++", "tinyobjloader": "libtinyobjloader-dev", "urdfdom": "liburdfdom-dev", "VTK": "libvtk9-dev",
-         "ZLIB": "zlib1g-dev", "CAIRO": "libcairo2-dev", "DSPACE_OIIO_INCLUDE": "libopenimageio-dev",
+         "ZLIB": "zlib1g-dev", "PNG": "libpng-dev", "CAIRO": "libcairo2-dev",
+         "GEOGRAPHICLIB": "libgeographiclib-dev", "DSPACE_OIIO_INCLUDE": "libopenimageio-dev",
          "DSPACE_OIIO_LIBRARY": "libopenimageio-dev", "DSPACE_OIIO_UTIL_LIBRARY": "libopenimageio-dev",
-         "DSPACE_IMATH_INCLUDE": "libimath-dev"}
+         "DSPACE_IMATH_INCLUDE": "libimath-dev", "TinyGLTF": "libtinygltf-dev",
+         "DSPACE_TINYXML_LIBRARY": "libtinyxml-dev"}
 OPTIONAL = {"DSPACE_CCACHE"}  # used where it is installed
 PROGRAMS = {"ffmpeg": "ffmpeg", "ffprobe": "ffmpeg", "openssl": "openssl", "ruby": "ruby-grpc",
-            "protoc": "protobuf-compiler", "clang-format": "clang-format", "clang-tidy": "clang-tidy", "git": "git"}
+            "protoc": "protobuf-compiler", "clang-format": "clang-format", "clang-tidy": "clang-tidy", "git": "git",
+            "Xvfb": "xvfb", "glslangValidator": "glslang-tools"}
 
 
 def listed(*kinds):
@@ -43,7 +46,8 @@ def scripts(folder):
 
 
 def test_imported_modules():
-    own = {path.stem for folder in FOLDERS for path in scripts(folder)} | {"dspace"}
+    own = {name for folder in FOLDERS for path in scripts(folder) for name in (path.stem, path.parent.name)}
+    own.add("dspace")
     needed = {name: set() for name in MODULES}
     for folder in FOLDERS:
         for path in scripts(folder):
@@ -98,7 +102,11 @@ def test_packages_whose_lack_tests_report():
     pattern = re.compile(r"\b(?:needs_module|needs_program)\([^,()]+, \"([^\"]+)\"\)|\blacks\(\"([^\"]+)\"\)")
     names = {name for path in scripts("Testing/Python") if path.name != "test_needs.py"
              for found in pattern.findall(path.read_text(encoding="utf-8")) for name in found if name}
-    assert {"python3-gdal", "python3-distributed", "proj-data"} <= names <= listed("run", "extra", "build", "test")
+    missing = re.compile(r"DSPACE_MISSING_PACKAGE\(\"([^\"]+)\"\)")
+    names |= {name for path in (ROOT / "Libraries").glob("*/Testing/**/*.cxx")
+              for name in missing.findall(path.read_text(encoding="utf-8"))}
+    assert {"python3-gdal", "python3-distributed", "proj-data", "glslang-tools"} <= names
+    assert names <= listed("run", "extra", "build", "test")
 
 
 def test_lists_hold_existing_kinds_only():

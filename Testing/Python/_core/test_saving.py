@@ -136,7 +136,7 @@ def test_a_file_appears_when_it_is_complete(tmp_path):
     with pytest.raises(KeyError), AtomicFile(path) as file:
         file.write(b"new")
         raise KeyError
-    with AtomicFile(path) as file:  # a program that makes it anew
+    with AtomicFile(path) as file:  # a program that makes it again
         os.unlink(file.temporary)
         pathlib.Path(file.temporary).write_bytes(b"by a program")
     assert content(tmp_path) == {"a": b"by a program"}

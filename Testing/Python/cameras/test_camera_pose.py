@@ -6,18 +6,12 @@ import pytest
 
 import dspace
 from dspace.frames.poses import quaternion_of_axis
-from served_support import Served
 
 
-@pytest.fixture(params=["local", "served"])
-def anywhere(request, tmp_path):
+@pytest.fixture
+def anywhere(anywhere):
     """A scene in a session of this process, then in a server."""
-    if request.param == "local":
-        with dspace.Session() as session:
-            yield session.scene()
-    else:
-        with Served(tmp_path) as served, dspace.connect(served.address) as session:
-            yield session.scene()
+    return anywhere.scene()
 
 
 def turn(axis, angle_deg):

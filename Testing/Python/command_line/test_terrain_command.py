@@ -252,6 +252,36 @@ def test_patches_lie_on_it(tmp_path):
     assert np.abs(inside[0, 0] - outside[0, 0]).max() > 50
 
 
+def test_info_of_a_field(tmp_path):
+    """Values of a byte raster with a scale, on the west half of the ground, against numpy."""
+    base = write_raster(tmp_path / "base.tif", np.ones((100, 100), int))
+    to_map = gdal.Open(str(base)).GetGeoTransform()
+    values = np.random.default_rng(4).choice([1, 2, 5], (100, 50)).astype(np.uint8)
+    values[:10] = 255
+    data = gdal.GetDriverByName("GTiff").Create(str(tmp_path / "soil.tif"), 50, 100, 2, gdal.GDT_Byte)
+    data.SetGeoTransform(to_map)
+    band = data.GetRasterBand(2)
+    band.SetNoDataValue(255)
+    band.SetScale(0.5)
+    band.SetOffset(3)
+    band.SetUnitType("kPa")
+    band.SetDescription("bearing strength")
+    band.WriteArray(values)
+    del band, data  # writes it
+    given = f"soil={tmp_path / 'soil.tif'}:2"
+    field, = info(base, "--field", given)[0]["fields"]
+    good = values[10:] * 0.5 + 3.0
+    assert (field["name"], field["band"], field["bands"], field["type"]) == ("soil", 2, 2, "Byte")
+    assert (field["columns"], field["rows"], field["units"], field["no_data"]) == (50, 100, "kPa", 255)
+    assert field["statistics"]["minimum"] == good.min() and field["statistics"]["maximum"] == good.max()
+    assert field["statistics"]["mean"] == pytest.approx(good.mean(), abs=1e-9)
+    assert field["statistics"]["holes"] == 500 and field["different_values"] == 3
+    assert field["covered_fraction"] == pytest.approx(0.45, abs=0.02)  # half the columns, 90 of 100 rows
+    text = run("terrain", "info", base, "--field", given, "--field", f"again={tmp_path / 'soil.tif'}").stdout
+    for part in ("soil: ", "bearing strength", "3.5 to 5.5 kPa", "500 holes", "% of the terrain", "again: "):
+        assert part in text, text
+
+
 # --- What is refused -------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("arguments, code, text", [
@@ -266,6 +296,9 @@ def test_patches_lie_on_it(tmp_path):
     (["terrain", "info", FIELD, "--crs", "nonsense"], 1, "nonsense"),
     (["terrain", "info", FIELD, "--band", "2"], 1, "band"),
     (["terrain", "info", FIELD, "--patch", ",margin=3"], 2, "names no file"),
+    (["terrain", "info", FIELD, "--field", "soil"], 2, "NAME=FILE"),
+    (["terrain", "info", FIELD, "--field", "soil=/no/such.tif"], 1, "/no/such.tif"),
+    (["terrain", "info", FIELD, FIELD, "--field", f"soil={FIELD}"], 1, "--field"),
     (["terrain", "info", FIELD, "--patch", "a.tif,margin=x"], 2, "margin"),
     (["terrain", "info", FIELD, "--patch", "/no/such.tif"], 1, "/no/such.tif"),
     (["terrain", "info", FIELD, FIELD, "--patch", "a.tif"], 1, "--patch"),

@@ -57,7 +57,15 @@ def test_a_second_on_hills(ahead):
             assert -1e-8 < least < 2e-6  # 0.125 degrees beside it: r (1 - cos)
     # The ground that is drawn is straight between posts 0.1 m apart: within h^2 / 8 of its curvature.
     last = contacts[-1]
-    assert np.abs(terrain.height(last[:, 0], last[:, 1]) - last[:, 2]).max() < 1e-3
+    assert np.abs(terrain.undisturbed.height(last[:, 0], last[:, 1]) - last[:, 2]).max() < 1e-3
+    # The wheels leave tracks: six as long as the way, with a rim beside.
+    assert terrain.tracks["length"] == pytest.approx(simulation.mobility.rolled.sum(), rel=0.01)
+    middle = contacts[500, 0]
+    across = np.linspace(-0.15, 0.15, 61)
+    heading = contacts[550, 0] - contacts[450, 0]
+    beside = middle[:2] + across[:, None] * np.array((-heading[1], heading[0])) / np.hypot(*heading[:2])
+    change = terrain.height(*beside.T) - terrain.undisturbed.height(*beside.T)
+    assert change.max() > 0.004 and np.abs(change[np.abs(across) > 0.14]).max() < 1e-3
     assert np.ptp(last[:, 2]) > 0.05  # hills they are
 
 

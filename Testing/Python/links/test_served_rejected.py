@@ -1,4 +1,4 @@
-"""Servers, links and recordings: what is refused, and that a server that could not start leaves nothing behind."""
+"""Servers, links and recordings reject bad input; a server that cannot start leaves no files and no process."""
 import socket
 
 import pytest

@@ -1,4 +1,4 @@
-"""Viewers of one's own look at a simulation from where they like, and tell it what people do there."""
+"""Viewers that watch a simulation have cameras of their own and send it the events of their users."""
 import contextlib
 import warnings
 
@@ -8,6 +8,7 @@ import pytest
 import dspace
 from dspace.telemetry.viewer_events import pose_of
 from served_support import Served
+from terrain_support import ROOT
 
 
 SIZE = (160, 120)
@@ -32,9 +33,9 @@ def alone(change):
 
 
 @contextlib.contextmanager
-def watched(tmp_path):
+def watched(tmp_path, *arguments):
     """A server, a simulation with a viewport "view", and a watcher of it."""
-    with Served(tmp_path) as server, dspace.connect(server.address, name="drive", timeout=20.0) as session:
+    with Served(tmp_path, *arguments) as server, dspace.connect(server.address, name="drive", timeout=20.0) as session:
         build(session).add_viewport(SIZE, "main", name="view")
         with dspace.watch(server.address, name="eyes") as watcher:
             yield server, session, watcher
@@ -198,6 +199,33 @@ def test_what_the_simulation_removes_goes(tmp_path):
         follow(watcher, session)
         assert sorted(watcher.viewports) == ["viewer:looking", "viewer:riding"]
         assert watcher.viewports["viewer:riding"].scene.name == "another"
+
+
+def test_a_viewer_has_a_style_of_terrain_of_its_own(tmp_path):
+    """And the simulation removes what it likes: the fragment that the style is in, then the terrain."""
+    with watched(tmp_path, "--allow-root", str(ROOT / "Data")) as (_, session, watcher):
+        scene = session.scene()
+        terrain = scene.add_terrain(ROOT / "Data/field/field.tif", mode="clipmap", name="field")
+        fragment = scene.add_fragment("own", ornamental=True)
+        follow(watcher, session)
+        mine = watcher.add_view("mine", size=SIZE, eye=(0.0, 0.1, 60.0), target=(0.0, 0.0, 0.0))
+        plain, before = mine.image(), session.viewports["view"].image()
+        seen = watcher.scenes["scene"].terrains["field"]
+        seen.set_style(color_by="slope", contours=dict(interval=0.5, fragment="own"), viewport=mine)
+        colored = mine.image()
+        assert not np.array_equal(colored, plain)
+        assert np.array_equal(session.viewports["view"].image(), before) and fragment.members == []
+        with pytest.raises(dspace.Error, match="style_terrain"):
+            seen.set_style(contours=1)  # that of all viewports is the simulation's
+        with pytest.raises(dspace.Error, match="style_terrain_in_viewport"):
+            seen.set_style(contours=1, viewport="view")
+        fragment.remove()
+        follow(watcher, session)
+        assert np.array_equal(mine.image(), plain)
+        seen.set_style(color_by="slope", viewport=mine)
+        terrain.remove()
+        follow(watcher, session)
+        assert not np.array_equal(mine.image(), plain)
 
 
 def test_what_people_do_reaches_the_simulation(tmp_path):
@@ -385,7 +413,7 @@ def test_the_banner_covers_no_table_and_fits(tmp_path):
 
 
 def test_a_viewer_says_why_it_is_refused(tmp_path):
-    """By a server that was started anew and lets no viewer in; once there is one that does, it follows."""
+    """By a server that was restarted and lets no viewer in; once there is one that does, it follows."""
     with Served(tmp_path) as server:
         with dspace.watch(server.address, name="eyes", timeout=20.0) as watcher:
             assert watcher.error == ""

@@ -11,7 +11,7 @@ import pytest
 
 import dspace
 from dspace.movies import dask_workers
-from dspace.movies.draw import png
+from dspace._core.png import png
 from movies_support import SIZE, files, flight, run  # noqa: F401  (run: a fixture)
 from needs import needs_module
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.movies.draw import png
+from dspace._core.png import png
 from dspace.movies.encode import Encoder, encode
 from dspace.movies.folder import FRAME
 from movies_support import SIZE, flight, run  # noqa: F401  (run: a fixture)

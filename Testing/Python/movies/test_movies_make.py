@@ -33,7 +33,7 @@ def test_one_process_two_processes_and_a_resumed_one_make_the_same(run, tmp_path
     assert movie.make(run, three) == 4
     assert files(three, 12) == expected
     assert movie.make(run, three) == 0
-    # Another movie, or another run, begins anew.
+    # Another movie, or another run, starts from the beginning.
     movie.add_key(time=1.3, position=(6, 4, 9), target=(0, 0, 0), target_frame="cube")
     assert movie.make(run, three) == 13
 

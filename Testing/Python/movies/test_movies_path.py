@@ -169,8 +169,9 @@ def test_equal_keys_wait_and_one_key_stays():
         same_rotation(turns.at(t), quarter, 1e-15)
     one = CameraPath([Key(time=5.0, position=(1, 2, 3), quaternion=(0, 1, 0, 0), fov_deg=20)])
     for t in (0, 5, 9):
-        frame, position, quaternion, fov_deg = one.at(t)
-        assert (frame, tuple(position), tuple(quaternion), fov_deg) == ("", (1, 2, 3), (0, 1, 0, 0), 20)
+        frame, position, quaternion, projection = one.at(t)
+        assert (frame, tuple(position), tuple(quaternion), projection) == (
+            "", (1, 2, 3), (0, 1, 0, 0), {"fov_deg": 20})
     two = CameraPath([Key(0.0, (1, 2, 3), (0, 1, 0, 0)), Key(2.0, (1, 2, 3), (0, -1, 0, 0))])
     assert tuple(two.at(1.0)[1]) == (1, 2, 3)
     same_rotation(two.at(1.0)[2], np.array([0, 1, 0, 0]))

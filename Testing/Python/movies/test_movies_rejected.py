@@ -1,4 +1,4 @@
-"""Movies: what is refused, with the file and the key that it is about."""
+"""Movies: bad input is rejected with a message that names the file and the key."""
 import json
 import os
 import subprocess

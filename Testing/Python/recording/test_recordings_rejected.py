@@ -1,4 +1,4 @@
-"""Recordings: what is refused, by which name, and that nothing is left behind of it."""
+"""Recordings: bad input is rejected with a message that names it, and leaves no files."""
 import contextlib
 import os
 import re

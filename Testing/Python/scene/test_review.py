@@ -20,8 +20,9 @@ def test_without_lights_a_lit_surface_is_black(scene, view, material):
     cube = scene.add_box((2, 2, 2), color=(1, 1, 1), **material)
     seen = view.labels() == cube.id
     scene.lights["sun"].enabled = False
+    sky = scene.add_light("sky", kind="ambient", intensity=0.25)
     assert view.image()[seen].any()  # what the sky leaves
-    scene.lights["sky"].enabled = False
+    sky.enabled = False
     assert seen.any() and not view.image()[seen].any()
 
 

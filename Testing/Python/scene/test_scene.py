@@ -100,7 +100,7 @@ def test_cameras(scene):
     np.testing.assert_allclose(camera.pose.rotation, np.diag([1, -1, -1]), atol=1e-15)
     camera.fov_deg = 60
     camera.near = 0.5
-    assert camera.projection == {"fov_deg": 60, "near": 0.5, "far": np.inf}
+    assert camera.projection == {"fov_deg": 60, "near": 0.5, "far": None}  # None: automatic
     camera.set_projection(height=20)
     assert camera.projection["height"] == 20 and camera.fov_deg is None
     camera.chase(mast, offset=(-3, 0, 1), axes="parent", smoothing_s=1)
@@ -124,7 +124,7 @@ def test_fragments_and_lights(scene):
     lamp = scene.add_light("lamp", kind="spot", position=(0, 0, 3), cone_deg=20)
     assert lamp.kind == "spot"
     lamp.remove()
-    assert set(scene.lights) == {"sun", "sky"}
+    assert set(scene.lights) == {"sun"}
     assert scene._client is not None and scene.time == 0
     scene.time = 12.5
     assert scene.time == 12.5
@@ -272,11 +272,7 @@ def test_limits_allow_the_degrees_that_their_rounded_radians_stand_for(scene):
     assert joint.position == joint.limits[1]
 
 
-def test_a_urdf_takes_no_levels_and_is_no_point_cloud(scene):
-    path = DATA / "rover/rover.urdf"
-    for wrong in ({"levels": (("coarse.obj", 0),)}, {"point_cloud": True}):
-        with pytest.raises(ValueError, match="rover.urdf.*none of these"):
-            scene.load(path, **wrong)
-    with pytest.raises(ValueError, match="rover.urdf.*50 pixels"):
-        scene.load((path, 50))
+def test_a_urdf_is_no_point_cloud(scene):
+    with pytest.raises(ValueError, match="rover.urdf.*none of these"):
+        scene.load(DATA / "rover/rover.urdf", point_cloud=True)
     assert not scene.robots

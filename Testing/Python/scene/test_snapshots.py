@@ -57,7 +57,7 @@ class Player:
         viewport = self.one_of(self.session.viewports)
         if viewport is None:
             return
-        what = self.random.randrange(5)
+        what = self.random.randrange(7)
         if what == 0:
             viewport.size = (self.random.choice((80, 96)), self.random.choice((60, 72)))
         elif what == 1:
@@ -66,8 +66,24 @@ class Player:
             viewport.corner_axes = self.random.random() < 0.5
         elif what == 3:
             viewport.ornaments = self.random.random() < 0.5
+        elif what == 4:
+            viewport.fill = self.random.random()
+        elif what == 5:
+            viewport.set(exposure=self.random.uniform(0.5, 2), tone=self.random.choice(("linear", "filmic")))
         else:
             viewport.camera = self.random.choice(("near", "above"))
+
+    def sun(self):
+        what = self.random.randrange(4)
+        if what == 0:
+            self.scene.sun.set(azimuth_deg=self.random.uniform(0, 360), elevation_deg=self.random.uniform(-5, 90),
+                               terrain=self.terrain)
+        elif what == 1:
+            self.scene.sun.set(direction=(*self.place(), 9), frame=self.box)
+        elif what == 2:
+            self.scene.sun.set(distance_au=self.random.uniform(1, 2), radius_deg=self.random.random())
+        elif "sun" in self.scene.lights and self.random.random() < 0.2:
+            self.scene.lights["sun"].remove()
 
     def hide(self):
         viewport = self.one_of(self.session.viewports)
@@ -170,7 +186,7 @@ class Player:
 
     def play(self, steps):
         doings = [getattr(self, name) for name in (
-            "viewport", "drop_viewport", "set_viewport", "hide", "table", "drop_table", "bar", "drop_bar", "track",
+            "viewport", "drop_viewport", "set_viewport", "sun", "hide", "table", "drop_table", "bar", "drop_bar", "track",
             "clear", "style", "layer", "false_color", "change_layer", "reopen", "text", "telemetry", "event", "move")]
         for _ in range(steps):
             doing = self.random.choice(doings)

@@ -134,7 +134,7 @@ def test_a_million_heights(scene):
 @pytest.mark.parametrize("given, text", [
     ({"on_body": True, "origin": (0, 0)}, "origin"),
     ({"on_body": True, "mode": "triangles"}, "clipmap"),
-    ({"on_body": True, "crs": "EPSG:32610"}, "ellipsoid"),
+    ({"on_body": True, "crs": "EPSG:32610"}, "projection"),
     ({"on_body": True, "crs": "+proj=tmerc +R=1737400"}, "sphere"),
     ({"mode": "clipmap", "level_size": 13}, "13"),
     ({"mode": "clipmap", "level_size": 8}, "8"),

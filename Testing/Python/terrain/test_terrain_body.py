@@ -63,7 +63,7 @@ def test_a_body_is_closed_at_the_date_line_and_the_poles(mars):
 def test_no_background_shows_through_the_disc(scene, mars, toward, up):
     low, high = (MARS_RADIUS + height for height in mars.height_range)
     toward = np.array(toward) / np.linalg.norm(toward)
-    scene.lights["sky"].set(intensity=0.3)
+    scene.add_light("sky", kind="ambient", intensity=0.3)
     for distance, height in ((1e7, 7.2e6), (4e6, 4e5)):  # all of it, and a part near its middle
         scene.add_camera("orbit", eye=distance * toward, target=(0, 0, 0), up=up, height=height,
                          near=1e4, far=2e7)
@@ -101,10 +101,10 @@ def test_the_ground_near_a_camera_is_what_is_answered(scene, mars, longitude, la
         np.testing.assert_allclose(drawn, mars.height(*points.T), rtol=0, atol=2e-3 + moved)
 
 
-def test_a_degree_grid_of_an_ellipsoid_is_refused_on_a_body(scene, refused, tmp_path):
+def test_heights_above_a_sphere_are_rejected_on_an_ellipsoid(scene, refused, tmp_path):
     degrees = write_raster(tmp_path / "degrees.tif", np.zeros((40, 40), np.float32), pixel=0.1)
     with refused(dspace.Unsupported, "ellipsoid"):
-        scene.add_terrain(degrees, on_body=True, crs="EPSG:4326")
+        scene.add_terrain(degrees, on_body=True, crs="EPSG:4326", vertical_datum="sphere:6371000")
     assert scene.add_terrain(degrees, mode="clipmap", crs="EPSG:4326").height(0, 0) == 0
 
 

@@ -311,9 +311,9 @@ def test_what_is_refused_changes_nothing(ground, image, tmp_path):
     np.testing.assert_array_equal(view.image(), before)
 
 
-def test_triangles_take_no_layers(scene, image):
+def test_triangles_take_no_layers_of_colours(scene, image):
     terrain = scene.add_terrain(FIELD, mode="triangles")
     assert terrain.layers == []
-    for add in (lambda: terrain.add_image(image), terrain.add_noise, lambda: terrain.layer_tiles):
+    for add in (lambda: terrain.add_image(image), terrain.add_noise):
         with pytest.raises(dspace.Unsupported, match="mode clipmap"):
             add()

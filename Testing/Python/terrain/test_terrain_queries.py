@@ -4,6 +4,7 @@ import pytest
 
 import dspace
 from terrain_support import FIELD, gdal, real, write_raster
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 EAST, NORTH = 0.2, -0.1  # rise, metres a metre
 
@@ -75,3 +76,47 @@ def test_bad_queries_are_refused(scene, plane):
         mesh.roughness(0, 0, 5)
     assert np.isfinite(mesh.intersect((0, 0, 500), (0, 0, -1)))
     assert 0 <= mesh.aspect_deg(3, 4) <= 360
+
+
+# --- The ground as polydata --------------------------------------------------------------------
+
+def test_polydata_of_a_clipmap_is_its_posts(scene, tmp_path, refused):
+    """Points lie where queries have the ground, with the raster's heights; the budget chooses the level; holes stay."""
+    z = np.random.default_rng(6).uniform(0, 0.5, (64, 48)).astype(np.float32)
+    z[10, 20] = -999
+    data = gdal.GetDriverByName("GTiff").Create(str(tmp_path / "rough.tif"), 48, 64, 1, gdal.GDT_Float32)
+    data.SetGeoTransform((0, 1, 0, 64, 0, -1))
+    data.GetRasterBand(1).SetNoDataValue(-999)
+    data.GetRasterBand(1).WriteArray(z)
+    del data  # writes it
+    frame = scene.add_frame("site", position=(1e9, 2, 3), quaternion=(0.5, 0.5, 0.5, 0.5))
+    ground = scene.add_terrain(tmp_path / "rough.tif", mode="clipmap", name="ground", frame=frame,
+                               vertical_datum="relative", vertical_scale=1)
+    whole = ground.object.to_polydata()
+    points = vtk_to_numpy(whole.GetPoints().GetData())
+    assert whole.GetNumberOfPolys() == 2 * 63 * 47 - 6  # six triangles meet at the hole
+    assert points.dtype == float and len(points) == 64 * 48 - 1
+    map = ground.to_map(points)
+    column, row = np.floor(map[:, 0]).astype(int), np.floor(64 - map[:, 1]).astype(int)
+    np.testing.assert_allclose(map[:, 2], z[row, column], atol=1e-4)
+    np.testing.assert_allclose(points[:, 2], ground.height(points[:, 0], points[:, 1]), atol=1e-4)
+    normals = vtk_to_numpy(whole.GetPointData().GetNormals())
+    assert (normals[:, 2] > 0).all()
+    coarse = ground.object.to_polydata(triangles=2000)
+    assert 0 < coarse.GetNumberOfPolys() <= 2000
+    corners = vtk_to_numpy(whole.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    a, b, c = (points[corners[:, k]] for k in range(3))
+    assert (np.cross(b - a, c - a)[:, 2] > 0).all()  # counter-clockwise from above
+    with refused(dspace.InvalidArgument, "triangles is 0"):
+        ground.object.to_polydata(triangles=0)
+    with refused(dspace.WrongType, "triangle_budget"):
+        ground.object.to_polydata(triangles=2.5)
+    box = scene.add_box((1, 1, 1), name="box")
+    assert box.to_polydata(triangles=5).GetNumberOfPolys() == 12
+
+
+def test_polydata_of_triangles_keeps_the_budget(scene, tmp_path):
+    z = np.random.default_rng(7).uniform(0, 0.5, (100, 100)).astype(np.float32)
+    ground = scene.add_terrain(write_raster(tmp_path / "rough.tif", z), mode="triangles")
+    assert ground.object.to_polydata().GetNumberOfPolys() == ground.triangles
+    assert 0 < ground.object.to_polydata(triangles=3000).GetNumberOfPolys() <= 3000

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.errors import InvalidArgument, NotFound, Unsupported, WrongType
+from dspace.errors import InvalidArgument, NotFound, WrongType
 from dspace.rover import Path, load_vehicle
 
 DATA = pathlib.Path(__file__).resolve().parents[3] / "Data"
@@ -157,13 +157,10 @@ def test_what_is_refused_changes_nothing(scene, terrain, field, tmp_path):
     with pytest.raises(NotFound, match="absent"):
         terrain.load_tracks(tmp_path / "absent.geojson")
     assert terrain.tracks["contacts"] == 0
-    triangles = scene.add_terrain(field, name="triangles", mode="triangles")
-    with pytest.raises(Unsupported, match="triangles"):
-        triangles.track({"a": (X, Y)}, width=0.2)
     with pytest.raises(InvalidArgument, match="subdivisions"):
         scene.add_terrain(field, subdivisions=13)
     with pytest.raises(InvalidArgument, match="subdivisions"):
-        scene.add_terrain(field, subdivisions=1, mode="triangles")
+        scene.add_terrain(field, subdivisions=13, mode="triangles")
 
 
 def test_a_full_budget_is_an_error(scene, field):
