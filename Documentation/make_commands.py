@@ -14,8 +14,8 @@ from google.protobuf.descriptor_pb2 import FieldDescriptorProto as Field
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROTOS = ROOT / "Libraries" / "Session"
 PAGE = ROOT / "Documentation" / "Commands.md"
-FILES = ("commands", "frames", "objects", "robots", "cameras", "viewports", "terrain", "layers", "telemetry",
-         "messages", "measurements", "common", "service")
+FILES = ("commands", "frames", "objects", "robots", "cameras", "viewports", "terrain", "layers", "geodesy",
+         "telemetry", "messages", "measurements", "common", "service")
 TYPES = {getattr(Field, name): name[5:].lower() for name in dir(Field) if name.startswith("TYPE_")}
 HEAD = """# The commands
 
