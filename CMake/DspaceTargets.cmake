@@ -13,9 +13,9 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
-# ccache, where it is installed. Precompiled headers carry time stamps, which ccache would take for changes. The
-# preprocessor that ccache would run reads an old precompiled header in place of changed headers: with
-# CCACHE_DEPEND the compiler's list of dependencies decides.
+# ccache, where it is installed. Precompiled headers contain time stamps, which ccache must ignore (CCACHE_SLOPPINESS).
+# By default ccache compares preprocessed sources, and the preprocessor may read an old precompiled header instead of
+# the changed headers. With CCACHE_DEPEND it compares the compiler's list of dependencies.
 find_program(DSPACE_CCACHE ccache)
 if(DSPACE_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_DEPEND=true
@@ -33,10 +33,13 @@ if(DSPACE_UNITY)
   target_compile_options(DspaceOptions INTERFACE -Wno-subobject-linkage)
 endif()
 if(DSPACE_SANITIZE)
-  # Without the checks of null and alignment at every access the code compiles in two thirds of the time: the
-  # address sanitizer finds a null pointer too, and the processors that Dspace runs on read unaligned numbers.
+  # The checks of null pointers and alignment at every access take a third of the compile time. They are off: the
+  # address sanitizer reports null pointers too, and the supported processors can read unaligned numbers.
   target_compile_options(DspaceOptions INTERFACE -fsanitize=address,undefined -fno-sanitize=null,alignment
     -fno-sanitize-recover=undefined -fno-omit-frame-pointer -Og -g1)
+  # With the address sanitizer Eigen would store a pointer in front of each array. The test programs of the release build
+  # free arrays that these libraries allocate, so that both must use malloc() directly.
+  target_compile_options(DspaceOptions INTERFACE -DEIGEN_MALLOC_ALREADY_ALIGNED=1)
   # The release build's test programs run with these libraries. A library calls its own copies of inline
   # functions, which are instrumented, and not those of the program.
   target_link_options(DspaceOptions INTERFACE -fsanitize=address,undefined -Wl,-Bsymbolic-functions)
@@ -114,7 +117,8 @@ set(DSPACE_TEST_ENVIRONMENT
 
 # dspace_tests(PROGRAM [GRAPHICS] SOURCES ... [HEADERS ...] [LIBS ...]): one GoogleTest program. ctest
 # lists one test for each source Test*.cxx, by the source's name, and runs each in a process of its own.
-# GRAPHICS: the tests need an OpenGL context; they run without a display. HEADERS are precompiled.
+# GRAPHICS: the tests need an OpenGL context; they run without a display, and fail at errors that
+# OpenGL reports. HEADERS are precompiled.
 # Tests find real data through DSPACE_DATA, and skip where it is absent; data that ship through
 # DSPACE_SHIPPED_DATA.
 function(dspace_tests program)
@@ -133,8 +137,10 @@ function(dspace_tests program)
   # Compiling the tests costs more than running them: -O1 takes half the time of -O3.
   target_compile_options(${program} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_precompile_headers(${program} PRIVATE <Eigen/Geometry> <gtest/gtest.h> ${arg_HEADERS})
+  set(environment "${DSPACE_TEST_ENVIRONMENT}")
   if(arg_GRAPHICS)
     set(label graphics)
+    list(APPEND environment "DSPACE_OPENGL_DEBUG=1") # dspace/render/DebugOutput.h
   else()
     set(label plain)
   endif()
@@ -156,11 +162,11 @@ function(dspace_tests program)
     string(REPLACE ";" ":" filter "${filter}")
     add_test(NAME ${name} COMMAND ${program} "--gtest_filter=${filter}")
     set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600
-      ENVIRONMENT "${DSPACE_TEST_ENVIRONMENT}")
+      ENVIRONMENT "${environment}")
   endforeach()
   # No case is left out: without all that are listed above, none remains.
   string(REPLACE ";" ":" listed "${listed}")
   add_test(NAME ${program}.listed COMMAND ${program} "--gtest_filter=-${listed}")
   set_tests_properties(${program}.listed PROPERTIES LABELS ${label} TIMEOUT 60
-    ENVIRONMENT "${DSPACE_TEST_ENVIRONMENT}" PASS_REGULAR_EXPRESSION "Running 0 tests")
+    ENVIRONMENT "${environment}" PASS_REGULAR_EXPRESSION "Running 0 tests")
 endfunction()
