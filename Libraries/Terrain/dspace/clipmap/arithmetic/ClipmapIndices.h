@@ -26,6 +26,7 @@ public:
   // `cells` as ClipmapGeometry accepts it, at most 252: indices are 16 bits.
   explicit ClipmapIndices(int cells);
 
+  static constexpr int BlocksOf(int cells) { return (cells + BlockCells - 1) / BlockCells; }
   int BlocksAcross() const { return this->Blocks_; }
   const std::vector<std::uint16_t>& Indices() const { return this->Indices_; }
 
