@@ -46,6 +46,9 @@ public:
   // Whether its own shader says which shadows it throws on itself (a terrain's horizon): then the
   // maps that it is in are those of other receivers only. After Prepare().
   virtual bool ShadowsItself(const CustomDrawing&) { return false; }
+  // Where DrawLabels() may draw it in the drawing's view. By default all of its bounds. After
+  // Prepare().
+  virtual std::vector<LightHull> Hulls(const CustomDrawing& drawing);
   virtual void DrawColor(const CustomDrawing& drawing) = 0;
   // Also into the Sun's shadow maps: `drawing.view.clip` is then set, and no label is kept.
   virtual void DrawLabels(const CustomDrawing& drawing) = 0;

@@ -452,4 +452,29 @@ void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filte
   }
 }
 
+void DrawList::Keep(const std::function<bool(const DrawBatch&, const DrawInstance&)>& kept) {
+  std::vector<DrawInstance> instances;
+  std::vector<DrawBatch> batches;
+  this->Triangles_ = 0;
+  for (DrawBatch& batch : this->Batches_) {
+    const auto first = static_cast<std::uint32_t>(instances.size());
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count; ++i) {
+      if (kept(batch, this->Instances_[i])) {
+        instances.push_back(this->Instances_[i]);
+      }
+    }
+    batch.first = first;
+    batch.count = static_cast<std::uint32_t>(instances.size()) - first;
+    if (batch.count == 0) {
+      continue;
+    }
+    if (batch.mesh->primitive == Mesh::Primitive::Triangles) {
+      this->Triangles_ += batch.mesh->PrimitiveCount() * batch.count;
+    }
+    batches.push_back(std::move(batch));
+  }
+  this->Instances_ = std::move(instances);
+  this->Batches_ = std::move(batches);
+}
+
 } // namespace dspace

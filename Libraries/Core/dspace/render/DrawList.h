@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -11,7 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <dspace/render/shadows/CascadeFit.h>
+#include <dspace/render/shadows/CasterTiles.h>
 #include <dspace/scene/LinearLight.h>
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/ViewLook.h>
@@ -105,6 +106,7 @@ struct DrawView {
   // and poses remain those of the camera.
   std::optional<Eigen::Matrix4d> clip;
   std::optional<CascadeFit> shadows; // of the Sun's maps, where they are drawn
+  std::shared_ptr<const std::vector<CasterTiles>> shadowTiles; // of all but ground, with `shadows`
 
   Eigen::Matrix4d ClipFromView() const {
     return this->clip ? *this->clip : this->projection.ClipFromView(this->width, this->height);
@@ -118,6 +120,9 @@ public:
   // Rebuilds the list for `view`. Objects outside the view's frustum are omitted. Sets the near and
   // far distances that the view's projection leaves to what is drawn (Projection::Seeing).
   void Build(const Scene& scene, DrawView& view, const DrawFilter& filter);
+
+  // Removes the instances that `kept` refuses, until the next Build().
+  void Keep(const std::function<bool(const DrawBatch&, const DrawInstance&)>& kept);
 
   const std::vector<DrawInstance>& Instances() const { return this->Instances_; }
   const std::vector<DrawBatch>& Batches() const { return this->Batches_; } // opaque ones first

@@ -118,6 +118,9 @@ const GpuMesh& GpuStore::MeshOf(const std::shared_ptr<const Mesh>& mesh) {
                                                            : GL_POINTS;
   gpu.indexCount = static_cast<int>(mesh->indices.size());
   gpu.hasColors = !mesh->colors.empty();
+  for (const Vertex& vertex : vertices) {
+    gpu.bounds.extend(Eigen::Map<const Eigen::Vector3f>(vertex.position));
+  }
   gpu.bytes = vertices.size() * sizeof(Vertex) + mesh->indices.size() * sizeof(std::uint32_t);
   this->Statistics_.meshBytes += gpu.bytes;
   this->Statistics_.meshBytesUploaded += gpu.bytes;

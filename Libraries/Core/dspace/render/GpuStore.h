@@ -5,6 +5,8 @@
 #include <memory>
 #include <unordered_map>
 
+#include <Eigen/Geometry>
+
 #include <dspace/import/model/Model.h>
 #include <dspace/render/Capture.h>
 
@@ -22,6 +24,7 @@ struct GpuMesh {
   int indexCount = 0;
   std::uint64_t bytes = 0;
   bool hasColors = false;
+  Eigen::AlignedBox3f bounds; // of the positions
 };
 
 // Every function needs the context that the store was first used with to be current.

@@ -58,7 +58,7 @@ private:
 SceneDrawer::SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, const CustomDrawers& drawers,
                          RenderStatistics& statistics)
     : Window_(window), Store_(store), Drawers_(drawers), Statistics_(statistics), Shaders_(window),
-      Shadows_(window) {}
+      Shadows_(window, store) {}
 
 SceneDrawer::~SceneDrawer() {
   this->Release();
@@ -273,16 +273,18 @@ bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int sample
 void SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView& view,
                               int samples) {
   view.shadows.reset();
+  view.shadowTiles.reset();
   if (!view.look.shadows.shown || !list.Sun()) {
     return;
   }
   double nearest = list.NearestDepth();
   bool ground = false;
+  bool others = !list.Batches().empty(); // what takes the shadows of the ground from maps
   for (const DrawCustom& object : list.Customs()) {
     CustomDrawer& drawer = *this->Customs_[object.object->custom.get()].drawer;
     const CustomDrawing drawing = this->Drawing(object, list, view, samples);
     nearest = std::min(nearest, drawer.NearestDepth(drawing));
-    ground = ground || drawer.ShadowsItself(drawing);
+    (drawer.ShadowsItself(drawing) ? ground : others) = true;
   }
   // Where the camera is within a thing's bounds, its distance from it is not known.
   constexpr double Usual = 1.0; // [m]
@@ -297,29 +299,37 @@ void SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView
   }
   CascadeFit fit = FitCascades(view.projection, view.width, view.height, *list.Sun(), nearest,
                                farthest, view.look.shadows);
-  fit.ground = ground;
-  this->Shadows_.Update(scene, view, list.Filter(), fit,
-                        [&](const DrawList& casters, const DrawView& seen, bool ofGround) {
-                          this->DrawCasters(casters, seen, ofGround);
-                        });
+  fit.ground = ground && others;
+  this->Shadows_.Update(scene, list, view, std::move(fit), *this);
   this->Window_->GetState()->vtkglEnable(GL_BLEND);
-  this->Shaders_.SetShadowMaps(this->Shadows_.Texture());
-  view.shadows = std::move(fit);
+  this->Shaders_.SetShadowMaps(this->Shadows_.Texture(), this->Shadows_.Tiles());
 }
 
-void SceneDrawer::DrawCasters(const DrawList& list, const DrawView& view, bool ground) {
-  if (!ground) {
-    this->Upload(list);
-    this->DrawBatches(list, view, false, SurfaceShaders::Label, 1);
+bool SceneDrawer::IsGround(const DrawCustom& object, const DrawList& list, const DrawView& view) {
+  const auto custom = this->Customs_.find(object.object->custom.get());
+  return custom != this->Customs_.end() && custom->second.drawer &&
+         custom->second.drawer->ShadowsItself(this->Drawing(object, list, view, 1));
+}
+
+std::vector<LightHull> SceneDrawer::Hulls(const DrawCustom& object, const DrawList& list,
+                                          const DrawView& view) {
+  const auto custom = this->Customs_.find(object.object->custom.get());
+  if (custom == this->Customs_.end() || !custom->second.drawer) {
+    return {};
   }
-  for (const DrawCustom& object : list.Customs()) {
+  return custom->second.drawer->Hulls(this->Drawing(object, list, view, 1));
+}
+
+void SceneDrawer::Draw(const DrawList& casters, const DrawView& view, bool ground) {
+  if (!ground) {
+    this->Upload(casters);
+    this->DrawBatches(casters, view, false, SurfaceShaders::Label, 1);
+  }
+  for (const DrawCustom& object : casters.Customs()) {
     const auto custom = this->Customs_.find(object.object->custom.get());
-    if (custom == this->Customs_.end() || !custom->second.drawer) {
-      continue;
-    }
-    const CustomDrawing drawing = this->Drawing(object, list, view, 1);
-    if (custom->second.drawer->ShadowsItself(drawing) == ground) {
-      custom->second.drawer->DrawLabels(drawing);
+    if (custom != this->Customs_.end() && custom->second.drawer &&
+        this->IsGround(object, casters, view) == ground) {
+      custom->second.drawer->DrawLabels(this->Drawing(object, casters, view, 1));
     }
   }
 }

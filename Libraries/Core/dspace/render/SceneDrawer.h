@@ -25,7 +25,7 @@ namespace dspace {
 // GL_GEQUAL): float depth then resolves a millionth of the distance from centimetres to infinity.
 // Translucent surfaces are peeled front to back (Everitt 2001) and blended in linear light; after
 // MaximumLayers the rest, which lies behind, is left out.
-class SceneDrawer {
+class SceneDrawer : private ShadowMaps::Painter {
 public:
   static constexpr int MaximumLayers = 16;
 
@@ -74,8 +74,11 @@ private:
   std::array<double, 2> SeenDepths(const DrawList& list, const DrawView& view);
   // The list's labels and depths into what is bound.
   void DrawDepths(const DrawList& list, const DrawView& view);
-  // Of a shadow map: the custom geometry that shadows itself, or all else.
-  void DrawCasters(const DrawList& list, const DrawView& view, bool ground);
+  // Custom geometry that shadows itself; into shadow maps, it or all else.
+  bool IsGround(const DrawCustom& object, const DrawList& list, const DrawView& view) override;
+  std::vector<LightHull> Hulls(const DrawCustom& object, const DrawList& list,
+                               const DrawView& view) override;
+  void Draw(const DrawList& casters, const DrawView& view, bool ground) override;
   void DrawBackground(const Background& background, int height);
   void DrawTriangleOverScreen();
   void Upload(const DrawList& list);

@@ -8,17 +8,59 @@
 #include "vtkOpenGLState.h"
 
 #include <dspace/Error.h>
+#include <dspace/render/GpuStore.h>
 #include <dspace/render/SurfaceShaders.h>
 
 namespace dspace {
+
+namespace {
+
+// What takes shadows from map k: what lies beyond the map before it, and of blockers whose penumbra
+// that one does not resolve, all.
+class MapReceivers {
+public:
+  MapReceivers(const CascadeFit& fit, int k, const std::vector<LightHull>& receivers)
+      : Beyond_(fit, fit.cascades[std::size_t(k)]), All_(fit, fit.cascades[std::size_t(k)]) {
+    const double end = fit.cascades[std::size_t(k)].end;
+    const double before = k > 0 ? fit.cascades[std::size_t(k) - 1].end : -1e300;
+    this->Reached_ = k > 0 ? fit.Reach(fit.cascades[std::size_t(k) - 1]) : 0.0;
+    for (const LightHull& hull : receivers) {
+      double nearest = 1e300;
+      double farthest = -1e300;
+      for (const Eigen::Vector3d& point : hull.points) {
+        nearest = std::min(nearest, -point.z() - hull.radius);
+        farthest = std::max(farthest, -point.z() + hull.radius);
+      }
+      if (hull.points.empty() || nearest <= end) {
+        this->All_.Add(hull);
+        if (hull.points.empty() || farthest > before) {
+          this->Beyond_.Add(hull);
+        }
+      }
+    }
+  }
+  bool Take(const LightHull& caster) const {
+    return this->Beyond_.TakeShadows(caster, 0.0) || this->All_.TakeShadows(caster, this->Reached_);
+  }
+  std::array<int, 4> Texels() const { return this->All_.Texels(); }
+
+private:
+  CasterTiles Beyond_;
+  CasterTiles All_;
+  double Reached_ = 0.0; // [m]
+};
+
+} // namespace
 
 void ShadowMaps::Release() {
   if (this->Texture_ && this->Window_->GetContext()) {
     this->Window_->MakeCurrent();
     glDeleteTextures(1, &this->Texture_);
+    glDeleteTextures(1, &this->Tiles_);
     glDeleteFramebuffers(GLsizei(this->Framebuffers_.size()), this->Framebuffers_.data());
   }
-  this->Texture_ = 0;
+  this->Texture_ = this->Tiles_ = 0;
+  this->TileLayers_ = 0;
   this->Framebuffers_.clear();
   this->Size_ = 0;
 }
@@ -56,40 +98,145 @@ void ShadowMaps::Resize(const std::string& viewport, int size, int count) {
   }
 }
 
-void ShadowMaps::Update(const Scene& scene, const DrawView& view, const DrawFilter& filter,
-                        CascadeFit& fit, const Draw& draw) {
+void ShadowMaps::ResizeTiles(int count) {
+  if (this->TileLayers_ == count) {
+    return;
+  }
+  if (!this->Tiles_) {
+    glGenTextures(1, &this->Tiles_);
+  }
+  BindTextureUnit(this->Window_, ShadowUnit + 1, GL_TEXTURE_2D_ARRAY, this->Tiles_);
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, CasterTiles::Side, CasterTiles::Side, count, 0,
+               GL_RED, GL_FLOAT, nullptr);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, filter, GL_NEAREST);
+  }
+  this->TileLayers_ = count;
+}
+
+LightHull ShadowMaps::HullOf(const DrawBatch& batch, const DrawInstance& instance) const {
+  LightHull hull;
+  if (batch.shader) { // it may move vertices
+    return hull;
+  }
+  const Eigen::AlignedBox3f& bounds = this->Store_.MeshOf(batch.mesh).bounds;
+  const Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>> X_VM(
+      instance.viewFromMesh.data());
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3f corner = bounds.corner(Eigen::AlignedBox3f::CornerType(i));
+    hull.points.emplace_back((X_VM * corner.homogeneous()).cast<double>());
+  }
+  return hull;
+}
+
+std::vector<LightHull> ShadowMaps::HullsOf(const DrawList& list, const DrawView& view, bool ground,
+                                           Painter& painter) const {
+  std::vector<LightHull> hulls;
+  for (const DrawBatch& batch : list.Batches()) {
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count && !ground; ++i) {
+      hulls.push_back(this->HullOf(batch, list.Instances()[i]));
+    }
+  }
+  for (const DrawCustom& object : list.Customs()) {
+    if (painter.IsGround(object, list, view) == ground) {
+      const std::vector<LightHull> more = painter.Hulls(object, list, view);
+      hulls.insert(hulls.end(), more.begin(), more.end());
+    }
+  }
+  return hulls;
+}
+
+void ShadowMaps::UploadTiles(const CasterTiles& tiles, int layer) const {
+  BindTextureUnit(this->Window_, ShadowUnit + 1, GL_TEXTURE_2D_ARRAY, this->Tiles_);
+  glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, CasterTiles::Side, CasterTiles::Side, 1,
+                  GL_RED, GL_FLOAT, tiles.Tops().data());
+}
+
+// `texels`: of the map that need be drawn.
+void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::array<int, 4>& texels,
+                         const CascadeFit& fit, int k, bool ground, Painter& painter) {
+  const CascadeFit::Cascade& cascade = fit.cascades[std::size_t(k)];
+  const int size = ground ? fit.GroundSize() : fit.size;
+  const int across = CascadeFit::GroundsAcross;
+  const Eigen::Array2i corner =
+      ground ? Eigen::Array2i(k % across, k / across) * size : Eigen::Array2i(0, 0);
+  const Eigen::Array2i first(texels[0], texels[1]);
+  const Eigen::Array2i extent = Eigen::Array2i(texels[2], texels[3]) - first;
+  const Eigen::Array2i place = corner + first;
+  // Only those texels, so that what is beside them is culled.
+  Eigen::Matrix4d part = Eigen::Matrix4d::Identity();
+  for (const int axis : {0, 1}) {
+    part(axis, axis) = double(size) / extent[axis];
+    part(axis, 3) = (double(size) - 2.0 * first[axis] - extent[axis]) / extent[axis];
+  }
+  view.clip = part * fit.ClipFromView(cascade);
   vtkOpenGLState* state = this->Window_->GetState();
-  DrawFilter casters = filter;
+  glBindFramebuffer(GL_FRAMEBUFFER,
+                    this->Framebuffers_[ground ? fit.cascades.size() : std::size_t(k)]);
+  state->vtkglViewport(place[0], place[1], extent[0], extent[1]);
+  state->vtkglScissor(place[0], place[1], extent[0], extent[1]);
+  state->vtkglDepthMask(GL_TRUE);
+  state->vtkglClearDepth(0.0);
+  state->vtkglClear(GL_DEPTH_BUFFER_BIT);
+  state->vtkglClearDepth(1.0);
+  glEnable(GL_DEPTH_CLAMP);
+  painter.Draw(casters, view, ground);
+  glDisable(GL_DEPTH_CLAMP);
+}
+
+void ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view, CascadeFit fit,
+                        Painter& painter) {
+  vtkOpenGLState* state = this->Window_->GetState();
+  DrawFilter casters = seen.Filter();
   casters.physicalOnly = true; // ornaments throw no shadow
   casters.castersOnly = true;
   const int count = int(fit.cascades.size());
+  auto allTiles = std::make_shared<std::vector<CasterTiles>>();
+  const std::vector<LightHull> objects = this->HullsOf(seen, view, false, painter);
+  std::vector<LightHull> receivers = this->HullsOf(seen, view, true, painter);
+  receivers.insert(receivers.end(), objects.begin(), objects.end());
+  const vtkOpenGLState::ScopedglEnableDisable scissor(state, GL_SCISSOR_TEST);
+  state->vtkglEnable(GL_SCISSOR_TEST);
   state->PushFramebufferBindings();
   try {
-    this->Resize(view.viewport, fit.size, fit.ground ? 2 * count : count);
+    this->Resize(view.viewport, fit.size, fit.ground ? count + 1 : count);
+    this->ResizeTiles(2 * count);
     this->Casters_.resize(std::size_t(count));
     for (int k = 0; k < count; ++k) {
       CascadeFit::Cascade& cascade = fit.cascades[std::size_t(k)];
       DrawList& list = this->Casters_[std::size_t(k)];
-      DrawView seen = view;
-      seen.shadows.reset();
-      seen.clip = fit.ClipFromView(cascade);
-      list.Build(scene, seen, casters);
+      DrawView map = view;
+      map.clip = fit.ClipFromView(cascade);
+      list.Build(scene, map, casters);
+      const MapReceivers taking(fit, k, receivers);
+      list.Keep([&](const DrawBatch& batch, const DrawInstance& instance) {
+        return taking.Take(this->HullOf(batch, instance));
+      });
       cascade.high = std::max(cascade.high, list.HighestToSun());
-      seen.clip = fit.ClipFromView(cascade);
-      for (const bool ground : {false, true}) {
-        if (ground && !fit.ground) {
-          continue;
+      CasterTiles tiles(fit, cascade);
+      for (const LightHull& hull : this->HullsOf(list, map, false, painter)) {
+        tiles.Add(hull);
+      }
+      this->UploadTiles(tiles, k);
+      if (!tiles.Empty()) {
+        this->DrawMap(list, map, tiles.Texels(), fit, k, false, painter);
+      }
+      allTiles->push_back(std::move(tiles));
+      if (!fit.ground) {
+        continue;
+      }
+      CascadeFit coarse = fit;
+      coarse.size = fit.GroundSize();
+      const MapReceivers near(coarse, k, objects);
+      CasterTiles ground(coarse, cascade);
+      for (const LightHull& hull : this->HullsOf(list, map, true, painter)) {
+        if (near.Take(hull)) {
+          ground.Add(hull);
         }
-        glBindFramebuffer(GL_FRAMEBUFFER, this->Framebuffers_[std::size_t(ground ? count + k : k)]);
-        state->vtkglViewport(0, 0, fit.size, fit.size);
-        state->vtkglScissor(0, 0, fit.size, fit.size);
-        state->vtkglDepthMask(GL_TRUE);
-        state->vtkglClearDepth(0.0);
-        state->vtkglClear(GL_DEPTH_BUFFER_BIT);
-        state->vtkglClearDepth(1.0);
-        glEnable(GL_DEPTH_CLAMP);
-        draw(list, seen, ground);
-        glDisable(GL_DEPTH_CLAMP);
+      }
+      this->UploadTiles(ground, count + k);
+      if (!ground.Empty()) {
+        this->DrawMap(list, map, near.Texels(), fit, k, true, painter);
       }
     }
   } catch (...) {
@@ -98,6 +245,8 @@ void ShadowMaps::Update(const Scene& scene, const DrawView& view, const DrawFilt
     throw;
   }
   state->PopFramebufferBindings();
+  view.shadows = std::move(fit);
+  view.shadowTiles = std::move(allTiles);
 }
 
 } // namespace dspace

@@ -2,39 +2,66 @@
 #ifndef DSPACE_RENDER_SHADOW_MAPS_H
 #define DSPACE_RENDER_SHADOW_MAPS_H
 
-#include <functional>
 #include <vector>
 
 #include <dspace/render/DrawList.h>
+#include <dspace/render/shadows/CasterTiles.h>
 
 class vtkDspaceHubWindow;
 
 namespace dspace {
 
-// One layer of a depth texture a cascade; 32-bit floats, 1 towards the Sun, so that what receives
+class GpuStore;
+
+// One layer of a depth texture a cascade, and one more with all maps of the ground, cascade k at
+// the place (k mod 4, k / 4) of its 4 x 4; 32-bit floats, 1 towards the Sun, so that what receives
 // shadows is resolved best. Casters that stand higher than a map's range are drawn at its end.
+// Only the texels of CasterTiles are cleared and drawn: those of tiles without casters mean
+// nothing.
 class ShadowMaps {
 public:
-  explicit ShadowMaps(vtkDspaceHubWindow* window) : Window_(window) {}
+  ShadowMaps(vtkDspaceHubWindow* window, GpuStore& store) : Window_(window), Store_(store) {}
   ShadowMaps(const ShadowMaps&) = delete;
   ShadowMaps& operator=(const ShadowMaps&) = delete;
   ~ShadowMaps() { this->Release(); }
 
-  // Draws all maps of a fit: `draw` draws the casters of one, with the list and the view that a map
-  // is drawn for, and those of the ground where `ground` is true (CascadeFit::ground; such maps
-  // follow the others); reversed depth, and the map is bound. Extends the fit's ranges to the
-  // casters. Throws Error(Resource) about `viewport` when there is no memory for the maps.
-  using Draw = std::function<void(const DrawList& casters, const DrawView& view, bool ground)>;
-  void Update(const Scene& scene, const DrawView& view, const DrawFilter& filter, CascadeFit& fit,
-              const Draw& draw);
+  // What draws casters: `casters` in the view that a map is drawn for, with reversed depth, the map
+  // bound. Custom geometry is drawn into the map of the ground or into the other; meshes into the
+  // other.
+  class Painter {
+  public:
+    virtual ~Painter() = default;
+    virtual bool IsGround(const DrawCustom& object, const DrawList& list, const DrawView& view) = 0;
+    virtual std::vector<LightHull> Hulls(const DrawCustom& object, const DrawList& list,
+                                         const DrawView& view) = 0; // CustomDrawer::Hulls()
+    virtual void Draw(const DrawList& casters, const DrawView& view, bool ground) = 0;
+  };
+  // Draws all maps of a fit for what `seen` shows, and sets them in `view`. Extends the fit's
+  // ranges to the casters. Throws Error(Resource) about `viewport` when there is no memory for the
+  // maps.
+  void Update(const Scene& scene, const DrawList& seen, DrawView& view, CascadeFit fit,
+              Painter& painter);
   unsigned int Texture() const { return this->Texture_; }
+  // CasterTiles::Tops(): a layer a cascade, and as many of the ground.
+  unsigned int Tiles() const { return this->Tiles_; }
   void Release();
 
 private:
   void Resize(const std::string& viewport, int size, int count);
+  void ResizeTiles(int count);
+  // Where the list's ground is, or all else.
+  std::vector<LightHull> HullsOf(const DrawList& list, const DrawView& view, bool ground,
+                                 Painter& painter) const;
+  LightHull HullOf(const DrawBatch& batch, const DrawInstance& instance) const;
+  void UploadTiles(const CasterTiles& tiles, int layer) const;
+  void DrawMap(const DrawList& casters, DrawView view, const std::array<int, 4>& texels,
+               const CascadeFit& fit, int k, bool ground, Painter& painter);
 
   vtkDspaceHubWindow* Window_;
+  GpuStore& Store_;
   unsigned int Texture_ = 0;
+  unsigned int Tiles_ = 0;
+  int TileLayers_ = 0;
   std::vector<unsigned int> Framebuffers_; // one a layer
   int Size_ = 0;
   std::vector<DrawList> Casters_; // one a layer

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "vtk_glew.h"
 
@@ -141,6 +142,9 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const Shad
     defines += "#define DSPACE_REFLECTANCE " + std::to_string(model) + "\n";
   }
   defines += "#define DSPACE_CASCADES " + std::to_string(features >> CascadeShift & 15u) + "\n";
+  if ((features >> CascadeShift & 15u) != 0) {
+    defines = "#extension GL_ARB_texture_gather : require\n" + defines;
+  }
   Sources made;
   if (code) {
     const CodedSources coded = SourcesOf(*code);
@@ -244,6 +248,7 @@ void SurfaceShaders::SetShadows(vtkShaderProgram* program, const CascadeFit& fit
   constexpr int Most = ShadowLook::MaximumCascades;
   float place[Most][4] = {};
   float range[Most][2] = {};
+  float reaches[Most][3] = {};
   const int count = int(fit.cascades.size());
   for (int k = 0; k < count; ++k) {
     const CascadeFit::Cascade& cascade = fit.cascades[k];
@@ -253,14 +258,22 @@ void SurfaceShaders::SetShadows(vtkShaderProgram* program, const CascadeFit& fit
     place[k][3] = float(cascade.end);
     range[k][0] = float(cascade.low);
     range[k][1] = float(cascade.high - cascade.low);
+    reaches[k][0] = float(fit.Reach(cascade));
+    reaches[k][1] = k > 0 ? reaches[k - 1][0] : 0.0f;
+    reaches[k][2] = k > 0 ? place[k - 1][3] : -std::numeric_limits<float>::max();
   }
   Eigen::Matrix3f axes = fit.sun.axes.cast<float>(); // column-major, as OpenGL reads it
   program->SetUniformMatrix3x3("sunAxesVC", axes.data());
   program->SetUniform4fv("shadowPlace", count, place);
   program->SetUniform2fv("shadowRange", count, range);
+  program->SetUniform3fv("shadowReaches", count, reaches);
   program->SetUniformf("sunRadius", float(std::tan(std::min(fit.sun.radius, 1.5))));
+  program->SetUniformi("shadowSize", fit.size);
+  program->SetUniformi("groundSize", fit.GroundSize());
   program->SetUniformi("shadowMaps", ShadowUnit);
   BindTextureUnit(this->Window_, ShadowUnit, GL_TEXTURE_2D_ARRAY, this->ShadowMaps_);
+  program->SetUniformi("shadowTops", ShadowUnit + 1);
+  BindTextureUnit(this->Window_, ShadowUnit + 1, GL_TEXTURE_2D_ARRAY, this->ShadowTiles_);
 }
 
 } // namespace dspace

@@ -15,7 +15,7 @@ class vtkShaderProgram;
 namespace dspace {
 
 // Texture units above those that VTK hands out.
-constexpr int ShadowUnit = 8;
+constexpr int ShadowUnit = 8; // and 9: CasterTiles
 constexpr int NormalUnit = 10;
 constexpr int TerrainUnit = 11; // and 12
 constexpr int ColorUnit = 13;
@@ -65,6 +65,11 @@ public:
   // Those of a surface that is lit or not by the view's shadows alone, without lights.
   static unsigned ShadowFeatures(const DrawView& view);
 
+  // Those of a surface on which the view's maps throw no shadow.
+  static unsigned WithoutMaps(unsigned features) {
+    return features & ~(15u << CascadeShift) & ~unsigned(GroundMaps);
+  }
+
   // The feature of a lit surface's photometric model; 0: that of the default, or of Lambert.
   static unsigned ReflectanceFeature(const Reflectance& reflectance);
   // Sets its parameters in a program with this feature.
@@ -88,8 +93,11 @@ public:
   // Projection, lights and what else is the same for everything in one picture.
   void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view, int samples,
                bool firstLayer = false);
-  // The view's shadow maps (ShadowMaps), an OpenGL texture array.
-  void SetShadowMaps(unsigned int texture) { this->ShadowMaps_ = texture; }
+  // The view's shadow maps and their tiles (ShadowMaps), OpenGL texture arrays.
+  void SetShadowMaps(unsigned int maps, unsigned int tiles) {
+    this->ShadowMaps_ = maps;
+    this->ShadowTiles_ = tiles;
+  }
   void Release();
 
 private:
@@ -97,6 +105,7 @@ private:
 
   vtkDspaceHubWindow* Window_;
   unsigned int ShadowMaps_ = 0;
+  unsigned int ShadowTiles_ = 0;
   std::map<std::tuple<unsigned, const char*, const char*, std::string>, vtkShaderProgram*>
       Surfaces_;
   // By the code, which is kept, so that its address is not used again.

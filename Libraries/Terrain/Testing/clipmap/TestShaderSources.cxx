@@ -114,6 +114,13 @@ struct Programs {
                   {}, code, true);
       }
     }
+    // Shadows of ground on other things, in several maps.
+    for (const unsigned maps : {1u, 4u, 8u}) {
+      this->Add(name,
+                plain | Shaders::Lit | Shaders::GroundMaps | maps << Shaders::CascadeShift |
+                    1u << Shaders::LightShift,
+                {}, code, true);
+    }
     for (const unsigned more : {0u, unsigned(Shaders::Lit), unsigned(Shaders::Texture),
                                 Shaders::Lit | Shaders::Texture | Shaders::VertexColor}) {
       this->Add(name, plain | Shaders::Angles | more, {}, code, true);

@@ -47,6 +47,12 @@ Eigen::Matrix3d LightAxes(const Eigen::Vector3d& toSun) {
   return axes;
 }
 
+double CascadeFit::Reach(const Cascade& cascade) const {
+  constexpr double Texels = 7.0; // half the widest penumbra
+  return Texels * cascade.Texel(this->size) /
+         std::max(std::tan(std::min(this->sun.radius, 1.5)), 1e-9);
+}
+
 Eigen::Matrix4d CascadeFit::ClipFromView(const Cascade& cascade) const {
   Eigen::Matrix4d clip = Eigen::Matrix4d::Zero();
   for (const int axis : {0, 1}) {

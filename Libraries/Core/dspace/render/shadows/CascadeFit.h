@@ -39,11 +39,16 @@ struct CascadeFit {
   };
   SunPlace sun;
   int size = 0; // texels a side
-  // There are as many maps again, of what takes the shadows that it throws on itself from elsewhere
-  // (CustomDrawer::ShadowsItself).
+  // There are as many maps again, coarser, of what takes the shadows that it throws on itself from
+  // elsewhere (CustomDrawer::ShadowsItself), for all else.
   bool ground = false;
+  int GroundSize() const { return this->size / GroundsAcross; }
+  static constexpr int GroundsAcross = 4; // ground maps side by side in one of the others
   std::vector<Cascade> cascades;
 
+  // How far above a place [m] blockers are whose penumbra fills a map's filter: farther ones are
+  // the next map's (Shadow.glsl).
+  double Reach(const Cascade& cascade) const;
   // Clip from view coordinates of a map, reversed depth: 1 towards the Sun.
   Eigen::Matrix4d ClipFromView(const Cascade& cascade) const;
 };

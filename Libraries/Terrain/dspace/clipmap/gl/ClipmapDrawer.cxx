@@ -10,12 +10,12 @@
 #include "vtkOpenGLState.h"
 #include "vtkShaderProgram.h"
 
-#include <dspace/clipmap/ClipmapBlocks.h>
 #include <dspace/clipmap/ClipmapFocus.h>
 #include <dspace/render/Capture.h>
 #include <dspace/render/CustomDrawers.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/SurfaceShaders.h>
+#include <dspace/scene/Stretch.h>
 
 #include <dspace/clipmap/gl/ClipmapDrawing.h>
 #include <dspace/clipmap/gl/ClipmapShaders.h>
@@ -57,6 +57,23 @@ ClipmapViewVolume ViewVolumeOf(const ClipmapCamera& camera, const DrawView& view
   }
   sight.planes.emplace_back(clip.row(3) - clip.row(2)); // near; depth is reversed
   return sight;
+}
+
+// A block's bounds in view axes.
+LightHull HullOf(const ClipmapCamera& camera, const ClipmapBlocks::Bounds& bounds) {
+  LightHull hull;
+  for (const Eigen::Vector3d& point : bounds.points) {
+    hull.points.push_back(camera.X_VS * point);
+  }
+  hull.radius = bounds.radius * LargestStretch(camera.X_VS);
+  if (bounds.heights) { // the points come in pairs, low and high
+    const Eigen::Vector3d up = camera.X_VS.linear().col(2).normalized();
+    for (const int i : {0, 1}) {
+      Eigen::Vector4d& plane = (i == 0 ? hull.floor : hull.ceiling).emplace();
+      plane << up, -up.dot(hull.points[std::size_t(i)]);
+    }
+  }
+  return hull;
 }
 
 FocusView FocusViewOf(const ClipmapCamera& camera, const DrawView& view) {
@@ -306,6 +323,7 @@ void ClipmapDrawer::UpdateAbout(Chart& chart, const Eigen::Vector3d& p_S,
   }
   chart.state = chart.levels.Update(
       view, [&drawing, &chart](int level, const ClipmapUpdate& u, const ClipmapTexel* texels) {
+        chart.ranges.Changed(level);
         for (int i = 0; i < u.width * u.height; ++i) {
           if (texels[i].hole < 1.0f) {
             chart.heights[0] = std::min<double>(chart.heights[0], texels[i].height);
@@ -376,9 +394,51 @@ std::vector<Caption> ClipmapDrawer::Captions(const CustomDrawing& drawing,
                       chart.state);
 }
 
+ClipmapDrawer::Blocks ClipmapDrawer::BlocksIn(const ClipmapCamera& camera,
+                                              const DrawView& view) const {
+  Chart& chart = *this->Active_;
+  const ClipmapBlocks blocks(chart.levels, chart.placement, chart.heights, chart.ranges);
+  const ClipmapViewVolume sight = ViewVolumeOf(camera, view);
+  Blocks seen;
+  for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
+    seen.push_back(blocks.Seen(this->Indices_, sight, level, chart.state.finest));
+  }
+  return seen;
+}
+
+std::vector<LightHull> ClipmapDrawer::Hulls(const CustomDrawing& drawing) {
+  const ClipmapCamera camera(drawing.object.X_VO, this->Active_->placement);
+  std::vector<LightHull> hulls;
+  for (const auto& level : this->BlocksIn(camera, drawing.view)) {
+    for (const ClipmapBlocks::Block& block : level) {
+      hulls.push_back(HullOf(camera, block.bounds));
+    }
+  }
+  return hulls;
+}
+
 void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
+  const ClipmapCamera camera(drawing.object.X_VO, this->Active_->placement);
+  const Blocks blocks = this->BlocksIn(camera, drawing.view);
+  const DrawView& view = drawing.view;
+  const bool maps = (features & SurfaceShaders::Lit) != 0 && view.shadows && view.shadowTiles;
+  if (!maps || view.look.shadows.cascadeColors) {
+    this->DrawBlocks(drawing, features, camera, blocks, [](const auto&) { return true; });
+    return;
+  }
+  // Most ground is near no caster: its program reads no maps.
+  const auto shaded = [&](const ClipmapBlocks::Block& block) {
+    return MayBeShaded(*view.shadows, *view.shadowTiles, HullOf(camera, block.bounds));
+  };
+  this->DrawBlocks(drawing, features, camera, blocks, shaded);
+  this->DrawBlocks(drawing, SurfaceShaders::WithoutMaps(features), camera, blocks,
+                   [&](const ClipmapBlocks::Block& block) { return !shaded(block); });
+}
+
+void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, unsigned features,
+                               const ClipmapCamera& camera, const Blocks& blocks,
+                               const std::function<bool(const ClipmapBlocks::Block&)>& chosen) {
   const Chart& chart = *this->Active_;
-  const ClipmapCamera camera(drawing.object.X_VO, chart.placement);
   const bool labels = (features & SurfaceShaders::Label) != 0;
   const ClipmapStyle& style = this->Style_;
   const bool pole = chart.placement.GetKind() == PostPlacement::Kind::Pole;
@@ -456,8 +516,6 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     state->vtkglEnable(GL_CULL_FACE);
     state->vtkglCullFace(camera.mirrored > 0.0f ? GL_BACK : GL_FRONT);
   }
-  const ClipmapBlocks blocks(chart.levels, chart.placement, chart.heights);
-  const ClipmapViewVolume sight = ViewVolumeOf(camera, drawing.view);
   std::vector<GLsizei> counts;
   std::vector<const void*> firsts;
   glBindVertexArray(this->VertexArray_);
@@ -465,7 +523,7 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     counts.clear();
     firsts.clear();
     for (const ClipmapIndices::Run& run :
-         blocks.Seen(this->Indices_, sight, level, chart.state.finest)) {
+         ClipmapBlocks::Runs(blocks[std::size_t(level - chart.state.finest)], chosen)) {
       counts.push_back(GLsizei(run.count));
       firsts.push_back(reinterpret_cast<const void*>(run.first * sizeof(std::uint16_t)));
       drawing.statistics.trianglesDrawn += run.count / 3;

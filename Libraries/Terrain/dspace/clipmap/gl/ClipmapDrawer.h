@@ -3,9 +3,11 @@
 #define DSPACE_TERRAIN_CLIPMAPDRAWER_H
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
+#include <dspace/clipmap/ClipmapBlocks.h>
 #include <dspace/clipmap/ClipmapHorizon.h>
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
@@ -14,6 +16,8 @@
 #include <dspace/render/CustomDrawer.h>
 
 namespace dspace {
+
+struct ClipmapCamera;
 
 // One layer of a texture array holds a level's posts; each level is drawn as a ring around the next
 // finer one with indices that all levels share, in blocks that are left out where the view does not
@@ -27,6 +31,7 @@ public:
   bool Prepare(const CustomDrawing& drawing) override;
   double NearestDepth(const CustomDrawing& drawing) override;
   bool ShadowsItself(const CustomDrawing& drawing) override;
+  std::vector<LightHull> Hulls(const CustomDrawing& drawing) override;
   void DrawColor(const CustomDrawing& drawing) override;
   void DrawLabels(const CustomDrawing& drawing) override;
   bool DrawAngles(const CustomDrawing& drawing) override;
@@ -42,6 +47,7 @@ private:
     ClipmapLevels levels;
     ClipmapLevels::State state;
     std::array<double, 2> heights; // [m] that nothing that is drawn leaves; at first a guess
+    ClipmapRanges ranges;
     unsigned int texture = 0;
     std::unique_ptr<ClipmapHorizon> horizon; // null: no shadows yet
     unsigned int horizonTexture = 0;
@@ -61,6 +67,12 @@ private:
   bool PrepareHorizon(const CustomDrawing& drawing);
   std::size_t ActiveIndex() const; // of the terrain's charts
   void Draw(const CustomDrawing& drawing, unsigned features);
+  // Of each level, from the finest on.
+  using Blocks = std::vector<std::vector<ClipmapBlocks::Block>>;
+  Blocks BlocksIn(const ClipmapCamera& camera, const DrawView& view) const;
+  void DrawBlocks(const CustomDrawing& drawing, unsigned features, const ClipmapCamera& camera,
+                  const Blocks& blocks,
+                  const std::function<bool(const ClipmapBlocks::Block&)>& chosen);
 
   const ClipmapTerrain* Terrain_;
   ClipmapIndices Indices_;

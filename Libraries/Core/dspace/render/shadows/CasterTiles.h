@@ -1,0 +1,91 @@
+// Where a shadow map may hold casters.
+#ifndef DSPACE_RENDER_SHADOWS_CASTER_TILES_H
+#define DSPACE_RENDER_SHADOWS_CASTER_TILES_H
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <dspace/render/shadows/CascadeFit.h>
+
+namespace dspace {
+
+// Where something is, in view axes [m]: within `radius` of the hull of points (none: anywhere), and
+// above or below a plane. Planes: a unit normal, upwards, and the distance that n . p + d is 0 at.
+struct LightHull {
+  std::vector<Eigen::Vector3d> points;
+  double radius = 0.0;
+  std::optional<Eigen::Vector4d> floor;
+  std::optional<Eigen::Vector4d> ceiling;
+};
+
+// A coarse grid over one map. Each tile knows how high things reach towards the Sun that may be in
+// it, or up to Margin texels beside it, and how low. A place above all casters of its tile is lit
+// by this map, so that no texel need be read; texels without casters need be neither cleared nor
+// drawn; a caster below all that may take its shadow need not be drawn. Conservative: a tile may
+// hold nothing, but what is drawn has a tile.
+class CasterTiles {
+public:
+  static constexpr int Side = 64;            // tiles along each side of a map
+  static constexpr int Margin = 8;           // texels; the shader searches 7 beside a place
+  static constexpr float Nothing = -3.0e38f; // the top of a tile without casters
+  static constexpr float Everything = 3.0e38f;
+
+  CasterTiles(const CascadeFit& fit, const CascadeFit::Cascade& cascade);
+
+  void Add(const LightHull& hull);
+  // A box in its own axes, and where it stands in the view [m].
+  void AddBox(const Eigen::AlignedBox3d& box, const Eigen::Affine3d& X_VB);
+  void AddEverywhere(); // of what has no known bounds
+
+  // Whether casters of these tiles may throw shadows on the place.
+  bool Shade(const LightHull& place) const;
+  // Whether a caster may throw shadows on what is in these tiles and at least `above` [m] lower
+  // along the light.
+  bool TakeShadows(const LightHull& caster, double above) const;
+
+  // Row by row from the least V, each from the least U: the highest point along S, from the camera
+  // [m]; Nothing where nothing is.
+  const std::vector<float>& Tops() const { return this->Tops_; }
+  bool Empty() const;
+  // Texels [first, last) along U and V that hold everything and the margin about it, within the
+  // map: {first U, first V, last U, last V}. Zeros for an empty grid.
+  std::array<int, 4> Texels() const;
+
+private:
+  // Along U, V and S, and how S of its planes goes with U and V.
+  struct Extent {
+    Eigen::AlignedBox3d box;
+    std::optional<Eigen::Vector3d> floor; // S = x + y U + z V
+    std::optional<Eigen::Vector3d> ceiling;
+    std::vector<Eigen::Vector3d> sides; // outside where x U + y V > z for any
+  };
+  Extent ExtentOf(const LightHull& hull) const;
+  void Add(const Extent& extent);
+  // Of tiles, with `room` [m] beside the range: first U, first V, last U, last V, the last not
+  // among them; none: beside the map.
+  std::optional<std::array<int, 4>> TilesOf(const Eigen::AlignedBox3d& box, double room) const;
+  bool Beside(const Extent& extent, int i, int j, double room) const;
+  // The least (-1) or greatest (1) S of a plane over a tile and `room` [m] about it.
+  double Extreme(const Eigen::Vector3d& plane, int i, int j, double room, double sign) const;
+
+  Eigen::Matrix3d Axes_;   // rows U, V, S, from view axes
+  Eigen::Vector2d Corner_; // the map's least U and V [m]
+  double Texel_;           // [m]
+  double Tile_;            // [m]
+  int Size_;
+  std::vector<float> Tops_;
+  std::vector<float> Lows_;
+  std::array<int, 4> Tiles_ = {Side, Side, 0, 0}; // first and past the last that hold something
+};
+
+// Whether any map of the fit may hold blockers of the place. `tiles`: casters of the fit's
+// cascades.
+bool MayBeShaded(const CascadeFit& fit, const std::vector<CasterTiles>& tiles,
+                 const LightHull& place);
+
+} // namespace dspace
+
+#endif
