@@ -397,6 +397,21 @@ bool vtkDspaceViewport::Render() {
   return true;
 }
 
+std::vector<std::uint8_t> vtkDspaceViewport::GetPicture() {
+  if (this->Impl->picture.Texture() == 0) {
+    this->ForceRender();
+  }
+  return this->Impl->picture.Read();
+}
+
+unsigned int vtkDspaceViewport::GetTexture() const {
+  return this->Impl->picture.Texture();
+}
+
+void vtkDspaceViewport::MakeContextCurrent() {
+  this->Impl->context->GetHub()->MakeCurrent();
+}
+
 void vtkDspaceViewport::ForceRender() {
   this->IsOutdated(); // overlays as they are now
   this->Impl->DrawOwn(false);

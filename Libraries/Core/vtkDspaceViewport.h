@@ -17,7 +17,9 @@
 #include "vtkObject.h"
 
 #ifndef __VTK_WRAP__
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include <dspace/overlay/ColorBar.h>
 #include <dspace/overlay/Overlay.h>
@@ -97,6 +99,14 @@ public:
 
   /// Draws if something changed; returns whether it did. Nothing is done while hidden.
   bool Render();
+  /// The last picture: RGBA, rows from the top down, alpha 255. Draws the first one.
+  std::vector<std::uint8_t> GetPicture();
+  /// The same as an OpenGL texture of the render context, for widgets whose contexts share textures
+  /// with it: rows from the bottom up, display values, alpha undefined. 0: nothing was drawn yet.
+  /// Its name may be another after each Resize().
+  unsigned int GetTexture() const;
+  /// Makes the render context current in this thread.
+  void MakeContextCurrent();
   /// Draws even if nothing changed (benchmarks).
   void ForceRender();
   /// Throws Error(Internal) with the message of a pipeline of a prop that fails.

@@ -198,6 +198,10 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   trap.Check(object);
 }
 
+unsigned int ColorPicture::Texture() const {
+  return this->DisplayTarget_ ? this->DisplayTarget_->Color() : 0;
+}
+
 std::vector<std::uint8_t> ColorPicture::Read() const {
   this->Context_->GetHub()->MakeCurrent();
   std::vector<std::uint8_t> color = this->DisplayTarget_->ReadColor();

@@ -57,6 +57,7 @@ public:
   // The window's current framebuffer and renderers, as while the scene is drawn.
   void Activate(int width, int height, int samples);
 
+  unsigned int Texture() const;           // of what is shown; 0 before the first Draw()
   std::vector<std::uint8_t> Read() const; // RGBA, rows from the top down, alpha 255; after Draw()
 
 private:
