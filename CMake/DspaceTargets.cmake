@@ -115,14 +115,14 @@ endfunction()
 set(DSPACE_TEST_ENVIRONMENT
   "DISPLAY=;DSPACE_SHIPPED_DATA=${CMAKE_SOURCE_DIR}/Data;ASAN_OPTIONS=detect_leaks=0;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/Testing/cache")
 
-# dspace_tests(PROGRAM [GRAPHICS] SOURCES ... [HEADERS ...] [LIBS ...]): one GoogleTest program. ctest
+# dspace_tests(PROGRAM [GRAPHICS | WINDOWS] SOURCES ... [HEADERS ...] [LIBS ...]): one GoogleTest program. ctest
 # lists one test for each source Test*.cxx, by the source's name, and runs each in a process of its own.
 # GRAPHICS: the tests need an OpenGL context; they run without a display, and fail at errors that
-# OpenGL reports. HEADERS are precompiled.
+# OpenGL reports. WINDOWS: they need a display, and have one of their own. HEADERS are precompiled.
 # Tests find real data through DSPACE_DATA, and skip where it is absent; data that ship through
 # DSPACE_SHIPPED_DATA.
 function(dspace_tests program)
-  cmake_parse_arguments(arg "GRAPHICS" "" "SOURCES;HEADERS;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "GRAPHICS;WINDOWS" "" "SOURCES;HEADERS;LIBS" ${ARGN})
   if(NOT DSPACE_TESTS)
     return()
   endif()
@@ -138,9 +138,13 @@ function(dspace_tests program)
   target_compile_options(${program} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_precompile_headers(${program} PRIVATE <Eigen/Geometry> <gtest/gtest.h> ${arg_HEADERS})
   set(environment "${DSPACE_TEST_ENVIRONMENT}")
+  set(start)
   if(arg_GRAPHICS)
     set(label graphics)
     list(APPEND environment "DSPACE_OPENGL_DEBUG=1") # dspace/render/DebugOutput.h
+  elseif(arg_WINDOWS)
+    set(label windows)
+    set(start "${CMAKE_SOURCE_DIR}/Testing/Tools/with_display")
   else()
     set(label plain)
   endif()
@@ -160,13 +164,13 @@ function(dspace_tests program)
     endforeach()
     list(APPEND listed ${filter})
     string(REPLACE ";" ":" filter "${filter}")
-    add_test(NAME ${name} COMMAND ${program} "--gtest_filter=${filter}")
+    add_test(NAME ${name} COMMAND ${start} $<TARGET_FILE:${program}> "--gtest_filter=${filter}")
     set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600
       ENVIRONMENT "${environment}")
   endforeach()
   # No case is left out: without all that are listed above, none remains.
   string(REPLACE ";" ":" listed "${listed}")
-  add_test(NAME ${program}.listed COMMAND ${program} "--gtest_filter=-${listed}")
+  add_test(NAME ${program}.listed COMMAND ${start} $<TARGET_FILE:${program}> "--gtest_filter=-${listed}")
   set_tests_properties(${program}.listed PROPERTIES LABELS ${label} TIMEOUT 60
     ENVIRONMENT "${environment}" PASS_REGULAR_EXPRESSION "Running 0 tests")
 endfunction()

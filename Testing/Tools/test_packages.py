@@ -21,11 +21,11 @@ FOUND = {"assimp": "libassimp-dev", "Coin": "libcoin-dev", "console_bridge": "li
          "GEOGRAPHICLIB": "libgeographiclib-dev", "DSPACE_OIIO_INCLUDE": "libopenimageio-dev",
          "DSPACE_OIIO_LIBRARY": "libopenimageio-dev", "DSPACE_OIIO_UTIL_LIBRARY": "libopenimageio-dev",
          "DSPACE_IMATH_INCLUDE": "libimath-dev", "TinyGLTF": "libtinygltf-dev",
-         "DSPACE_TINYXML_LIBRARY": "libtinyxml-dev"}
+         "DSPACE_TINYXML_LIBRARY": "libtinyxml-dev", "Qt6": "qt6-base-dev"}
 OPTIONAL = {"DSPACE_CCACHE"}  # used where it is installed
 PROGRAMS = {"ffmpeg": "ffmpeg", "ffprobe": "ffmpeg", "openssl": "openssl", "ruby": "ruby-grpc",
             "protoc": "protobuf-compiler", "clang-format": "clang-format", "clang-tidy": "clang-tidy", "git": "git",
-            "Xvfb": "xvfb", "glslangValidator": "glslang-tools"}
+            "Xvfb": "xvfb", "xauth": "xauth", "openbox": "openbox", "glslangValidator": "glslang-tools"}
 
 
 def listed(*kinds):
@@ -74,7 +74,7 @@ def test_found_packages():
             assert not unknown, f"{path.relative_to(ROOT)} looks for {unknown}: which package brings it?"
             names |= found
     assert set(FOUND) - names == set(), "the table names what nothing looks for"
-    assert {FOUND[name] for name in names} <= listed("build", "test", "bench")
+    assert {FOUND[name] for name in names} <= listed("build", "app", "test", "bench")
 
 
 def programs(path):
@@ -111,5 +111,5 @@ def test_packages_whose_lack_tests_report():
 
 def test_lists_hold_existing_kinds_only():
     done = subprocess.run([ROOT / "dspace", "setup", "--list", "demo"], capture_output=True, text=True)
-    assert done.returncode == 2 and "there are no packages for 'demo'; accepted: build run extra test bench lint" in (
+    assert done.returncode == 2 and "there are no packages for 'demo'; accepted: build run extra app test bench lint" in (
         done.stderr)
