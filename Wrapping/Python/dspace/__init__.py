@@ -44,6 +44,7 @@ _HOMES = {
     "Session": "clients.session", "RemoteSession": "links.remote", "connect": "links.remote",
     "Geodesy": "terrain.geodesy", "Terrain": "terrain.terrain", "TerrainLayer": "terrain.layers",
     "Watcher": "links.watching", "watch": "links.watching",
+    "process_events": "clients.windows", "run": "clients.windows",
 }
 
 __all__ = sorted(_HOMES)

@@ -8,6 +8,7 @@ from dspace._core.traits import scene_name
 from dspace._core.wire import encode
 from dspace.clients.listeners import EventQueue, FrameListeners
 from dspace.clients.pipelines import Pipelines
+from dspace.clients.windows import ViewWindows
 from dspace.errors import Closed, WrongThread
 from dspace.scene.inputs import ViewportInputs
 
@@ -22,6 +23,7 @@ class LocalClient:
         self.frame_listeners = FrameListeners()
         self.events = EventQueue()
         self.inputs = ViewportInputs()
+        self.windows = ViewWindows(self)
         self.recording = None  # the latest one
         self.pipelines = Pipelines()
         self.telemetry = {}  # by scene: {name: (id, kind)} of the known channels
@@ -50,16 +52,18 @@ class LocalClient:
         raised, and the change stays made."""
         if self.pipelines:
             self.pipelines.before(command)
-        return self._finish(command, self._carry(command))
+        return self.finish(command, self._carry(command))
 
     def _carry(self, command):
         return to_reply(self.local().Execute(encode(command)))
 
-    def _finish(self, command, reply):
+    def finish(self, command, reply):
+        """What is to do after a command: raises the reply's error, warns, and calls the callbacks that it concerns."""
         if reply.HasField("error"):
             raise make_error(reply.error)
         if command.HasField("remove_viewport"):
             self.inputs.forget(command.remove_viewport.viewport)
+            self.windows.close(command.remove_viewport.viewport)
         if command.HasField("remove_scene"):
             self.telemetry.pop(scene_name(command), None)
         listeners = self.frame_listeners
@@ -86,6 +90,7 @@ class LocalClient:
     def close(self):
         if self.vtk is not None:
             self._require_thread()
+            self.windows.end(self.vtk)
         self._background()
         self.vtk = None
         self.pipelines.clear()

@@ -94,8 +94,8 @@ class RemoteClient(LocalClient):
             command.list_scenes.SetInParent()
             link.Begin(encode(command), True)
             last = self._take(link, True, end)
-            self._finish(pb.Command(), sent)
-            self._finish(command, last)
+            self.finish(pb.Command(), sent)
+            self.finish(command, last)
 
     def broken(self):
         """Whether the connection is broken and cannot be restored."""
@@ -123,7 +123,7 @@ class RemoteClient(LocalClient):
     def flush(self):
         link = self._open()
         link.BeginFlush()
-        self._finish(pb.Command(), self._take(link))
+        self.finish(pb.Command(), self._take(link))
 
     def close(self):
         if self.link is not None:

@@ -362,6 +362,28 @@ class Viewport(ViewportLook):
         """The same for each click without a drag, of any button, with what it hit (Input.pick)."""
         self._client.inputs.add(self._name, "click", callback)
 
+    def show(self, title=None, size=None):
+        """Opens a window with this viewport, or raises the one that shows it.
+
+            view.show()
+            dspace.run()
+
+        title: of the window; default: the viewport's name. size: of the picture on the screen, (width, height);
+        default: the viewport's, which from now on follows the window. Mouse and keyboard move the camera as event()
+        does, and reach the callbacks of on_key and on_click. Nothing happens in the window until dspace.run() or, in a
+        loop of one's own, dspace.process_events(). Raises dspace.Unsupported in a build without Qt, dspace.Resource
+        without a display."""
+        self._client.windows.show(self, title, size)
+
+    def close(self):
+        """Closes the window that show() opened. The viewport stays."""
+        self._client.windows.close(self._name)
+
+    @property
+    def shown(self):
+        """Whether a window that show() opened is on the screen."""
+        return self._client.windows.shows(self._name)
+
     def remove(self):
         self._do("remove_viewport")
 
