@@ -4,12 +4,12 @@
 
 #include <memory>
 
-#include <QApplication>
 #include <QDockWidget>
 #include <QElapsedTimer>
 #include <QMainWindow>
 #include <QtTest>
 
+#include "OneApplication.h"
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"
 #include "vtkNew.h"
@@ -25,23 +25,6 @@ using dspace::widgets::ViewportInput;
 using dspace::widgets::ViewportWidget;
 
 namespace {
-
-// One application for all tests, which ends before the process's static objects do.
-class OneApplication : public ::testing::Environment {
-public:
-  void SetUp() override {
-    dspace::widgets::PrepareApplication();
-    this->Application_ = std::make_unique<QApplication>(this->Count_, this->Arguments_);
-  }
-  void TearDown() override { this->Application_.reset(); }
-
-private:
-  int Count_ = 1;
-  char Name_[5] = "test";
-  char* Arguments_[2] = {Name_, nullptr};
-  std::unique_ptr<QApplication> Application_;
-};
-const auto* const TheApplication = ::testing::AddGlobalTestEnvironment(new OneApplication);
 
 struct WidgetTest : ::testing::TestWithParam<bool> {
   vtkNew<vtkDspaceRenderContext> context;

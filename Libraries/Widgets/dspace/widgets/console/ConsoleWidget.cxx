@@ -1,0 +1,162 @@
+#include <dspace/widgets/console/ConsoleWidget.h>
+
+#include <algorithm>
+
+#include <QFontDatabase>
+#include <QHBoxLayout>
+#include <QKeyEvent>
+#include <QLineEdit>
+#include <QPlainTextEdit>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <dspace/widgets/console/PythonInterpreter.h>
+
+namespace dspace::widgets {
+namespace {
+
+constexpr int MostLines = 20000; // kept of the output
+
+// The start that all of the words share.
+QString CommonStart(const QStringList& words) {
+  QString start = words.isEmpty() ? QString() : words.front();
+  for (const QString& word : words) {
+    while (!word.startsWith(start)) {
+      start.chop(1);
+    }
+  }
+  return start;
+}
+
+} // namespace
+
+ConsoleWidget::ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent)
+    : QWidget(parent), Interpreter_(interpreter), Output_(new QPlainTextEdit(this)),
+      Line_(new QLineEdit(this)), Prompt_(new QToolButton(this)) {
+  const QFont font = QFontDatabase::systemFont(QFontDatabase::FixedFont);
+  this->Output_->setFont(font);
+  this->Output_->setReadOnly(true);
+  this->Output_->setMaximumBlockCount(MostLines);
+  this->Output_->setLineWrapMode(QPlainTextEdit::WidgetWidth);
+  this->Line_->setFont(font);
+  this->Line_->setPlaceholderText(tr("Python: session, scene, app, dspace"));
+  this->Line_->setToolTip(tr("Return runs the line, Up and Down recall, Tab completes"));
+  this->Line_->installEventFilter(this);
+  this->Prompt_->setFont(font);
+  this->Prompt_->setText(QStringLiteral(">>>"));
+  this->Prompt_->setAutoRaise(true);
+  this->Prompt_->setFocusPolicy(Qt::NoFocus);
+  this->Prompt_->setToolTip(tr("Run the line"));
+  auto* row = new QHBoxLayout;
+  row->addWidget(this->Prompt_);
+  row->addWidget(this->Line_);
+  auto* all = new QVBoxLayout(this);
+  all->setContentsMargins(4, 4, 4, 4);
+  all->addWidget(this->Output_);
+  all->addLayout(row);
+  this->setFocusProxy(this->Line_);
+  connect(this->Prompt_, &QToolButton::clicked, this, &ConsoleWidget::Enter);
+  connect(this->Line_, &QLineEdit::returnPressed, this, &ConsoleWidget::Enter);
+  connect(interpreter, &PythonInterpreter::written, this, [this](const QString& text, bool error) {
+    this->Append(text, error ? QStringLiteral("#c0392b") : QString());
+  });
+}
+
+void ConsoleWidget::Append(const QString& text, const QString& color) {
+  QTextCursor cursor = this->Output_->textCursor();
+  cursor.movePosition(QTextCursor::End);
+  QTextCharFormat format;
+  if (!color.isEmpty()) {
+    format.setForeground(QColor(color));
+  }
+  cursor.insertText(text, format);
+  this->Output_->setTextCursor(cursor);
+  this->Output_->ensureCursorVisible();
+}
+
+bool ConsoleWidget::Run(const QString& source) {
+  const QStringList lines = source.split('\n');
+  for (int i = 0; i < lines.size(); ++i) {
+    this->Append((i == 0 ? ">>> " : "... ") + lines[i] + "\n", QStringLiteral("#2e86c1"));
+  }
+  this->Script_ << source;
+  return this->Interpreter_->Run(source);
+}
+
+QString ConsoleWidget::Script() const {
+  return this->Script_.isEmpty() ? QString() : this->Script_.join('\n') + '\n';
+}
+
+void ConsoleWidget::Enter() {
+  const QString line = this->Line_->text();
+  this->Line_->clear();
+  this->Append((this->Pending_.isEmpty() ? ">>> " : "... ") + line + "\n",
+               QStringLiteral("#2e86c1"));
+  if (!line.trimmed().isEmpty() && (this->History_.isEmpty() || this->History_.back() != line)) {
+    this->History_ << line;
+  }
+  this->Recalled_ = 0;
+  const QString source = this->Pending_.isEmpty() ? line : this->Pending_ + '\n' + line;
+  const bool more = this->Interpreter_->Push(source);
+  this->Pending_ = more ? source : QString();
+  if (!more && !source.trimmed().isEmpty()) {
+    this->Script_ << source;
+  }
+  this->Prompt_->setText(more ? QStringLiteral("...") : QStringLiteral(">>>"));
+}
+
+void ConsoleWidget::Recall(int step) {
+  const int recalled = std::clamp(this->Recalled_ + step, 0, int(this->History_.size()));
+  if (recalled != this->Recalled_) {
+    this->Recalled_ = recalled;
+    this->Line_->setText(recalled == 0 ? QString()
+                                       : this->History_[this->History_.size() - recalled]);
+  }
+}
+
+void ConsoleWidget::Complete() {
+  const QString line = this->Line_->text().left(this->Line_->cursorPosition());
+  const QStringList found = this->Interpreter_->Complete(line);
+  if (found.isEmpty()) {
+    return;
+  }
+  const QString common = CommonStart(found);
+  // The word at the end of the line that the names begin with.
+  int length = std::min(line.size(), common.size());
+  while (length > 0 && !common.startsWith(line.right(length))) {
+    --length;
+  }
+  this->Line_->insert(common.mid(length));
+  if (found.size() > 1) {
+    QStringList shown = found.mid(0, 60);
+    if (found.size() > shown.size()) {
+      shown << tr("... %1 more").arg(found.size() - shown.size());
+    }
+    this->Append(shown.join(QStringLiteral("   ")) + "\n", QStringLiteral("#7f8c8d"));
+  }
+}
+
+bool ConsoleWidget::eventFilter(QObject* object, QEvent* event) {
+  if (object == this->Line_ && event->type() == QEvent::KeyPress) {
+    const auto* key = static_cast<QKeyEvent*>(event);
+    switch (key->key()) {
+    case Qt::Key_Up:
+      this->Recall(1);
+      return true;
+    case Qt::Key_Down:
+      this->Recall(-1);
+      return true;
+    case Qt::Key_Tab:
+      if (this->Line_->text().trimmed().isEmpty()) {
+        return false; // to the next widget
+      }
+      this->Complete();
+      return true;
+    default:
+      break;
+    }
+  }
+  return QWidget::eventFilter(object, event);
+}
+
+} // namespace dspace::widgets

@@ -1,0 +1,50 @@
+// A Python prompt.
+#ifndef DSPACE_WIDGETS_CONSOLE_WIDGET_H
+#define DSPACE_WIDGETS_CONSOLE_WIDGET_H
+
+#include <QStringList>
+#include <QWidget>
+
+class QLineEdit;
+class QPlainTextEdit;
+class QToolButton;
+
+namespace dspace::widgets {
+
+class PythonInterpreter;
+
+// What was typed and printed, and a line to type in: Return runs it, Up and Down bring back earlier
+// lines, Tab completes a name. Lines that menus run are shown as if they were typed.
+class ConsoleWidget : public QWidget {
+  Q_OBJECT
+
+public:
+  explicit ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent = nullptr);
+
+  // Shows the lines and runs them; false: they raised.
+  bool Run(const QString& source);
+  // All lines that were run, as a script.
+  QString Script() const;
+
+protected:
+  bool eventFilter(QObject* object, QEvent* event) override;
+
+private:
+  void Enter();
+  void Recall(int step);
+  void Complete();
+  void Append(const QString& text, const QString& color);
+
+  PythonInterpreter* Interpreter_;
+  QPlainTextEdit* Output_;
+  QLineEdit* Line_;
+  QToolButton* Prompt_;
+  QStringList History_;
+  QStringList Script_;
+  QString Pending_;  // lines of a compound statement
+  int Recalled_ = 0; // lines back in the history
+};
+
+} // namespace dspace::widgets
+
+#endif

@@ -1,0 +1,60 @@
+// Python in the process of an application.
+#ifndef DSPACE_WIDGETS_PYTHON_INTERPRETER_H
+#define DSPACE_WIDGETS_PYTHON_INTERPRETER_H
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <QObject>
+#include <QStringList>
+
+class vtkDspaceSession;
+
+namespace dspace::widgets {
+
+// What Python's `app` (dspace.application.App) asks of the program's windows. All of it is called
+// in the thread of the interpreter; what it throws becomes an exception in Python.
+struct PythonHost {
+  std::function<void(vtkDspaceSession*, const std::string& viewport, const std::string& title)>
+      show;
+  std::function<void(vtkDspaceSession*, const std::string& viewport)> close;
+  std::function<void(const std::string&)> message;
+};
+
+// CPython with `dspace`, `session` (of the given vtkDspaceSession), `scene` and `app` in its name
+// space. One a process, in one thread; other Python threads run between its calls.
+class PythonInterpreter : public QObject {
+  Q_OBJECT
+
+public:
+  // `packages`: the folder that holds the dspace package. Throws std::runtime_error with Python's
+  // error if the package cannot be imported.
+  PythonInterpreter(vtkDspaceSession* session, PythonHost host, const QString& packages,
+                    QObject* parent = nullptr);
+  ~PythonInterpreter() override;
+
+  // A line, or the lines so far of a compound statement. True: more lines are needed. What it
+  // prints and what it raises come by written().
+  bool Push(const QString& source);
+  // A whole script, or a file; false: it raised.
+  bool Run(const QString& source, const QString& name = QStringLiteral("<menu>"));
+  bool RunFile(const QString& path);
+  // The names that may stand for the word at the end of the line.
+  QStringList Complete(const QString& line);
+  // Raises KeyboardInterrupt in what runs.
+  static void Interrupt();
+  // Tells Python what a viewport's session replied to an event (ConnectToSession).
+  void Tell(const std::string& viewport, const std::string& event, const std::string& reply);
+
+signals:
+  void written(const QString& text, bool error);
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> Impl_;
+};
+
+} // namespace dspace::widgets
+
+#endif

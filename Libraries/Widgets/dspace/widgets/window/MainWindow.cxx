@@ -1,0 +1,371 @@
+#include <dspace/widgets/window/MainWindow.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <QAction>
+#include <QApplication>
+#include <QCloseEvent>
+#include <QDockWidget>
+#include <QDropEvent>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QSaveFile>
+#include <QSettings>
+#include <QSpinBox>
+#include <QStatusBar>
+#include <QTimer>
+#include <QToolButton>
+
+#include "vtkDspaceRenderContext.h"
+#include "vtkDspaceSession.h"
+#include "vtkDspaceViewport.h"
+#include "vtkNew.h"
+
+#include <dspace/scene/ViewLook.h>
+#include <dspace/widgets/console/ConsoleWidget.h>
+#include <dspace/widgets/console/PythonInterpreter.h>
+#include <dspace/widgets/viewport/QtContext.h>
+#include <dspace/widgets/viewport/SessionInput.h>
+#include <dspace/widgets/viewport/ViewportWidget.h>
+
+namespace dspace::widgets {
+namespace {
+
+constexpr int MostRecent = 10;
+const char* const RecentKey = "recentFiles";
+
+// A text as Python writes it.
+QString Quoted(const QString& text) {
+  QString quoted = text;
+  quoted.replace('\\', QStringLiteral("\\\\")).replace('"', QStringLiteral("\\\""));
+  quoted.replace('\n', QStringLiteral("\\n"));
+  return '"' + quoted + '"';
+}
+
+const char* const Keys =
+    "<table cellspacing=6>"
+    "<tr><td><b>Left drag</b></td><td>orbits about the point under the pointer</td></tr>"
+    "<tr><td><b>Middle drag, Shift+left drag</b></td><td>pans</td></tr>"
+    "<tr><td><b>Wheel, right drag</b></td><td>moves towards the point under the pointer</td></tr>"
+    "<tr><td><b>Arrows, + and -</b></td><td>orbit, move nearer and farther</td></tr>"
+    "<tr><td><b>F</b></td><td>shows everything</td></tr>"
+    "<tr><td><b>R</b></td><td>returns to the first view</td></tr>"
+    "<tr><td><b>Ctrl+O</b></td><td>opens files</td></tr>"
+    "<tr><td><b>Ctrl+T</b></td><td>tiles the views</td></tr>"
+    "<tr><td><b>F1</b></td><td>shows this table</td></tr></table>";
+
+} // namespace
+
+MainWindow::MainWindow(const QString& packages)
+    : Session_(vtkSmartPointer<vtkDspaceSession>::New()) {
+  vtkNew<vtkDspaceRenderContext> context;
+  context->Initialize(MakeQtContext()); // before anything is drawn: widgets share its textures
+  this->Session_->SetRenderContext(context);
+  this->setWindowTitle(QStringLiteral("DspaceQt"));
+  this->resize(1280, 800);
+  this->setAcceptDrops(true);
+  this->setDockNestingEnabled(true);
+  this->setDockOptions(QMainWindow::AnimatedDocks | QMainWindow::AllowNestedDocks |
+                       QMainWindow::AllowTabbedDocks);
+  PythonHost host;
+  host.show = [this](vtkDspaceSession* session, const std::string& name, const std::string& title) {
+    this->ShowView(session, name, title);
+  };
+  host.close = [this](vtkDspaceSession* session, const std::string& name) {
+    this->CloseView(session, name);
+  };
+  host.message = [this](const std::string& text) { this->Report(QString::fromStdString(text)); };
+  this->Interpreter_ = std::make_unique<PythonInterpreter>(this->Session_, host, packages);
+  this->Console_ = new ConsoleWidget(this->Interpreter_.get(), this);
+  this->ConsoleDock_ = new QDockWidget(tr("Python"), this);
+  this->ConsoleDock_->setObjectName(QStringLiteral("console"));
+  this->ConsoleDock_->setWidget(this->Console_);
+  this->addDockWidget(Qt::BottomDockWidgetArea, this->ConsoleDock_);
+  this->MakeMenus();
+  this->statusBar()->showMessage(
+      tr("Open or drop a model, a raster of heights, a robot, a recording or a Python script"));
+}
+
+MainWindow::~MainWindow() {
+  for (auto& [key, view] : this->Views_) {
+    delete view.dock.data();
+  }
+  this->Views_.clear();
+  delete this->ConsoleDock_;
+  this->Interpreter_.reset(); // ends what Python has of the session
+}
+
+void MainWindow::MakeMenus() {
+  QMenu* file = this->menuBar()->addMenu(tr("&File"));
+  file->addAction(tr("&Open..."), QKeySequence::Open, this, [this] { this->ChooseFiles(); });
+  this->Recent_ = file->addMenu(tr("Open &recent"));
+  this->FillRecent();
+  file->addAction(tr("&Demo scene"), this, [this] { this->Run(QStringLiteral("app.demo()")); });
+  file->addSeparator();
+  file->addAction(tr("Save &picture..."), this, [this] { this->SavePicture(); });
+  file->addAction(tr("Save as &script..."), this, [this] { this->SaveScript(); });
+  file->addSeparator();
+  file->addAction(tr("&Quit"), QKeySequence::Quit, this, [this] { this->close(); });
+  QMenu* view = this->menuBar()->addMenu(tr("&View"));
+  view->addAction(tr("&New view"), QKeySequence(Qt::CTRL | Qt::Key_N), this,
+                  [this] { this->Run(QStringLiteral("app.new_view()")); });
+  view->addAction(tr("&Tile views"), QKeySequence(Qt::CTRL | Qt::Key_T), this,
+                  [this] { this->Tile(); });
+  view->addSeparator();
+  view->addAction(this->ConsoleDock_->toggleViewAction());
+  QMenu* help = this->menuBar()->addMenu(tr("&Help"));
+  help->addAction(tr("&Keys"), QKeySequence::HelpContents, this,
+                  [this] { QMessageBox::information(this, tr("Keys"), tr(Keys)); });
+  help->addAction(tr("&About"), this, [this] {
+    vtkDspaceRenderContext* context = this->Session_->GetRenderContext();
+    QMessageBox::about(this, tr("About DspaceQt"),
+                       tr("<b>DspaceQt</b><br>3D visualization and measurement for spacecraft and "
+                          "rover simulations.<p>Qt %1<br>OpenGL %2<br>%3")
+                           .arg(qVersion(), QString::fromStdString(context->GetVersion()),
+                                QString::fromStdString(context->GetRendererName())));
+  });
+}
+
+bool MainWindow::Run(const QString& python) {
+  const bool done = this->Console_->Run(python);
+  if (!done) {
+    this->Report(tr("Failed: %1 (see the Python dock)").arg(python));
+  }
+  return done;
+}
+
+bool MainWindow::Open(const QString& path) {
+  const QString full = QFileInfo(path).absoluteFilePath();
+  if (!this->Run(QStringLiteral("app.open(%1)").arg(Quoted(full)))) {
+    return false;
+  }
+  this->AddRecent(full);
+  this->Report(tr("Opened %1").arg(full));
+  return true;
+}
+
+void MainWindow::ChooseFiles() {
+  const QStringList paths = QFileDialog::getOpenFileNames(
+      this, tr("Open"), QString(),
+      tr("All that Dspace opens (*.glb *.gltf *.wrl *.wrl.gz *.iv *.obj *.stl *.ply *.urdf *.json "
+         "*.tif *.tiff *.img *.lbl *.cub *.vrt *.asc *.dspace *.py);;All files (*)"));
+  for (const QString& path : paths) {
+    this->Open(path);
+  }
+}
+
+void MainWindow::AddRecent(const QString& path) {
+  QSettings settings;
+  QStringList paths = settings.value(RecentKey).toStringList();
+  paths.removeAll(path);
+  paths.prepend(path);
+  settings.setValue(RecentKey, paths.mid(0, MostRecent));
+  this->FillRecent();
+}
+
+void MainWindow::FillRecent() {
+  this->Recent_->clear();
+  for (const QString& path : QSettings().value(RecentKey).toStringList()) {
+    this->Recent_->addAction(path, this, [this, path] { this->Open(path); });
+  }
+  this->Recent_->setEnabled(!this->Recent_->isEmpty());
+}
+
+void MainWindow::SaveScript() {
+  const QString path =
+      QFileDialog::getSaveFileName(this, tr("Save as script"), QString(), tr("Python (*.py)"));
+  if (path.isEmpty()) {
+    return;
+  }
+  QSaveFile file(path); // the old one stays until all is written
+  const QByteArray script = this->Console_->Script().toUtf8();
+  if (!file.open(QIODevice::WriteOnly) || file.write(script) != script.size() || !file.commit()) {
+    this->Report(tr("%1: %2").arg(path, file.errorString()));
+    return;
+  }
+  this->Report(tr("Saved %1").arg(path));
+}
+
+void MainWindow::SavePicture() {
+  if (this->Views_.empty()) {
+    this->Report(tr("There is no view to save"));
+    return;
+  }
+  const QString path =
+      QFileDialog::getSaveFileName(this, tr("Save picture"), QString(), tr("PNG (*.png)"));
+  if (!path.isEmpty()) {
+    this->Run(QStringLiteral("app.view.save(%1)").arg(Quoted(path)));
+  }
+}
+
+void MainWindow::Report(const QString& text) {
+  this->statusBar()->showMessage(text);
+}
+
+QWidget* MainWindow::ToolsOf(vtkDspaceSession* session, const std::string& viewport) {
+  // Of other sessions, such as a recording's, `app.sessions` has the views.
+  const QString view =
+      QStringLiteral("app.views[%1]").arg(Quoted(QString::fromStdString(viewport)));
+  const vtkDspaceViewport* shown = session->GetViewport(viewport);
+  auto* tools = new QWidget;
+  auto* row = new QHBoxLayout(tools);
+  row->setContentsMargins(4, 2, 4, 2);
+  row->addWidget(new QLabel(QString::fromStdString(viewport), tools));
+  row->addStretch();
+  const auto toggle = [&](const QString& text, const QString& tip, bool on, const QString& field) {
+    auto* button = new QToolButton(tools);
+    button->setText(text);
+    button->setToolTip(tip);
+    button->setCheckable(true);
+    button->setChecked(on);
+    connect(button, &QToolButton::toggled, this, [this, view, field](bool checked) {
+      this->Run(QStringLiteral("%1.%2 = %3")
+                    .arg(view, field, checked ? QStringLiteral("True") : QStringLiteral("False")));
+    });
+    row->addWidget(button);
+  };
+  toggle(tr("Shadows"), tr("Shadows of the Sun"), shown->GetLook().shadows.shown,
+         QStringLiteral("shadows"));
+  toggle(tr("Ornaments"), tr("Ornamental objects: labels, trails, axes"), true,
+         QStringLiteral("ornaments"));
+  auto* samples = new QSpinBox(tools);
+  samples->setRange(1, 8);
+  samples->setValue(shown->GetSamples());
+  samples->setPrefix(tr("Samples "));
+  samples->setToolTip(tr("Samples a pixel along each side; one while the camera moves"));
+  connect(samples, &QSpinBox::valueChanged, this, [this, view](int value) {
+    this->Run(QStringLiteral("%1.samples = %2").arg(view).arg(value));
+  });
+  row->addWidget(samples);
+  auto* whole = new QToolButton(tools);
+  whole->setText(tr("Fit"));
+  whole->setToolTip(tr("Shows everything, without turning the camera"));
+  connect(whole, &QToolButton::clicked, this,
+          [this, view] { this->Run(QStringLiteral("%1.fit()").arg(view)); });
+  row->addWidget(whole);
+  auto* floating = new QToolButton(tools);
+  floating->setText(tr("Float"));
+  floating->setToolTip(tr("A window of its own, or back"));
+  connect(floating, &QToolButton::clicked, tools, [tools] {
+    for (QWidget* parent = tools->parentWidget(); parent; parent = parent->parentWidget()) {
+      if (auto* dock = qobject_cast<QDockWidget*>(parent)) {
+        dock->setFloating(!dock->isFloating());
+        return;
+      }
+    }
+  });
+  row->addWidget(floating);
+  return tools;
+}
+
+void MainWindow::ShowView(vtkDspaceSession* session, const std::string& viewport,
+                          const std::string& title) {
+  vtkDspaceViewport* shown = session->GetViewport(viewport);
+  if (!shown) {
+    throw std::runtime_error("there is no viewport '" + viewport + "'");
+  }
+  View_t& view = this->Views_[{session, viewport}];
+  if (view.dock) {
+    view.dock->show();
+    view.dock->raise();
+    return;
+  }
+  auto* dock = new QDockWidget(QString::fromStdString(title), this);
+  dock->setObjectName(QStringLiteral("view ") + QString::fromStdString(viewport));
+  auto* widget = new ViewportWidget(shown, dock);
+  ConnectToSession(*widget, session, viewport,
+                   [this, viewport](const std::string& event, const std::string& reply) {
+                     this->Interpreter_->Tell(viewport, event, reply);
+                   });
+  connect(widget, &ViewportWidget::failed, this,
+          [this](const QString& message) { this->Report(message); });
+  dock->setTitleBarWidget(this->ToolsOf(session, viewport));
+  dock->setWidget(widget);
+  view = {dock, widget};
+  this->addDockWidget(Qt::TopDockWidgetArea, dock);
+  this->Tile();
+  if (this->Views_.size() == 1) { // the views get the room: the prompt had all of it
+    QTimer::singleShot(0, this, [this] {
+      this->resizeDocks({this->ConsoleDock_}, {this->height() / 5}, Qt::Vertical);
+    });
+  }
+}
+
+void MainWindow::CloseView(vtkDspaceSession* session, const std::string& viewport) {
+  const auto found = this->Views_.find({session, viewport});
+  if (found != this->Views_.end()) {
+    delete found->second.dock.data();
+    this->Views_.erase(found);
+  }
+}
+
+ViewportWidget* MainWindow::View(const std::string& viewport) const {
+  for (const auto& [key, view] : this->Views_) {
+    if (key.second == viewport && view.widget) {
+      return view.widget;
+    }
+  }
+  return nullptr;
+}
+
+int MainWindow::ViewCount() const {
+  return int(std::count_if(this->Views_.begin(), this->Views_.end(),
+                           [](const auto& entry) { return !entry.second.dock.isNull(); }));
+}
+
+bool MainWindow::IsSettled() const {
+  return std::all_of(this->Views_.begin(), this->Views_.end(), [](const auto& entry) {
+    ViewportWidget* widget = entry.second.widget;
+    return !widget || !widget->isVisible() ||
+           (widget->ShownPictures() > 0 && !widget->GetViewport()->IsOutdated());
+  });
+}
+
+void MainWindow::Tile() {
+  std::vector<QDockWidget*> docks;
+  for (const auto& [key, view] : this->Views_) {
+    if (view.dock && view.dock->isVisibleTo(this) && !view.dock->isFloating()) {
+      docks.push_back(view.dock);
+    }
+  }
+  if (docks.empty()) {
+    return;
+  }
+  const auto columns = std::size_t(std::ceil(std::sqrt(double(docks.size()))));
+  for (std::size_t i = 0; i < docks.size(); ++i) {
+    if (i == 0) {
+      this->addDockWidget(Qt::TopDockWidgetArea, docks[i]);
+    } else if (i < columns) { // the first row, and then below it
+      this->splitDockWidget(docks[i - 1], docks[i], Qt::Horizontal);
+    } else {
+      this->splitDockWidget(docks[i - columns], docks[i], Qt::Vertical);
+    }
+  }
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  event->accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  if (event->mimeData()->hasUrls()) {
+    event->acceptProposedAction();
+  }
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  for (const QUrl& url : event->mimeData()->urls()) {
+    if (url.isLocalFile()) {
+      this->Open(url.toLocalFile());
+    }
+  }
+}
+
+} // namespace dspace::widgets

@@ -1,0 +1,81 @@
+// The window of DspaceQt: viewports in docks, a Python prompt, menus.
+#ifndef DSPACE_WIDGETS_MAIN_WINDOW_H
+#define DSPACE_WIDGETS_MAIN_WINDOW_H
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <QMainWindow>
+#include <QPointer>
+
+#include "vtkSmartPointer.h"
+
+class QDockWidget;
+class vtkDspaceSession;
+
+namespace dspace::widgets {
+
+class ConsoleWidget;
+class PythonInterpreter;
+class ViewportWidget;
+
+// Each action is a line of Python that the prompt shows and runs, so that "Save as script" writes
+// what was done. Files are opened from the menu, by drag and drop, or by Open().
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+
+public:
+  // `packages`: the folder with the Python package dspace. Throws std::runtime_error if Python does
+  // not start, dspace::Error(Resource) if OpenGL is too old.
+  explicit MainWindow(const QString& packages);
+  ~MainWindow() override;
+
+  // A model, raster, robot, recording or Python script; false: it could not be opened, which is
+  // shown.
+  bool Open(const QString& path);
+  bool Run(const QString& python);
+  ConsoleWidget* Console() const { return this->Console_; }
+  PythonInterpreter* Interpreter() const { return this->Interpreter_.get(); }
+  // The widget of a viewport; null: it is not shown.
+  ViewportWidget* View(const std::string& viewport) const;
+  int ViewCount() const;
+  // Every visible viewport is up to date.
+  bool IsSettled() const;
+  // Docks of all viewports in a grid.
+  void Tile();
+
+protected:
+  void closeEvent(QCloseEvent* event) override;
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+
+private:
+  using Key = std::pair<vtkDspaceSession*, std::string>;
+  struct View_t {
+    QPointer<QDockWidget> dock;
+    QPointer<ViewportWidget> widget;
+  };
+  void MakeMenus();
+  void ShowView(vtkDspaceSession* session, const std::string& viewport, const std::string& title);
+  void CloseView(vtkDspaceSession* session, const std::string& viewport);
+  QWidget* ToolsOf(vtkDspaceSession* session, const std::string& viewport);
+  void ChooseFiles();
+  void SaveScript();
+  void SavePicture();
+  void AddRecent(const QString& path);
+  void FillRecent();
+  void Report(const QString& text);
+
+  vtkSmartPointer<vtkDspaceSession> Session_;
+  std::unique_ptr<PythonInterpreter> Interpreter_;
+  ConsoleWidget* Console_ = nullptr;
+  QDockWidget* ConsoleDock_ = nullptr;
+  QMenu* Recent_ = nullptr;
+  std::map<Key, View_t> Views_;
+};
+
+} // namespace dspace::widgets
+
+#endif
