@@ -1,0 +1,110 @@
+// DspaceQt: scenes, recordings and terrain at a desktop. Wiring only: the windows are in
+// Libraries/Widgets, and what menus do is in the Python package, dspace/application.
+#include <exception>
+#include <iostream>
+#include <memory>
+
+#include <QApplication>
+#include <QCommandLineParser>
+#include <QDir>
+#include <QElapsedTimer>
+#include <QMessageBox>
+#include <QTimer>
+
+#include <dspace/widgets/viewport/QtContext.h>
+#include <dspace/widgets/window/MainWindow.h>
+
+namespace {
+
+// The folder with the Python package, beside this program in a build tree and in an installed one.
+QString Packages() {
+  const QString given = qEnvironmentVariable("DSPACE_PACKAGES");
+  return given.isEmpty() ? QDir(QCoreApplication::applicationDirPath())
+                               .absoluteFilePath(QStringLiteral(DSPACE_PACKAGES_BESIDE))
+                         : given;
+}
+
+// Saves a picture of the window when everything in it is drawn, and quits.
+void TakeScreenshot(dspace::widgets::MainWindow& window, const QString& path, double after_s) {
+  auto* timer = new QTimer(&window);
+  auto clock = std::make_shared<QElapsedTimer>();
+  clock->start();
+  QObject::connect(timer, &QTimer::timeout, &window, [&window, path, after_s, clock] {
+    const double elapsed = 1e-3 * double(clock->elapsed());
+    constexpr double Patience = 2.0; // [s] for scenes that never stand still
+    if (elapsed < after_s || (!window.IsSettled() && elapsed < after_s + Patience)) {
+      return;
+    }
+    const bool saved = window.grab().save(path, "PNG");
+    if (!saved) {
+      std::cerr << "DspaceQt: " << path.toStdString() << " cannot be written\n";
+    }
+    QCoreApplication::exit(saved ? 0 : 1);
+  });
+  timer->start(50);
+}
+
+int Start(QApplication& application) {
+  QCommandLineParser parser;
+  parser.setApplicationDescription("3D visualization and measurement for spacecraft and rovers.");
+  parser.addHelpOption();
+  parser.addVersionOption();
+  parser.addPositionalArgument("files", "models, rasters of heights, robots, recordings, Python "
+                                        "scripts; none: the demo scene", "[FILE ...]");
+  const QCommandLineOption screenshot("screenshot", "Saves a picture of the window and quits.",
+                                      "PNG");
+  const QCommandLineOption after("after", "Seconds before the screenshot (default 0).", "S", "0");
+  const QCommandLineOption size("size", "Size of the window (default 1280x800).", "WxH",
+                                "1280x800");
+  const QCommandLineOption empty("empty", "Opens no demo scene.");
+  parser.addOptions({screenshot, after, size, empty});
+  parser.process(application);
+  const QStringList sides = parser.value(size).split('x');
+  bool good[3] = {false, false, false};
+  const int width = sides.value(0).toInt(&good[0]);
+  const int height = sides.value(1).toInt(&good[1]);
+  const double wait = parser.value(after).toDouble(&good[2]);
+  if (sides.size() != 2 || !good[0] || !good[1] || width < 320 || height < 240 || width > 16384 ||
+      height > 16384) {
+    std::cerr << "DspaceQt: --size " << parser.value(size).toStdString()
+              << ": accepted are 320x240 to 16384x16384\n";
+    return 2;
+  }
+  if (!good[2] || !(wait >= 0.0 && wait <= 3600.0)) {
+    std::cerr << "DspaceQt: --after " << parser.value(after).toStdString()
+              << ": accepted are 0 to 3600 seconds\n";
+    return 2;
+  }
+  dspace::widgets::MainWindow window(Packages());
+  window.resize(width, height);
+  window.show();
+  for (const QString& path : parser.positionalArguments()) {
+    if (!window.Open(path) && parser.isSet(screenshot)) {
+      return 1;
+    }
+  }
+  if (parser.positionalArguments().isEmpty() && !parser.isSet(empty)) {
+    window.Run(QStringLiteral("app.demo()"));
+  }
+  if (parser.isSet(screenshot)) {
+    TakeScreenshot(window, parser.value(screenshot), wait);
+  }
+  return QApplication::exec();
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+  dspace::widgets::PrepareApplication();
+  QApplication application(count, arguments);
+  QCoreApplication::setOrganizationName(QStringLiteral("Dspace"));
+  QCoreApplication::setApplicationName(QStringLiteral("DspaceQt"));
+  QCoreApplication::setApplicationVersion(QStringLiteral(DSPACE_VERSION));
+  try {
+    return Start(application);
+  } catch (const std::exception& error) {
+    std::cerr << "DspaceQt: " << error.what() << "\n";
+    QMessageBox::critical(nullptr, QStringLiteral("DspaceQt"), QString::fromUtf8(error.what()));
+    return 1;
+  }
+}
