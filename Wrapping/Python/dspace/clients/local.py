@@ -16,9 +16,10 @@ from dspace.scene.inputs import ViewportInputs
 class LocalClient:
     """Executes commands with an interpreter in this process."""
 
-    def __init__(self):
+    def __init__(self, session=None):
+        """session: the vtkDspaceSession that it drives; None: a new one."""
         self._thread = threading.get_ident()
-        self.vtk = _vtk.vtkDspaceSession()
+        self.vtk = _vtk.vtkDspaceSession() if session is None else session
         self._background = weakref.finalize(self, self.vtk.EndBackgroundWork)
         self.frame_listeners = FrameListeners()
         self.events = EventQueue()

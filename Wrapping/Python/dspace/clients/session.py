@@ -1,4 +1,5 @@
 """Sessions, which own scenes and viewports."""
+from dspace import vtk
 from dspace._core.delegates import delegate
 from dspace._core.fields import Named, file_path, flag, reject, text
 from dspace._core.traits import DEFAULT_SCENE
@@ -24,6 +25,15 @@ class Session:
 
     def __init__(self):
         self._client = LocalClient()
+
+    @classmethod
+    def around(cls, vtk_session):
+        """The Session of a vtkDspaceSession that a program in C++ has made, in the thread that draws it."""
+        if not isinstance(vtk_session, vtk.vtkDspaceSession):
+            reject("session", "the session", vtk_session, "a dspace.vtk.vtkDspaceSession", WrongType)
+        made = cls.__new__(cls)
+        made._client = LocalClient(vtk_session)
+        return made
 
     def __enter__(self):
         return self

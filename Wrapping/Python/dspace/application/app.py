@@ -1,0 +1,160 @@
+"""The object `app`: opens files, makes views, calls functions again and again."""
+import os
+import pathlib
+
+from dspace import Playback, Session, errors
+from dspace._core.fields import real, reject, text
+from dspace._core.replies import to_reply
+from dspace.proto import commands_pb2 as pb
+
+MODELS = (".glb", ".gltf", ".wrl", ".wrl.gz", ".wrz", ".vrml", ".iv", ".obj", ".stl", ".ply", ".urdf", ".json")
+RASTERS = (".tif", ".tiff", ".img", ".lbl", ".cub", ".vrt", ".asc", ".dem", ".hgt", ".nc", ".jp2", ".xml")
+SIZE = (640, 400)  # of a viewport until its widget has one
+
+
+class App:
+    """The program that the prompt belongs to.
+
+    session, scene: where files are opened. views: the viewports of its windows, by name; view: the latest one. runs:
+    the recordings that were opened, as dspace.Playback."""
+
+    def __init__(self, host):
+        self._host = host
+        self.session = Session.around(host.session())
+        self.scene = self.session.scene()
+        self.views = {}
+        self.view = None
+        self.runs = []
+        self._timers = set()
+
+    # --- Views ---------------------------------------------------------------------------------
+
+    def show(self, viewport, title=None):
+        """Shows a viewport in the window. Returns it."""
+        client = viewport._client
+        self._host.show(client.local(), viewport.name, viewport.name if title is None else text(title, "the title"))
+        self.views[viewport.name] = self.view = viewport
+        return viewport
+
+    def new_view(self, camera=None, title=None):
+        """A new viewport of the scene with a camera of its own, or with the given one; shown."""
+        number = 1 + len(self.views)
+        while f"view {number}" in self.session.viewports:
+            number += 1
+        if camera is None:
+            camera = self._camera(f"camera {number}")
+        return self.show(self.scene.add_viewport(SIZE, camera, name=f"view {number}"), title)
+
+    def _camera(self, name):
+        before = self.view.camera if self.view is not None and self.view._client is self.session._client else None
+        if before is not None:
+            place = before.pose
+            camera = self.scene.add_camera(name)
+            camera.pose = place
+            return camera
+        return self.scene.add_camera(name, eye=(6, -8, 5), target=(0, 0, 0))
+
+    def close_view(self, viewport):
+        """Closes the view and removes its viewport."""
+        self._host.close(viewport._client.local(), viewport.name)
+        self.views.pop(viewport.name, None)
+        if self.view == viewport:
+            self.view = next(reversed(self.views.values()), None)
+        viewport.remove()
+
+    # --- Files ---------------------------------------------------------------------------------
+
+    def open(self, path):
+        """Opens a model, robot, raster of heights, recording, or runs a Python script in the prompt's name space.
+
+        Returns what it made: an object, Robot, Terrain or Playback; None for a script."""
+        path = os.path.abspath(os.fspath(path))
+        name = os.path.basename(path).lower()
+        if not os.path.exists(path):
+            raise errors.NotFound("there is no such file", f"file {path!r}")
+        if name.endswith(".py"):
+            import __main__
+            exec(compile(pathlib.Path(path).read_text(encoding="utf-8"), path, "exec"), __main__.__dict__)
+            return None
+        if name.endswith(".dspace"):
+            return self._open_run(path)
+        if name.endswith(MODELS) or os.path.isdir(path):
+            made = self.scene.load(path)
+            self._look_at()
+            return made
+        if name.endswith(RASTERS):
+            return self._open_terrain(path)
+        raise errors.Unsupported(f"its name says no format; accepted: {' '.join(MODELS + RASTERS)} .dspace .py",
+                                 f"file {path!r}")
+
+    def _look_at(self):
+        if not self.views:
+            self.new_view()
+        try:
+            self.view.fit()
+        except errors.Error as error:  # nothing that has a size
+            self._host.message(str(error))
+
+    def _open_terrain(self, path):
+        terrain = self.scene.add_terrain(path, mode="clipmap")
+        west, east, south, north = terrain.extent
+        x, y, reach = 0.5 * (west + east), 0.5 * (south + north), max(east - west, north - south)
+        heights = terrain.height([x], [y])
+        z = float(heights[0]) if heights[0] == heights[0] else 0.0
+        if not self.views:
+            self.new_view()
+        self.view.camera.look(eye=(x - 0.15 * reach, y - 0.5 * reach, z + 0.3 * reach), target=(x, y, z))
+        return terrain
+
+    def _open_run(self, path):
+        run = Playback(path)
+        self.runs.append(run)
+        for name, viewport in run.session.viewports.items():
+            self.show(viewport, f"{os.path.basename(path)}: {name}")
+        if not run.session.viewports:
+            self._host.message(f"{path} has no viewport")
+        return run
+
+    def demo(self):
+        """The scene of the first start: a rover drives over the shipped field."""
+        from dspace.application.demo import Drive
+        return Drive(self)
+
+    # --- Time ----------------------------------------------------------------------------------
+
+    def every(self, seconds, function):
+        """Calls function() every `seconds` (0.001 to 3600) while the window is open. Returns a number for cancel().
+
+        A function that raises is not called again."""
+        seconds = real(seconds, "seconds", "every")
+        if not 0.001 <= seconds <= 3600.0:
+            reject("every", "seconds", seconds, "0.001 to 3600")
+        if not callable(function):
+            reject("every", "the function", function, "one without arguments", errors.WrongType)
+        number = self._host.every(round(1000 * seconds), function)
+        self._timers.add(number)
+        return number
+
+    def cancel(self, number):
+        """Ends what every() began; nothing happens if it has ended."""
+        self._timers.discard(number)
+        self._host.cancel(number)
+
+    # --- For the program -----------------------------------------------------------------------
+
+    def _told(self, name, event, reply):
+        """A reply to an event of a view, which callbacks may want."""
+        viewport = self.views.get(name)
+        if viewport is None:
+            return
+        command = pb.Command()
+        command.viewport_event.ParseFromString(event)
+        client = viewport._client
+        client.inputs.tell(viewport, command.viewport_event, client.finish(command, to_reply(reply)))
+
+    def close(self):
+        for number in list(self._timers):
+            self.cancel(number)
+        for run in self.runs:
+            run.close()
+        self.session.close()

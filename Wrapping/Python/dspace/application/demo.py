@@ -1,0 +1,58 @@
+"""The scene of the first start: a rover that drives round and round on the shipped field."""
+import math
+import os
+import pathlib
+
+from dspace import Pose, errors, rover
+
+STEP = 1 / 20  # [s] between poses
+RADIUS = 9.0  # [m] of the circle
+SPEED = 0.6  # [m/s]
+
+
+def shipped_data():
+    """The folder Data of the source tree."""
+    given = os.environ.get("DSPACE_SHIPPED_DATA")
+    folder = pathlib.Path(given) if given else pathlib.Path(__file__).resolve().parents[4] / "Data"
+    if not (folder / "field" / "field.tif").exists():
+        raise errors.NotFound("the data of the demo are not there; accepted: a source tree, or its folder Data named by "
+                              "DSPACE_SHIPPED_DATA", f"folder {str(folder)!r}")
+    return folder
+
+
+class Drive:
+    """Two views of a rover that follows a circle in real time; stop() ends it."""
+
+    def __init__(self, app):
+        data = shipped_data()
+        self._app, scene = app, app.scene
+        self.terrain = scene.add_terrain(data / "field" / "field.tif", mode="clipmap",
+                                         image=data / "field" / "field_color.tif")
+        self.terrain.focus([(0, 0)], radius=2 * RADIUS)
+        self.vehicle = rover.load_vehicle(data / "rover" / "rover.urdf")
+        self.rover = scene.load(data / "rover" / "rover.urdf")
+        self._follow = scene.add_frame("follow")
+        scene.sun.set(direction=(-0.35, 0.80, 0.48))
+        chase = scene.add_camera("chase", frame=self._follow, eye=(-4.6, -2.8, 2.2), target=(0.6, 0, 0.4), fov_deg=40)
+        mast = scene.add_camera("mast", frame=self._follow, eye=(0.6, 0, 1.5), target=(3.5, 0, 0.2), fov_deg=60)
+        for name, camera in (("chase", chase), ("mast", mast)):
+            view = scene.add_viewport((640, 400), camera, name=name)
+            view.set(shadows=True, fill=0.05)
+            app.show(view)
+        self._time = 0.0
+        self.step()
+        self._timer = app.every(STEP, self.step)
+
+    def step(self):
+        """Moves the rover by one step."""
+        angle = SPEED * self._time / RADIUS
+        x, y = RADIUS * math.cos(angle), RADIUS * math.sin(angle)
+        heading = angle + 0.5 * math.pi
+        self._app.scene.time = self._time
+        self.rover.place(self.vehicle.solve((x, y, heading), self.terrain))
+        self._follow.pose = Pose(position=(x, y, self.terrain.height(x, y)),
+                                 quaternion=(math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)))
+        self._time += STEP
+
+    def stop(self):
+        self._app.cancel(self._timer)
