@@ -1,0 +1,24 @@
+"""Screenshots of DspaceQt, each on a display of its own."""
+import os
+import subprocess
+
+from pictures.paths import DATA, IMAGES, ROOT
+
+
+def _screenshot(name, *arguments):
+    program = ROOT / "build" / "release" / "bin" / "DspaceQt"
+    if not program.exists():
+        print(f"{name} is left as it is: DspaceQt is not built (Qt 6)")
+        return
+    subprocess.run([ROOT / "Testing" / "Tools" / "with_display", program, "--screenshot", IMAGES / f"{name}.png", "--size",
+                    "1280x800", *arguments], check=True)
+
+
+def application():
+    """The first start."""
+    _screenshot("application", "--after", "4")
+
+
+def application_terrain():
+    """A raster of heights in a view, and the prompt."""
+    _screenshot("application_terrain", "--after", "6", os.path.join(DATA, "terrain", "mars_gale_mola_128ppd_m.tif"))
