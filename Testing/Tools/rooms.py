@@ -39,7 +39,7 @@ def room_of(path):
     library, _, rest = path.partition("/")
     folder = rest.rpartition("/")[0]
     if not folder:  # classes derived from vtkObject stand beside the library's CMakeLists.txt
-        return {"Core": "render", "Session": "session"}.get(library, library)
+        return {"Core": "render", "Session": "session", "Widgets": "widgets"}.get(library, library)
     return folder.partition("/")[2] or "base"
 
 

@@ -41,7 +41,7 @@ def dspace(tmp_path):
     script.parent.mkdir(parents=True)
     script.write_text("import os\nprint('demo', file=open(os.environ['CALLS'], 'a'))\n")
     calls = tmp_path / "calls"
-    kinds = ("build", "run", "extra", "test", "bench", "lint")
+    kinds = ("build", "run", "extra", "app", "test", "bench", "lint")
     installed = subprocess.run([tmp_path / "dspace", "setup", "--list", *kinds], check=True, capture_output=True,
                                text=True).stdout
 

@@ -1,0 +1,128 @@
+"""What the menus of DspaceQt do, with a stand-in for its windows."""
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+import dspace
+from dspace import vtk
+from dspace.application import App
+from dspace.application.demo import Drive
+
+
+class Host:
+    """The part of the program that Python calls."""
+
+    def __init__(self):
+        self.made = vtk.vtkDspaceSession()
+        self.shown, self.messages, self.timers = [], [], {}
+
+    def session(self):
+        return self.made
+
+    def show(self, session, name, title):
+        assert session.GetViewport(name) is not None
+        self.shown.append((name, title))
+
+    def close(self, session, name):
+        self.shown = [shown for shown in self.shown if shown[0] != name]
+
+    def message(self, text):
+        self.messages.append(text)
+
+    def every(self, milliseconds, function):
+        self.timers[len(self.timers) + 1] = (milliseconds, function)
+        return len(self.timers)
+
+    def cancel(self, number):
+        self.timers.pop(number, None)
+
+
+@pytest.fixture
+def app():
+    app = App(Host())
+    yield app
+    app.close()
+
+
+@pytest.fixture
+def data():
+    return pathlib.Path(os.environ.get("DSPACE_SHIPPED_DATA") or pathlib.Path(__file__).resolve().parents[3] / "Data")
+
+
+def lit(view):
+    """The share of the picture's pixels that show something."""
+    view.size = (160, 100)
+    return float(np.mean(view.image().max(axis=2) > 20))
+
+
+def test_a_model_is_opened_and_fills_a_view(app, data):
+    robot = app.open(data / "rover" / "rover.urdf")
+    assert isinstance(robot, dspace.Robot)
+    assert app._host.shown == [("view 1", "view 1")]
+    assert lit(app.view) > 0.1
+    app.open(data / "rover" / "arm_turret.glb")
+    assert len(app.views) == 1  # the same view
+
+
+def test_a_raster_is_opened_as_terrain_before_the_camera(app, data):
+    terrain = app.open(data / "field" / "field.tif")
+    assert isinstance(terrain, dspace.Terrain)
+    pick = app.view.pick(*(side // 2 for side in app.view.size))
+    assert pick.object.name == terrain.name
+    assert lit(app.view) > 0.3
+
+
+def test_a_recording_is_opened_with_its_views(app, tmp_path):
+    path = tmp_path / "run.dspace"
+    with dspace.Session() as session:
+        with session.record(path):
+            scene = session.scene()
+            scene.add_box((1, 1, 1))
+            scene.add_viewport((64, 48), scene.add_camera(eye=(3, 3, 3), target=(0, 0, 0)), name="recorded")
+            scene.time = 1.0
+    run = app.open(path)
+    assert app._host.shown == [("recorded", "run.dspace: recorded")]
+    assert run.session.viewports["recorded"] == app.views["recorded"]
+
+
+def test_new_views_look_as_the_latest_one_does(app):
+    app.scene.add_box((1, 1, 1))
+    first = app.new_view()
+    first.camera.look_at(eye=(2, 3, 4), target=(0, 0, 0))
+    second = app.new_view(title="again")
+    assert app._host.shown == [("view 1", "view 1"), ("view 2", "again")]
+    assert np.allclose(second.camera.pose.position, (2, 3, 4))
+    app.close_view(second)
+    assert app.view == first and "view 2" not in app.session.viewports
+
+
+def test_what_cannot_be_opened_is_said(app, tmp_path):
+    with pytest.raises(dspace.NotFound, match="there is no such file"):
+        app.open(tmp_path / "nothing.glb")
+    odd = tmp_path / "odd.qqq"
+    odd.write_text("")
+    with pytest.raises(dspace.Unsupported, match="its name says no format"):
+        app.open(odd)
+    with pytest.raises(dspace.InvalidArgument, match="seconds"):
+        app.every(0.0, lambda: None)
+    with pytest.raises(dspace.WrongType, match="one without arguments"):
+        app.every(1.0, 3)
+    assert app._host.shown == [] and app._host.timers == {}
+
+
+def test_the_demo_drives_on_the_ground(app, data):
+    drive = app.demo()
+    assert isinstance(drive, Drive) and [name for name, _ in app._host.shown] == ["chase", "mast"]
+    milliseconds, step = app._host.timers[1]
+    assert milliseconds == 50
+    for _ in range(20):
+        step()
+    assert app.scene.time == pytest.approx(1.0)
+    position = app.scene.frames["follow"].pose.position
+    assert np.hypot(*position[:2]) == pytest.approx(9.0)
+    assert position[2] == pytest.approx(drive.terrain.height(*position[:2]), abs=1e-3)
+    assert lit(app.views["chase"]) > 0.3
+    drive.stop()
+    assert app._host.timers == {}
