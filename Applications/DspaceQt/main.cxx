@@ -11,6 +11,7 @@
 #include <QMessageBox>
 #include <QTimer>
 
+#include <dspace/widgets/console/PythonInterpreter.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/window/MainWindow.h>
 
@@ -76,6 +77,13 @@ int Start(QApplication& application) {
     return 2;
   }
   dspace::widgets::MainWindow window(Packages());
+  // What goes wrong is on the terminal, too.
+  QObject::connect(window.Interpreter(), &dspace::widgets::PythonInterpreter::written, &window,
+                   [](const QString& text, bool error) {
+                     if (error) {
+                       std::cerr << text.toStdString() << std::flush;
+                     }
+                   });
   window.resize(width, height);
   window.show();
   for (const QString& path : parser.positionalArguments()) {

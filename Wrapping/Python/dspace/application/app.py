@@ -103,7 +103,9 @@ class App:
         z = float(heights[0]) if heights[0] == heights[0] else 0.0
         if not self.views:
             self.new_view()
-        self.view.camera.look(eye=(x - 0.15 * reach, y - 0.5 * reach, z + 0.3 * reach), target=(x, y, z))
+        self.view.set(shadows=True)
+        self.scene.sun.set(azimuth_deg=300, elevation_deg=25)  # low, so that the ground shows its shape
+        self.view.camera.look_at(eye=(x - 0.15 * reach, y - 0.5 * reach, z + 0.3 * reach), target=(x, y, z))
         return terrain
 
     def _open_run(self, path):

@@ -36,6 +36,8 @@ ConsoleWidget::ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent)
   const QFont font = QFontDatabase::systemFont(QFontDatabase::FixedFont);
   this->Output_->setFont(font);
   this->Output_->setReadOnly(true);
+  this->Output_->setMinimumHeight(40);
+  this->Output_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
   this->Output_->setMaximumBlockCount(MostLines);
   this->Output_->setLineWrapMode(QPlainTextEdit::WidgetWidth);
   this->Line_->setFont(font);

@@ -67,6 +67,8 @@ class _Written:
 
 sys.stdout, sys.stderr = _Written(False), _Written(True)
 sys.argv = [""]
+import warnings
+warnings.showwarning = lambda message, *_: print(f"note: {message}", file=sys.stderr)
 import dspace
 import dspace.vtk
 from dspace.application import App

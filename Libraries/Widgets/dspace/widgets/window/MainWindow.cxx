@@ -209,11 +209,11 @@ void MainWindow::Report(const QString& text) {
   this->statusBar()->showMessage(text);
 }
 
-QWidget* MainWindow::ToolsOf(vtkDspaceSession* session, const std::string& viewport) {
+QWidget* MainWindow::ToolsOf(ViewportWidget* widget, const std::string& viewport) {
   // Of other sessions, such as a recording's, `app.sessions` has the views.
   const QString view =
       QStringLiteral("app.views[%1]").arg(Quoted(QString::fromStdString(viewport)));
-  const vtkDspaceViewport* shown = session->GetViewport(viewport);
+  const vtkDspaceViewport* shown = widget->GetViewport();
   auto* tools = new QWidget;
   auto* row = new QHBoxLayout(tools);
   row->setContentsMargins(4, 2, 4, 2);
@@ -230,11 +230,16 @@ QWidget* MainWindow::ToolsOf(vtkDspaceSession* session, const std::string& viewp
                     .arg(view, field, checked ? QStringLiteral("True") : QStringLiteral("False")));
     });
     row->addWidget(button);
+    return button;
   };
-  toggle(tr("Shadows"), tr("Shadows of the Sun"), shown->GetLook().shadows.shown,
-         QStringLiteral("shadows"));
+  QToolButton* shadows = toggle(tr("Shadows"), tr("Shadows of the Sun"),
+                                shown->GetLook().shadows.shown, QStringLiteral("shadows"));
   toggle(tr("Ornaments"), tr("Ornamental objects: labels, trails, axes"), true,
          QStringLiteral("ornaments"));
+  connect(widget, &ViewportWidget::shown, shadows, [widget, shadows] { // Python may have set them
+    const QSignalBlocker silent(shadows);
+    shadows->setChecked(widget->GetViewport()->GetLook().shadows.shown);
+  });
   auto* samples = new QSpinBox(tools);
   samples->setRange(1, 8);
   samples->setValue(shown->GetSamples());
@@ -286,14 +291,17 @@ void MainWindow::ShowView(vtkDspaceSession* session, const std::string& viewport
                    });
   connect(widget, &ViewportWidget::failed, this,
           [this](const QString& message) { this->Report(message); });
-  dock->setTitleBarWidget(this->ToolsOf(session, viewport));
+  dock->setTitleBarWidget(this->ToolsOf(widget, viewport));
   dock->setWidget(widget);
   view = {dock, widget};
   this->addDockWidget(Qt::TopDockWidgetArea, dock);
   this->Tile();
   if (this->Views_.size() == 1) { // the views get the room: the prompt had all of it
-    QTimer::singleShot(0, this, [this] {
-      this->resizeDocks({this->ConsoleDock_}, {this->height() / 5}, Qt::Vertical);
+    QTimer::singleShot(0, this, [this, dock = QPointer<QDockWidget>(dock)] {
+      if (dock) {
+        this->resizeDocks({dock, this->ConsoleDock_}, {4 * this->height() / 5, this->height() / 5},
+                          Qt::Vertical);
+      }
     });
   }
 }

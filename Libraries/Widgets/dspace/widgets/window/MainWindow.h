@@ -60,7 +60,7 @@ private:
   void MakeMenus();
   void ShowView(vtkDspaceSession* session, const std::string& viewport, const std::string& title);
   void CloseView(vtkDspaceSession* session, const std::string& viewport);
-  QWidget* ToolsOf(vtkDspaceSession* session, const std::string& viewport);
+  QWidget* ToolsOf(ViewportWidget* widget, const std::string& viewport);
   void ChooseFiles();
   void SaveScript();
   void SavePicture();
