@@ -32,6 +32,21 @@ if(NOT output MATCHES "^41 pictures, picked body and ground, whose .* differ by 
     OR NOT EXISTS "${consumer}/local.png")
   message(FATAL_ERROR "cpp_local printed: ${output}")
 endif()
+# Viewports in a window of another program.
+if(WIDGETS)
+  step("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}/../../Examples/qt_embed" -B "${consumer}/embed"
+    "-DDspace_ROOT=${PREFIX}" -DCMAKE_BUILD_TYPE=Debug)
+  step("${CMAKE_COMMAND}" --build "${consumer}/embed")
+  step("${SOURCE}/../Tools/with_display" "${consumer}/embed/qt_embed" "${MODEL}" 2)
+  message(STATUS "${output}")
+  if(NOT output MATCHES "[1-9][0-9]* steps, [1-9][0-9]+ pictures")
+    message(FATAL_ERROR "qt_embed printed: ${output}")
+  endif()
+  step("${SOURCE}/../Tools/with_display" "${PREFIX}/bin/DspaceQt" --screenshot "${consumer}/app.png" "${MODEL}")
+  if(NOT EXISTS "${consumer}/app.png")
+    message(FATAL_ERROR "DspaceQt printed: ${output}")
+  endif()
+endif()
 # A plug-in with an object of its own.
 step("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}/../../Examples/own_object" -B "${consumer}/own"
   "-DDspace_ROOT=${PREFIX}" -DCMAKE_BUILD_TYPE=Debug)
