@@ -41,6 +41,7 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
   vec3 light = ambientLight * color;
 #if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
   vec3 planeVC = cross(dFdx(positionVC), dFdy(positionVC)); // here, where all pixels come by
+  float litBySun = 0.0;
 #endif
 #if defined(DSPACE_SPECULAR) || defined(DSPACE_PLACED_LIGHTS) || defined(DSPACE_REFLECTANCE)
   vec3 V = cameraParallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
@@ -77,7 +78,8 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
 #if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
     if (i == 0 && NdL > 0.0) // the Sun stands first
     {
-      radiance *= sunLit(positionVC, planeVC);
+      litBySun = sunLit(positionVC, planeVC);
+      radiance *= litBySun;
     }
 #endif
 #ifdef DSPACE_SPECULAR
@@ -94,6 +96,9 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
 #endif
 #if DSPACE_CASCADES > 0
   light *= cascadeTint(positionVC);
+#endif
+#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+  light = litColors == 1 ? litColor(litBySun) : light;
 #endif
   return light;
 }

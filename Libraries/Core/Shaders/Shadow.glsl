@@ -185,6 +185,15 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
 float horizonLit(); // of the terrain's own page, ClipmapHorizon.frag
 #endif
 #if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+uniform int litColors; // 1: the lit fraction in false colours, in place of light
+
+// Linear light of a lit fraction.
+vec3 litColor(float lit)
+{
+  return mix(mix(vec3(0.01, 0.02, 0.25), vec3(0.02, 0.4, 0.2), min(2.0 * lit, 1.0)), vec3(1.0, 0.75, 0.05),
+    max(2.0 * lit - 1.0, 0.0));
+}
+
 // Ground that knows its horizon takes from the maps what other things throw on it.
 float sunLit(vec3 positionVC, vec3 planeVC)
 {

@@ -5,9 +5,9 @@ import pytest
 import dspace
 
 SETTINGS = dict(shadows=True, shadow_cascades=3, shadow_map_size=512, shadow_distance=80.0, cascade_colors=True,
-                fill=0.35, exposure=2.5, automatic_exposure=True, tone="filmic")
+                lit_colors=True, fill=0.35, exposure=2.5, automatic_exposure=True, tone="filmic")
 DEFAULTS = dict(shadows=False, shadow_cascades=4, shadow_map_size=2048, shadow_distance=0.0, cascade_colors=False,
-                fill=0.2, exposure=1.0, automatic_exposure=False, tone="linear")
+                lit_colors=False, fill=0.2, exposure=1.0, automatic_exposure=False, tone="linear")
 
 
 @pytest.fixture
@@ -104,3 +104,23 @@ def test_two_viewports_of_a_scene_have_their_own(scene, view):
     assert other.fill == 0.2
     scene.sun.direction = (-1, 1, -1)
     assert (view.image()[24, 32] > other.image()[24, 32]).all()
+
+
+def test_lit_colors_show_the_lit_fraction(scene):
+    scene.add_plane(20, 20)
+    scene.add_box((1, 1, 2))
+    scene.sun.set(azimuth_deg=60, elevation_deg=35, radius_deg=5)  # a wide penumbra
+    scene.add_camera("above", eye=(-3, -5, 6), target=(-1, 0, 0))
+    view = scene.add_viewport((200, 150), samples=1)
+    view.set(shadows=True, lit_colors=True, shadow_map_size=1024)
+    lit = view.lit_fraction()
+    seen = np.isfinite(view.depth())
+    between = (lit > 0.2) & (lit < 0.8) & seen
+    assert between.sum() > 50 and (lit[seen] == 1).any() and (lit[seen] == 0).any()
+    # As viewports.proto has it: blue, green, yellow, in linear light, encoded as sRGB (IEC 61966-2-1).
+    stops = np.array([(0.01, 0.02, 0.25), (0.02, 0.4, 0.2), (1.0, 0.75, 0.05)])
+    linear = np.stack([np.interp(lit, (0, 0.5, 1), stops[:, k]) for k in range(3)], axis=-1)
+    wanted = 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    assert np.abs(view.image()[..., :3].astype(float) - wanted)[seen].max() <= 1.5
+    view.lit_colors = False
+    assert np.abs(view.image()[..., :3].astype(float) - wanted)[seen].max() > 50

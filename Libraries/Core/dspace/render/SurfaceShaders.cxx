@@ -212,6 +212,9 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
     program->SetUniform3f("towardsSunVC", toSun.data());
   }
 
+  if (program->IsUniformUsed("litColors")) {
+    program->SetUniformi("litColors", view.look.shadows.litColors ? 1 : 0);
+  }
   if (view.shadows && program->IsUniformUsed("shadowMaps")) {
     this->SetShadows(program, *view.shadows);
     program->SetUniformi("cascadeColors", view.look.shadows.cascadeColors ? 1 : 0);

@@ -15,6 +15,7 @@ struct ShadowLook {
   int size = 2048;       // texels a side of each map
   double distance = 0.0; // [m] along the view's axis that the maps reach; 0: as the view requires
   bool cascadeColors = false; // each map's range of distances in a colour of its own, for engineers
+  bool litColors = false;     // how much of the Sun's disc is seen, 0 to 1, in false colours
 };
 
 // From linear light, exposed, to what sRGB then encodes. Linear: up to 1, which what is brighter

@@ -4,8 +4,8 @@ from dspace._core.strict import Strict
 from dspace.proto import commands_pb2 as pb
 
 TONES = {"linear": 0, "filmic": 1}
-LOOK = ("shadows", "shadow_cascades", "shadow_map_size", "shadow_distance", "cascade_colors", "fill", "exposure",
-        "automatic_exposure", "tone")
+LOOK = ("shadows", "shadow_cascades", "shadow_map_size", "shadow_distance", "cascade_colors", "lit_colors", "fill",
+        "exposure", "automatic_exposure", "tone")
 
 
 class ViewportLook(Strict):
@@ -13,8 +13,8 @@ class ViewportLook(Strict):
 
     def set(self, **values):
         """Changes several settings in one command, all checked before any is set: shadows, shadow_cascades,
-        shadow_map_size, shadow_distance, cascade_colors, fill, exposure, automatic_exposure, tone. Each is also a
-        property."""
+        shadow_map_size, shadow_distance, cascade_colors, lit_colors, fill, exposure, automatic_exposure, tone. Each is
+        also a property."""
         keywords(values, LOOK, self._label())
         values = {key: value for key, value in values.items() if value is not None}
         if "tone" in values:
@@ -68,6 +68,16 @@ class ViewportLook(Strict):
     @cascade_colors.setter
     def cascade_colors(self, cascade_colors):
         self._do("set_viewport", cascade_colors=cascade_colors)
+
+    @property
+    def lit_colors(self):
+        """With shadows: lit surfaces show in false colours how much of the Sun's disc they see, blue (0) over green to
+        yellow (1). The default exposure is assumed. Viewport.lit_fraction() gives the numbers."""
+        return self._info().lit_colors
+
+    @lit_colors.setter
+    def lit_colors(self, lit_colors):
+        self._do("set_viewport", lit_colors=lit_colors)
 
     @property
     def fill(self):

@@ -42,6 +42,9 @@ ViewLook ToLook(const v1::SetViewport& from, ViewLook look, const std::string& l
   if (from.has_cascade_colors()) {
     look.shadows.cascadeColors = from.cascade_colors();
   }
+  if (from.has_lit_colors()) {
+    look.shadows.litColors = from.lit_colors();
+  }
   if (from.has_fill()) {
     look.fill = from.fill();
   }
@@ -67,6 +70,7 @@ void PutLook(const ViewLook& from, v1::ViewportInfo& to) {
   to.set_shadow_map_size(std::uint32_t(from.shadows.size));
   to.set_shadow_distance(from.shadows.distance);
   to.set_cascade_colors(from.shadows.cascadeColors);
+  to.set_lit_colors(from.shadows.litColors);
   to.set_fill(from.fill);
   to.set_exposure(from.exposure);
   to.set_automatic_exposure(from.automaticExposure);

@@ -422,7 +422,7 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
   const Blocks blocks = this->BlocksIn(camera, drawing.view);
   const DrawView& view = drawing.view;
   const bool maps = (features & SurfaceShaders::Lit) != 0 && view.shadows && view.shadowTiles;
-  if (!maps || view.look.shadows.cascadeColors) {
+  if (!maps || view.look.shadows.cascadeColors || view.look.shadows.litColors) {
     this->DrawBlocks(drawing, features, camera, blocks, [](const auto&) { return true; });
     return;
   }
