@@ -65,9 +65,8 @@ struct SceneTreeTest : ::testing::Test {
     object.name = name;
     object.frame = frame;
     object.nature = nature;
-    object.levels = {dspace::DetailLevel{
-        {dspace::Part{std::make_shared<const dspace::Mesh>(dspace::MakeBox({2.0, 1.0, 0.5})),
-                      nullptr}}}};
+    object.levels = {dspace::DetailLevel{{dspace::Part{
+        std::make_shared<const dspace::Mesh>(dspace::MakeBox({2.0, 1.0, 0.5})), nullptr}}}};
     return scene->AddObject(std::move(object));
   }
   void SetUp() override {
@@ -296,8 +295,7 @@ TEST_F(SceneTreeTest, SearchKeepsMatchesAndTheFramesAboveThem) {
   EXPECT_TRUE(widget.View()->isExpanded(widget.Model()->IndexOf({mast, 0})));
   EXPECT_EQ(widget.Selected(), (SceneItem{mast, 0}));
   const FrameId lamp = scene->Frames().Create(wheel, "plate 2"); // what comes later matches, too
-  ASSERT_TRUE(
-      QTest::qWaitFor([&] { return widget.Model()->IndexOf({lamp, 0}).isValid(); }, 3000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return widget.Model()->IndexOf({lamp, 0}).isValid(); }, 3000));
   EXPECT_EQ(Rows(*widget.Model()), "root(rover(mast(name plate), wheel(plate 2)))");
   search->clear();
   QTest::keyClicks(search, "xyz");
@@ -380,7 +378,8 @@ TEST_F(SceneTreeTest, ThePanelShowsPosesRelativeToAnyFrame) {
   widget.Select({mast, camera});
   EXPECT_EQ(Text(widget, "position"), "x 0.0000   y 0.0000   z 0.2500");
   EXPECT_EQ(Text(widget, "fragment"), "physical");
-  EXPECT_TRUE(Text(widget, "material").startsWith("#ff0000")) << Text(widget, "material").toStdString();
+  EXPECT_TRUE(Text(widget, "material").startsWith("#ff0000"))
+      << Text(widget, "material").toStdString();
   EXPECT_EQ(Text(widget, "levels"), "12 triangles");
   scene->RemoveObject(camera);
   widget.Refresh();
@@ -565,8 +564,8 @@ TEST_F(SceneTreeTest, ManyRowsArePaintedOnlyInView) {
   dspace::FrameTree& frames = scene->Frames();
   std::vector<ObjectId> ids;
   for (int i = 0; i < 2000; ++i) {
-    ids.push_back(Add("stone " + std::to_string(i), frames.Create(RootFrame,
-                                                                  "f" + std::to_string(i))));
+    ids.push_back(
+        Add("stone " + std::to_string(i), frames.Create(RootFrame, "f" + std::to_string(i))));
   }
   SceneTreeWidget widget;
   widget.SetScene(scene);
@@ -579,7 +578,9 @@ TEST_F(SceneTreeTest, ManyRowsArePaintedOnlyInView) {
   const int mixed = widget.View()->Paintings();
   scene->SetObjectVisible(ids[1500], false); // the root's eye stays
   EXPECT_TRUE(QTest::qWaitFor(
-      [&] { return widget.Model()->EyeOf({scene->Object(ids[1500]).frame, 0}) == Eye::Hidden; },
+      [&] {
+        return widget.Model()->EyeOf({scene->Object(ids[1500]).frame, 0}) == Eye::Hidden;
+      },
       2000));
   QTest::qWait(50);
   EXPECT_EQ(widget.View()->Paintings(), mixed);

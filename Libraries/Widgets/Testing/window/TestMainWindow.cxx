@@ -17,6 +17,8 @@
 
 #include <dspace/widgets/console/ConsoleWidget.h>
 #include <dspace/widgets/console/PythonInterpreter.h>
+#include <dspace/widgets/scene/SceneTreeView.h>
+#include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/MainWindow.h>
 
@@ -77,6 +79,17 @@ TEST_F(MainWindowTest, OpensAModelInAViewOfItsOwn) {
   ASSERT_TRUE(view);
   ASSERT_TRUE(Settled());
   EXPECT_TRUE(view->SharesTextures());
+  // The tree of the scene has it.
+  auto* tree = window->findChild<dspace::widgets::SceneTreeWidget*>();
+  ASSERT_TRUE(tree);
+  tree->Refresh();
+  const QAbstractItemModel* model = tree->View()->model();
+  const QModelIndex root = model->index(0, 0);
+  bool found = false;
+  for (int row = 0; row < model->rowCount(root); ++row) {
+    found = found || model->index(row, 0, root).data().toString() == "dspace_rover";
+  }
+  EXPECT_TRUE(found);
   // The rover fills the middle of the picture.
   const QColor middle = view->grab().toImage().pixelColor(view->width() / 2, view->height() / 2);
   EXPECT_GT(middle.red() + middle.green() + middle.blue(), 30);

@@ -85,12 +85,12 @@ public:
       return {};
     }
     const session::SceneState& scene = found->second;
-    return scene.TerrainOf(id)           ? "terrain"
-           : scene.trails.count(id)      ? "trail"
-           : scene.texts.count(id)       ? "text"
-           : scene.primitives.count(id)  ? "primitive"
-           : scene.drawn.count(id)       ? "drawn"
-                                         : QString();
+    return scene.TerrainOf(id)          ? "terrain"
+           : scene.trails.count(id)     ? "trail"
+           : scene.texts.count(id)      ? "text"
+           : scene.primitives.count(id) ? "primitive"
+           : scene.drawn.count(id)      ? "drawn"
+                                        : QString();
   }
 
 private:
@@ -161,8 +161,8 @@ private:
                   "cannot be chased; accepted: a frame below the root");
     }
     const double size = SizeOf(scene, item, parent);
-    const Eigen::Vector3d offset = Eigen::Vector3d(-5.0, 0.0, 2.0).normalized() *
-                                   (size > 0.0 ? 3.5 * size : EmptyDistance);
+    const Eigen::Vector3d offset =
+        Eigen::Vector3d(-5.0, 0.0, 2.0).normalized() * (size > 0.0 ? 3.5 * size : EmptyDistance);
     v1::Command command = this->New();
     v1::SetCamera& camera = *command.mutable_set_camera();
     camera.set_vantage(this->Vantage_);
@@ -255,8 +255,7 @@ private:
         it = this->Trails_.erase(it);
         continue;
       }
-      const Eigen::Vector3d p =
-          scene.Frames().RelativePose(RootFrame, followed.frame).position;
+      const Eigen::Vector3d p = scene.Frames().RelativePose(RootFrame, followed.frame).position;
       if (!followed.last || *followed.last != p) {
         v1::Command command = this->New();
         v1::AppendTrail& trail = *command.mutable_append_trail();

@@ -244,10 +244,10 @@ void ScenePropertyPanel::SetReference(const Scene* scene, FrameId frame) {
   Internals& self = *this->Impl_;
   const bool known = scene && scene->Frames().Contains(frame);
   self.frame = frame == NoFrame || known ? frame : RootFrame;
-  const QString text = self.frame == NoFrame     ? QString(ParentWord)
-                       : self.frame == RootFrame ? QString("/")
-                                                 : QString::fromStdString(
-                                                       scene->Frames().Path(self.frame));
+  const QString text = self.frame == NoFrame ? QString(ParentWord)
+                       : self.frame == RootFrame
+                           ? QString("/")
+                           : QString::fromStdString(scene->Frames().Path(self.frame));
   if (self.reference->findText(text) < 0) {
     self.reference->addItem(text);
     if (self.reference->count() > 12) {
@@ -309,8 +309,8 @@ void ScenePropertyPanel::Show(const Scene* scene, const SceneItem& item, const Q
   }
   if (object) {
     const SceneFragmentManager& fragments = scene->Fragments();
-    const bool shown = fragments.Contains(object->fragment) &&
-                       fragments.Get(object->fragment).visible;
+    const bool shown =
+        fragments.Contains(object->fragment) && fragments.Get(object->fragment).visible;
     Internals::Set(self.ofObjects[0],
                    object->nature == Nature::Physical ? "physical" : "ornamental");
     Internals::Set(self.ofObjects[1],

@@ -11,9 +11,10 @@
 
 namespace dspace::widgets {
 
-// Shows the pose X_WG of a frame or of an object's axes, relative to a frame W that the user chooses
-// (the root by default): position [m], unit quaternion (w x y z), and roll, pitch and yaw [degrees]
-// about W's fixed X, then Y, then Z axis. Of objects also fragment, material and levels of detail.
+// Shows the pose X_WG of a frame or of an object's axes, relative to a frame W that the user
+// chooses (the root by default): position [m], unit quaternion (w x y z), and roll, pitch and yaw
+// [degrees] about W's fixed X, then Y, then Z axis. Of objects also fragment, material and levels
+// of detail.
 class ScenePropertyPanel : public QWidget {
   Q_OBJECT
 

@@ -63,8 +63,8 @@ void DrawKind(SceneTreeModel::Icon icon, QPainter& painter, const QColor& color)
   }
   case Icon::Mesh: { // a cube
     QPainterPath outline;
-    outline.addPolygon(QPolygonF({{8.0, 1.5}, {14.0, 4.8}, {14.0, 11.2}, {8.0, 14.5}, {2.0, 11.2},
-                                  {2.0, 4.8}, {8.0, 1.5}}));
+    outline.addPolygon(QPolygonF(
+        {{8.0, 1.5}, {14.0, 4.8}, {14.0, 11.2}, {8.0, 14.5}, {2.0, 11.2}, {2.0, 4.8}, {8.0, 1.5}}));
     painter.fillPath(outline, fill);
     painter.drawPath(outline);
     painter.drawPolyline(QPolygonF({{2.0, 4.8}, {8.0, 8.0}, {14.0, 4.8}}));

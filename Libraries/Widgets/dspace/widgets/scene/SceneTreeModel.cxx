@@ -593,8 +593,8 @@ void SceneTreeModel::SetScene(std::shared_ptr<Scene> scene) {
   self.Leave();
   self.scene = std::move(scene);
   if (self.scene) {
-    self.listener = self.scene->Frames().AddListener(
-        [&self](const FrameEvent& event) { self.Listen(event); });
+    self.listener =
+        self.scene->Frames().AddListener([&self](const FrameEvent& event) { self.Listen(event); });
   }
   self.Reset();
   this->endResetModel();

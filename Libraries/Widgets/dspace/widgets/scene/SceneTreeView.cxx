@@ -25,8 +25,8 @@ public:
     QStyledItemDelegate::initStyleOption(option, index);
     if (index.column() == SceneTreeModel::NameColumn) {
       option->features |= QStyleOptionViewItem::HasDecoration;
-      option->icon = SceneIcon(
-          SceneTreeModel::Icon(index.data(SceneTreeModel::IconRole).toInt()), option->palette);
+      option->icon = SceneIcon(SceneTreeModel::Icon(index.data(SceneTreeModel::IconRole).toInt()),
+                               option->palette);
       option->decorationSize = {IconEdge, IconEdge};
     }
     if (index.column() != SceneTreeModel::VisibleColumn &&
@@ -46,8 +46,7 @@ public:
       if (eye != SceneTreeModel::Eye::None) {
         EyeIcon(eye, option.palette)
             .paint(painter, option.rect, Qt::AlignCenter,
-                   option.state.testFlag(QStyle::State_Selected) ? QIcon::Selected
-                                                                 : QIcon::Normal);
+                   option.state.testFlag(QStyle::State_Selected) ? QIcon::Selected : QIcon::Normal);
       }
     }
   }

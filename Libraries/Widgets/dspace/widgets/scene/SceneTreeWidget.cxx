@@ -313,8 +313,8 @@ SceneTreeWidget::SceneTreeWidget(QWidget* parent)
     QElapsedTimer clock;
     clock.start();
     this->Refresh();
-    this->Impl_->ticks.start(int(std::clamp<qint64>(RefreshShare * clock.elapsed(), Refresh_ms,
-                                                    SlowestRefresh_ms)));
+    this->Impl_->ticks.start(
+        int(std::clamp<qint64>(RefreshShare * clock.elapsed(), Refresh_ms, SlowestRefresh_ms)));
   });
   connect(&self.typing, &QTimer::timeout, this, [this] { this->Impl_->Search(); });
   connect(&self.failureEnd, &QTimer::timeout, self.failure, &QWidget::hide);
@@ -426,9 +426,8 @@ void SceneTreeWidget::Request(SceneAction action, const SceneItem& item) {
     return; // it went while a menu was open
   }
   if (action == SceneAction::CopyPath) {
-    QGuiApplication::clipboard()->setText(
-        QString::fromStdString(item.object != 0 ? scene->Object(item.object).name
-                                                : scene->Frames().Path(item.frame)));
+    QGuiApplication::clipboard()->setText(QString::fromStdString(
+        item.object != 0 ? scene->Object(item.object).name : scene->Frames().Path(item.frame)));
   }
   emit this->contextAction(action, item);
   if (self.handler && action != SceneAction::CopyPath) {

@@ -31,6 +31,8 @@
 #include <dspace/scene/ViewLook.h>
 #include <dspace/widgets/console/ConsoleWidget.h>
 #include <dspace/widgets/console/PythonInterpreter.h>
+#include <dspace/widgets/scene/SceneCommands.h>
+#include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/viewport/SessionInput.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
@@ -39,6 +41,7 @@ namespace dspace::widgets {
 namespace {
 
 constexpr int MostRecent = 10;
+const char* const SceneName = "scene"; // of dspace.Session.scene() without a name
 const char* const RecentKey = "recentFiles";
 
 // A text as Python writes it.
@@ -88,6 +91,14 @@ MainWindow::MainWindow(const QString& packages)
   this->ConsoleDock_->setObjectName(QStringLiteral("console"));
   this->ConsoleDock_->setWidget(this->Console_);
   this->addDockWidget(Qt::BottomDockWidgetArea, this->ConsoleDock_);
+  auto* tree = new SceneTreeWidget(this);
+  ConnectToSession(*tree, this->Session_, SceneName);
+  connect(tree, &SceneTreeWidget::failed, this,
+          [this](const QString& message) { this->Report(message); });
+  this->SceneDock_ = new QDockWidget(tr("Scene"), this);
+  this->SceneDock_->setObjectName(QStringLiteral("scene"));
+  this->SceneDock_->setWidget(tree);
+  this->addDockWidget(Qt::LeftDockWidgetArea, this->SceneDock_);
   this->MakeMenus();
   this->statusBar()->showMessage(
       tr("Open or drop a model, a raster of heights, a robot, a recording or a Python script"));
@@ -98,6 +109,7 @@ MainWindow::~MainWindow() {
     delete view.dock.data();
   }
   this->Views_.clear();
+  delete this->SceneDock_;
   delete this->ConsoleDock_;
   this->Interpreter_.reset(); // ends what Python has of the session
 }
@@ -119,6 +131,7 @@ void MainWindow::MakeMenus() {
   view->addAction(tr("&Tile views"), QKeySequence(Qt::CTRL | Qt::Key_T), this,
                   [this] { this->Tile(); });
   view->addSeparator();
+  view->addAction(this->SceneDock_->toggleViewAction());
   view->addAction(this->ConsoleDock_->toggleViewAction());
   QMenu* help = this->menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&Keys"), QKeySequence::HelpContents, this,
@@ -294,13 +307,15 @@ void MainWindow::ShowView(vtkDspaceSession* session, const std::string& viewport
   dock->setTitleBarWidget(this->ToolsOf(widget, viewport));
   dock->setWidget(widget);
   view = {dock, widget};
-  this->addDockWidget(Qt::TopDockWidgetArea, dock);
+  this->addDockWidget(Qt::RightDockWidgetArea, dock);
   this->Tile();
   if (this->Views_.size() == 1) { // the views get the room: the prompt had all of it
     QTimer::singleShot(0, this, [this, dock = QPointer<QDockWidget>(dock)] {
       if (dock) {
         this->resizeDocks({dock, this->ConsoleDock_}, {4 * this->height() / 5, this->height() / 5},
                           Qt::Vertical);
+        this->resizeDocks({this->SceneDock_, dock}, {this->width() / 4, 3 * this->width() / 4},
+                          Qt::Horizontal);
       }
     });
   }
@@ -349,7 +364,7 @@ void MainWindow::Tile() {
   const auto columns = std::size_t(std::ceil(std::sqrt(double(docks.size()))));
   for (std::size_t i = 0; i < docks.size(); ++i) {
     if (i == 0) {
-      this->addDockWidget(Qt::TopDockWidgetArea, docks[i]);
+      this->addDockWidget(Qt::RightDockWidgetArea, docks[i]);
     } else if (i < columns) { // the first row, and then below it
       this->splitDockWidget(docks[i - 1], docks[i], Qt::Horizontal);
     } else {

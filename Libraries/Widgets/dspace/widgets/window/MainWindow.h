@@ -1,4 +1,4 @@
-// The window of DspaceQt: viewports in docks, a Python prompt, menus.
+// The window of DspaceQt: viewports and the tree of the scene in docks, a Python prompt, menus.
 #ifndef DSPACE_WIDGETS_MAIN_WINDOW_H
 #define DSPACE_WIDGETS_MAIN_WINDOW_H
 
@@ -71,6 +71,7 @@ private:
   vtkSmartPointer<vtkDspaceSession> Session_;
   std::unique_ptr<PythonInterpreter> Interpreter_;
   ConsoleWidget* Console_ = nullptr;
+  QDockWidget* SceneDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;
   QMenu* Recent_ = nullptr;
   std::map<Key, View_t> Views_;
