@@ -12,12 +12,12 @@
 #include <QApplication>
 #include <QDate>
 #include <QFile>
-#include <QLocale>
 #include <QHelpEvent>
 #include <QInputDialog>
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <QLabel>
+#include <QLocale>
 #include <QMenu>
 #include <QPlainTextEdit>
 #include <QTemporaryDir>
@@ -165,9 +165,7 @@ struct Played {
   dspace::session::Interpreter interpreter;
   dspace::session::Playback playback{reader, interpreter};
 
-  double X() const {
-    return interpreter.FindScene("run")->Frames().LocalPose(7).position.x();
-  }
+  double X() const { return interpreter.FindScene("run")->Frames().LocalPose(7).position.x(); }
 };
 
 } // namespace
@@ -419,8 +417,7 @@ TEST(TimelineWidgetTest, ALiveSceneShowsItsClockAndEvents) {
   run(command);
   command.mutable_log_event()->set_kind("staging");
   run(command);
-  ASSERT_TRUE(
-      QTest::qWaitFor([&] { return Text(widget, "elapsed") == "T+ 00:00:12.500"; }, 2000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return Text(widget, "elapsed") == "T+ 00:00:12.500"; }, 2000));
   ASSERT_EQ(source->Events().size(), 1u);
   EXPECT_EQ(source->Events()[0].kind, "staging");
   EXPECT_DOUBLE_EQ(source->Events()[0].time_s, 62.5);

@@ -16,9 +16,9 @@ inline TimelineEvent ToTimelineEvent(const v1::LogEvent& event) {
 }
 
 inline void SortByTime(std::vector<TimelineEvent>& events) {
-  std::stable_sort(events.begin(), events.end(), [](const TimelineEvent& a, const TimelineEvent& b) {
-    return a.time_s < b.time_s;
-  });
+  std::stable_sort(
+      events.begin(), events.end(),
+      [](const TimelineEvent& a, const TimelineEvent& b) { return a.time_s < b.time_s; });
 }
 
 } // namespace dspace::widgets

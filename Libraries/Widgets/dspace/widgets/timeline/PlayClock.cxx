@@ -68,8 +68,7 @@ void PlayClock::Follow(bool following) {
 }
 
 double PlayClock::Advance(double wall_s) {
-  const double passed =
-      this->Wall_s_ ? std::clamp(wall_s - *this->Wall_s_, 0.0, LongestTick) : 0.0;
+  const double passed = this->Wall_s_ ? std::clamp(wall_s - *this->Wall_s_, 0.0, LongestTick) : 0.0;
   this->Wall_s_ = wall_s;
   if (this->Following_) {
     this->Time_ = this->Range_.end;
@@ -91,10 +90,10 @@ double PlayClock::Advance(double wall_s) {
     const bool left = this->Speed_ > 0.0 ? moved >= played.end : moved <= played.begin;
     if (left || (this->Speed_ > 0.0 ? moved < played.begin : moved > played.end)) {
       // Over the end by this much, in the direction of playing; from outside the loop it begins.
-      const double over = left ? std::fmod(std::abs(moved - (this->Speed_ > 0.0 ? played.end
-                                                                                : played.begin)),
-                                           played.Length())
-                               : 0.0;
+      const double over =
+          left ? std::fmod(std::abs(moved - (this->Speed_ > 0.0 ? played.end : played.begin)),
+                           played.Length())
+               : 0.0;
       this->Time_ = this->Speed_ > 0.0 ? played.begin + over : played.end - over;
     } else {
       this->Time_ = moved;
@@ -102,8 +101,8 @@ double PlayClock::Advance(double wall_s) {
     return this->Time_;
   }
   this->Time_ = std::clamp(moved, played.begin, played.end);
-  const bool ended = this->Speed_ > 0.0 ? moved >= played.end && !this->Grows_
-                                        : moved <= played.begin;
+  const bool ended =
+      this->Speed_ > 0.0 ? moved >= played.end && !this->Grows_ : moved <= played.begin;
   this->Playing_ = !ended;
   return this->Time_;
 }

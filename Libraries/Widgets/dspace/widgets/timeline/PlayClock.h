@@ -13,7 +13,7 @@ namespace dspace::widgets {
 // without one, playing ends at an end of the range, except at a live end, where it waits.
 class PlayClock {
 public:
-  static constexpr double LongestTick = 0.5;  // wall time that counts between two calls [s]
+  static constexpr double LongestTick = 0.5;   // wall time that counts between two calls [s]
   static constexpr double SlowestSpeed = 1e-3; // of the absolute value
   static constexpr double FastestSpeed = 1e6;
 

@@ -14,8 +14,9 @@ namespace dspace::widgets {
 
 // Plays a recording by a PlayClock. Seek(), SetSpeed(), ... only take a note; Advance() moves the
 // playback, at most once a call, so that a hundred movements of the mouse are one. Playing skips
-// gaps. The range begins with the first time that was set. Where times go back, the time of the latest run is shown, as Playback::Seek does.
-// Advance() reads the file and executes commands in the calling thread, that of the interpreter.
+// gaps. The range begins with the first time that was set. Where times go back, the time of the
+// latest run is shown, as Playback::Seek does. Advance() reads the file and executes commands in
+// the calling thread, that of the interpreter.
 class PlaybackTimeSource : public TimeSource {
 public:
   static constexpr double UpdateEvery = 0.5; // wall time between looks for new steps [s]

@@ -67,8 +67,8 @@ void SceneTimeSource::SetLoop(const std::optional<TimeRange>&) {
 }
 void SceneTimeSource::Follow(bool) {}
 
-std::unique_ptr<SceneTimeSource> MakeTimeSource(vtkDspaceSession* session,
-                                                const std::string& scene, bool j2000) {
+std::unique_ptr<SceneTimeSource> MakeTimeSource(vtkDspaceSession* session, const std::string& scene,
+                                                bool j2000) {
   const vtkSmartPointer<vtkDspaceSession> kept = session;
   auto source = std::make_unique<SceneTimeSource>(
       [kept, scene] { return kept->GetInterpreter().FindScene(scene); }, j2000);

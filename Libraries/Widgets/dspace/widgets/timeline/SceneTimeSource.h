@@ -45,8 +45,8 @@ private:
 };
 
 // A session's scene with its logged events. The source keeps the session.
-std::unique_ptr<SceneTimeSource> MakeTimeSource(vtkDspaceSession* session,
-                                                const std::string& scene, bool j2000 = true);
+std::unique_ptr<SceneTimeSource> MakeTimeSource(vtkDspaceSession* session, const std::string& scene,
+                                                bool j2000 = true);
 
 } // namespace dspace::widgets
 

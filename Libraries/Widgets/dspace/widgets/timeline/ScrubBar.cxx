@@ -69,8 +69,7 @@ struct ScrubBar::Internals {
   TimeRange View() const {
     TimeRange view = this->zoom ? *this->zoom : this->state.range.value_or(TimeRange{0.0, 1.0});
     // A range of no length, and times that doubles hardly tell apart.
-    const double least =
-        std::max(1e-3, 1e-12 * std::max(std::abs(view.begin), std::abs(view.end)));
+    const double least = std::max(1e-3, 1e-12 * std::max(std::abs(view.begin), std::abs(view.end)));
     if (view.Length() < least) {
       view.end = view.begin + least;
     }
@@ -100,7 +99,8 @@ struct ScrubBar::Internals {
     if (view.Length() >= all.Length()) {
       this->zoom.reset();
     } else {
-      const double shift = std::max(all.begin - view.begin, 0.0) - std::max(view.end - all.end, 0.0);
+      const double shift =
+          std::max(all.begin - view.begin, 0.0) - std::max(view.end - all.end, 0.0);
       this->zoom = TimeRange{view.begin + shift, view.end + shift};
     }
     this->Outdate();
@@ -115,8 +115,8 @@ struct ScrubBar::Internals {
     const auto before = [](const TimelineEvent& event, double time_s) {
       return event.time_s < time_s;
     };
-    const auto first = std::lower_bound(this->events.begin(), this->events.end(),
-                                        this->Time(x - Near), before);
+    const auto first =
+        std::lower_bound(this->events.begin(), this->events.end(), this->Time(x - Near), before);
     const auto last = std::lower_bound(first, this->events.end(), this->Time(x + Near), before);
     return {std::size_t(first - this->events.begin()), std::size_t(last - this->events.begin())};
   }
@@ -180,8 +180,8 @@ struct ScrubBar::Internals {
       }
     }
     const double top = MarkLane + BarHeight;
-    painter.setPen(Between(palette.color(QPalette::WindowText), palette.color(QPalette::Window),
-                           0.6));
+    painter.setPen(
+        Between(palette.color(QPalette::WindowText), palette.color(QPalette::Window), 0.6));
     double fine = step / 5.0;
     if (fine / view.Length() * this->Width() > 5.0) {
       for (const double time : Multiples(fine, low, high)) {
@@ -191,15 +191,15 @@ struct ScrubBar::Internals {
     }
     for (const double time : Multiples(step, low, high)) {
       const double x = this->X(time + this->Zero());
-      painter.setPen(Between(palette.color(QPalette::WindowText),
-                             palette.color(QPalette::Window), 0.45));
+      painter.setPen(
+          Between(palette.color(QPalette::WindowText), palette.color(QPalette::Window), 0.45));
       painter.drawLine(QPointF(x, top + 1), QPointF(x, top + TickHeight));
       const QString text = QString::fromStdString(TickText(time, step));
       const double width = metrics.horizontalAdvance(text);
       const double left =
           std::clamp(x - 0.5 * width, 0.0, std::max(0.0, this->widget->width() - width));
-      painter.setPen(Between(palette.color(QPalette::WindowText),
-                             palette.color(QPalette::Window), 0.2));
+      painter.setPen(
+          Between(palette.color(QPalette::WindowText), palette.color(QPalette::Window), 0.2));
       painter.drawText(QPointF(left, top + TickHeight + 1 + metrics.ascent()), text);
     }
   }
@@ -220,9 +220,10 @@ struct ScrubBar::Internals {
       for (std::size_t column = 0; column < columns.size(); ++column) {
         if (columns[column] == severity) {
           const double x = Side + double(column) + 0.5;
-          painter.drawPolygon(QPolygonF(
-              {{x, MarkLane - 11.0}, {x + 4.0, MarkLane - 6.5}, {x, MarkLane - 2.0},
-               {x - 4.0, MarkLane - 6.5}}));
+          painter.drawPolygon(QPolygonF({{x, MarkLane - 11.0},
+                                         {x + 4.0, MarkLane - 6.5},
+                                         {x, MarkLane - 2.0},
+                                         {x - 4.0, MarkLane - 6.5}}));
         }
       }
     }
@@ -256,9 +257,9 @@ struct ScrubBar::Internals {
     painter.drawRoundedRect(bar, 3, 3);
     if (!this->state.range) {
       painter.setPen(palette.color(QPalette::Disabled, QPalette::WindowText));
-      painter.drawText(QRectF(bar.left(), bar.bottom(), bar.width(),
-                              this->widget->height() - bar.bottom()),
-                       Qt::AlignCenter, "No times yet");
+      painter.drawText(
+          QRectF(bar.left(), bar.bottom(), bar.width(), this->widget->height() - bar.bottom()),
+          Qt::AlignCenter, "No times yet");
       ++this->drawings;
       this->outdated = false;
       return;
@@ -266,10 +267,9 @@ struct ScrubBar::Internals {
     painter.save();
     painter.setClipRect(bar);
     for (const TimeRange& gap : this->gaps) {
-      painter.fillRect(QRectF(QPointF(this->X(gap.begin), bar.top()),
-                              QPointF(this->X(gap.end), bar.bottom())),
-                       QBrush(palette.color(QPalette::Disabled, QPalette::WindowText),
-                              Qt::BDiagPattern));
+      painter.fillRect(
+          QRectF(QPointF(this->X(gap.begin), bar.top()), QPointF(this->X(gap.end), bar.bottom())),
+          QBrush(palette.color(QPalette::Disabled, QPalette::WindowText), Qt::BDiagPattern));
     }
     if (this->state.loop) {
       QColor color = palette.color(QPalette::Highlight);
@@ -282,8 +282,8 @@ struct ScrubBar::Internals {
       painter.fillRect(QRectF(loop.right() - 2.5, bar.top(), 2.5, bar.height()), color);
     }
     painter.restore();
-    painter.setPen(Between(palette.color(QPalette::WindowText), palette.color(QPalette::Window),
-                           0.65));
+    painter.setPen(
+        Between(palette.color(QPalette::WindowText), palette.color(QPalette::Window), 0.65));
     painter.setBrush(Qt::NoBrush);
     painter.drawRoundedRect(bar.adjusted(0.5, 0.5, -0.5, -0.5), 3, 3);
     this->DrawTicks(painter, palette);
@@ -521,8 +521,8 @@ void ScrubBar::wheelEvent(QWheelEvent* event) {
   }
   if (turned.y() != 0) {
     const double factor = std::pow(0.8, turned.y() / 120.0);
-    const double fixed = self.Time(std::clamp(event->position().x(), double(Side),
-                                              Side + self.Width()));
+    const double fixed =
+        self.Time(std::clamp(event->position().x(), double(Side), Side + self.Width()));
     self.SetZoom({fixed + (view.begin - fixed) * factor, fixed + (view.end - fixed) * factor});
   }
   event->accept();

@@ -42,8 +42,8 @@ public:
 signals:
   void scrubbed(double time_s);
   void loopChosen(double begin_s, double end_s);
-  void markAsked(double time_s);              // a new one
-  void markOpened(const QString& id);         // to edit its note
+  void markAsked(double time_s);      // a new one
+  void markOpened(const QString& id); // to edit its note
   void markErased(const QString& id);
 
 protected:

@@ -16,9 +16,7 @@ struct TimeRange {
 
   double Length() const { return this->end - this->begin; }
   bool Contains(double time_s) const { return this->begin <= time_s && time_s <= this->end; }
-  bool operator==(const TimeRange& o) const {
-    return this->begin == o.begin && this->end == o.end;
-  }
+  bool operator==(const TimeRange& o) const { return this->begin == o.begin && this->end == o.end; }
   bool operator!=(const TimeRange& o) const { return !(*this == o); }
 };
 
@@ -38,7 +36,7 @@ public:
   struct State {
     double time_s = 0.0;            // now
     std::optional<TimeRange> range; // known times; none: there is no time yet
-    bool j2000 = true; // times are TDB seconds past J2000; false: there is no UTC
+    bool j2000 = true;              // times are TDB seconds past J2000; false: there is no UTC
     bool canPlay = false;
     bool canSeek = false; // and step, loop, and set the speed
     bool grows = false;   // the end of the range is live
@@ -60,8 +58,8 @@ public:
   virtual void Advance(double wall_s) = 0;
   virtual void Play(bool playing) = 0;
   virtual void Seek(double time_s) = 0;
-  virtual void Step(int steps) = 0;              // of the simulation; < 0: back
-  virtual void SetSpeed(double speed) = 0;       // not 0
+  virtual void Step(int steps) = 0;        // of the simulation; < 0: back
+  virtual void SetSpeed(double speed) = 0; // not 0
   virtual void SetLoop(const std::optional<TimeRange>& loop) = 0;
   virtual void Follow(bool following) = 0;
 };

@@ -23,11 +23,10 @@ struct LeapSecond {
   std::int64_t offset;
 };
 constexpr std::array<LeapSecond, 28> LeapSeconds = {
-    {{730, 10},    {912, 11},    {1096, 12},   {1461, 13},   {1826, 14},   {2191, 15},
-     {2557, 16},   {2922, 17},   {3287, 18},   {3652, 19},   {4199, 20},   {4564, 21},
-     {4929, 22},   {5660, 23},   {6574, 24},   {7305, 25},   {7670, 26},   {8217, 27},
-     {8582, 28},   {8947, 29},   {9496, 30},   {10043, 31},  {10592, 32},  {13149, 33},
-     {14245, 34},  {15522, 35},  {16617, 36},  {17167, 37}}};
+    {{730, 10},   {912, 11},   {1096, 12},  {1461, 13},  {1826, 14},  {2191, 15},  {2557, 16},
+     {2922, 17},  {3287, 18},  {3652, 19},  {4199, 20},  {4564, 21},  {4929, 22},  {5660, 23},
+     {6574, 24},  {7305, 25},  {7670, 26},  {8217, 27},  {8582, 28},  {8947, 29},  {9496, 30},
+     {10043, 31}, {10592, 32}, {13149, 33}, {14245, 34}, {15522, 35}, {16617, 36}, {17167, 37}}};
 
 double TdbMinusTt(double tdb_s) {
   const double T = tdb_s / (36525.0 * Day);
@@ -75,8 +74,8 @@ std::string UtcText(double tdb_s) {
     return "";
   }
   // Milliseconds after 1970-01-01 00:00:00 of TT, then of TAI.
-  const std::int64_t tt_ms = std::llround((tdb_s - TdbMinusTt(tdb_s)) * 1000.0) +
-                             J2000Day * Day_ms + Day_ms / 2;
+  const std::int64_t tt_ms =
+      std::llround((tdb_s - TdbMinusTt(tdb_s)) * 1000.0) + J2000Day * Day_ms + Day_ms / 2;
   const std::int64_t tai_ms = tt_ms - TtMinusTai_ms;
   for (auto leap = LeapSeconds.rbegin(); leap != LeapSeconds.rend(); ++leap) {
     const std::int64_t begin_ms = leap->day * Day_ms + 1000 * leap->offset;
@@ -104,8 +103,7 @@ std::string ElapsedText(double seconds) {
   char text[64];
   std::snprintf(text, sizeof(text), "%02d:%02d:%02d.%03d", int(rest / 3600000),
                 int(rest / 60000 % 60), int(rest / 1000 % 60), int(rest % 1000));
-  const std::string days =
-      size >= Day_ms ? std::to_string(size / Day_ms) + " d " : std::string();
+  const std::string days = size >= Day_ms ? std::to_string(size / Day_ms) + " d " : std::string();
   return (ms < 0 ? "T- " : "T+ ") + days + text;
 }
 
@@ -148,8 +146,8 @@ double TimeStep(double low_s, double high_s, int count) {
   if (step <= 50.0) {
     return step;
   }
-  for (const double round : {60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0, 10800.0,
-                             21600.0, 43200.0, Day}) {
+  for (const double round :
+       {60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0, 43200.0, Day}) {
     if (std::floor(high_s / round) - std::ceil(low_s / round) + 1.0 <= count) {
       return round;
     }

@@ -7,10 +7,10 @@
 
 namespace dspace::widgets {
 
-// "2017-01-01 00:00:00.000 UTC" of TDB seconds past J2000, to the nearest millisecond, with the leap
-// seconds up to that of 2017-01-01 (IERS Bulletin C); 23:59:60 is the leap second. TDB - TT is that
-// of the USNO Circular 179, eq. 2.6, within 10 us from 1600 to 2200. Before 1972, when UTC got its
-// present form, the text is of TT. "" beyond 10,000 years from J2000, and for NaN.
+// "2017-01-01 00:00:00.000 UTC" of TDB seconds past J2000, to the nearest millisecond, with the
+// leap seconds up to that of 2017-01-01 (IERS Bulletin C); 23:59:60 is the leap second. TDB - TT is
+// that of the USNO Circular 179, eq. 2.6, within 10 us from 1600 to 2200. Before 1972, when UTC got
+// its present form, the text is of TT. "" beyond 10,000 years from J2000, and for NaN.
 std::string UtcText(double tdb_s);
 
 // "T+ 01:02:03.456", "T- 00:00:01.000", "T+ 2 d 03:04:05.678", to the nearest millisecond. "" for

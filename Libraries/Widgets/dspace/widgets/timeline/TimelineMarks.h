@@ -21,10 +21,10 @@ std::string NewMarkId();
 
 // Marks are sorted by time. Every change reads the file, changes one mark, and writes the file as a
 // whole (AtomicFile.h), so that marks of other processes and fields of other programs stay. Each
-// returns the marks of the file afterwards. No file is a file without marks. Throws Error and leaves
-// the file as it is: Corrupt for a file that is not of this kind, Unsupported for one of a newer
-// version, Io for what the system reports, InvalidArgument for a mark without an id or a time that
-// is not finite.
+// returns the marks of the file afterwards. No file is a file without marks. Throws Error and
+// leaves the file as it is: Corrupt for a file that is not of this kind, Unsupported for one of a
+// newer version, Io for what the system reports, InvalidArgument for a mark without an id or a time
+// that is not finite.
 std::vector<TimelineMark> LoadMarks(const std::string& path);
 std::vector<TimelineMark> PutMark(const std::string& path, const TimelineMark& mark);
 std::vector<TimelineMark> EraseMark(const std::string& path, const std::string& id);

@@ -132,8 +132,7 @@ struct TimelineWidget::Internals {
       TimeRange loop = this->state.loop.value_or(*this->state.range);
       (begin ? loop.begin : loop.end) = this->state.time_s;
       if (loop.Length() <= 0.0) {
-        (begin ? loop.end : loop.begin) =
-            begin ? this->state.range->end : this->state.range->begin;
+        (begin ? loop.end : loop.begin) = begin ? this->state.range->end : this->state.range->begin;
       }
       this->source->SetLoop(loop);
     });
@@ -149,9 +148,8 @@ struct TimelineWidget::Internals {
     const bool some = this->source != nullptr;
     const TimeSource::State& s = this->state;
     const bool seeks = some && s.canSeek;
-    for (const auto icon :
-         {TransportIcon::StepBack, TransportIcon::StepOn, TransportIcon::Slower,
-          TransportIcon::Faster, TransportIcon::Reverse, TransportIcon::Loop}) {
+    for (const auto icon : {TransportIcon::StepBack, TransportIcon::StepOn, TransportIcon::Slower,
+                            TransportIcon::Faster, TransportIcon::Reverse, TransportIcon::Loop}) {
       this->buttons[icon]->setEnabled(seeks);
     }
     this->buttons[TransportIcon::Play]->setEnabled(some && s.canPlay);
@@ -172,7 +170,8 @@ struct TimelineWidget::Internals {
     this->speed->setEnabled(seeks);
     Set(this->speed, SpeedText(s.speed));
     const bool known = some && s.range;
-    const QString utcText = known && s.j2000 ? QString::fromStdString(UtcText(s.time_s)) : QString();
+    const QString utcText =
+        known && s.j2000 ? QString::fromStdString(UtcText(s.time_s)) : QString();
     Set(this->utc, utcText.isEmpty() ? (some ? "no UTC" : "no clock") : utcText);
     Set(this->elapsed,
         known ? QString::fromStdString(ElapsedText(s.time_s - s.range->begin)) : NoText);
@@ -180,9 +179,9 @@ struct TimelineWidget::Internals {
                      : s.j2000 ? QString::number(s.time_s, 'f', 3) + " s past J2000"
                                : QString::number(s.time_s, 'f', 3) + " s");
     const std::optional<double> factor = this->meter.Rate();
-    Set(this->rate, (factor ? QString::number(*factor, 'f', std::abs(*factor) < 99.5 ? 2 : 0)
-                            : NoText) +
-                        " " + QChar(0xd7) + " real time");
+    Set(this->rate,
+        (factor ? QString::number(*factor, 'f', std::abs(*factor) < 99.5 ? 2 : 0) : NoText) + " " +
+            QChar(0xd7) + " real time");
     this->bar->SetState(some ? s : TimeSource::State());
   }
 
@@ -201,17 +200,20 @@ struct TimelineWidget::Internals {
         why = QString::fromUtf8(error.what());
       }
       // Dropped where the widget has ended.
-      QMetaObject::invokeMethod(owner, [owner, epoch, marks, why] {
-        Internals& self = *owner->Impl_;
-        if (epoch != self.marksEpoch) {
-          return;
-        }
-        if (!why.isEmpty()) {
-          self.Fail(why);
-          return;
-        }
-        self.SetMarks(marks);
-      }, Qt::QueuedConnection);
+      QMetaObject::invokeMethod(
+          owner,
+          [owner, epoch, marks, why] {
+            Internals& self = *owner->Impl_;
+            if (epoch != self.marksEpoch) {
+              return;
+            }
+            if (!why.isEmpty()) {
+              self.Fail(why);
+              return;
+            }
+            self.SetMarks(marks);
+          },
+          Qt::QueuedConnection);
     });
   }
   void SetMarks(std::vector<TimelineMark> all) {
@@ -231,8 +233,8 @@ struct TimelineWidget::Internals {
     dialog->setOption(QInputDialog::UsePlainTextEditForTextInput);
     dialog->setLabelText(
         QString("Note at %1")
-            .arg(QString::fromStdString(ElapsedText(
-                mark.time_s - (this->state.range ? this->state.range->begin : 0.0)))));
+            .arg(QString::fromStdString(
+                ElapsedText(mark.time_s - (this->state.range ? this->state.range->begin : 0.0)))));
     dialog->setTextValue(QString::fromStdString(mark.note));
     QObject::connect(dialog, &QInputDialog::textValueSelected, this->widget,
                      [this, mark](const QString& text) {
@@ -276,19 +278,21 @@ TimelineWidget::TimelineWidget(QWidget* parent)
   row->addWidget(self.speed);
   self.Add(*row, TransportIcon::Faster, "Faster", "Twice the speed", speed(2.0));
   row->addSpacing(8);
-  self.Add(*row, TransportIcon::Loop, "Loop",
-           "Play a range again and again. Shift and drag on the bar selects it, [ and ] set its "
-           "ends",
-           [&self] {
-             self.source->SetLoop(self.state.loop ? std::optional<TimeRange>() : self.state.range);
-           },
-           true);
+  self.Add(
+      *row, TransportIcon::Loop, "Loop",
+      "Play a range again and again. Shift and drag on the bar selects it, [ and ] set its "
+      "ends",
+      [&self] {
+        self.source->SetLoop(self.state.loop ? std::optional<TimeRange>() : self.state.range);
+      },
+      true);
   self.Add(*row, TransportIcon::Mark, "Mark", "Set a mark with a note at the present time (M)",
            [&self] {
              self.EditMark({NewMarkId(), self.state.time_s, ""}, "New mark");
            });
-  self.Add(*row, TransportIcon::Live, "Live", "Stay at the live end",
-           [&self] { self.source->Follow(!self.state.following); }, true);
+  self.Add(
+      *row, TransportIcon::Live, "Live", "Stay at the live end",
+      [&self] { self.source->Follow(!self.state.following); }, true);
   row->addStretch(1);
 
   const QFont fixed = QFontDatabase::systemFont(QFontDatabase::FixedFont);
@@ -303,8 +307,8 @@ TimelineWidget::TimelineWidget(QWidget* parent)
   };
   self.utc = read("utc", "Simulation time in UTC; TT before 1972", "2026-01-01 00:00:00.000 UTC");
   self.elapsed = read("elapsed", "Simulation time since the beginning", "T+ 00:00:00.000");
-  self.j2000 = read("j2000", "Simulation time: TDB seconds past J2000",
-                    "828360896.972 s past J2000");
+  self.j2000 =
+      read("j2000", "Simulation time: TDB seconds past J2000", "828360896.972 s past J2000");
   self.rate = read("rate", "The real-time factor: simulated seconds a second, over the last second",
                    "100.00 x real time");
   auto* clock = new QGridLayout;
@@ -434,10 +438,10 @@ void TimelineWidget::Refresh(std::optional<double> wall_s) {
   if (!self.source) {
     return;
   }
-  const double now = wall_s ? *wall_s
-                            : std::chrono::duration<double>(
-                                  std::chrono::steady_clock::now().time_since_epoch())
-                                  .count();
+  const double now =
+      wall_s ? *wall_s
+             : std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+                   .count();
   self.Try([&] { self.source->Advance(now); });
   self.state = self.source->GetState();
   if (self.shownTime && (self.state.time_s - *self.shownTime) * self.state.speed < 0.0) {

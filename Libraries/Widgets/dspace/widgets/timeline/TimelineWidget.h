@@ -16,11 +16,11 @@ namespace dspace::widgets {
 
 class ScrubBar;
 
-// Buttons, the clock (UTC, time since the beginning of the range, seconds past J2000), the real-time
-// factor, and a bar with events and marks. Space plays and pauses, the arrows step, Home and End go
-// to the ends, [ and ] set the ends of the loop, M sets a mark.
-// It drives its time source up to 30 times a second, also while it is hidden. What a source throws
-// is shown, and told by failed(). The side file of marks is read and written by a thread of its own.
+// Buttons, the clock (UTC, time since the beginning of the range, seconds past J2000), the
+// real-time factor, and a bar with events and marks. Space plays and pauses, the arrows step, Home
+// and End go to the ends, [ and ] set the ends of the loop, M sets a mark. It drives its time
+// source up to 30 times a second, also while it is hidden. What a source throws is shown, and told
+// by failed(). The side file of marks is read and written by a thread of its own.
 class TimelineWidget : public QWidget {
   Q_OBJECT
 

@@ -7,7 +7,18 @@
 
 namespace dspace::widgets {
 
-enum class TransportIcon { Play, Pause, StepBack, StepOn, Slower, Faster, Reverse, Loop, Live, Mark };
+enum class TransportIcon {
+  Play,
+  Pause,
+  StepBack,
+  StepOn,
+  Slower,
+  Faster,
+  Reverse,
+  Loop,
+  Live,
+  Mark
+};
 
 // 20 × 20, with a paler one for disabled buttons.
 QIcon MakeTransportIcon(TransportIcon icon, const QPalette& palette);

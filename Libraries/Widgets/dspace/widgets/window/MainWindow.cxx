@@ -33,6 +33,8 @@
 #include <dspace/widgets/console/PythonInterpreter.h>
 #include <dspace/widgets/scene/SceneCommands.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
+#include <dspace/widgets/timeline/SceneTimeSource.h>
+#include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/viewport/SessionInput.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
@@ -99,6 +101,15 @@ MainWindow::MainWindow(const QString& packages)
   this->SceneDock_->setObjectName(QStringLiteral("scene"));
   this->SceneDock_->setWidget(tree);
   this->addDockWidget(Qt::LeftDockWidgetArea, this->SceneDock_);
+  auto* timeline = new TimelineWidget(this);
+  timeline->SetSource(MakeTimeSource(this->Session_, SceneName));
+  connect(timeline, &TimelineWidget::failed, this,
+          [this](const QString& message) { this->Report(message); });
+  this->TimeDock_ = new QDockWidget(tr("Time"), this);
+  this->TimeDock_->setObjectName(QStringLiteral("time"));
+  this->TimeDock_->setWidget(timeline);
+  this->addDockWidget(Qt::BottomDockWidgetArea, this->TimeDock_);
+  this->splitDockWidget(this->TimeDock_, this->ConsoleDock_, Qt::Vertical);
   this->MakeMenus();
   this->statusBar()->showMessage(
       tr("Open or drop a model, a raster of heights, a robot, a recording or a Python script"));
@@ -109,6 +120,7 @@ MainWindow::~MainWindow() {
     delete view.dock.data();
   }
   this->Views_.clear();
+  delete this->TimeDock_;
   delete this->SceneDock_;
   delete this->ConsoleDock_;
   this->Interpreter_.reset(); // ends what Python has of the session
@@ -132,6 +144,7 @@ void MainWindow::MakeMenus() {
                   [this] { this->Tile(); });
   view->addSeparator();
   view->addAction(this->SceneDock_->toggleViewAction());
+  view->addAction(this->TimeDock_->toggleViewAction());
   view->addAction(this->ConsoleDock_->toggleViewAction());
   QMenu* help = this->menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&Keys"), QKeySequence::HelpContents, this,

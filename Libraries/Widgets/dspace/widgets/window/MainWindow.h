@@ -72,6 +72,7 @@ private:
   std::unique_ptr<PythonInterpreter> Interpreter_;
   ConsoleWidget* Console_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
+  QDockWidget* TimeDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;
   QMenu* Recent_ = nullptr;
   std::map<Key, View_t> Views_;
