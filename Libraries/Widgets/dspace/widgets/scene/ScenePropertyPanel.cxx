@@ -139,7 +139,7 @@ struct ScenePropertyPanel::Internals {
     this->form->addWidget(field, row, 1);
     this->names[field] = label;
   }
-  QLabel* Add(const QString& name, const QString& tip) {
+  QLabel* Add(const QString& name, const QString& tip, const QString& unit = {}) {
     auto* label = new QLabel;
     label->setTextFormat(Qt::PlainText);
     label->setWordWrap(true);
@@ -153,7 +153,7 @@ struct ScenePropertyPanel::Internals {
     label->setToolTip(tip);
     label->setAccessibleName(name);
     label->setObjectName(name.toLower());
-    this->AddRow(name, label);
+    this->AddRow(unit.isEmpty() ? name : name + " [" + unit + "]", label);
     return label;
   }
   static void Set(QLabel* label, const QString& text) {
@@ -173,7 +173,7 @@ ScenePropertyPanel::ScenePropertyPanel(QWidget* parent)
   self.pages = new QStackedLayout(this);
   auto* empty = new QLabel("Select a frame or an object\nto see its properties");
   empty->setAlignment(Qt::AlignCenter);
-  empty->setEnabled(false);
+  empty->setForegroundRole(QPalette::PlaceholderText);
   self.pages->addWidget(empty);
 
   auto* area = new QScrollArea;
@@ -210,10 +210,12 @@ ScenePropertyPanel::ScenePropertyPanel(QWidget* parent)
   self.reference->setAccessibleName("Relative to");
   self.AddRow("Relative to", self.reference);
   self.form->setAlignment(self.names[self.reference], Qt::AlignVCenter);
-  self.position = self.Add("Position", "Metres");
+  self.position = self.Add("Position", "Metres", "m");
   self.quaternion = self.Add("Quaternion", "Unit quaternion, scalar first");
-  self.angles = self.Add("Angles", "Roll, pitch and yaw about the fixed X, then Y, then Z axis, "
-                                   "degrees");
+  self.angles = self.Add("Angles",
+                         "Roll, pitch and yaw about the fixed X, then Y, then Z axis, "
+                         "degrees",
+                         QChar(0xb0));
   self.scale = self.Add("Scale", "Of the frame's axes");
   self.ofObjects = {
       self.Add("Nature", "Physical objects are visible to a real camera"),

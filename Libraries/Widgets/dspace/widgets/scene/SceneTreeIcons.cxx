@@ -112,7 +112,7 @@ void DrawKind(SceneTreeModel::Icon icon, QPainter& painter, const QColor& color)
 
 void DrawEye(SceneTreeModel::Eye eye, QPainter& painter, QColor color) {
   if (eye == SceneTreeModel::Eye::Hidden) {
-    color.setAlphaF(0.45f);
+    color.setAlphaF(0.6f);
   }
   QPainterPath lid({1.2, 8.0});
   lid.quadTo({8.0, 1.2}, {14.8, 8.0});

@@ -31,9 +31,10 @@ public:
     }
     if (index.column() != SceneTreeModel::VisibleColumn &&
         index.data(SceneTreeModel::DimmedRole).toBool()) {
+      QColor pale = option->palette.color(QPalette::Active, QPalette::Text);
+      pale.setAlphaF(0.55f); // disabled text is too pale to read on some palettes
       for (const auto group : {QPalette::Active, QPalette::Inactive}) {
-        option->palette.setColor(group, QPalette::Text,
-                                 option->palette.color(QPalette::Disabled, QPalette::Text));
+        option->palette.setColor(group, QPalette::Text, pale);
       }
     }
   }
@@ -78,8 +79,8 @@ SceneTreeView::SceneTreeView(SceneTreeModel* model, QWidget* parent) : QTreeView
   header.setSectionResizeMode(SceneTreeModel::VisibleColumn, QHeaderView::Fixed);
   header.resizeSection(SceneTreeModel::VisibleColumn, IconEdge + 12);
   const QFontMetrics metrics(this->font());
-  header.resizeSection(SceneTreeModel::NatureColumn, metrics.horizontalAdvance("ornamental") + 16);
-  header.resizeSection(SceneTreeModel::KindColumn, metrics.horizontalAdvance("primitive") + 16);
+  header.resizeSection(SceneTreeModel::NatureColumn, metrics.horizontalAdvance("ornamental") + 12);
+  header.resizeSection(SceneTreeModel::KindColumn, metrics.horizontalAdvance("primitive") + 12);
 }
 
 void SceneTreeView::dataChanged(const QModelIndex& topLeft, const QModelIndex& bottomRight,

@@ -303,7 +303,7 @@ SceneTreeWidget::SceneTreeWidget(QWidget* parent)
   self.empty = new QLabel(self.view->viewport());
   self.empty->setAlignment(Qt::AlignCenter);
   self.empty->setWordWrap(true);
-  self.empty->setEnabled(false);
+  self.empty->setForegroundRole(QPalette::PlaceholderText);
   self.view->viewport()->installEventFilter(this);
 
   self.ticks.setSingleShot(true);

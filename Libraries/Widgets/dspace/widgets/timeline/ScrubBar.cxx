@@ -256,7 +256,7 @@ struct ScrubBar::Internals {
     painter.setBrush(palette.color(QPalette::Base));
     painter.drawRoundedRect(bar, 3, 3);
     if (!this->state.range) {
-      painter.setPen(palette.color(QPalette::Disabled, QPalette::WindowText));
+      painter.setPen(palette.color(QPalette::PlaceholderText));
       painter.drawText(
           QRectF(bar.left(), bar.bottom(), bar.width(), this->widget->height() - bar.bottom()),
           Qt::AlignCenter, "No times yet");
