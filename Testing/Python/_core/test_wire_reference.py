@@ -27,7 +27,7 @@ def test_the_page_is_up_to_date():
 
 def test_results_are_those_that_commands_answer(monkeypatch, field):
     seen = {}
-    finish = LocalClient._finish
+    finish = LocalClient.finish
 
     def noted(self, command, reply):
         if not reply.HasField("error"):

@@ -298,11 +298,6 @@ class Viewport(ViewportLook):
         self._do("set_viewport_fragment", visible=False,
                  fragment=self.scene._fragment_name(fragment, None))
 
-    def show(self, fragment):
-        """Reverses hide()."""
-        self._do("set_viewport_fragment", visible=True,
-                 fragment=self.scene._fragment_name(fragment, None))
-
     def set_table(self, name, rows, title="", anchor="top left", font_size=None, margin=None,
                   color=None, background=None, background_opacity=None):
         """Labels and values over the picture: rows is a dict or pairs of anything with a str.
@@ -362,8 +357,9 @@ class Viewport(ViewportLook):
         """The same for each click without a drag, of any button, with what it hit (Input.pick)."""
         self._client.inputs.add(self._name, "click", callback)
 
-    def show(self, title=None, size=None):
-        """Opens a window with this viewport, or raises the one that shows it.
+    def show(self, fragment=None, *, title=None, size=None):
+        """With a fragment: shows it in this viewport again, which reverses hide(). Without one: opens a window with this
+        viewport, or raises the one that shows it.
 
             view.show()
             dspace.run()
@@ -373,6 +369,11 @@ class Viewport(ViewportLook):
         does, and reach the callbacks of on_key and on_click. Nothing happens in the window until dspace.run() or, in a
         loop of one's own, dspace.process_events(). Raises dspace.Unsupported in a build without Qt, dspace.Resource
         without a display."""
+        if fragment is not None:
+            if title is not None or size is not None:
+                reject(self._label(), "a fragment with title or size", fragment, "either of them", WrongType)
+            self._do("set_viewport_fragment", visible=True, fragment=self.scene._fragment_name(fragment, None))
+            return
         self._client.windows.show(self, title, size)
 
     def close(self):
