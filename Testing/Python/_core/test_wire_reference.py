@@ -34,7 +34,7 @@ def test_results_are_those_that_commands_answer(monkeypatch, field):
             seen.setdefault(command.WhichOneof("command"), set()).add(reply.WhichOneof("result"))
         return finish(self, command, reply)
 
-    monkeypatch.setattr(LocalClient, "_finish", noted)
+    monkeypatch.setattr(LocalClient, "finish", noted)
     with dspace.Session() as session:
         scene = session.scene()
         frame, other = scene.add_frame("frame"), scene.add_frame("other")
