@@ -106,7 +106,7 @@ def test_packages_whose_lack_tests_report():
     names |= {name for path in (ROOT / "Libraries").glob("*/Testing/**/*.cxx")
               for name in missing.findall(path.read_text(encoding="utf-8"))}
     assert {"python3-gdal", "python3-distributed", "proj-data", "glslang-tools"} <= names
-    assert names <= listed("run", "extra", "build", "test")
+    assert names <= listed("run", "extra", "build", "app", "test")
 
 
 def test_lists_hold_existing_kinds_only():

@@ -282,33 +282,6 @@ def test_info_of_a_field(tmp_path):
         assert part in text, text
 
 
-@pytest.mark.parametrize("view", ["map", "perspective"])
-def test_shadows_darken_what_the_sun_does_not_reach(tmp_path, view):
-    """A pit 12 m deep, its wall 4 m wide, in level ground; the Sun 20 degrees high in the west. The wall's shadow is 33 m
-    long: beside it, pictures with and without shadows are the same."""
-    x = np.arange(128) - 63.5  # posts 2 m apart
-    away = np.maximum(np.abs(x[None, :]), np.abs(x[:, None])) * 2
-    path = write_raster(tmp_path / "pit.tif", np.clip((away - 60) * 3, -12, 0).astype(np.int16))
-    arguments = (path, "--view", view, "--sun", "270,20")
-    if view == "map":
-        arguments += ("--size", "256x256")  # pixels of a metre
-    else:
-        arguments += ("--size", "160x120")
-    plain, _ = render(tmp_path / "plain.png", *arguments)
-    shadowed, _ = render(tmp_path / "shadowed.png", *arguments, "--shadows")
-    drop = plain.astype(int).mean(axis=2) - shadowed.astype(int).mean(axis=2)
-    assert drop.min() >= -1
-    if view == "perspective":
-        assert 0.02 < (drop > 25).mean() < 0.3
-        return
-    # The floor is 120 m wide, from column 70 to 186; the edge's shadow falls from its top at column 67 to 67 + 33.
-    rows = slice(80, 176)
-    floor = drop[rows, 73:96]
-    assert (floor > 25).all() and (shadowed[rows, 73:96] > 0).all()  # the fill light is left
-    for beside in (drop[rows, 104:180], drop[:, :60], drop[:, 192:], drop[:60], drop[196:]):
-        assert np.abs(beside).max() <= 1
-
-
 # --- What is refused -------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("arguments, code, text", [
