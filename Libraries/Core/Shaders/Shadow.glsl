@@ -6,8 +6,8 @@ uniform sampler2DArray shadowTops; // dspace/render/shadows/CasterTiles.h
 uniform mat3 sunAxesVC; // view axes to light axes
 uniform vec4 shadowPlace[DSPACE_CASCADES]; // centre; half its side; depth of the view where it ends
 uniform vec2 shadowRange[DSPACE_CASCADES]; // the height that is 0; the height of 1 above it
-// Of blockers above a receiver: CascadeFit::Reach(); the map before it reaches so far, down to that
-// depth.
+// Of blockers above a receiver: CascadeFit::Reach(), Beginning(); the depth down to which the map
+// before it reaches.
 uniform vec3 shadowReaches[DSPACE_CASCADES];
 uniform int shadowSize; // texels a side of each map
 uniform int groundSize; // of the maps of the ground

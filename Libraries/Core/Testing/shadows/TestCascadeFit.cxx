@@ -67,7 +67,11 @@ TEST(CascadeFit, AMapCoversTheViewDownToItsEnd) {
             FitCascades(projection, width, height, SunFrom(s), 1.3, 900.0, ShadowLook());
         double before = 0.0;
         for (std::size_t k = 0; k < fit.cascades.size(); ++k) {
-          EXPECT_GT(fit.cascades[k].end, before);
+          if (projection.kind == Projection::Kind::Orthographic) {
+            EXPECT_EQ(fit.cascades[k].end, 900.0);
+          } else {
+            EXPECT_GT(fit.cascades[k].end, before);
+          }
           before = fit.cascades[k].end;
           for (const double depth : {0.01, 0.5 * before, before}) {
             for (const auto& [x, y] : {std::pair(-0.5, -0.5),
@@ -99,6 +103,27 @@ TEST(CascadeFit, TexelsAreOfTwoCentimetresAtFiveMetres) {
   EXPECT_GE(fit.cascades[0].end, 5.0);
   EXPECT_LE(fit.cascades[0].Texel(fit.size), 0.02);
   EXPECT_DOUBLE_EQ(fit.cascades[3].end, 2048.0);
+}
+
+// All maps of a parallel view have all of it; each resolves four times wider penumbrae, and sizes
+// do not change with small changes of what is seen.
+TEST(CascadeFit, MapsOfAParallelViewAreForEverWiderPenumbrae) {
+  const auto fit = [](double nearest, double farthest) {
+    return FitCascades(Parallel(), 640, 480, SunFrom({1, 1, 1}), nearest, farthest, ShadowLook());
+  };
+  const CascadeFit one = fit(10.0, 18.0);
+  ASSERT_EQ(one.cascades.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(one.cascades[k].end, 18.0);
+    EXPECT_DOUBLE_EQ(one.cascades[k].radius, one.cascades[0].radius * std::pow(4.0, double(k)));
+    EXPECT_DOUBLE_EQ(one.Reach(one.cascades[k]),
+                     7.0 * one.cascades[k].Texel(2048) / std::tan(0.00465));
+    EXPECT_DOUBLE_EQ(one.Beginning(k), k > 0 ? 0.75 * one.Reach(one.cascades[k - 1]) : 0.0);
+    EXPECT_EQ(fit(10.1, 18.3).cascades[k].radius, one.cascades[k].radius);
+  }
+  // The view's corners are at half of 40 m by 53 m from its axis, and 4 m before and behind.
+  EXPECT_GE(one.cascades[0].radius, std::hypot(20.0, 20.0 * 640 / 480, 4.0));
+  EXPECT_LE(one.cascades[0].radius, 1.5 * std::hypot(20.0, 20.0 * 640 / 480, 4.0));
 }
 
 // A point of the ground stays at the same place within its texel wherever the camera is, also far

@@ -23,7 +23,8 @@ public:
       : Beyond_(fit, fit.cascades[std::size_t(k)]), All_(fit, fit.cascades[std::size_t(k)]) {
     const double end = fit.cascades[std::size_t(k)].end;
     const double before = k > 0 ? fit.cascades[std::size_t(k) - 1].end : -1e300;
-    this->Reached_ = k > 0 ? fit.Reach(fit.cascades[std::size_t(k) - 1]) : 0.0;
+    const bool further = end > before; // no map of a parallel view reaches further than the first
+    this->Beginning_ = fit.Beginning(std::size_t(k));
     for (const LightHull& hull : receivers) {
       double nearest = 1e300;
       double farthest = -1e300;
@@ -33,21 +34,22 @@ public:
       }
       if (hull.points.empty() || nearest <= end) {
         this->All_.Add(hull);
-        if (hull.points.empty() || farthest > before) {
+        if (further && (hull.points.empty() || farthest > before)) {
           this->Beyond_.Add(hull);
         }
       }
     }
   }
   bool Take(const LightHull& caster) const {
-    return this->Beyond_.TakeShadows(caster, 0.0) || this->All_.TakeShadows(caster, this->Reached_);
+    return this->Beyond_.TakeShadows(caster, 0.0) ||
+           this->All_.TakeShadows(caster, this->Beginning_);
   }
   std::array<int, 4> Texels() const { return this->All_.Texels(); }
 
 private:
   CasterTiles Beyond_;
   CasterTiles All_;
-  double Reached_ = 0.0; // [m]
+  double Beginning_ = 0.0; // [m]
 };
 
 } // namespace
@@ -213,6 +215,7 @@ void ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
         return taking.Take(this->HullOf(batch, instance));
       });
       cascade.high = std::max(cascade.high, list.HighestToSun());
+      map.clip = fit.ClipFromView(cascade); // ground is found by it, too
       CasterTiles tiles(fit, cascade);
       for (const LightHull& hull : this->HullsOf(list, map, false, painter)) {
         tiles.Add(hull);

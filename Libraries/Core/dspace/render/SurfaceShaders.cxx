@@ -262,7 +262,7 @@ void SurfaceShaders::SetShadows(vtkShaderProgram* program, const CascadeFit& fit
     range[k][0] = float(cascade.low);
     range[k][1] = float(cascade.high - cascade.low);
     reaches[k][0] = float(fit.Reach(cascade));
-    reaches[k][1] = k > 0 ? reaches[k - 1][0] : 0.0f;
+    reaches[k][1] = float(fit.Beginning(std::size_t(k)));
     reaches[k][2] = k > 0 ? place[k - 1][3] : -std::numeric_limits<float>::max();
   }
   Eigen::Matrix3f axes = fit.sun.axes.cast<float>(); // column-major, as OpenGL reads it

@@ -9,6 +9,8 @@ namespace {
 
 // How far the maps reach by themselves, in units of the nearest depth.
 constexpr double Reach = 2048.0;
+// By how much each map of a parallel view is wider than the one before.
+constexpr double Wider = 4.0;
 
 // The rays through the corners of a picture, in OpenGL's view axes, by depth along the view's axis.
 struct CornerRays {
@@ -53,6 +55,11 @@ double CascadeFit::Reach(const Cascade& cascade) const {
          std::max(std::tan(std::min(this->sun.radius, 1.5)), 1e-9);
 }
 
+double CascadeFit::Beginning(std::size_t k) const {
+  constexpr double Share = 0.75;
+  return k > 0 ? Share * this->Reach(this->cascades[k - 1]) : 0.0;
+}
+
 Eigen::Matrix4d CascadeFit::ClipFromView(const Cascade& cascade) const {
   Eigen::Matrix4d clip = Eigen::Matrix4d::Zero();
   for (const int axis : {0, 1}) {
@@ -80,12 +87,11 @@ CascadeFit FitCascades(const Projection& projection, int width, int height, cons
           : std::min(std::exp2(0.5 * std::ceil(2.0 * std::log2(std::max(farthest, first)))),
                      Reach * first);
   const CornerRays rays(projection, width, height);
-  // Of parallel rays all parts of a view are equally wide: one map has it all.
-  const int count = parallel ? 1 : look.cascades;
   const double start = parallel ? nearest : 0.0;
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0; k < look.cascades; ++k) {
     CascadeFit::Cascade cascade;
-    cascade.end = last > first ? first * std::pow(last / first, double(k + 1) / count) : last;
+    cascade.end =
+        last > first ? first * std::pow(last / first, double(k + 1) / look.cascades) : last;
     if (parallel) {
       cascade.end = farthest;
     }
@@ -113,6 +119,12 @@ CascadeFit FitCascades(const Projection& projection, int width, int height, cons
     }
     // Room for the rounding of the centre, and for the filter at the sides.
     cascade.radius *= 1.0 + 24.0 / look.size;
+    if (parallel) {
+      // Of parallel rays all parts of a view are equally wide: the first map has it all, and the
+      // others are for the wide penumbrae of what is far above. Sizes are rounded, as `nearest` is.
+      cascade.radius =
+          std::exp2(0.5 * std::ceil(2.0 * std::log2(cascade.radius))) * std::pow(Wider, double(k));
+    }
     const double texel = cascade.Texel(look.size);
     const Eigen::Vector3d light = sun.axes * center;
     for (int axis = 0; axis < 2; ++axis) {

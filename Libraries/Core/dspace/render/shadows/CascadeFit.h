@@ -49,15 +49,20 @@ struct CascadeFit {
   // How far above a place [m] blockers are whose penumbra fills a map's filter: farther ones are
   // the next map's (Shadow.glsl).
   double Reach(const Cascade& cascade) const;
+  // From where above a place on [m] map k takes blockers: less than the reach of the map before it,
+  // for where blockers beside each other are on either side of that, neither map alone is dark.
+  double Beginning(std::size_t k) const;
   // Clip from view coordinates of a map, reversed depth: 1 towards the Sun.
   Eigen::Matrix4d ClipFromView(const Cascade& cascade) const;
 };
 
 // `nearest`, `farthest` [m]: depths along the view's axis that something is drawn at. For
-// orthographic views one map has all between the two, and ShadowLook::distance has no meaning. The
-// depths at which the maps end grow by a constant factor. A ShadowLook::distance of 0 reaches to
-// `farthest`, or 2048 times `nearest` if that is less. `nearest` is rounded to a power of the
-// square root of 2, so that the maps keep their sizes while a camera moves a little.
+// orthographic views each map has all between the two, each is four times as wide as the one
+// before, for the penumbrae that that one does not resolve, and ShadowLook::distance has no
+// meaning. For others the depths at which the maps end grow by a constant factor. A
+// ShadowLook::distance of 0 reaches to `farthest`, or 2048 times `nearest` if that is less.
+// `nearest` is rounded to a power of the square root of 2, so that the maps keep their sizes while
+// a camera moves a little.
 CascadeFit FitCascades(const Projection& projection, int width, int height, const SunPlace& sun,
                        double nearest, double farthest, const ShadowLook& look);
 
