@@ -11,6 +11,7 @@ float horizonLit()
   {
     return x > 0.0 ? 1.0 : 0.0;
   }
-  return 0.5 + (x * sqrt(1.0 - x * x) + asin(x)) * 0.31830989;
+  // asin() may be off by 1e-4 (the specification of GLSL).
+  return clamp(0.5 + (x * sqrt(1.0 - x * x) + asin(x)) * 0.31830989, 0.0, 1.0);
 }
 #endif

@@ -510,7 +510,10 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, unsigned features,
   }
 
   vtkOpenGLState* state = drawing.window->GetState();
-  if (camera.posts.z() > chart.levels.HeightNear(camera.posts.head<2>(), chart.state.finest)
+  // The Sun sees under sides at night, and where ground ends.
+  const bool shadowMap = drawing.view.clip.has_value();
+  if (!shadowMap &&
+      camera.posts.z() > chart.levels.HeightNear(camera.posts.head<2>(), chart.state.finest)
                              .value_or(chart.state.groundHeight)) {
     // From above no under side is seen but by rounding, at ridges.
     state->vtkglEnable(GL_CULL_FACE);
