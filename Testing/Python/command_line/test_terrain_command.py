@@ -282,6 +282,32 @@ def test_info_of_a_field(tmp_path):
         assert part in text, text
 
 
+@pytest.mark.parametrize("view", ["map", "perspective"])
+def test_shadows_darken_what_the_sun_does_not_reach(tmp_path, view):
+    """A pit 12 m deep, its wall 4 m wide, in level ground; the Sun 20 degrees high in the west. The wall's shadow is 33 m
+    long: beside it, pictures with and without shadows are the same."""
+    x = np.arange(128) - 63.5  # posts 2 m apart
+    away = np.maximum(np.abs(x[None, :]), np.abs(x[:, None])) * 2
+    path = write_raster(tmp_path / "pit.tif", np.clip((away - 60) * 3, -12, 0).astype(np.int16))
+    arguments = (path, "--view", view, "--sun", "270,20")
+    if view == "map":
+        arguments += ("--size", "256x256")  # pixels of a metre
+    else:
+        arguments += ("--size", "160x120")
+    plain, _ = render(tmp_path / "plain.png", *arguments)
+    shadowed, _ = render(tmp_path / "shadowed.png", *arguments, "--shadows")
+    drop = plain.astype(int).mean(axis=2) - shadowed.astype(int).mean(axis=2)
+    assert drop.min() >= -1
+    if view == "perspective":
+        assert 0.01 < (drop > 25).mean() < 0.1
+        return
+    # Column 128 is x = 0. The pit's edge is at column 68, and its shadow ends 12 m / tan(20 degrees) = 33 m to the east.
+    rows = slice(84, 172)
+    assert (drop[rows, 75:98] > 25).all() and (shadowed[rows, 75:98] > 0).all()  # the fill light is left
+    for beside in (drop[rows, 104:], drop[:, :64], drop[:64], drop[192:]):
+        assert np.abs(beside).max() <= 1
+
+
 # --- What is refused -------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("arguments, code, text", [

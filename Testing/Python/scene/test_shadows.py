@@ -47,7 +47,6 @@ def test_a_place_keeps_its_light_while_a_camera_flies_over_it(scene, ground, mod
     at, before = np.zeros(2, int), None
     compared = moved = 0
     shaded = []
-    greatest = 0.0
     for step in walk:
         at = np.clip(at + step, -40, 40)
         step = at - (before[0] if before else at)
@@ -62,18 +61,16 @@ def test_a_place_keeps_its_light_while_a_camera_flies_over_it(scene, ground, mod
             off = np.abs(now - then)
             compared += off.size
             moved += (off > 0.1).sum()
-            greatest = max(greatest, off.mean())
         shaded.append((lit < 0.1).mean())
         before = at.copy(), lit
-    print("compared", compared, "moved", moved, moved / compared, "mean", greatest, np.mean(shaded))
     assert compared > 1e6 and 0.03 < np.mean(shaded) < 0.7
-    assert moved < 1e-3 * compared
+    assert moved < 1e-5 * compared
 
 
 def flickers(series, much=0.5):
     """How many pixels of three pictures in a row go and come back."""
     a, b, c = series
-    return ((np.abs(b - a) > much) & (np.abs(b - c) > much) & (np.abs(c - a) < 0.5 * much)).sum()
+    return (np.abs(b - a) > much) & (np.abs(b - c) > much) & (np.abs(c - a) < 0.5 * much)
 
 
 def test_no_pixel_flickers_on_a_flight(scene, ground):
@@ -82,18 +79,89 @@ def test_no_pixel_flickers_on_a_flight(scene, ground):
     camera = scene.add_camera("eye", eye=(0, -1, 30), target=(0, 0, 0), fov_deg=50, near=0.1)
     view = scene.add_viewport((160, 120), "eye", samples=1)
     view.shadows = True
-    last, pixels, flicker, shaded = [], 0, 0, []
+    last, labels, pixels, flicker, shaded = [], [], 0, 0, []
     for step in range(200):
         eye = middle + np.array([4.5 - 0.021 * step, -5.0 + 0.017 * step, 2.5 + 0.004 * step])
         camera.look_at(eye=tuple(eye), target=tuple(middle + (0, 0, 0.5)))
-        last = last[-2:] + [np.nan_to_num(view.lit_fraction(), nan=-1.0)]
-        shaded.append((np.abs(last[-1]) < 0.1).mean())
-        if len(last) == 3:
-            pixels += last[0].size
-            flicker += flickers(last)
-    print("flicker", flicker, "of", pixels, flicker / pixels, np.mean(shaded))
+        planes = view.capture(False, lit_fraction=True, label=True, physical_only=True)
+        last, labels = last[-2:] + [planes["lit_fraction"]], labels[-2:] + [planes["label"]]
+        shaded.append((last[-1] < 0.1).mean())
+        if len(last) == 3:  # where an object's outline passes, another surface is seen
+            same = (labels[0] == labels[1]) & (labels[1] == labels[2]) & (labels[0] != 0)
+            pixels += same.sum()
+            flicker += (flickers(last) & same).sum()
     assert 0.03 < np.mean(shaded) < 0.7
     assert flicker < 2e-4 * pixels
+
+
+def test_a_day(scene, ground):
+    """The Sun goes over the sky in 500 steps, from night to night."""
+    terrain, middle = add_site(scene, ground)
+    eye = middle + (-9.0, -9.0, 9.0)
+    scene.add_camera("eye", eye=tuple(eye), target=tuple(middle + (-2.0, 0.0, 0.0)), fov_deg=60, near=0.1)
+    view = scene.add_viewport((96, 72), "eye", samples=1)
+    view.set(shadows=True, fill=0.0)
+    labels = view.labels()
+    there, soil = labels != 0, labels == terrain.object.id
+    means, last, flicker, pixels, nights, leaks = [], [], 0, 0, 0, 0
+    for step in range(500):
+        hour = np.pi * (step - 25) / 450
+        elevation = 60 * np.sin(hour)
+        scene.sun.set(azimuth_deg=80 + 200 * step / 500, elevation_deg=elevation, terrain=terrain)
+        planes = view.capture(lit_fraction=True, label=True, physical_only=True)
+        lit = planes["lit_fraction"][there]
+        assert np.isfinite(lit).all() and lit.min() >= 0 and lit.max() <= 1
+        means.append(lit.mean())
+        last = last[-2:] + [lit]
+        if len(last) == 3:
+            flicker += flickers(last).sum()
+            pixels += lit.size
+        if elevation < -0.3:  # below the horizon of level ground, with its disc
+            nights += 1
+            np.testing.assert_array_equal(planes["label"], labels)
+            assert not planes["color"][soil][:, :3].any() and not planes["lit_fraction"][soil].any()
+            # Ground has no side: at the raster's edge light from below passes under it, and reaches the vehicle.
+            leaks = max(leaks, (lit > 0).sum())
+            assert leaks <= 0.002 * lit.size
+            assert elevation > -8 or not (lit > 0).any(), (lit > 0).sum()
+    means = np.array(means)
+    jump = np.abs(np.diff(means))
+    high = 60 * np.sin(np.pi * (np.arange(499) - 24.5) / 450)
+    away = np.abs(high) > 4.0  # at sunrise a step is nearly as long as the disc is wide, and level ground turns light
+    assert nights > 20 and means[0] == means[-1] == 0 and means.max() > 0.9
+    assert jump[away].max() < 0.05
+    assert flicker < 2e-4 * pixels
+
+
+# --- Viewports, sizes, and the Sun anywhere ----------------------------------------------------------
+
+def test_two_viewports_of_a_scene_have_their_own_settings(scene, ground):
+    """Pictures taken by turns are those of each alone, to the byte."""
+    terrain, middle = add_site(scene, ground)
+    scene.sun.set(azimuth_deg=250, elevation_deg=12, terrain=terrain)
+    scene.add_camera("eye", eye=tuple(middle + (4, -6, 3)), target=tuple(middle), fov_deg=50, near=0.1)
+    settings = [dict(shadows=False), dict(shadows=True), dict(shadows=True, shadow_cascades=2, shadow_map_size=512),
+                dict(shadows=True, shadow_distance=5.0, cascade_colors=True)]
+
+    def view_with(values, size=(121, 83)):
+        view = scene.add_viewport(size, "eye", samples=1)
+        view.set(**values)
+        return view
+
+    alone = []
+    for values in settings:
+        view = view_with(values)
+        alone.append(view.image().copy())
+        view.remove()
+    for i in range(len(alone)):
+        for j in range(i):
+            assert (alone[i] != alone[j]).any(axis=2).mean() > 0.003, (i, j)
+    views = [view_with(values) for values in settings]
+    for order in ((0, 1, 2, 3), (3, 2, 1, 0), (1, 3, 0, 2)):
+        for i in order:
+            np.testing.assert_array_equal(views[i].image(), alone[i])
+    views[1].shadows = False
+    np.testing.assert_array_equal(views[1].image(), alone[0])
 
 
 def add_table(scene):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import dspace
-from shadow_support import RADIUS_DEG, crater, lit_by_rays, near_edges, on_ground
+from shadow_support import RADIUS_DEG, crater, disc, lit_by_rays, near_edges, on_ground
 from terrain_support import FIELD, gdal, points_of, real, write_raster
 
 FOV = 60.0
@@ -42,7 +42,6 @@ def compare(view, terrain, eye, target, post, lift=1e-3, stride=2, fov=FOV, with
     off = np.abs(lit - exact)
     outcome = Against(len(points), (exact < 0.1).mean(), (exact > 0.9).mean(), (off > 0.25).mean(), 1 - away.mean(),
                       (away & (off > 0.25)).mean(), off[away].mean())
-    print(outcome)
     return outcome
 
 
@@ -183,7 +182,7 @@ def mesh_of(z, post):
     return points, triangles[(points[triangles][..., 2] > 0).any(axis=1)]
 
 
-@pytest.mark.parametrize("elevation", [25])
+@pytest.mark.parametrize("elevation", [6, 10, 25])
 def test_a_wall_of_a_mesh_and_one_of_terrain_throw_the_same_shadow(session, tmp_path, elevation):
     """Near shadows come from maps, far ones from horizons: their edges differ by less than the penumbra's width and a
     post, and each is where rays say."""
@@ -211,14 +210,40 @@ def test_a_wall_of_a_mesh_and_one_of_terrain_throw_the_same_shadow(session, tmp_
     # A straight edge across a disc: 0.687 of its width is between a tenth and nine tenths.
     slant = 4.0 / np.sin(np.radians(elevation))
     penumbra = 2 * slant * np.tan(np.radians(RADIUS_DEG)) / np.sin(np.radians(elevation))
-    print(elevation, penumbra, -length, {kind: {part: e.mean().round(3) for part, e in of.items()}
-                                         for kind, of in edges.items()})
     for part in (0.1, 0.5, 0.9):
         assert np.abs(edges["mesh"][part] - edges["terrain"][part]).max() < penumbra
     for kind in edges:  # half of the disc is seen past the crest
         assert np.abs(edges[kind][0.5] + length).max() < 0.05 + post, kind
         width = (edges[kind][0.1] - edges[kind][0.9]).mean()
         assert abs(width - 0.687 * penumbra) < 0.1 + 0.15 * penumbra, kind
+
+
+@pytest.mark.parametrize("mode", ["clipmap", "triangles"])
+def test_ground_throws_its_shadow_on_meshes_by_day_and_at_night(scene, tmp_path, mode):
+    """On balls in a crater, on its rim and beside it, whose sunward sides rays of the terrain reach or not. Low light comes
+    under the ground at the raster's edge, where it has no side, and at night from below."""
+    raster = write_raster(tmp_path / "crater.tif", crater(post=0.25, radius=12.0, depth=5.0, rim=1.0), 0.25)
+    terrain = scene.add_terrain(raster, mode=mode, level_size=252, color=WHITE)
+    middles = [np.array((x, 0, terrain.height(x, 0) + 0.6)) for x in (-9.0, -5.0, 0.0, 5.0, 9.0, 20.0)]
+    balls = [scene.add_sphere(0.5, position=tuple(middle), color=WHITE) for middle in middles]
+    camera = scene.add_camera("eye", eye=(0, -9, 4), target=(0, 0, 0), fov_deg=12, near=0.1)
+    view = scene.add_viewport((40, 30), "eye", samples=1)
+    for elevation in (20, 10, 2, -3, -20, -60):
+        scene.sun.set(azimuth_deg=90, elevation_deg=elevation, terrain=terrain)
+        to_sun = scene.sun.direction
+        pixels = wrong = shaded = 0
+        for ball, middle in zip(balls, middles):
+            eye = middle + (0, -9, 4)
+            camera.look_at(eye=tuple(eye), target=tuple(middle))
+            planes = view.capture(False, depth=True, label=True, lit_fraction=True, incidence=True)
+            points, _ = points_of(planes["depth"], eye, middle, 12)
+            there = (planes["label"] == ball.id) & (planes["incidence"] < 85)
+            rays = disc(to_sun, 30)
+            exact = np.isinf(terrain.intersect(points[there][:, None], rays[None])).mean(axis=1)
+            off = np.abs(planes["lit_fraction"][there] - exact)
+            pixels, wrong, shaded = pixels + off.size, wrong + (off > 0.25).sum(), shaded + (exact < 0.1).sum()
+        assert pixels > 200 and shaded > 0.4 * pixels
+        assert wrong <= 0.03 * pixels, elevation
 
 
 def test_nothing_shows_where_the_last_shadow_map_ends(scene, tmp_path):
