@@ -4,10 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
-
-#include <unistd.h>
 
 #include <QApplication>
 #include <QGridLayout>
@@ -25,6 +22,7 @@
 #include <dspace/widgets/viewport/ViewportWidget.h>
 
 #include "Alternate.h"
+#include "WithDisplay.h"
 
 using dspace::bench::Median;
 using dspace::widgets::ViewportWidget;
@@ -176,12 +174,7 @@ int Measure() {
 } // namespace
 
 int main(int count, char** arguments) {
-  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY") &&
-      !std::getenv("QT_QPA_PLATFORM")) {
-    execl(DSPACE_WITH_DISPLAY, DSPACE_WITH_DISPLAY, arguments[0], static_cast<char*>(nullptr));
-    std::printf("widgets: %s cannot be started\n", DSPACE_WITH_DISPLAY);
-    return 1;
-  }
+  dspace::bench::NeedDisplay(arguments[0]);
   dspace::widgets::PrepareApplication();
   QApplication application(count, arguments);
   return Measure();

@@ -1,0 +1,104 @@
+// DspaceQt with its demo scene: the time from the start to the first picture, and how long the
+// window does not answer while the rover drives and the camera turns.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <vector>
+
+#include <unistd.h>
+
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QStandardPaths>
+#include <QTest>
+#include <QTimer>
+
+#include "vtkDspaceViewport.h"
+
+#include <dspace/widgets/viewport/QtContext.h>
+#include <dspace/widgets/viewport/ViewportWidget.h>
+#include <dspace/widgets/window/MainWindow.h>
+
+#include "Alternate.h"
+#include "WithDisplay.h"
+
+namespace {
+
+constexpr int Watched_ms = 10000;
+
+// Since this program was started, from the kernel's record of it.
+double SecondsSinceStart() {
+  unsigned long long ticks = 0;
+  if (std::FILE* file = std::fopen("/proc/self/stat", "r")) {
+    // The 22nd field; the second is a name in brackets.
+    if (std::fscanf(file,
+                    "%*d (%*[^)]) %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %*d %*d %*d "
+                    "%*d %*d %*d %llu",
+                    &ticks) != 1) {
+      ticks = 0;
+    }
+    std::fclose(file);
+  }
+  timespec now{};
+  clock_gettime(CLOCK_BOOTTIME, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec) -
+         double(ticks) / double(sysconf(_SC_CLK_TCK));
+}
+
+int Measure() {
+  dspace::widgets::MainWindow window(QStringLiteral(DSPACE_PACKAGES));
+  const double windowMade = SecondsSinceStart();
+  window.resize(1280, 800);
+  window.show();
+  if (!window.Run(QStringLiteral("app.demo()"))) {
+    std::printf("application: the demo scene does not start\n");
+    return 1;
+  }
+  dspace::widgets::ViewportWidget* view = window.View("chase");
+  if (!view || !QTest::qWaitFor([&] { return view->ShownPictures() > 0; }, 30000)) {
+    std::printf("application: there is no picture\n");
+    return 1;
+  }
+  std::printf("application: from the start to the first picture of the demo scene %.2f s (goal 1.5), "
+              "%.2f s of them to the window\n",
+              SecondsSinceStart(), windowMade);
+
+  // A timer of no duration comes round as often as the window can answer.
+  QTest::qWait(3000);
+  std::vector<double> gaps;
+  QElapsedTimer since;
+  QTimer beat;
+  QObject::connect(&beat, &QTimer::timeout, &beat, [&] {
+    gaps.push_back(1e-6 * double(since.nsecsElapsed()));
+    since.restart();
+  });
+  QTimer turning;
+  QObject::connect(&turning, &QTimer::timeout, view,
+                   [view] { QTest::keyClick(view, Qt::Key_Left); });
+  const int before = view->ShownPictures();
+  since.start();
+  beat.start(0);
+  turning.start(200);
+  QEventLoop loop;
+  QTimer::singleShot(Watched_ms, &loop, &QEventLoop::quit);
+  loop.exec();
+  beat.stop();
+  std::sort(gaps.begin(), gaps.end());
+  std::printf("application: the demo in %dx%d and another view: %.1f pictures/s; the window does "
+              "not answer for %.0f ms at most, 99 %% of the %zu gaps are under %.0f ms\n",
+              view->width(), view->height(),
+              1e3 * double(view->ShownPictures() - before) / Watched_ms, gaps.back(), gaps.size(),
+              gaps[std::size_t(0.99 * double(gaps.size() - 1))]);
+  return 0;
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+  dspace::bench::NeedDisplay(arguments[0]);
+  dspace::widgets::PrepareApplication();
+  QApplication application(count, arguments);
+  QStandardPaths::setTestModeEnabled(true); // not the user's settings
+  return Measure();
+}
