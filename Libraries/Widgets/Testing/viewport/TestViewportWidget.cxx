@@ -22,6 +22,7 @@
 #include <dspace/widgets/viewport/ViewportWidget.h>
 
 using dspace::widgets::ViewportInput;
+using dspace::widgets::PicturePath;
 using dspace::widgets::ViewportWidget;
 
 namespace {
@@ -63,6 +64,7 @@ struct WidgetTest : ::testing::TestWithParam<bool> {
     viewport->SetBackground({0.1, 0.2, 0.3}, {0.5, 0.6, 0.7});
     return viewport;
   }
+  static PicturePath Path() { return GetParam() ? PicturePath::Texture : PicturePath::Memory; }
   // Until the widget shows an up-to-date picture; false: it does not within 10 s.
   static bool Wait(ViewportWidget& widget, int pictures = 1) {
     return QTest::qWaitFor(
@@ -96,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Paths, WidgetTest, ::testing::Values(true, false),
 
 TEST_P(WidgetTest, ShowsTheCoresPictureByteForByte) {
   const auto viewport = View("front");
-  ViewportWidget widget(viewport);
+  ViewportWidget widget(viewport, nullptr, Path());
   EXPECT_EQ(widget.SharesTextures(), GetParam());
   widget.resize(411, 273);
   widget.show();
@@ -120,9 +122,17 @@ TEST_P(WidgetTest, ShowsTheCoresPictureByteForByte) {
   EXPECT_EQ(widget.ShownPictures(), still);
 }
 
+TEST_P(WidgetTest, TakesTheFasterPath) {
+  const auto viewport = View("front");
+  const ViewportWidget widget(viewport);
+  const std::string renderer = context->GetRendererName();
+  const bool software = renderer.find("llvmpipe") != std::string::npos;
+  EXPECT_EQ(widget.SharesTextures(), GetParam() && !software) << renderer;
+}
+
 TEST_P(WidgetTest, DragsAndTheWheelMoveTheCamera) {
   const auto viewport = View("front");
-  ViewportWidget widget(viewport);
+  ViewportWidget widget(viewport, nullptr, Path());
   widget.resize(320, 240);
   widget.show();
   ASSERT_TRUE(Wait(widget));
@@ -149,7 +159,7 @@ TEST_P(WidgetTest, DragsAndTheWheelMoveTheCamera) {
 
 TEST_P(WidgetTest, AHandlerTakesTheEventsInPixels) {
   const auto viewport = View("front");
-  ViewportWidget widget(viewport);
+  ViewportWidget widget(viewport, nullptr, Path());
   std::vector<ViewportInput> inputs;
   widget.SetHandler([&](const ViewportInput& input) { inputs.push_back(input); });
   widget.resize(320, 240);
@@ -215,7 +225,7 @@ TEST_P(WidgetTest, DocksFloatMoveAndCloseWithOneCopyOfTheMeshes) {
 
 TEST_P(WidgetTest, AFailureIsShownAndToldOnce) {
   const auto viewport = View("front");
-  ViewportWidget widget(viewport);
+  ViewportWidget widget(viewport, nullptr, Path());
   QSignalSpy failures(&widget, &ViewportWidget::failed);
   widget.SetHandler([](const ViewportInput&) { throw std::runtime_error("the hook is stuck"); });
   widget.resize(320, 240);

@@ -78,7 +78,6 @@ TEST_F(MainWindowTest, OpensAModelInAViewOfItsOwn) {
   ViewportWidget* view = window->View("view 1");
   ASSERT_TRUE(view);
   ASSERT_TRUE(Settled());
-  EXPECT_TRUE(view->SharesTextures());
   // The tree of the scene has it.
   auto* tree = window->findChild<dspace::widgets::SceneTreeWidget*>();
   ASSERT_TRUE(tree);

@@ -22,6 +22,14 @@ bool PictureSurface::Shares(vtkDspaceViewport& viewport) {
   return current && QOpenGLContext::areSharing(current, shared);
 }
 
+bool PictureSurface::IsSoftware(vtkDspaceViewport& viewport) {
+  viewport.MakeContextCurrent();
+  QOpenGLContext* current = QOpenGLContext::currentContext();
+  const GLubyte* name = current ? current->functions()->glGetString(GL_RENDERER) : nullptr;
+  const QByteArray renderer(reinterpret_cast<const char*>(name));
+  return renderer.contains("llvmpipe") || renderer.contains("softpipe") || renderer.contains("SWR");
+}
+
 PictureSurface::PictureSurface(vtkDspaceViewport* viewport, QWidget* parent)
     : QOpenGLWidget(parent), Viewport_(viewport) {
   this->setAttribute(Qt::WA_TransparentForMouseEvents);

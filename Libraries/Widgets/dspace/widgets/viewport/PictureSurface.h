@@ -18,6 +18,9 @@ class PictureSurface : public QOpenGLWidget {
 public:
   // Whether the viewport's render context is one of MakeQtContext().
   static bool Shares(vtkDspaceViewport& viewport);
+  // Whether the processor draws. Textures of widgets then cost more than a copy in memory: Qt
+  // composes the window of them and reads that back.
+  static bool IsSoftware(vtkDspaceViewport& viewport);
 
   PictureSurface(vtkDspaceViewport* viewport, QWidget* parent);
   ~PictureSurface() override;

@@ -274,7 +274,7 @@ struct ViewportWidget::Internals {
   }
 };
 
-ViewportWidget::ViewportWidget(vtkDspaceViewport* viewport, QWidget* parent)
+ViewportWidget::ViewportWidget(vtkDspaceViewport* viewport, QWidget* parent, PicturePath path)
     : QWidget(parent), Impl_(std::make_unique<Internals>(this)) {
   Internals& self = *this->Impl_;
   self.viewport = viewport;
@@ -282,7 +282,8 @@ ViewportWidget::ViewportWidget(vtkDspaceViewport* viewport, QWidget* parent)
   this->setMouseTracking(true);
   this->setAttribute(Qt::WA_OpaquePaintEvent);
   this->setMinimumSize(16, 16);
-  if (PictureSurface::Shares(*viewport)) {
+  if (path != PicturePath::Memory && PictureSurface::Shares(*viewport) &&
+      (path == PicturePath::Texture || !PictureSurface::IsSoftware(*viewport))) {
     self.surface = new PictureSurface(viewport, this);
     self.surface->resize(this->size());
     connect(self.surface, &PictureSurface::drawn, this, [this](bool anew) {

@@ -27,13 +27,20 @@ struct ViewportInput {
   bool alt = false;
 };
 
+// How pictures come to the screen.
+enum class PicturePath {
+  Fastest, // Texture where the GPU draws; Memory with a software renderer (a third less time)
+  Texture, // stays on the GPU; needs a render context of MakeQtContext()
+  Memory,  // is read back and painted
+};
+
 // Shows the picture of a vtkDspaceViewport and keeps its size: the widget's, times the screen's
 // device pixel ratio. Any number of widgets, in any windows, show viewports of one render context;
 // a viewport has one widget at a time. It looks for changes up to 60 times a second while it is
 // visible, and draws only when the picture is outdated.
-// With a render context of MakeQtContext() the picture stays on the GPU; with any other it is
-// copied through memory. Errors while drawing are shown in the widget, and told once each by
-// failed().
+// With a render context of MakeQtContext() the picture stays on the GPU; with any other, and with a
+// software renderer, it is copied through memory. Errors while drawing are shown in the widget, and
+// told once each by failed().
 class ViewportWidget : public QWidget {
   Q_OBJECT
 
@@ -44,7 +51,9 @@ public:
   // What sets the viewport's size [pixels], vtkDspaceViewport::Resize() by default.
   using Resizer = std::function<void(int width, int height)>;
 
-  explicit ViewportWidget(vtkDspaceViewport* viewport, QWidget* parent = nullptr);
+  // With a render context that is not of MakeQtContext(), Texture means Memory.
+  explicit ViewportWidget(vtkDspaceViewport* viewport, QWidget* parent = nullptr,
+                          PicturePath path = PicturePath::Fastest);
   ~ViewportWidget() override;
 
   void SetHandler(Handler handler);
