@@ -79,31 +79,99 @@ std::size_t Playback::Update() {
 }
 
 void Playback::MoveTo(std::size_t index) {
+  this->Aim(index);
+  while (!this->Continue(std::numeric_limits<double>::infinity())) {
+  }
+}
+
+void Playback::Aim(std::size_t index) {
+  if (index >= this->Steps_.steps.size()) {
+    throw Error(Error::Kind::InvalidArgument, RecordingName(this->Reader_.Path()),
+                "the step is " + std::to_string(index) + "; accepted: 0 to " +
+                    std::to_string(this->Steps_.steps.size() - 1));
+  }
+  if (this->Aim_ != index) {
+    this->Aim_ = index;
+    this->Reached_s_.reset();
+  }
   const std::uint64_t target = this->Steps_.steps[index].end;
-  std::optional<double> reached_s;
-  if (!this->At_ || target != *this->At_) {
-    const std::vector<std::uint64_t> snapshots = this->Reader_.Snapshots();
-    const auto after = std::upper_bound(snapshots.begin(), snapshots.end(), target);
-    const bool nearer = after != snapshots.begin() && this->At_ && *std::prev(after) > *this->At_;
-    if (!this->At_ || target < *this->At_ || nearer) {
-      const RecordedSnapshot snapshot = this->Reader_.SnapshotAt(target);
-      this->Begin(snapshot);
-      reached_s = snapshot.time_s;
+  if (this->Base_ && this->SnapshotOnTheWay(target) != this->Base_->seq) {
+    this->Base_.reset(); // half of it is there
+  }
+}
+
+std::optional<std::uint64_t> Playback::SnapshotOnTheWay(std::uint64_t target) {
+  if (this->At_ == target) {
+    return {};
+  }
+  const std::vector<std::uint64_t> snapshots = this->Reader_.Snapshots();
+  const auto after = std::upper_bound(snapshots.begin(), snapshots.end(), target);
+  const std::uint64_t last = after == snapshots.begin() ? 0 : *std::prev(after);
+  const bool nearer = after != snapshots.begin() && this->At_ && last > *this->At_;
+  return !this->At_ || target < *this->At_ || nearer ? std::optional<std::uint64_t>(last)
+                                                     : std::nullopt;
+}
+
+bool Playback::Continue(double seconds) {
+  if (!this->Aim_) {
+    return true;
+  }
+  const std::size_t index = *this->Aim_;
+  try {
+    if (!this->Proceed(this->Steps_.steps[index].end, seconds)) {
+      return false;
     }
-    std::uint64_t at = *this->At_;
+    this->CheckStep(index, this->Reached_s_);
+  } catch (...) {
+    this->Aim_.reset();
+    this->Base_.reset();
+    throw;
+  }
+  this->Index_ = index;
+  this->Aim_.reset();
+  if (this->Guests_.arrived) {
+    this->Guests_.arrived();
+  }
+  return true;
+}
+
+bool Playback::Proceed(std::uint64_t target, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point began = Clock::now();
+  const auto late = [&] {
+    return std::chrono::duration<double>(Clock::now() - began).count() >= seconds;
+  };
+  if (!this->Base_ && this->SnapshotOnTheWay(target)) {
+    this->Begin(target);
+  }
+  if (this->Base_) {
+    const std::vector<v1::Command>& commands = this->Base_->commands;
+    while (this->BaseDone_ < commands.size()) {
+      this->Execute(commands[this->BaseDone_], "snapshot ", this->Base_->seq);
+      ++this->BaseDone_;
+      if (late() && this->BaseDone_ < commands.size()) {
+        return false;
+      }
+    }
+    this->At_ = this->Base_->seq;
+    this->Reached_s_ = this->Base_->time_s;
+    this->Base_.reset();
+    if (this->Guests_.afterSnapshot) {
+      this->Guests_.afterSnapshot();
+    }
+  }
+  std::uint64_t at = *this->At_;
+  if (target > at) {
     this->At_.reset(); // unknown, if one of these fails
-    if (target > at) {
-      this->Reader_.Read(at + 1, target, [&](RecordedCommand&& row) {
-        this->Execute(std::move(row.command), "command ", row.seq);
-        at = row.seq;
-        reached_s = row.time_s;
-        return true;
-      });
-    }
+    this->Reader_.Read(at + 1, target, [&](RecordedCommand&& row) {
+      this->Execute(std::move(row.command), "command ", row.seq);
+      at = row.seq;
+      this->Reached_s_ = row.time_s;
+      return !late();
+    });
     this->At_ = at;
   }
-  this->CheckStep(index, reached_s);
-  this->Index_ = index;
+  return at == target;
 }
 
 // Steps are found by an index that has no checksums; the rows that it leads to have.
@@ -126,8 +194,13 @@ void Playback::CheckStep(std::size_t index, std::optional<double> reached_s) {
   }
 }
 
-void Playback::Begin(const RecordedSnapshot& snapshot) {
+// Removes everything; the commands of the snapshot follow.
+void Playback::Begin(std::uint64_t target) {
+  RecordedSnapshot snapshot = this->Reader_.SnapshotAt(target);
   this->At_.reset();
+  if (this->Guests_.beforeSnapshot) {
+    this->Guests_.beforeSnapshot();
+  }
   std::vector<std::string> viewports, scenes;
   for (const auto& entry : this->Interpreter_.GetState().viewports) {
     viewports.push_back(entry.first);
@@ -146,10 +219,8 @@ void Playback::Begin(const RecordedSnapshot& snapshot) {
     command.mutable_remove_scene();
     this->Execute(std::move(command), "before snapshot ", snapshot.seq);
   }
-  for (const v1::Command& command : snapshot.commands) {
-    this->Execute(command, "snapshot ", snapshot.seq);
-  }
-  this->At_ = snapshot.seq;
+  this->Base_ = std::move(snapshot);
+  this->BaseDone_ = 0;
 }
 
 void Playback::Execute(v1::Command command, const char* table, std::uint64_t seq) {
@@ -162,7 +233,13 @@ void Playback::Execute(v1::Command command, const char* table, std::uint64_t seq
   } else {
     this->Files_.Map(command);
     this->Files_.FillIn(command);
+    if (command.has_remove_scene() && this->Guests_.makeRoom) {
+      this->Guests_.makeRoom(command);
+    }
     rejected = this->Interpreter_.Execute(command).error().message();
+    if (!rejected.empty() && this->Guests_.makeRoom && this->Guests_.makeRoom(command)) {
+      rejected = this->Interpreter_.Execute(command).error().message();
+    }
   }
   if (!rejected.empty()) {
     throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,6 +16,15 @@
 #include <dspace/recording/StepTimes.h>
 
 namespace dspace::session {
+
+// What others have in the interpreter of a playback, such as views of their own. Each may be empty.
+struct PlaybackGuests {
+  std::function<void()> beforeSnapshot; // all scenes and viewports are about to go
+  std::function<void()> afterSnapshot;  // the scenes of the snapshot are there
+  std::function<void()> arrived;        // a movement is complete
+  // Makes room for a command that removes a scene, or that was rejected; true: try it again.
+  std::function<bool(const v1::Command&)> makeRoom;
+};
 
 // Executes the commands under a FilesGuard (RecordedFiles::Look): rasters and shapes are opened
 // only in self-contained formats, and a packed recording reads nothing but its packed files. The
@@ -42,6 +53,15 @@ public:
   // Moves n steps forward, or back if n is negative; stops at the ends. Returns the number of steps
   // moved.
   std::int64_t Step(std::int64_t n);
+  // A movement in slices, so that the caller's thread is not held: Aim() takes a note of the step to
+  // move to, and each Continue() executes commands for about this time [s], at least one command.
+  // True: there is nothing left to do. Meanwhile Index() and Time() are those of the step before,
+  // and the state is between the two. A new aim takes over at once; Seek() and Step() complete
+  // theirs. InvalidArgument: there is no such step.
+  void Aim(std::size_t index);
+  bool Continue(double seconds);
+  bool IsMoving() const { return this->Aim_.has_value(); }
+  void SetGuests(PlaybackGuests guests) { this->Guests_ = std::move(guests); }
   // The packed files and their present paths.
   const RecordedFiles& Files() const { return this->Files_; }
   // Reads what has been recorded since; returns the number of new steps. The last step may have
@@ -51,7 +71,10 @@ public:
 private:
   void SetSteps();
   void MoveTo(std::size_t index);
-  void Begin(const RecordedSnapshot& snapshot);
+  // The number of the snapshot from which the way to a command is shortest; none: from here.
+  std::optional<std::uint64_t> SnapshotOnTheWay(std::uint64_t target);
+  void Begin(std::uint64_t target);
+  bool Proceed(std::uint64_t target, double seconds);
   void CheckStep(std::size_t index, std::optional<double> reached_s);
   void Execute(v1::Command command, const char* table, std::uint64_t seq);
   void WaitForOverviews(const v1::Command& opened);
@@ -63,6 +86,11 @@ private:
   RecordedFiles Files_;
   std::size_t Index_ = 0;
   std::optional<std::uint64_t> At_; // the last executed command; none: unknown
+  PlaybackGuests Guests_;
+  std::optional<std::size_t> Aim_;
+  std::optional<double> Reached_s_;      // the time of the last command since Aim()
+  std::optional<RecordedSnapshot> Base_; // that is being executed
+  std::size_t BaseDone_ = 0;             // commands of it
 };
 
 } // namespace dspace::session

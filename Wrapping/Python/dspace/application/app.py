@@ -2,9 +2,10 @@
 import os
 import pathlib
 
-from dspace import Playback, Session, errors
+from dspace import Session, errors
 from dspace._core.fields import real, reject, text
 from dspace._core.replies import to_reply
+from dspace.application.run import Run
 from dspace.proto import commands_pb2 as pb
 
 MODELS = (".glb", ".gltf", ".wrl", ".wrl.gz", ".wrz", ".vrml", ".iv", ".obj", ".stl", ".ply", ".urdf", ".json")
@@ -16,7 +17,7 @@ class App:
     """The program that the prompt belongs to.
 
     session, scene: where files are opened. views: the viewports of its windows, by name; view: the latest one. runs:
-    the recordings that were opened, as dspace.Playback."""
+    the recordings that were opened, as dspace.application.run.Run."""
 
     def __init__(self, host):
         self._host = host
@@ -32,7 +33,7 @@ class App:
     def show(self, viewport, title=None):
         """Shows a viewport in the window. Returns it."""
         client = viewport._client
-        self._host.show(client.local(), viewport.name, viewport.name if title is None else text(title, "the title"))
+        self._host.show(client.shown(), viewport.name, viewport.name if title is None else text(title, "the title"))
         self.views[viewport.name] = self.view = viewport
         return viewport
 
@@ -56,7 +57,7 @@ class App:
 
     def close_view(self, viewport):
         """Closes the view and removes its viewport."""
-        self._host.close(viewport._client.local(), viewport.name)
+        self._host.close(viewport._client.shown(), viewport.name)
         self.views.pop(viewport.name, None)
         if self.view == viewport:
             self.view = next(reversed(self.views.values()), None)
@@ -67,7 +68,7 @@ class App:
     def open(self, path):
         """Opens a model, robot, raster of heights, recording, or runs a Python script in the prompt's name space.
 
-        Returns what it made: an object, Robot, Terrain or Playback; None for a script."""
+        Returns what it made: an object, Robot, Terrain or Run (a dspace.Playback); None for a script."""
         path = os.path.abspath(os.fspath(path))
         name = os.path.basename(path).lower()
         if not os.path.exists(path):
@@ -109,12 +110,21 @@ class App:
         return terrain
 
     def _open_run(self, path):
-        run = Playback(path)
+        run = Run(path, self._host, self.session.vtk)
+        try:
+            views = run.own_views(self.views)
+            if not views and len(run.times) > 1:  # they may come later
+                run._go(len(run.times) - 1)
+                views = run.own_views(self.views)
+                run._go(0)
+            for name, viewport in views.items():
+                self.show(viewport, f"{os.path.basename(path)}: {name}")
+        except BaseException:
+            run.close()
+            raise
         self.runs.append(run)
-        for name, viewport in run.session.viewports.items():
-            self.show(viewport, f"{os.path.basename(path)}: {name}")
-        if not run.session.viewports:
-            self._host.message(f"{path} has no viewport")
+        if not views:
+            self._host.message(f"{path} has no viewport; add one: app.runs[-1].session.scenes[...].add_viewport()")
         return run
 
     def demo(self):

@@ -42,6 +42,10 @@ class LocalClient:
         self._require_thread()
         return self.vtk
 
+    def shown(self):
+        """What the windows of an application show views of."""
+        return self.local()
+
     def _require_thread(self):
         # Its graphics context is current in one thread only; drawing in another one would fail or crash.
         if threading.get_ident() != self._thread:

@@ -56,7 +56,7 @@ class Playback:
             if self.gaps:
                 warn(f"{self.file.label}: commands are lost, and nothing is shown from "
                      + ", nor from ".join(str(gap) for gap in self.gaps))
-            self.session = Session()
+            self.session = self._make_session()
             self._left_out = set()  # warnings that were given
             self._at = None  # the last command that the session has executed
             self.index = 0
@@ -64,6 +64,9 @@ class Playback:
         except BaseException:
             self.close()
             raise
+
+    def _make_session(self):
+        return Session()
 
     def _read_steps(self):
         steps, gaps = steps_of(self.file, self._scene)

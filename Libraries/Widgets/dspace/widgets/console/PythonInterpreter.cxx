@@ -136,9 +136,8 @@ struct PythonInterpreter::Internals {
       return nullptr;
     }
   }
-  static vtkDspaceSession* SessionOf(PyObject* object) {
-    return vtkDspaceSession::SafeDownCast(
-        vtkPythonUtil::GetPointerFromObject(object, "vtkDspaceSession"));
+  static vtkObject* ShownOf(PyObject* object) {
+    return vtkObject::SafeDownCast(vtkPythonUtil::GetPointerFromObject(object, "vtkObject"));
   }
 
   static PyObject* Write(PyObject*, PyObject* arguments) {
@@ -159,7 +158,7 @@ struct PythonInterpreter::Internals {
     if (!PyArg_ParseTuple(arguments, "Oss", &session, &name, &title)) {
       return nullptr;
     }
-    vtkDspaceSession* of = SessionOf(session);
+    vtkObject* of = ShownOf(session);
     return of ? Guard([&] { The->host.show(of, name, title); }) : nullptr;
   }
   static PyObject* Close(PyObject*, PyObject* arguments) {
@@ -168,8 +167,27 @@ struct PythonInterpreter::Internals {
     if (!PyArg_ParseTuple(arguments, "Os", &session, &name)) {
       return nullptr;
     }
-    vtkDspaceSession* of = SessionOf(session);
+    vtkObject* of = ShownOf(session);
     return of ? Guard([&] { The->host.close(of, name); }) : nullptr;
+  }
+  static PyObject* ForgetShown(PyObject*, PyObject* arguments) {
+    PyObject* shown = nullptr;
+    if (!PyArg_ParseTuple(arguments, "O", &shown)) {
+      return nullptr;
+    }
+    vtkObject* of = ShownOf(shown);
+    return of ? Guard([&] { The->host.forget(of); }) : nullptr;
+  }
+  static PyObject* Clock(PyObject*, PyObject* arguments) {
+    PyObject* shown = nullptr;
+    const char* what = nullptr;
+    double a = 0.0;
+    double b = 0.0;
+    if (!PyArg_ParseTuple(arguments, "Osdd", &shown, &what, &a, &b)) {
+      return nullptr;
+    }
+    vtkObject* of = ShownOf(shown);
+    return of ? Guard([&] { The->host.clock(of, what, a, b); }) : nullptr;
   }
   static PyObject* Message(PyObject*, PyObject* arguments) {
     const char* text = nullptr;
@@ -227,6 +245,7 @@ struct PythonInterpreter::Internals {
     static PyMethodDef methods[] = {
         {"write", Write, METH_VARARGS, nullptr},     {"session", Session, METH_NOARGS, nullptr},
         {"show", Show, METH_VARARGS, nullptr},       {"close", Close, METH_VARARGS, nullptr},
+        {"forget", ForgetShown, METH_VARARGS, nullptr}, {"clock", Clock, METH_VARARGS, nullptr},
         {"message", Message, METH_VARARGS, nullptr}, {"every", Every, METH_VARARGS, nullptr},
         {"cancel", Cancel, METH_VARARGS, nullptr},   {nullptr, nullptr, 0, nullptr}};
     static PyModuleDef definition = {PyModuleDef_HEAD_INIT,

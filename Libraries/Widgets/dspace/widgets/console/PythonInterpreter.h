@@ -10,15 +10,20 @@
 #include <QStringList>
 
 class vtkDspaceSession;
+class vtkObject;
 
 namespace dspace::widgets {
 
 // What Python's `app` (dspace.application.App) asks of the program's windows. All of it is called
 // in the thread of the interpreter; what it throws becomes an exception in Python.
+// `of` is what a view is of (ShownSession.h).
 struct PythonHost {
-  std::function<void(vtkDspaceSession*, const std::string& viewport, const std::string& title)>
-      show;
-  std::function<void(vtkDspaceSession*, const std::string& viewport)> close;
+  std::function<void(vtkObject* of, const std::string& viewport, const std::string& title)> show;
+  std::function<void(vtkObject* of, const std::string& viewport)> close;
+  // All that is shown of it closes.
+  std::function<void(vtkObject* of)> forget;
+  // Asks the clock of it: "play" (0: pause), "speed", "follow", "loop" (begin, end [s]), "unloop".
+  std::function<void(vtkObject* of, const std::string& what, double a, double b)> clock;
   std::function<void(const std::string&)> message;
 };
 

@@ -30,8 +30,11 @@ constexpr std::uint32_t TrailPoints = 100000;
 // The commands of one widget's requests. It lives as long as the widget.
 class SceneCommands {
 public:
-  SceneCommands(vtkDspaceSession* session, std::string scene, std::string vantage)
-      : Session_(session), Scene_(std::move(scene)), Vantage_(std::move(vantage)) {
+  using Executor = std::function<std::string(const std::string&)>;
+
+  SceneCommands(vtkDspaceSession* session, std::string scene, std::string vantage, Executor execute)
+      : Session_(session), Scene_(std::move(scene)), Vantage_(std::move(vantage)),
+        Execute_(std::move(execute)) {
     this->Token_ = session->GetInterpreter().AddListener(
         [this](const v1::Command& command, const v1::Reply&) { this->Follow(command); });
   }
@@ -101,7 +104,8 @@ private:
   }
   v1::Reply Execute(const v1::Command& command) const {
     v1::Reply reply;
-    reply.ParseFromString(this->Session_->Execute(command.SerializeAsString()));
+    const std::string bytes = command.SerializeAsString();
+    reply.ParseFromString(this->Execute_ ? this->Execute_(bytes) : this->Session_->Execute(bytes));
     if (reply.has_error()) {
       throw Error(Error::Kind::InvalidArgument, "", reply.error().message());
     }
@@ -283,6 +287,7 @@ private:
   vtkSmartPointer<vtkDspaceSession> Session_;
   std::string Scene_;
   std::string Vantage_;
+  Executor Execute_;
   session::Interpreter::Token Token_ = 0;
   std::map<ObjectId, FollowedFrame> Trails_;
   bool Appending_ = false;
@@ -290,12 +295,25 @@ private:
 
 } // namespace
 
+SceneActions ActionsOf(vtkDspaceSession* session, const std::string& scene,
+                       const std::string& vantage,
+                       std::function<std::string(const std::string&)> execute) {
+  const auto commands =
+      std::make_shared<SceneCommands>(session, scene, vantage, std::move(execute));
+  return {[commands] { return commands->GetScene(); },
+          [commands](const SceneRequest& request) { commands->Handle(request); },
+          [commands](ObjectId id) { return commands->KindOf(id); }};
+}
+
+void Connect(SceneTreeWidget& widget, const SceneActions& actions) {
+  widget.SetKinds(actions.kinds);
+  widget.SetHandler(actions.handler);
+  widget.SetSource(actions.source);
+}
+
 void ConnectToSession(SceneTreeWidget& widget, vtkDspaceSession* session, const std::string& scene,
                       const std::string& vantage) {
-  const auto commands = std::make_shared<SceneCommands>(session, scene, vantage);
-  widget.SetKinds([commands](ObjectId id) { return commands->KindOf(id); });
-  widget.SetHandler([commands](const SceneRequest& request) { commands->Handle(request); });
-  widget.SetSource([commands] { return commands->GetScene(); });
+  Connect(widget, ActionsOf(session, scene, vantage));
 }
 
 } // namespace dspace::widgets

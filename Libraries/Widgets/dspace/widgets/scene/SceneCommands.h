@@ -2,13 +2,16 @@
 #ifndef DSPACE_WIDGETS_SCENE_COMMANDS_H
 #define DSPACE_WIDGETS_SCENE_COMMANDS_H
 
+#include <functional>
 #include <string>
+
+#include <QString>
+
+#include <dspace/widgets/scene/SceneTreeWidget.h>
 
 class vtkDspaceSession;
 
 namespace dspace::widgets {
-
-class SceneTreeWidget;
 
 // The widget shows the session's scene of this name, also after a playback has replaced it, and its
 // requests become commands, which are recorded:
@@ -25,6 +28,19 @@ class SceneTreeWidget;
 // before it are changed. The widget keeps the session.
 void ConnectToSession(SceneTreeWidget& widget, vtkDspaceSession* session, const std::string& scene,
                       const std::string& vantage = "main");
+
+// The same in two steps, for a widget that shows one scene and then another: the trails of a scene go
+// on for as long as its actions are kept.
+struct SceneActions {
+  SceneTreeWidget::Source source;
+  SceneTreeWidget::Handler handler;
+  std::function<QString(ObjectId)> kinds;
+};
+// `execute` takes a serialized command and returns the reply; empty: vtkDspaceSession::Execute.
+SceneActions ActionsOf(vtkDspaceSession* session, const std::string& scene,
+                       const std::string& vantage = "main",
+                       std::function<std::string(const std::string&)> execute = {});
+void Connect(SceneTreeWidget& widget, const SceneActions& actions);
 
 } // namespace dspace::widgets
 

@@ -14,6 +14,8 @@ PlaybackTimeSource::PlaybackTimeSource(session::Playback& playback,
   this->ReadSteps();
   this->ReadEvents();
   this->Clock_.Seek(playback.Time());
+  this->Last_ = reader.Last();
+  this->Known_ = playback.Index();
 }
 
 void PlaybackTimeSource::ReadSteps() {
@@ -79,6 +81,7 @@ TimeSource::State PlaybackTimeSource::GetState() const {
 
 void PlaybackTimeSource::Seek(double time_s) {
   this->Steps_ = 0;
+  this->Sought_ = true;
   this->Clock_.Seek(time_s);
 }
 
@@ -100,33 +103,73 @@ void PlaybackTimeSource::SkipGap() {
   }
 }
 
+void PlaybackTimeSource::Update(double wall_s) {
+  if (!(this->Grows_ || this->Looks_) ||
+      (wall_s - this->Updated_s_ < UpdateEvery && wall_s >= this->Updated_s_)) {
+    return;
+  }
+  const bool first = this->Updated_s_ == 0.0;
+  this->Updated_s_ = wall_s;
+  const std::uint64_t last = this->Reader_.Last();
+  if (last == this->Last_ && !(first && this->Grows_)) {
+    return;
+  }
+  this->Last_ = last;
+  this->Grows_ = true;
+  if (this->Playback_.Update() > 0) {
+    this->ReadSteps();
+    this->ReadEvents();
+  }
+}
+
+void PlaybackTimeSource::Aim(std::size_t index) {
+  if (index != this->Target_.value_or(this->Playback_.Index())) {
+    this->Playback_.Aim(index);
+    this->Target_ = index;
+  }
+}
+
 void PlaybackTimeSource::Advance(double wall_s) {
-  if (this->Grows_ && !(wall_s - this->Updated_s_ < UpdateEvery && wall_s >= this->Updated_s_)) {
-    this->Updated_s_ = wall_s;
-    if (this->Playback_.Update() > 0) {
-      this->ReadSteps();
-      this->ReadEvents();
+  this->Update(wall_s);
+  if (!this->Playback_.IsMoving()) {
+    this->Target_.reset();
+    if (this->Playback_.Index() != this->Known_) { // moved by a script
+      this->Known_ = this->Playback_.Index();
+      this->Clock_.Seek(this->Playback_.Time());
     }
   }
   try {
     if (this->Steps_ != 0) {
-      const auto at = std::int64_t(this->Playback_.Index());
-      const std::int64_t to = std::max(at + this->Steps_, std::int64_t(this->First_));
+      const auto at = std::int64_t(this->Target_.value_or(this->Playback_.Index()));
+      const std::int64_t to = std::clamp(at + this->Steps_, std::int64_t(this->First_),
+                                         std::int64_t(this->Times_.Times().size()) - 1);
       this->Steps_ = 0;
-      this->Playback_.Step(to - at);
-      this->Clock_.Seek(this->Playback_.Time());
+      this->Aim(std::size_t(to));
+      this->Clock_.Seek(this->Times_.Times()[std::size_t(to)]);
       this->Clock_.Advance(wall_s);
-      return;
+    } else {
+      this->Clock_.Advance(wall_s);
+      this->SkipGap();
+      // A movement is completed before playing goes on, so that something is seen.
+      if (std::exchange(this->Sought_, false) || !this->Target_) {
+        if (const auto index = this->Times_.IndexAt(this->Clock_.Time())) {
+          this->Aim(*index);
+        }
+      }
     }
-    this->Clock_.Advance(wall_s);
-    this->SkipGap();
-    const auto index = this->Times_.IndexAt(this->Clock_.Time());
-    if (index && *index != this->Playback_.Index()) {
-      this->Playback_.Step(std::int64_t(*index) - std::int64_t(this->Playback_.Index()));
+    if (this->Target_ && this->Playback_.Continue(LongestSlice)) {
+      this->Target_.reset();
     }
+    this->Known_ = this->Playback_.Index();
   } catch (...) {
+    const bool returning = this->Target_ == this->Playback_.Index();
+    this->Target_.reset();
     this->Clock_.Play(false);
     this->Clock_.Seek(this->Playback_.Time());
+    if (!returning) { // half of the way may be there: the next calls show the last good step
+      this->Playback_.Aim(this->Playback_.Index());
+      this->Target_ = this->Playback_.Index();
+    }
     throw;
   }
 }

@@ -40,6 +40,10 @@ PictureSurface::~PictureSurface() {
   this->Forget();
 }
 
+void PictureSurface::SetViewport(vtkDspaceViewport* viewport) {
+  this->Viewport_ = viewport;
+}
+
 void PictureSurface::Forget() {
   if (this->Framebuffer_ && this->context()) {
     this->makeCurrent();

@@ -25,6 +25,9 @@ public:
   PictureSurface(vtkDspaceViewport* viewport, QWidget* parent);
   ~PictureSurface() override;
 
+  // Another one of the same render context.
+  void SetViewport(vtkDspaceViewport* viewport);
+
 signals:
   void drawn(bool anew); // false: the picture was up to date
   void failed(const QString& message);

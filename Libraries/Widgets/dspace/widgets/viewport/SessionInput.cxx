@@ -1,6 +1,7 @@
 #include <dspace/widgets/viewport/SessionInput.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "vtkDspaceSession.h"
 
@@ -10,8 +11,8 @@
 namespace dspace::widgets {
 namespace {
 
-std::string Execute(vtkDspaceSession* session, const v1::Command& command) {
-  const std::string reply = session->Execute(command.SerializeAsString());
+std::string Execute(const Executor& execute, const v1::Command& command) {
+  const std::string reply = execute(command.SerializeAsString());
   v1::Reply parsed;
   parsed.ParseFromString(reply);
   if (parsed.has_error()) {
@@ -25,14 +26,21 @@ std::string Execute(vtkDspaceSession* session, const v1::Command& command) {
 void ConnectToSession(ViewportWidget& widget, vtkDspaceSession* session,
                       const std::string& viewport,
                       std::function<void(const std::string&, const std::string&)> told) {
-  widget.SetResizer([session, viewport](int width, int height) {
+  ConnectToExecutor(
+      widget, [session](const std::string& command) { return session->Execute(command); }, viewport,
+      std::move(told));
+}
+
+void ConnectToExecutor(ViewportWidget& widget, const Executor& execute, const std::string& viewport,
+                       std::function<void(const std::string&, const std::string&)> told) {
+  widget.SetResizer([execute, viewport](int width, int height) {
     v1::Command command;
     command.mutable_resize_viewport()->set_viewport(viewport);
     command.mutable_resize_viewport()->set_width(std::uint32_t(width));
     command.mutable_resize_viewport()->set_height(std::uint32_t(height));
-    Execute(session, command);
+    Execute(execute, command);
   });
-  widget.SetHandler([session, viewport, told = std::move(told)](const ViewportInput& input) {
+  widget.SetHandler([execute, viewport, told = std::move(told)](const ViewportInput& input) {
     v1::Command command;
     v1::ViewportEvent& event = *command.mutable_viewport_event();
     event.set_viewport(viewport);
@@ -49,7 +57,7 @@ void ConnectToSession(ViewportWidget& widget, vtkDspaceSession* session,
     event.set_shift(input.shift);
     event.set_control(input.control);
     event.set_alt(input.alt);
-    const std::string reply = Execute(session, command);
+    const std::string reply = Execute(execute, command);
     if (told) {
       v1::Reply parsed;
       parsed.ParseFromString(reply);

@@ -20,6 +20,12 @@ void ConnectToSession(ViewportWidget& widget, vtkDspaceSession* session,
                       const std::string& viewport,
                       std::function<void(const std::string&, const std::string&)> told = {});
 
+// The same with what carries out serialized commands and returns their replies, in place of
+// vtkDspaceSession::Execute.
+using Executor = std::function<std::string(const std::string&)>;
+void ConnectToExecutor(ViewportWidget& widget, const Executor& execute, const std::string& viewport,
+                       std::function<void(const std::string&, const std::string&)> told = {});
+
 } // namespace dspace::widgets
 
 #endif

@@ -5,6 +5,7 @@
 #include <exception>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <QImage>
 #include <QKeyEvent>
@@ -145,6 +146,7 @@ struct ViewportWidget::Internals {
   vtkSmartPointer<vtkDspaceViewport> viewport;
   Handler handler;
   Resizer resizer;
+  Source source;
   OrbitController controller;
   PictureSurface* surface = nullptr; // null: the widget paints itself
   QTimer ticks;
@@ -152,6 +154,7 @@ struct ViewportWidget::Internals {
   int movingSamples = 1;
   std::optional<int> ownSamples; // while the camera moves
   QImage picture;                // where textures are not shared
+  bool resizeLater = false;      // the viewport was not there
   QString failure;               // of the last drawing; empty: none
   int pictures = 0;
 
@@ -217,9 +220,33 @@ struct ViewportWidget::Internals {
     this->widget->update();
   }
 
+  // Whether there is a viewport to draw.
+  bool Find() {
+    if (!this->source) {
+      return true;
+    }
+    vtkDspaceViewport* const now = this->source();
+    if (now && now != this->viewport) {
+      this->viewport = now;
+      this->ownSamples.reset();
+      this->settle.stop();
+      if (this->surface) {
+        this->surface->SetViewport(now);
+      }
+      if (this->widget->isVisible()) {
+        this->Resize();
+        this->Draw();
+      }
+    }
+    return now != nullptr;
+  }
+
   void Look() {
-    if (!this->widget->isVisible()) {
+    if (!this->widget->isVisible() || !this->Find()) {
       return;
+    }
+    if (std::exchange(this->resizeLater, false)) {
+      this->Resize();
     }
     bool outdated = false;
     this->Try([&] { outdated = this->viewport->IsOutdated(); });
@@ -246,6 +273,9 @@ struct ViewportWidget::Internals {
   }
 
   void Send(const ViewportInput& input) {
+    if (!this->Find()) {
+      return;
+    }
     this->Try([&] {
       if (this->handler) {
         this->handler(input);
@@ -312,6 +342,9 @@ void ViewportWidget::SetHandler(Handler handler) {
 void ViewportWidget::SetResizer(Resizer resizer) {
   this->Impl_->resizer = std::move(resizer);
 }
+void ViewportWidget::SetSource(Source source) {
+  this->Impl_->source = std::move(source);
+}
 vtkDspaceViewport* ViewportWidget::GetViewport() const {
   return this->Impl_->viewport;
 }
@@ -352,14 +385,22 @@ void ViewportWidget::resizeEvent(QResizeEvent*) {
   if (this->Impl_->surface) {
     this->Impl_->surface->resize(this->size());
   }
-  this->Impl_->Resize();
+  if (this->Impl_->Find()) {
+    this->Impl_->Resize();
+  } else {
+    this->Impl_->resizeLater = true;
+  }
   this->Impl_->Look();
 }
 
 void ViewportWidget::showEvent(QShowEvent*) {
-  this->Impl_->Resize();
+  if (this->Impl_->Find()) {
+    this->Impl_->Resize();
+    this->Impl_->Draw();
+  } else {
+    this->Impl_->resizeLater = true;
+  }
   this->Impl_->ticks.start(Tick_ms);
-  this->Impl_->Draw();
 }
 
 void ViewportWidget::hideEvent(QHideEvent*) {

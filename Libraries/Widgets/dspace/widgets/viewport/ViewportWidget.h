@@ -58,6 +58,10 @@ public:
 
   void SetHandler(Handler handler);
   void SetResizer(Resizer resizer);
+  // Playbacks and watchers make their viewports anew: the viewport is asked for before every look.
+  // Null: it is not there at present, and the last picture stays.
+  using Source = std::function<vtkDspaceViewport*()>;
+  void SetSource(Source source);
   vtkDspaceViewport* GetViewport() const;
 
   // Supersampling while the user moves the camera, 1 to 8, at most that of the viewport; default 1.

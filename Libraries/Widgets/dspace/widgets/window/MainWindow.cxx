@@ -31,13 +31,13 @@
 #include <dspace/scene/ViewLook.h>
 #include <dspace/widgets/console/ConsoleWidget.h>
 #include <dspace/widgets/console/PythonInterpreter.h>
-#include <dspace/widgets/scene/SceneCommands.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
-#include <dspace/widgets/timeline/SceneTimeSource.h>
 #include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/viewport/SessionInput.h>
+#include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
+#include <dspace/widgets/window/ShownScenes.h>
 
 namespace dspace::widgets {
 namespace {
@@ -80,11 +80,15 @@ MainWindow::MainWindow(const QString& packages)
   this->setDockOptions(QMainWindow::AnimatedDocks | QMainWindow::AllowNestedDocks |
                        QMainWindow::AllowTabbedDocks);
   PythonHost host;
-  host.show = [this](vtkDspaceSession* session, const std::string& name, const std::string& title) {
-    this->ShowView(session, name, title);
+  host.show = [this](vtkObject* of, const std::string& name, const std::string& title) {
+    this->ShowView(of, name, title);
   };
-  host.close = [this](vtkDspaceSession* session, const std::string& name) {
-    this->CloseView(session, name);
+  host.close = [this](vtkObject* of, const std::string& name) { this->CloseView(of, name); };
+  host.forget = [this](vtkObject* of) { this->Forget(of); };
+  host.clock = [this](vtkObject* of, const std::string& what, double a, double b) {
+    if (this->Scenes_) {
+      this->Scenes_->AskClock(of, what, a, b);
+    }
   };
   host.message = [this](const std::string& text) { this->Report(QString::fromStdString(text)); };
   this->Interpreter_ = std::make_unique<PythonInterpreter>(this->Session_, host, packages);
@@ -94,15 +98,16 @@ MainWindow::MainWindow(const QString& packages)
   this->ConsoleDock_->setWidget(this->Console_);
   this->addDockWidget(Qt::BottomDockWidgetArea, this->ConsoleDock_);
   auto* tree = new SceneTreeWidget(this);
-  ConnectToSession(*tree, this->Session_, SceneName);
   connect(tree, &SceneTreeWidget::failed, this,
           [this](const QString& message) { this->Report(message); });
   this->SceneDock_ = new QDockWidget(tr("Scene"), this);
   this->SceneDock_->setObjectName(QStringLiteral("scene"));
-  this->SceneDock_->setWidget(tree);
+  this->SceneDock_->setWidget(ShownScenes::WithChoice(tree));
   this->addDockWidget(Qt::LeftDockWidgetArea, this->SceneDock_);
   auto* timeline = new TimelineWidget(this);
-  timeline->SetSource(MakeTimeSource(this->Session_, SceneName));
+  this->Scenes_ = new ShownScenes(this->Session_, SceneName, tree, timeline, this);
+  connect(this->Scenes_, &ShownScenes::failed, this,
+          [this](const QString& message) { this->Report(message); });
   connect(timeline, &TimelineWidget::failed, this,
           [this](const QString& message) { this->Report(message); });
   this->TimeDock_ = new QDockWidget(tr("Time"), this);
@@ -120,6 +125,8 @@ MainWindow::~MainWindow() {
     delete view.dock.data();
   }
   this->Views_.clear();
+  delete this->Scenes_;
+  this->Scenes_ = nullptr;
   delete this->TimeDock_;
   delete this->SceneDock_;
   delete this->ConsoleDock_;
@@ -235,15 +242,15 @@ void MainWindow::Report(const QString& text) {
   this->statusBar()->showMessage(text);
 }
 
-QWidget* MainWindow::ToolsOf(ViewportWidget* widget, const std::string& viewport) {
-  // Of other sessions, such as a recording's, `app.sessions` has the views.
+QWidget* MainWindow::ToolsOf(ViewportWidget* widget, const std::string& viewport,
+                             const QString& title) {
   const QString view =
       QStringLiteral("app.views[%1]").arg(Quoted(QString::fromStdString(viewport)));
   const vtkDspaceViewport* shown = widget->GetViewport();
   auto* tools = new QWidget;
   auto* row = new QHBoxLayout(tools);
   row->setContentsMargins(4, 2, 4, 2);
-  row->addWidget(new QLabel(QString::fromStdString(viewport), tools));
+  row->addWidget(new QLabel(title, tools));
   row->addStretch();
   const auto toggle = [&](const QString& text, const QString& tip, bool on, const QString& field) {
     auto* button = new QToolButton(tools);
@@ -296,13 +303,15 @@ QWidget* MainWindow::ToolsOf(ViewportWidget* widget, const std::string& viewport
   return tools;
 }
 
-void MainWindow::ShowView(vtkDspaceSession* session, const std::string& viewport,
-                          const std::string& title) {
-  vtkDspaceViewport* shown = session->GetViewport(viewport);
+void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std::string& title) {
+  const ShownSession session(of);
+  vtkDspaceViewport* shown = session.Viewport(viewport);
   if (!shown) {
     throw std::runtime_error("there is no viewport '" + viewport + "'");
   }
-  View_t& view = this->Views_[{session, viewport}];
+  this->Scenes_->Add(of, QString::fromStdString(title).section(QStringLiteral(": "), 0, 0));
+  this->Scenes_->Activate(of, session.SceneOf(viewport));
+  View_t& view = this->Views_[{of, viewport}];
   if (view.dock) {
     view.dock->show();
     view.dock->raise();
@@ -311,13 +320,16 @@ void MainWindow::ShowView(vtkDspaceSession* session, const std::string& viewport
   auto* dock = new QDockWidget(QString::fromStdString(title), this);
   dock->setObjectName(QStringLiteral("view ") + QString::fromStdString(viewport));
   auto* widget = new ViewportWidget(shown, dock);
-  ConnectToSession(*widget, session, viewport,
-                   [this, viewport](const std::string& event, const std::string& reply) {
-                     this->Interpreter_->Tell(viewport, event, reply);
-                   });
+  ConnectToExecutor(
+      *widget, [session](const std::string& command) { return session.Execute(command); }, viewport,
+      [this, viewport](const std::string& event, const std::string& reply) {
+        this->Interpreter_->Tell(viewport, event, reply);
+      });
+  widget->SetSource([session, viewport] { return session.Viewport(viewport); });
+  this->Scenes_->Watch(widget, of, viewport);
   connect(widget, &ViewportWidget::failed, this,
           [this](const QString& message) { this->Report(message); });
-  dock->setTitleBarWidget(this->ToolsOf(widget, viewport));
+  dock->setTitleBarWidget(this->ToolsOf(widget, viewport, QString::fromStdString(title)));
   dock->setWidget(widget);
   view = {dock, widget};
   this->addDockWidget(Qt::RightDockWidgetArea, dock);
@@ -334,8 +346,22 @@ void MainWindow::ShowView(vtkDspaceSession* session, const std::string& viewport
   }
 }
 
-void MainWindow::CloseView(vtkDspaceSession* session, const std::string& viewport) {
-  const auto found = this->Views_.find({session, viewport});
+void MainWindow::Forget(vtkObject* of) {
+  for (auto it = this->Views_.begin(); it != this->Views_.end();) {
+    if (it->first.first == of) {
+      delete it->second.dock.data();
+      it = this->Views_.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  if (this->Scenes_) {
+    this->Scenes_->Forget(of);
+  }
+}
+
+void MainWindow::CloseView(vtkObject* of, const std::string& viewport) {
+  const auto found = this->Views_.find({of, viewport});
   if (found != this->Views_.end()) {
     delete found->second.dock.data();
     this->Views_.erase(found);

@@ -13,12 +13,16 @@
 #include "vtkSmartPointer.h"
 
 class QDockWidget;
+class QComboBox;
 class vtkDspaceSession;
+class vtkObject;
 
 namespace dspace::widgets {
 
 class ConsoleWidget;
 class PythonInterpreter;
+class ShownScenes;
+class TimelineWidget;
 class ViewportWidget;
 
 // Each action is a line of Python that the prompt shows and runs, so that "Save as script" writes
@@ -40,6 +44,8 @@ public:
   PythonInterpreter* Interpreter() const { return this->Interpreter_.get(); }
   // The widget of a viewport; null: it is not shown.
   ViewportWidget* View(const std::string& viewport) const;
+  // The scenes that the docks may show.
+  ShownScenes* Scenes() const { return this->Scenes_; }
   int ViewCount() const;
   // Every visible viewport is up to date.
   bool IsSettled() const;
@@ -52,15 +58,16 @@ protected:
   void dropEvent(QDropEvent* event) override;
 
 private:
-  using Key = std::pair<vtkDspaceSession*, std::string>;
+  using Key = std::pair<vtkObject*, std::string>;
   struct View_t {
     QPointer<QDockWidget> dock;
     QPointer<ViewportWidget> widget;
   };
   void MakeMenus();
-  void ShowView(vtkDspaceSession* session, const std::string& viewport, const std::string& title);
-  void CloseView(vtkDspaceSession* session, const std::string& viewport);
-  QWidget* ToolsOf(ViewportWidget* widget, const std::string& viewport);
+  void ShowView(vtkObject* of, const std::string& viewport, const std::string& title);
+  void CloseView(vtkObject* of, const std::string& viewport);
+  void Forget(vtkObject* of);
+  QWidget* ToolsOf(ViewportWidget* widget, const std::string& viewport, const QString& title);
   void ChooseFiles();
   void SaveScript();
   void SavePicture();
@@ -71,6 +78,7 @@ private:
   vtkSmartPointer<vtkDspaceSession> Session_;
   std::unique_ptr<PythonInterpreter> Interpreter_;
   ConsoleWidget* Console_ = nullptr;
+  ShownScenes* Scenes_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;

@@ -1,0 +1,63 @@
+// The scenes that a window shows, and which of them is in its docks.
+#ifndef DSPACE_WIDGETS_SHOWN_SCENES_H
+#define DSPACE_WIDGETS_SHOWN_SCENES_H
+
+#include <memory>
+#include <string>
+
+#include <QObject>
+
+class QWidget;
+class vtkDspaceSession;
+class vtkObject;
+
+namespace dspace::widgets {
+
+class SceneTreeWidget;
+class TimelineWidget;
+class ViewportWidget;
+class TimeSource;
+
+// Scenes of the window's own session, of recordings and of servers (ShownSession.h). The scene whose
+// view was used last is in the tree and on the timeline; a list above the tree, which is there where
+// there are several, chooses another one. Recordings play and servers are followed whether they are
+// in the docks or not.
+class ShownScenes : public QObject {
+  Q_OBJECT
+
+public:
+  // The tree below a list of scenes, for the constructor.
+  static QWidget* WithChoice(SceneTreeWidget* tree);
+  // `scene`: of the own session, shown first. All must outlive it.
+  ShownScenes(vtkDspaceSession* own, const std::string& scene, SceneTreeWidget* tree,
+              TimelineWidget* timeline, QObject* parent);
+  ~ShownScenes() override;
+
+  // `title` names it in the list. Nothing happens if it is known.
+  void Add(vtkObject* of, const QString& title);
+  void Forget(vtkObject* of);
+  // Puts a scene into the docks. Nothing happens if it is not known.
+  void Activate(vtkObject* of, const std::string& scene);
+  // The scene of this view goes into the docks when the widget gets the focus.
+  void Watch(ViewportWidget* widget, vtkObject* of, const std::string& viewport);
+  // PythonHost::clock. Throws Error: NotFound, and those of the clock.
+  void AskClock(vtkObject* of, const std::string& what, double a, double b);
+  // What is in the docks: the text of the list, and its clock.
+  QString Active() const;
+  TimeSource* Clock() const;
+
+signals:
+  void activated();
+  void failed(const QString& message);
+
+protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> Impl_;
+};
+
+} // namespace dspace::widgets
+
+#endif

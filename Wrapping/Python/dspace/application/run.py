@@ -1,0 +1,134 @@
+"""A recording in the windows: its time is that of the timeline and of the views."""
+import os
+
+from dspace import vtk as _vtk
+from dspace._core.fields import flag, real, reject
+from dspace._core.replies import make_error, to_reply
+from dspace._core.wire import encode
+from dspace.clients.local import LocalClient
+from dspace.clients.session import Session
+from dspace.errors import Unsupported
+from dspace.links.watching import OWN
+from dspace.playback.playback import Playback
+
+
+def require(reply):
+    """Raises the error of a serialized reply."""
+    reply = to_reply(reply)
+    if reply.HasField("error"):
+        raise make_error(reply.error)
+    return reply
+
+
+class PlayerClient(LocalClient):
+    """Executes commands in the session of a vtkDspacePlayer."""
+
+    def __init__(self, player):
+        super().__init__(player.GetSession())
+        self._player = player
+
+    def shown(self):
+        """What the windows show views of."""
+        self._require_thread()
+        return self._player
+
+    def _carry(self, command):
+        self.local()
+        return to_reply(self._player.Execute(encode(command)))
+
+
+class Run(Playback):
+    """A dspace.Playback whose time the timeline shows and moves; App.open() returns it.
+
+    seek() and step() wait for the step, play() and follow() return at once. Views and cameras whose names begin with
+    "viewer:" stay when it moves; other additions to its session are lost when it moves back."""
+
+    def __init__(self, path, host, session, check_assets=True):
+        self._host = host
+        self._player = _vtk.vtkDspacePlayer()
+        self._player.ShareRenderContext(session)
+        self._closed = False
+        self._opened = False
+        self._path, self._checked = os.path.abspath(os.fspath(path)), flag(check_assets, "check_assets", "recording")
+        super().__init__(path, check_assets)
+
+    # --- What the player does in place of Python ------------------------------------------------
+
+    def _take_files(self):
+        if self._opened:
+            require(self._player.Update())
+        else:
+            require(self._player.Open(os.fsencode(self._path), self._checked))
+            self._opened = True
+
+    def _make_session(self):
+        made = Session.__new__(Session)
+        made._client = PlayerClient(self._player)
+        return made
+
+    def _go(self, index):
+        require(self._player.Go(index))
+
+    @property
+    def index(self):
+        """The present step, from 0."""
+        return int(self._player.GetIndex())
+
+    @index.setter
+    def index(self, value):
+        pass  # the player's
+
+    # --- The timeline --------------------------------------------------------------------------
+
+    def play(self, speed=1.0, on_step=None, until=None):
+        """Plays at `speed` times real time, backward if it is negative, and returns at once."""
+        if on_step is not None or until is not None:
+            raise Unsupported("on_step and until hold the windows; accepted: App.every(), which looks at the run's time",
+                              self.file.label)
+        self._host.clock(self._player, "speed", real(speed, "the speed", self.file.label), 0.0)
+        self._host.clock(self._player, "play", 1.0, 0.0)
+
+    def pause(self):
+        """Stands still."""
+        self._host.clock(self._player, "play", 0.0, 0.0)
+
+    def follow(self, following=True):
+        """Stays at the end of a recording that is being written."""
+        self._host.clock(self._player, "follow", float(flag(following, "following", self.file.label)), 0.0)
+
+    def loop(self, begin=None, end=None):
+        """Plays the times from `begin` to `end` [s] again and again; without them, no longer."""
+        if (begin is None) != (end is None):
+            reject(self.file.label, "the loop", (begin, end), "two times, or none")
+        if begin is None:
+            self._host.clock(self._player, "unloop", 0.0, 0.0)
+        else:
+            self._host.clock(self._player, "loop", real(begin, "begin", self.file.label),
+                             real(end, "end", self.file.label))
+
+    # --- Views ---------------------------------------------------------------------------------
+
+    def own_views(self, taken=()):
+        """Makes a view of one's own for each viewport of the present step, which looks through the recorded camera
+        until it is moved. taken: names that they must not have. Returns the viewports by the names of the recorded
+        ones."""
+        made = {}
+        for name in self.session.viewports:
+            if name.startswith(OWN):  # of the one who recorded
+                made[name] = self.session.viewports[name]
+                continue
+            own, number = OWN + name, 1
+            while own in taken:
+                number += 1
+                own = f"{OWN}{name} {number}"
+            require(self._player.CopyViewport(name, own))
+            made[name] = self.session.viewports[own]
+        return made
+
+    def close(self):
+        """Closes its views and ends the playback. A second call does nothing."""
+        if not self._closed:
+            self._closed = True
+            self._host.forget(self._player)
+            super().close()
+            self._player.Close()
