@@ -3,10 +3,10 @@
  * @brief A session that plays a recording, with views of its own.
  *
  * It owns the playback: a timeline, views and Python that use the same player see one recording at
- * one time. Viewports, vantages and cameras whose names begin with "viewer:" belong to whoever looks
- * at the recording and survive every movement (<dspace/link/watching/ViewerViews.h>); other changes
- * are lost when it moves back. Methods that can fail return a serialized Reply. No method throws a
- * C++ exception. Use it in the thread of its session.
+ * one time. Viewports, vantages and cameras whose names begin with "viewer:" belong to whoever
+ * looks at the recording and survive every movement (<dspace/link/watching/ViewerViews.h>); other
+ * changes are lost when it moves back. Methods that can fail return a serialized Reply. No method
+ * throws a C++ exception. Use it in the thread of its session.
  */
 #ifndef vtkDspacePlayer_h
 #define vtkDspacePlayer_h

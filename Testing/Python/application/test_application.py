@@ -16,17 +16,24 @@ class Host:
 
     def __init__(self):
         self.made = vtk.vtkDspaceSession()
-        self.shown, self.messages, self.timers = [], [], {}
+        self.shown, self.messages, self.timers, self.asked = [], [], {}, []
 
     def session(self):
         return self.made
 
-    def show(self, session, name, title):
+    def show(self, shown, name, title):
+        session = shown.GetSession() if hasattr(shown, "GetSession") else shown
         assert session.GetViewport(name) is not None
         self.shown.append((name, title))
 
     def close(self, session, name):
         self.shown = [shown for shown in self.shown if shown[0] != name]
+
+    def forget(self, shown):
+        self.shown = []
+
+    def clock(self, shown, what, a, b):
+        self.asked.append((what, a, b))
 
     def message(self, text):
         self.messages.append(text)
@@ -82,9 +89,38 @@ def test_a_recording_is_opened_with_its_views(app, tmp_path):
             scene.add_box((1, 1, 1))
             scene.add_viewport((64, 48), scene.add_camera(eye=(3, 3, 3), target=(0, 0, 0)), name="recorded")
             scene.time = 1.0
+            for i in range(2, 8):
+                scene.time = float(i)
     run = app.open(path)
-    assert app._host.shown == [("recorded", "run.dspace: recorded")]
-    assert run.session.viewports["recorded"] == app.views["recorded"]
+    assert isinstance(run, dspace.Playback)
+    assert app._host.shown == [("viewer:recorded", "run.dspace: recorded")]
+    view = app.views["viewer:recorded"]
+    assert np.array_equal(view.image(), run.session.viewports["recorded"].image())
+    # A camera of one's own stays when the recording moves back.
+    view.event("wheel", 32, 24, wheel=3)
+    moved = view.camera.pose
+    assert not np.allclose(moved.position, (3, 3, 3))
+    assert run.seek(6.5) == 6.0 and run.time == 6.0 and run.index == run.times.index(6.0)
+    assert run.seek(2.0) == 2.0
+    assert np.array_equal(view.camera.pose.position, moved.position)
+    assert run.step(2) == 2 and run.time == 4.0
+    assert run.session.scenes["scene"].time == 4.0
+    with dspace.Playback(path) as plain:
+        assert plain.seek(4.0) == 4.0 and plain.times == run.times
+        assert np.array_equal(plain.session.viewports["recorded"].image(), run.session.viewports["recorded"].image())
+    run.play(-2.0)
+    run.loop(2, 3)
+    assert app._host.asked == [("speed", -2.0, 0.0), ("play", 1.0, 0.0), ("loop", 2.0, 3.0)]
+    with pytest.raises(dspace.Unsupported, match="App.every"):
+        run.play(until=3.0)
+    run.close()
+    assert app.views == {} and app.runs == [] and app.view is None
+    run.close()
+    with pytest.raises(dspace.Unsupported, match="not a recording"):
+        odd = tmp_path / "odd.dspace"
+        odd.write_text("nothing")
+        app.open(odd)
+    assert app.runs == []
 
 
 def test_new_views_look_as_the_latest_one_does(app):

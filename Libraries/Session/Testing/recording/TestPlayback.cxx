@@ -99,6 +99,55 @@ TEST_F(PlaybackOf, ReadsWhatWasAccepted) {
   EXPECT_EQ(reader.Steps().size(), 40u);
 }
 
+// A movement in slices of one command each arrives where one piece does, from wherever it is, also
+// when its aim changes on the way. Until then the step before is told.
+TEST_F(PlaybackOf, SlicesArriveWhereOneMovementDoes) {
+  this->Drive(40, 25);
+  RecordingReader reader(this->Path_);
+  Interpreter whole, sliced;
+  session::Playback one(reader, whole);
+  session::Playback other(reader, sliced);
+  bool inSnapshot = false;
+  int arrived = 0;
+  session::PlaybackGuests guests;
+  guests.beforeSnapshot = [&] { inSnapshot = true; };
+  guests.afterSnapshot = [&] { inSnapshot = false; };
+  guests.arrived = [&] { ++arrived; };
+  other.SetGuests(guests);
+  std::mt19937 random(5);
+  int longest = 0;
+  for (int round = 0; round < 60; ++round) {
+    const std::size_t before = other.Index();
+    if (round % 3 == 0) { // somewhere else first, for a while
+      other.Aim(random() % 40);
+      for (int i = int(random() % 5); i > 0 && !other.Continue(0.0); --i) {
+      }
+    }
+    const std::size_t from = other.Index();
+    const std::size_t to = random() % 40;
+    other.Aim(to);
+    int slices = 0;
+    while (!other.Continue(0.0)) {
+      EXPECT_TRUE(other.IsMoving());
+      EXPECT_EQ(other.Index(), from) << before;
+      ++slices;
+    }
+    longest = std::max(longest, slices);
+    EXPECT_FALSE(other.IsMoving());
+    EXPECT_FALSE(inSnapshot);
+    one.Step(std::int64_t(to) - std::int64_t(one.Index()));
+    EXPECT_EQ(other.Index(), to);
+    EXPECT_EQ(other.Time(), one.Time());
+    EXPECT_EQ(sliced.FindScene("scene")->Frames().Size(),
+              whole.FindScene("scene")->Frames().Size());
+    EXPECT_EQ(sliced.FindScene("scene")->Time(), one.Time());
+  }
+  EXPECT_GT(longest, 5);
+  EXPECT_GE(arrived, 60);
+  EXPECT_TRUE(other.Continue(0.0)); // nothing is left to do
+  EXPECT_THROW(other.Aim(other.Steps().size()), Error);
+}
+
 // Every step, in a random order, is what the same commands make from the start.
 TEST_F(PlaybackOf, AnyStepIsWhatItsCommandsMake) {
   const std::vector<v1::Command> accepted = this->Drive(40, 25);

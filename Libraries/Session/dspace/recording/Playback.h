@@ -53,11 +53,11 @@ public:
   // Moves n steps forward, or back if n is negative; stops at the ends. Returns the number of steps
   // moved.
   std::int64_t Step(std::int64_t n);
-  // A movement in slices, so that the caller's thread is not held: Aim() takes a note of the step to
-  // move to, and each Continue() executes commands for about this time [s], at least one command.
-  // True: there is nothing left to do. Meanwhile Index() and Time() are those of the step before,
-  // and the state is between the two. A new aim takes over at once; Seek() and Step() complete
-  // theirs. InvalidArgument: there is no such step.
+  // A movement in slices, so that the caller's thread is not held: Aim() takes a note of the step
+  // to move to, and each Continue() executes commands for about this time [s], at least one
+  // command. True: there is nothing left to do. Meanwhile Index() and Time() are those of the step
+  // before, and the state is between the two. A new aim takes over at once; Seek() and Step()
+  // complete theirs. InvalidArgument: there is no such step.
   void Aim(std::size_t index);
   bool Continue(double seconds);
   bool IsMoving() const { return this->Aim_.has_value(); }

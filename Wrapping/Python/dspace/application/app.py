@@ -110,7 +110,7 @@ class App:
         return terrain
 
     def _open_run(self, path):
-        run = Run(path, self._host, self.session.vtk)
+        run = Run(path, self._host, self.session.vtk, self._closed)
         try:
             views = run.own_views(self.views)
             if not views and len(run.times) > 1:  # they may come later
@@ -126,6 +126,15 @@ class App:
         if not views:
             self._host.message(f"{path} has no viewport; add one: app.runs[-1].session.scenes[...].add_viewport()")
         return run
+
+    def _closed(self, run):
+        """Forgets a recording that is closed."""
+        if run in self.runs:
+            self.runs.remove(run)
+        gone = run.session._client if run.session is not None else None
+        self.views = {name: view for name, view in self.views.items() if view._client is not gone}
+        if self.view is not None and self.view._client is gone:
+            self.view = next(reversed(self.views.values()), None)
 
     def demo(self):
         """The scene of the first start: a rover drives over the shipped field."""
@@ -167,6 +176,6 @@ class App:
     def close(self):
         for number in list(self._timers):
             self.cancel(number)
-        for run in self.runs:
+        for run in list(self.runs):
             run.close()
         self.session.close()

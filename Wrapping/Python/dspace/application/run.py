@@ -43,8 +43,8 @@ class Run(Playback):
     seek() and step() wait for the step, play() and follow() return at once. Views and cameras whose names begin with
     "viewer:" stay when it moves; other additions to its session are lost when it moves back."""
 
-    def __init__(self, path, host, session, check_assets=True):
-        self._host = host
+    def __init__(self, path, host, session, closed=None, check_assets=True):
+        self._host, self._told_closed = host, closed
         self._player = _vtk.vtkDspacePlayer()
         self._player.ShareRenderContext(session)
         self._closed = False
@@ -77,6 +77,11 @@ class Run(Playback):
     @index.setter
     def index(self, value):
         pass  # the player's
+
+    @property
+    def time(self):
+        """The time of the present step [s]."""
+        return self._player.GetTime()
 
     # --- The timeline --------------------------------------------------------------------------
 
@@ -129,6 +134,8 @@ class Run(Playback):
         """Closes its views and ends the playback. A second call does nothing."""
         if not self._closed:
             self._closed = True
+            if self._told_closed is not None:
+                self._told_closed(self)
             self._host.forget(self._player)
             super().close()
             self._player.Close()

@@ -243,11 +243,11 @@ struct PythonInterpreter::Internals {
 
   static PyObject* MakeModule() {
     static PyMethodDef methods[] = {
-        {"write", Write, METH_VARARGS, nullptr},     {"session", Session, METH_NOARGS, nullptr},
-        {"show", Show, METH_VARARGS, nullptr},       {"close", Close, METH_VARARGS, nullptr},
+        {"write", Write, METH_VARARGS, nullptr},        {"session", Session, METH_NOARGS, nullptr},
+        {"show", Show, METH_VARARGS, nullptr},          {"close", Close, METH_VARARGS, nullptr},
         {"forget", ForgetShown, METH_VARARGS, nullptr}, {"clock", Clock, METH_VARARGS, nullptr},
-        {"message", Message, METH_VARARGS, nullptr}, {"every", Every, METH_VARARGS, nullptr},
-        {"cancel", Cancel, METH_VARARGS, nullptr},   {nullptr, nullptr, 0, nullptr}};
+        {"message", Message, METH_VARARGS, nullptr},    {"every", Every, METH_VARARGS, nullptr},
+        {"cancel", Cancel, METH_VARARGS, nullptr},      {nullptr, nullptr, 0, nullptr}};
     static PyModuleDef definition = {PyModuleDef_HEAD_INIT,
                                      "_dspace_host",
                                      nullptr,

@@ -29,8 +29,8 @@ namespace dspace::widgets {
 void ConnectToSession(SceneTreeWidget& widget, vtkDspaceSession* session, const std::string& scene,
                       const std::string& vantage = "main");
 
-// The same in two steps, for a widget that shows one scene and then another: the trails of a scene go
-// on for as long as its actions are kept.
+// The same in two steps, for a widget that shows one scene and then another: the trails of a scene
+// go on for as long as its actions are kept.
 struct SceneActions {
   SceneTreeWidget::Source source;
   SceneTreeWidget::Handler handler;

@@ -16,9 +16,10 @@ namespace dspace::widgets {
 // Plays a recording by a PlayClock. Seek(), SetSpeed(), ... only take a note; Advance() moves the
 // playback, at most once a call, so that a hundred movements of the mouse are one, and for about
 // LongestSlice: a long way takes several calls, and the time that is told is that of the last
-// complete step. A playback that something else has moved goes on from there. Playing skips gaps. The range begins with the first time that was set. Where times go back, the time of the
-// latest run is shown, as Playback::Seek does. Advance() reads the file and executes commands in
-// the calling thread, that of the interpreter.
+// complete step. A playback that something else has moved goes on from there. Playing skips gaps.
+// The range begins with the first time that was set. Where times go back, the time of the latest
+// run is shown, as Playback::Seek does. Advance() reads the file and executes commands in the
+// calling thread, that of the interpreter.
 class PlaybackTimeSource : public TimeSource {
 public:
   static constexpr double UpdateEvery = 0.5;    // wall time between looks for new steps [s]
@@ -66,8 +67,8 @@ private:
   std::uint64_t Revision_ = 0;
   std::uint64_t EventsUntil_ = 0; // the last command that was read for events
   double Updated_s_ = 0.0;
-  std::uint64_t Last_ = 0;           // the last command at the last look
-  std::size_t Known_ = 0;            // the index after the last Advance()
+  std::uint64_t Last_ = 0;            // the last command at the last look
+  std::size_t Known_ = 0;             // the index after the last Advance()
   std::optional<std::size_t> Target_; // of the movement in progress
   bool Sought_ = false;
   int Steps_ = 0; // asked for

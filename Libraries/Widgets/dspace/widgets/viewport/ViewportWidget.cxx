@@ -357,6 +357,11 @@ void ViewportWidget::Refresh() {
 bool ViewportWidget::SharesTextures() const {
   return this->Impl_->surface != nullptr;
 }
+bool ViewportWidget::IsUpToDate() const {
+  const Internals& self = *this->Impl_;
+  return self.pictures > 0 && !self.resizeLater &&
+         (!self.source || self.source() == self.viewport) && !self.viewport->IsOutdated();
+}
 int ViewportWidget::ShownPictures() const {
   return this->Impl_->pictures;
 }

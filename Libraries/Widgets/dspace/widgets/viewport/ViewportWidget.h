@@ -71,6 +71,8 @@ public:
   void Refresh();
   // Whether pictures stay on the GPU.
   bool SharesTextures() const;
+  // Whether the picture is that of the viewport's present state.
+  bool IsUpToDate() const;
   // Pictures shown since the widget was made.
   int ShownPictures() const;
   QSize sizeHint() const override;

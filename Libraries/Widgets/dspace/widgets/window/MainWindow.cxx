@@ -385,8 +385,7 @@ int MainWindow::ViewCount() const {
 bool MainWindow::IsSettled() const {
   return std::all_of(this->Views_.begin(), this->Views_.end(), [](const auto& entry) {
     ViewportWidget* widget = entry.second.widget;
-    return !widget || !widget->isVisible() ||
-           (widget->ShownPictures() > 0 && !widget->GetViewport()->IsOutdated());
+    return !widget || !widget->isVisible() || widget->IsUpToDate();
   });
 }
 

@@ -84,8 +84,7 @@ struct ShownScenes::Internals {
 
   std::vector<std::string> ScenesOf(const Entry& entry) const {
     std::vector<std::string> names;
-    for (const auto& [name, scene] :
-         entry.session.Session()->GetInterpreter().GetState().scenes) {
+    for (const auto& [name, scene] : entry.session.Session()->GetInterpreter().GetState().scenes) {
       names.push_back(name);
     }
     if (entry.session.Of() == this->own && names.empty()) {
@@ -130,10 +129,9 @@ struct ShownScenes::Internals {
     vtkDspaceSession* session = entry.session.Session();
     auto& [of, actions] = entry.actions[this->active.second];
     if (of != session) {
-      actions = ActionsOf(session, this->active.second, "main",
-                          [shown = entry.session](const std::string& command) {
-                            return shown.Execute(command);
-                          });
+      actions = ActionsOf(
+          session, this->active.second, "main",
+          [shown = entry.session](const std::string& command) { return shown.Execute(command); });
       of = session;
     }
     Connect(*this->tree, actions);
@@ -173,8 +171,7 @@ struct ShownScenes::Internals {
       try {
         if (vtkDspaceWatcher* watcher = entry.session.Watcher()) {
           watcher->Update(0.0);
-          if (this->active.first == entry.session.Of() &&
-              entry.session.Session() != this->shown) {
+          if (this->active.first == entry.session.Of() && entry.session.Session() != this->shown) {
             this->ShowTree(entry);
           }
         } else if (entry.clock && entry.clock != this->timeline->Source()) {

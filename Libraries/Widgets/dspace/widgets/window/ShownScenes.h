@@ -18,10 +18,10 @@ class TimelineWidget;
 class ViewportWidget;
 class TimeSource;
 
-// Scenes of the window's own session, of recordings and of servers (ShownSession.h). The scene whose
-// view was used last is in the tree and on the timeline; a list above the tree, which is there where
-// there are several, chooses another one. Recordings play and servers are followed whether they are
-// in the docks or not.
+// Scenes of the window's own session, of recordings and of servers (ShownSession.h). The scene
+// whose view was used last is in the tree and on the timeline; a list above the tree, which is
+// there where there are several, chooses another one. Recordings play and servers are followed
+// whether they are in the docks or not.
 class ShownScenes : public QObject {
   Q_OBJECT
 
