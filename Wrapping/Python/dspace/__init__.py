@@ -33,7 +33,8 @@ _HOMES = {
     "Frame": "frames.frame", "FrameEvent": "frames.events", "Pose": "frames.poses",
     "GraphicsObject": "objects.graphics", "Mesh": "objects.meshes", "Part": "objects.parts",
     "PolyData": "objects.polydata", "Primitive": "objects.graphics", "Text": "objects.graphics",
-    "TiltMarker": "objects.graphics", "Trail": "objects.graphics",
+    "Stars": "objects.graphics", "TiltMarker": "objects.graphics", "Trail": "objects.graphics",
+    "StarCatalog": "stars.catalog",
     "Animation": "objects.models", "Model": "objects.models",
     "Joint": "objects.robots", "Robot": "objects.robots",
     "Movie": "movies.movie",
@@ -55,7 +56,7 @@ def __getattr__(name):
     # Modules are loaded on demand, so that plain Python (dspace.rover) works without the compiled part.
     if name in _HOMES:
         return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
-    if name in ("errors", "proto", "rover", "vtk"):
+    if name in ("errors", "proto", "rover", "stars", "vtk"):
         return importlib.import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

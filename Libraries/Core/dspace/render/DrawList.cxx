@@ -285,6 +285,10 @@ void DrawList::FindSeen(const Scene& scene, const DrawView& view, const DrawFilt
     seen.flat = &flat;
     seen.X_VF.matrix() = X_CF.Matrix();
     seen.X_VF.matrix().topRows<3>() = ViewFromCamera.asDiagonal() * seen.X_VF.matrix().topRows<3>();
+    if (object.custom && object.custom->IsBackdrop()) {
+      this->Backdrops_.push_back({&object, seen.X_VF * object.X_FO});
+      continue;
+    }
     if (object.custom) {
       const Eigen::Affine3d X_VO = seen.X_VF * object.X_FO;
       const BoundingSphere sphere = object.custom->Bounds();
@@ -373,6 +377,7 @@ void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filte
   this->Triangles_ = 0;
   this->Culled_ = 0;
   this->Customs_.clear();
+  this->Backdrops_.clear();
   this->FindSeen(scene, view, filter);
   this->FindDepths();
   this->SetDepths(view);

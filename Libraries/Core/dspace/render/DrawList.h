@@ -127,6 +127,7 @@ public:
   const std::vector<DrawInstance>& Instances() const { return this->Instances_; }
   const std::vector<DrawBatch>& Batches() const { return this->Batches_; } // opaque ones first
   const std::vector<DrawCustom>& Customs() const { return this->Customs_; }
+  const std::vector<DrawCustom>& Backdrops() const { return this->Backdrops_; }
   const std::vector<DrawLight>& Lights() const { return this->Lights_; }
   const std::optional<SunPlace>& Sun() const { return this->Sun_; }
   // Depths [m] along the view's axis of the seen meshes' bounding spheres. Spheres around the
@@ -190,6 +191,7 @@ private:
   std::vector<DrawInstance> Instances_;
   std::vector<DrawBatch> Batches_;
   std::vector<DrawCustom> Customs_;
+  std::vector<DrawCustom> Backdrops_; // CustomGeometry::IsBackdrop()
   std::vector<DrawLight> Lights_;
   std::optional<SunPlace> Sun_;
   double NearestDepth_ = 0.0;

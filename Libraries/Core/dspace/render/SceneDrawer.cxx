@@ -258,14 +258,16 @@ bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int sample
     it = it->second.geometry.expired() ? this->Customs_.erase(it) : std::next(it);
   }
   bool complete = true;
-  for (const DrawCustom& object : list.Customs()) {
-    Custom& custom = this->Customs_[object.object->custom.get()];
-    if (!custom.drawer) {
-      custom = {object.object->custom, this->Drawers_.Make(object.object->custom)};
+  for (const auto* customs : {&list.Customs(), &list.Backdrops()}) {
+    for (const DrawCustom& object : *customs) {
+      Custom& custom = this->Customs_[object.object->custom.get()];
+      if (!custom.drawer) {
+        custom = {object.object->custom, this->Drawers_.Make(object.object->custom)};
+      }
+      CustomDrawing drawing = this->Drawing(object, list, view, samples);
+      drawing.labels = labels;
+      complete &= custom.drawer->Prepare(drawing);
     }
-    CustomDrawing drawing = this->Drawing(object, list, view, samples);
-    drawing.labels = labels;
-    complete &= custom.drawer->Prepare(drawing);
   }
   return complete;
 }
@@ -415,6 +417,10 @@ void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTa
   }
   if (background) {
     this->DrawBackground(*background, target.Height());
+  }
+  for (const DrawCustom& object : list.Backdrops()) {
+    this->Customs_[object.object->custom.get()].drawer->DrawColor(
+        this->Drawing(object, list, view, samples));
   }
   this->DrawTranslucentCustoms(list, view, target, samples);
   const auto& batches = list.Batches();

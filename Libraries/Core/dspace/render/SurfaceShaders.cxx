@@ -101,6 +101,7 @@ void SurfaceShaders::Release() {
   this->Surfaces_.clear();
   this->Coded_.clear();
   this->Screens_.clear();
+  this->Programs_.clear();
 }
 
 unsigned SurfaceShaders::CodeFeatures(const Mesh& mesh, bool textured) {
@@ -176,6 +177,16 @@ vtkShaderProgram* SurfaceShaders::Surface(unsigned features, const ShaderPages& 
   } else {
     const Sources sources = SourcesFor(features, pages, code.get());
     program = Ready(this->Window_, sources.vertex, sources.fragment);
+  }
+  return program;
+}
+
+vtkShaderProgram* SurfaceShaders::Program(const char* vertex, const char* fragment) {
+  vtkShaderProgram*& program = this->Programs_[{vertex, fragment}];
+  if (program) {
+    this->Window_->GetShaderCache()->ReadyShaderProgram(program);
+  } else {
+    program = Ready(this->Window_, WithDefines(vertex, ""), WithDefines(fragment, ""));
   }
   return program;
 }

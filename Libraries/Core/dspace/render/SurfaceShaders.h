@@ -88,6 +88,8 @@ public:
   // Ready to draw with. Throws Error(Internal) when the driver rejects it.
   vtkShaderProgram* Surface(unsigned features, const ShaderPages& pages = {},
                             const std::shared_ptr<const ShaderCode>& code = nullptr);
+  // Of two pages that are no surface's; they are told apart as those of ShaderPages.
+  vtkShaderProgram* Program(const char* vertex, const char* fragment);
   vtkShaderProgram* Screen(const char* fragment, const std::string& defines = "");
 
   // Projection, lights and what else is the same for everything in one picture.
@@ -115,6 +117,7 @@ private:
   };
   std::map<const ShaderCode*, Coded> Coded_;
   std::map<std::pair<const char*, std::string>, vtkShaderProgram*> Screens_;
+  std::map<std::pair<const char*, const char*>, vtkShaderProgram*> Programs_;
 };
 
 // Binds `name` to a texture unit of the window's state.

@@ -21,6 +21,9 @@ public:
   virtual ~CustomGeometry() = default;
   // In the object's frame O. Everything that is drawn lies inside.
   virtual BoundingSphere Bounds() const = 0;
+  // Infinitely far away: drawn behind everything else, and in no fit, pick or depth. It needs no
+  // bounds.
+  virtual bool IsBackdrop() const { return false; }
   // Increases with every change of the drawn geometry, including newly loaded data.
   virtual std::uint64_t Revision() const = 0;
 

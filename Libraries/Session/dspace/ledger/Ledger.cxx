@@ -98,6 +98,9 @@ struct LedgerScene {
     case C::kCreateTrail:
       this->objects.Create(command, command.create_trail().object());
       return true;
+    case C::kCreateStars:
+      this->objects.Create(command, command.create_stars().object());
+      return true;
     case C::kRemoveObject:
       this->objects.RemoveObject(command.remove_object().object());
       return true;

@@ -56,6 +56,7 @@ void SceneState::EraseRemoved() {
     it = gone(it->second->Object()) ? this->terrains.erase(it) : std::next(it);
   }
   EraseKeys(this->trails, gone);
+  EraseKeys(this->stars, gone);
   EraseKeys(this->tilts, gone);
   EraseKeys(this->texts, gone);
   EraseKeys(this->drawn, gone);

@@ -13,6 +13,7 @@
 #include <dspace/proto/objects.pb.h>
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/Trail.h>
+#include <dspace/scene/stars/StarField.h>
 #include <dspace/state/DrawnGeometries.h>
 #include <dspace/state/FrameEventLog.h>
 #include <dspace/state/MeshCache.h>
@@ -41,6 +42,7 @@ struct SceneState {
   std::map<FrameId, ModelNodes> models; // whose nodes are frames, by their base frame
   std::map<std::string, std::unique_ptr<TerrainObject>> terrains;
   std::map<ObjectId, Trail> trails;
+  std::map<ObjectId, std::shared_ptr<StarField>> stars;
   std::set<ObjectId> primitives;                       // objects whose shape may be replaced
   std::set<ObjectId> meshes;                           // objects whose arrays may be replaced
   std::map<ObjectId, std::pair<double, double>> tilts; // warning and limit of tilt markers [deg]

@@ -10,11 +10,13 @@ from dspace.errors import InvalidArgument, NotFound, WrongType
 from dspace.frames.frame import put_pose
 from dspace.frames.poses import Pose, quaternion_of_axis, to_pose
 from dspace.objects.assemblies import is_assembly, load_assembly
-from dspace.objects.graphics import UP, GraphicsObject, Primitive, Text, TiltMarker, Trail, put_rotation, put_settings
+from dspace.objects.graphics import (UP, GraphicsObject, Primitive, Stars, Text, TiltMarker, Trail, put_rotation,
+                                     put_settings)
 from dspace.objects.meshes import Mesh, put_mesh_levels
 from dspace.objects.models import Model
 from dspace.objects.polydata import make_polydata
 from dspace.objects.robots import Robot
+from dspace.stars.catalog import StarCatalog, bright_stars
 
 # The rotation that turns a file's axis to Z.
 _TURNS = {"z": (1, 0, 0, 0), "y": tuple(quaternion_of_axis("x", 90)),
@@ -318,6 +320,30 @@ class ObjectFactory:
         label = put_settings(self._scene, message.object, "trail", ornamental=ornamental, **settings)
         put(message, label, capacity=capacity, minimum_spacing=minimum_spacing, fade=fade)
         return self._make(command, Trail)
+
+    def add_stars(self, stars=None, epoch=2000.0, observer=(0.0, 0.0, 0.0), gain=1.0, spread=0.6, faintest=None,
+                  **settings):
+        """Adds stars behind everything else, with their true light and colour. Returns a Stars.
+
+        stars: a dspace.stars.StarCatalog; by default the Bright Star Catalogue (dspace.stars.bright_stars()). Their axes
+        are those of `frame`: X to the equinox, Z to the north pole. epoch [Julian year] and observer (x, y, z [au] from the
+        solar system's barycentre): for proper motion and parallax.
+        gain: factor on their light, 0 to 1e12. With 1 a picture that is exposed for sunlit ground shows none, as a
+        photograph would; 3e4 or so shows them to the eye. Physical pictures have 1.
+        spread: standard deviation of the Gaussian of each [pixels], 0.2 to 20. faintest: the limiting V magnitude; None:
+        all. Orthographic cameras see none."""
+        catalog = bright_stars() if stars is None else stars
+        if not isinstance(catalog, StarCatalog):
+            reject("stars", "the catalogue", stars, "a dspace.stars.StarCatalog (bright_stars(), read_stars(path))", WrongType)
+        command = self._scene._command()
+        message = command.create_stars
+        label = put_settings(self._scene, message.object, "stars", **settings)
+        message.direction = np.ascontiguousarray(catalog.directions(epoch, observer), "<f4").tobytes()
+        message.magnitude = np.ascontiguousarray(catalog.magnitude, "<f4").tobytes()
+        message.color_index = np.ascontiguousarray(catalog.color_index, "<f4").tobytes()
+        put(message.look, label, gain=gain, spread=spread)
+        put_given(message.look, label, faintest=faintest)
+        return self._make(command, Stars)
 
     def add_mesh(self, points, triangles=None, lines=None, normals=None, colors=None, scalars=None, colormap=None,
                  low=None, high=None, tcoords=None, pixels=0.0, levels=(), **settings):

@@ -331,6 +331,45 @@ class TiltMarker(GraphicsObject):
         self._scene._do("set_tilt", self._label, object=self._id, tilt_deg=tilt_deg)
 
 
+class Stars(GraphicsObject):
+    """Stars behind everything else (Scene.add_stars)."""
+
+    def set(self, **look):
+        """Sets gain, spread and faintest as in Scene.add_stars; those that are not given stay."""
+        keywords(look, ("gain", "spread", "faintest"), self._label)
+        command = self._scene._command()
+        command.set_stars.object = self._id
+        put(command.set_stars.look, self._label, **look)
+        self._scene._execute(command)
+
+    @property
+    def gain(self):
+        """The factor on their light in pictures for the eye; may be set."""
+        return self._info().stars.gain
+
+    @gain.setter
+    def gain(self, value):
+        self.set(gain=value)
+
+    @property
+    def spread(self):
+        """The standard deviation of the Gaussian of each [pixels]; may be set."""
+        return self._info().stars.spread
+
+    @spread.setter
+    def spread(self, value):
+        self.set(spread=value)
+
+    @property
+    def faintest(self):
+        """The V magnitude of the faintest that is drawn; may be set."""
+        return self._info().stars.faintest
+
+    @faintest.setter
+    def faintest(self, value):
+        self.set(faintest=value)
+
+
 class Trail(GraphicsObject):
     """The path that something has traveled."""
 

@@ -211,6 +211,7 @@ class Scene(Strict):
     add_text = delegate(ObjectFactory, "add_text")
     add_label = delegate(ObjectFactory, "add_label")
     add_trail = delegate(ObjectFactory, "add_trail")
+    add_stars = delegate(ObjectFactory, "add_stars")
     add_mesh = delegate(ObjectFactory, "add_mesh")
     add_polydata = delegate(ObjectFactory, "add_polydata")
     add_prop = delegate(ObjectFactory, "add_prop")

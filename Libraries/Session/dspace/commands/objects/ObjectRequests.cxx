@@ -70,7 +70,13 @@ void Describe(const GraphicsObject& object, const SceneState& scene, v1::ObjectI
     info->set_drawer(drawn->second.drawer);
     info->set_left_out(drawn->second.leftOut);
   }
-  if (object.custom) {
+  if (const auto stars = scene.stars.find(object.id); stars != scene.stars.end()) {
+    const StarLook& look = stars->second->Look();
+    info->mutable_stars()->set_gain(look.gain);
+    info->mutable_stars()->set_spread(look.spread);
+    info->mutable_stars()->set_faintest(look.faintest);
+  }
+  if (object.custom && !object.custom->IsBackdrop()) {
     const BoundingSphere bounds = object.custom->Bounds();
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant(bounds.radius);
     Put(bounds.center, info->mutable_bounds_center());

@@ -176,6 +176,9 @@ void AddBounds(const Scene& scene, const GraphicsObject& object, FrameId A,
   if (object.billboard) {
     spheres.push_back({X_AF.Apply(object.X_FO.translation()), 0.0});
   } else if (object.custom) {
+    if (object.custom->IsBackdrop()) {
+      return;
+    }
     const BoundingSphere sphere = object.custom->Bounds();
     const double stretch = LargestStretch(object.X_FO) * X_AF.scale;
     spheres.push_back({X_AF.Apply(object.X_FO * sphere.center), sphere.radius * stretch});

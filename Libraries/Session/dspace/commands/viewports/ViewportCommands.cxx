@@ -6,6 +6,7 @@
 #include <dspace/clipmap/gl/ClipmapDrawing.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/render/props/VtkPropDrawer.h>
+#include <dspace/render/stars/StarDrawer.h>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"
@@ -119,6 +120,7 @@ void ViewportCommands::SetRenderContext(vtkDspaceRenderContext* context) {
   this->RenderContext_ = context;
   if (context) {
     RegisterClipmapDrawer(context->GetDrawers());
+    RegisterStarDrawer(context->GetDrawers());
     RegisterVtkPropDrawer(context->GetDrawers());
     for (const auto& [geometry, maker] : this->Drawers_) {
       context->GetDrawers().Register(geometry, maker);

@@ -52,7 +52,7 @@ std::optional<BoundingSphere> SceneBounds(const Scene& scene, FrameId F) {
   Eigen::AlignedBox3d box;
   for (const auto& [id, object] : scene.Objects()) {
     if ((object.levels.empty() && !object.custom) || object.nature != Nature::Physical ||
-        !object.visible) {
+        !object.visible || (object.custom && object.custom->IsBackdrop())) {
       continue;
     }
     const BoundingSphere sphere =

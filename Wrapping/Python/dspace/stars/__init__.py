@@ -1,0 +1,4 @@
+"""Catalogues of stars: where they are, how bright, of which colour."""
+from dspace.stars.catalog import StarCatalog, bright_stars, read_stars
+
+__all__ = ["StarCatalog", "bright_stars", "read_stars"]
