@@ -31,6 +31,8 @@ inline const std::vector<const char*>& Everything() {
       R"(create_primitive { object { id: 3 name: "tilt" } tilt { radius: 1 tilt_deg: 5 } })",
       R"(create_text { object { id: 4 name: "words" } text: "words" solid { height: 1 } })",
       R"(create_text { object { id: 5 name: "label" } text: "label" label { font_size: 20 } })",
+      R"(create_stars { object { id: 9 name: "stars" }
+           direction: "\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00" magnitude: "\x00\x00\x80\x3f" })",
       R"(create_mesh { object { id: 6 name: "wings" frame: 10 } level { mesh { part: "wing" primitive: POINTS
            position: "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00" } } })",
       R"(load_robot { path: "FOLDER/arm.urdf" name: "arm" })",
@@ -100,6 +102,11 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(set_primitive { object: 1 shape { sphere { radius: 0.7 resolution: 8 } } })", {}},
       {R"(create_trail { object { id: 50 name: "way" } capacity: 5 minimum_spacing: 0.1 })", {}},
       {R"(append_trail { object: 2 point: [2, 1, 0] })", {}},
+      {R"(create_stars { object { id: 50 name: "more stars" frame: 10 }
+           direction: "\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00" magnitude: "\x00\x00\x80\x3f"
+           color_index: "\x00\x00\x80\x3f" look { gain: 100 faintest: 6 } })",
+       {}},
+      {R"(set_stars { object: 9 look { spread: 2 } })", {}},
       {R"(clear_trail { object: 2 })", {}},
       {R"(create_mesh { object { id: 50 name: "sheet" frame: 10 } level { minimum_pixels: 0 mesh { part: "left"
             origin { x: 1e6 } position: "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x80\x3f\x00\x00\x00\x00"

@@ -152,6 +152,7 @@ struct Programs {
 
   void AddClipmaps();
   void AddScreens();
+  void AddStars();
   void AddExample();
   void AddBenchmark();
 
@@ -164,6 +165,7 @@ struct Programs {
     }
     this->AddClipmaps();
     this->AddScreens();
+    this->AddStars();
     this->AddExample();
     this->AddBenchmark();
   }
@@ -304,7 +306,7 @@ void Programs::AddScreens() {
     const std::string text = TextOf(path);
     if (path.parent_path() != folder || name.find(".frag.glsl") == std::string::npos ||
         text.rfind("#version", 0) != 0 || name == "Surface.frag.glsl" ||
-        name == "Label.frag.glsl" || name == "Coded.frag.glsl") {
+        name == "Label.frag.glsl" || name == "Coded.frag.glsl" || name == "Star.frag.glsl") {
       continue;
     }
     EXPECT_EQ(text.rfind("#version 330 core\n" + marker, 0), 0u) << name;
@@ -335,6 +337,13 @@ void Programs::AddExample() {
     this->Add("sail", Shaders::Lit | Shaders::Mixed | lights << Shaders::LightShift, pages, nullptr,
               true);
   }
+}
+
+void Programs::AddStars() {
+  const fs::path folder = fs::path(DSPACE_SOURCES) / "Libraries/Core/Shaders";
+  this->validator.Add("Star", TextOf(folder / "Star.vert.glsl"), TextOf(folder / "Star.frag.glsl"),
+                      true);
+  ++this->count;
 }
 
 // Of OpenSceneGraph, whose ground is drawn with OpenGL 2's fixed functions: no core profile.
