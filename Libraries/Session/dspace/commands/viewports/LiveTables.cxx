@@ -9,6 +9,7 @@
 #include <dspace/overlay/Overlay.h>
 #include <dspace/overlay/TextCharacters.h>
 #include <dspace/render/text/Fonts.h>
+#include <dspace/state/TelemetryColors.h>
 
 #include "vtkDspaceViewport.h"
 
@@ -87,9 +88,6 @@ std::string Drawable(const std::string& text) {
 }
 
 // Numbers beyond their limits, against the table's own colours.
-constexpr std::array<double, 3> WarningColor = {1.0, 0.75, 0.2}; // amber
-constexpr std::array<double, 3> AlarmColor = {1.0, 0.35, 0.3};   // red
-
 void ColorValues(const v1::SetTextTable& command, const Telemetry& telemetry, TextTable& table) {
   for (int i = 0; i < command.row_size(); ++i) {
     const Telemetry::Channel* channel = telemetry.Find(command.row(i).telemetry());
