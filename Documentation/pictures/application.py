@@ -1,6 +1,7 @@
 """Screenshots of DspaceQt, each on a display of its own."""
 import os
 import subprocess
+import tempfile
 
 from pictures.paths import DATA, IMAGES, ROOT
 
@@ -17,6 +18,14 @@ def _screenshot(name, *arguments):
 def application():
     """The first start."""
     _screenshot("application", "--after", "4")
+
+
+def application_telemetry():
+    """Plots of the demo's telemetry beside its views."""
+    with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
+        script.write('app.demo()\napp.plot("rover/tilt", "rover/roll", "rover/pitch", title="Attitude")\n')
+        script.flush()
+        _screenshot("application_telemetry", "--after", "30", script.name)
 
 
 def application_terrain():

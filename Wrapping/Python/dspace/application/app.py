@@ -5,6 +5,7 @@ import pathlib
 from dspace import Session, errors
 from dspace._core.fields import real, reject, text
 from dspace._core.replies import to_reply
+from dspace.application.plots import Plot, Shown
 from dspace.application.run import Run
 from dspace.proto import commands_pb2 as pb
 
@@ -17,7 +18,7 @@ class App:
     """The program that the prompt belongs to.
 
     session, scene: where files are opened. views: the viewports of its windows, by name; view: the latest one. runs:
-    the recordings that were opened, as dspace.application.run.Run."""
+    the recordings that were opened, as dspace.application.run.Run. plots: the plots that were made, by number."""
 
     def __init__(self, host):
         self._host = host
@@ -26,6 +27,7 @@ class App:
         self.views = {}
         self.view = None
         self.runs = []
+        self.plots = {}
         self._timers = set()
 
     # --- Views ---------------------------------------------------------------------------------
@@ -62,6 +64,26 @@ class App:
         if self.view == viewport:
             self.view = next(reversed(self.views.values()), None)
         viewport.remove()
+
+    # --- Telemetry -----------------------------------------------------------------------------
+
+    def plot(self, *channels, of=None, title=None):
+        """A new plot of channels of telemetry against time, in a dock; without any, an empty one to drag channels into.
+
+        of: a Run, whose whole recording is plotted, or a dspace.Scene, whose values are plotted from now on; by default
+        the one in the docks. Returns a dspace.application.plots.Plot."""
+        made = Plot(self._host, self._plotted(of), channels, title)
+        self.plots[made.number] = made
+        return made
+
+    def _plotted(self, of):
+        if of is not None:
+            return of
+        shown, scene = self._host.active()
+        for run in self.runs:
+            if run._player is shown:
+                return run
+        return Shown(shown, scene)
 
     # --- Files ---------------------------------------------------------------------------------
 

@@ -39,6 +39,14 @@ class Drive:
             view = scene.add_viewport((640, 400), camera, name=name)
             view.set(shadows=True, fill=0.05)
             app.show(view)
+        telemetry = scene.telemetry
+        telemetry.add("rover/speed", unit="m/s", description="over ground")
+        telemetry.add("rover/heading", unit="deg", description="from the map's X, counter-clockwise")
+        telemetry.add("rover/tilt", unit="deg", description="of the deck from upright", warning_high=5.0, alarm_high=8.0)
+        telemetry.add("rover/roll", unit="deg")
+        telemetry.add("rover/pitch", unit="deg")
+        telemetry.add("rover/height", unit="m", description="of the ground below its centre")
+        telemetry.add("rover/odometer", unit="m")
         self._time = 0.0
         self.step()
         self._timer = app.every(STEP, self.step)
@@ -49,8 +57,15 @@ class Drive:
         x, y = RADIUS * math.cos(angle), RADIUS * math.sin(angle)
         heading = angle + 0.5 * math.pi
         self._app.scene.time = self._time
-        self.rover.place(self.vehicle.solve((x, y, heading), self.terrain))
-        self._follow.pose = Pose(position=(x, y, self.terrain.height(x, y)),
+        driven = SPEED * self._time
+        state = self.vehicle.solve((x, y, math.degrees(heading), 1.0 / RADIUS, driven), self.terrain)
+        self.rover.place(state)
+        height = self.terrain.height(x, y)
+        self._app.scene.telemetry.set({
+            "rover/speed": SPEED, "rover/heading": math.degrees(heading) % 360.0, "rover/tilt": state.tilt_deg,
+            "rover/roll": state.roll_deg, "rover/pitch": state.pitch_deg, "rover/height": height,
+            "rover/odometer": driven})
+        self._follow.pose = Pose(position=(x, y, height),
                                  quaternion=(math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)))
         self._time += STEP
 

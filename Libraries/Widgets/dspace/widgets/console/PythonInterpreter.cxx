@@ -189,6 +189,50 @@ struct PythonInterpreter::Internals {
     vtkObject* of = ShownOf(shown);
     return of ? Guard([&] { The->host.clock(of, what, a, b); }) : nullptr;
   }
+  static PyObject* Active(PyObject*, PyObject*) {
+    const auto [of, scene] = The->host.active();
+    return Py_BuildValue("(Ns)", vtkPythonUtil::GetObjectFromPointer(of), scene.c_str());
+  }
+  static PyObject* Plot(PyObject*, PyObject* arguments) {
+    PyObject* shown = nullptr;
+    const char* scene = nullptr;
+    const char* title = nullptr;
+    if (!PyArg_ParseTuple(arguments, "Oss", &shown, &scene, &title)) {
+      return nullptr;
+    }
+    vtkObject* of = ShownOf(shown);
+    long number = 0;
+    const Object done(of ? Guard([&] { number = The->host.plot(of, scene, title); }) : nullptr);
+    return done ? PyLong_FromLong(number) : nullptr;
+  }
+  static PyObject* PlotChannel(PyObject*, PyObject* arguments) {
+    long plot = 0;
+    const char* channel = nullptr;
+    if (!PyArg_ParseTuple(arguments, "ls", &plot, &channel)) {
+      return nullptr;
+    }
+    return Guard([&] { The->host.plotChannel(plot, channel); });
+  }
+  // plot_series(plot, name, unit, times, values): bytes of doubles.
+  static PyObject* PlotSeries(PyObject*, PyObject* arguments) {
+    long plot = 0;
+    const char* name = nullptr;
+    const char* unit = nullptr;
+    Py_buffer times;
+    Py_buffer values;
+    if (!PyArg_ParseTuple(arguments, "lssy*y*", &plot, &name, &unit, &times, &values)) {
+      return nullptr;
+    }
+    const auto numbers = [](const Py_buffer& buffer) {
+      const auto* first = static_cast<const double*>(buffer.buf);
+      return std::vector<double>(first, first + std::size_t(buffer.len) / sizeof(double));
+    };
+    PyObject* done =
+        Guard([&] { The->host.plotSeries(plot, name, unit, numbers(times), numbers(values)); });
+    PyBuffer_Release(&times);
+    PyBuffer_Release(&values);
+    return done;
+  }
   static PyObject* Message(PyObject*, PyObject* arguments) {
     const char* text = nullptr;
     if (!PyArg_ParseTuple(arguments, "s", &text)) {
@@ -242,12 +286,20 @@ struct PythonInterpreter::Internals {
   }
 
   static PyObject* MakeModule() {
-    static PyMethodDef methods[] = {
-        {"write", Write, METH_VARARGS, nullptr},        {"session", Session, METH_NOARGS, nullptr},
-        {"show", Show, METH_VARARGS, nullptr},          {"close", Close, METH_VARARGS, nullptr},
-        {"forget", ForgetShown, METH_VARARGS, nullptr}, {"clock", Clock, METH_VARARGS, nullptr},
-        {"message", Message, METH_VARARGS, nullptr},    {"every", Every, METH_VARARGS, nullptr},
-        {"cancel", Cancel, METH_VARARGS, nullptr},      {nullptr, nullptr, 0, nullptr}};
+    static PyMethodDef methods[] = {{"write", Write, METH_VARARGS, nullptr},
+                                    {"session", Session, METH_NOARGS, nullptr},
+                                    {"show", Show, METH_VARARGS, nullptr},
+                                    {"close", Close, METH_VARARGS, nullptr},
+                                    {"forget", ForgetShown, METH_VARARGS, nullptr},
+                                    {"clock", Clock, METH_VARARGS, nullptr},
+                                    {"active", Active, METH_NOARGS, nullptr},
+                                    {"plot", Plot, METH_VARARGS, nullptr},
+                                    {"plot_channel", PlotChannel, METH_VARARGS, nullptr},
+                                    {"plot_series", PlotSeries, METH_VARARGS, nullptr},
+                                    {"message", Message, METH_VARARGS, nullptr},
+                                    {"every", Every, METH_VARARGS, nullptr},
+                                    {"cancel", Cancel, METH_VARARGS, nullptr},
+                                    {nullptr, nullptr, 0, nullptr}};
     static PyModuleDef definition = {PyModuleDef_HEAD_INIT,
                                      "_dspace_host",
                                      nullptr,

@@ -5,6 +5,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <QObject>
 #include <QStringList>
@@ -24,6 +26,14 @@ struct PythonHost {
   std::function<void(vtkObject* of)> forget;
   // Asks the clock of it: "play" (0: pause), "speed", "follow", "loop" (begin, end [s]), "unloop".
   std::function<void(vtkObject* of, const std::string& what, double a, double b)> clock;
+  // The scene in the docks.
+  std::function<std::pair<vtkObject*, std::string>()> active;
+  // Plots (TelemetryDocks.h).
+  std::function<long(vtkObject* of, const std::string& scene, const std::string& title)> plot;
+  std::function<void(long plot, const std::string& channel)> plotChannel;
+  std::function<void(long plot, const std::string& name, const std::string& unit,
+                     const std::vector<double>& times, const std::vector<double>& values)>
+      plotSeries;
   std::function<void(const std::string&)> message;
 };
 

@@ -38,6 +38,7 @@
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/ShownScenes.h>
+#include <dspace/widgets/window/TelemetryDocks.h>
 
 namespace dspace::widgets {
 namespace {
@@ -90,6 +91,17 @@ MainWindow::MainWindow(const QString& packages)
       this->Scenes_->AskClock(of, what, a, b);
     }
   };
+  host.active = [this] { return this->Scenes_->ActiveScene(); };
+  host.plot = [this](vtkObject* of, const std::string& scene, const std::string& title) {
+    return this->Telemetry_->NewPlot(of, scene, title);
+  };
+  host.plotChannel = [this](long plot, const std::string& channel) {
+    this->Telemetry_->AddChannel(plot, channel);
+  };
+  host.plotSeries = [this](long plot, const std::string& name, const std::string& unit,
+                           const std::vector<double>& times, const std::vector<double>& values) {
+    this->Telemetry_->AddSeries(plot, name, unit, times, values);
+  };
   host.message = [this](const std::string& text) { this->Report(QString::fromStdString(text)); };
   this->Interpreter_ = std::make_unique<PythonInterpreter>(this->Session_, host, packages);
   this->Console_ = new ConsoleWidget(this->Interpreter_.get(), this);
@@ -115,6 +127,7 @@ MainWindow::MainWindow(const QString& packages)
   this->TimeDock_->setWidget(timeline);
   this->addDockWidget(Qt::BottomDockWidgetArea, this->TimeDock_);
   this->splitDockWidget(this->TimeDock_, this->ConsoleDock_, Qt::Vertical);
+  this->AddTelemetry(timeline);
   this->MakeMenus();
   this->statusBar()->showMessage(
       tr("Open or drop a model, a raster of heights, a robot, a recording or a Python script"));
@@ -125,12 +138,29 @@ MainWindow::~MainWindow() {
     delete view.dock.data();
   }
   this->Views_.clear();
+  delete this->Telemetry_;
+  this->Telemetry_ = nullptr;
   delete this->Scenes_;
   this->Scenes_ = nullptr;
   delete this->TimeDock_;
   delete this->SceneDock_;
   delete this->ConsoleDock_;
   this->Interpreter_.reset(); // ends what Python has of the session
+}
+
+void MainWindow::AddTelemetry(TimelineWidget* timeline) {
+  this->Telemetry_ = new TelemetryDocks(this, this->Scenes_, timeline);
+  connect(this->Telemetry_, &TelemetryDocks::failed, this,
+          [this](const QString& message) { this->Report(message); });
+  connect(this->Telemetry_, &TelemetryDocks::plotWanted, this, [this](const QString& channel) {
+    this->Run(QStringLiteral("app.plot(%1)").arg(Quoted(channel)));
+  });
+  connect(this->Telemetry_, &TelemetryDocks::seriesWanted, this,
+          [this](long plot, const QString& channel) {
+            this->Run(QStringLiteral("app.plots[%1].add(%2)").arg(plot).arg(Quoted(channel)));
+          });
+  this->addDockWidget(Qt::BottomDockWidgetArea, this->Telemetry_->TableDock());
+  this->tabifyDockWidget(this->Telemetry_->TableDock(), this->ConsoleDock_);
 }
 
 void MainWindow::MakeMenus() {
@@ -147,11 +177,14 @@ void MainWindow::MakeMenus() {
   QMenu* view = this->menuBar()->addMenu(tr("&View"));
   view->addAction(tr("&New view"), QKeySequence(Qt::CTRL | Qt::Key_N), this,
                   [this] { this->Run(QStringLiteral("app.new_view()")); });
+  view->addAction(tr("New &plot"), QKeySequence(Qt::CTRL | Qt::Key_P), this,
+                  [this] { this->Run(QStringLiteral("app.plot()")); });
   view->addAction(tr("&Tile views"), QKeySequence(Qt::CTRL | Qt::Key_T), this,
                   [this] { this->Tile(); });
   view->addSeparator();
   view->addAction(this->SceneDock_->toggleViewAction());
   view->addAction(this->TimeDock_->toggleViewAction());
+  view->addAction(this->Telemetry_->TableDock()->toggleViewAction());
   view->addAction(this->ConsoleDock_->toggleViewAction());
   QMenu* help = this->menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&Keys"), QKeySequence::HelpContents, this,
@@ -347,6 +380,9 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
 }
 
 void MainWindow::Forget(vtkObject* of) {
+  if (this->Telemetry_) {
+    this->Telemetry_->Forget(of);
+  }
   for (auto it = this->Views_.begin(); it != this->Views_.end();) {
     if (it->first.first == of) {
       delete it->second.dock.data();

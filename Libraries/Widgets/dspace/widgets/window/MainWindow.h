@@ -22,6 +22,7 @@ namespace dspace::widgets {
 class ConsoleWidget;
 class PythonInterpreter;
 class ShownScenes;
+class TelemetryDocks;
 class TimelineWidget;
 class ViewportWidget;
 
@@ -46,6 +47,7 @@ public:
   ViewportWidget* View(const std::string& viewport) const;
   // The scenes that the docks may show.
   ShownScenes* Scenes() const { return this->Scenes_; }
+  TelemetryDocks* Telemetry() const { return this->Telemetry_; }
   int ViewCount() const;
   // Every visible viewport is up to date.
   bool IsSettled() const;
@@ -63,6 +65,7 @@ private:
     QPointer<QDockWidget> dock;
     QPointer<ViewportWidget> widget;
   };
+  void AddTelemetry(TimelineWidget* timeline);
   void MakeMenus();
   void ShowView(vtkObject* of, const std::string& viewport, const std::string& title);
   void CloseView(vtkObject* of, const std::string& viewport);
@@ -79,6 +82,7 @@ private:
   std::unique_ptr<PythonInterpreter> Interpreter_;
   ConsoleWidget* Console_ = nullptr;
   ShownScenes* Scenes_ = nullptr;
+  TelemetryDocks* Telemetry_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;

@@ -319,6 +319,20 @@ void ShownScenes::AskClock(vtkObject* of, const std::string& what, double a, dou
   }
 }
 
+std::pair<vtkObject*, std::string> ShownScenes::ActiveScene() const {
+  return this->Impl_->active;
+}
+
+const session::Telemetry* ShownScenes::TelemetryOf(vtkObject* of, const std::string& scene) const {
+  Internals::Entry* entry = this->Impl_->Find(of);
+  if (!entry) {
+    return nullptr;
+  }
+  const auto& scenes = entry->session.Session()->GetInterpreter().GetState().scenes;
+  const auto found = scenes.find(scene);
+  return found == scenes.end() ? nullptr : &found->second.telemetry;
+}
+
 QString ShownScenes::Active() const {
   return this->Impl_->list->currentText();
 }

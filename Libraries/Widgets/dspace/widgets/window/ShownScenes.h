@@ -4,12 +4,17 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <QObject>
 
 class QWidget;
 class vtkDspaceSession;
 class vtkObject;
+
+namespace dspace::session {
+class Telemetry;
+}
 
 namespace dspace::widgets {
 
@@ -42,6 +47,10 @@ public:
   void Watch(ViewportWidget* widget, vtkObject* of, const std::string& viewport);
   // PythonHost::clock. Throws Error: NotFound, and those of the clock.
   void AskClock(vtkObject* of, const std::string& what, double a, double b);
+  // The scene in the docks.
+  std::pair<vtkObject*, std::string> ActiveScene() const;
+  // The channels of a scene; null: there is no such scene now. They may be gone after any command.
+  const session::Telemetry* TelemetryOf(vtkObject* of, const std::string& scene) const;
   // What is in the docks: the text of the list, and its clock.
   QString Active() const;
   TimeSource* Clock() const;
