@@ -2,10 +2,12 @@
 import math
 import os
 import pathlib
+import time
 
 from dspace import Pose, errors, rover
 
 STEP = 1 / 20  # [s] between poses
+LONGEST = 0.5  # [s] that a step may take
 RADIUS = 9.0  # [m] of the circle
 SPEED = 0.6  # [m/s]
 
@@ -47,12 +49,12 @@ class Drive:
         telemetry.add("rover/pitch", unit="deg")
         telemetry.add("rover/height", unit="m", description="of the ground below its centre")
         telemetry.add("rover/odometer", unit="m")
-        self._time = 0.0
+        self._time, self._last = 0.0, time.monotonic()
         self.step()
         self._timer = app.every(STEP, self.step)
 
     def step(self):
-        """Moves the rover by one step."""
+        """Moves the rover to where it is now."""
         angle = SPEED * self._time / RADIUS
         x, y = RADIUS * math.cos(angle), RADIUS * math.sin(angle)
         heading = angle + 0.5 * math.pi
@@ -67,7 +69,9 @@ class Drive:
             "rover/odometer": driven})
         self._follow.pose = Pose(position=(x, y, height),
                                  quaternion=(math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)))
-        self._time += STEP
+        now = time.monotonic()
+        self._time += min(now - self._last, LONGEST)  # in real time, however slow the pictures are
+        self._last = now
 
     def stop(self):
         self._app.cancel(self._timer)
