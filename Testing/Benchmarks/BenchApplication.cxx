@@ -60,9 +60,10 @@ int Measure() {
     std::printf("application: there is no picture\n");
     return 1;
   }
-  std::printf("application: from the start to the first picture of the demo scene %.2f s (goal 1.5), "
-              "%.2f s of them to the window\n",
-              SecondsSinceStart(), windowMade);
+  std::printf(
+      "application: from the start to the first picture of the demo scene %.2f s (goal 1.5), "
+      "%.2f s of them to the window\n",
+      SecondsSinceStart(), windowMade);
 
   // A timer of no duration comes round as often as the window can answer.
   QTest::qWait(3000);

@@ -82,10 +82,11 @@ int Measure() {
       painting.push_back(Milliseconds([&] { QCoreApplication::processEvents(); }));
     }
     const double both = Median(looking) + Median(painting);
-    std::printf("scene tree: %d objects change, all rows %s: %.2f ms and %.2f ms of painting = %.1f "
-                "%% of a frame at 30 Hz (goal 5)\n",
-                Changing, opened ? "open" : "in closed groups", Median(looking), Median(painting),
-                100.0 * both / Tick_ms);
+    std::printf(
+        "scene tree: %d objects change, all rows %s: %.2f ms and %.2f ms of painting = %.1f "
+        "%% of a frame at 30 Hz (goal 5)\n",
+        Changing, opened ? "open" : "in closed groups", Median(looking), Median(painting),
+        100.0 * both / Tick_ms);
   }
   const auto scene = MakeScene(100000, 0);
   dspace::widgets::SceneTreeModel model;

@@ -68,13 +68,14 @@ int main(int argc, char** argv) {
     double noise;
     double part;
   };
-  for (const Case& each : {Case{"pan, all in view, noise over a third", 0.5, 0.99},
-                           Case{"pan, all in view, smooth", 0.002, 0.99},
-                           Case{"pan, a tenth in view", 0.5, 0.1},
-                           Case{"pan, a ten-thousandth in view", 0.5, 1e-4}}) {
+  for (const Case& each :
+       {Case{"pan, all in view, noise over a third", 0.5, 0.99},
+        Case{"pan, all in view, smooth", 0.002, 0.99}, Case{"pan, a tenth in view", 0.5, 0.1},
+        Case{"pan, a ten-thousandth in view", 0.5, 1e-4}}) {
     Panned many(Make(10000000, each.noise), each.part);
     Panned few(Make(2000, each.noise), each.part);
-    dspace::bench::Print(each.name, dspace::bench::Alternate(21, std::ref(many), std::ref(few)), Repaints,
+    dspace::bench::Print(each.name, dspace::bench::Alternate(21, std::ref(many), std::ref(few)),
+                         Repaints,
                          "a repaint of 1280 x 720 of 10,000,000 samples against 2,000; goal: at "
                          "most 33 ms");
   }

@@ -148,7 +148,9 @@ def test_what_cannot_be_opened_is_said(app, tmp_path):
     assert app._host.shown == [] and app._host.timers == {}
 
 
-def test_the_demo_drives_on_the_ground(app, data):
+def test_the_demo_drives_on_the_ground(app, data, monkeypatch):
+    clock = iter(np.arange(1000) * 0.05)
+    monkeypatch.setattr("dspace.application.demo.time.monotonic", lambda: float(next(clock)))
     drive = app.demo()
     assert isinstance(drive, Drive) and [name for name, _ in app._host.shown] == ["chase", "mast"]
     milliseconds, step = app._host.timers[1]
@@ -156,6 +158,15 @@ def test_the_demo_drives_on_the_ground(app, data):
     for _ in range(20):
         step()
     assert app.scene.time == pytest.approx(1.0)
+    telemetry = app.scene.telemetry
+    assert telemetry["rover/odometer"].value == pytest.approx(0.6)
+    assert 0.0 < telemetry["rover/tilt"].value < 20.0
+    # It drives forwards: its own X axis is along the circle.
+    position = app.scene.frames["follow"].pose.position
+    w, x, y, z = app.scene.robots["dspace_rover"].pose.quaternion
+    forward = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z)])
+    along = np.array([-position[1], position[0]]) / 9.0
+    assert forward @ along == pytest.approx(1.0, abs=0.05)
     position = app.scene.frames["follow"].pose.position
     assert np.hypot(*position[:2]) == pytest.approx(9.0)
     assert position[2] == pytest.approx(drive.terrain.height(*position[:2]), abs=1e-3)

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
-#include <QDropEvent>
 #include <QDir>
+#include <QDropEvent>
 #include <QImage>
 #include <QMenu>
 #include <QToolTip>
@@ -163,7 +163,7 @@ TEST_F(TelemetryPlot, ShowsAllWithAnAxisForEachUnit) {
   widget.AddSeries("other", "m", Line(50.0, 120.0, -5.0, 0.0, 10));
   ExpectRange(widget.XRange(), 0.0, 120.0, 0.0);
   EXPECT_EQ(widget.Units(), (QStringList{"m", "V"}));
-  ExpectRange(widget.ValueRange("m"), -5.75, 10.75, 1e-9);    // 5 % of 15 on each side
+  ExpectRange(widget.ValueRange("m"), -5.75, 10.75, 1e-9); // 5 % of 15 on each side
   ExpectRange(widget.ValueRange("V"), 95.0, 205.0, 1e-9);
   EXPECT_LT(widget.ValueAxisArea("m").right(), widget.PlotArea().left() + 1.0);
   EXPECT_GT(widget.ValueAxisArea("V").left(), widget.PlotArea().right() - 1.0);
@@ -541,7 +541,8 @@ TEST_F(TelemetryPlot, ExportsTablesAndPictures) {
            reader.attributes().value("points").toString().split(' ', Qt::SkipEmptyParts)) {
         const QStringList xy = point.split(',');
         ASSERT_EQ(xy.size(), 2);
-        through = through || QLineF(QPointF(xy[0].toDouble(), xy[1].toDouble()), wanted).length() < 0.1;
+        through =
+            through || QLineF(QPointF(xy[0].toDouble(), xy[1].toDouble()), wanted).length() < 0.1;
       }
     }
   }
@@ -559,7 +560,9 @@ TEST_F(TelemetryPlot, AFullOrClosedDiskIsToldAndTheOldFileStays) {
   for (const char* name : {"a.csv", "a.png", "a.svg"}) {
     const QString path = folder.filePath(name);
     const auto write = [&] {
-      name[2] == 'c' ? widget.ExportCsv(path) : name[2] == 'p' ? widget.ExportPng(path) : widget.ExportSvg(path);
+      name[2] == 'c'   ? widget.ExportCsv(path)
+      : name[2] == 'p' ? widget.ExportPng(path)
+                       : widget.ExportSvg(path);
     };
     std::ofstream(path.toStdString()) << "old";
     std::string failure;

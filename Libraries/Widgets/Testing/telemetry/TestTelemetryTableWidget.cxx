@@ -72,7 +72,10 @@ struct TelemetryTable : ::testing::Test {
     const QAbstractItemModel& model = *widget.View()->model();
     for (int row = 0; row < model.rowCount(); ++row) {
       for (int column = 0; column < columns; ++column) {
-        all += (column ? "|" : row ? "\n" : "") + model.index(row, column).data().toString().toStdString();
+        all += (column ? "|"
+                : row  ? "\n"
+                       : "") +
+               model.index(row, column).data().toString().toStdString();
       }
     }
     return all;
@@ -122,7 +125,10 @@ TEST_F(TelemetryTable, ValuesBeyondLimitsHaveTheColoursOfTextTables) {
   const auto ground = [&](double value) {
     Set(id, value);
     widget.Refresh();
-    return Cell("t", TelemetryModel::Value, Qt::BackgroundRole).value<QColor>().name().toStdString();
+    return Cell("t", TelemetryModel::Value, Qt::BackgroundRole)
+        .value<QColor>()
+        .name()
+        .toStdString();
   };
   EXPECT_EQ(ground(40.0), "#000000"); // on a limit is within it: no colour of its own
   EXPECT_FALSE(Cell("t", TelemetryModel::Value, Qt::BackgroundRole).isValid());
@@ -138,8 +144,8 @@ TEST_F(TelemetryTable, ValuesBeyondLimitsHaveTheColoursOfTextTables) {
   // And it is seen: the pixel beside the value's text.
   Set(id, 1000.0);
   widget.Refresh();
-  const QRect cell = widget.View()->visualRect(
-      widget.View()->model()->index(0, TelemetryModel::Value));
+  const QRect cell =
+      widget.View()->visualRect(widget.View()->model()->index(0, TelemetryModel::Value));
   const QImage image = widget.View()->viewport()->grab().toImage();
   EXPECT_EQ(image.pixelColor(cell.left() + 3, cell.center().y()).name().toStdString(), "#ff594d");
 }

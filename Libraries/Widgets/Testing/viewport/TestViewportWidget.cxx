@@ -21,8 +21,8 @@
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 
-using dspace::widgets::ViewportInput;
 using dspace::widgets::PicturePath;
+using dspace::widgets::ViewportInput;
 using dspace::widgets::ViewportWidget;
 
 namespace {

@@ -180,9 +180,7 @@ PlotCurve PairCurve(const SampleSeries& x, bool xHolds, const SampleSeries& y, c
   Pen pen(map.area, curve);
   std::vector<std::pair<std::size_t, std::size_t>> todo = {
       {y.Lower(times.low), y.Upper(times.high)}};
-  const auto put = [&](std::size_t i) {
-    pen.To(map.At(x.At(y.Time(i), xHolds), y.Value(i)));
-  };
+  const auto put = [&](std::size_t i) { pen.To(map.At(x.At(y.Time(i), xHolds), y.Value(i))); };
   const double perX = map.area.width() / map.x.Length();
   const double perY = map.area.height() / map.y.Length();
   while (!todo.empty()) {

@@ -183,7 +183,8 @@ QString PlotPicture::XTitle() const {
   QString name = x ? x->name : QString("time");
   const QString unit = x ? x->unit : QString("s");
   if (!this->XTicks_.offsetText.empty()) {
-    name += QString(" ") + QChar(0x2212) + " (" + QString::fromStdString(this->XTicks_.offsetText) + ")";
+    name += QString(" ") + QChar(0x2212) + " (" + QString::fromStdString(this->XTicks_.offsetText) +
+            ")";
   }
   return unit.isEmpty() ? name : name + " [" + unit + "]";
 }
@@ -217,8 +218,8 @@ void PlotPicture::PaintAxis(QPainter& painter, int number) const {
   int drawn = 0;
   for (const PlotSeries& each : this->State_.series) {
     if (this->State_.IsDrawn(each) && this->State_.AxisOf(each) == number) {
-      color = ++drawn == 1 ? ColorOf(each.color, this->Palette_)
-                           : this->Palette_.color(QPalette::Text);
+      color =
+          ++drawn == 1 ? ColorOf(each.color, this->Palette_) : this->Palette_.color(QPalette::Text);
     }
   }
   const double edge = axis.left ? axis.area.right() : axis.area.left();
@@ -233,22 +234,22 @@ void PlotPicture::PaintAxis(QPainter& painter, int number) const {
     const QString text = QString::fromStdString(tick.text);
     const double width = metrics.horizontalAdvance(text);
     // Texts at the ends stay beside the area.
-    const double base =
-        std::clamp(y + 0.5 * metrics.ascent() - 0.5 * metrics.descent(),
-                   axis.area.top() + metrics.ascent(), axis.area.bottom() - 0.2 * metrics.descent());
+    const double base = std::clamp(y + 0.5 * metrics.ascent() - 0.5 * metrics.descent(),
+                                   axis.area.top() + metrics.ascent(),
+                                   axis.area.bottom() - 0.2 * metrics.descent());
     // Numbers are aligned at their right.
-    const double x = axis.left ? edge - Tick - 3.0 - width
-                               : edge + Tick + 3.0 + axis.textWidth - width;
+    const double x =
+        axis.left ? edge - Tick - 3.0 - width : edge + Tick + 3.0 + axis.textWidth - width;
     painter.drawText(QPointF(x, base), text);
   }
   painter.save();
   painter.setPen(color);
-  const QString title = metrics.elidedText(this->TitleOf(number), Qt::ElideMiddle,
-                                           std::max(axis.area.height(), 1.0));
+  const QString title =
+      metrics.elidedText(this->TitleOf(number), Qt::ElideMiddle, std::max(axis.area.height(), 1.0));
   const double width = metrics.horizontalAdvance(title);
   // Turned, the base line is at the right of the text.
-  const double x = axis.left ? axis.area.left() + metrics.ascent()
-                             : axis.area.right() - metrics.descent();
+  const double x =
+      axis.left ? axis.area.left() + metrics.ascent() : axis.area.right() - metrics.descent();
   painter.translate(x, axis.area.center().y() + 0.5 * width);
   painter.rotate(-90.0);
   painter.drawText(QPointF(0.0, 0.0), title);
@@ -317,8 +318,8 @@ void PlotPicture::PaintGround(QPainter& painter) const {
     painter.setPen(text);
     const QString label = QString::fromStdString(tick.text);
     const double width = metrics.horizontalAdvance(label);
-    const double from = std::clamp(x - 0.5 * width, 2.0,
-                                   std::max(this->Size_.width() - width - 2.0, 2.0));
+    const double from =
+        std::clamp(x - 0.5 * width, 2.0, std::max(this->Size_.width() - width - 2.0, 2.0));
     if (from > after) {
       painter.drawText(QPointF(from, this->Area_.bottom() + Tick + 2.0 + metrics.ascent()), label);
       after = from + width + 2.0;
@@ -345,10 +346,9 @@ void PlotPicture::PaintGround(QPainter& painter) const {
       continue;
     }
     const PlotMap map = this->MapOf(axis);
-    const PlotCurve curve =
-        xSeries ? PairCurve(*xSeries->samples, xSeries->holds, *series.samples, map,
-                            this->State_.xTimes)
-                : TimeCurve(*series.samples, series.holds, map, columns, now);
+    const PlotCurve curve = xSeries ? PairCurve(*xSeries->samples, xSeries->holds, *series.samples,
+                                                map, this->State_.xTimes)
+                                    : TimeCurve(*series.samples, series.holds, map, columns, now);
     const QColor color = ColorOf(series.color, this->Palette_);
     // Smooth edges of a dense curve cannot be seen, and take most of the time.
     const bool dense = curve.travel > DenseTravel * this->Area_.width();
@@ -383,8 +383,7 @@ std::optional<QPointF> PlotPicture::PlaceOf(const PlotSeries& series, double tim
   }
   const PlotSeries* x = this->State_.XSeries();
   const double y = series.samples->At(time_s, series.holds);
-  const QPointF place =
-      this->MapOf(axis).At(x ? x->samples->At(time_s, x->holds) : time_s, y);
+  const QPointF place = this->MapOf(axis).At(x ? x->samples->At(time_s, x->holds) : time_s, y);
   if (std::isnan(place.x()) || std::isnan(place.y()) || !this->Area_.contains(place)) {
     return {};
   }
@@ -463,8 +462,7 @@ void PlotPicture::PaintReadouts(QPainter& painter) const {
   const QColor text = this->Palette_.color(QPalette::Text);
   std::vector<Row> rows;
   const QString delta(QChar(0x0394));
-  rows.push_back({{"time",
-                   "A " + WithUnit(a.value_or(none), "s", 12),
+  rows.push_back({{"time", "A " + WithUnit(a.value_or(none), "s", 12),
                    "B " + WithUnit(b.value_or(none), "s", 12),
                    delta + "t " + WithUnit(a && b ? *b - *a : none, "s", 9)},
                   text});
@@ -497,9 +495,9 @@ void PlotPicture::PaintReadouts(QPainter& painter) const {
       const double room = (c == 0 ? names : column) - 8.0;
       const QString shown = metrics.elidedText(
           rows[i].cells[c], c == 0 ? Qt::ElideMiddle : Qt::ElideRight, std::max(room, 1.0));
-      const double x = c == 0 ? this->Readouts_.left()
-                              : this->Readouts_.left() + names + c * column -
-                                    metrics.horizontalAdvance(shown);
+      const double x =
+          c == 0 ? this->Readouts_.left()
+                 : this->Readouts_.left() + names + c * column - metrics.horizontalAdvance(shown);
       painter.drawText(QPointF(x, base), shown);
     }
   }
@@ -553,8 +551,8 @@ PlotPicture::Hit PlotPicture::Nearest(const QPointF& place, double distance) con
       }
       const std::size_t first = x->samples->Lower(samples.Time(begin));
       const std::size_t last = x->samples->Upper(samples.Time(end - 1));
-      const SampleExtent wide = x->samples->Extent(
-          first > 0 ? first - 1 : 0, std::min(last + 1, x->samples->Size()));
+      const SampleExtent wide =
+          x->samples->Extent(first > 0 ? first - 1 : 0, std::min(last + 1, x->samples->Size()));
       const SampleExtent high = samples.Extent(begin, end);
       const QRectF box =
           QRectF(map.At(wide.min, high.max), map.At(wide.max, high.min)); // NaN: left out

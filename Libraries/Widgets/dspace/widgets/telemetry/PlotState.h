@@ -42,8 +42,8 @@ struct PlotState {
   // series: X is the time.
   QString xName;
   PlotRange xValues;
-  PlotRange xTimes; // X-Y: samples of these times are shown
-  std::optional<double> current; // the timeline's time [s]
+  PlotRange xTimes;                             // X-Y: samples of these times are shown
+  std::optional<double> current;                // the timeline's time [s]
   std::array<std::optional<double>, 2> cursors; // times [s]
 
   const PlotSeries* XSeries() const {

@@ -156,8 +156,7 @@ std::vector<SampleColumn> SampleSeries::Decimate(double from, double to, int col
     column.begin = begin;
     column.end = begin;
     if (begin < this->Size_ || c == 0) {
-      column.end =
-          c + 1 == columns ? this->Upper(to) : this->Lower(Edge(from, to, columns, c + 1));
+      column.end = c + 1 == columns ? this->Upper(to) : this->Lower(Edge(from, to, columns, c + 1));
     }
     if (column.begin < column.end) {
       column.extent = this->Extent(column.begin, column.end);

@@ -39,10 +39,11 @@ QByteArray Color(const char* name, const QColor& color, double opacity) {
 
 class SvgPaintDevice::Engine : public QPaintEngine {
 public:
-  Engine() : QPaintEngine(QPaintEngine::PrimitiveTransform | QPaintEngine::PainterPaths |
-                          QPaintEngine::AlphaBlend | QPaintEngine::Antialiasing |
-                          QPaintEngine::ConstantOpacity | QPaintEngine::PixmapTransform |
-                          QPaintEngine::PaintOutsidePaintEvent) {}
+  Engine()
+      : QPaintEngine(QPaintEngine::PrimitiveTransform | QPaintEngine::PainterPaths |
+                     QPaintEngine::AlphaBlend | QPaintEngine::Antialiasing |
+                     QPaintEngine::ConstantOpacity | QPaintEngine::PixmapTransform |
+                     QPaintEngine::PaintOutsidePaintEvent) {}
 
   QByteArray body;
 
@@ -101,11 +102,12 @@ public:
     const QFont font = item.font();
     const int pixels = font.pixelSize() > 0 ? font.pixelSize() : QFontInfo(font).pixelSize();
     this->Put("<text x=\"" + Number(place.x()) + "\" y=\"" + Number(place.y()) +
-              "\" font-family=\"" + Escaped(font.family()) + ", sans-serif\" font-size=\"" +
-              Number(pixels) + "\"" + (font.bold() ? " font-weight=\"bold\"" : "") +
-              (font.italic() ? " font-style=\"italic\"" : "") + " textLength=\"" +
-              Number(item.width()) + "\" lengthAdjust=\"spacingAndGlyphs\" xml:space=\"preserve\"" +
-              Color("fill", this->Pen_.color(), this->Opacity_),
+                  "\" font-family=\"" + Escaped(font.family()) + ", sans-serif\" font-size=\"" +
+                  Number(pixels) + "\"" + (font.bold() ? " font-weight=\"bold\"" : "") +
+                  (font.italic() ? " font-style=\"italic\"" : "") + " textLength=\"" +
+                  Number(item.width()) +
+                  "\" lengthAdjust=\"spacingAndGlyphs\" xml:space=\"preserve\"" +
+                  Color("fill", this->Pen_.color(), this->Opacity_),
               Escaped(item.text()) + "</text>\n");
   }
 
@@ -119,8 +121,8 @@ public:
     buffer.open(QIODevice::WriteOnly);
     image.copy(source.toAlignedRect()).save(&buffer, "PNG");
     this->Put("<image x=\"" + Number(target.x()) + "\" y=\"" + Number(target.y()) + "\" width=\"" +
-              Number(target.width()) + "\" height=\"" + Number(target.height()) +
-              "\" opacity=\"" + Number(this->Opacity_) +
+              Number(target.width()) + "\" height=\"" + Number(target.height()) + "\" opacity=\"" +
+              Number(this->Opacity_) +
               "\" preserveAspectRatio=\"none\" href=\"data:image/png;base64," + bytes.toBase64() +
               "\"");
   }

@@ -111,8 +111,8 @@ QString ToolTip(const Row& row) {
                     : row.state == Info::WARNING ? ", beyond a warning limit"
                                                  : "");
   if (!std::isnan(row.time_s)) {
-    lines += "last change at " +
-             QString::number(row.time_s, 'g', QLocale::FloatingPointShortest) + " s";
+    lines +=
+        "last change at " + QString::number(row.time_s, 'g', QLocale::FloatingPointShortest) + " s";
   }
   return lines.join('\n').toHtmlEscaped().replace('\n', "<br>");
 }
@@ -120,7 +120,7 @@ QString ToolTip(const Row& row) {
 } // namespace
 
 struct TelemetryModel::Internals {
-  std::vector<Row> rows; // by name, as UTF-8 bytes
+  std::vector<Row> rows;                      // by name, as UTF-8 bytes
   const session::Telemetry* source = nullptr; // only compared
   std::uint64_t revision = 0;
   std::uint64_t lastId = 0;
@@ -274,14 +274,14 @@ QVariant TelemetryModel::data(const QModelIndex& index, int role) const {
   case StateRole:
     return int(row.state);
   case Qt::TextAlignmentRole:
-    return int((limit || (column == Value && row.kind == Kind::NUMBER) ? Qt::AlignRight
-                                                                       : Qt::AlignLeft) |
-               Qt::AlignVCenter);
+    return int(
+        (limit || (column == Value && row.kind == Kind::NUMBER) ? Qt::AlignRight : Qt::AlignLeft) |
+        Qt::AlignVCenter);
   case Qt::BackgroundRole:
   case Qt::ForegroundRole:
     // The colours of the text tables in pictures, as grounds: they suit light and dark palettes.
     if (column == Value && (row.state == Info::WARNING || row.state == Info::ALARM)) {
-      return role == Qt::ForegroundRole     ? QColor(Qt::black)
+      return role == Qt::ForegroundRole ? QColor(Qt::black)
              : row.state == Info::ALARM ? ToColor(session::AlarmColor)
                                         : ToColor(session::WarningColor);
     }

@@ -38,12 +38,12 @@
 namespace dspace::widgets {
 namespace {
 
-constexpr int Tick_ms = 34;           // at most 30 times a second
-constexpr int Message_ms = 8000;      // how long a failure is shown
-constexpr double ZoomStep = 1.25;     // a notch of the wheel
-constexpr double Grip = 5.0;          // to a line that is dragged
-constexpr double TipDistance = 10.0;  // to a sample
-constexpr double ValueMargin = 0.05;  // above and below the values
+constexpr int Tick_ms = 34;          // at most 30 times a second
+constexpr int Message_ms = 8000;     // how long a failure is shown
+constexpr double ZoomStep = 1.25;    // a notch of the wheel
+constexpr double Grip = 5.0;         // to a line that is dragged
+constexpr double TipDistance = 10.0; // to a sample
+constexpr double ValueMargin = 0.05; // above and below the values
 constexpr double LeastRectangle = 6.0;
 
 bool Same(double a, double b) {
@@ -92,15 +92,15 @@ struct TelemetryPlotWidget::Internals {
   QPointF pressed;
   QPointF last;
   bool moved = false;
-  int dragAxis = -1;   // pan: of values alone
-  bool dragX = false;  // pan: along X alone
-  int dropping = 0;    // 1: over the plot, 2: over X
+  int dragAxis = -1;  // pan: of values alone
+  bool dragX = false; // pan: along X alone
+  int dropping = 0;   // 1: over the plot, 2: over X
 
   PlotPicture& Picture() {
     if (!this->picture) {
-      this->picture = std::make_unique<PlotPicture>(
-          this->state, QSizeF(this->widget->size()), this->widget->font(), this->widget->palette(),
-          this->widget->devicePixelRatioF());
+      this->picture = std::make_unique<PlotPicture>(this->state, QSizeF(this->widget->size()),
+                                                    this->widget->font(), this->widget->palette(),
+                                                    this->widget->devicePixelRatioF());
     }
     return *this->picture;
   }
@@ -263,8 +263,7 @@ struct TelemetryPlotWidget::Internals {
       for (int i = 0; i < int(this->state.axes.size()); ++i) {
         if (axis == -1 || axis == i) {
           PlotValueAxis& each = this->state.axes[std::size_t(i)];
-          this->SetValues(each,
-                          Moved(each.range, each.range.Length() * by.y() / area.height()));
+          this->SetValues(each, Moved(each.range, each.range.Length() * by.y() / area.height()));
         }
       }
     }
@@ -348,8 +347,7 @@ struct TelemetryPlotWidget::Internals {
     this->widget->update();
     emit this->widget->failed(text);
   }
-  template<class F>
-  void Try(const F& f) {
+  template<class F> void Try(const F& f) {
     try {
       f();
     } catch (const std::exception& error) {
@@ -587,8 +585,7 @@ void TelemetryPlotWidget::AddChannel(const QString& name) {
   }
   const session::Telemetry::Channel& channel = telemetry->Get(name.toStdString());
   if (channel.about.kind() == v1::CreateTelemetry::TEXT) {
-    Reject("telemetry '" + name.toStdString() + "'",
-           "it is a text; accepted: numbers and choices");
+    Reject("telemetry '" + name.toStdString() + "'", "it is a text; accepted: numbers and choices");
   }
   if (self.channels.count(name) && self.Find(name)) {
     this->SetShown(name, true);

@@ -18,11 +18,11 @@ namespace dspace::widgets {
 // times a second.
 //
 // Wheel: zooms at the pointer; over an axis only along it, with Ctrl only along X, with Shift only
-// along the values. Left drag: moves; of a cursor or of the current time: moves it. Right drag: zooms
-// to the rectangle. Double click: shows all, and follows what is new. Left click: chooses the time.
-// A click on a legend entry hides and shows its series. Right click: menu. Keys: A and B put a cursor
-// at the pointer, Escape removes both, Home shows all, + and - zoom, arrows move.
-// Channels dropped on it are added (ChannelMime.h); one that is dropped below the plot becomes X.
+// along the values. Left drag: moves; of a cursor or of the current time: moves it. Right drag:
+// zooms to the rectangle. Double click: shows all, and follows what is new. Left click: chooses the
+// time. A click on a legend entry hides and shows its series. Right click: menu. Keys: A and B put
+// a cursor at the pointer, Escape removes both, Home shows all, + and - zoom, arrows move. Channels
+// dropped on it are added (ChannelMime.h); one that is dropped below the plot becomes X.
 //
 // Times are seconds. What fails is shown, and told by failed().
 class TelemetryPlotWidget : public QWidget {
@@ -59,8 +59,8 @@ public:
   void SetXSeries(const QString& name);
   QString XSeries() const;
 
-  // While it follows: only the last seconds are shown. 0: all. Throws Error(InvalidArgument) below 0
-  // and for what is not finite.
+  // While it follows: only the last seconds are shown. 0: all. Throws Error(InvalidArgument) below
+  // 0 and for what is not finite.
   void SetWindow(double seconds);
   double Window() const;
   // Shows all, or the window, and follows what is new, until ranges are set or the user zooms.
@@ -88,7 +88,8 @@ public:
   // there is replaced as a whole or stays. Pictures are of this size of this widget.
   // The table has all samples of the shown series, or those in view (SampleCsv.h).
   void ExportCsv(const QString& path, bool inView = false);
-  void ExportPng(const QString& path, double scale = 1.0); // pixels per unit of the widget, 0.1 to 8
+  void ExportPng(const QString& path,
+                 double scale = 1.0); // pixels per unit of the widget, 0.1 to 8
   void ExportSvg(const QString& path);
 
   // Where the curves are, in the widget.

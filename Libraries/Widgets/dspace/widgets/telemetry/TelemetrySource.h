@@ -10,8 +10,8 @@ class Telemetry;
 
 namespace dspace::widgets {
 
-// The telemetry of a scene; null while there is none. The widget's thread calls it at every look, and
-// keeps no pointer to what it returns.
+// The telemetry of a scene; null while there is none. The widget's thread calls it at every look,
+// and keeps no pointer to what it returns.
 using TelemetrySource = std::function<const session::Telemetry*()>;
 
 } // namespace dspace::widgets

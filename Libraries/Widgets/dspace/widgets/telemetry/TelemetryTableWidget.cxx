@@ -19,7 +19,7 @@
 namespace dspace::widgets {
 namespace {
 
-constexpr int Tick_ms = 34;   // at most 30 times a second
+constexpr int Tick_ms = 34;    // at most 30 times a second
 constexpr int LeastShare = 20; // of the time between looks that a look may take
 
 // Sorts, and leaves out what lacks a word.
@@ -78,9 +78,10 @@ struct TelemetryTableWidget::Internals {
   void ShowEmpty() {
     const bool none = this->sorted->rowCount() == 0;
     if (none) {
-      this->empty->setText(this->model->rowCount() == 0
-                               ? QString("No telemetry channels")
-                               : QString("No channel has \u201c%1\u201d").arg(this->search->text()));
+      this->empty->setText(
+          this->model->rowCount() == 0
+              ? QString("No telemetry channels")
+              : QString("No channel has \u201c%1\u201d").arg(this->search->text()));
       this->empty->setGeometry(this->view->viewport()->rect());
     }
     this->empty->setVisible(none);
