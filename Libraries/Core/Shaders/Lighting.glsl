@@ -5,6 +5,9 @@ uniform vec3 lightDirectionVC[DSPACE_LIGHT_COUNT]; // the way the light travels
 uniform vec3 lightPositionVC[DSPACE_LIGHT_COUNT];
 uniform vec3 lightAttenuation[DSPACE_LIGHT_COUNT];
 uniform float lightCosCone[DSPACE_LIGHT_COUNT];
+#ifdef DSPACE_DISC_LIGHTS
+uniform vec2 lightDisc[DSPACE_LIGHT_COUNT]; // sine of the disc's radius, 0 for a point; its cotangent
+#endif
 #endif
 uniform vec3 ambientLight;
 uniform int cameraParallel;
@@ -30,6 +33,24 @@ vec3 reflected(vec3 L, vec3 N, vec3 V, float NdL, float NdV, vec3 albedo, vec3 F
   float vis = 0.5 /
     max(NdL * sqrt(NdV * NdV * (1.0 - a2) + a2) + NdV * sqrt(NdL * NdL * (1.0 - a2) + a2), 1e-5);
   return (1.0 - F) * albedo + D * vis * F;
+}
+#endif
+
+#ifdef DSPACE_DISC_LIGHTS
+// Irradiance by a disc of even radiance, against that of a surface that faces its centre; c: cosine
+// of the angle between normal and centre. The surface's own plane hides a part of a low disc.
+// J. Snyder, "Area Light Sources for Real-Time Graphics", Microsoft Research MSR-TR-96-11 (1996).
+float discCosine(float c, vec2 disc)
+{
+  if (disc.x <= 0.0 || c >= disc.x)
+  {
+    return max(c, 0.0);
+  }
+  float s = sqrt(max(1.0 - c * c, 1e-12));
+  float y = clamp(-disc.y * c / s, -1.0, 1.0);
+  float q = sqrt(max(1.0 - y * y, 0.0));
+  float inside = (c * acos(y) - disc.y * s * q + atan(s * q, disc.y) / (disc.x * disc.x)) / 3.14159265;
+  return c <= -disc.x ? 0.0 : max(inside, 0.0);
 }
 #endif
 
@@ -74,7 +95,11 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
       L = V;
     }
 #endif
+#ifdef DSPACE_DISC_LIGHTS
+    float NdL = discCosine(dot(N, L), lightDisc[i]);
+#else
     float NdL = max(dot(N, L), 0.0);
+#endif
 #if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
     if (i == 0 && NdL > 0.0) // the Sun stands first
     {

@@ -218,6 +218,72 @@ TEST_F(PhotometryTest, EarthshineAddsToTheSunAsLambertSays) {
   compare(0.0);
 }
 
+// Against a sum over the disc's parts that the surface sees, and for a hemisphere the closed form.
+TEST_F(PhotometryTest, ADiscIsCutByTheSurfacesOwnHorizon) {
+  const Eigen::Vector3d center(4, 0, 0);
+  GraphicsObject ball =
+      Object("ball", RootFrame, MakeSphere(1.0, 512), std::make_shared<Material>());
+  ball.X_FO.translation() = center;
+  ball.material.reflectance = Of(Law::Lambert);
+  ball.material.color = {1, 1, 1};
+  scene->AddObject(ball);
+  for (const double radius : {0.95, 10.0, 45.0, 90.0}) {
+    SCOPED_TRACE(radius);
+    Light sky;
+    sky.name = "sky";
+    sky.direction = Eigen::Vector3d(0.3, -0.5, -0.8);
+    sky.intensity = 0.5;
+    sky.radius_deg = radius;
+    scene->SetLight(sky);
+    const Eigen::Vector3d toSky = -sky.direction.normalized();
+    // By the angle between normal and centre.
+    const auto reference = [&](double cosine) {
+      constexpr int Rings = 400;
+      constexpr int Sectors = 400;
+      const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+      const Eigen::Vector3d normal(std::sin(angle), 0.0, std::cos(angle));
+      double sum = 0.0;
+      double facing = 0.0;
+      for (int i = 0; i < Rings; ++i) {
+        const double r = (i + 0.5) / Rings * radius * M_PI / 180.0;
+        for (int k = 0; k < Sectors; ++k) {
+          const double a = 2.0 * M_PI * (k + 0.5) / Sectors;
+          const Eigen::Vector3d d(std::sin(r) * std::cos(a), std::sin(r) * std::sin(a),
+                                  std::cos(r));
+          sum += std::sin(r) * std::max(0.0, d.dot(normal));
+          facing += std::sin(r) * d.z();
+        }
+      }
+      return sum / facing;
+    };
+    auto viewport = View(Size, Size);
+    const Capture capture = Planes(viewport);
+    int compared = 0;
+    double worst = 0.0;
+    for (int y = 0; y < Size; y += 3) {
+      for (int x = 0; x < Size; x += 3) {
+        const Projection::Ray ray = Projection().PixelRay(x, y, Size, Size);
+        const Eigen::Vector3d d =
+            Eigen::Vector3d(ray.direction.z(), -ray.direction.x(), -ray.direction.y()).normalized();
+        const double along = d.dot(center);
+        const double root = along * along - center.squaredNorm() + 1.0;
+        if (root <= 0.05) {
+          continue;
+        }
+        const Eigen::Vector3d n = d * (along - std::sqrt(root)) - center;
+        const double cosine = n.dot(toSky);
+        const double expected = radius == 90.0 ? 0.5 * (1.0 + cosine) : reference(cosine);
+        const double got =
+            double(capture.radiance[3 * (std::size_t(y) * Size + std::size_t(x))]) / (0.5 * Unit);
+        worst = std::max(worst, std::abs(got - expected));
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 300);
+    EXPECT_LT(worst, 1e-3); // of the irradiance on a surface that faces it
+  }
+}
+
 TEST_F(PhotometryTest, AReflectanceOutOfRangeChangesNothing) {
   GraphicsObject ball = Object("ball", RootFrame, MakeSphere(1.0), std::make_shared<Material>());
   const ObjectId id = scene->AddObject(ball);

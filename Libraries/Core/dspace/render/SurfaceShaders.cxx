@@ -62,11 +62,22 @@ unsigned SurfaceShaders::ShadowFeatures(const DrawView& view) {
          (view.shadows && view.shadows->ground ? GroundMaps : 0u);
 }
 
+namespace {
+
+// The Sun's own disc is that of its shadows.
+bool IsDisc(const DrawLight& light) {
+  constexpr float Narrow = 0.005f; // [rad], about the Sun's: its Lambertian cosine is enough
+  return light.kind == Light::Kind::Directional && !light.sun && light.radius > Narrow;
+}
+
+} // namespace
+
 unsigned SurfaceShaders::LightFeatures(const DrawList& list, const DrawView& view) {
   const auto lights = std::min<std::size_t>(list.Lights().size(), MaximumLights);
   unsigned features = ShadowFeatures(view) | static_cast<unsigned>(lights << LightShift);
   for (std::size_t i = 0; i < lights; ++i) {
     features |= list.Lights()[i].kind == Light::Kind::Directional ? 0u : PlacedLights;
+    features |= IsDisc(list.Lights()[i]) ? DiscLights : 0u;
   }
   return features;
 }
@@ -134,6 +145,7 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const Shad
   define(ObjectNormals, "DSPACE_OBJECT_NORMALS");
   define(Normals, "DSPACE_NORMALS");
   define(Flat, "DSPACE_FLAT");
+  define(DiscLights, "DSPACE_DISC_LIGHTS");
   define(GroundMaps, "DSPACE_GROUND_MAPS");
   define(Angles, "DSPACE_ANGLES");
   define(DisplayColor, "DSPACE_DISPLAY_COLOR");
@@ -241,10 +253,15 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
   float position[MaximumLights][3] = {};
   float attenuation[MaximumLights][3] = {};
   float cosCone[MaximumLights] = {};
+  float disc[MaximumLights][2] = {};
   for (int i = 0; i < count; ++i) {
     const DrawLight& light = list.Lights()[i];
     kind[i] = static_cast<int>(light.kind);
     cosCone[i] = light.cosCone;
+    if (IsDisc(light)) {
+      disc[i][0] = std::sin(light.radius);
+      disc[i][1] = std::max(0.0f, std::cos(light.radius) / disc[i][0]);
+    }
     std::copy(light.color.begin(), light.color.end(), color[i]);
     std::copy(light.direction.begin(), light.direction.end(), direction[i]);
     std::copy(light.position.begin(), light.position.end(), position[i]);
@@ -256,6 +273,9 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
   program->SetUniform3fv("lightPositionVC", count, position);
   program->SetUniform3fv("lightAttenuation", count, attenuation);
   program->SetUniform1fv("lightCosCone", count, cosCone);
+  if (program->IsUniformUsed("lightDisc")) {
+    program->SetUniform2fv("lightDisc", count, disc);
+  }
 }
 
 void SurfaceShaders::SetShadows(vtkShaderProgram* program, const CascadeFit& fit) const {

@@ -49,6 +49,7 @@ public:
     Flat = 2048,            // of objects with shader code: triangles without normals
     NormalMap = 4096,       // a texture of normals, with Lit
     ObjectNormals = 8192,   // one in the mesh's own axes, with opacity
+    DiscLights = 16384,     // the disc of some light but the Sun is so wide that it sets slowly
     GroundMaps = 1u << 27,  // CascadeFit::ground
     Angles = 1u << 28,      // photometric angles in place of the colour; with Lit where it is lit
     DisplayColor = 1u << 29 // the colour is a display value in a picture that is exposed later

@@ -29,7 +29,9 @@ struct Light {
   double intensity = 1.0;                                // 0 to 1e12, multiplies the colour
   std::array<double, 3> attenuation = {1, 0, 0}; // 1 / (a + b d + c d²), d in metres; 0 to 1e12
   bool enabled = true;
-  double radius_deg = 0.2666; // Directional: angular radius of its disc, 0 (a point) to 90
+  // Directional: angular radius of its disc, 0 (a point) to 90 (the sky of a hemisphere). A disc of
+  // even radiance whose irradiance on a surface that faces its centre is the intensity.
+  double radius_deg = 0.2666;
 };
 
 // The light of this name is the Sun, if it is directional: it alone casts shadows. Intensity 1 is

@@ -81,10 +81,11 @@ bool Together(unsigned features, unsigned lights, bool coded) {
     return lights == 0 && (features & ~plain) == 0;
   }
   if (!has(Shaders::Lit)) {
-    return lights == 0 && !has(Shaders::Specular | Shaders::PlacedLights | Shaders::NormalMap |
-                               Shaders::ObjectNormals);
+    return lights == 0 && !has(Shaders::Specular | Shaders::PlacedLights | Shaders::DiscLights |
+                               Shaders::NormalMap | Shaders::ObjectNormals);
   }
-  return !has(Shaders::Billboard) && (lights > 0 || !has(Shaders::PlacedLights)) &&
+  return !has(Shaders::Billboard) &&
+         (lights > 0 || !has(Shaders::PlacedLights | Shaders::DiscLights)) &&
          !(has(Shaders::NormalMap) && has(Shaders::ObjectNormals));
 }
 
@@ -107,7 +108,8 @@ struct Programs {
   void AddPhotometry(const std::string& name, const ShaderCode* code) {
     const unsigned plain = code ? unsigned(Shaders::Normals) : 0u;
     for (unsigned model = 2; model <= 4; ++model) { // Lommel-Seeliger to Hapke
-      for (const unsigned more : {0u, unsigned(Shaders::PlacedLights), unsigned(Shaders::Peel)}) {
+      for (const unsigned more : {0u, unsigned(Shaders::PlacedLights),
+                                  unsigned(Shaders::DiscLights), unsigned(Shaders::Peel)}) {
         this->Add(name,
                   plain | Shaders::Lit | more | 2u << Shaders::LightShift |
                       model << Shaders::ReflectanceShift,

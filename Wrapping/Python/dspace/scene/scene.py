@@ -20,6 +20,7 @@ from dspace.objects.robots import Robot
 from dspace.proto import commands_pb2 as pb
 from dspace.scene.exports import SceneExports
 from dspace.scene.membership import SceneMembership
+from dspace.scene.shine import Shine
 from dspace.scene.sun import Sun
 from dspace.scene.viewport import SIZE, Viewport
 from dspace.telemetry.messages import SceneMessages
@@ -265,6 +266,9 @@ class Scene(Strict):
                                 ".set(...) to change it", f"light {name!r}")
         self._execute(command)
         return Light(self, name)
+
+    add_sky = delegate(Shine, "add_sky")
+    add_planetshine = delegate(Shine, "add_planetshine")
 
     @property
     def lights(self):
