@@ -45,21 +45,39 @@ void TakeScreenshot(dspace::widgets::MainWindow& window, const QString& path, do
   timer->start(50);
 }
 
-int Start(QApplication& application) {
+// `--listen` without an address listens on any free port of this machine.
+QStringList Arguments() {
+  QStringList arguments = QCoreApplication::arguments();
+  for (qsizetype i = 1; i < arguments.size(); ++i) {
+    if (arguments[i] == QStringLiteral("--listen") &&
+        (i + 1 == arguments.size() || arguments[i + 1].startsWith('-') ||
+         !arguments[i + 1].contains(':'))) {
+      arguments[i] = QStringLiteral("--listen=127.0.0.1:0");
+    }
+  }
+  return arguments;
+}
+
+int Start(QApplication&) {
   QCommandLineParser parser;
   parser.setApplicationDescription("3D visualization and measurement for spacecraft and rovers.");
   parser.addHelpOption();
   parser.addVersionOption();
-  parser.addPositionalArgument("files", "models, rasters of heights, robots, recordings, Python "
-                                        "scripts; none: the demo scene", "[FILE ...]");
+  parser.addPositionalArgument("files",
+                               "models, rasters of heights, robots, recordings, Python "
+                               "scripts; none: the demo scene",
+                               "[FILE ...]");
   const QCommandLineOption screenshot("screenshot", "Saves a picture of the window and quits.",
                                       "PNG");
   const QCommandLineOption after("after", "Seconds before the screenshot (default 0).", "S", "0");
   const QCommandLineOption size("size", "Size of the window (default 1280x800).", "WxH",
                                 "1280x800");
   const QCommandLineOption empty("empty", "Opens no demo scene.");
-  parser.addOptions({screenshot, after, size, empty});
-  parser.process(application);
+  const QCommandLineOption connect("connect", "Shows the scene of a server.", "ADDRESS");
+  const QCommandLineOption listen(
+      "listen", "Serves: a simulation that connects drives this window (127.0.0.1:0).", "ADDRESS");
+  parser.addOptions({screenshot, after, size, empty, connect, listen});
+  parser.process(Arguments());
   const QStringList sides = parser.value(size).split('x');
   bool good[3] = {false, false, false};
   const int width = sides.value(0).toInt(&good[0]);
@@ -91,7 +109,14 @@ int Start(QApplication& application) {
       return 1;
     }
   }
-  if (parser.positionalArguments().isEmpty() && !parser.isSet(empty)) {
+  for (const QString& address : parser.values(connect)) {
+    window.Connect(address);
+  }
+  for (const QString& address : parser.values(listen)) {
+    window.Listen(address);
+  }
+  if (parser.positionalArguments().isEmpty() && !parser.isSet(empty) && !parser.isSet(connect) &&
+      !parser.isSet(listen)) {
     window.Run(QStringLiteral("app.demo()"));
   }
   if (parser.isSet(screenshot)) {

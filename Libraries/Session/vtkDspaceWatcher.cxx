@@ -1,5 +1,6 @@
 #include "vtkDspaceWatcher.h"
 
+#include <deque>
 #include <set>
 #include <utility>
 #include <vector>
@@ -7,6 +8,7 @@
 #include <dspace/link/watching/LatestSteps.h>
 #include <dspace/link/watching/LinkBanner.h>
 #include <dspace/link/watching/ViewerViews.h>
+#include <dspace/link/watching/ViewportCopies.h>
 #include <dspace/link/watching/Watcher.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/ErrorReply.h>
@@ -20,9 +22,11 @@ vtkStandardNewMacro(vtkDspaceWatcher);
 
 namespace {
 
-constexpr int MostChanges = 100000;   // pending frame events
-constexpr double WriterTimeout = 2.0; // [s] of a snapshot
-constexpr double PickTimeout = 1.0;   // [s]: a click is not to stop the viewer for longer
+constexpr int MostChanges = 100000;     // pending frame events
+constexpr double WriterTimeout = 2.0;   // [s] of a snapshot
+constexpr std::size_t MostEvents = 100; // that wait to be sent
+constexpr double EventTimeout = 10.0;   // [s] of one that is sent in the background
+constexpr double PickTimeout = 1.0;     // [s]: a click is not to stop the viewer for longer
 
 } // namespace
 
@@ -31,6 +35,10 @@ struct vtkDspaceWatcher::Internals {
   std::unique_ptr<dspace::session::Watcher> watcher;
   vtkSmartPointer<vtkDspaceSession> session = vtkSmartPointer<vtkDspaceSession>::New();
   dspace::session::ViewerViews views;
+  dspace::session::ViewportCopies copies;
+  bool background = false;
+  std::deque<dspace::v1::ViewerEvent> events; // to be sent; the first one may be on its way
+  bool sending = false;
   std::uint64_t sequence = 0;
   std::string writer;
   bool writerConnected = false;
@@ -92,6 +100,7 @@ struct vtkDspaceWatcher::Internals {
     this->session->SetRenderContext(context);
     this->error.clear();
     this->banner.Follow(this->Interpreter());
+    this->copies.Follow(this->Interpreter());
     const std::set<std::string> scenes =
         std::exchange(this->followed, {}); // a snapshot causes no events
     for (dspace::v1::Command& command : *snapshot.mutable_command()) {
@@ -211,15 +220,48 @@ struct vtkDspaceWatcher::Internals {
     if (!this->watcher || !this->watcher->Connected() || !this->writerConnected) {
       return;
     }
+    if (this->background) {
+      if (this->events.size() < MostEvents) {
+        this->events.push_back(event);
+      }
+      this->SendWaiting();
+      return;
+    }
     dspace::session::Catch([&] {
       this->watcher->SendEvent(event, PickTimeout);
       return dspace::v1::Reply();
     });
   }
+
+  // Sends what waits, without waiting. What fails is dropped, as without a driver.
+  void SendWaiting() {
+    while (this->watcher && !this->events.empty()) {
+      const dspace::v1::Reply reply = dspace::session::Catch([&] {
+        if (!this->sending) {
+          this->watcher->BeginSendEvent(this->events.front(), EventTimeout);
+          this->sending = true;
+        }
+        if (this->watcher->WaitForSendEvent(0.0)) {
+          this->sending = false;
+          this->events.pop_front();
+          this->watcher->TakeSendEventResult();
+        }
+        return dspace::v1::Reply();
+      });
+      if (reply.has_error() && this->sending) {
+        this->sending = false;
+        this->events.pop_front();
+      }
+      if (this->sending) {
+        return;
+      }
+    }
+  }
 };
 
 vtkDspaceWatcher::vtkDspaceWatcher() : Impl(new Internals) {
   this->Impl->banner.Follow(this->Impl->Interpreter());
+  this->Impl->copies.Follow(this->Impl->Interpreter());
 }
 vtkDspaceWatcher::~vtkDspaceWatcher() = default;
 
@@ -236,6 +278,33 @@ void vtkDspaceWatcher::SetInsecure(bool insecure) {
 
 void vtkDspaceWatcher::SetTimeout(double seconds) {
   this->Impl->options.timeout_s = seconds;
+}
+
+void vtkDspaceWatcher::SetInBackground(bool background) {
+  this->Impl->background = background;
+}
+
+void vtkDspaceWatcher::ShareRenderContext(vtkDspaceSession* other) {
+  this->Impl->session->SetRenderContext(other->GetRenderContext());
+}
+
+std::string vtkDspaceWatcher::CopyViewport(const std::string& viewport, const std::string& as) {
+  return dspace::session::Catch([&] {
+           const std::vector<dspace::v1::Command> commands =
+               this->Impl->copies.Commands(viewport, as, dspace::session::LinkBanner::TableName);
+           if (commands.empty()) {
+             throw dspace::Error(dspace::Error::Kind::NotFound, "viewport '" + viewport + "'",
+                                 "there is no such viewport");
+           }
+           for (dspace::v1::Command command : commands) {
+             const dspace::v1::Reply reply = this->Impl->Execute(command);
+             if (reply.has_error()) {
+               return reply;
+             }
+           }
+           return dspace::v1::Reply();
+         })
+      .SerializeAsString();
 }
 
 std::string vtkDspaceWatcher::Connect(const std::string& address, const std::string& name) {
@@ -286,9 +355,10 @@ int vtkDspaceWatcher::Update(double wait) {
   std::vector<dspace::v1::WatchReply> messages;
   // Limited: messages that arrive faster than they are applied wait for the next call.
   const auto longest = [&] {
-    return applied == 0                                        ? wait
-           : this->Impl->writerPending && this->GetConnected() ? WriterTimeout
-                                                               : 0.0;
+    return applied == 0 ? wait
+           : this->Impl->writerPending && !this->Impl->background && this->GetConnected()
+               ? WriterTimeout
+               : 0.0;
   };
   while (this->Impl->watcher && applied < 10000 &&
          this->Impl->watcher->TakeAll(messages, longest())) {
@@ -297,6 +367,9 @@ int vtkDspaceWatcher::Update(double wait) {
   }
   this->Impl->views.Resume(this->Impl->Interpreter(), !this->Impl->writerConnected);
   this->Impl->ShowBanner();
+  if (this->Impl->background) {
+    this->Impl->SendWaiting();
+  }
   return static_cast<int>(applied);
 }
 

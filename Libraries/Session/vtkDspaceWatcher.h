@@ -31,6 +31,11 @@ public:
                        const std::string& authority);
   void SetInsecure(bool insecure);
   void SetTimeout(double seconds);
+  /// For the thread of a GUI: Update(0) never waits, and what a click or a key in an own viewport
+  /// sends to the simulation is sent by later calls of Update. At most 100 of them wait.
+  void SetInBackground(bool background);
+  /// Draws in the render context of another session. Call it before Connect.
+  void ShareRenderContext(vtkDspaceSession* other);
   std::string Connect(const std::string& address, const std::string& name);
   /// Non-blocking form of Connect: call BeginConnect, then WaitForConnect with a timeout until it
   /// returns 1 (connected) or -1 (failed: TakeReply returns the error).
@@ -56,6 +61,9 @@ public:
   /// object in an own viewport also sends a ViewerEvent.Picked to the simulation and waits up to 1
   /// s for its delivery.
   std::string Execute(const std::string& command);
+  /// Makes the view `as`, whose name begins with "viewer:", like a viewport of the simulation: with
+  /// its camera, look, tables and colour bars. NOT_FOUND: there is no such viewport.
+  std::string CopyViewport(const std::string& viewport, const std::string& as);
   /// A serialized Reply with the frame events of followed scenes (FollowFrames) since the last
   /// call, in order. Snapshots cause no events. The queue holds at most 100,000 events; older ones
   /// are dropped. Its warnings name objects that this process cannot draw, each once.

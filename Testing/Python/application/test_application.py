@@ -16,7 +16,7 @@ class Host:
 
     def __init__(self):
         self.made = vtk.vtkDspaceSession()
-        self.shown, self.messages, self.timers, self.asked = [], [], {}, []
+        self.shown, self.messages, self.timers, self.asked, self.tasks = [], [], {}, [], {}
 
     def session(self):
         return self.made
@@ -28,6 +28,12 @@ class Host:
 
     def close(self, session, name):
         self.shown = [shown for shown in self.shown if shown[0] != name]
+
+    def follow(self, shown, title):
+        pass
+
+    def task(self, number, text, done, cancel):
+        self.tasks[number] = text
 
     def forget(self, shown):
         self.shown = []

@@ -5,6 +5,7 @@ import pathlib
 from dspace import Session, errors
 from dspace._core.fields import real, reject, text
 from dspace._core.replies import to_reply
+from dspace.application.link import Link, ServerApart, required_address
 from dspace.application.plots import Plot, Shown
 from dspace.application.run import Run
 from dspace.proto import commands_pb2 as pb
@@ -18,7 +19,8 @@ class App:
     """The program that the prompt belongs to.
 
     session, scene: where files are opened. views: the viewports of its windows, by name; view: the latest one. runs:
-    the recordings that were opened, as dspace.application.run.Run. plots: the plots that were made, by number."""
+    the recordings that were opened, as dspace.application.run.Run. plots: the plots that were made, by number. links: the
+    servers, as dspace.application.link.Link."""
 
     def __init__(self, host):
         self._host = host
@@ -27,6 +29,9 @@ class App:
         self.views = {}
         self.view = None
         self.runs = []
+        self.links = []
+        self._servers = []
+        self._tasks = {}
         self.plots = {}
         self._timers = set()
 
@@ -153,7 +158,9 @@ class App:
         """Forgets a recording that is closed."""
         if run in self.runs:
             self.runs.remove(run)
-        gone = run.session._client if run.session is not None else None
+        self._forget(run.session._client if run.session is not None else None)
+
+    def _forget(self, gone):
         self.views = {name: view for name, view in self.views.items() if view._client is not gone}
         if self.view is not None and self.view._client is gone:
             self.view = next(reversed(self.views.values()), None)
@@ -162,6 +169,47 @@ class App:
         """The scene of the first start: a rover drives over the shipped field."""
         from dspace.application.demo import Drive
         return Drive(self)
+
+    # --- Servers -------------------------------------------------------------------------------
+
+    def connect(self, address, certificate=None, key=None, authority=None, insecure=False):
+        """Shows the scene of a server (`dspace serve`), drawn here. Returns a Link at once; it connects, and connects
+        again after a loss, by itself. The arguments are those of dspace.connect."""
+        address = required_address(address, "connect")
+        link = Link(self, address, (certificate, key, authority, insecure))
+        self.links.append(link)
+        return link
+
+    def listen(self, address="127.0.0.1:0", certificate=None, key=None, authority=None, insecure=False, roots=None):
+        """Serves at an address: a simulation that connects there (dspace.connect) drives views of this window.
+
+        port 0: any that is free; Link.address has it. roots: folders whose files the simulation may name (default:
+        the working folder). The server is a process of its own, so that a fast simulation does not hold the windows."""
+        address = required_address(address, "listen")
+        settings = (certificate, key, authority, insecure)
+        server = ServerApart(address, settings, roots)
+        self._servers.append(server)
+        link = Link(self, None, settings, server)
+        self.links.append(link)
+        return link
+
+    def _closed_link(self, link):
+        if link in self.links:
+            self.links.remove(link)
+        self._tasks.pop(link._task, None)
+        self._forget(link._client)
+
+    # --- Tasks ---------------------------------------------------------------------------------
+
+    def _add_task(self, cancel):
+        """Returns a number for the host's task(). cancel(): what its button does."""
+        number = max(self._tasks, default=0) + 1
+        self._tasks[number] = cancel
+        return number
+
+    def _cancelled(self, number):
+        if number in self._tasks:
+            self._tasks[number]()
 
     # --- Time ----------------------------------------------------------------------------------
 
@@ -198,6 +246,8 @@ class App:
     def close(self):
         for number in list(self._timers):
             self.cancel(number)
-        for run in list(self.runs):
-            run.close()
+        for each in (*self.runs, *self.links):
+            each.close()
+        for server in self._servers:
+            server.wait()
         self.session.close()

@@ -5,10 +5,10 @@
 namespace dspace::session {
 namespace {
 
-constexpr const char* Name = "dspace.link"; // of the table
-constexpr int Margin = 8;                   // pixels
-constexpr double Advance = 0.61;            // of a letter, of the font's size
-constexpr std::size_t LongestName = 40;     // bytes of a simulation's name that are shown
+constexpr const char* Name = LinkBanner::TableName;
+constexpr int Margin = 8;               // pixels
+constexpr double Advance = 0.61;        // of a letter, of the font's size
+constexpr std::size_t LongestName = 40; // bytes of a simulation's name that are shown
 
 // Characters, and the blanks at both ends.
 int Letters(const std::string& text) {

@@ -13,6 +13,8 @@ namespace dspace::session {
 // bottom. The text is short if they are at both, and smaller or short in a narrow viewport.
 class LinkBanner {
 public:
+  static constexpr const char* TableName = "dspace.link";
+
   LinkBanner() = default;
   ~LinkBanner();
   LinkBanner(const LinkBanner&) = delete;

@@ -170,6 +170,15 @@ struct PythonInterpreter::Internals {
     vtkObject* of = ShownOf(session);
     return of ? Guard([&] { The->host.close(of, name); }) : nullptr;
   }
+  static PyObject* Follow(PyObject*, PyObject* arguments) {
+    PyObject* shown = nullptr;
+    const char* title = nullptr;
+    if (!PyArg_ParseTuple(arguments, "Os", &shown, &title)) {
+      return nullptr;
+    }
+    vtkObject* of = ShownOf(shown);
+    return of ? Guard([&] { The->host.follow(of, title); }) : nullptr;
+  }
   static PyObject* ForgetShown(PyObject*, PyObject* arguments) {
     PyObject* shown = nullptr;
     if (!PyArg_ParseTuple(arguments, "O", &shown)) {
@@ -240,6 +249,16 @@ struct PythonInterpreter::Internals {
     }
     return Guard([&] { The->host.message(text); });
   }
+  static PyObject* Task(PyObject*, PyObject* arguments) {
+    long id = 0;
+    const char* text = nullptr;
+    double done = 0.0;
+    const char* cancel = nullptr;
+    if (!PyArg_ParseTuple(arguments, "lsds", &id, &text, &done, &cancel)) {
+      return nullptr;
+    }
+    return Guard([&] { The->host.task(id, text, done, cancel); });
+  }
   // every(milliseconds, callback): a number for cancel().
   static PyObject* Every(PyObject*, PyObject* arguments) {
     int milliseconds = 0;
@@ -292,6 +311,8 @@ struct PythonInterpreter::Internals {
                                     {"close", Close, METH_VARARGS, nullptr},
                                     {"forget", ForgetShown, METH_VARARGS, nullptr},
                                     {"clock", Clock, METH_VARARGS, nullptr},
+                                    {"follow", Follow, METH_VARARGS, nullptr},
+                                    {"task", Task, METH_VARARGS, nullptr},
                                     {"active", Active, METH_NOARGS, nullptr},
                                     {"plot", Plot, METH_VARARGS, nullptr},
                                     {"plot_channel", PlotChannel, METH_VARARGS, nullptr},
@@ -422,6 +443,15 @@ QStringList PythonInterpreter::Complete(const QString& line) {
 
 void PythonInterpreter::Interrupt() {
   PyErr_SetInterrupt();
+}
+
+void PythonInterpreter::Cancel(long task) {
+  const Lock lock;
+  PyObject* app = PyDict_GetItemString(this->Impl_->names, "app");
+  const Object told(PyObject_CallMethod(app, "_cancelled", "l", task));
+  if (!told) {
+    this->Impl_->Report();
+  }
 }
 
 void PythonInterpreter::Tell(const std::string& viewport, const std::string& event,

@@ -22,6 +22,8 @@ namespace dspace::widgets {
 struct PythonHost {
   std::function<void(vtkObject* of, const std::string& viewport, const std::string& title)> show;
   std::function<void(vtkObject* of, const std::string& viewport)> close;
+  // Keeps a watcher up to date from now on.
+  std::function<void(vtkObject* of, const std::string& title)> follow;
   // All that is shown of it closes.
   std::function<void(vtkObject* of)> forget;
   // Asks the clock of it: "play" (0: pause), "speed", "follow", "loop" (begin, end [s]), "unloop".
@@ -35,6 +37,11 @@ struct PythonHost {
                      const std::vector<double>& times, const std::vector<double>& values)>
       plotSeries;
   std::function<void(const std::string&)> message;
+  // Something that goes on, with how much of it is done (0 to 1; < 0: not known) and what cancels
+  // it
+  // ("Cancel"; "": nothing does); then App._cancelled(id) is called. Empty text: it has ended.
+  std::function<void(long id, const std::string& text, double done, const std::string& cancel)>
+      task;
 };
 
 // CPython with `dspace`, `session` (of the given vtkDspaceSession), `scene` and `app` in its name
@@ -59,6 +66,8 @@ public:
   QStringList Complete(const QString& line);
   // Raises KeyboardInterrupt in what runs.
   static void Interrupt();
+  // Tells Python that the user cancels a task.
+  void Cancel(long task);
   // Tells Python what a viewport's session replied to an event (ConnectToSession).
   void Tell(const std::string& viewport, const std::string& event, const std::string& reply);
 

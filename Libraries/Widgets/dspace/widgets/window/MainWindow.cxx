@@ -12,6 +12,7 @@
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QHBoxLayout>
+#include <QInputDialog>
 #include <QLabel>
 #include <QMenuBar>
 #include <QMessageBox>
@@ -38,6 +39,7 @@
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/ShownScenes.h>
+#include <dspace/widgets/window/TaskStrip.h>
 #include <dspace/widgets/window/TelemetryDocks.h>
 
 namespace dspace::widgets {
@@ -85,6 +87,11 @@ MainWindow::MainWindow(const QString& packages)
     this->ShowView(of, name, title);
   };
   host.close = [this](vtkObject* of, const std::string& name) { this->CloseView(of, name); };
+  host.follow = [this](vtkObject* of, const std::string& title) {
+    if (this->Scenes_) {
+      this->Scenes_->Add(of, QString::fromStdString(title));
+    }
+  };
   host.forget = [this](vtkObject* of) { this->Forget(of); };
   host.clock = [this](vtkObject* of, const std::string& what, double a, double b) {
     if (this->Scenes_) {
@@ -102,7 +109,16 @@ MainWindow::MainWindow(const QString& packages)
                            const std::vector<double>& times, const std::vector<double>& values) {
     this->Telemetry_->AddSeries(plot, name, unit, times, values);
   };
+  host.task = [this](long id, const std::string& text, double done, const std::string& cancel) {
+    if (this->Tasks_) {
+      this->Tasks_->Show(id, QString::fromStdString(text), done, QString::fromStdString(cancel));
+    }
+  };
   host.message = [this](const std::string& text) { this->Report(QString::fromStdString(text)); };
+  this->Tasks_ = new TaskStrip(this);
+  this->statusBar()->addPermanentWidget(this->Tasks_);
+  connect(this->Tasks_, &TaskStrip::cancelled, this,
+          [this](long id) { this->Interpreter_->Cancel(id); });
   this->Interpreter_ = std::make_unique<PythonInterpreter>(this->Session_, host, packages);
   this->Console_ = new ConsoleWidget(this->Interpreter_.get(), this);
   this->ConsoleDock_ = new QDockWidget(tr("Python"), this);
@@ -140,6 +156,8 @@ MainWindow::~MainWindow() {
   this->Views_.clear();
   delete this->Telemetry_;
   this->Telemetry_ = nullptr;
+  delete this->Tasks_;
+  this->Tasks_ = nullptr;
   delete this->Scenes_;
   this->Scenes_ = nullptr;
   delete this->TimeDock_;
@@ -169,6 +187,17 @@ void MainWindow::MakeMenus() {
   this->Recent_ = file->addMenu(tr("Open &recent"));
   this->FillRecent();
   file->addAction(tr("&Demo scene"), this, [this] { this->Run(QStringLiteral("app.demo()")); });
+  file->addSeparator();
+  file->addAction(tr("&Connect to a server..."), this, [this] {
+    this->AskText(tr("Connect to a server"), tr("Address (HOST:PORT or unix:PATH)"), QString(),
+                  [this](const QString& address) { this->Connect(address); });
+  });
+  file->addAction(tr("&Listen for a simulation..."), this, [this] {
+    this->AskText(tr("Listen for a simulation"),
+                  tr("Address (HOST:PORT or unix:PATH); port 0 is any that is free"),
+                  QStringLiteral("127.0.0.1:0"),
+                  [this](const QString& address) { this->Listen(address); });
+  });
   file->addSeparator();
   file->addAction(tr("Save &picture..."), this, [this] { this->SavePicture(); });
   file->addAction(tr("Save as &script..."), this, [this] { this->SaveScript(); });
@@ -207,6 +236,14 @@ bool MainWindow::Run(const QString& python) {
   return done;
 }
 
+bool MainWindow::Connect(const QString& address) {
+  return this->Run(QStringLiteral("app.connect(%1)").arg(Quoted(address)));
+}
+
+bool MainWindow::Listen(const QString& address) {
+  return this->Run(QStringLiteral("app.listen(%1)").arg(Quoted(address)));
+}
+
 bool MainWindow::Open(const QString& path) {
   const QString full = QFileInfo(path).absoluteFilePath();
   if (!this->Run(QStringLiteral("app.open(%1)").arg(Quoted(full)))) {
@@ -215,6 +252,22 @@ bool MainWindow::Open(const QString& path) {
   this->AddRecent(full);
   this->Report(tr("Opened %1").arg(full));
   return true;
+}
+
+void MainWindow::AskText(const QString& title, const QString& label, const QString& text,
+                         const std::function<void(const QString&)>& take) {
+  auto* dialog = new QInputDialog(this);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(title);
+  dialog->setLabelText(label);
+  dialog->setTextValue(text);
+  dialog->resize(420, dialog->sizeHint().height());
+  connect(dialog, &QInputDialog::textValueSelected, this, [take](const QString& given) {
+    if (!given.trimmed().isEmpty()) {
+      take(given.trimmed());
+    }
+  });
+  dialog->open(); // nothing stops meanwhile
 }
 
 void MainWindow::ChooseFiles() {

@@ -2,6 +2,7 @@
 #ifndef DSPACE_WIDGETS_MAIN_WINDOW_H
 #define DSPACE_WIDGETS_MAIN_WINDOW_H
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -22,6 +23,7 @@ namespace dspace::widgets {
 class ConsoleWidget;
 class PythonInterpreter;
 class ShownScenes;
+class TaskStrip;
 class TelemetryDocks;
 class TimelineWidget;
 class ViewportWidget;
@@ -40,6 +42,9 @@ public:
   // A model, raster, robot, recording or Python script; false: it could not be opened, which is
   // shown.
   bool Open(const QString& path);
+  // app.connect() and app.listen().
+  bool Connect(const QString& address);
+  bool Listen(const QString& address);
   bool Run(const QString& python);
   ConsoleWidget* Console() const { return this->Console_; }
   PythonInterpreter* Interpreter() const { return this->Interpreter_.get(); }
@@ -71,6 +76,9 @@ private:
   void CloseView(vtkObject* of, const std::string& viewport);
   void Forget(vtkObject* of);
   QWidget* ToolsOf(ViewportWidget* widget, const std::string& viewport, const QString& title);
+  // Asks for a text that is not empty.
+  void AskText(const QString& title, const QString& label, const QString& text,
+               const std::function<void(const QString&)>& take);
   void ChooseFiles();
   void SaveScript();
   void SavePicture();
@@ -82,6 +90,7 @@ private:
   std::unique_ptr<PythonInterpreter> Interpreter_;
   ConsoleWidget* Console_ = nullptr;
   ShownScenes* Scenes_ = nullptr;
+  TaskStrip* Tasks_ = nullptr;
   TelemetryDocks* Telemetry_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
