@@ -51,6 +51,7 @@ struct vtkDspaceViewport::Internals {
   bool visible = true;
   bool ornaments = true;
   dspace::ViewLook look;
+  dspace::Navigation navigation;
   std::set<std::string> hidden;
   dspace::SceneDrawer::Background background;
   dspace::TextTables tables;
@@ -305,6 +306,15 @@ void vtkDspaceViewport::SetLook(const dspace::ViewLook& look) {
   dspace::CheckLook(*self.context->GetHub(), self.Object(), look);
   self.look = look;
   self.stale = true;
+}
+
+void vtkDspaceViewport::SetNavigation(const dspace::Navigation& navigation) {
+  navigation.Check(this->Impl->Object());
+  this->Impl->navigation = navigation;
+}
+
+const dspace::Navigation& vtkDspaceViewport::GetNavigation() const {
+  return this->Impl->navigation;
 }
 
 double vtkDspaceViewport::GetUsedExposure() const {

@@ -27,6 +27,7 @@
 #include <dspace/render/DrawList.h>
 #include <dspace/render/ViewExplanation.h>
 #include <dspace/scene/Scene.h>
+#include <dspace/scene/controls/Navigation.h>
 #endif
 
 class vtkDspaceRenderContext;
@@ -80,6 +81,10 @@ public:
   /// value.
   void SetLook(const dspace::ViewLook& look);
   const dspace::ViewLook& GetLook() const;
+  /// How a person moves its camera; the picture does not depend on it. Throws
+  /// Error(InvalidArgument) naming the viewport and the value.
+  void SetNavigation(const dspace::Navigation& navigation);
+  const dspace::Navigation& GetNavigation() const;
   /// The factor on linear light of the last picture, as automatic exposure chose it.
   double GetUsedExposure() const;
   void SetFragmentVisible(const std::string& fragment, bool visible); // in this viewport only

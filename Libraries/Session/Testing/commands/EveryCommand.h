@@ -184,7 +184,8 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(move_viewport { viewport: "VIEW" x: 5 y: 6 })", {}},
       {R"(set_viewport { viewport: "VIEW" samples: 2 background { b: 1 } ornaments: false
             shadows: true shadow_cascades: 3 shadow_map_size: 512 shadow_distance: 50 fill: 0.5
-            exposure: 2 automatic_exposure: true tone: FILMIC cascade_colors: true })",
+            exposure: 2 automatic_exposure: true tone: FILMIC cascade_colors: true
+            navigation: WALK eye_height: 2 walk_speed: 3 })",
        {}},
       {R"(set_viewport_fragment { viewport: "VIEW" fragment: "physical" visible: false })", {}},
       {R"(set_text_table { viewport: "VIEW" name: "table" row { label: "b" value: "2" digits: 3 }

@@ -14,12 +14,13 @@ from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
 from dspace.scene.legends import ViewportLegends, put_value
 from dspace.scene.look import ViewportLook
+from dspace.scene.navigation import ViewportNavigation
 from dspace.terrain.coordinates import coordinates_of
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
 PLANES = {"color": 0, "depth": 1, "range": 3, "label": 2}
 SIZE = f"(width, height), two integers from {SIDE[0]} to {SIDE[1]}"
-EVENTS = {"move": 0, "press": 1, "release": 2, "wheel": 3, "key": 4}
+EVENTS = {"move": 0, "press": 1, "release": 2, "wheel": 3, "key": 4, "double click": 5}
 BUTTONS = {None: 0, "left": 1, "middle": 2, "right": 3}
 TYPES = {0: np.uint8, 1: np.uint32, 2: np.float32}
 
@@ -45,7 +46,7 @@ class Pick:
     fields: object = None  # on terrain: the values of its fields, a dict by name; NaN: no data
 
 
-class Viewport(ViewportLook):
+class Viewport(ViewportLook, ViewportNavigation):
     """A picture of a scene. Pixel (0, 0) is the centre of the top-left pixel."""
 
     def __init__(self, client, name):
@@ -332,8 +333,9 @@ class Viewport(ViewportLook):
     legend_of = delegate(ViewportLegends, "legend_of")
 
     def event(self, type, x=0.0, y=0.0, button=None, wheel=0.0, key="", shift=False, control=False,
-              alt=False):
-        """What a person does: type "move", "press", "release", "wheel" or "key"; pixels.
+              alt=False, seconds=None):
+        """What a person does: type "move", "press", "release", "wheel", "key" or "double click"; pixels. seconds: how
+        long the key has been held since its last event, 0 to 1; default: 0.1.
 
         Drags, the wheel and keys move the camera; a left click picks and returns a Pick's numbers. Other keys and
         all clicks reach the callbacks of on_key and on_click. See ViewportEvent in viewports.proto."""
@@ -342,6 +344,7 @@ class Viewport(ViewportLook):
         put(message, self._label, viewport=self._name, type=word(type, EVENTS, "type", self._label), x=x, y=y,
             button=word(button, BUTTONS, "button", self._label), wheel=wheel, key=key, shift=shift, control=control,
             alt=alt)
+        put_given(message, self._label, seconds=seconds)
         reply = self._client.execute(command)
         self._client.inputs.tell(self, message, reply)
         return reply.pick if reply.HasField("pick") else None

@@ -65,6 +65,24 @@ ViewLook ToLook(const v1::SetViewport& from, ViewLook look, const std::string& l
   return look;
 }
 
+Navigation ToNavigation(const v1::SetViewport& from, Navigation to, const std::string& label) {
+  if (from.has_navigation()) {
+    if (!v1::SetViewport::Navigation_IsValid(from.navigation())) {
+      Reject(label, "its navigation is " + std::to_string(int(from.navigation())) +
+                        "; accepted: ORBIT (0), WALK (1), MAP (2)");
+    }
+    to.kind = static_cast<Navigation::Kind>(from.navigation());
+  }
+  if (from.has_eye_height()) {
+    to.eyeHeight = from.eye_height();
+  }
+  if (from.has_walk_speed()) {
+    to.walkSpeed = from.walk_speed();
+  }
+  to.Check(label);
+  return to;
+}
+
 void PutLook(const ViewLook& from, v1::ViewportInfo& to) {
   to.set_shadows(from.shadows.shown);
   to.set_shadow_cascades(std::uint32_t(from.shadows.cascades));
@@ -247,7 +265,9 @@ void ViewportCommands::Set(const Context& context, v1::SetViewport& command) {
   if (command.has_background_top()) {
     top = ToColor(command.background_top(), label);
   }
+  const Navigation navigation = ToNavigation(command, viewport.GetNavigation(), label);
   viewport.SetLook(ToLook(command, viewport.GetLook(), label)); // the last that can fail
+  viewport.SetNavigation(navigation);
   if (vantage != place.vantage) {
     viewport.SetCamera("");
     viewport.SetVantage(vantage);
@@ -314,6 +334,10 @@ void ViewportCommands::Describe(const Context& context, v1::DescribeViewport& co
   info->set_ornaments(place.ornaments);
   info->set_corner_axes(place.cornerAxes);
   PutLook(viewport.GetLook(), *info);
+  const Navigation& navigation = viewport.GetNavigation();
+  info->set_navigation(static_cast<v1::SetViewport::Navigation>(navigation.kind));
+  info->set_eye_height(navigation.eyeHeight);
+  info->set_walk_speed(navigation.walkSpeed);
   for (const std::string& fragment : place.hiddenFragments) {
     info->add_hidden_fragment(fragment);
   }

@@ -1,6 +1,7 @@
 // What a person does in a viewport moves its camera.
 #include <dspace/Checks.h>
 #include <dspace/commands/scene/CameraTools.h>
+#include <dspace/commands/viewports/SceneGround.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/scene/CustomGeometry.h>
 #include <dspace/scene/Stretch.h>
@@ -15,7 +16,12 @@ InputEvent::Key ToKey(const std::string& key) {
       {"Left", InputEvent::Key::Left}, {"Right", InputEvent::Key::Right},
       {"Up", InputEvent::Key::Up},     {"Down", InputEvent::Key::Down},
       {"+", InputEvent::Key::Plus},    {"-", InputEvent::Key::Minus},
-      {"f", InputEvent::Key::Frame},   {"r", InputEvent::Key::Reset}};
+      {"f", InputEvent::Key::Frame},   {"r", InputEvent::Key::Reset},
+      {"w", InputEvent::Key::Forward}, {"W", InputEvent::Key::Forward},
+      {"s", InputEvent::Key::Backward}, {"S", InputEvent::Key::Backward},
+      {"a", InputEvent::Key::StepLeft}, {"A", InputEvent::Key::StepLeft},
+      {"d", InputEvent::Key::StepRight}, {"D", InputEvent::Key::StepRight},
+      {"Escape", InputEvent::Key::Cancel}};
   const auto found = keys.find(key);
   return found == keys.end() ? InputEvent::Key::None : found->second;
 }
@@ -25,7 +31,7 @@ InputEvent ToEvent(const v1::ViewportEvent& from) {
   if (!v1::ViewportEvent::Type_IsValid(from.type()) ||
       !v1::ViewportEvent::Button_IsValid(from.button())) {
     Reject(label, "its type is " + std::to_string(int(from.type())) + " and its button " +
-                      std::to_string(int(from.button())) + "; accepted: 0 to 4 and 0 to 3");
+                      std::to_string(int(from.button())) + "; accepted: 0 to 5 and 0 to 3");
   }
   RequireFinite(label, "x", from.x());
   RequireFinite(label, "y", from.y());
@@ -35,7 +41,8 @@ InputEvent ToEvent(const v1::ViewportEvent& from) {
             : from.type() == v1::ViewportEvent::RELEASE ? InputEvent::Type::Release
             : from.type() == v1::ViewportEvent::WHEEL   ? InputEvent::Type::Wheel
             : from.type() == v1::ViewportEvent::KEY     ? InputEvent::Type::Key
-                                                        : InputEvent::Type::Move;
+            : from.type() == v1::ViewportEvent::DOUBLE_CLICK ? InputEvent::Type::DoubleClick
+                                                             : InputEvent::Type::Move;
   to.x = from.x();
   to.y = from.y();
   to.button = static_cast<InputEvent::Button>(from.button());
@@ -44,6 +51,9 @@ InputEvent ToEvent(const v1::ViewportEvent& from) {
   to.alt = from.alt();
   to.wheelSteps = from.wheel();
   to.key = ToKey(from.key());
+  if (from.has_seconds()) {
+    to.seconds = from.seconds();
+  }
   return to;
 }
 
@@ -83,19 +93,22 @@ void ViewportCommands::Event(const Context& context, v1::ViewportEvent& command)
   view.pose = scene.PlaceCamera(place.vantage, place.camera);
   view.width = viewport.GetWidth();
   view.height = viewport.GetHeight();
-  if (OrbitController::NeedsPivot(event)) {
+  const SceneGround ground(context.state.scenes.at(place.scene), view.pose.frame);
+  view.ground = ground.Empty() ? nullptr : &ground;
+  OrbitController& controller = this->Controllers_[command.viewport()];
+  controller.SetNavigation(viewport.GetNavigation());
+  if (OrbitController::NeedsPivot(event, viewport.GetNavigation().kind)) {
     const PickResult pick = viewport.Pick(event.x, event.y);
     if (pick.object != 0) {
       view.pivot_F = view.pose.X_FC.Apply(pick.p_camera);
     }
   }
   view.bounds_F = SceneBounds(scene, view.pose.frame);
-  const OrbitResult result = this->Controllers_[command.viewport()].Handle(event, view);
+  const OrbitResult result = controller.Handle(event, view);
   if (result.changed) {
     scene.SetCamera(place.vantage, result.camera);
   }
-  const bool unusedKey = event.type == InputEvent::Type::Key &&
-                         event.key == InputEvent::Key::None && !command.key().empty();
+  const bool unusedKey = result.unused && !command.key().empty();
   if (result.picked || result.clicked != InputEvent::Button::None) {
     v1::Pick pick;
     pick.set_viewport(command.viewport());

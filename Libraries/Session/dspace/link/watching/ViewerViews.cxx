@@ -127,7 +127,8 @@ v1::Reply ViewerViews::ExecuteEvent(Interpreter& interpreter, v1::Command& comma
   }
   const ViewportState before = interpreter.GetState().viewports[name];
   const bool moves = event.type() == v1::ViewportEvent::WHEEL ||
-                     event.type() == v1::ViewportEvent::KEY || this->Pressed_.count(name);
+                     event.type() == v1::ViewportEvent::KEY ||
+                     event.type() == v1::ViewportEvent::DOUBLE_CLICK || this->Pressed_.count(name);
   bool given = false;
   bool made = false;
   if (moves && !this->OwnsVantage(before.scene, before.vantage)) {
