@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <dspace/scene/controls/OrbitMotion.h>
+
 namespace dspace {
 namespace {
 
 constexpr double RightAngle = 1.57079632679489661923;
-constexpr double NearlyUpright = 1e-6; // sine of the angle to `up` from which X says the heading
 
 // Of a camera: X right, Y down, Z along the sight, from its level heading (unit) and elevation.
 Eigen::Quaterniond LevelRotation(const Eigen::Vector3d& heading, const Eigen::Vector3d& up,
@@ -53,7 +54,8 @@ std::optional<Eigen::Quaterniond> LevelAim(const Eigen::Quaterniond& before,
   std::optional<double> elevation;
   for (double e : {phase + angle, phase + 2.0 * RightAngle - angle}) {
     e = std::remainder(e, 4.0 * RightAngle);
-    if (std::abs(e) <= RightAngle && (!elevation || std::abs(e - now) < std::abs(*elevation - now))) {
+    if (std::abs(e) <= RightAngle &&
+        (!elevation || std::abs(e - now) < std::abs(*elevation - now))) {
       elevation = e;
     }
   }

@@ -29,7 +29,8 @@ struct Navigation {
 class NavigationGround {
 public:
   virtual ~NavigationGround() = default;
-  // The local vertical at a point, unit; none where the ground is too far away to say what is level.
+  // The local vertical at a point, unit; none where the ground is too far away to say what is
+  // level.
   virtual std::optional<Eigen::Vector3d> Up(const Eigen::Vector3d& p_F) const = 0;
   // The ground on the local vertical through a point, above or below it; none where it is unknown.
   virtual std::optional<Eigen::Vector3d> Below(const Eigen::Vector3d& p_F) const = 0;

@@ -18,11 +18,11 @@ constexpr double DragFactor = 1.01;   // of a pixel of dolly drag
 constexpr double ClickRadius = 3.0;   // pixels a hand may shake
 constexpr double DefaultDepth = 10.0; // metres, where nothing else is known
 constexpr double FramingMargin = 1.05;
-constexpr double KeySeconds = 0.1;    // of a key without a duration
+constexpr double KeySeconds = 0.1;     // of a key without a duration
 constexpr double LeastClearance = 0.1; // metres above the ground
-constexpr double HasteFactor = 4.0;   // of a walk with Shift
-constexpr double NotchSeconds = 0.5;  // of a walk
-constexpr double MapStep = 0.05;      // of the picture's height
+constexpr double HasteFactor = 4.0;    // of a walk with Shift
+constexpr double NotchSeconds = 0.5;   // of a walk
+constexpr double MapStep = 0.05;       // of the picture's height
 
 using Key = InputEvent::Key;
 using Type = InputEvent::Type;
@@ -73,8 +73,8 @@ void Dolly(OrbitResult& result, const OrbitView& view, const Eigen::Vector3d& pi
 void Pan(OrbitResult& result, const OrbitView& view, const Eigen::Vector3d& point_F, double x,
          double y) {
   const Projection& projection = view.camera.projection;
-  SetMoved(result, view,
-           PanTo(view.pose.X_FC, projection, point_F, x, y, view.width, view.height), projection);
+  SetMoved(result, view, PanTo(view.pose.X_FC, projection, point_F, x, y, view.width, view.height),
+           projection);
   Settle(result, view, point_F, projection.PixelRay(x, y, view.width, view.height).direction);
 }
 
@@ -224,8 +224,8 @@ void OrbitController::Press(const InputEvent& event, const OrbitView& view) {
   case Button::None:
     return;
   case Button::Left:
-    this->Drag_ = event.shift || this->Navigation_.kind == Navigation::Kind::Map ? Drag::Pan
-                                                                                 : Drag::Orbit;
+    this->Drag_ =
+        event.shift || this->Navigation_.kind == Navigation::Kind::Map ? Drag::Pan : Drag::Orbit;
     break;
   case Button::Middle:
     this->Drag_ = Drag::Pan;
@@ -316,8 +316,7 @@ void OrbitController::Focus(const InputEvent& event, const OrbitView& view, Orbi
   }
   Pose X_FC = view.pose.X_FC;
   const Eigen::Vector3d middle = projection.PixelRay(x, y, view.width, view.height).direction;
-  const auto aimed =
-      LevelAim(X_FC.rotation, middle, point_F - X_FC.position, this->UpAt(view));
+  const auto aimed = LevelAim(X_FC.rotation, middle, point_F - X_FC.position, this->UpAt(view));
   if (aimed) {
     X_FC.rotation = *aimed;
     SetMoved(result, view, X_FC, projection);

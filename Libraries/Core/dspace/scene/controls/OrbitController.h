@@ -17,8 +17,8 @@ struct OrbitView {
   CameraPose pose; // where it stands (PlaceCamera): X_FC
   int width = 1;   // pixels
   int height = 1;
-  std::optional<Eigen::Vector3d> pivot_F; // the point under the pointer; used when NeedsPivot()
-  std::optional<BoundingSphere> bounds_F; // what the F key frames
+  std::optional<Eigen::Vector3d> pivot_F;   // the point under the pointer; used when NeedsPivot()
+  std::optional<BoundingSphere> bounds_F;   // what the F key frames
   const NavigationGround* ground = nullptr; // null: there is none
 };
 
@@ -48,8 +48,8 @@ struct OrbitResult {
 //
 // Above ground (OrbitView::ground, not for orthographic cameras): `up` is the local vertical at the
 // eye. After each of these motions the eye is at least 0.1 m, or the near distance, above the
-// ground, and the camera is level; the point under the pointer still keeps its pixel (where no level
-// camera can do that, the line of sight is kept).
+// ground, and the camera is level; the point under the pointer still keeps its pixel (where no
+// level camera can do that, the line of sight is kept).
 //
 // Walk: the eye is at the eye height above the ground. Up, Down or Forward, Backward walk, Left,
 // Right or StepLeft, StepRight step sideways at the walking speed, four times as fast with Shift;
@@ -70,8 +70,7 @@ public:
   void SetNavigation(const Navigation& navigation);
 
   // Whether `event` uses OrbitView::pivot_F. If not, the caller need not pick.
-  static bool NeedsPivot(const InputEvent& event,
-                         Navigation::Kind kind = Navigation::Kind::Orbit);
+  static bool NeedsPivot(const InputEvent& event, Navigation::Kind kind = Navigation::Kind::Orbit);
 
   // Throws Error(InvalidArgument) naming the camera for a size below 1 × 1 or a value that is not
   // finite; nothing has changed then.
@@ -99,13 +98,13 @@ private:
   double Depth_ = 0.0; // of the last pivot [m]; 0 before the first
   Drag Drag_ = Drag::None;
   InputEvent::Button Button_ = InputEvent::Button::None;
-  FrameId Frame_ = NoFrame; // in which the drag's pivot is
+  FrameId Frame_ = NoFrame;                           // in which the drag's pivot is
   Eigen::Vector3d Pivot_F_ = Eigen::Vector3d::Zero(); // Look: the direction grabbed
   Camera Pressed_;                                    // when the drag began
-  double PressX_ = 0.0, PressY_ = 0.0; // where the button went down
-  double LastX_ = 0.0, LastY_ = 0.0;   // where the last event was
-  bool Picks_ = false;                 // a click picks
-  bool Clicking_ = false;              // the pointer has not left the press point
+  double PressX_ = 0.0, PressY_ = 0.0;                // where the button went down
+  double LastX_ = 0.0, LastY_ = 0.0;                  // where the last event was
+  bool Picks_ = false;                                // a click picks
+  bool Clicking_ = false;                             // the pointer has not left the press point
 };
 
 } // namespace dspace

@@ -8,7 +8,6 @@ namespace dspace {
 namespace {
 
 constexpr double DegreesPerRadian = 180.0 / 3.14159265358979323846;
-constexpr double NearlyUpright = 1e-6; // sine of the angle to `up` from which X says the heading
 
 // A level camera's axes in F as columns, from its right and the elevation of its sight.
 Eigen::Matrix3d LevelAxes(const Eigen::Vector3d& right, const Eigen::Vector3d& up,

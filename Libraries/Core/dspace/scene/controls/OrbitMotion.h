@@ -6,6 +6,9 @@
 
 namespace dspace {
 
+// Sine of the angle between sight and `up` below which the camera's X says the heading.
+inline constexpr double NearlyUpright = 1e-6;
+
 // X_FC turned about `pivot_F`: by `turn_deg` about `up_F` (unit; counter-clockwise seen from above)
 // and by `rise_deg` of the line of sight's elevation, which stops at straight up and down. The
 // result is level, keeps the distance to the pivot, and, from a level pose, the pivot's pixel.

@@ -9,9 +9,9 @@
 
 namespace dspace::session {
 
-// The visible terrains of a scene, in frame F. Where several lie on one vertical, the highest is the
-// ground. On a body the vertical is its own up to a quarter of its radius above the ground, turns
-// towards Z of F from there on, and is nothing beyond a radius.
+// The visible terrains of a scene, in frame F. Where several lie on one vertical, the highest is
+// the ground. On a body the vertical is its own up to a quarter of its radius above the ground,
+// turns towards Z of F from there on, and is nothing beyond a radius.
 class SceneGround : public NavigationGround {
 public:
   // Valid while `scene` does not change.

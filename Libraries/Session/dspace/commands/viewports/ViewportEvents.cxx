@@ -13,14 +13,14 @@ namespace {
 
 InputEvent::Key ToKey(const std::string& key) {
   static const std::map<std::string, InputEvent::Key> keys = {
-      {"Left", InputEvent::Key::Left}, {"Right", InputEvent::Key::Right},
-      {"Up", InputEvent::Key::Up},     {"Down", InputEvent::Key::Down},
-      {"+", InputEvent::Key::Plus},    {"-", InputEvent::Key::Minus},
-      {"f", InputEvent::Key::Frame},   {"r", InputEvent::Key::Reset},
-      {"w", InputEvent::Key::Forward}, {"W", InputEvent::Key::Forward},
-      {"s", InputEvent::Key::Backward}, {"S", InputEvent::Key::Backward},
-      {"a", InputEvent::Key::StepLeft}, {"A", InputEvent::Key::StepLeft},
-      {"d", InputEvent::Key::StepRight}, {"D", InputEvent::Key::StepRight},
+      {"Left", InputEvent::Key::Left},    {"Right", InputEvent::Key::Right},
+      {"Up", InputEvent::Key::Up},        {"Down", InputEvent::Key::Down},
+      {"+", InputEvent::Key::Plus},       {"-", InputEvent::Key::Minus},
+      {"f", InputEvent::Key::Frame},      {"r", InputEvent::Key::Reset},
+      {"w", InputEvent::Key::Forward},    {"W", InputEvent::Key::Forward},
+      {"s", InputEvent::Key::Backward},   {"S", InputEvent::Key::Backward},
+      {"a", InputEvent::Key::StepLeft},   {"A", InputEvent::Key::StepLeft},
+      {"d", InputEvent::Key::StepRight},  {"D", InputEvent::Key::StepRight},
       {"Escape", InputEvent::Key::Cancel}};
   const auto found = keys.find(key);
   return found == keys.end() ? InputEvent::Key::None : found->second;
@@ -37,10 +37,10 @@ InputEvent ToEvent(const v1::ViewportEvent& from) {
   RequireFinite(label, "y", from.y());
   RequireFinite(label, "the wheel", from.wheel());
   InputEvent to;
-  to.type = from.type() == v1::ViewportEvent::PRESS     ? InputEvent::Type::Press
-            : from.type() == v1::ViewportEvent::RELEASE ? InputEvent::Type::Release
-            : from.type() == v1::ViewportEvent::WHEEL   ? InputEvent::Type::Wheel
-            : from.type() == v1::ViewportEvent::KEY     ? InputEvent::Type::Key
+  to.type = from.type() == v1::ViewportEvent::PRESS          ? InputEvent::Type::Press
+            : from.type() == v1::ViewportEvent::RELEASE      ? InputEvent::Type::Release
+            : from.type() == v1::ViewportEvent::WHEEL        ? InputEvent::Type::Wheel
+            : from.type() == v1::ViewportEvent::KEY          ? InputEvent::Type::Key
             : from.type() == v1::ViewportEvent::DOUBLE_CLICK ? InputEvent::Type::DoubleClick
                                                              : InputEvent::Type::Move;
   to.x = from.x();

@@ -48,7 +48,9 @@ void ConnectToExecutor(ViewportWidget& widget, const Executor& execute, const st
                    : input.type == ViewportInput::Type::Release ? v1::ViewportEvent::RELEASE
                    : input.type == ViewportInput::Type::Wheel   ? v1::ViewportEvent::WHEEL
                    : input.type == ViewportInput::Type::Key     ? v1::ViewportEvent::KEY
-                                                                : v1::ViewportEvent::MOVE);
+                   : input.type == ViewportInput::Type::DoubleClick
+                       ? v1::ViewportEvent::DOUBLE_CLICK
+                       : v1::ViewportEvent::MOVE);
     event.set_button(static_cast<v1::ViewportEvent::Button>(static_cast<int>(input.button)));
     event.set_x(input.x);
     event.set_y(input.y);

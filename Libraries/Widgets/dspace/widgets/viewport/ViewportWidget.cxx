@@ -77,14 +77,15 @@ ViewportInput::Button ButtonOf(Qt::MouseButton button) {
 }
 
 InputEvent::Key CameraKey(const std::string& key) {
-  return key == "Left"    ? InputEvent::Key::Left
-         : key == "Right" ? InputEvent::Key::Right
-         : key == "Up"    ? InputEvent::Key::Up
-         : key == "Down"  ? InputEvent::Key::Down
-         : key == "+"     ? InputEvent::Key::Plus
-         : key == "-"     ? InputEvent::Key::Minus
-         : key == "r"     ? InputEvent::Key::Reset
-                          : InputEvent::Key::None;
+  return key == "Left"     ? InputEvent::Key::Left
+         : key == "Right"  ? InputEvent::Key::Right
+         : key == "Up"     ? InputEvent::Key::Up
+         : key == "Down"   ? InputEvent::Key::Down
+         : key == "+"      ? InputEvent::Key::Plus
+         : key == "-"      ? InputEvent::Key::Minus
+         : key == "r"      ? InputEvent::Key::Reset
+         : key == "Escape" ? InputEvent::Key::Cancel
+                           : InputEvent::Key::None;
 }
 
 // Moves the active camera of a viewport's vantage.
@@ -103,6 +104,9 @@ void MoveCamera(OrbitController& controller, vtkDspaceViewport& viewport,
     break;
   case ViewportInput::Type::Key:
     event.type = InputEvent::Type::Key;
+    break;
+  case ViewportInput::Type::DoubleClick:
+    event.type = InputEvent::Type::DoubleClick;
     break;
   case ViewportInput::Type::Move:
     event.type = InputEvent::Type::Move;
@@ -415,6 +419,17 @@ void ViewportWidget::hideEvent(QHideEvent*) {
 void ViewportWidget::mousePressEvent(QMouseEvent* event) {
   ViewportInput input =
       this->Impl_->InputAt(ViewportInput::Type::Press, event->position(), event->modifiers());
+  input.button = ButtonOf(event->button());
+  this->Impl_->Send(input);
+}
+
+void ViewportWidget::mouseDoubleClickEvent(QMouseEvent* event) {
+  if (event->button() != Qt::LeftButton) { // a second click of others
+    this->mousePressEvent(event);
+    return;
+  }
+  ViewportInput input =
+      this->Impl_->InputAt(ViewportInput::Type::DoubleClick, event->position(), event->modifiers());
   input.button = ButtonOf(event->button());
   this->Impl_->Send(input);
 }

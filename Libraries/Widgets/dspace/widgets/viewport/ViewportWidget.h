@@ -14,7 +14,7 @@ namespace dspace::widgets {
 
 // One event of a widget, in the viewport's pixels: the fields of v1::ViewportEvent.
 struct ViewportInput {
-  enum class Type { Move, Press, Release, Wheel, Key };
+  enum class Type { Move, Press, Release, Wheel, Key, DoubleClick };
   enum class Button { None, Left, Middle, Right };
   Type type = Type::Move;
   double x = 0.0; // (0, 0) is the centre of the top-left pixel
@@ -87,6 +87,7 @@ protected:
   void showEvent(QShowEvent* event) override;
   void hideEvent(QHideEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
   void mouseReleaseEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
   void wheelEvent(QWheelEvent* event) override;

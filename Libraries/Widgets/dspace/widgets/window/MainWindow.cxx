@@ -7,6 +7,7 @@
 #include <QAction>
 #include <QApplication>
 #include <QCloseEvent>
+#include <QComboBox>
 #include <QDockWidget>
 #include <QDropEvent>
 #include <QFileDialog>
@@ -63,6 +64,9 @@ const char* const Keys =
     "<tr><td><b>Middle drag, Shift+left drag</b></td><td>pans</td></tr>"
     "<tr><td><b>Wheel, right drag</b></td><td>moves towards the point under the pointer</td></tr>"
     "<tr><td><b>Arrows, + and -</b></td><td>orbit, move nearer and farther</td></tr>"
+    "<tr><td><b>Double click</b></td><td>turns to the point under the pointer</td></tr>"
+    "<tr><td><b>Escape</b></td><td>cancels a drag</td></tr>"
+    "<tr><td><b>W A S D</b></td><td>walk, where the view's bar says so; Shift hurries</td></tr>"
     "<tr><td><b>F</b></td><td>shows everything</td></tr>"
     "<tr><td><b>R</b></td><td>returns to the first view</td></tr>"
     "<tr><td><b>Ctrl+O</b></td><td>opens files</td></tr>"
@@ -359,6 +363,17 @@ QWidget* MainWindow::ToolsOf(ViewportWidget* widget, const std::string& viewport
     const QSignalBlocker silent(shadows);
     shadows->setChecked(widget->GetViewport()->GetLook().shadows.shown);
   });
+  auto* moves = new QComboBox(tools);
+  for (const char* kind : {"orbit", "walk", "map"}) {
+    moves->addItem(tr(kind));
+  }
+  moves->setObjectName(QStringLiteral("navigation"));
+  moves->setToolTip(tr("How the mouse and keys move the camera: orbit about a point, walk on the "
+                       "ground with W A S D, or a map that does not turn"));
+  connect(moves, &QComboBox::activated, this, [this, view, moves] {
+    this->Run(QStringLiteral("%1.navigation = %2").arg(view, Quoted(moves->currentText())));
+  });
+  row->addWidget(moves);
   auto* samples = new QSpinBox(tools);
   samples->setRange(1, 8);
   samples->setValue(shown->GetSamples());
