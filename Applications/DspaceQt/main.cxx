@@ -76,7 +76,9 @@ int Start(QApplication&) {
   const QCommandLineOption connect("connect", "Shows the scene of a server.", "ADDRESS");
   const QCommandLineOption listen(
       "listen", "Serves: a simulation that connects drives this window (127.0.0.1:0).", "ADDRESS");
-  parser.addOptions({screenshot, after, size, empty, connect, listen});
+  const QCommandLineOption plugin("load-plugin", "Loads a plug-in: a Python file or module; may be repeated.",
+                                  "NAME");
+  parser.addOptions({screenshot, after, size, empty, connect, listen, plugin});
   parser.process(Arguments());
   const QStringList sides = parser.value(size).split('x');
   bool good[3] = {false, false, false};
@@ -104,6 +106,7 @@ int Start(QApplication&) {
                    });
   window.resize(width, height);
   window.show();
+  window.LoadPlugIns(parser.values(plugin));
   for (const QString& path : parser.positionalArguments()) {
     if (!window.Open(path) && parser.isSet(screenshot)) {
       return 1;

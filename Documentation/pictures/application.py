@@ -28,6 +28,15 @@ def application_telemetry():
         _screenshot("application_telemetry", "--after", "30", script.name)
 
 
+def application_console():
+    """The example of a plug-in: a console of three docks."""
+    with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
+        script.write("app.demo()\napp.console.send()\napp.console.checks[0].set(value=True)\n")
+        script.flush()
+        _screenshot("application_console", "--after", "10", "--load-plugin",
+                    str(ROOT / "Examples" / "mission_console" / "mission_console.py"), script.name)
+
+
 def application_terrain():
     """A raster of heights in a view, and the prompt."""
     _screenshot("application_terrain", "--after", "6", os.path.join(DATA, "terrain", "mars_gale_mola_128ppd_m.tif"))

@@ -7,6 +7,7 @@ from dspace._core.fields import real, reject, text
 from dspace._core.replies import to_reply
 from dspace.application.link import Link, ServerApart, required_address
 from dspace.application.plots import Plot, Shown
+from dspace.application.plugins import PlugIns
 from dspace.application.run import Run
 from dspace.proto import commands_pb2 as pb
 
@@ -33,6 +34,7 @@ class App:
         self._servers = []
         self._tasks = {}
         self.plots = {}
+        self.plugins = PlugIns(host)
         self._timers = set()
 
     # --- Views ---------------------------------------------------------------------------------
@@ -69,6 +71,25 @@ class App:
         if self.view == viewport:
             self.view = next(reversed(self.views.values()), None)
         viewport.remove()
+
+    # --- Plug-ins ------------------------------------------------------------------------------
+
+    def add_dock(self, title, area="right"):
+        """A new dock for values and controls, as a dspace.application.plugins.Panel. area: "left", "right", "top",
+        "bottom"."""
+        return self.plugins.add_dock(title, area)
+
+    def add_action(self, menu, text, function, key="", tip=""):
+        """A new entry of a menu, which is made if there is none; it calls function(). key: such as "F6"."""
+        self.plugins.add_action(menu, text, function, key, tip)
+
+    def on_key(self, key, function):
+        """Calls function() when the key is pressed anywhere in the window: "F7", "Ctrl+Shift+D"."""
+        self.plugins.on_key(key, function)
+
+    def load_plugin(self, name):
+        """Loads a Python file or module and calls its plugin(app). Returns the module."""
+        return self.plugins.load(name, self)
 
     # --- Telemetry -----------------------------------------------------------------------------
 

@@ -202,6 +202,15 @@ struct PythonInterpreter::Internals {
     const auto [of, scene] = The->host.active();
     return Py_BuildValue("(Ns)", vtkPythonUtil::GetObjectFromPointer(of), scene.c_str());
   }
+  static PyObject* Extend(PyObject*, PyObject* arguments) {
+    const char* request = nullptr;
+    if (!PyArg_ParseTuple(arguments, "s", &request)) {
+      return nullptr;
+    }
+    std::string answer;
+    const Object done(Guard([&] { answer = The->host.extend(request); }));
+    return done ? PyUnicode_FromString(answer.c_str()) : nullptr;
+  }
   static PyObject* Plot(PyObject*, PyObject* arguments) {
     PyObject* shown = nullptr;
     const char* scene = nullptr;
@@ -314,6 +323,7 @@ struct PythonInterpreter::Internals {
                                     {"follow", Follow, METH_VARARGS, nullptr},
                                     {"task", Task, METH_VARARGS, nullptr},
                                     {"active", Active, METH_NOARGS, nullptr},
+                                    {"extend", Extend, METH_VARARGS, nullptr},
                                     {"plot", Plot, METH_VARARGS, nullptr},
                                     {"plot_channel", PlotChannel, METH_VARARGS, nullptr},
                                     {"plot_series", PlotSeries, METH_VARARGS, nullptr},
@@ -450,6 +460,30 @@ void PythonInterpreter::Cancel(long task) {
   PyObject* app = PyDict_GetItemString(this->Impl_->names, "app");
   const Object told(PyObject_CallMethod(app, "_cancelled", "l", task));
   if (!told) {
+    this->Impl_->Report();
+  }
+}
+
+void PythonInterpreter::Trigger(int action) {
+  const Lock lock;
+  const std::string line = "app.plugins.triggered(" + std::to_string(action) + ")";
+  const Object done(
+      PyRun_String(line.c_str(), Py_file_input, this->Impl_->names, this->Impl_->names));
+  if (!done) {
+    this->Impl_->Report();
+  }
+}
+
+void PythonInterpreter::Change(int panel, int row, const std::string& value) {
+  const Lock lock;
+  PyObject* app = PyDict_GetItemString(this->Impl_->names, "app");
+  const Object json(PyImport_ImportModule("json"));
+  const Object given(json ? PyObject_CallMethod(json.get(), "loads", "s", value.c_str()) : nullptr);
+  const Object plugIns(PyObject_GetAttrString(app, "plugins"));
+  const Object done(given && plugIns ? PyObject_CallMethod(plugIns.get(), "changed", "iiO", panel,
+                                                           row, given.get())
+                                     : nullptr);
+  if (!done) {
     this->Impl_->Report();
   }
 }

@@ -30,6 +30,8 @@ struct PythonHost {
   std::function<void(vtkObject* of, const std::string& what, double a, double b)> clock;
   // The scene in the docks.
   std::function<std::pair<vtkObject*, std::string>()> active;
+  // Plug-ins (PlugIns.h): JSON, answered by JSON.
+  std::function<std::string(const std::string& request)> extend;
   // Plots (TelemetryDocks.h).
   std::function<long(vtkObject* of, const std::string& scene, const std::string& title)> plot;
   std::function<void(long plot, const std::string& channel)> plotChannel;
@@ -68,6 +70,9 @@ public:
   static void Interrupt();
   // Tells Python that the user cancels a task.
   void Cancel(long task);
+  // A plug-in's action, and a row of its panel with the value as JSON.
+  void Trigger(int action);
+  void Change(int panel, int row, const std::string& value);
   // Tells Python what a viewport's session replied to an event (ConnectToSession).
   void Tell(const std::string& viewport, const std::string& event, const std::string& reply);
 

@@ -14,6 +14,8 @@
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QInputDialog>
+#include <QJsonArray>
+#include <QJsonDocument>
 #include <QLabel>
 #include <QMenuBar>
 #include <QMessageBox>
@@ -21,6 +23,7 @@
 #include <QSaveFile>
 #include <QSettings>
 #include <QSpinBox>
+#include <QStandardPaths>
 #include <QStatusBar>
 #include <QTimer>
 #include <QToolButton>
@@ -39,6 +42,7 @@
 #include <dspace/widgets/viewport/SessionInput.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
+#include <dspace/widgets/window/PlugIns.h>
 #include <dspace/widgets/window/ShownScenes.h>
 #include <dspace/widgets/window/TaskStrip.h>
 #include <dspace/widgets/window/TelemetryDocks.h>
@@ -102,6 +106,18 @@ MainWindow::MainWindow(const QString& packages)
       this->Scenes_->AskClock(of, what, a, b);
     }
   };
+  this->PlugIns_ = new PlugIns(this);
+  connect(this->PlugIns_, &PlugIns::triggered, this,
+          [this](int action) { this->Interpreter_->Trigger(action); });
+  connect(this->PlugIns_, &PlugIns::changed, this,
+          [this](int panel, int row, const QJsonValue& value) {
+            QByteArray json = QJsonDocument(QJsonArray{value}).toJson(QJsonDocument::Compact);
+            this->Interpreter_->Change(panel, row, json.mid(1, json.size() - 2).toStdString());
+          });
+  host.extend = [this](const std::string& request) {
+    const auto given = QJsonDocument::fromJson(QByteArray::fromStdString(request)).object();
+    return QJsonDocument(this->PlugIns_->Handle(given)).toJson().toStdString();
+  };
   host.active = [this] { return this->Scenes_->ActiveScene(); };
   host.plot = [this](vtkObject* of, const std::string& scene, const std::string& title) {
     return this->Telemetry_->NewPlot(of, scene, title);
@@ -158,6 +174,8 @@ MainWindow::~MainWindow() {
     delete view.dock.data();
   }
   this->Views_.clear();
+  delete this->PlugIns_;
+  this->PlugIns_ = nullptr;
   delete this->Telemetry_;
   this->Telemetry_ = nullptr;
   delete this->Tasks_;
@@ -246,6 +264,20 @@ bool MainWindow::Connect(const QString& address) {
 
 bool MainWindow::Listen(const QString& address) {
   return this->Run(QStringLiteral("app.listen(%1)").arg(Quoted(address)));
+}
+
+QString MainWindow::PlugInFolder() {
+  return QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) +
+         QStringLiteral("/plugins");
+}
+
+void MainWindow::LoadPlugIns(const QStringList& names) {
+  if (QFileInfo(PlugInFolder()).isDir()) {
+    this->Run(QStringLiteral("app.plugins.load_folder(%1, app)").arg(Quoted(PlugInFolder())));
+  }
+  for (const QString& name : names) {
+    this->Run(QStringLiteral("app.load_plugin(%1)").arg(Quoted(name)));
+  }
 }
 
 bool MainWindow::Open(const QString& path) {
@@ -434,6 +466,9 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   dock->setWidget(widget);
   view = {dock, widget};
   this->addDockWidget(Qt::RightDockWidgetArea, dock);
+  if (this->Views_.size() == 1) {
+    this->PlugIns_->ArrangeBeside(dock);
+  }
   this->Tile();
   if (this->Views_.size() == 1) { // the views get the room: the prompt had all of it
     QTimer::singleShot(0, this, [this, dock = QPointer<QDockWidget>(dock)] {

@@ -10,6 +10,7 @@
 
 #include <QMainWindow>
 #include <QPointer>
+#include <QStringList>
 
 #include "vtkSmartPointer.h"
 
@@ -23,6 +24,7 @@ namespace dspace::widgets {
 class ConsoleWidget;
 class PythonInterpreter;
 class ShownScenes;
+class PlugIns;
 class TaskStrip;
 class TelemetryDocks;
 class TimelineWidget;
@@ -45,6 +47,9 @@ public:
   // app.connect() and app.listen().
   bool Connect(const QString& address);
   bool Listen(const QString& address);
+  // Plug-ins by name, after those in the folder of the user's plug-ins (PlugInFolder()).
+  void LoadPlugIns(const QStringList& names);
+  static QString PlugInFolder();
   bool Run(const QString& python);
   ConsoleWidget* Console() const { return this->Console_; }
   PythonInterpreter* Interpreter() const { return this->Interpreter_.get(); }
@@ -52,6 +57,7 @@ public:
   ViewportWidget* View(const std::string& viewport) const;
   // The scenes that the docks may show.
   ShownScenes* Scenes() const { return this->Scenes_; }
+  PlugIns* Extensions() const { return this->PlugIns_; }
   TelemetryDocks* Telemetry() const { return this->Telemetry_; }
   int ViewCount() const;
   // Every visible viewport is up to date.
@@ -91,6 +97,7 @@ private:
   ConsoleWidget* Console_ = nullptr;
   ShownScenes* Scenes_ = nullptr;
   TaskStrip* Tasks_ = nullptr;
+  PlugIns* PlugIns_ = nullptr;
   TelemetryDocks* Telemetry_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
