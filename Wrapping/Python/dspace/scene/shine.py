@@ -73,7 +73,8 @@ class Shine:
         direction: towards the planet, in `frame`. body: "earth", "moon", "mars", ..., or radius [m] and geometric albedo.
         distance [m] of its centre. phase_deg: 0 to 180, the angle Sun - planet - observer; 0 is the full planet.
         irradiance [W/m^2] by the Sun at the planet: 1361 by default. The planet shines as a Lambertian sphere:
-        irradiance * albedo * (radius / distance)**2 * (sin a + (pi - a) cos a) / pi. color: sRGB.
+        irradiance * albedo * (radius / distance)**2 * (sin a + (pi - a) cos a) / pi. color: sRGB. The albedos of bodies
+        are visual: the irradiance is that of the visible band, stated as if the planet had the Sun's spectrum.
 
             scene.add_planetshine(direction=(0.3, 0, 0.9), body="earth", distance=384.4e6, phase_deg=40)"""
         name = name or (f"{body}shine" if isinstance(body, str) else "planetshine")
