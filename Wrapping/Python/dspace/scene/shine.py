@@ -1,7 +1,7 @@
 """Dim extended lights beside the Sun: planets, and the sky of an atmosphere."""
 import math
 
-from dspace._core.fields import number, reject
+from dspace._core.fields import number, numbers, reject, text
 from dspace.errors import WrongType
 
 # Mean radius [km] and visual geometric albedo: D. R. Williams, NASA Planetary Fact Sheets, NSSDCA.
@@ -58,11 +58,12 @@ class Shine:
         irradiance: diffuse [W/m^2] on level ground, 0 to 1.361e15. A surface whose normal is at an angle a from `up`, in
         `frame`, sees the part (1 + cos a) / 2 of it. What stands around hides none of it, and it throws no shadow. color:
         sRGB. The Sun's own irradiance stays: dim it by what the atmosphere takes (scene.sun.irradiance)."""
+        name = text(name, "the name", "new light")
         about = f"light {name!r}"
         value = number(irradiance, "the irradiance", about)
         if not 0.0 <= value <= 1.361e15:
             reject(about, "the irradiance", irradiance, "0 to 1.361e15 W/m^2")
-        direction = tuple(-float(number(each, "up", about)) for each in up)
+        direction = tuple(-each for each in numbers(up, 3, "up", about))
         return self._scene.add_light(name, direction=direction, frame=frame, color=color, radius_deg=90.0,
                                      intensity=value / SOLAR_CONSTANT)
 
@@ -77,9 +78,11 @@ class Shine:
         are visual: the irradiance is that of the visible band, stated as if the planet had the Sun's spectrum.
 
             scene.add_planetshine(direction=(0.3, 0, 0.9), body="earth", distance=384.4e6, phase_deg=40)"""
-        name = name or (f"{body}shine" if isinstance(body, str) else "planetshine")
+        if name is None:
+            name = f"{body}shine" if isinstance(body, str) else "planetshine"
+        name = text(name, "the name", "new light")
         about = f"light {name!r}"
         value, radius_deg = planetshine(about, body, distance, phase_deg, radius, albedo, irradiance)
-        away = tuple(-float(number(each, "the direction", about)) for each in direction)
+        away = tuple(-each for each in numbers(direction, 3, "the direction", about))
         return self._scene.add_light(name, direction=away, frame=frame, color=color, radius_deg=radius_deg,
                                      intensity=value / SOLAR_CONSTANT)
