@@ -35,7 +35,9 @@ class EglContext : public GraphicsContext {
 public:
   EglContext(EGLDisplay display, EGLContext context, EGLSurface surface, std::string description)
       : Display_(display), Context_(context), Surface_(surface),
-        Description_(std::move(description)) {}
+        Description_(std::move(description)) {
+    this->Made(); // current since TryDisplay()
+  }
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
   ~EglContext() override {
@@ -54,6 +56,7 @@ public:
                   "could not be made current (" + EglErrorText() +
                       "); a context serves one thread at a time");
     }
+    this->Made();
   }
   bool IsCurrent() const override { return eglGetCurrentContext() == this->Context_; }
   void Release() override {

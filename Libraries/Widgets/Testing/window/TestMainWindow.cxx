@@ -10,6 +10,8 @@
 #include <QLineEdit>
 #include <QPlainTextEdit>
 #include <QTemporaryDir>
+#include <QTimer>
+#include <QToolButton>
 #include <QtTest>
 
 #include "OneApplication.h"
@@ -173,4 +175,67 @@ TEST_F(MainWindowTest, TimersAndKeysCallPython) {
   ASSERT_TRUE(window->Run("app.every(0.01, lambda: 1 / 0)"));
   QTest::qWait(200);
   EXPECT_EQ(errors.count("ZeroDivisionError"), 1) << errors.toStdString();
+}
+
+TEST_F(MainWindowTest, AScriptThatLoopsLetsTheWindowLiveAndIsInterrupted) {
+  auto* button = window->Console()->findChild<QToolButton*>("interrupt");
+  ASSERT_TRUE(button);
+  EXPECT_FALSE(button->isEnabled());
+  int ticks = 0;
+  QTimer ticking;
+  QObject::connect(&ticking, &QTimer::timeout, &ticking, [&ticks] { ++ticks; });
+  ticking.start(20);
+  QTimer pressing;
+  QObject::connect(&pressing, &QTimer::timeout, &pressing, [&] {
+    if (ticks > 10 && button->isEnabled()) {
+      QTest::mouseClick(button, Qt::LeftButton);
+      pressing.stop();
+    }
+  });
+  pressing.start(20);
+  EXPECT_FALSE(window->Run("loops = 0\nwhile True:\n    loops += 1"));
+  EXPECT_NE(errors.indexOf("KeyboardInterrupt"), -1) << errors.toStdString();
+  EXPECT_GT(ticks, 10);
+  EXPECT_FALSE(button->isEnabled());
+  EXPECT_FALSE(window->Interpreter()->IsBusy());
+  // A second one, from within which a menu's line runs.
+  QTimer::singleShot(500, window, [] { window->Run("inside = loops"); });
+  QTimer::singleShot(900, window, [] { dspace::widgets::PythonInterpreter::Interrupt(); });
+  EXPECT_FALSE(window->Run("while True:\n    loops += 1"));
+  EXPECT_TRUE(window->Run("assert 0 < inside < loops"));
+}
+
+TEST_F(MainWindowTest, AScriptMayDrawWithASessionOfItsOwn) {
+  ASSERT_TRUE(
+      window->Run("view = app.new_view()\nscene.add_box((1, 1, 1), name='own box')\nview.fit()"))
+      << errors.toStdString();
+  ASSERT_TRUE(Settled());
+  const char* const script = R"(
+import dspace
+with dspace.Session() as other:
+    place = other.scene()
+    place.add_sphere(1.0)
+    picture = place.add_viewport((64, 48), place.add_camera(eye=(4, 0, 1), target=(0, 0, 0))).image()
+    print('drawn', picture.shape, int(picture.max()) > 100)
+    kept = dspace.Session()   # stays with its context
+    still = kept.scene().add_viewport((32, 32), kept.scene().add_camera(eye=(4, 0, 1), target=(0, 0, 0)))
+    still.image()
+)";
+  for (int round = 0; round < 3; ++round) {
+    printed.clear();
+    ASSERT_TRUE(window->Run(script)) << errors.toStdString();
+    EXPECT_NE(printed.indexOf("drawn (48, 64, 3) True"), -1) << printed.toStdString();
+    // The window's views go on, and a picture of the same scene can be read.
+    ASSERT_TRUE(window->Run("view.camera.look_at(eye=(3, 2, 1), target=(0, 0, 0))\n"
+                            "print('own', int(view.image().max()))"))
+        << errors.toStdString();
+    ASSERT_TRUE(Settled());
+    ViewportWidget* widget = window->View("view 1") ? window->View("view 1") : nullptr;
+    if (widget) {
+      widget->repaint();
+      EXPECT_FALSE(widget->grab().isNull());
+    }
+  }
+  EXPECT_TRUE(window->Open(ShippedData() + "/field/field.tif")) << errors.toStdString();
+  EXPECT_TRUE(Settled());
 }

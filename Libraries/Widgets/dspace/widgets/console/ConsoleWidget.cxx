@@ -32,7 +32,8 @@ QString CommonStart(const QStringList& words) {
 
 ConsoleWidget::ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent)
     : QWidget(parent), Interpreter_(interpreter), Output_(new QPlainTextEdit(this)),
-      Line_(new QLineEdit(this)), Prompt_(new QToolButton(this)) {
+      Line_(new QLineEdit(this)), Prompt_(new QToolButton(this)),
+      Interrupt_(new QToolButton(this)) {
   const QFont font = QFontDatabase::systemFont(QFontDatabase::FixedFont);
   this->Output_->setFont(font);
   this->Output_->setReadOnly(true);
@@ -49,9 +50,17 @@ ConsoleWidget::ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent)
   this->Prompt_->setAutoRaise(true);
   this->Prompt_->setFocusPolicy(Qt::NoFocus);
   this->Prompt_->setToolTip(tr("Run the line"));
+  this->Interrupt_->setObjectName(QStringLiteral("interrupt"));
+  this->Interrupt_->setText(tr("Interrupt"));
+  this->Interrupt_->setToolTip(tr("Ends the script that runs (Ctrl+C)"));
+  this->Interrupt_->setEnabled(false);
+  connect(this->Interrupt_, &QToolButton::clicked, interpreter,
+          [] { PythonInterpreter::Interrupt(); });
+  connect(interpreter, &PythonInterpreter::busyChanged, this->Interrupt_, &QToolButton::setEnabled);
   auto* row = new QHBoxLayout;
   row->addWidget(this->Prompt_);
   row->addWidget(this->Line_);
+  row->addWidget(this->Interrupt_);
   auto* all = new QVBoxLayout(this);
   all->setContentsMargins(4, 4, 4, 4);
   all->addWidget(this->Output_);
@@ -141,6 +150,11 @@ void ConsoleWidget::Complete() {
 bool ConsoleWidget::eventFilter(QObject* object, QEvent* event) {
   if (object == this->Line_ && event->type() == QEvent::KeyPress) {
     const auto* key = static_cast<QKeyEvent*>(event);
+    if (key->matches(QKeySequence::Copy) && !this->Line_->hasSelectedText() &&
+        this->Interpreter_->IsBusy()) {
+      PythonInterpreter::Interrupt();
+      return true;
+    }
     switch (key->key()) {
     case Qt::Key_Up:
       this->Recall(1);

@@ -15,6 +15,7 @@ class PythonInterpreter;
 
 // What was typed and printed, and a line to type in: Return runs it, Up and Down bring back earlier
 // lines, Tab completes a name. Lines that menus run are shown as if they were typed.
+// A button, and Ctrl+C where no text is selected, interrupt what takes long.
 class ConsoleWidget : public QWidget {
   Q_OBJECT
 
@@ -39,6 +40,7 @@ private:
   QPlainTextEdit* Output_;
   QLineEdit* Line_;
   QToolButton* Prompt_;
+  QToolButton* Interrupt_;
   QStringList History_;
   QStringList Script_;
   QString Pending_;  // lines of a compound statement

@@ -12,17 +12,27 @@
 #include "vtkDspaceSession.h"
 #include "vtkPythonUtil.h"
 
+#include <dspace/widgets/console/PythonAttendant.h>
+#include <dspace/widgets/viewport/QtContext.h>
+
 namespace dspace::widgets {
 namespace {
 
-class Lock { // of the interpreter
+class Lock { // of the interpreter, for a call of Python
 public:
-  Lock() : State_(PyGILState_Ensure()) {}
+  explicit Lock(PythonAttendant* attendant) : Attendant_(attendant), State_(PyGILState_Ensure()) {
+    this->Attendant_->Begin();
+  }
   Lock(const Lock&) = delete;
   Lock& operator=(const Lock&) = delete;
-  ~Lock() { PyGILState_Release(this->State_); }
+  ~Lock() {
+    this->Attendant_->End();
+    PyGILState_Release(this->State_);
+    ReleaseOtherContexts(); // scripts may draw with sessions of their own
+  }
 
 private:
+  PythonAttendant* Attendant_;
   PyGILState_STATE State_;
 };
 
@@ -108,6 +118,7 @@ struct PythonInterpreter::Internals {
   PythonHost host;
   PyObject* names = nullptr; // of __main__; borrowed
   PyThreadState* state = nullptr;
+  std::unique_ptr<PythonAttendant> attendant; // while Python runs
   struct Timer {
     std::unique_ptr<QTimer> timer;
     PyObject* callback;
@@ -280,7 +291,7 @@ struct PythonInterpreter::Internals {
     Py_INCREF(callback);
     Timer timer{std::make_unique<QTimer>(), callback};
     QObject::connect(timer.timer.get(), &QTimer::timeout, self.interpreter, [number] {
-      const Lock lock;
+      const Lock lock(The->attendant.get());
       const auto found = The->timers.find(number);
       if (found == The->timers.end()) {
         return;
@@ -369,6 +380,8 @@ PythonInterpreter::PythonInterpreter(vtkDspaceSession* session, PythonHost host,
     throw std::runtime_error(std::string("Python does not start: ") +
                              (status.err_msg ? status.err_msg : "no reason given"));
   }
+  self.attendant =
+      std::make_unique<PythonAttendant>([this](bool busy) { emit this->busyChanged(busy); });
   self.names = PyModule_GetDict(PyImport_AddModule("__main__"));
   std::string error;
   {
@@ -389,6 +402,7 @@ PythonInterpreter::PythonInterpreter(vtkDspaceSession* session, PythonHost host,
 
 PythonInterpreter::~PythonInterpreter() {
   Internals& self = *this->Impl_;
+  self.attendant.reset();
   PyEval_RestoreThread(self.state);
   while (!self.timers.empty()) {
     self.Drop(self.timers.begin()->first);
@@ -402,7 +416,7 @@ PythonInterpreter::~PythonInterpreter() {
 }
 
 bool PythonInterpreter::Push(const QString& source) {
-  const Lock lock;
+  const Lock lock(this->Impl_->attendant.get());
   Internals& self = *this->Impl_;
   PyObject* console = PyDict_GetItemString(self.names, "_console");
   const Object more(
@@ -415,7 +429,7 @@ bool PythonInterpreter::Push(const QString& source) {
 }
 
 bool PythonInterpreter::Run(const QString& source, const QString& name) {
-  const Lock lock;
+  const Lock lock(this->Impl_->attendant.get());
   Internals& self = *this->Impl_;
   const Object done = self.Call("_run", Object(Py_BuildValue("(ss)", source.toUtf8().constData(),
                                                              name.toUtf8().constData())));
@@ -436,7 +450,7 @@ bool PythonInterpreter::RunFile(const QString& path) {
 }
 
 QStringList PythonInterpreter::Complete(const QString& line) {
-  const Lock lock;
+  const Lock lock(this->Impl_->attendant.get());
   Internals& self = *this->Impl_;
   const Object found =
       self.Call("_complete", Object(Py_BuildValue("(s)", line.toUtf8().constData())));
@@ -451,12 +465,16 @@ QStringList PythonInterpreter::Complete(const QString& line) {
   return names;
 }
 
+bool PythonInterpreter::IsBusy() const {
+  return this->Impl_->attendant->IsBusy();
+}
+
 void PythonInterpreter::Interrupt() {
   PyErr_SetInterrupt();
 }
 
 void PythonInterpreter::Cancel(long task) {
-  const Lock lock;
+  const Lock lock(this->Impl_->attendant.get());
   PyObject* app = PyDict_GetItemString(this->Impl_->names, "app");
   const Object told(PyObject_CallMethod(app, "_cancelled", "l", task));
   if (!told) {
@@ -465,7 +483,7 @@ void PythonInterpreter::Cancel(long task) {
 }
 
 void PythonInterpreter::Trigger(int action) {
-  const Lock lock;
+  const Lock lock(this->Impl_->attendant.get());
   const std::string line = "app.plugins.triggered(" + std::to_string(action) + ")";
   const Object done(
       PyRun_String(line.c_str(), Py_file_input, this->Impl_->names, this->Impl_->names));
@@ -475,7 +493,7 @@ void PythonInterpreter::Trigger(int action) {
 }
 
 void PythonInterpreter::Change(int panel, int row, const std::string& value) {
-  const Lock lock;
+  const Lock lock(this->Impl_->attendant.get());
   PyObject* app = PyDict_GetItemString(this->Impl_->names, "app");
   const Object json(PyImport_ImportModule("json"));
   const Object given(json ? PyObject_CallMethod(json.get(), "loads", "s", value.c_str()) : nullptr);
@@ -490,7 +508,7 @@ void PythonInterpreter::Change(int panel, int row, const std::string& value) {
 
 void PythonInterpreter::Tell(const std::string& viewport, const std::string& event,
                              const std::string& reply) {
-  const Lock lock;
+  const Lock lock(this->Impl_->attendant.get());
   Internals& self = *this->Impl_;
   PyObject* app = PyDict_GetItemString(self.names, "app");
   const Object told(PyObject_CallMethod(app, "_told", "sy#y#", viewport.c_str(), event.data(),

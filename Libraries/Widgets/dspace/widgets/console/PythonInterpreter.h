@@ -68,6 +68,9 @@ public:
   QStringList Complete(const QString& line);
   // Raises KeyboardInterrupt in what runs.
   static void Interrupt();
+  // A call has taken a fifth of a second and goes on; the windows live meanwhile
+  // (PythonAttendant.h).
+  bool IsBusy() const;
   // Tells Python that the user cancels a task.
   void Cancel(long task);
   // A plug-in's action, and a row of its panel with the value as JSON.
@@ -78,6 +81,7 @@ public:
 
 signals:
   void written(const QString& text, bool error);
+  void busyChanged(bool busy);
 
 private:
   struct Internals;

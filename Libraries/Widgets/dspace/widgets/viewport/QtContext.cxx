@@ -49,11 +49,17 @@ public:
     this->Surface_.create();
   }
   void MakeCurrent() override {
+    if (Latest() && Latest() != this) {
+      Latest()->Release(); // EGL of a session that is no window's: GLX cannot draw beside it
+    }
     if (!this->Context_.makeCurrent(&this->Surface_)) {
       throw Error(Error::Kind::Resource, "OpenGL", "the context of Qt cannot be made current");
     }
+    this->Made();
   }
-  bool IsCurrent() const override { return QOpenGLContext::currentContext() == &this->Context_; }
+  bool IsCurrent() const override {
+    return QOpenGLContext::currentContext() == &this->Context_ && Latest() == this;
+  }
   void Release() override {
     if (this->IsCurrent()) {
       QOpenGLContext* context = QOpenGLContext::currentContext();
@@ -71,6 +77,13 @@ private:
 };
 
 } // namespace
+
+void ReleaseOtherContexts() {
+  GraphicsContext* latest = GraphicsContext::Latest();
+  if (latest && !dynamic_cast<QtContext*>(latest)) {
+    latest->Release();
+  }
+}
 
 void PrepareApplication() {
   if (QCoreApplication::instance()) {

@@ -11,6 +11,10 @@ namespace dspace::widgets {
 // Before the application object is created: its contexts share textures, and OpenGL is 4.5 core.
 void PrepareApplication();
 
+// Takes a context that is not of MakeQtContext() off this thread, so that Qt's can draw: after code
+// that may have drawn with a render context of its own.
+void ReleaseOtherContexts();
+
 // A context that shares its textures with those of all widgets, for
 // vtkDspaceRenderContext::Initialize(). Needs an application that PrepareApplication() preceded.
 // Throws Error(Resource) with the version that OpenGL has here.

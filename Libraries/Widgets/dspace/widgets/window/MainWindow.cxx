@@ -551,6 +551,9 @@ void MainWindow::Tile() {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+  if (this->Interpreter_->IsBusy()) {
+    PythonInterpreter::Interrupt();
+  }
   event->accept();
 }
 
