@@ -1,0 +1,158 @@
+#include <dspace/sky/KernelSet.h>
+
+#include <algorithm>
+
+#include <dspace/Checks.h>
+#include <dspace/FilesRead.h>
+#include <dspace/ephemeris/ErfaSource.h>
+#include <dspace/ephemeris/SpkSource.h>
+#include <dspace/kernels/LeapSecondKernel.h>
+#include <dspace/kernels/MetaKernel.h>
+#include <dspace/kernels/TextKernel.h>
+
+namespace dspace {
+namespace {
+
+constexpr int DeepestMetaKernel = 16;
+
+// One for all: opening it reads its table's header, and tables of the day that are asked for.
+std::shared_ptr<const De405Source> InstalledDe405() {
+  static const std::shared_ptr<const De405Source> source =
+      De405Source::IsInstalled() ? std::make_shared<const De405Source>() : nullptr;
+  return source;
+}
+
+std::shared_ptr<const StateSource> Erfa() {
+  static const std::shared_ptr<const StateSource> source = std::make_shared<const ErfaSource>();
+  return source;
+}
+
+} // namespace
+
+// One of the members is set.
+struct KernelSet::File {
+  std::string path;
+  std::shared_ptr<const TextKernel> text;
+  std::shared_ptr<const SpkSource> states;
+  std::shared_ptr<const BinaryPck> orientations;
+  std::shared_ptr<const CkFile> attitudes;
+};
+
+KernelSet::KernelSet() {
+  this->Build();
+}
+
+void KernelSet::Open(const std::string& path, int depth) {
+  if (depth > DeepestMetaKernel) {
+    Reject("text kernel '" + path + "'", "meta-kernels load each other, " +
+                                             std::to_string(DeepestMetaKernel) +
+                                             " deep; accepted: meta-kernels without loops");
+  }
+  const auto present = std::find_if(this->Files_.begin(), this->Files_.end(),
+                                    [&](const auto& file) { return file->path == path; });
+  if (present != this->Files_.end()) {
+    std::rotate(present, present + 1, this->Files_.end());
+    return;
+  }
+  NoteFileRead(path); // before it is opened
+  auto file = std::make_shared<File>();
+  file->path = path;
+  if (TextKernel::Recognizes(path)) {
+    auto text = std::make_shared<const TextKernel>(TextKernel::Read(path));
+    if (IsMetaKernel(*text)) {
+      for (const std::string& each : KernelsToLoad(*text)) {
+        this->Open(each, depth + 1);
+      }
+    }
+    file->text = text;
+  } else {
+    auto daf = std::make_shared<const DafFile>(path);
+    if (daf->Kind() == "CK") {
+      file->attitudes = std::make_shared<const CkFile>(daf);
+    } else if (daf->Kind() == "PCK" || (daf->Kind().empty() && daf->IntegerCount() == 5)) {
+      file->orientations = std::make_shared<const BinaryPck>(daf);
+    } else {
+      file->states = std::make_shared<const SpkSource>(std::make_shared<const SpkFile>(daf));
+    }
+  }
+  this->Files_.push_back(std::move(file));
+}
+
+void KernelSet::Build() {
+  FrameSources sources;
+  auto pool = std::make_shared<KernelPool>();
+  this->Ephemeris_ = std::make_shared<Ephemeris>();
+  for (const std::shared_ptr<const File>& file : this->Files_) {
+    if (file->text) {
+      pool->Add(*file->text);
+    } else if (file->states) {
+      this->Ephemeris_->Load(file->states);
+    } else if (file->orientations) {
+      sources.orientations.push_back(file->orientations);
+    } else {
+      sources.attitudes.push_back(file->attitudes);
+    }
+  }
+  if (HasLeapSeconds(*pool)) {
+    sources.scales = TimeScalesOf(*pool);
+  }
+  if (pool->Has("NAIF_BODY_NAME") || pool->Has("NAIF_BODY_CODE")) {
+    const std::vector<std::string>& names = pool->Texts("NAIF_BODY_NAME");
+    const std::vector<double>& codes = pool->Numbers("NAIF_BODY_CODE", names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      this->Ephemeris_->Names().Define(names[i], int(codes[i]));
+    }
+  }
+  sources.pool = pool;
+  sources.de405 = InstalledDe405();
+  if (sources.de405) {
+    this->Ephemeris_->Load(sources.de405, Ephemeris::Priority::Last);
+  }
+  this->Ephemeris_->Load(Erfa(), Ephemeris::Priority::Last);
+  this->Ephemeris_->SetTimeScales(sources.scales);
+  auto frames = std::make_shared<const Frames>(std::move(sources));
+  this->Ephemeris_->SetFrames(frames);
+  this->Frames_ = frames;
+}
+
+std::shared_ptr<const KernelSet> KernelSet::With(const std::string& path) const {
+  auto set = std::make_shared<KernelSet>(*this);
+  set->Open(path, 0);
+  set->Paths_.erase(std::remove(set->Paths_.begin(), set->Paths_.end(), path), set->Paths_.end());
+  set->Paths_.push_back(path);
+  set->Build();
+  return set;
+}
+
+std::shared_ptr<const KernelSet> KernelSet::Without(const std::string& path) const {
+  auto set = std::make_shared<KernelSet>();
+  bool found = false;
+  std::string known;
+  for (const std::string& each : this->Paths_) {
+    known += (known.empty() ? "'" : ", '") + each + "'";
+    if (each == path) {
+      found = true;
+      continue;
+    }
+    set->Paths_.push_back(each);
+  }
+  if (!found) {
+    throw Error(Error::Kind::NotFound, "kernel '" + path + "'",
+                "it is not loaded; loaded: " + (known.empty() ? "none" : known));
+  }
+  for (const std::string& each : set->Paths_) {
+    set->Open(each, 0);
+  }
+  set->Build();
+  return set;
+}
+
+std::vector<std::string> KernelSet::Files() const {
+  std::vector<std::string> out;
+  for (const std::shared_ptr<const File>& file : this->Files_) {
+    out.push_back(file->path);
+  }
+  return out;
+}
+
+} // namespace dspace

@@ -1,0 +1,89 @@
+#include <dspace/sky/SkyView.h>
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include <dspace/Checks.h>
+#include <dspace/orientation/BodyConstants.h>
+
+namespace dspace {
+namespace {
+
+constexpr int Sun = 10;
+constexpr int MostIterations = 10;
+
+// Radii of bodies that have none stay unknown.
+double LargestRadius(const Frames& frames, int body) {
+  try {
+    return BodyRadii(frames.Pool(), body).maxCoeff();
+  } catch (const Error& error) {
+    if (error.GetKind() != Error::Kind::NotFound) {
+      throw;
+    }
+    return 0.0;
+  }
+}
+
+} // namespace
+
+Eigen::Vector3d Aberrated(const Eigen::Vector3d& toTarget, const Eigen::Vector3d& velocity) {
+  const Eigen::Vector3d axis = toTarget.normalized().cross(velocity / SpeedOfLight);
+  const double sine = axis.norm();
+  if (sine == 0.0) {
+    return toTarget;
+  }
+  return Eigen::AngleAxisd(std::asin(sine), axis / sine) * toTarget;
+}
+
+Sighting Sight(const Ephemeris& ephemeris, int target, const State& observer, double tdb) {
+  Sighting out;
+  for (int i = 0; i < MostIterations; ++i) {
+    out.state = ephemeris.FromBarycenter(target, tdb - out.lightTime) - observer;
+    const double before = out.lightTime;
+    out.lightTime = out.state.position.norm() / SpeedOfLight;
+    if (std::abs(out.lightTime - before) <= 1e-10 * out.lightTime) {
+      break;
+    }
+  }
+  return out;
+}
+
+State PlaceState(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
+                 double tdb) {
+  const StateTurn turn = frames.Turn(place.frame, "J2000", tdb);
+  return ephemeris.FromBarycenter(place.body, tdb) +
+         turn * State{place.axes.position, Eigen::Vector3d::Zero()};
+}
+
+SkyBody Look(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place, int target,
+             double tdb) {
+  if (target == place.body) {
+    Reject("body '" + ephemeris.Names().NameOf(target) + "'",
+           "it is the body of the site; accepted: another one");
+  }
+  const State observer = PlaceState(ephemeris, frames, place, tdb);
+  const Sighting sighting = Sight(ephemeris, target, observer, tdb);
+  const Eigen::Vector3d apparent = Aberrated(sighting.state.position, observer.velocity);
+  SkyBody out;
+  out.eastNorthUp =
+      (place.axes.toLocal * (frames.Rotation("J2000", place.frame, tdb) * apparent)).normalized();
+  out.direction = ToAzimuthElevation(out.eastNorthUp);
+  out.range = sighting.state.position.norm();
+  out.lightTime = sighting.lightTime;
+  const double radius = LargestRadius(frames, target);
+  if (radius > 0.0) {
+    out.radius_deg = std::asin(std::min(1.0, radius / out.range)) * 180.0 / M_PI;
+  }
+  if (target != Sun) {
+    // The light that arrives now left the target then, and the Sun before.
+    const double left = tdb - sighting.lightTime;
+    const Eigen::Vector3d toSun =
+        Sight(ephemeris, Sun, ephemeris.FromBarycenter(target, left), left).state.position;
+    const double cosine = toSun.normalized().dot(-sighting.state.position.normalized());
+    out.litFraction = 0.5 * (1.0 + cosine);
+  }
+  return out;
+}
+
+} // namespace dspace

@@ -1,0 +1,82 @@
+#include <dspace/sky/SubPoints.h>
+
+#include <cmath>
+
+#include <dspace/Checks.h>
+#include <dspace/orientation/BodyConstants.h>
+#include <dspace/orientation/Site.h>
+#include <dspace/sky/SkyView.h>
+
+namespace dspace {
+namespace {
+
+constexpr int Sun = 10;
+
+// The point below `direction` (J2000) at `epoch`.
+SubPoint Below(const Frames& frames, int body, const std::string& frame, double epoch,
+               const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d radii = BodyRadii(frames.Pool(), body);
+  const Eigen::Vector3d d = (frames.Rotation("J2000", frame, epoch) * direction).normalized();
+  const LongitudeLatitude place = ToLongitudeLatitude(d);
+  SubPoint out;
+  out.longitude_deg = place.longitude_deg;
+  out.latitude_deg = place.latitude_deg;
+  out.geodetic_latitude_deg = GeodeticLatitude(place.latitude_deg, radii);
+  out.position = d / d.cwiseQuotient(radii).norm();
+  out.epoch = epoch;
+  return out;
+}
+
+std::string FrameOf(const Frames& frames, int body, const std::string& frame) {
+  return frame.empty() ? frames.Table().BodyFixed(body).name : frame;
+}
+
+void RequireOther(const Ephemeris& ephemeris, int body, int other) {
+  if (body == other) {
+    Reject("body '" + ephemeris.Names().NameOf(body) + "'",
+           "a point below itself is asked for; accepted: another body");
+  }
+}
+
+// The Sun's direction as it arrives at the body's centre.
+Eigen::Vector3d SunFrom(const Ephemeris& ephemeris, int body, double epoch) {
+  const State at = ephemeris.FromBarycenter(body, epoch);
+  return Aberrated(Sight(ephemeris, Sun, at, epoch).state.position, at.velocity);
+}
+
+} // namespace
+
+SubPoint SubSolarPoint(const Ephemeris& ephemeris, const Frames& frames, int body,
+                       const std::string& frame, double tdb, std::optional<int> observer) {
+  RequireOther(ephemeris, body, Sun);
+  const std::string axes = FrameOf(frames, body, frame);
+  if (!observer) {
+    return Below(frames, body, axes, tdb, SunFrom(ephemeris, body, tdb));
+  }
+  RequireOther(ephemeris, body, *observer);
+  const State eye = ephemeris.FromBarycenter(*observer, tdb);
+  SubPoint out;
+  double lightTime = Sight(ephemeris, body, eye, tdb).lightTime; // of the centre
+  for (int i = 0; i < 3; ++i) {
+    const double epoch = tdb - lightTime;
+    out = Below(frames, body, axes, epoch, SunFrom(ephemeris, body, epoch));
+    const Eigen::Vector3d point = ephemeris.FromBarycenter(body, epoch).position +
+                                  frames.Rotation(axes, "J2000", epoch) * out.position;
+    lightTime = (point - eye.position).norm() / SpeedOfLight;
+  }
+  return out;
+}
+
+SubPoint SubObserverPoint(const Ephemeris& ephemeris, const Frames& frames, int body,
+                          const std::string& frame, int observer, double tdb) {
+  RequireOther(ephemeris, body, observer);
+  const std::string axes = FrameOf(frames, body, frame);
+  const State eye = ephemeris.FromBarycenter(observer, tdb);
+  const Sighting sighting = Sight(ephemeris, body, eye, tdb);
+  const Eigen::Vector3d back = -Aberrated(sighting.state.position, eye.velocity);
+  const double radius = BodyRadii(frames.Pool(), body).maxCoeff();
+  // The point is nearer than the centre by about a radius.
+  return Below(frames, body, axes, tdb - sighting.lightTime + radius / SpeedOfLight, back);
+}
+
+} // namespace dspace
