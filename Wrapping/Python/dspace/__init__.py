@@ -39,6 +39,7 @@ _HOMES = {
     "Joint": "objects.robots", "Robot": "objects.robots",
     "Movie": "movies.movie",
     "Playback": "playback.playback", "Recording": "recording.recording", "RecordingFile": "recording.file",
+    "Kernels": "sky.sky", "ReferenceFrames": "sky.sky",
     "Scene": "scene.scene", "Sun": "scene.sun", "SceneActors": "scene.exports",
     "Pick": "scene.viewport", "Viewport": "scene.viewport",
     "Explanation": "scene.explanation", "Input": "scene.inputs",

@@ -49,6 +49,7 @@ Interpreter::Interpreter() {
   AddNodeCommands(this->Registry_);
   AddFragmentCommands(this->Registry_);
   AddSunCommands(this->Registry_);
+  AddSkyCommands(this->Registry_);
   AddCameraCommands(this->Registry_);
   AddTerrainCommands(this->Registry_);
   AddExportCommands(this->Registry_);

@@ -70,6 +70,7 @@ void AddRobotCommands(Registry& registry);
 void AddNodeCommands(Registry& registry);
 void AddFragmentCommands(Registry& registry);
 void AddSunCommands(Registry& registry);
+void AddSkyCommands(Registry& registry);
 void AddCameraCommands(Registry& registry);
 void AddTerrainCommands(Registry& registry);
 void AddExportCommands(Registry& registry);

@@ -8,6 +8,7 @@
 #include <dspace/ledger/LedgerFrames.h>
 #include <dspace/ledger/LedgerNames.h>
 #include <dspace/ledger/LedgerObjects.h>
+#include <dspace/ledger/LedgerSky.h>
 #include <dspace/ledger/LedgerViewports.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/CommandTraits.h>
@@ -23,6 +24,7 @@ struct LedgerScene {
   LedgerNames names;
   LedgerFrames frames;
   LedgerObjects objects;
+  LedgerSky sky;
   Telemetry telemetry;
   MessageLog messages;
 
@@ -30,6 +32,18 @@ struct LedgerScene {
     const LedgerFrames::Removed removed = this->frames.Remove(frame);
     this->objects.RemoveOn(removed);
     this->names.RemoveLightsOn(removed.frames);
+    this->sky.RemoveOn(removed.frames);
+  }
+
+  bool AddSky(const v1::Command& command, const v1::Reply& reply) {
+    for (const v1::Command& effect : LedgerSky::Effects(command, reply)) {
+      if (effect.has_set_poses()) {
+        this->frames.SetPoses(effect.set_poses());
+      } else {
+        this->names.Add(effect, {});
+      }
+    }
+    return this->sky.Add(command);
   }
 
   bool AddFrames(const v1::Command& command, const v1::Reply& reply) {
@@ -158,7 +172,9 @@ struct LedgerScene {
     this->objects.PutOrphanedVisuals(name, fragments, out);
     this->frames.Put(name, fragments, out);
     this->objects.Put(name, this->frames, fragments, state, out);
+    this->sky.Put(name, out);
     this->names.PutLast(name, out);
+    this->sky.PutLast(name, out);
     this->telemetry.Put(name, out);
     this->messages.Put(
         name, [this](LedgerId frame) { return this->frames.Contains(frame); }, out);
@@ -231,8 +247,9 @@ void Ledger::Impl::Apply(const v1::Command& accepted, const v1::Reply& reply,
   if (found == this->scenes.end()) {
     throw Error(Error::Kind::Internal, "ledger", "there is no scene '" + name + "'");
   }
-  if (!(found->second.AddFrames(accepted, reply) || found->second.AddObjects(accepted, reply) ||
-        found->second.AddMessages(accepted) || found->second.names.Add(accepted, reply))) {
+  if (!(found->second.AddSky(accepted, reply) || found->second.AddFrames(accepted, reply) ||
+        found->second.AddObjects(accepted, reply) || found->second.AddMessages(accepted) ||
+        found->second.names.Add(accepted, reply))) {
     throw Error(Error::Kind::Internal, "ledger",
                 "its .proto states `kept: LEDGER`, but the ledger has no code for it");
   }

@@ -233,6 +233,7 @@ void LedgerNames::PutLast(const std::string& scene, Emit out) const {
     v1::SetTime* time = NewCommand(scene, out).mutable_set_time();
     time->set_put_lags(true);
     time->set_time_s(this->Time_.value_or(0.0));
+    time->mutable_sky()->set_time_s(time->time_s()); // what follows the time is in place
     for (const auto& [camera, lag] : this->Lags_) {
       *time->add_lag() = lag;
     }

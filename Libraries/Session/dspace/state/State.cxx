@@ -42,6 +42,7 @@ std::vector<Part> SceneState::GroundOf(const GraphicsObject& object,
 }
 
 void SceneState::EraseRemoved() {
+  this->sky.EraseRemoved(this->scene->Frames());
   const auto& objects = this->scene->Objects();
   const auto gone = [&objects](ObjectId id) { return objects.count(id) == 0; };
   for (auto it = this->robots.begin(); it != this->robots.end();) {

@@ -21,6 +21,7 @@
 #include <dspace/state/ModelCache.h>
 #include <dspace/state/ModelNodes.h>
 #include <dspace/state/Robot.h>
+#include <dspace/state/SkyMotions.h>
 #include <dspace/state/Telemetry.h>
 #include <dspace/state/TerrainObject.h>
 
@@ -48,6 +49,7 @@ struct SceneState {
   std::map<ObjectId, std::pair<double, double>> tilts; // warning and limit of tilt markers [deg]
   std::map<ObjectId, v1::CreateText> texts;            // with their style
   std::map<ObjectId, DrawnObject> drawn;
+  SkyMotions sky;
   Telemetry telemetry;
   MessageLog messages;
   std::unique_ptr<FrameFollower> follower; // null while the frames are not followed

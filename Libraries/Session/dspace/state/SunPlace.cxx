@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include <dspace/Checks.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/messages/SunMessages.h>
 #include <dspace/state/TerrainObject.h>
 
 namespace dspace::session {
@@ -25,6 +27,20 @@ const Light* FindSunLight(const Scene& scene) {
   const auto found = std::find_if(lights.begin(), lights.end(),
                                   [](const Light& light) { return light.name == SunName; });
   return found == lights.end() ? nullptr : &*found;
+}
+
+Light MovedSun(const Scene& scene, const v1::SunState& sun) {
+  v1::SetLight light = DefaultSun();
+  if (const Light* present = FindSunLight(scene)) {
+    if (!IsSun(*present)) {
+      Reject(SunLabel,
+             "it is not directional, hence no Sun; accepted: remove it, or give it the kind "
+             "directional, first");
+    }
+    Put(*present, &light);
+  }
+  ChangeSun(sun, light);
+  return ToLight(light);
 }
 
 Eigen::Vector3d TowardsSun(const Scene& scene, const Light& sun, FrameId frame) {

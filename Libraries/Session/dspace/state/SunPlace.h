@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <dspace/proto/common.pb.h>
 #include <dspace/raster/RasterPlace.h>
 #include <dspace/scene/Scene.h>
 #include <dspace/surface/TerrainSurface.h>
@@ -16,6 +17,10 @@ class TerrainObject;
 
 // The light of the Sun's name, also one that is not directional; null: there is none.
 const Light* FindSunLight(const Scene& scene);
+
+// The light "sun" (a new one where there is none) as a change makes it. Throws as ChangeSun, and
+// Error(InvalidArgument) where the light is not directional.
+Light MovedSun(const Scene& scene, const v1::SunState& sun);
 
 // Towards the Sun, unit, in `frame`.
 Eigen::Vector3d TowardsSun(const Scene& scene, const Light& sun, FrameId frame);

@@ -84,6 +84,15 @@ class Session:
         names = self._client.execute(command).viewports.name
         return Named("viewport", {name: Viewport(self._client, name) for name in names})
 
+    @property
+    def frames(self):
+        """Rotations between reference frames, with the kernels of the scene "scene": see dspace.ReferenceFrames."""
+        return self.scene().reference_frames
+
+    def sky(self, *arguments, **keywords):
+        """Where bodies stand over a place, with the kernels of the scene "scene": see Scene.sky."""
+        return self.scene().sky(*arguments, **keywords)
+
     def render(self):
         """Draws every visible viewport whose picture changed. Returns their number."""
         command = pb.Command()

@@ -23,6 +23,7 @@ from dspace.scene.membership import SceneMembership
 from dspace.scene.shine import Shine
 from dspace.scene.sun import Sun
 from dspace.scene.viewport import SIZE, Viewport
+from dspace.sky.sky import Kernels, ReferenceFrames, SceneSky
 from dspace.telemetry.messages import SceneMessages
 from dspace.telemetry.telemetry import Telemetry
 from dspace.terrain.factory import TerrainFactory
@@ -191,6 +192,22 @@ class Scene(Strict):
     events = delegate(SceneMessages, "events")
     ask = delegate(SceneMessages, "ask")
     questions = delegate(SceneMessages, "questions")
+
+    # --- Sky -----------------------------------------------------------------------------------
+
+    @property
+    def kernels(self):
+        """Its SPICE kernels: see dspace.Kernels."""
+        return Kernels(self)
+
+    @property
+    def reference_frames(self):
+        """Rotations between reference frames: see dspace.ReferenceFrames."""
+        return ReferenceFrames(self)
+
+    sky = delegate(SceneSky, "sky")
+    add_celestial_frame = delegate(SceneSky, "add_celestial_frame")
+    stop_motion = delegate(SceneSky, "stop_motion")
 
     # --- Objects -------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ import numpy as np
 from dspace._core.fields import keywords, numbers, put, put_given, put_vector, reject
 from dspace._core.strict import Strict
 from dspace.errors import InvalidArgument, WrongType
+from dspace.sky.sky import follow_sun, stop_sun
 from dspace.terrain.terrain import Terrain
 
 SUN = ("direction", "frame", "azimuth_deg", "elevation_deg", "terrain", "at", "radius_deg", "irradiance",
@@ -55,6 +56,21 @@ class Sun(Strict):
         put_given(message, "light 'sun'", radius_deg=values.get("radius_deg"), irradiance=values.get("irradiance"),
                   distance_au=values.get("distance_au"))
         self._scene._execute(command)
+
+    def follow(self, frame=None, body=None, axes=None, site=None, geodetic=False):
+        """Lets it follow the scene's time: direction, disc and irradiance (1361 W/m^2 at 1 au) as the Sun shines on a
+        place, at once and whenever the time is set. Light time and stellar aberration are applied.
+
+        frame: in which it keeps its direction (default: the root). The place is what the frame stands for
+        (Scene.add_celestial_frame), or `body` (a name or NAIF id) with the reference frame `axes` (default J2000) or
+        with a `site` = longitude, latitude [deg], height [m], whose axes are X east, Y north, Z up.
+
+            scene.sun.follow(body="moon", site=(29.1957, -84.7906))"""
+        follow_sun(self._scene, frame, body, axes, site, geodetic)
+
+    def stop(self):
+        """Ends follow(): the Sun stays where it is, and may be set again."""
+        stop_sun(self._scene)
 
     def _put_place(self, message, terrain, at):
         """Writes the place on a terrain into a message."""

@@ -6,6 +6,7 @@ from dspace._core.delegates import delegate
 from dspace._core.fields import array_of, flag, put, put_given, text
 from dspace._core.strict import Strict
 from dspace.errors import InvalidArgument
+from dspace.sky.sky import put_targets, sky_of
 from dspace.terrain.coordinates import coordinates_of
 from dspace.terrain.fields import TerrainFields
 from dspace.terrain.geodesy import Geodesy
@@ -208,6 +209,19 @@ class Terrain(Strict):
         local vertical; the result is the height above the datum."""
         shape, values = self._query(x, y, "height", map, z)
         return _unpack(values, "height", shape)
+
+    def sky(self, x, y, targets="sun", height=0.0, body=None, time=None):
+        """Where bodies stand over the map point x, y (longitude and latitude for a degree grid): dspace SkyBody by name,
+        as Scene.sky. height: [m] above the ground. body: a name or NAIF id; None: the one that the terrain's CRS names.
+        Azimuth is from the meridian's north, elevation from the horizontal of the CRS's ellipsoid. The terrain needs a
+        CRS with longitudes and latitudes."""
+        command = self._scene._command()
+        message = command.sky_state
+        put(message.site, self._label(), terrain=self.name, map_x=x, map_y=y, height=height)
+        if body is not None:
+            message.body = text(str(body), "the body", self._label())
+        put_targets(message, targets, time, self._label())
+        return sky_of(self._scene._execute(command))
 
     def normal(self, x, y, z=None, map=False):
         """Returns the unit normals (..., 3) of the surface, in the terrain's frame, at x, y as for height()."""

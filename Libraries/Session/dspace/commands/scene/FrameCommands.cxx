@@ -1,4 +1,6 @@
 // The frame tree.
+#include <algorithm>
+
 #include <dspace/Checks.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
@@ -64,6 +66,7 @@ void RemoveFrame(const Context& context, v1::RemoveFrame& command) {
 void ReparentFrame(const Context& context, v1::ReparentFrame& command) {
   if (context.Frames().Contains(command.frame())) {
     RejectRobotsLink(context, command.frame(), "moved to another parent");
+    context.scene->sky.RequireFree(context.Frames(), command.frame(), "moved to another parent");
   }
   context.Frames().Reparent(command.frame(), ToFrame(command.parent()), command.keep_world_pose());
   AddPose(context.Frames().LocalPose(command.frame()),
@@ -80,6 +83,11 @@ void SetPoses(const Context& context, v1::SetPoses& command) {
     Reject("command set_poses", "pose holds " + std::to_string(n) + " poses for " +
                                     std::to_string(command.frame_size()) +
                                     " frames; accepted: one of 8 numbers for each");
+  }
+  for (const auto& [frame, motion] : context.scene->sky.frames) {
+    if (std::find(command.frame().begin(), command.frame().end(), frame) != command.frame().end()) {
+      context.scene->sky.RequireFree(context.Frames(), frame, "posed");
+    }
   }
   context.Frames().SetLocalPoses(command.frame().data(), command.pose().data(), n);
 }

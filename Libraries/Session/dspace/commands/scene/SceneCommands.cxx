@@ -1,11 +1,13 @@
 // Scenes and time.
 #include <algorithm>
+#include <optional>
 
 #include <dspace/Checks.h>
 #include <dspace/commands/scene/CameraTools.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/SunMessages.h>
+#include <dspace/state/SunPlace.h>
 
 namespace dspace::session {
 namespace {
@@ -45,6 +47,26 @@ void ListScenes(const Context& context, v1::ListScenes&) {
   }
 }
 
+// Moves what follows the time, or throws and moves nothing.
+void MoveSky(const Context& context, const v1::SkyStep& step) {
+  std::optional<Light> sun;
+  if (step.has_sun()) {
+    sun = MovedSun(context.GetScene(), step.sun());
+  }
+  if (step.frame_size() > 0) {
+    const std::size_t n = RowsOf(step.pose_size(), PoseSize, "command set_time", "sky.pose");
+    if (n != std::size_t(step.frame_size())) {
+      Reject("command set_time", "its sky has " + std::to_string(n) + " poses for " +
+                                     std::to_string(step.frame_size()) +
+                                     " frames; accepted: one for each");
+    }
+    context.Frames().SetLocalPoses(step.frame().data(), step.pose().data(), n);
+  }
+  if (sun) {
+    context.GetScene().SetLight(*sun);
+  }
+}
+
 void SetTime(const Context& context, v1::SetTime& command) {
   RequireFinite("scene '" + context.sceneName + "'", "the time", command.time_s());
   Scene& scene = context.GetScene();
@@ -56,6 +78,14 @@ void SetTime(const Context& context, v1::SetTime& command) {
     lags[{lag.vantage(), lag.camera()}] = {true, lag.time_s(), lag.frame(), lag.parent(),
                                            ToVector(lag.position())};
   }
+  const SkyMotions& sky = context.scene->sky;
+  if (!command.has_sky() || command.sky().time_s() != command.time_s()) {
+    command.clear_sky();
+    if (sky.Any()) {
+      *command.mutable_sky() = sky.At(context.Frames(), command.time_s());
+    }
+  }
+  MoveSky(context, command.sky());
   scene.SetTime(command.time_s());
   if (command.put_lags()) {
     scene.SetLags(std::move(lags));

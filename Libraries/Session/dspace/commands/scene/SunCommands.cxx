@@ -62,6 +62,9 @@ void ResolveHorizontal(const Context& context, v1::SunState& sun) {
 
 void SetSun(const Context& context, v1::SetSun& command) {
   v1::SunState& sun = *command.mutable_sun();
+  if (context.scene->sky.sun) {
+    Reject(SunLabel, "it follows the scene's time; accepted: set_sun_motion with stop first");
+  }
   if (sun.has_horizontal()) {
     ResolveHorizontal(context, sun);
   }
@@ -69,17 +72,7 @@ void SetSun(const Context& context, v1::SetSun& command) {
     Reject(SunLabel, "frame " + std::to_string(sun.frame()) +
                          " is given without a direction; accepted: both, or no frame");
   }
-  v1::SetLight light = DefaultSun();
-  if (const Light* present = FindSunLight(context.GetScene())) {
-    if (!IsSun(*present)) {
-      Reject(SunLabel,
-             "it is not directional, hence no Sun; accepted: remove it, or give it the kind "
-             "directional, first");
-    }
-    Put(*present, &light);
-  }
-  ChangeSun(sun, light);
-  context.GetScene().SetLight(ToLight(light));
+  context.GetScene().SetLight(MovedSun(context.GetScene(), sun));
 }
 
 void GetSun(const Context& context, v1::GetSun& command) {

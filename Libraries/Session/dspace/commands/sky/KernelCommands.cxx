@@ -1,0 +1,104 @@
+// SPICE kernels.
+#include <algorithm>
+#include <filesystem>
+
+#include <dspace/Checks.h>
+#include <dspace/commands/sky/SkyTools.h>
+#include <dspace/kernels/ClockKernel.h>
+#include <dspace/kernels/FieldOfView.h>
+#include <dspace/messages/Convert.h>
+
+namespace dspace::session {
+namespace {
+
+const char* KindName(FrameClass kind) {
+  static constexpr const char* Names[] = {"inertial", "PCK", "CK", "TK", "dynamic", "switch"};
+  return Names[int(kind) - 1];
+}
+
+void Describe(const KernelSet& kernels, v1::KernelsReply* reply) {
+  for (const std::string& path : kernels.Paths()) {
+    reply->add_path(path);
+  }
+  for (const std::string& file : kernels.Files()) {
+    reply->add_file(file);
+  }
+  for (const FrameInfo* info : kernels.GetFrames().Table().Loaded()) {
+    v1::KernelsReply::Frame* frame = reply->add_frame();
+    frame->set_name(info->name);
+    frame->set_id(info->id);
+    frame->set_kind(KindName(info->kind));
+    frame->set_center(info->center);
+    frame->set_kernel(info->kernel);
+  }
+  for (const int id : ClockKernel::Clocks(kernels.Pool())) {
+    const ClockKernel clock(kernels.Pool(), id, kernels.Scales());
+    v1::KernelsReply::Clock* out = reply->add_clock();
+    out->set_id(id);
+    out->set_begin_s(clock.FirstTdb());
+    out->set_end_s(clock.LastTdb());
+  }
+  for (const int id : Instruments(kernels.Pool())) {
+    const FieldOfView field = FieldOfViewOf(kernels.Pool(), id);
+    v1::KernelsReply::Instrument* out = reply->add_instrument();
+    out->set_id(id);
+    out->set_shape(FieldShapeName(field.shape));
+    out->set_frame(field.frame);
+    Put(field.boresight, out->mutable_boresight());
+    for (const Eigen::Vector3d& v : field.boundary) {
+      out->mutable_boundary()->Add(v.data(), v.data() + 3);
+    }
+  }
+  for (const KernelConflict& conflict : kernels.Pool().Conflicts()) {
+    v1::KernelsReply::Conflict* out = reply->add_conflict();
+    out->set_name(conflict.name);
+    out->set_winner(conflict.winner);
+    out->set_loser(conflict.loser);
+  }
+}
+
+void LoadKernels(const Context& context, v1::LoadKernels& command) {
+  if (command.path().empty()) {
+    Reject("command load_kernels", "it names no file; accepted: at least one");
+  }
+  std::shared_ptr<const KernelSet> kernels = context.scene->sky.kernels;
+  for (std::string& path : *command.mutable_path()) {
+    path = std::filesystem::absolute(path).lexically_normal().string();
+    kernels = kernels->With(path);
+  }
+  Describe(*kernels, context.reply.mutable_kernels());
+  context.scene->sky.kernels = kernels;
+}
+
+void UnloadKernels(const Context& context, v1::UnloadKernels& command) {
+  std::shared_ptr<const KernelSet> kernels = context.scene->sky.kernels;
+  for (const std::string& path : command.path()) {
+    kernels = kernels->Without(path);
+  }
+  if (command.path().empty()) {
+    kernels = SkyMotions::Standard();
+  }
+  Describe(*kernels, context.reply.mutable_kernels());
+  context.scene->sky.kernels = kernels;
+}
+
+void ListKernels(const Context& context, v1::ListKernels&) {
+  Describe(*context.scene->sky.kernels, context.reply.mutable_kernels());
+}
+
+} // namespace
+
+void AddKernelCommands(Registry& registry) {
+  using C = v1::Command;
+  registry.Add(C::kLoadKernels, &C::mutable_load_kernels, LoadKernels);
+  registry.Add(C::kUnloadKernels, &C::mutable_unload_kernels, UnloadKernels);
+  registry.Add(C::kListKernels, &C::mutable_list_kernels, ListKernels);
+}
+
+void AddSkyCommands(Registry& registry) {
+  AddKernelCommands(registry);
+  AddFrameMotions(registry);
+  AddSkyRequests(registry);
+}
+
+} // namespace dspace::session

@@ -1,0 +1,204 @@
+// Rotations of reference frames, bodies in the sky, sub-points.
+#include <cctype>
+
+#include <dspace/Checks.h>
+#include <dspace/commands/sky/SkyTools.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/orientation/BodyConstants.h>
+#include <dspace/sky/SubPoints.h>
+#include <dspace/state/TerrainObject.h>
+
+namespace dspace::session {
+namespace {
+
+template<class Message>
+std::vector<double> TimesOf(const Context& context, const Message& command) {
+  if (command.time_s().empty()) {
+    return {context.GetScene().Time()};
+  }
+  return {command.time_s().begin(), command.time_s().end()};
+}
+
+void AddRows(const Eigen::Matrix3d& m, google::protobuf::RepeatedField<double>* out) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      out->Add(m(row, column));
+    }
+  }
+}
+
+void TurnFrames(const Context& context, v1::TurnFrames& command) {
+  const Frames& frames = context.scene->sky.kernels->GetFrames();
+  const int from = frames.FrameId(command.from());
+  const int to = frames.FrameId(command.to());
+  const std::vector<double> times = TimesOf(context, command);
+  v1::FrameTurnsReply* reply = context.reply.mutable_frame_turns();
+  for (const double tdb : times) {
+    const StateTurn turn = frames.Turn(from, to, tdb);
+    AddRows(turn.rotation, reply->mutable_rotation());
+    if (command.rates()) {
+      AddRows(turn.rate, reply->mutable_rate());
+    }
+  }
+  for (const Frames::Step& step : frames.Explain(command.from(), command.to(), times[0])) {
+    v1::FrameTurnsReply::Step* out = reply->add_step();
+    out->set_frame(step.frame);
+    out->set_relative(step.relative);
+    out->set_source(step.source);
+    out->set_accuracy(step.accuracy);
+  }
+}
+
+void FindSubPoints(const Context& context, v1::FindSubPoints& command) {
+  const KernelSet& kernels = *context.scene->sky.kernels;
+  const Ephemeris& ephemeris = kernels.GetEphemeris();
+  const int body = ephemeris.Names().IdOf(command.body());
+  const std::string frame =
+      command.frame().empty() ? kernels.GetFrames().Table().BodyFixed(body).name : command.frame();
+  std::optional<int> observer;
+  if (!command.observer().empty()) {
+    observer = ephemeris.Names().IdOf(command.observer());
+  } else if (command.below_observer()) {
+    Reject("body '" + command.body() + "'",
+           "the point below an observer is asked for, without an observer; accepted: one");
+  }
+  v1::SubPointsReply* reply = context.reply.mutable_sub_points();
+  reply->set_frame(frame);
+  for (const double tdb : TimesOf(context, command)) {
+    const SubPoint point =
+        command.below_observer()
+            ? SubObserverPoint(ephemeris, kernels.GetFrames(), body, frame, *observer, tdb)
+            : SubSolarPoint(ephemeris, kernels.GetFrames(), body, frame, tdb, observer);
+    reply->add_point(point.longitude_deg);
+    reply->add_point(point.latitude_deg);
+    reply->add_point(point.geodetic_latitude_deg);
+    reply->mutable_position()->Add(point.position.data(), point.position.data() + 3);
+  }
+}
+
+// The body of a terrain's CRS, by its name or by its radius.
+int BodyOf(const KernelSet& kernels, const TerrainObject& terrain) {
+  static const std::pair<const char*, int> Bodies[] = {
+      {"moon", 301},   {"mars", 499},   {"mercury", 199},   {"venus", 299},     {"earth", 399},
+      {"phobos", 401}, {"deimos", 402}, {"ceres", 2000001}, {"vesta", 2000004}, {"titan", 606},
+      {"europa", 502}, {"io", 501},     {"ganymede", 503},  {"callisto", 504},  {"enceladus", 602}};
+  const Crs& crs = terrain.Surface().GetCrs();
+  std::string word; // words of the CRS's WKT, which names the body in its datum
+  for (const char c : crs.GetWkt() + " ") {
+    if (std::isalpha(static_cast<unsigned char>(c))) {
+      word += char(std::tolower(static_cast<unsigned char>(c)));
+      continue;
+    }
+    for (const auto& [name, body] : Bodies) {
+      if (word == name) {
+        return body;
+      }
+    }
+    word.clear();
+  }
+  for (const int body : {399, 301, 499, 199, 299}) {
+    const double radius = BodyRadii(kernels.Pool(), body).x();
+    if (std::abs(crs.GetAxes().semiMajor - radius) < 1e-4 * radius) {
+      return body;
+    }
+  }
+  Reject("terrain '" + terrain.Name() + "'",
+         "its CRS tells no body; accepted: the command with a body");
+}
+
+SkyPlace PlaceOfSite(const Context& context, const v1::SkyState& command) {
+  const v1::Site& site = command.site();
+  const auto found = context.scene->terrains.find(site.terrain());
+  if (found == context.scene->terrains.end()) {
+    throw Error(Error::Kind::NotFound, "terrain '" + site.terrain() + "'",
+                "there is no such terrain in scene '" + context.sceneName + "'");
+  }
+  const TerrainObject& terrain = *found->second;
+  const std::string label = "terrain '" + terrain.Name() + "'";
+  const TerrainSurface& surface = terrain.Surface();
+  const SurfaceSample sample = surface.SampleMap({site.map_x(), site.map_y()});
+  if (!sample.valid) {
+    Reject(label, "the place " + NumberText(site.map_x()) + ", " + NumberText(site.map_y()) +
+                      " is off its data; accepted: map coordinates on its data");
+  }
+  Require(site.height() >= 0.0 && site.height() <= 1e12, label, "the height above the ground",
+          site.height(), "0 to 1e12 m");
+  Rows3 map(1, 3);
+  map << site.map_x(), site.map_y(), sample.height + site.height();
+  const BodyCoordinates place = surface.Locate(map)[0];
+  if (!place.bodyFixed.allFinite()) {
+    throw Error(Error::Kind::Unsupported, label,
+                "its CRS has no longitudes and latitudes; accepted: terrain on a body, or a place "
+                "on a frame that follows the time");
+  }
+  const KernelSet& kernels = *context.scene->sky.kernels;
+  SkyPlace out;
+  out.body = command.body().empty() ? BodyOf(kernels, terrain)
+                                    : kernels.GetEphemeris().Names().IdOf(command.body());
+  out.frame = kernels.GetFrames().Table().BodyFixed(out.body).name;
+  // Up is the normal of the CRS's ellipsoid.
+  out.axes = AxesAt({place.longitude_deg, place.latitude_deg, 0.0, LatitudeKind::Planetocentric},
+                    Eigen::Vector3d::Ones());
+  out.axes.position = place.bodyFixed;
+  return out;
+}
+
+SkyPlace PlaceOnFrame(const Context& context, const v1::Place& place) {
+  const FrameTree& tree = context.Frames();
+  const SkyMotions& sky = context.scene->sky;
+  const FrameId frame = ToFrame(place.frame());
+  FrameId above = frame;
+  while (above != RootFrame && !sky.frames.count(above)) {
+    above = tree.Parent(above);
+  }
+  Pose X = tree.RelativePose(above, frame);
+  X.position = X.Apply(ToVector(place.position()));
+  return SkyPlaceOf(*sky.kernels, sky.PlaceOf(tree, above), X);
+}
+
+void SkyState(const Context& context, v1::SkyState& command) {
+  const SkyMotions& sky = context.scene->sky;
+  SkyPlace place;
+  switch (command.from_case()) {
+  case v1::SkyState::kPlace:
+    place = PlaceOnFrame(context, command.place());
+    break;
+  case v1::SkyState::kSite:
+    place = PlaceOfSite(context, command);
+    break;
+  case v1::SkyState::kCelestial:
+    place = SkyPlaceOf(*sky.kernels, sky.PlaceOf(command.celestial()), Pose());
+    break;
+  default:
+    Reject("command sky_state", "it names no place; accepted: place, site or celestial");
+  }
+  const Ephemeris& ephemeris = sky.kernels->GetEphemeris();
+  const double tdb = command.has_time_s() ? command.time_s() : context.GetScene().Time();
+  std::vector<std::string> targets(command.target().begin(), command.target().end());
+  if (targets.empty()) {
+    targets.push_back("sun");
+  }
+  v1::SkyReply* reply = context.reply.mutable_sky();
+  for (const std::string& target : targets) {
+    const SkyBody seen =
+        Look(ephemeris, sky.kernels->GetFrames(), place, ephemeris.Names().IdOf(target), tdb);
+    v1::SkyReply::Body* body = reply->add_body();
+    body->set_name(target);
+    body->set_azimuth_deg(seen.direction.azimuth_deg);
+    body->set_elevation_deg(seen.direction.elevation_deg);
+    body->set_range(seen.range);
+    body->set_radius_deg(seen.radius_deg);
+    body->set_lit_fraction(seen.litFraction);
+  }
+}
+
+} // namespace
+
+void AddSkyRequests(Registry& registry) {
+  using C = v1::Command;
+  registry.Add(C::kTurnFrames, &C::mutable_turn_frames, TurnFrames);
+  registry.Add(C::kFindSubPoints, &C::mutable_find_sub_points, FindSubPoints);
+  registry.Add(C::kSkyState, &C::mutable_sky_state, SkyState);
+}
+
+} // namespace dspace::session

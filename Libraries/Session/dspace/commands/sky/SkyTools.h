@@ -1,0 +1,15 @@
+// Functions that the sky commands share.
+#ifndef DSPACE_SESSION_SKY_TOOLS_H
+#define DSPACE_SESSION_SKY_TOOLS_H
+
+#include <dspace/interpreter/Registry.h>
+
+namespace dspace::session {
+
+void AddKernelCommands(Registry& registry);
+void AddFrameMotions(Registry& registry);
+void AddSkyRequests(Registry& registry);
+
+} // namespace dspace::session
+
+#endif
