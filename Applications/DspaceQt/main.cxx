@@ -8,12 +8,14 @@
 #include <QCommandLineParser>
 #include <QDir>
 #include <QElapsedTimer>
+#include <QIcon>
 #include <QMessageBox>
 #include <QTimer>
 
 #include <dspace/widgets/console/PythonInterpreter.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/window/MainWindow.h>
+#include <dspace/widgets/window/Shell.h>
 
 namespace {
 
@@ -76,9 +78,11 @@ int Start(QApplication&) {
   const QCommandLineOption connect("connect", "Shows the scene of a server.", "ADDRESS");
   const QCommandLineOption listen(
       "listen", "Serves: a simulation that connects drives this window (127.0.0.1:0).", "ADDRESS");
-  const QCommandLineOption plugin("load-plugin", "Loads a plug-in: a Python file or module; may be repeated.",
+  const QCommandLineOption plugin(
+      "load-plugin", "Loads a plug-in: a Python file or module; may be repeated.", "NAME");
+  const QCommandLineOption layout("layout", "Arranges the docks as they were saved by that name.",
                                   "NAME");
-  parser.addOptions({screenshot, after, size, empty, connect, listen, plugin});
+  parser.addOptions({screenshot, after, size, empty, connect, listen, plugin, layout});
   parser.process(Arguments());
   const QStringList sides = parser.value(size).split('x');
   bool good[3] = {false, false, false};
@@ -96,6 +100,11 @@ int Start(QApplication&) {
               << ": accepted are 0 to 3600 seconds\n";
     return 2;
   }
+  QIcon icon;
+  for (const int side : {16, 32, 48, 128}) {
+    icon.addFile(QStringLiteral(":/dspace/icons/dspace-%1.png").arg(side));
+  }
+  QApplication::setWindowIcon(icon);
   dspace::widgets::MainWindow window(Packages());
   // What goes wrong is on the terminal, too.
   QObject::connect(window.Interpreter(), &dspace::widgets::PythonInterpreter::written, &window,
@@ -105,6 +114,9 @@ int Start(QApplication&) {
                      }
                    });
   window.resize(width, height);
+  if (!parser.isSet(screenshot) && !parser.isSet(size)) {
+    window.Desktop()->Start(); // where it was the last time
+  }
   window.show();
   window.LoadPlugIns(parser.values(plugin));
   for (const QString& path : parser.positionalArguments()) {
@@ -122,6 +134,10 @@ int Start(QApplication&) {
       !parser.isSet(listen)) {
     window.Run(QStringLiteral("app.demo()"));
   }
+  if (parser.isSet(layout) && !window.RestoreLayout(parser.value(layout)) &&
+      parser.isSet(screenshot)) {
+    return 1;
+  }
   if (parser.isSet(screenshot)) {
     TakeScreenshot(window, parser.value(screenshot), wait);
   }
@@ -135,12 +151,16 @@ int main(int count, char** arguments) {
   QApplication application(count, arguments);
   QCoreApplication::setOrganizationName(QStringLiteral("Dspace"));
   QCoreApplication::setApplicationName(QStringLiteral("DspaceQt"));
+  QGuiApplication::setDesktopFileName(QStringLiteral("dspace"));
   QCoreApplication::setApplicationVersion(QStringLiteral(DSPACE_VERSION));
   try {
     return Start(application);
   } catch (const std::exception& error) {
     std::cerr << "DspaceQt: " << error.what() << "\n";
-    QMessageBox::critical(nullptr, QStringLiteral("DspaceQt"), QString::fromUtf8(error.what()));
+    QMessageBox box(QMessageBox::Critical, QStringLiteral("DspaceQt"),
+                    QString::fromUtf8(error.what()), QMessageBox::Close);
+    box.setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+    box.exec();
     return 1;
   }
 }

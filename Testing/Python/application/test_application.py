@@ -21,6 +21,9 @@ class Host:
     def session(self):
         return self.made
 
+    def execute(self, command):
+        return self.made.Execute(command)
+
     def show(self, shown, name, title):
         session = shown.GetSession() if hasattr(shown, "GetSession") else shown
         assert session.GetViewport(name) is not None

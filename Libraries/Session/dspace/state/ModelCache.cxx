@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <dspace/import/files/ImageReader.h>
+#include <dspace/state/ReadBeforehand.h>
 
 namespace dspace::session {
 namespace {
@@ -45,8 +46,12 @@ std::shared_ptr<const Model> ModelCache::LoadModel(const std::string& path,
   const std::string key = FileKey(path) + "\n" + std::to_string(options.strict) + "\n" +
                           std::to_string(options.maximumTriangles) + "\n" +
                           std::to_string(options.pointCloud);
-  return Load(this->Models_, key,
-              [&] { return std::make_shared<const Model>(ReadModel(path, options)); });
+  return Load(this->Models_, key, [&] {
+    ReadBeforehand* before = ReadBeforehand::Current();
+    return before && &before->models != this
+               ? before->models.LoadModel(path, options)
+               : std::make_shared<const Model>(ReadModel(path, options));
+  });
 }
 
 std::shared_ptr<const Image> ModelCache::LoadImage(const std::string& path) {

@@ -28,6 +28,7 @@
 #include <dspace/widgets/scene/SceneTreeModel.h>
 #include <dspace/widgets/scene/SceneTreeView.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
+#include <dspace/widgets/settings/DisplayUnits.h>
 
 using dspace::FrameId;
 using dspace::NoFrame;
@@ -351,6 +352,20 @@ TEST_F(SceneTreeTest, ThePanelShowsPosesRelativeToAnyFrame) {
   EXPECT_EQ(Text(widget, "quaternion"), "w 0.707107   x 0.000000   y 0.000000   z 0.707107");
   EXPECT_EQ(Text(widget, "angles"), "roll 0.0000   pitch 0.0000   yaw 90.0000");
   EXPECT_EQ(Text(widget, "frame"), "rover/mast");
+  // In the units that the user chose.
+  using dspace::widgets::DisplayUnits;
+  using dspace::widgets::UnitChoice;
+  DisplayUnits::The().Set({UnitChoice::Length::Kilometre, UnitChoice::Angle::Radian});
+  widget.Refresh();
+  EXPECT_EQ(Text(widget, "position"), "x 0.0100000   y 0.0210000   z 0.0320000");
+  EXPECT_EQ(Text(widget, "angles"), "roll 0.000000   pitch 0.000000   yaw 1.570796");
+  QStringList labels;
+  for (const QLabel* label : widget.findChildren<QLabel*>()) {
+    labels << label->text();
+  }
+  EXPECT_TRUE(labels.contains("Position [km]") && labels.contains("Angles [rad]"));
+  DisplayUnits::The().Set({});
+  widget.Refresh();
   auto* reference = widget.findChild<QComboBox*>();
   reference->lineEdit()->selectAll();
   QTest::keyClicks(reference->lineEdit(), "rover");

@@ -2,14 +2,17 @@
 import os
 import pathlib
 
-from dspace import Session, errors
-from dspace._core.fields import real, reject, text
+from dspace import errors
+from dspace._core.fields import integer, real, reject, text, word
 from dspace._core.replies import to_reply
+from dspace.application.files import around
+from dspace.application.layouts import Layouts
 from dspace.application.link import Link, ServerApart, required_address
 from dspace.application.plots import Plot, Shown
 from dspace.application.plugins import PlugIns
 from dspace.application.run import Run
 from dspace.proto import commands_pb2 as pb
+from dspace.scene.navigation import NAVIGATION
 
 MODELS = (".glb", ".gltf", ".wrl", ".wrl.gz", ".wrz", ".vrml", ".iv", ".obj", ".stl", ".ply", ".urdf", ".json")
 RASTERS = (".tif", ".tiff", ".img", ".lbl", ".cub", ".vrt", ".asc", ".dem", ".hgt", ".nc", ".jp2", ".xml")
@@ -25,7 +28,7 @@ class App:
 
     def __init__(self, host):
         self._host = host
-        self.session = Session.around(host.session())
+        self.session = around(host)
         self.scene = self.session.scene()
         self.views = {}
         self.view = None
@@ -35,6 +38,9 @@ class App:
         self._tasks = {}
         self.plots = {}
         self.plugins = PlugIns(host)
+        self.layouts = Layouts(host)
+        self._view_defaults = {}
+        self._own_cameras = {}  # that new_view() made, by view
         self._timers = set()
 
     # --- Views ---------------------------------------------------------------------------------
@@ -46,14 +52,29 @@ class App:
         self.views[viewport.name] = self.view = viewport
         return viewport
 
-    def new_view(self, camera=None, title=None):
-        """A new viewport of the scene with a camera of its own, or with the given one; shown."""
+    def new_view(self, camera=None, title=None, name=None):
+        """A new viewport of the scene with a camera of its own, or with the given one; shown. name: by default the next
+        free one of "view 1", "view 2", ..."""
         number = 1 + len(self.views)
-        while f"view {number}" in self.session.viewports:
+        while f"view {number}" in self.session.viewports or f"camera {number}" in self.scene.cameras:
             number += 1
-        if camera is None:
-            camera = self._camera(f"camera {number}")
-        return self.show(self.scene.add_viewport(SIZE, camera, name=f"view {number}"), title)
+        own = self._camera(f"camera {number}") if camera is None else None
+        camera = own if camera is None else camera
+        made = self.scene.add_viewport(SIZE, camera, name=f"view {number}" if name is None else name,
+                                       samples=self._view_defaults.get("samples"))
+        if "navigation" in self._view_defaults:
+            made.navigation = self._view_defaults["navigation"]
+        if own is not None:
+            self._own_cameras[made.name] = own
+        return self.show(made, title)
+
+    def set_view_defaults(self, samples=2, navigation="orbit"):
+        """What new_view() gives views from now on: samples a pixel along each side (1 to 8), and how input moves the
+        camera (Viewport.navigation)."""
+        if not 1 <= integer(samples, "samples", "new views") <= 8:
+            reject("new views", "samples", samples, "1 to 8")
+        word(navigation, NAVIGATION, "navigation", "new views")
+        self._view_defaults = {"samples": samples, "navigation": navigation}
 
     def _camera(self, name):
         before = self.view.camera if self.view is not None and self.view._client is self.session._client else None
@@ -71,6 +92,12 @@ class App:
         if self.view == viewport:
             self.view = next(reversed(self.views.values()), None)
         viewport.remove()
+        own = self._own_cameras.pop(viewport.name, None)
+        if own is not None and own.name in self.scene.cameras:
+            try:
+                own.remove()
+            except errors.Error:  # another view looks through it
+                pass
 
     # --- Plug-ins ------------------------------------------------------------------------------
 

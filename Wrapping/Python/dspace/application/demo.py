@@ -13,13 +13,15 @@ SPEED = 0.6  # [m/s]
 
 
 def shipped_data():
-    """The folder Data of the source tree."""
+    """The folder Data of the source tree, or of the installed one."""
     given = os.environ.get("DSPACE_SHIPPED_DATA")
-    folder = pathlib.Path(given) if given else pathlib.Path(__file__).resolve().parents[4] / "Data"
-    if not (folder / "field" / "field.tif").exists():
-        raise errors.NotFound("the data of the demo are not there; accepted: a source tree, or its folder Data named by "
-                              "DSPACE_SHIPPED_DATA", f"folder {str(folder)!r}")
-    return folder
+    above = pathlib.Path(__file__).resolve().parents[4:7]
+    folders = [pathlib.Path(given)] if given else [each / end for each in above for end in ("Data", "share/dspace/Data")]
+    for folder in folders:
+        if (folder / "field" / "field.tif").exists():
+            return folder
+    raise errors.NotFound("the data of the demo are not there; accepted: a source tree, an installed one, or its folder Data "
+                          "named by DSPACE_SHIPPED_DATA", f"folder {str(folders[0])!r}")
 
 
 class Drive:

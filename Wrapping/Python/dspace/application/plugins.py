@@ -123,9 +123,13 @@ class PlugIns:
         self._actions[self._ask(request)["action"]] = function
 
     def load(self, name, app):
-        """Imports a module or a file and calls its plugin(app)."""
+        """Imports a module or a file .py and calls its plugin(app); or loads a library .so of C++
+        (dspace/widgets/window/WindowPlugIn.h) and returns None."""
         name = os.fspath(name)
         about = f"plug-in {name!r}"
+        if name.endswith(".so"):
+            self._ask({"do": "library", "path": os.path.abspath(name)})
+            return None
         if name.endswith(".py"):
             if not os.path.exists(name):
                 raise NotFound(f"{about}: there is no such file", about)
@@ -144,9 +148,9 @@ class PlugIns:
         return module
 
     def load_folder(self, folder, app):
-        """Loads each .py file of a folder; one that raises is reported, and the others go on."""
+        """Loads each .py and .so file of a folder; one that raises is reported, and the others go on."""
         for entry in sorted(os.listdir(folder)) if os.path.isdir(folder) else ():
-            if entry.endswith(".py"):
+            if entry.endswith((".py", ".so")):
                 try:
                     self.load(os.path.join(folder, entry), app)
                 except Exception:

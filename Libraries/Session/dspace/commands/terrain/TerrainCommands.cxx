@@ -6,6 +6,7 @@
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/commands/terrain/MeshTerrain.h>
+#include <dspace/commands/terrain/TerrainBeforehand.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
 #include <dspace/layers/ColorRamp.h>
@@ -285,12 +286,21 @@ v1::OpenTerrain::Mode ModeFor(const std::string& name, const std::string& path,
                                                                  : Command::TRIANGLES;
 }
 
-std::string FreeTerrainName(const SceneState& state) {
-  std::string name = "terrain";
-  for (int n = 2; state.terrains.count(name); ++n) {
-    name = "terrain " + std::to_string(n);
+// The terrain of a command that was opened before (TerrainBeforehand.h), and the command as it is
+// then; null: none was.
+std::unique_ptr<TerrainObject> TakeBeforehand(const Context& context, const std::string& name,
+                                              v1::OpenTerrain& command) {
+  ReadBeforehand* before = ReadBeforehand::Current();
+  if (!before || !before->terrain || before->terrain->Name() != name ||
+      before->askedTerrain != command.SerializeAsString()) {
+    return nullptr;
   }
-  return name;
+  NoteFilesRead(before->files);
+  for (const std::string& warning : before->warnings) {
+    context.reply.add_warning(warning);
+  }
+  command.ParseFromString(before->openedTerrain);
+  return std::move(before->terrain);
 }
 
 ObjectId AddTerrainObject(const Context& context, const v1::OpenTerrain& command,
@@ -314,16 +324,18 @@ void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
                 "there is a terrain of this name already");
   }
   context.Frames().Name(ToFrame(command.frame())); // throws where there is none
-  const std::string path = AbsoluteRaster(command.path());
-  command.set_mode(ModeFor(name, path, command)); // a recording opens the same
-  auto terrain = command.mode() == v1::OpenTerrain::CLIPMAP
-                     ? OpenClipmap(context, name, path, command)
-                     : OpenMesh(context, name, path, command);
+  auto terrain = TakeBeforehand(context, name, command);
+  if (!terrain) {
+    command.set_path(AbsoluteRaster(command.path()));
+    command.set_mode(ModeFor(name, command.path(), command)); // a recording opens the same
+    terrain = command.mode() == v1::OpenTerrain::CLIPMAP
+                  ? OpenClipmap(context, name, command.path(), command)
+                  : OpenMesh(context, name, command.path(), command);
+  }
   for (const std::string& warning : terrain->Surface().GetWarnings()) {
     context.reply.add_warning(warning);
   }
   terrain->SetObject(AddTerrainObject(context, command, *terrain));
-  command.set_path(path);
   command.set_name(name);
   command.set_object_id(terrain->Object());
   command.set_object_name(context.GetScene().Object(terrain->Object()).name);
@@ -355,6 +367,32 @@ void FocusTerrain(const Context& context, v1::FocusTerrain& command) {
 }
 
 } // namespace
+
+std::string FreeTerrainName(const SceneState& state) {
+  std::string name = "terrain";
+  for (int n = 2; state.terrains.count(name); ++n) {
+    name = "terrain " + std::to_string(n);
+  }
+  return name;
+}
+
+void ReadTerrain(const v1::OpenTerrain& command, ReadBeforehand& into) {
+  v1::OpenTerrain opened = command;
+  opened.set_path(AbsoluteRaster(command.path()));
+  opened.set_mode(ModeFor(command.name(), opened.path(), opened));
+  if (opened.mode() != v1::OpenTerrain::CLIPMAP) {
+    return;
+  }
+  State none;
+  v1::Reply reply;
+  const Context context{none, nullptr, command.name(), reply};
+  const FilesReadScope files;
+  into.terrain = OpenClipmap(context, command.name(), opened.path(), opened);
+  into.files = files.Files();
+  into.warnings.assign(reply.warning().begin(), reply.warning().end());
+  into.askedTerrain = command.SerializeAsString();
+  into.openedTerrain = opened.SerializeAsString();
+}
 
 void AddTerrainCommands(Registry& registry) {
   using C = v1::Command;

@@ -7,15 +7,18 @@
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QPlainTextEdit>
+#include <QTextBlock>
 #include <QToolButton>
 #include <QVBoxLayout>
 
 #include <dspace/widgets/console/PythonInterpreter.h>
+#include <dspace/widgets/settings/Theme.h>
 
 namespace dspace::widgets {
 namespace {
 
 constexpr int MostLines = 20000; // kept of the output
+constexpr int ToneProperty = QTextFormat::UserProperty + 1;
 
 // The start that all of the words share.
 QString CommonStart(const QStringList& words) {
@@ -69,18 +72,43 @@ ConsoleWidget::ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent)
   connect(this->Prompt_, &QToolButton::clicked, this, &ConsoleWidget::Enter);
   connect(this->Line_, &QLineEdit::returnPressed, this, &ConsoleWidget::Enter);
   connect(interpreter, &PythonInterpreter::written, this, [this](const QString& text, bool error) {
-    this->Append(text, error ? QStringLiteral("#c0392b") : QString());
+    this->Append(text, error ? Tone::Error : Tone::Output);
   });
 }
 
-void ConsoleWidget::Append(const QString& text, const QString& color) {
+QTextCharFormat ConsoleWidget::FormatOf(Tone tone) const {
+  QTextCharFormat format;
+  format.setProperty(ToneProperty, int(tone));
+  if (tone != Tone::Output) {
+    format.setForeground(
+        AccentOf(tone == Tone::Error ? Accent::Error : Accent::Input, this->palette()));
+  }
+  return format;
+}
+
+// Gives what was written the colours of another theme.
+void ConsoleWidget::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() != QEvent::PaletteChange) {
+    return;
+  }
+  for (QTextBlock block = this->Output_->document()->begin(); block.isValid();
+       block = block.next()) {
+    for (auto it = block.begin(); !it.atEnd(); ++it) {
+      const QTextFragment part = it.fragment();
+      QTextCursor cursor(this->Output_->document());
+      cursor.setPosition(part.position());
+      cursor.setPosition(part.position() + part.length(), QTextCursor::KeepAnchor);
+      cursor.setCharFormat(this->FormatOf(Tone(part.charFormat().intProperty(ToneProperty))));
+    }
+  }
+}
+
+void ConsoleWidget::Append(const QString& text, Tone tone) {
   QTextCursor cursor = this->Output_->textCursor();
   cursor.movePosition(QTextCursor::End);
-  QTextCharFormat format;
-  if (!color.isEmpty()) {
-    format.setForeground(QColor(color));
-  }
-  cursor.insertText(text, format);
+  cursor.setCharFormat(this->FormatOf(tone));
+  cursor.insertText(text);
   this->Output_->setTextCursor(cursor);
   this->Output_->ensureCursorVisible();
 }
@@ -88,7 +116,7 @@ void ConsoleWidget::Append(const QString& text, const QString& color) {
 bool ConsoleWidget::Run(const QString& source) {
   const QStringList lines = source.split('\n');
   for (int i = 0; i < lines.size(); ++i) {
-    this->Append((i == 0 ? ">>> " : "... ") + lines[i] + "\n", QStringLiteral("#2e86c1"));
+    this->Append((i == 0 ? ">>> " : "... ") + lines[i] + "\n", Tone::Input);
   }
   this->Script_ << source;
   return this->Interpreter_->Run(source);
@@ -101,8 +129,7 @@ QString ConsoleWidget::Script() const {
 void ConsoleWidget::Enter() {
   const QString line = this->Line_->text();
   this->Line_->clear();
-  this->Append((this->Pending_.isEmpty() ? ">>> " : "... ") + line + "\n",
-               QStringLiteral("#2e86c1"));
+  this->Append((this->Pending_.isEmpty() ? ">>> " : "... ") + line + "\n", Tone::Input);
   if (!line.trimmed().isEmpty() && (this->History_.isEmpty() || this->History_.back() != line)) {
     this->History_ << line;
   }
@@ -143,7 +170,7 @@ void ConsoleWidget::Complete() {
     if (found.size() > shown.size()) {
       shown << tr("... %1 more").arg(found.size() - shown.size());
     }
-    this->Append(shown.join(QStringLiteral("   ")) + "\n", QStringLiteral("#7f8c8d"));
+    this->Append(shown.join(QStringLiteral("   ")) + "\n", Tone::Output);
   }
 }
 

@@ -7,6 +7,7 @@
 
 class QLineEdit;
 class QPlainTextEdit;
+class QTextCharFormat;
 class QToolButton;
 
 namespace dspace::widgets {
@@ -29,12 +30,15 @@ public:
 
 protected:
   bool eventFilter(QObject* object, QEvent* event) override;
+  void changeEvent(QEvent* event) override;
 
 private:
+  enum class Tone { Output, Input, Error };
   void Enter();
   void Recall(int step);
   void Complete();
-  void Append(const QString& text, const QString& color);
+  void Append(const QString& text, Tone tone);
+  QTextCharFormat FormatOf(Tone tone) const;
 
   PythonInterpreter* Interpreter_;
   QPlainTextEdit* Output_;

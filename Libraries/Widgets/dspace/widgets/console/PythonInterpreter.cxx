@@ -3,6 +3,7 @@
 
 #include <dspace/widgets/console/PythonInterpreter.h>
 
+#include <exception>
 #include <map>
 #include <stdexcept>
 
@@ -222,6 +223,31 @@ struct PythonInterpreter::Internals {
     const Object done(Guard([&] { answer = The->host.extend(request); }));
     return done ? PyUnicode_FromString(answer.c_str()) : nullptr;
   }
+  // execute(command): bytes of a Command to bytes of its Reply.
+  static PyObject* Execute(PyObject*, PyObject* arguments) {
+    const char* bytes = nullptr;
+    Py_ssize_t size = 0;
+    if (!PyArg_ParseTuple(arguments, "y#", &bytes, &size)) {
+      return nullptr;
+    }
+    const std::string command(bytes, std::size_t(size));
+    std::string reply;
+    const Object done(Guard([&] {
+      PyThreadState* const state = PyEval_SaveThread(); // events may run Python
+      std::exception_ptr failed;
+      try {
+        The->host.readFiles(command);
+      } catch (...) {
+        failed = std::current_exception();
+      }
+      PyEval_RestoreThread(state);
+      if (failed) {
+        std::rethrow_exception(failed);
+      }
+      reply = The->host.execute(command);
+    }));
+    return done ? PyBytes_FromStringAndSize(reply.data(), Py_ssize_t(reply.size())) : nullptr;
+  }
   static PyObject* Plot(PyObject*, PyObject* arguments) {
     PyObject* shown = nullptr;
     const char* scene = nullptr;
@@ -335,6 +361,7 @@ struct PythonInterpreter::Internals {
                                     {"task", Task, METH_VARARGS, nullptr},
                                     {"active", Active, METH_NOARGS, nullptr},
                                     {"extend", Extend, METH_VARARGS, nullptr},
+                                    {"execute", Execute, METH_VARARGS, nullptr},
                                     {"plot", Plot, METH_VARARGS, nullptr},
                                     {"plot_channel", PlotChannel, METH_VARARGS, nullptr},
                                     {"plot_series", PlotSeries, METH_VARARGS, nullptr},

@@ -38,6 +38,10 @@ struct PythonHost {
   std::function<void(long plot, const std::string& name, const std::string& unit,
                      const std::vector<double>& times, const std::vector<double>& values)>
       plotSeries;
+  // A serialized Command of the session, executed (FileCommands.h): readFiles first, while other
+  // threads of Python may run, then execute, which returns the serialized Reply.
+  std::function<void(const std::string& command)> readFiles;
+  std::function<std::string(const std::string& command)> execute;
   std::function<void(const std::string&)> message;
   // Something that goes on, with how much of it is done (0 to 1; < 0: not known) and what cancels
   // it

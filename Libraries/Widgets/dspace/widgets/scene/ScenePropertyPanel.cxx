@@ -18,6 +18,8 @@
 #include <QStackedLayout>
 #include <QVBoxLayout>
 
+#include <dspace/widgets/settings/DisplayUnits.h>
+
 namespace dspace::widgets {
 namespace {
 
@@ -139,7 +141,7 @@ struct ScenePropertyPanel::Internals {
     this->form->addWidget(field, row, 1);
     this->names[field] = label;
   }
-  QLabel* Add(const QString& name, const QString& tip, const QString& unit = {}) {
+  QLabel* Add(const QString& name, const QString& tip) {
     auto* label = new QLabel;
     label->setTextFormat(Qt::PlainText);
     label->setWordWrap(true);
@@ -153,13 +155,18 @@ struct ScenePropertyPanel::Internals {
     label->setToolTip(tip);
     label->setAccessibleName(name);
     label->setObjectName(name.toLower());
-    this->AddRow(unit.isEmpty() ? name : name + " [" + unit + "]", label);
+    this->AddRow(name, label);
     return label;
   }
   static void Set(QLabel* label, const QString& text) {
     if (label->text() != text) {
       label->setText(text);
     }
+  }
+  void ShowUnits() {
+    const UnitChoice& units = DisplayUnits::The().Get();
+    Set(this->names[this->position], "Position [" + units.LengthUnit() + "]");
+    Set(this->names[this->angles], "Angles [" + units.AngleUnit() + "]");
   }
   void ShowRow(QLabel* label, bool visible) {
     label->setVisible(visible);
@@ -210,12 +217,12 @@ ScenePropertyPanel::ScenePropertyPanel(QWidget* parent)
   self.reference->setAccessibleName("Relative to");
   self.AddRow("Relative to", self.reference);
   self.form->setAlignment(self.names[self.reference], Qt::AlignVCenter);
-  self.position = self.Add("Position", "Metres", "m");
+  self.position = self.Add("Position", "In the unit of lengths of View > Preferences");
   self.quaternion = self.Add("Quaternion", "Unit quaternion, scalar first");
-  self.angles = self.Add("Angles",
-                         "Roll, pitch and yaw about the fixed X, then Y, then Z axis, "
-                         "degrees",
-                         QChar(0xb0));
+  self.angles =
+      self.Add("Angles", "Roll, pitch and yaw about the fixed X, then Y, then Z axis, in the unit "
+                         "of angles of View > Preferences");
+  self.ShowUnits();
   self.scale = self.Add("Scale", "Of the frame's axes");
   self.ofObjects = {
       self.Add("Nature", "Physical objects are visible to a real camera"),
@@ -299,11 +306,19 @@ void ScenePropertyPanel::Show(const Scene* scene, const SceneItem& item, const Q
   const Eigen::Vector3d& p = pose.position;
   const Eigen::Quaterniond& q = pose.rotation;
   const Eigen::Vector3d angles = RollPitchYaw(q);
-  Internals::Set(self.position, Numbers({{"x", p.x()}, {"y", p.y()}, {"z", p.z()}}, 4));
+  const UnitChoice& units = DisplayUnits::The().Get();
+  const double metre = units.LengthFactor();
+  const double degree = units.AngleFactor();
+  self.ShowUnits();
+  Internals::Set(self.position,
+                 Numbers({{"x", metre * p.x()}, {"y", metre * p.y()}, {"z", metre * p.z()}},
+                         units.LengthDecimals(4)));
   Internals::Set(self.quaternion,
                  Numbers({{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}, 6));
-  Internals::Set(self.angles,
-                 Numbers({{"roll", angles.x()}, {"pitch", angles.y()}, {"yaw", angles.z()}}, 4));
+  Internals::Set(self.angles, Numbers({{"roll", degree * angles.x()},
+                                       {"pitch", degree * angles.y()},
+                                       {"yaw", degree * angles.z()}},
+                                      units.AngleDecimals(4)));
   Internals::Set(self.scale, scale);
   self.ShowRow(self.scale, !scale.isEmpty());
   for (QLabel* label : self.ofObjects) {

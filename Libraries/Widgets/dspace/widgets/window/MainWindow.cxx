@@ -18,10 +18,8 @@
 #include <QJsonDocument>
 #include <QLabel>
 #include <QMenuBar>
-#include <QMessageBox>
 #include <QMimeData>
 #include <QSaveFile>
-#include <QSettings>
 #include <QSpinBox>
 #include <QStandardPaths>
 #include <QStatusBar>
@@ -36,23 +34,29 @@
 #include <dspace/scene/ViewLook.h>
 #include <dspace/widgets/console/ConsoleWidget.h>
 #include <dspace/widgets/console/PythonInterpreter.h>
+#include <dspace/widgets/desktop/AboutText.h>
+#include <dspace/widgets/desktop/Layouts.h>
+#include <dspace/widgets/desktop/MenuKeys.h>
+#include <dspace/widgets/desktop/NoticeBar.h>
+#include <dspace/widgets/desktop/RecentFiles.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/viewport/SessionInput.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
+#include <dspace/widgets/window/FileCommands.h>
 #include <dspace/widgets/window/PlugIns.h>
+#include <dspace/widgets/window/Shell.h>
 #include <dspace/widgets/window/ShownScenes.h>
 #include <dspace/widgets/window/TaskStrip.h>
 #include <dspace/widgets/window/TelemetryDocks.h>
+#include <dspace/widgets/window/WindowPlugIn.h>
 
 namespace dspace::widgets {
 namespace {
 
-constexpr int MostRecent = 10;
 const char* const SceneName = "scene"; // of dspace.Session.scene() without a name
-const char* const RecentKey = "recentFiles";
 
 // A text as Python writes it.
 QString Quoted(const QString& text) {
@@ -106,6 +110,13 @@ MainWindow::MainWindow(const QString& packages)
       this->Scenes_->AskClock(of, what, a, b);
     }
   };
+  this->Shell_ = new Shell(this, [this](const QString& line) { return this->Run(line); });
+  connect(this->Shell_, &Shell::fileChosen, this,
+          [this](const QString& path) { this->Open(path); });
+  this->Libraries_ = new WindowPlugIn(this, this->Session_,
+                                      [this](const QString& line) { return this->Run(line); });
+  connect(this->Libraries_, &WindowPlugIn::failed, this,
+          [this](const QString& message) { this->Shell_->Notices()->Fail(message); });
   this->PlugIns_ = new PlugIns(this);
   connect(this->PlugIns_, &PlugIns::triggered, this,
           [this](int action) { this->Interpreter_->Trigger(action); });
@@ -116,7 +127,14 @@ MainWindow::MainWindow(const QString& packages)
           });
   host.extend = [this](const std::string& request) {
     const auto given = QJsonDocument::fromJson(QByteArray::fromStdString(request)).object();
-    return QJsonDocument(this->PlugIns_->Handle(given)).toJson().toStdString();
+    if (given["do"].toString() == "library") {
+      this->Libraries_->Load(given["path"].toString());
+      return std::string("{}");
+    }
+    return QJsonDocument(Shell::Takes(given) ? this->Shell_->Handle(given)
+                                             : this->PlugIns_->Handle(given))
+        .toJson()
+        .toStdString();
   };
   host.active = [this] { return this->Scenes_->ActiveScene(); };
   host.plot = [this](vtkObject* of, const std::string& scene, const std::string& title) {
@@ -137,9 +155,18 @@ MainWindow::MainWindow(const QString& packages)
   host.message = [this](const std::string& text) { this->Report(QString::fromStdString(text)); };
   this->Tasks_ = new TaskStrip(this);
   this->statusBar()->addPermanentWidget(this->Tasks_);
+  this->Files_ = new FileCommands(this->Session_, this->Tasks_, this);
+  host.readFiles = [this](const std::string& command) { this->Files_->Read(command); };
+  host.execute = [this](const std::string& command) { return this->Files_->Execute(command); };
   connect(this->Tasks_, &TaskStrip::cancelled, this,
           [this](long id) { this->Interpreter_->Cancel(id); });
   this->Interpreter_ = std::make_unique<PythonInterpreter>(this->Session_, host, packages);
+  connect(this->Interpreter_.get(), &PythonInterpreter::written, this,
+          [this](const QString& text, bool error) {
+            if (error) {
+              this->Errors_ += text;
+            }
+          });
   this->Console_ = new ConsoleWidget(this->Interpreter_.get(), this);
   this->ConsoleDock_ = new QDockWidget(tr("Python"), this);
   this->ConsoleDock_->setObjectName(QStringLiteral("console"));
@@ -174,6 +201,8 @@ MainWindow::~MainWindow() {
     delete view.dock.data();
   }
   this->Views_.clear();
+  delete this->Libraries_;
+  this->Libraries_ = nullptr;
   delete this->PlugIns_;
   this->PlugIns_ = nullptr;
   delete this->Telemetry_;
@@ -206,8 +235,7 @@ void MainWindow::AddTelemetry(TimelineWidget* timeline) {
 void MainWindow::MakeMenus() {
   QMenu* file = this->menuBar()->addMenu(tr("&File"));
   file->addAction(tr("&Open..."), QKeySequence::Open, this, [this] { this->ChooseFiles(); });
-  this->Recent_ = file->addMenu(tr("Open &recent"));
-  this->FillRecent();
+  this->Shell_->FillRecent(file->addMenu(tr("Open &recent")));
   file->addAction(tr("&Demo scene"), this, [this] { this->Run(QStringLiteral("app.demo()")); });
   file->addSeparator();
   file->addAction(tr("&Connect to a server..."), this, [this] {
@@ -237,22 +265,21 @@ void MainWindow::MakeMenus() {
   view->addAction(this->TimeDock_->toggleViewAction());
   view->addAction(this->Telemetry_->TableDock()->toggleViewAction());
   view->addAction(this->ConsoleDock_->toggleViewAction());
-  QMenu* help = this->menuBar()->addMenu(tr("&Help"));
-  help->addAction(tr("&Keys"), QKeySequence::HelpContents, this,
-                  [this] { QMessageBox::information(this, tr("Keys"), tr(Keys)); });
-  help->addAction(tr("&About"), this, [this] {
-    vtkDspaceRenderContext* context = this->Session_->GetRenderContext();
-    QMessageBox::about(this, tr("About DspaceQt"),
-                       tr("<b>DspaceQt</b><br>3D visualization and measurement for spacecraft and "
-                          "rover simulations.<p>Qt %1<br>OpenGL %2<br>%3")
-                           .arg(qVersion(), QString::fromStdString(context->GetVersion()),
-                                QString::fromStdString(context->GetRendererName())));
+  this->Shell_->FillView(view);
+  this->Shell_->FillHelp(this->menuBar()->addMenu(tr("&Help")), tr(Keys), [this] {
+    return AboutText(this->Session_->GetRenderContext(), QCoreApplication::applicationVersion());
   });
+  CompleteMnemonics(this->menuBar());
 }
 
 bool MainWindow::Run(const QString& python) {
+  this->Errors_.clear();
   const bool done = this->Console_->Run(python);
   if (!done) {
+    // The last line of a traceback says what is wrong.
+    const QString why = this->Errors_.trimmed().section('\n', -1).trimmed();
+    this->Shell_->Notices()->Fail(why.isEmpty() ? tr("Failed: %1").arg(python) : why,
+                                  python + '\n' + this->Errors_);
     this->Report(tr("Failed: %1 (see the Python dock)").arg(python));
   }
   return done;
@@ -264,6 +291,10 @@ bool MainWindow::Connect(const QString& address) {
 
 bool MainWindow::Listen(const QString& address) {
   return this->Run(QStringLiteral("app.listen(%1)").arg(Quoted(address)));
+}
+
+bool MainWindow::RestoreLayout(const QString& name) {
+  return this->Run(QStringLiteral("app.layouts.restore(%1)").arg(Quoted(name)));
 }
 
 QString MainWindow::PlugInFolder() {
@@ -285,7 +316,7 @@ bool MainWindow::Open(const QString& path) {
   if (!this->Run(QStringLiteral("app.open(%1)").arg(Quoted(full)))) {
     return false;
   }
-  this->AddRecent(full);
+  this->Shell_->Recent()->Add(full);
   this->Report(tr("Opened %1").arg(full));
   return true;
 }
@@ -314,23 +345,6 @@ void MainWindow::ChooseFiles() {
   for (const QString& path : paths) {
     this->Open(path);
   }
-}
-
-void MainWindow::AddRecent(const QString& path) {
-  QSettings settings;
-  QStringList paths = settings.value(RecentKey).toStringList();
-  paths.removeAll(path);
-  paths.prepend(path);
-  settings.setValue(RecentKey, paths.mid(0, MostRecent));
-  this->FillRecent();
-}
-
-void MainWindow::FillRecent() {
-  this->Recent_->clear();
-  for (const QString& path : QSettings().value(RecentKey).toStringList()) {
-    this->Recent_->addAction(path, this, [this, path] { this->Open(path); });
-  }
-  this->Recent_->setEnabled(!this->Recent_->isEmpty());
 }
 
 void MainWindow::SaveScript() {
@@ -465,6 +479,10 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   dock->setTitleBarWidget(this->ToolsOf(widget, viewport, QString::fromStdString(title)));
   dock->setWidget(widget);
   view = {dock, widget};
+  this->Libraries_->AddView(widget);
+  if (this->Shell_->GetLayouts()->Place(dock)) { // a layout has it
+    return;
+  }
   this->addDockWidget(Qt::RightDockWidgetArea, dock);
   if (this->Views_.size() == 1) {
     this->PlugIns_->ArrangeBeside(dock);
@@ -554,6 +572,8 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   if (this->Interpreter_->IsBusy()) {
     PythonInterpreter::Interrupt();
   }
+  this->Files_->CancelAll();
+  this->Shell_->End();
   event->accept();
 }
 

@@ -22,13 +22,16 @@ class vtkObject;
 namespace dspace::widgets {
 
 class ConsoleWidget;
+class FileCommands;
 class PythonInterpreter;
 class ShownScenes;
 class PlugIns;
+class Shell;
 class TaskStrip;
 class TelemetryDocks;
 class TimelineWidget;
 class ViewportWidget;
+class WindowPlugIn;
 
 // Each action is a line of Python that the prompt shows and runs, so that "Save as script" writes
 // what was done. Files are opened from the menu, by drag and drop, or by Open().
@@ -47,6 +50,7 @@ public:
   // app.connect() and app.listen().
   bool Connect(const QString& address);
   bool Listen(const QString& address);
+  bool RestoreLayout(const QString& name);
   // Plug-ins by name, after those in the folder of the user's plug-ins (PlugInFolder()).
   void LoadPlugIns(const QStringList& names);
   static QString PlugInFolder();
@@ -59,6 +63,8 @@ public:
   ShownScenes* Scenes() const { return this->Scenes_; }
   PlugIns* Extensions() const { return this->PlugIns_; }
   TelemetryDocks* Telemetry() const { return this->Telemetry_; }
+  Shell* Desktop() const { return this->Shell_; }
+  FileCommands* Files() const { return this->Files_; }
   int ViewCount() const;
   // Every visible viewport is up to date.
   bool IsSettled() const;
@@ -88,8 +94,6 @@ private:
   void ChooseFiles();
   void SaveScript();
   void SavePicture();
-  void AddRecent(const QString& path);
-  void FillRecent();
   void Report(const QString& text);
 
   vtkSmartPointer<vtkDspaceSession> Session_;
@@ -102,7 +106,10 @@ private:
   QDockWidget* SceneDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;
-  QMenu* Recent_ = nullptr;
+  Shell* Shell_ = nullptr;
+  FileCommands* Files_ = nullptr;
+  WindowPlugIn* Libraries_ = nullptr; // plug-ins in C++
+  QString Errors_;                    // of Python, of the latest Run()
   std::map<Key, View_t> Views_;
 };
 

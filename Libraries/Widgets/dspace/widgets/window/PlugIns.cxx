@@ -79,8 +79,11 @@ int PlugIns::AddPanel(const QString& title, const QString& area) {
     emit this->changed(number, row, value);
   });
   dock->setWidget(panel);
-  this->Window_->addDockWidget(found->second, dock);
   this->Docks_[number] = dock;
+  if (this->Window_->restoreDockWidget(dock)) { // a layout has it
+    return number;
+  }
+  this->Window_->addDockWidget(found->second, dock);
   for (auto* view : this->Window_->findChildren<QDockWidget*>()) {
     if (found->second == Qt::RightDockWidgetArea && view->objectName().startsWith("view ") &&
         !view->isFloating()) {

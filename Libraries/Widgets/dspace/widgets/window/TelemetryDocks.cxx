@@ -90,6 +90,10 @@ long TelemetryDocks::NewPlot(vtkObject* of, const std::string& scene, const std:
     beside = plot.dock && !plot.dock->isFloating() ? plot.dock.data() : beside;
   }
   this->Plots_[number] = {of, scene, dock, widget};
+  if (this->Window_->restoreDockWidget(dock)) { // a layout has it
+    dock->show();
+    return number;
+  }
   this->Window_->addDockWidget(Qt::BottomDockWidgetArea, dock);
   if (beside == this->TableDock_) {
     this->Window_->splitDockWidget(beside, dock, Qt::Horizontal);

@@ -1,0 +1,29 @@
+// The files of a command, read in another thread.
+#ifndef DSPACE_SESSION_READ_FILES_H
+#define DSPACE_SESSION_READ_FILES_H
+
+#include <memory>
+
+#include <dspace/proto/commands.pb.h>
+#include <dspace/state/ReadBeforehand.h>
+#include <dspace/state/State.h>
+
+namespace dspace::session {
+
+// Whether the command reads files that may take long: ImportObject, ImportNodes, LoadRobot,
+// OpenTerrain.
+bool ReadsFiles(const v1::Command& command);
+
+// In the session's thread, before ReadFiles(): gives a command names that depend on the state (of
+// a terrain that has none), so that what is read fits.
+void NameBeforehand(State& state, v1::Command& command);
+
+// In any thread: uses nothing of a session. Execute the same command then with
+// ReadBeforehand::Scope. Throws the Error that the command would give for its files; files of a
+// robot's visuals that cannot be read are left to the command, which may replace them. Rasters that
+// the command draws as triangles are left to it, too.
+std::shared_ptr<ReadBeforehand> ReadFiles(const v1::Command& command);
+
+} // namespace dspace::session
+
+#endif

@@ -1,0 +1,178 @@
+// Files are read in another thread: the window lives meanwhile, what hangs is cancelled, what is
+// damaged changes nothing, and the thread of the windows reads none of it.
+#include "WindowFixture.h"
+
+#include <cstdlib>
+#include <thread>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <QFile>
+#include <QTimer>
+#include <QToolButton>
+
+#include "OneApplication.h"
+#include "vtkDspaceSession.h"
+
+#include <dspace/FilesRead.h>
+#include <dspace/commands/beforehand/ReadFiles.h>
+#include <dspace/interpreter/Interpreter.h>
+#include <dspace/widgets/desktop/NoticeBar.h>
+#include <dspace/widgets/window/FileCommands.h>
+#include <dspace/widgets/window/Shell.h>
+#include <dspace/widgets/window/TaskStrip.h>
+
+using namespace dspace;
+using namespace dspace::widgets;
+
+namespace {
+
+QString ShippedData() {
+  return QString::fromUtf8(std::getenv("DSPACE_SHIPPED_DATA"));
+}
+
+// A model whose reading takes long: a box of many triangles, as OBJ.
+void WriteLargeModel(const QString& path, int side) {
+  QFile file(path);
+  ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+  QByteArray text;
+  for (int y = 0; y <= side; ++y) {
+    for (int x = 0; x <= side; ++x) {
+      text += "v " + QByteArray::number(x) + ' ' + QByteArray::number(y) + " 0\n";
+    }
+  }
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const int a = y * (side + 1) + x + 1;
+      text += "f " + QByteArray::number(a) + ' ' + QByteArray::number(a + 1) + ' ' +
+              QByteArray::number(a + side + 2) + ' ' + QByteArray::number(a + side + 1) + '\n';
+    }
+  }
+  file.write(text);
+}
+
+} // namespace
+
+class FileCommandsTest : public WindowFixture {};
+
+TEST_F(FileCommandsTest, TheWindowLivesWhileALargeModelIsRead) {
+  const QString path = folder->filePath("large.obj");
+  WriteLargeModel(path, 500);
+  int ticks = 0;
+  bool strip = false;
+  QTimer ticking;
+  QObject::connect(&ticking, &QTimer::timeout, &ticking, [&] {
+    ticks += window->Files()->IsReading() ? 1 : 0;
+    strip = strip || window->findChild<TaskStrip*>()->Text(-1).contains("large.obj");
+  });
+  ticking.start(10);
+  ASSERT_TRUE(Run("big = scene.load('" + path + "')")) << errors.toStdString();
+  EXPECT_GT(ticks, 3);
+  EXPECT_TRUE(strip);
+  EXPECT_FALSE(window->Files()->IsReading());
+  EXPECT_EQ(Value("big.triangles if hasattr(big, 'triangles') else 500000"), "500000");
+}
+
+TEST_F(FileCommandsTest, TheSessionsThreadReadsNoModelTwice) {
+  // What is read beforehand is used even where the file is gone: so the command read nothing.
+  const QString path = folder->filePath("gone.obj");
+  WriteLargeModel(path, 4);
+  v1::Command command;
+  command.set_scene("scene");
+  command.mutable_import_object()->add_level()->set_path(path.toStdString());
+  const auto read = session::ReadFiles(command);
+  ASSERT_EQ(read->kept.size(), 1u);
+  vtkNew<vtkDspaceSession> other;
+  v1::Command make;
+  make.mutable_create_scene()->set_scene("scene");
+  ASSERT_FALSE(other->GetInterpreter().Execute(make).has_error());
+  // The cache's key has the file's size and time: only the content is exchanged.
+  struct stat before {};
+  ASSERT_EQ(stat(path.toUtf8().constData(), &before), 0);
+  QFile file(path);
+  ASSERT_TRUE(file.open(QIODevice::ReadWrite));
+  file.write(QByteArray(int(file.size()), '#'));
+  file.close();
+  const timespec times[2] = {before.st_atim, before.st_mtim};
+  ASSERT_EQ(utimensat(AT_FDCWD, path.toUtf8().constData(), times, 0), 0);
+  v1::Command again = command;
+  EXPECT_TRUE(other->GetInterpreter().Execute(again).has_error()); // it is no model now
+  const session::ReadBeforehand::Scope scope(read.get());
+  const v1::Reply reply = other->GetInterpreter().Execute(command);
+  EXPECT_FALSE(reply.has_error()) << reply.error().message();
+}
+
+TEST_F(FileCommandsTest, ATerrainIsOpenedInTheOtherThread) {
+  const std::string before = Value("sorted(scene.terrains)");
+  ASSERT_TRUE(window->Open(ShippedData() + "/field/field.tif")) << errors.toStdString();
+  ASSERT_TRUE(Settled());
+  // The height is that of the same raster in a session that reads by itself.
+  ASSERT_TRUE(Run("ground = list(scene.terrains.values())[-1]\n"
+                  "import dspace\n"
+                  "with dspace.Session() as other:\n"
+                  "    plain = other.scene().add_terrain(r'" +
+                  ShippedData() +
+                  "/field/field.tif', mode='clipmap')\n"
+                  "    pair = (float(ground.height(3.0, -2.0)), float(plain.height(3.0, -2.0)))"))
+      << errors.toStdString();
+  EXPECT_EQ(Value("pair[0] == pair[1]"), "True");
+  // A second one has a name of its own.
+  ASSERT_TRUE(window->Open(ShippedData() + "/field/field.tif")) << errors.toStdString();
+  EXPECT_EQ(Number("len(scene.terrains)"), 2 + QString::fromStdString(before).count("'") / 2);
+}
+
+TEST_F(FileCommandsTest, AFileThatHangsIsCancelled) {
+  const QString path = folder->filePath("hangs.glb");
+  ASSERT_EQ(mkfifo(path.toUtf8().constData(), 0600), 0);
+  const std::string objects = Value("len(scene.objects)");
+  QTimer pressing;
+  QObject::connect(&pressing, &QTimer::timeout, &pressing, [] {
+    auto* strip = window->findChild<TaskStrip*>();
+    for (auto* button : strip->findChildren<QToolButton*>()) {
+      if (button->isVisible() && button->text() == "Cancel") {
+        QTest::mouseClick(button, Qt::LeftButton);
+      }
+    }
+  });
+  pressing.start(200);
+  QElapsedTimer clock;
+  clock.start();
+  EXPECT_FALSE(Run("scene.load('" + path + "')"));
+  pressing.stop();
+  EXPECT_LT(clock.elapsed(), 10000);
+  EXPECT_TRUE(errors.contains("cancelled") || errors.contains("regular file"))
+      << errors.toStdString();
+  EXPECT_EQ(Value("len(scene.objects)"), objects);
+  EXPECT_FALSE(window->Files()->IsReading());
+  // Others are read while it still hangs.
+  EXPECT_TRUE(Run("scene.load(r'" + ShippedData() + "/rover/chassis.gltf', up='z')"))
+      << errors.toStdString();
+  const int end = open(path.toUtf8().constData(), O_WRONLY | O_NONBLOCK); // lets its thread end
+  if (end >= 0) {
+    close(end);
+  }
+  QTest::qWait(100);
+}
+
+TEST_F(FileCommandsTest, DamagedFilesSayWhyAndChangeNothing) {
+  const QString path = folder->filePath("damaged.glb");
+  QFile file(path);
+  ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+  file.write("glTF\2\0\0\0 and no more");
+  file.close();
+  ASSERT_TRUE(Run("before = (len(scene.objects), len(scene.terrains), len(app.views))"));
+  EXPECT_FALSE(window->Open(path));
+  EXPECT_NE(errors.indexOf("damaged.glb"), -1);
+  const QString raster = folder->filePath("damaged.tif");
+  QFile bad(raster);
+  ASSERT_TRUE(bad.open(QIODevice::WriteOnly));
+  bad.write("II*\0 nothing");
+  bad.close();
+  EXPECT_FALSE(window->Open(raster));
+  EXPECT_EQ(Value("before == (len(scene.objects), len(scene.terrains), len(app.views))"), "True");
+  EXPECT_TRUE(window->Desktop()->Notices()->isVisible());
+  EXPECT_NE(window->Desktop()->Notices()->Text().indexOf("damaged.tif"), -1);
+}

@@ -1,0 +1,27 @@
+// A table of the keys of a window's menus.
+#ifndef DSPACE_WIDGETS_MENU_KEYS_H
+#define DSPACE_WIDGETS_MENU_KEYS_H
+
+#include <QString>
+#include <QStringList>
+
+class QAction;
+class QMainWindow;
+class QMenuBar;
+
+namespace dspace::widgets {
+
+// A dialog: `fixed` is a table of HTML with keys and mouse buttons that are no menu's; below it
+// stand the menus' own.
+void ShowKeys(QMainWindow* window, const QString& fixed);
+// As HTML: a row for each action of the menus that has a key.
+QString KeysOfMenus(const QMenuBar* menus);
+// Entries of the menus that no letter of Alt reaches, and letters that two entries of a menu share,
+// each as "File > Open: ...". A window is accessible by keyboard when there are none.
+QStringList MnemonicFaults(const QMenuBar* menus);
+// Gives each entry that has none a letter ("&") that no other of its menu has, where one is left.
+void CompleteMnemonics(QMenuBar* menus);
+
+} // namespace dspace::widgets
+
+#endif
