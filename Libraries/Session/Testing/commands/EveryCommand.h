@@ -9,7 +9,7 @@
 namespace dspace::testing {
 
 // Commands are v1::Command in protobuf's text format. FOLDER stands for a folder that the test may
-// write into: it holds arm.urdf, array.gltf, ground.asc, box.obj and tracks.json. VIEW is a
+// write into: it holds arm.urdf, array.gltf, ground.asc, box.obj, moon.tpc and tracks.json. VIEW is a
 // viewport of 48 x 32 pixels.
 struct CommandInstance {
   const char* command;             // the command's name is the name of its field
@@ -269,6 +269,16 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(list_events {})", {}},
       {R"(list_questions {})", {}},
 
+      {R"(load_kernels { path: "FOLDER/moon.tpc" })", {}},
+      {R"(unload_kernels {})", {R"(load_kernels { path: "FOLDER/moon.tpc" })"}},
+      {R"(list_kernels {})", {}},
+      {R"(set_frame_motion { frame: 40 place { body: "moon" axes: "IAU_MOON" } parent { body: "earth" }
+           correction: "LT" })",
+       {R"(create_frame { id: 40 name: "moon" })"}},
+      {R"(set_sun_motion { place { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } })", {}},
+      {R"(turn_frames { from: "J2000" to: "IAU_MARS" time_s: [0, 100] rates: true })", {}},
+      {R"(find_sub_points { body: "mars" observer: "earth" })", {}},
+
       {R"(measure_geodesics { ellipsoid { axes { equatorial_radius: 1737400 } } start: [1, 2] end: [3, 4] })",
        {}},
       {R"(follow_geodesics { start: [1, 2] azimuth_deg: 30 distance: 1000 })", {}},
@@ -286,7 +296,9 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(project_points {})", {}},
       {R"(unproject_pixels {})", {}},
       {R"(ephemeris {})", {}},
-      {R"(sky_state {})", {}},
+      {R"(sky_state { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } }
+           target: ["sun", "earth"] })",
+       {}},
   };
   return commands;
 }

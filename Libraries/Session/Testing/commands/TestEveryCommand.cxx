@@ -89,6 +89,8 @@ protected:
     std::ofstream(this->Folder_ / "ground.asc") << Ground;
     std::ofstream(this->Folder_ / "box.obj") << Box;
     std::ofstream(this->Folder_ / "array.gltf") << Array;
+    std::ofstream(this->Folder_ / "moon.tpc")
+        << "KPL/PCK\n\\begindata\nBODY301_RADII = ( 1737 1737 1737 )\n";
   }
 
   v1::Command Parse(std::string text) const {
