@@ -1,5 +1,9 @@
 #include <dspace/render/Captions.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "vtkRenderer.h"
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
@@ -38,6 +42,23 @@ std::array<double, 2> HalfSize(const Caption& caption) {
   return {0.5 * 0.61 * caption.fontSize * characters + 2.0, 0.65 * caption.fontSize + 2.0};
 }
 
+void LeaveOutOverlaps(std::vector<Caption>& captions) {
+  std::vector<Caption> kept;
+  kept.reserve(captions.size());
+  for (Caption& caption : captions) {
+    const std::array<double, 2> half = HalfSize(caption);
+    const auto over = [&](const Caption& other) {
+      const std::array<double, 2> others = HalfSize(other);
+      return std::abs(caption.at[0] - other.at[0]) < half[0] + others[0] &&
+             std::abs(caption.at[1] - other.at[1]) < half[1] + others[1];
+    };
+    if (!caption.yields || std::none_of(kept.begin(), kept.end(), over)) {
+      kept.push_back(std::move(caption));
+    }
+  }
+  captions = std::move(kept);
+}
+
 void CaptionActors::Show(const std::vector<Caption>& captions, vtkRenderer* overlay, int height) {
   auto before = std::move(this->Shown_);
   this->Shown_.clear();
@@ -69,6 +90,7 @@ std::vector<Caption> SceneDrawer::Captions(const DrawList& list, const DrawView&
         this->Drawing(object, list, view, samples), target);
     all.insert(all.end(), its.begin(), its.end());
   }
+  LeaveOutOverlaps(all);
   return all;
 }
 

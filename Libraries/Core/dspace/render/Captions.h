@@ -20,10 +20,14 @@ struct Caption {
   int fontSize = 13;                          // pixels
   std::array<double, 4> color = {1, 1, 1, 1}; // sRGB and opacity, 0 to 1
   std::array<double, 4> background = {0, 0, 0, 0.5}; // of the box behind it
+  bool yields = false; // left out where it would lie over a caption before it
 };
 
 // Half of the width and height of its box in pixels, for placing captions beside each other.
 std::array<double, 2> HalfSize(const Caption& caption);
+
+// Leaves out captions that yield and lie over one before them, of whichever object.
+void LeaveOutOverlaps(std::vector<Caption>& captions);
 
 // The captions of one viewport's picture, on its overlay renderer.
 class CaptionActors {

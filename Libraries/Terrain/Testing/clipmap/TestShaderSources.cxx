@@ -155,6 +155,7 @@ struct Programs {
   void AddClipmaps();
   void AddScreens();
   void AddStars();
+  void AddTrajectories();
   void AddExample();
   void AddBenchmark();
 
@@ -168,6 +169,7 @@ struct Programs {
     this->AddClipmaps();
     this->AddScreens();
     this->AddStars();
+    this->AddTrajectories();
     this->AddExample();
     this->AddBenchmark();
   }
@@ -308,7 +310,8 @@ void Programs::AddScreens() {
     const std::string text = TextOf(path);
     if (path.parent_path() != folder || name.find(".frag.glsl") == std::string::npos ||
         text.rfind("#version", 0) != 0 || name == "Surface.frag.glsl" ||
-        name == "Label.frag.glsl" || name == "Coded.frag.glsl" || name == "Star.frag.glsl") {
+        name == "Label.frag.glsl" || name == "Coded.frag.glsl" || name == "Star.frag.glsl" ||
+        name.rfind("Trajectory", 0) == 0) {
       continue;
     }
     EXPECT_EQ(text.rfind("#version 330 core\n" + marker, 0), 0u) << name;
@@ -346,6 +349,19 @@ void Programs::AddStars() {
   this->validator.Add("Star", TextOf(folder / "Star.vert.glsl"), TextOf(folder / "Star.frag.glsl"),
                       true);
   ++this->count;
+}
+
+void Programs::AddTrajectories() {
+  const fs::path benchmark = fs::path(DSPACE_SOURCES) / "Testing/Benchmarks/Shaders";
+  this->validator.Add("BareLine", TextOf(benchmark / "BareLine.vert.glsl"),
+                      TextOf(benchmark / "BareLine.frag.glsl"), true);
+  ++this->count;
+  const fs::path folder = fs::path(DSPACE_SOURCES) / "Libraries/Core/Shaders";
+  for (const char* name : {"TrajectoryPlain", "TrajectoryTimed", "TrajectoryLabel"}) {
+    this->validator.Add(name, TextOf(folder / "TrajectoryLine.vert.glsl"),
+                        TextOf(folder / (std::string(name) + ".frag.glsl")), true);
+    ++this->count;
+  }
 }
 
 // Of OpenSceneGraph, whose ground is drawn with OpenGL 2's fixed functions: no core profile.

@@ -1,0 +1,373 @@
+#include <dspace/render/trajectories/TrajectoryDrawer.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "vtk_glew.h"
+
+#include "TrajectoryLabel_frag.h"
+#include "TrajectoryLine_vert.h"
+#include "TrajectoryPlain_frag.h"
+#include "TrajectoryTimed_frag.h"
+
+#include "vtkDspaceHubWindow.h"
+#include "vtkOpenGLState.h"
+#include "vtkShaderProgram.h"
+
+#include <dspace/render/Capture.h>
+#include <dspace/render/CustomDrawers.h>
+#include <dspace/render/RenderTarget.h>
+#include <dspace/render/SurfaceShaders.h>
+#include <dspace/scene/LinearLight.h>
+
+namespace dspace {
+namespace {
+
+constexpr double Farther = 1e7; // [m] than what shadows are sharp for: lines take none
+constexpr float Forever = 3e38f;
+
+struct Vertex {
+  float high[3];
+  float low[3];
+  float time[2];
+  std::uint8_t color[4];
+};
+
+// A double as two floats.
+std::array<float, 2> Split(double value) {
+  const auto high = float(value);
+  return {high, float(value - double(high))};
+}
+
+void PutVertex(double time, const Eigen::Vector3d& p, const TrajectoryLine::Color& color,
+               std::vector<Vertex>& to) {
+  Vertex vertex;
+  for (int k = 0; k < 3; ++k) {
+    const auto parts = Split(p[k]);
+    vertex.high[k] = parts[0];
+    vertex.low[k] = parts[1];
+  }
+  const auto parts = Split(time);
+  vertex.time[0] = parts[0];
+  vertex.time[1] = parts[1];
+  std::copy(color.begin(), color.end(), vertex.color);
+  to.push_back(vertex);
+}
+
+constexpr TrajectoryLine::Color White = {255, 255, 255, 255};
+
+float Length(double seconds) {
+  return float(std::min(seconds, double(Forever)));
+}
+
+// Whether some of its points let what is behind shine through.
+bool IsTranslucent(const TrajectoryLine& line) {
+  const TrajectoryLook& look = line.Look();
+  if (look.opacity < 1.0 || look.fade || look.ahead < 1.0) {
+    return true;
+  }
+  return std::any_of(line.Strips().begin(), line.Strips().end(), [](const auto& strip) {
+    return std::any_of(strip.colors.begin(), strip.colors.end(),
+                       [](const auto& color) { return color[3] < 255; });
+  });
+}
+
+bool InWindow(const TrajectoryLine& line, double time) {
+  const double elapsed = time - line.Time();
+  return elapsed >= -line.Look().before && elapsed <= line.Look().after;
+}
+
+} // namespace
+
+void RegisterTrajectoryDrawer(CustomDrawers& drawers) {
+  drawers.Register(typeid(TrajectoryLine),
+                   [](const std::shared_ptr<const CustomGeometry>& geometry) {
+                     return std::make_unique<TrajectoryDrawer>(
+                         std::static_pointer_cast<const TrajectoryLine>(geometry));
+                   });
+}
+
+TrajectoryDrawer::~TrajectoryDrawer() {
+  for (Buffer* buffer : {&this->Whole_, &this->Detail_, &this->Ticks_}) {
+    if (buffer->array) {
+      glDeleteBuffers(1, &buffer->vertices);
+      glDeleteVertexArrays(1, &buffer->array);
+    }
+  }
+}
+
+void TrajectoryDrawer::Upload(Buffer& buffer, const std::vector<TrajectoryLine::Strip>& strips,
+                              bool dynamic) {
+  std::vector<Vertex> vertices;
+  for (const auto& strip : strips) {
+    for (std::size_t i = 0; i < strip.points.size(); ++i) {
+      PutVertex(strip.times[i], strip.points[i], strip.colors.empty() ? White : strip.colors[i],
+                vertices);
+    }
+  }
+  const bool made = buffer.array == 0;
+  if (made) {
+    glGenVertexArrays(1, &buffer.array);
+    glGenBuffers(1, &buffer.vertices);
+  }
+  glBindVertexArray(buffer.array);
+  glBindBuffer(GL_ARRAY_BUFFER, buffer.vertices);
+  glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(vertices.size() * sizeof(Vertex)), vertices.data(),
+               dynamic ? GL_DYNAMIC_DRAW : GL_STATIC_DRAW);
+  if (made) {
+    const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
+    for (GLuint i = 0; i < 4; ++i) {
+      glEnableVertexAttribArray(i);
+    }
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), at(offsetof(Vertex, high)));
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), at(offsetof(Vertex, low)));
+    glVertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, sizeof(Vertex), at(offsetof(Vertex, time)));
+    glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Vertex),
+                          at(offsetof(Vertex, color)));
+  }
+  glBindVertexArray(0);
+  glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+bool TrajectoryDrawer::Prepare(const CustomDrawing&) {
+  const auto line = this->Line_.lock();
+  if (!line) {
+    return true;
+  }
+  if (this->Uploaded_ != line->PointsRevision()) {
+    this->Uploaded_ = line->PointsRevision();
+    this->DetailKnown_ = false;
+    this->Firsts_.clear();
+    int first = 0;
+    for (const auto& strip : line->Strips()) {
+      this->Firsts_.push_back(first);
+      first += int(strip.points.size());
+    }
+    this->Upload(this->Whole_, line->Strips(), false);
+    if (!line->Ticks().empty()) {
+      TrajectoryLine::Strip ticks;
+      for (const auto& tick : line->Ticks()) {
+        ticks.times.push_back(tick.time);
+        ticks.points.push_back(tick.point);
+      }
+      this->Upload(this->Ticks_, {ticks}, false);
+    }
+  }
+  if (!this->DetailKnown_ || this->DetailTime_ != line->Time()) {
+    const auto& detail = line->GetDetail().points;
+    this->DetailCount_ = int(detail.points.size());
+    if (this->DetailCount_ > 0) {
+      this->Upload(this->Detail_, {detail}, true);
+    }
+    this->DetailTime_ = line->Time();
+    this->DetailKnown_ = true;
+  }
+  return true;
+}
+
+double TrajectoryDrawer::NearestDepth(const CustomDrawing&) {
+  return Farther;
+}
+
+void TrajectoryDrawer::DrawLines(const TrajectoryLine& line) const {
+  const auto& detail = line.GetDetail();
+  glBindVertexArray(this->Whole_.array);
+  for (std::size_t s = 0; s < line.Strips().size(); ++s) {
+    const int first = this->Firsts_[s];
+    const auto count = int(line.Strips()[s].points.size());
+    if (this->DetailCount_ == 0 || s != detail.strip) {
+      glDrawArrays(GL_LINE_STRIP, first, count);
+      continue;
+    }
+    const auto before = int(detail.first);
+    const auto after = int(detail.last);
+    if (before > 0) {
+      glDrawArrays(GL_LINE_STRIP, first, before + 1);
+    }
+    if (after < count - 1) {
+      glDrawArrays(GL_LINE_STRIP, first + after, count - after);
+    }
+    glBindVertexArray(this->Detail_.array);
+    glDrawArrays(GL_LINE_STRIP, 0, this->DetailCount_);
+    glBindVertexArray(this->Whole_.array);
+  }
+  glBindVertexArray(0);
+}
+
+void TrajectoryDrawer::Draw(const CustomDrawing& drawing, const char* fragment, bool translucent) {
+  const auto line = this->Line_.lock();
+  if (!line || !this->Whole_.array) {
+    return;
+  }
+  const TrajectoryLook& look = line->Look();
+  vtkShaderProgram* program = drawing.shaders.Program(TrajectoryLine_vert, fragment);
+  const Eigen::Affine3d& X_VO = drawing.object.X_VO;
+  const Eigen::Vector3d eye = X_VO.linear().inverse() * -X_VO.translation();
+  float high[3];
+  float low[3];
+  for (int k = 0; k < 3; ++k) {
+    const auto parts = Split(eye[k]);
+    high[k] = parts[0];
+    low[k] = parts[1];
+  }
+  program->SetUniform3f("eyeHigh", high);
+  program->SetUniform3f("eyeLow", low);
+  const Eigen::Matrix3f viewFromObject = X_VO.linear().cast<float>();
+  const Eigen::Matrix4f clip = drawing.view.ClipFromView().cast<float>();
+  program->SetUniformMatrix3x3("viewFromObject", const_cast<float*>(viewFromObject.data()));
+  program->SetUniformMatrix4x4("clipFromView", const_cast<float*>(clip.data()));
+  const bool timed = fragment != TrajectoryPlain_frag;
+  const bool labels = fragment == TrajectoryLabel_frag;
+  if (timed) {
+    const auto now = Split(line->Time());
+    const float window[2] = {Length(look.before), Length(look.after)};
+    program->SetUniform2f("now", now.data());
+    program->SetUniform2f("window", window);
+  }
+  if (labels) {
+    const bool parts = drawing.list.Filter().partsOf != 0; // labels are those of its parts
+    program->SetUniformi("label", parts ? 0 : int(drawing.object.object->id));
+  } else {
+    const std::array<float, 3> color = LinearColor(look.color);
+    const float light[4] = {color[0], color[1], color[2], float(look.opacity)};
+    program->SetUniform4f("look", light);
+    program->SetUniformf("alpha", drawing.light ? 0.0f : 1.0f);
+    if (timed) {
+      const auto lengths = line->FadeLengths();
+      // A side without length fades at once: nothing of it is in the window but its end.
+      const float fading[2] = {look.fade ? std::max(Length(lengths[0]), 1e-30f) : 0.0f,
+                               look.fade ? std::max(Length(lengths[1]), 1e-30f) : 0.0f};
+      program->SetUniform2f("fading", fading);
+      program->SetUniformf("ahead", float(look.ahead));
+      program->SetUniformi("dithered", translucent ? 0 : 1);
+    }
+  }
+  vtkOpenGLState* state = drawing.window->GetState();
+  if (translucent) {
+    state->vtkglEnable(GL_BLEND);
+    state->vtkglBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    state->vtkglDepthMask(GL_FALSE);
+  }
+  state->vtkglLineWidth(float(drawing.object.object->lineWidth) * float(drawing.samples));
+  this->DrawLines(*line);
+  ++drawing.statistics.drawCalls;
+  if (this->Ticks_.array && look.tickSize > 0.0) {
+    program->SetUniformf("pointSize", float(look.tickSize * drawing.samples));
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    glBindVertexArray(this->Ticks_.array);
+    glDrawArrays(GL_POINTS, 0, GLsizei(line->Ticks().size()));
+    glBindVertexArray(0);
+    glDisable(GL_PROGRAM_POINT_SIZE);
+    ++drawing.statistics.drawCalls;
+  }
+  if (translucent) {
+    state->vtkglDepthMask(GL_TRUE);
+    state->vtkglDisable(GL_BLEND);
+  }
+}
+
+void TrajectoryDrawer::DrawColor(const CustomDrawing& drawing) {
+  const auto line = this->Line_.lock();
+  if (!line) {
+    return;
+  }
+  const bool translucent = IsTranslucent(*line);
+  if (translucent && !drawing.light) {
+    return; // DrawTranslucent
+  }
+  this->Draw(drawing,
+             translucent || line->FollowsTime() ? TrajectoryTimed_frag : TrajectoryPlain_frag,
+             false);
+}
+
+void TrajectoryDrawer::DrawTranslucent(const CustomDrawing& drawing, const RenderTarget&) {
+  const auto line = this->Line_.lock();
+  if (line && !drawing.light && IsTranslucent(*line)) {
+    this->Draw(drawing, TrajectoryTimed_frag, true);
+  }
+}
+
+void TrajectoryDrawer::DrawLabels(const CustomDrawing& drawing) {
+  if (!drawing.list.Filter().castersOnly && !drawing.view.clip) {
+    this->Draw(drawing, TrajectoryLabel_frag, false);
+  }
+}
+
+std::vector<Caption> TrajectoryDrawer::Captions(const CustomDrawing& drawing,
+                                                const RenderTarget& target) {
+  const auto line = this->Line_.lock();
+  if (!line || !line->Look().tickLabels || line->Ticks().empty()) {
+    return {};
+  }
+  const TrajectoryLook& look = line->Look();
+  const DrawView& view = drawing.view;
+  const double width = double(view.width) / view.samples;
+  const double height = double(view.height) / view.samples;
+  const Eigen::Matrix4d clip = view.ClipFromView();
+  struct Box {
+    double x, y, halfWidth, halfHeight;
+  };
+  std::vector<Box> taken;
+  std::vector<Caption> captions;
+  // Every 2^k-th tick first, then those between them: labels that remain are evenly spread.
+  const auto& ticks = line->Ticks();
+  std::size_t stride = 1;
+  while (stride * 2 < ticks.size()) {
+    stride *= 2;
+  }
+  const auto place = [&](const TrajectoryLine::Tick& tick) {
+    if (tick.label.empty() || !InWindow(*line, tick.time)) {
+      return;
+    }
+    const Eigen::Vector3d p_V = drawing.object.X_VO * tick.point;
+    const Eigen::Vector4d p = clip * p_V.homogeneous();
+    if (!(p.w() > 0.0) || !(p.z() >= 0.0 && p.z() <= p.w())) {
+      return;
+    }
+    const double x = 0.5 * (p.x() / p.w() + 1.0) * width;
+    const double y = 0.5 * (1.0 - p.y() / p.w()) * height;
+    Caption caption;
+    caption.text = tick.label;
+    caption.fontSize = look.fontSize;
+    caption.color = {look.color[0], look.color[1], look.color[2], 1.0};
+    caption.yields = true;
+    const std::array<double, 2> half = HalfSize(caption);
+    const double apart = 0.5 * look.tickSize + 3.0;
+    // Right of its tick, or left of it at the picture's edge.
+    const bool left = x + apart + 2.0 * half[0] > width;
+    caption.at = {x + (left ? -1.0 : 1.0) * (apart + half[0]) - 0.5, y - 0.5};
+    if (x < 0.0 || x >= width || y < half[1] || y >= height - half[1] ||
+        caption.at[0] < half[0] - 0.5 || caption.at[0] > width - half[0]) {
+      return;
+    }
+    const Box box{caption.at[0], caption.at[1], half[0], half[1]};
+    for (const Box& other : taken) {
+      if (std::abs(box.x - other.x) < box.halfWidth + other.halfWidth &&
+          std::abs(box.y - other.y) < box.halfHeight + other.halfHeight) {
+        return;
+      }
+    }
+    const int column = std::clamp(int(x * view.samples), 0, view.width - 1);
+    const int row = std::clamp(int(y * view.samples), 0, view.height - 1);
+    const double depth = double(target.ReadDepth(column, row, 1, 1).front());
+    if (depth > p.z() / p.w() * (1.0 + 1e-4) + 1e-12) {
+      return; // something is before it
+    }
+    taken.push_back(box);
+    captions.push_back(std::move(caption));
+  };
+  for (std::size_t i = 0; i < ticks.size(); i += stride) {
+    place(ticks[i]);
+  }
+  for (; stride > 1; stride /= 2) {
+    for (std::size_t i = stride / 2; i < ticks.size(); i += stride) {
+      place(ticks[i]);
+    }
+  }
+  return captions;
+}
+
+} // namespace dspace
