@@ -33,6 +33,8 @@ inline const std::vector<const char*>& Everything() {
       R"(create_text { object { id: 5 name: "label" } text: "label" label { font_size: 20 } })",
       R"(create_stars { object { id: 9 name: "stars" }
            direction: "\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00" magnitude: "\x00\x00\x80\x3f" })",
+      R"(create_trajectory { object { id: 12 name: "orbit" frame: 10 nature: ORNAMENTAL } most_points: 70
+           path { conic { position { x: 7e6 } velocity { y: 7500 } mu: 3.986e14 } } begin_s: 0 end_s: 1000 })",
       R"(create_mesh { object { id: 6 name: "wings" frame: 10 } level { mesh { part: "wing" primitive: POINTS
            position: "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00" } } })",
       R"(load_robot { path: "FOLDER/arm.urdf" name: "arm" })",
@@ -108,6 +110,18 @@ inline const std::vector<CommandInstance>& EveryCommand() {
        {}},
       {R"(set_stars { object: 9 look { spread: 2 } })", {}},
       {R"(clear_trail { object: 2 })", {}},
+      {R"(create_trajectory { object { id: 50 name: "seen from a follower" frame: 10 nature: ORNAMENTAL }
+            path { conic { position { x: 7e6 } velocity { y: 7500 z: 10 } mu: 3.986e14 } }
+            axes { kind: LVLH origin { conic { position { x: 7e6 } velocity { y: 7500 } mu: 3.986e14 } } }
+            begin_s: 0 end_s: 1000 tick_interval_s: 100 clock: SECONDS
+            color_time: "\x00\x00\x00\x00\x00\x00\x00\x00" color_at: "\xff\x80\x00\xff"
+            look { color { r: 1 g: 0.5 } before_s: 500 ahead: 0.5 } })",
+       {}},
+      {R"(set_trajectory { object: 12 look { fade: true before_s: 100 } })", {}},
+      {R"(set_trajectory_frame { object: 12 frame: 40 rule { axis { z: 1 } second_axis { x: 1 } second_direction: MOTION } })",
+       {R"(create_frame { id: 40 parent: 10 name: "craft" })"}},
+      {R"(get_trajectory { object: 12 time: "\x00\x00\x00\x00\x00\x00\x00\x00" })", {}},
+      {R"(get_orbit { object: 12 mu: 3.986e14 })", {}},
       {R"(create_mesh { object { id: 50 name: "sheet" frame: 10 } level { minimum_pixels: 0 mesh { part: "left"
             origin { x: 1e6 } position: "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x80\x3f\x00\x00\x00\x00"
             material { color { r: 1 } } } } })",

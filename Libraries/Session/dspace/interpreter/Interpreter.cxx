@@ -45,6 +45,7 @@ Interpreter::Interpreter() {
   AddDrawnCommands(this->Registry_);
   AddStarCommands(this->Registry_);
   AddTrailCommands(this->Registry_);
+  AddTrajectoryCommands(this->Registry_);
   AddRobotCommands(this->Registry_);
   AddNodeCommands(this->Registry_);
   AddFragmentCommands(this->Registry_);

@@ -66,6 +66,7 @@ void AddMeshCommands(Registry& registry);
 void AddDrawnCommands(Registry& registry);
 void AddStarCommands(Registry& registry);
 void AddTrailCommands(Registry& registry);
+void AddTrajectoryCommands(Registry& registry);
 void AddRobotCommands(Registry& registry);
 void AddNodeCommands(Registry& registry);
 void AddFragmentCommands(Registry& registry);

@@ -112,6 +112,9 @@ struct LedgerScene {
     case C::kCreateTrail:
       this->objects.Create(command, command.create_trail().object());
       return true;
+    case C::kCreateTrajectory:
+      this->objects.Create(command, command.create_trajectory().object());
+      return true;
     case C::kCreateStars:
       this->objects.Create(command, command.create_stars().object());
       return true;

@@ -40,6 +40,8 @@ v1::ObjectSettings* SettingsOf(v1::Command& command) {
     return command.mutable_create_mesh()->mutable_object();
   case v1::Command::kCreateStars:
     return command.mutable_create_stars()->mutable_object();
+  case v1::Command::kCreateTrajectory:
+    return command.mutable_create_trajectory()->mutable_object();
   default:
     return command.mutable_create_trail()->mutable_object();
   }

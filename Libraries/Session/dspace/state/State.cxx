@@ -56,6 +56,17 @@ void SceneState::EraseRemoved() {
   for (auto it = this->terrains.begin(); it != this->terrains.end();) {
     it = gone(it->second->Object()) ? this->terrains.erase(it) : std::next(it);
   }
+  for (auto it = this->trajectories.begin(); it != this->trajectories.end();) {
+    if (!gone(it->first)) {
+      ++it;
+      continue;
+    }
+    FrameTree& frames = this->scene->Frames();
+    if (it->second->Follower() != NoFrame && frames.Contains(it->second->Follower())) {
+      frames.SetLocalPose(it->second->Follower(), it->second->PoseBefore());
+    }
+    it = this->trajectories.erase(it);
+  }
   EraseKeys(this->trails, gone);
   EraseKeys(this->stars, gone);
   EraseKeys(this->tilts, gone);
@@ -66,6 +77,46 @@ void SceneState::EraseRemoved() {
       it = gone(*it) ? set->erase(it) : std::next(it);
     }
   }
+}
+
+ObjectId SceneState::FollowedBy(FrameId frame) const {
+  for (const auto& [id, trajectory] : this->trajectories) {
+    if (frame != NoFrame && trajectory->Follower() == frame) {
+      return id;
+    }
+  }
+  return 0;
+}
+
+std::vector<std::string> SceneState::MoveTrajectories() {
+  std::vector<std::string> warnings;
+  std::vector<FrameId> moved;
+  std::vector<double> poses;
+  for (const auto& [id, trajectory] : this->trajectories) {
+    std::string warning = trajectory->SetTime(this->scene->Time());
+    if (!warning.empty()) {
+      warnings.push_back(std::move(warning));
+      warning.clear();
+    }
+    if (trajectory->Follower() == NoFrame) {
+      continue;
+    }
+    try {
+      const Pose X = trajectory->FollowerPose(this->scene->Time(), warning);
+      moved.push_back(trajectory->Follower());
+      poses.insert(poses.end(), {X.position.x(), X.position.y(), X.position.z(), X.rotation.w(),
+                                 X.rotation.x(), X.rotation.y(), X.rotation.z(), X.scale});
+    } catch (const Error& error) {
+      warning = std::string(error.what()) + "; the frame that follows it stays where it was";
+    }
+    if (!warning.empty()) {
+      warnings.push_back(std::move(warning));
+    }
+  }
+  if (!moved.empty()) {
+    this->scene->Frames().SetLocalPoses(moved.data(), poses.data(), moved.size());
+  }
+  return warnings;
 }
 
 } // namespace dspace::session

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <dspace/messages/CommandFiles.h>
 #include <dspace/proto/objects.pb.h>
@@ -24,6 +25,7 @@
 #include <dspace/state/SkyMotions.h>
 #include <dspace/state/Telemetry.h>
 #include <dspace/state/TerrainObject.h>
+#include <dspace/state/TrajectoryObject.h>
 
 namespace dspace::session {
 
@@ -44,6 +46,7 @@ struct SceneState {
   std::map<std::string, std::unique_ptr<TerrainObject>> terrains;
   std::map<ObjectId, Trail> trails;
   std::map<ObjectId, std::shared_ptr<StarField>> stars;
+  std::map<ObjectId, std::unique_ptr<TrajectoryObject>> trajectories;
   std::set<ObjectId> primitives;                       // objects whose shape may be replaced
   std::set<ObjectId> meshes;                           // objects whose arrays may be replaced
   std::map<ObjectId, std::pair<double, double>> tilts; // warning and limit of tilt markers [deg]
@@ -60,7 +63,12 @@ struct SceneState {
   std::vector<Part> GroundOf(const GraphicsObject& object, std::size_t triangleBudget) const;
 
   // Removes the robots, terrains, trails and primitives whose frames or objects were removed.
+  // Frames that followed trajectories go back.
   void EraseRemoved();
+  // The trajectory that a frame follows; 0: none.
+  ObjectId FollowedBy(FrameId frame) const;
+  // Lines and frames of trajectories at the scene's time. Returns warnings.
+  std::vector<std::string> MoveTrajectories();
 };
 
 // The state of a viewport without its drawing.

@@ -78,11 +78,21 @@ void SetObjectOffset(const Context& context, v1::SetObjectOffset& command) {
              "terrain '" + name + "' is queried in its frame; accepted: move the frame");
     }
   }
+  if (context.scene->trajectories.count(command.object())) {
+    Reject(ObjectLabel(scene, command.object()),
+           "it is a trajectory, whose points are in its frame; accepted: move the frame");
+  }
   scene.SetObjectOffset(command.object(),
                         ToAffine(command.offset(), ObjectLabel(scene, command.object())));
 }
 
 void AttachObject(const Context& context, v1::AttachObject& command) {
+  const auto found = context.scene->trajectories.find(command.object());
+  if (found != context.scene->trajectories.end() && found->second->Follower() != NoFrame) {
+    Reject(ObjectLabel(context.GetScene(), command.object()),
+           "frame '" + context.Frames().Path(found->second->Follower()) +
+               "' follows it; accepted: set_trajectory_frame with frame 0 first");
+  }
   context.GetScene().AttachObject(command.object(), ToFrame(command.frame()));
 }
 

@@ -42,6 +42,16 @@ void RejectRobotsLink(const Context& context, FrameId frame, const char* what) {
   }
 }
 
+// A frame that follows a trajectory is where the trajectory is.
+void RejectFollower(const Context& context, FrameId frame, const char* what) {
+  const ObjectId trajectory = context.scene->FollowedBy(frame);
+  if (trajectory != 0) {
+    Reject("frame '" + context.Frames().Path(frame) + "'",
+           "it follows object '" + context.GetScene().Object(trajectory).name + "' and cannot be " +
+               what + "; accepted: set_trajectory_frame with frame 0 first");
+  }
+}
+
 void RemoveFrame(const Context& context, v1::RemoveFrame& command) {
   FrameTree& frames = context.Frames();
   std::vector<FrameId> removed;
@@ -55,6 +65,7 @@ void RemoveFrame(const Context& context, v1::RemoveFrame& command) {
       open.insert(open.end(), children.begin(), children.end());
     }
   }
+  RejectFollower(context, command.frame(), "removed");
   context.GetScene().RemoveFrame(command.frame());
   context.scene->EraseRemoved();
   v1::RemovedFrames* reply = context.reply.mutable_removed_frames();
@@ -68,6 +79,7 @@ void ReparentFrame(const Context& context, v1::ReparentFrame& command) {
     RejectRobotsLink(context, command.frame(), "moved to another parent");
     context.scene->sky.RequireFree(context.Frames(), command.frame(), "moved to another parent");
   }
+  RejectFollower(context, command.frame(), "moved to another parent");
   context.Frames().Reparent(command.frame(), ToFrame(command.parent()), command.keep_world_pose());
   AddPose(context.Frames().LocalPose(command.frame()),
           context.reply.mutable_poses()->mutable_pose());
@@ -87,6 +99,11 @@ void SetPoses(const Context& context, v1::SetPoses& command) {
   for (const auto& [frame, motion] : context.scene->sky.frames) {
     if (std::find(command.frame().begin(), command.frame().end(), frame) != command.frame().end()) {
       context.scene->sky.RequireFree(context.Frames(), frame, "posed");
+    }
+  }
+  if (!context.scene->trajectories.empty()) {
+    for (const FrameId frame : command.frame()) {
+      RejectFollower(context, frame, "moved");
     }
   }
   context.Frames().SetLocalPoses(command.frame().data(), command.pose().data(), n);

@@ -1,6 +1,7 @@
 // Scenes and time.
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <dspace/Checks.h>
 #include <dspace/commands/scene/CameraTools.h>
@@ -87,6 +88,9 @@ void SetTime(const Context& context, v1::SetTime& command) {
   }
   MoveSky(context, command.sky());
   scene.SetTime(command.time_s());
+  for (std::string& warning : context.scene->MoveTrajectories()) {
+    context.reply.add_warning(std::move(warning));
+  }
   if (command.put_lags()) {
     scene.SetLags(std::move(lags));
   }

@@ -7,6 +7,7 @@
 #include <dspace/messages/Convert.h>
 #include <dspace/render/props/VtkPropDrawer.h>
 #include <dspace/render/stars/StarDrawer.h>
+#include <dspace/render/trajectories/TrajectoryDrawer.h>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"
@@ -139,6 +140,7 @@ void ViewportCommands::SetRenderContext(vtkDspaceRenderContext* context) {
   if (context) {
     RegisterClipmapDrawer(context->GetDrawers());
     RegisterStarDrawer(context->GetDrawers());
+    RegisterTrajectoryDrawer(context->GetDrawers());
     RegisterVtkPropDrawer(context->GetDrawers());
     for (const auto& [geometry, maker] : this->Drawers_) {
       context->GetDrawers().Register(geometry, maker);
