@@ -35,6 +35,8 @@ _HOMES = {
     "PolyData": "objects.polydata", "Primitive": "objects.graphics", "Text": "objects.graphics",
     "Stars": "objects.graphics", "TiltMarker": "objects.graphics", "Trail": "objects.graphics",
     "StarCatalog": "stars.catalog",
+    "Footprints": "objects.sensors", "Link": "objects.sensors",
+    "Orbit": "objects.trajectories", "Trajectory": "objects.trajectories",
     "Animation": "objects.models", "Model": "objects.models",
     "Joint": "objects.robots", "Robot": "objects.robots",
     "Movie": "movies.movie",
@@ -57,7 +59,7 @@ def __getattr__(name):
     # Modules are loaded on demand, so that plain Python (dspace.rover) works without the compiled part.
     if name in _HOMES:
         return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
-    if name in ("errors", "proto", "rover", "stars", "vtk"):
+    if name in ("errors", "proto", "rover", "stars", "trajectories", "vtk"):
         return importlib.import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

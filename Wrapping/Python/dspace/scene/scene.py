@@ -17,6 +17,8 @@ from dspace.objects.factory import ObjectFactory
 from dspace.objects.graphics import GraphicsObject
 from dspace.objects.models import Model
 from dspace.objects.robots import Robot
+from dspace.objects.sensors import SensorFactory
+from dspace.objects.trajectories import TrajectoryFactory
 from dspace.proto import commands_pb2 as pb
 from dspace.scene.exports import SceneExports
 from dspace.scene.membership import SceneMembership
@@ -230,6 +232,12 @@ class Scene(Strict):
     add_label = delegate(ObjectFactory, "add_label")
     add_trail = delegate(ObjectFactory, "add_trail")
     add_stars = delegate(ObjectFactory, "add_stars")
+    add_trajectory = delegate(TrajectoryFactory, "add_trajectory")
+    orbit = delegate(TrajectoryFactory, "orbit")
+    add_sensor_cone = delegate(SensorFactory, "add_sensor_cone")
+    add_footprints = delegate(SensorFactory, "add_footprints")
+    add_ground_track = delegate(SensorFactory, "add_ground_track")
+    add_link = delegate(SensorFactory, "add_link")
     add_mesh = delegate(ObjectFactory, "add_mesh")
     add_polydata = delegate(ObjectFactory, "add_polydata")
     add_prop = delegate(ObjectFactory, "add_prop")
