@@ -298,6 +298,7 @@ void SetTrajectoryFrame(const Context& context, v1::SetTrajectoryFrame& command)
       Reject(moved, "it is not a child of frame '" + frames.Path(parent) + "', in which " + label +
                         " is; accepted: one of its children");
     }
+    context.scene->sky.RequireFree(frames, frame, "moved along a trajectory");
     for (const auto& [id, other] : context.scene->trajectories) {
       if (other->Follower() == frame && id != command.object()) {
         Reject(moved, "it follows " + ObjectLabel(context.GetScene(), id) +
