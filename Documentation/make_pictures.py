@@ -12,7 +12,7 @@ from pictures.paths import DATA, IMAGES  # noqa: E402
 
 EVERYWHERE = (scenes.first_picture, scenes.views, scenes.demo_drive, scenes.movie, scenes.banner, vtk.pipeline, vtk.props,
               vtk.own_object, light.photometry, sky.stars, application.application,
-              application.application_telemetry, application.application_console)
+              application.application_telemetry, application.application_console, application.application_dark)
 OF_REAL_DATA = (scenes.drives, models.formats, terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
                 terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth, application.application_terrain)
 
@@ -22,6 +22,9 @@ def main(*names):
     known = {picture.__name__: picture for picture in EVERYWHERE + (OF_REAL_DATA if pathlib.Path(DATA, "terrain").is_dir()
                                                                     and DATA else ())}
     for name in names or known:
+        if name == "tour":  # by name only
+            application.tour()
+            continue
         if name not in known:
             sys.exit(f"there is no picture {name!r}; accepted: {', '.join(known)}")
         known[name]()

@@ -1,15 +1,18 @@
 // DspaceQt: scenes, recordings and terrain at a desktop. Wiring only: the windows are in
 // Libraries/Widgets, and what menus do is in the Python package, dspace/application.
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <memory>
 
 #include <QApplication>
 #include <QCommandLineParser>
+#include <QDialog>
 #include <QDir>
 #include <QElapsedTimer>
 #include <QIcon>
 #include <QMessageBox>
+#include <QPainter>
 #include <QTimer>
 
 #include <dspace/widgets/console/PythonInterpreter.h>
@@ -38,7 +41,19 @@ void TakeScreenshot(dspace::widgets::MainWindow& window, const QString& path, do
     if (elapsed < after_s || (!window.IsSettled() && elapsed < after_s + Patience)) {
       return;
     }
-    const bool saved = window.grab().save(path, "PNG");
+    QPixmap picture = window.grab();
+    QPainter painter(&picture);
+    for (QWidget* each : QApplication::topLevelWidgets()) { // dialogs over it
+      if (each != &window && each->isVisible() && qobject_cast<QDialog*>(each)) {
+        const QPoint corner(std::max(0, (window.width() - each->width()) / 2),
+                            std::max(0, (window.height() - each->height()) / 2));
+        painter.fillRect(QRect(corner - QPoint(1, 1), each->size() + QSize(2, 2)),
+                         each->palette().color(QPalette::Mid));
+        painter.drawPixmap(corner, each->grab());
+      }
+    }
+    painter.end();
+    const bool saved = picture.save(path, "PNG");
     if (!saved) {
       std::cerr << "DspaceQt: " << path.toStdString() << " cannot be written\n";
     }

@@ -6,6 +6,7 @@ from dspace import errors
 from dspace._core.fields import integer, real, reject, text, word
 from dspace._core.replies import to_reply
 from dspace.application.files import around
+from dspace.application import layouts
 from dspace.application.layouts import Layouts
 from dspace.application.link import Link, ServerApart, required_address
 from dspace.application.plots import Plot, Shown
@@ -98,6 +99,14 @@ class App:
                 own.remove()
             except errors.Error:  # another view looks through it
                 pass
+
+    def show_dialog(self, name):
+        """Opens the dialog "preferences", "guide", "keys", "messages" or "about"; nothing waits for it."""
+        layouts.show_dialog(self._host, name)
+
+    def set_theme(self, name):
+        """The colours of all windows, also at the next start: "system", "dark" or "light"."""
+        layouts.set_theme(self._host, name)
 
     # --- Plug-ins ------------------------------------------------------------------------------
 

@@ -30,3 +30,13 @@ class Layouts:
     def remove(self, name):
         """Forgets a layout."""
         self._ask("remove", text(name, "the name", "layout"))
+
+
+def show_dialog(host, name):
+    """Opens "preferences", "guide", "keys", "messages" or "about"; nothing waits for it."""
+    host.extend(json.dumps({"do": "dialog", "name": text(name, "the name", "dialog")}))
+
+
+def set_theme(host, name):
+    """The colours of all windows, kept in the user's settings: "system", "dark", "light"."""
+    host.extend(json.dumps({"do": "theme", "name": text(name, "the theme", "theme")}))

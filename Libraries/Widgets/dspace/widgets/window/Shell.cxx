@@ -108,19 +108,38 @@ void Shell::FillLayouts() {
 }
 
 void Shell::FillHelp(QMenu* menu, const QString& keys, std::function<QString()> about) {
-  menu->addAction(tr("&Guide"), QKeySequence(Qt::SHIFT | Qt::Key_F1), this,
-                  [this] { this->ShowGuide(); });
-  menu->addAction(tr("&Keys"), QKeySequence::HelpContents, this,
-                  [this, keys] { ShowKeys(this->Window_, keys); });
-  menu->addAction(tr("&Messages"), this, [this] { this->Notices_->ShowHistory(); });
+  this->Keys_ = keys;
+  this->About_ = std::move(about);
+  const auto add = [&](const QString& text, const QKeySequence& key, const char* name) {
+    menu->addAction(text, key, this, [this, name] { this->ShowDialog(QString::fromLatin1(name)); });
+  };
+  add(tr("&Guide"), QKeySequence(Qt::SHIFT | Qt::Key_F1), "guide");
+  add(tr("&Keys"), QKeySequence::HelpContents, "keys");
+  add(tr("&Messages"), {}, "messages");
   menu->addSeparator();
-  menu->addAction(tr("&About"), this, [this, about = std::move(about)] {
+  add(tr("&About"), {}, "about");
+}
+
+void Shell::ShowDialog(const QString& name) {
+  if (name == "preferences") {
+    this->ShowPreferences();
+  } else if (name == "guide") {
+    this->ShowGuide();
+  } else if (name == "keys") {
+    ShowKeys(this->Window_, this->Keys_);
+  } else if (name == "messages") {
+    this->Notices_->ShowHistory();
+  } else if (name == "about") {
     TextWindow::Open(tr("About DspaceQt"),
                      tr("DspaceQt\n3D visualization and measurement for spacecraft and rover "
                         "simulations\nLicence: BSD-3-Clause\n\n") +
-                         about(),
+                         this->About_(),
                      this->Window_);
-  });
+  } else {
+    throw Error(Error::Kind::InvalidArgument, "dialog",
+                "it is '" + name.toStdString() +
+                    "'; accepted: preferences, guide, keys, messages, about");
+  }
 }
 
 bool Shell::ShowGuide(const QString& page) {
@@ -177,13 +196,25 @@ void Shell::Apply() {
 // --- Layouts -------------------------------------------------------------------------------------
 
 bool Shell::Takes(const QJsonObject& request) {
-  return request["do"].toString() == QStringLiteral("layout");
+  const QString what = request["do"].toString();
+  return what == "layout" || what == "dialog" || what == "theme";
 }
 
 QJsonObject Shell::Handle(const QJsonObject& request) {
   const QString what = request["what"].toString();
   const QString name = request["name"].toString();
-  if (what == "save") {
+  if (request["do"].toString() == "dialog") {
+    this->ShowDialog(name);
+  } else if (request["do"].toString() == "theme") {
+    Preferences chosen = this->Preferences_;
+    const std::optional<Theme> theme = ThemeOf(name);
+    if (!theme) {
+      throw Error(Error::Kind::InvalidArgument, "theme",
+                  "it is '" + name.toStdString() + "'; accepted: system, dark, light");
+    }
+    chosen.theme = *theme;
+    this->Choose(chosen);
+  } else if (what == "save") {
     this->Layouts_->Save(name);
   } else if (what == "restore") {
     this->Layouts_->Restore(name);

@@ -49,8 +49,10 @@ public:
   // A page of the guide, such as Application.md; false: it is not installed, which a notice says.
   bool ShowGuide(const QString& page = QStringLiteral("Application.md"));
 
-  // What Python asks of layouts (dspace.application.layouts), as JSON:
+  // What Python asks (dspace.application.layouts), as JSON:
   //   {"do": "layout", "what": "save", "restore" or "remove", "name": ...}, {..., "what": "names"}
+  //   {"do": "dialog", "name": "preferences", "guide", "keys", "messages" or "about"}
+  //   {"do": "theme", "name": "system", "dark" or "light"}
   // Throws what Layouts throws, Error(InvalidArgument) for another word.
   static bool Takes(const QJsonObject& request);
   QJsonObject Handle(const QJsonObject& request);
@@ -66,6 +68,7 @@ signals:
 private:
   void Apply();
   void FillLayouts();
+  void ShowDialog(const QString& name);
 
   QMainWindow* Window_;
   std::function<bool(const QString&)> Run_;
@@ -76,6 +79,8 @@ private:
   RecentFiles* Recent_ = nullptr;
   QMenu* LayoutMenu_ = nullptr;
   QPointer<PreferencesDialog> Dialog_;
+  QString Keys_;
+  std::function<QString()> About_;
 };
 
 } // namespace dspace::widgets
