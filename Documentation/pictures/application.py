@@ -54,7 +54,6 @@ TOUR = {
     "tour_keys": ("app.set_theme('light'); app.demo(); app.show_dialog('keys')", 4),
     "tour_guide": ("app.set_theme('dark'); app.demo(); app.show_dialog('guide')", 4),
     "tour_about": ("app.set_theme('light'); app.demo(); app.show_dialog('about')", 4),
-    "tour_notice": ("app.set_theme('dark'); app.demo(); app.every(1.0, lambda: app.open('/tmp/is/not/there.glb'))", 4),
     "tour_four": ("app.demo(); app.new_view(); app.new_view()", 6),
 }
 
