@@ -294,10 +294,13 @@ Frames::Link Frames::PckLink(const FrameInfo& info, double tdb) const {
   return link;
 }
 
+int Frames::ClockOf(int structure) const {
+  const std::string variable = "CK_" + std::to_string(structure) + "_SCLK";
+  return this->Pool().Has(variable) ? this->Pool().Integer(variable) : structure / 1000;
+}
+
 Frames::Link Frames::CkLink(const FrameInfo& info, double tdb) const {
-  const KernelPool& pool = this->Pool();
-  const std::string variable = "CK_" + std::to_string(info.classId) + "_SCLK";
-  const int clockId = pool.Has(variable) ? pool.Integer(variable) : info.classId / 1000;
+  const int clockId = this->ClockOf(info.classId);
   const auto found = this->Clocks_.find(clockId);
   if (found == this->Clocks_.end()) {
     throw Error(Error::Kind::NotFound, Label(info),

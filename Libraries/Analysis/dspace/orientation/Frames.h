@@ -61,6 +61,8 @@ public:
   const FrameTable& Table() const { return this->Table_; }
   const KernelPool& Pool() const { return *this->Sources_.pool; }
   const FrameSources& Sources() const { return this->Sources_; }
+  // The id of the clock of a structure whose attitude CKs have: CK_<id>_SCLK, or the id / 1000.
+  int ClockOf(int structure) const;
 
   // Throws Error(NotFound) for unknown frames, with near matches, and for missing data, naming the
   // kernel that is needed; Error(InvalidArgument) for a time out of coverage, with the spans that

@@ -1,11 +1,13 @@
 #include <dspace/sky/KernelSet.h>
 
 #include <algorithm>
+#include <limits>
 
 #include <dspace/Checks.h>
 #include <dspace/FilesRead.h>
 #include <dspace/ephemeris/ErfaSource.h>
 #include <dspace/ephemeris/SpkSource.h>
+#include <dspace/kernels/ClockKernel.h>
 #include <dspace/kernels/LeapSecondKernel.h>
 #include <dspace/kernels/MetaKernel.h>
 #include <dspace/kernels/TextKernel.h>
@@ -145,6 +147,37 @@ std::shared_ptr<const KernelSet> KernelSet::Without(const std::string& path) con
   }
   set->Build();
   return set;
+}
+
+std::vector<KernelSet::Segment> KernelSet::Segments() const {
+  std::vector<Segment> out;
+  for (const std::shared_ptr<const File>& file : this->Files_) {
+    if (file->states) {
+      for (const SpkFile::Segment& s : file->states->File().Segments()) {
+        out.push_back(
+            {file->path, "SPK", s.name, s.target, s.center, s.frame, s.type, s.begin, s.end});
+      }
+    } else if (file->orientations) {
+      for (const BinaryPck::Segment& s : file->orientations->Segments()) {
+        out.push_back(
+            {file->path, "PCK", s.name, s.frameClass, 0, s.inertial, s.type, s.begin, s.end});
+      }
+    } else if (file->attitudes) {
+      for (const CkFile::Segment& s : file->attitudes->Segments()) {
+        const auto tdb = [&](double ticks) {
+          try {
+            return ClockKernel(this->Pool(), this->Frames_->ClockOf(s.instrument), this->Scales())
+                .TdbOf(ticks);
+          } catch (const Error&) {
+            return std::numeric_limits<double>::quiet_NaN();
+          }
+        };
+        out.push_back(
+            {file->path, "CK", s.name, s.instrument, 0, s.frame, s.type, tdb(s.begin), tdb(s.end)});
+      }
+    }
+  }
+  return out;
 }
 
 std::vector<std::string> KernelSet::Files() const {

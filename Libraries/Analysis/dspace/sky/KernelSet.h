@@ -17,6 +17,19 @@ namespace dspace {
 // Immutable: With() makes another one, and shares the files that are open.
 class KernelSet {
 public:
+  // One segment of a binary kernel.
+  struct Segment {
+    std::string file;
+    const char* kind = ""; // "SPK", "PCK", "CK"
+    std::string name;
+    int body = 0;   // NAIF id: the target, the class id of the body-fixed frame, the structure
+    int center = 0; // of an SPK
+    int frame = 0;  // NAIF id of the frame that its numbers are given in
+    int type = 0;
+    double begin = 0.0; // TDB [s past J2000]; NaN: of a CK whose clock is not loaded
+    double end = 0.0;
+  };
+
   KernelSet(); // no kernels
 
   // This set and one more file, or for a meta-kernel the files that it names. The path of a file
@@ -29,6 +42,7 @@ public:
   const std::vector<std::string>& Paths() const { return this->Paths_; } // as given to With
   // All files, those of meta-kernels among them, in the order in which they count.
   std::vector<std::string> Files() const;
+  std::vector<Segment> Segments() const; // of all files, in their order
 
   const Ephemeris& GetEphemeris() const { return *this->Ephemeris_; }
   const Frames& GetFrames() const { return *this->Frames_; }

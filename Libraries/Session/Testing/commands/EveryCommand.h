@@ -309,7 +309,7 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(simulate_image {})", {}},
       {R"(project_points {})", {}},
       {R"(unproject_pixels {})", {}},
-      {R"(ephemeris {})", {}},
+      {R"(ephemeris { target: "moon" observer: "earth" time_s: [0, 100] correction: APPARENT })", {}},
       {R"(sky_state { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } }
            target: ["sun", "earth"] })",
        {}},

@@ -208,6 +208,7 @@ class Scene(Strict):
         return ReferenceFrames(self)
 
     sky = delegate(SceneSky, "sky")
+    ephemeris = delegate(SceneSky, "ephemeris")
     add_celestial_frame = delegate(SceneSky, "add_celestial_frame")
     stop_motion = delegate(SceneSky, "stop_motion")
 

@@ -4,7 +4,7 @@ import collections
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, file_path, flag, items, reject, text
+from dspace._core.fields import array_of, file_path, flag, items, reject, text, word
 from dspace._core.strict import Strict
 from dspace.errors import InvalidArgument, WrongType
 from dspace.sky.places import put_place
@@ -20,6 +20,7 @@ SubPoint = collections.namedtuple("SubPoint", "longitude_deg latitude_deg geodet
 KernelFrame = collections.namedtuple("KernelFrame", "name id kind center kernel")
 KernelClock = collections.namedtuple("KernelClock", "id begin_s end_s")
 KernelInstrument = collections.namedtuple("KernelInstrument", "id shape frame boresight boundary")
+KernelSegment = collections.namedtuple("KernelSegment", "file kind name body center frame type begin_s end_s")
 KernelConflict = collections.namedtuple("KernelConflict", "name winner loser")
 
 
@@ -91,6 +92,14 @@ class Kernels(Strict):
         return {i.id: KernelInstrument(i.id, i.shape, i.frame,
                                        np.array([i.boresight.x, i.boresight.y, i.boresight.z]),
                                        np.array(i.boundary).reshape(-1, 3)) for i in self._list().instrument}
+
+    @property
+    def segments(self):
+        """The segments of binary kernels: file, kind ("SPK", "PCK", "CK"), name, body (NAIF id of the target; class id of
+        the body-fixed frame; structure), centre, frame, type, first and last time [s past J2000 TDB] (NaN: of a CK whose
+        clock is not loaded)."""
+        return [KernelSegment(s.file, s.kind, s.name, s.body, s.center, s.frame, s.type, s.begin_s, s.end_s)
+                for s in self._list().segment]
 
     @property
     def conflicts(self):
@@ -192,6 +201,13 @@ def put_targets(message, targets, time, about):
         message.time_s = float(array[0])
 
 
+# States of a body: position [m], velocity [m/s], light time [s] (arrays where several times were asked for); warnings and
+# sources say where they come from.
+States = collections.namedtuple("States", "position velocity light_time sources")
+StateSource = collections.namedtuple("StateSource", "body center source accuracy hidden")
+CORRECTIONS = {"NONE": 0, "CN": 1, "CN+S": 2, "LT": 3, "LT+S": 4}  # as SPICE names them; numbers of Ephemeris.Correction
+
+
 class SceneSky:
     """The members of Scene and Terrain about the sky."""
 
@@ -225,6 +241,29 @@ class SceneSky:
                 reject(about, "a position without a frame", position, "a frame with it")
             put_place(message.celestial, body, None, (0, 90) if site is None else site, geodetic, about)
         return sky_of(self._scene._execute(command))
+
+    def ephemeris(self, target, observer, times=None, axes="J2000", correction="NONE"):
+        """States of a body or spacecraft from another one (names or NAIF ids): States.
+
+        times: seconds past J2000 TDB; None: the scene's time. axes: a reference frame. correction: "NONE", "LT", "LT+S",
+        "CN", "CN+S". Its sources, in the order of search: loaded SPKs, DE405, ERFA."""
+        about = "ephemeris"
+        command = self._scene._command()
+        message = command.ephemeris
+        for field, value in (("target", target), ("observer", observer)):
+            value = str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+            setattr(message, field, text(value, f"the {field}", about, "a name or NAIF id"))
+        message.axes = text(axes, "the axes", about, "a name such as 'J2000'")
+        message.correction = word(correction, CORRECTIONS, "the correction", about)
+        array, single = _times(times, about)
+        wire.put_array(message, "time_s", array)
+        reply = self._scene._execute(command).ephemeris
+        state = np.array(reply.state).reshape(-1, 6)
+        light_time = np.array(reply.light_time_s)
+        sources = [StateSource(s.body, s.center, s.source, s.accuracy, tuple(s.hidden)) for s in reply.source]
+        if single:
+            return States(state[0, :3], state[0, 3:], float(light_time[0]), sources)
+        return States(state[:, :3], state[:, 3:], light_time, sources)
 
     def add_celestial_frame(self, name, body, axes=None, site=None, parent=None, center=None, center_axes="J2000",
                             correction="NONE", geodetic=False):

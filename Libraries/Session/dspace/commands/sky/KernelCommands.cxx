@@ -23,6 +23,18 @@ void Describe(const KernelSet& kernels, v1::KernelsReply* reply) {
   for (const std::string& file : kernels.Files()) {
     reply->add_file(file);
   }
+  for (const KernelSet::Segment& segment : kernels.Segments()) {
+    v1::KernelsReply::Segment* out = reply->add_segment();
+    out->set_file(segment.file);
+    out->set_kind(segment.kind);
+    out->set_name(segment.name);
+    out->set_body(segment.body);
+    out->set_center(segment.center);
+    out->set_frame(kernels.GetFrames().FrameName(segment.frame));
+    out->set_type(segment.type);
+    out->set_begin_s(segment.begin);
+    out->set_end_s(segment.end);
+  }
   for (const FrameInfo* info : kernels.GetFrames().Table().Loaded()) {
     v1::KernelsReply::Frame* frame = reply->add_frame();
     frame->set_name(info->name);

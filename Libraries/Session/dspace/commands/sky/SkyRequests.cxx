@@ -49,9 +49,60 @@ void TurnFrames(const Context& context, v1::TurnFrames& command) {
   }
 }
 
+Correction CorrectionOf(v1::Ephemeris::Correction correction) {
+  switch (correction) {
+  case v1::Ephemeris::GEOMETRIC:
+    return Correction::None;
+  case v1::Ephemeris::LIGHT_TIME:
+    return Correction::Converged;
+  case v1::Ephemeris::APPARENT:
+    return Correction::ConvergedStar;
+  case v1::Ephemeris::LIGHT_TIME_ONCE:
+    return Correction::LightTime;
+  case v1::Ephemeris::APPARENT_ONCE:
+    return Correction::LightTimeStar;
+  default:
+    Reject("command ephemeris", "the correction is " + std::to_string(int(correction)) +
+                                    "; accepted: GEOMETRIC, LIGHT_TIME, APPARENT, "
+                                    "LIGHT_TIME_ONCE, APPARENT_ONCE");
+  }
+}
+
+void FindStates(const Context& context, v1::Ephemeris& command) {
+  const dspace::Ephemeris& ephemeris = context.scene->sky.kernels->GetEphemeris();
+  dspace::Ephemeris::Query query;
+  query.target = ephemeris.Names().IdOf(command.target());
+  query.observer = ephemeris.Names().IdOf(command.observer());
+  query.frame = command.axes().empty() ? "J2000" : command.axes();
+  query.correction = CorrectionOf(command.correction());
+  const std::vector<double> times = TimesOf(context, command);
+  std::vector<dspace::Ephemeris::Result> results(times.size());
+  ephemeris.FindMany(query, times.data(), times.size(), results.data());
+  v1::EphemerisReply* reply = context.reply.mutable_ephemeris();
+  for (const dspace::Ephemeris::Result& result : results) {
+    for (const Eigen::Vector3d& v : {result.state.position, result.state.velocity}) {
+      reply->mutable_state()->Add(v.data(), v.data() + 3);
+    }
+    reply->add_light_time_s(result.lightTime);
+  }
+  for (const dspace::Ephemeris::Used& used : ephemeris.Explain(query, times[0])) {
+    v1::EphemerisReply::Source* source = reply->add_source();
+    source->set_body(ephemeris.Names().NameOf(used.body));
+    source->set_center(ephemeris.Names().NameOf(used.center));
+    source->set_source(used.source);
+    source->set_accuracy(used.accuracy);
+    for (const std::string& name : used.hidden) {
+      source->add_hidden(name);
+    }
+    if (!used.warning.empty()) {
+      context.reply.add_warning(used.warning);
+    }
+  }
+}
+
 void FindSubPoints(const Context& context, v1::FindSubPoints& command) {
   const KernelSet& kernels = *context.scene->sky.kernels;
-  const Ephemeris& ephemeris = kernels.GetEphemeris();
+  const dspace::Ephemeris& ephemeris = kernels.GetEphemeris();
   const int body = ephemeris.Names().IdOf(command.body());
   const std::string frame =
       command.frame().empty() ? kernels.GetFrames().Table().BodyFixed(body).name : command.frame();
@@ -172,7 +223,7 @@ void SkyState(const Context& context, v1::SkyState& command) {
   default:
     Reject("command sky_state", "it names no place; accepted: place, site or celestial");
   }
-  const Ephemeris& ephemeris = sky.kernels->GetEphemeris();
+  const dspace::Ephemeris& ephemeris = sky.kernels->GetEphemeris();
   const double tdb = command.has_time_s() ? command.time_s() : context.GetScene().Time();
   std::vector<std::string> targets(command.target().begin(), command.target().end());
   if (targets.empty()) {
@@ -198,6 +249,7 @@ void AddSkyRequests(Registry& registry) {
   using C = v1::Command;
   registry.Add(C::kTurnFrames, &C::mutable_turn_frames, TurnFrames);
   registry.Add(C::kFindSubPoints, &C::mutable_find_sub_points, FindSubPoints);
+  registry.Add(C::kEphemeris, &C::mutable_ephemeris, FindStates);
   registry.Add(C::kSkyState, &C::mutable_sky_state, SkyState);
 }
 
