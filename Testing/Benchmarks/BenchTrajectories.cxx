@@ -36,8 +36,8 @@ TrajectoryLine::Strip OrbitOf(int i) {
   for (int k = 0; k < Points; ++k) {
     const double angle = 2.0 * M_PI * k / (Points - 1.0);
     strip.times.push_back(5.0 * k);
-    strip.points.push_back(plane * (7e6 + 2e4 * i) *
-                           Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0));
+    strip.points.push_back(
+        plane * ((7e6 + 2e4 * i) * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)));
   }
   return strip;
 }

@@ -96,7 +96,7 @@ def test_footprints_accumulate_and_are_seen(scene):
     marks = scene.add_footprints(radii=MOON, fill=True, opacity=1.0, color="white", name="marks")
     areas = []
     for frame in frames:
-        marks.add(frame, half_angle_deg=30)
+        marks.add(frame, half_angle_deg=45)
         areas.append((view.image()[..., 0] > 128).sum())
     assert areas[0] > 100 and areas[1] > 1.5 * areas[0] and areas[2] > 2.2 * areas[0]
     last = scene.add_footprints(radii=MOON, accumulate=False)

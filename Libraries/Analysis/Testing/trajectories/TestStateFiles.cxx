@@ -3,15 +3,19 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
+#include <dspace/ephemeris/De405Source.h>
+#include <dspace/ephemeris/Ephemeris.h>
 #include <dspace/time/UtcText.h>
 #include <dspace/trajectories/OemFile.h>
 #include <dspace/trajectories/XyzvFile.h>
 
+#include "MissingPackage.h"
 #include "TemporaryFolder.h"
 #include "TestData.h"
 
@@ -195,6 +199,28 @@ TEST(OemFile, ArtemisIWasFarthestWhenAndWhereNasaSaid) {
   EXPECT_NEAR(farthest->norm(), 438585.5e3, 50.0);
   // The span is the useable one: the STOP_TIME after it has no states.
   EXPECT_NEAR(orion->Span().end, TdbFromText("2022-12-11T17:19:52.617", Scales()), 1e-4);
+}
+
+// The flybys of the Moon at NASA's times, which are whole minutes, with the Moon of DE405.
+TEST(OemFile, ArtemisIPassedTheMoonWhenNasaSaid) {
+  DSPACE_REAL_DATA(path, "ephemeris/artemis1_orion_asflown_20221213_OEM.asc");
+  if (!De405Source::IsInstalled()) {
+    DSPACE_MISSING_PACKAGE("casacore-data-jpl-de405");
+  }
+  const TrajectoryPtr orion = OemFile(path, Scales()).GetTrajectory();
+  Ephemeris ephemeris;
+  ephemeris.Load(std::make_shared<De405Source>());
+  const auto nearness = [&](double t) {
+    return -(orion->At(t).position - ephemeris.Find("MOON", "EARTH", t).position).norm();
+  };
+  // 81.1 and 79.2 miles above the surface, by NASA.
+  for (const auto& [utc, height] :
+       {std::pair<const char*, double>{"2022-11-21T12:57", 130e3}, {"2022-12-05T16:42", 128e3}}) {
+    const double expected = TdbFromText(utc, Scales());
+    const auto [when, distance] = Largest({expected - 7200.0, expected + 7200.0}, 30.0, nearness);
+    EXPECT_NEAR(when, expected, 60.0) << UtcText(when, Scales());
+    EXPECT_NEAR(-distance - 1737.4e3, height, 4e3) << utc;
+  }
 }
 
 TEST(OemFile, ReadsTheOtherMissions) {

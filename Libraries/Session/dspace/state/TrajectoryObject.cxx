@@ -54,7 +54,11 @@ TrajectoryObject::ConicAt(const std::string& label, const Trajectory& path, cons
 
 std::string TrajectoryObject::SetTime(double time_s) {
   if (!this->IsOsculating()) {
-    this->Line_->SetTime(time_s);
+    try {
+      this->Line_->SetTime(time_s);
+    } catch (const Error& error) {
+      return std::string(error.what()) + "; its line has only its own points";
+    }
     return {};
   }
   const double at = NearestTime(this->Shown_->Parts(), time_s);

@@ -137,7 +137,6 @@ class Trajectory(GraphicsObject):
     def __init__(self, scene, id, path=None):
         super().__init__(scene, id)
         self._path = TrajectoryPath() if path is None else TrajectoryPath.FromString(path.SerializeToString())
-        self._moved = None
 
     def _get(self, times=(), reference=False):
         command = self._scene._command()

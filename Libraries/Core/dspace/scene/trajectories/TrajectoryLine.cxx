@@ -134,11 +134,12 @@ void TrajectoryLine::FindDetail() {
     const auto next = std::upper_bound(strip.times.begin(), strip.times.end(), now);
     const std::size_t at =
         std::min(n - 2, std::size_t(std::max<std::ptrdiff_t>(0, next - strip.times.begin() - 1)));
-    this->Detail_.strip = s;
-    this->Detail_.first = at > 0 ? at - 1 : 0; // the neighbours too: near `now` may be near an end
-    this->Detail_.last = std::min(n - 1, at + 2);
-    const double begin = strip.times[this->Detail_.first];
-    const double end = strip.times[this->Detail_.last];
+    Detail found; // put in its place when `path` has given all
+    found.strip = s;
+    found.first = at > 0 ? at - 1 : 0; // the neighbours too: near `now` may be near an end
+    found.last = std::min(n - 1, at + 2);
+    const double begin = strip.times[found.first];
+    const double end = strip.times[found.last];
     std::vector<double> times;
     for (int k = 0; k <= Finest; ++k) {
       times.push_back(now + (begin - now) * std::ldexp(1.0, -k));
@@ -148,7 +149,7 @@ void TrajectoryLine::FindDetail() {
       times.push_back(now + (end - now) * std::ldexp(1.0, -k));
     }
     times.erase(std::unique(times.begin(), times.end()), times.end());
-    Strip& detail = this->Detail_.points;
+    Strip& detail = found.points;
     for (const double t : times) {
       if (!detail.times.empty() && !(t > detail.times.back())) {
         continue;
@@ -173,6 +174,7 @@ void TrajectoryLine::FindDetail() {
         detail.colors.push_back(color);
       }
     }
+    this->Detail_ = std::move(found);
     return;
   }
 }
