@@ -87,7 +87,8 @@ TEST_F(FileCommandsTest, TheSessionsThreadReadsNoModelTwice) {
   ASSERT_EQ(read->kept.size(), 1u);
   vtkNew<vtkDspaceSession> other;
   v1::Command make;
-  make.mutable_create_scene()->set_scene("scene");
+  make.set_scene("scene");
+  make.mutable_create_scene();
   ASSERT_FALSE(other->GetInterpreter().Execute(make).has_error());
   // The cache's key has the file's size and time: only the content is exchanged.
   struct stat before {};

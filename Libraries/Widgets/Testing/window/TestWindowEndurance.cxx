@@ -17,6 +17,7 @@
 #include "vtkDspaceViewport.h"
 
 #include <dspace/widgets/viewport/ViewportWidget.h>
+#include <dspace/widgets/window/ShownScenes.h>
 
 using namespace dspace::widgets;
 
