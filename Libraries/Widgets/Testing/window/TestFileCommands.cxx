@@ -3,18 +3,21 @@
 #include "WindowFixture.h"
 
 #include <cstdlib>
-#include <thread>
+#include <fstream>
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <QDir>
+#include <QElapsedTimer>
 #include <QFile>
+#include <QFileInfo>
 #include <QTimer>
 #include <QToolButton>
 
 #include "OneApplication.h"
+#include "OpenedFiles.h"
 #include "vtkDspaceSession.h"
 
 #include <dspace/FilesRead.h>
@@ -176,4 +179,26 @@ TEST_F(FileCommandsTest, DamagedFilesSayWhyAndChangeNothing) {
   EXPECT_EQ(Value("before == (len(scene.objects), len(scene.terrains), len(app.views))"), "True");
   EXPECT_TRUE(window->Desktop()->Notices()->isVisible());
   EXPECT_NE(window->Desktop()->Notices()->Text().indexOf("damaged.tif"), -1);
+}
+
+TEST_F(FileCommandsTest, TheThreadOfTheWindowsOpensNoModelAndNoRaster) {
+  const OpenedFiles opened;
+  const QString copies = folder->filePath("watched");
+  ASSERT_TRUE(QDir().mkpath(copies));
+  const std::string below = copies.toStdString();
+  {
+    std::ifstream seen(below + "/nothing"); // the watch works
+    ASSERT_EQ(opened.Below(below).size(), 1u);
+  }
+  for (const char* name : {"rover/chassis.gltf", "rover/arm_turret.glb", "field/field.tif"}) {
+    const QString copy = copies + '/' + QFileInfo(name).fileName();
+    ASSERT_EQ(std::system(("cp '" + ShippedData() + "/" + name + "' '" + copy + "'").toUtf8()), 0);
+    const QString buffers = ShippedData() + "/rover"; // of the glTF
+    std::system(
+        ("cp -n '" + buffers + "'/*.bin '" + buffers + "'/*.png '" + copies + "' 2>/dev/null")
+            .toUtf8());
+    ASSERT_TRUE(window->Open(copy)) << name << errors.toStdString();
+    ASSERT_TRUE(Settled());
+  }
+  EXPECT_EQ(opened.Below(below), std::vector<std::string>{below + "/nothing"});
 }
