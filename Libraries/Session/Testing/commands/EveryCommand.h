@@ -290,6 +290,7 @@ inline const std::vector<CommandInstance>& EveryCommand() {
            correction: "LT" })",
        {R"(create_frame { id: 40 name: "moon" })"}},
       {R"(set_sun_motion { place { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } })", {}},
+      {R"(convert_times { text: "2026-11-01T00:00" time_s: 0 decimals: 3 })", {}},
       {R"(turn_frames { from: "J2000" to: "IAU_MARS" time_s: [0, 100] rates: true })", {}},
       {R"(find_sub_points { body: "mars" observer: "earth" })", {}},
 

@@ -213,6 +213,35 @@ TEST_F(SkyCommands, RejectsAndChangesNothing) {
   this->Give("set_time { time_s: 9e9 }");
 }
 
+// SPICE (spice_checks.json): 1997-03-20T12:53:29 UTC is -87865528.8143913.
+TEST_F(SkyCommands, TimesAreConverted) {
+  const v1::TimesReply times =
+      this->Give(
+              R"(convert_times { text: "1997-03-20T12:53:29" time_s: -87865528.8143913 decimals: 3 })")
+          .times();
+  EXPECT_NEAR(times.time_s(0), -87865528.8143913, 1e-6);
+  EXPECT_EQ(times.utc(0), "1997-03-20T12:53:29.000");
+  EXPECT_EQ(times.utc(1), times.utc(0));
+  this->Rejected(R"(convert_times { text: "2026-13-01" })");
+}
+
+// SPICE (spice_checks.json): Mars from the Earth, 2003-07-04T19:00:00 UTC, with de405s; here DE405
+// itself.
+TEST_F(SkyCommands, StatesComeWithTheirSources) {
+  const v1::EphemerisReply states =
+      this->Give(R"(ephemeris { target: "mars" observer: "earth" time_s: 110617264.184 })")
+          .ephemeris();
+  ASSERT_EQ(states.state_size(), 6);
+  ASSERT_GE(states.source_size(), 2);
+  if (states.source(0).source() == "JPL DE405") {
+    EXPECT_NEAR(states.state(0), 73826216414.5, 1e3);
+    EXPECT_NEAR(states.state(4), 7513.81423681132, 1e-3);
+    EXPECT_NEAR(states.light_time_s(0), 269.70264751151603, 1e-5);
+  }
+  this->Rejected(R"(ephemeris { target: "499" observer: "399" time_s: 9e9 })");
+  this->Rejected(R"(ephemeris { target: "vulcan" observer: "399" })");
+}
+
 TEST_F(SkyCommands, FrameTurnsNameTheirSources) {
   const v1::FrameTurnsReply turns =
       this->Give(

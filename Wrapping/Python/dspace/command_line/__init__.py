@@ -12,7 +12,9 @@ import warnings
 
 from dspace.errors import Error
 
-WORDS = {"log": "show, compare, cut, pack and salvage recordings",
+WORDS = {"ephemeris": "print states of bodies and spacecraft",
+         "kernels": "describe SPICE kernels",
+         "log": "show, compare, cut, pack and salvage recordings",
          "movie": "make a movie of a run from a text file of camera key frames",
          "play": "draw pictures of a recording, without a simulation",
          "serve": "serve a session to simulations and viewers in other processes",

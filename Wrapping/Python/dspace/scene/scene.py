@@ -16,6 +16,7 @@ from dspace.objects.assemblies import Assembly
 from dspace.objects.factory import ObjectFactory
 from dspace.objects.graphics import GraphicsObject
 from dspace.objects.models import Model
+from dspace.objects.plumes import PlumeFactory
 from dspace.objects.robots import Robot
 from dspace.objects.sensors import SensorFactory
 from dspace.objects.trajectories import TrajectoryFactory
@@ -209,6 +210,8 @@ class Scene(Strict):
 
     sky = delegate(SceneSky, "sky")
     ephemeris = delegate(SceneSky, "ephemeris")
+    tdb = delegate(SceneSky, "tdb")
+    utc = delegate(SceneSky, "utc")
     add_celestial_frame = delegate(SceneSky, "add_celestial_frame")
     stop_motion = delegate(SceneSky, "stop_motion")
 
@@ -235,6 +238,7 @@ class Scene(Strict):
     add_stars = delegate(ObjectFactory, "add_stars")
     add_trajectory = delegate(TrajectoryFactory, "add_trajectory")
     orbit = delegate(TrajectoryFactory, "orbit")
+    add_plume = delegate(PlumeFactory, "add_plume")
     add_sensor_cone = delegate(SensorFactory, "add_sensor_cone")
     add_footprints = delegate(SensorFactory, "add_footprints")
     add_ground_track = delegate(SensorFactory, "add_ground_track")

@@ -4,7 +4,7 @@ import collections
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, file_path, flag, items, reject, text, word
+from dspace._core.fields import array_of, file_path, flag, integer, items, reject, text, word
 from dspace._core.strict import Strict
 from dspace.errors import InvalidArgument, WrongType
 from dspace.sky.places import put_place
@@ -264,6 +264,30 @@ class SceneSky:
         if single:
             return States(state[0, :3], state[0, 3:], float(light_time[0]), sources)
         return States(state[:, :3], state[:, 3:], light_time, sources)
+
+    def tdb(self, text_or_texts):
+        """Seconds past J2000 TDB of a time as text, or an array of several: ISO 8601, "2026-11-01T00:00:00.5", in UTC unless
+        " TAI", " TT", " TDB" or " UT1" follows. Leap seconds are those of a loaded LSK, else of ERFA or the system's
+        list."""
+        about = "time"
+        single = isinstance(text_or_texts, str)
+        command = self._scene._command()
+        message = command.convert_times
+        message.SetInParent()
+        message.text.extend(text(each, "the time", about, "a text such as '2026-11-01T00:00'") for each in (
+            [text_or_texts] if single else items(text_or_texts, "the times", about, "texts")))
+        times = np.array(self._scene._execute(command).times.time_s)
+        return float(times[0]) if single else times
+
+    def utc(self, times=None, decimals=3):
+        """UTC as text of seconds past J2000 TDB (a list for an array; None: the scene's time)."""
+        about = "time"
+        command = self._scene._command()
+        command.convert_times.decimals = integer(decimals, "the decimals", about)
+        array, single = _times(self._scene.time if times is None else times, about)
+        wire.put_array(command.convert_times, "time_s", array)
+        texts = list(self._scene._execute(command).times.utc)
+        return texts[0] if single else texts
 
     def add_celestial_frame(self, name, body, axes=None, site=None, parent=None, center=None, center_axes="J2000",
                             correction="NONE", geodetic=False):

@@ -7,6 +7,7 @@
 #include <dspace/orientation/BodyConstants.h>
 #include <dspace/sky/SubPoints.h>
 #include <dspace/state/TerrainObject.h>
+#include <dspace/time/UtcText.h>
 
 namespace dspace::session {
 namespace {
@@ -124,6 +125,20 @@ void FindSubPoints(const Context& context, v1::FindSubPoints& command) {
     reply->add_point(point.latitude_deg);
     reply->add_point(point.geodetic_latitude_deg);
     reply->mutable_position()->Add(point.position.data(), point.position.data() + 3);
+  }
+}
+
+void ConvertTimes(const Context& context, v1::ConvertTimes& command) {
+  const TimeScales& scales = context.scene->sky.kernels->Scales();
+  v1::TimesReply* reply = context.reply.mutable_times();
+  for (const std::string& text : command.text()) {
+    reply->add_time_s(TdbFromText(text, scales));
+  }
+  for (const double tdb : command.time_s()) {
+    reply->add_time_s(tdb);
+  }
+  for (const double tdb : reply->time_s()) {
+    reply->add_utc(UtcText(tdb, scales, int(command.decimals())));
   }
 }
 
@@ -249,6 +264,7 @@ void AddSkyRequests(Registry& registry) {
   using C = v1::Command;
   registry.Add(C::kTurnFrames, &C::mutable_turn_frames, TurnFrames);
   registry.Add(C::kFindSubPoints, &C::mutable_find_sub_points, FindSubPoints);
+  registry.Add(C::kConvertTimes, &C::mutable_convert_times, ConvertTimes);
   registry.Add(C::kEphemeris, &C::mutable_ephemeris, FindStates);
   registry.Add(C::kSkyState, &C::mutable_sky_state, SkyState);
 }
