@@ -35,7 +35,7 @@ _HOMES = {
     "PolyData": "objects.polydata", "Primitive": "objects.graphics", "Text": "objects.graphics",
     "Stars": "objects.graphics", "TiltMarker": "objects.graphics", "Trail": "objects.graphics",
     "StarCatalog": "stars.catalog",
-    "Footprints": "objects.sensors", "Link": "objects.sensors",
+    "Footprints": "objects.sensors", "Link": "objects.sensors", "Plume": "objects.plumes",
     "Orbit": "objects.trajectories", "Trajectory": "objects.trajectories",
     "Animation": "objects.models", "Model": "objects.models",
     "Joint": "objects.robots", "Robot": "objects.robots",
