@@ -2,6 +2,10 @@
 // help.
 #include "WindowFixture.h"
 
+#include <algorithm>
+#include <vector>
+
+#include <QAbstractButton>
 #include <QAction>
 #include <QComboBox>
 #include <QDialogButtonBox>
@@ -196,4 +200,61 @@ TEST_F(ShellTest, HelpHasTheGuideTheKeysAndWhatAReportNeeds) {
   }
   EXPECT_GT(pictures, 2);
   guide->close();
+}
+
+TEST_F(ShellTest, EveryControlIsReachedByTabAndHasATip) {
+  ASSERT_TRUE(Run("one = app.new_view(); drawn = app.plot()")) << errors.toStdString();
+  ASSERT_TRUE(Settled());
+  int seen = 0;
+  for (const QAbstractButton* button : window->findChildren<QAbstractButton*>()) {
+    const QString name = button->objectName();
+    const bool ofQt = name.startsWith("qt_") || button->parent()->inherits("QTabBar") ||
+                      button->parent()->inherits("QLineEdit") ||
+                      QString(button->metaObject()->className()).contains("Private") ||
+                      button->inherits("QDockWidgetTitleButton") || button->inherits("CloseButton");
+    if (ofQt || !button->isVisible()) {
+      continue;
+    }
+    ++seen;
+    const std::string about =
+        (name + " '" + button->text() + "' of " + button->parent()->metaObject()->className())
+            .toStdString();
+    EXPECT_FALSE(button->toolTip().isEmpty()) << about;
+    // The prompt's own arrow does what Return does.
+    EXPECT_TRUE((button->focusPolicy() & Qt::TabFocus) != 0 || button->text() == ">>>") << about;
+  }
+  EXPECT_GT(seen, 10);
+  ASSERT_TRUE(Run("for view in list(app.views.values()): app.close_view(view)"));
+}
+
+TEST_F(ShellTest, AllDocksFollowTheTheme) {
+  ASSERT_TRUE(Run("drawn = app.plot()")) << errors.toStdString();
+  const auto lightness = [](const QWidget* widget) { // of most of its pixels
+    const QImage image = const_cast<QWidget*>(widget)->grab().toImage().scaled(40, 40);
+    std::vector<int> values;
+    for (int i = 0; i < 1600; ++i) {
+      values.push_back(image.pixelColor(i % 40, i / 40).lightness());
+    }
+    std::nth_element(values.begin(), values.begin() + 800, values.end());
+    return values[800];
+  };
+  for (const char* theme : {"dark", "light", "dark"}) {
+    ASSERT_TRUE(Run(QString("app.set_theme('%1')").arg(theme))) << errors.toStdString();
+    QTest::qWait(100);
+    int docks = 0;
+    for (QDockWidget* dock : window->findChildren<QDockWidget*>()) {
+      dock->raise();
+      QTest::qWait(20);
+      if (!dock->isVisible() || dock->widget()->visibleRegion().isEmpty()) {
+        continue;
+      }
+      ++docks;
+      EXPECT_EQ(lightness(dock->widget()) < 128, QString(theme) == "dark")
+          << dock->objectName().toStdString() << ' ' << theme;
+    }
+    EXPECT_GE(docks, 4);
+  }
+  EXPECT_FALSE(Run("app.set_theme('pink')"));
+  EXPECT_NE(errors.indexOf("system, dark, light"), -1);
+  ASSERT_TRUE(Run("app.set_theme('system')"));
 }
