@@ -1,4 +1,5 @@
 """What the menus of DspaceQt do, with a stand-in for its windows."""
+import json
 import os
 import pathlib
 
@@ -17,6 +18,7 @@ class Host:
     def __init__(self):
         self.made = vtk.vtkDspaceSession()
         self.shown, self.messages, self.timers, self.asked, self.tasks = [], [], {}, [], {}
+        self.extended, self.activated = [], None
 
     def session(self):
         return self.made
@@ -34,6 +36,13 @@ class Host:
 
     def follow(self, shown, title):
         pass
+
+    def extend(self, request):
+        self.extended.append(json.loads(request))
+        return "{}"
+
+    def active(self):
+        return self.activated or (self.made, "scene")
 
     def task(self, number, text, done, cancel):
         self.tasks[number] = text

@@ -199,6 +199,6 @@ def test_the_command_says_what_is_wrong_in_one_line(tmp_path, run):
         done = subprocess.run([sys.executable, "-m", "dspace", *words], capture_output=True, text=True)
         assert done.returncode == 1 and len(done.stderr.strip().splitlines()) == 1, done.stderr
         assert "accepted" in done.stderr
-    from dspace.command_line.movie import left_words
+    from dspace.movies.progress import left_words
     assert left_words(10, 100, 20, 10) == "3:00 left" and left_words(1, 3601, 1, 1) == "1:00:00 left"
     assert left_words(5, 10, 0, 0) == "time left unknown" and left_words(10, 10, 5, 5) == "all drawn"

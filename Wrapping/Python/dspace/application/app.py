@@ -1,12 +1,15 @@
 """The object `app`: opens files, makes views, calls functions again and again."""
+import json
 import os
 import pathlib
 
 from dspace import errors
 from dspace._core.fields import integer, real, reject, text, word
 from dspace._core.replies import to_reply
+from dspace.application import layouts, views
+from dspace.application.export import begin
 from dspace.application.files import around
-from dspace.application import layouts
+from dspace.application.key_frames import KeyFrames
 from dspace.application.layouts import Layouts
 from dspace.application.link import Link, ServerApart, required_address
 from dspace.application.plots import Plot, Shown
@@ -38,6 +41,9 @@ class App:
         self._servers = []
         self._tasks = {}
         self.plots = {}
+        self.exports = []
+        self.map_links = []
+        self._watched = {}  # by view: what is called after its pictures
         self.plugins = PlugIns(host)
         self.layouts = Layouts(host)
         self._view_defaults = {}
@@ -88,6 +94,8 @@ class App:
 
     def close_view(self, viewport):
         """Closes the view and removes its viewport."""
+        for link in [link for link in self.map_links if viewport in (link.map, link.view)]:
+            link.close()
         self._host.close(viewport._client.shown(), viewport.name)
         self.views.pop(viewport.name, None)
         if self.view == viewport:
@@ -107,6 +115,83 @@ class App:
     def set_theme(self, name):
         """The colours of all windows, also at the next start: "system", "dark" or "light"."""
         layouts.set_theme(self._host, name)
+
+    def split_view(self, view=None, side="right"):
+        """A new view that looks as `view` (default: App.view) does, "right" of it or "below" it."""
+        view = self._one(view)
+        made = views.copy(self, view)
+        self.show(made)
+        self._arrange("split", made, beside=view.name, side=side)
+        return made
+
+    def maximize_view(self, view=None):
+        """Gives a view the whole window; restore_views() brings the docks back."""
+        self._arrange("maximize", self._one(view))
+
+    def restore_views(self):
+        """All docks are as they were before maximize_view()."""
+        self._arrange("restore")
+
+    def tile_views(self):
+        """Puts the docks of all views into a grid."""
+        self._arrange("tile")
+
+    def copy_picture(self, view=None):
+        """Copies a view's picture to the clipboard."""
+        self._arrange("copy", self._one(view))
+
+    def fit(self, view=None, things=None):
+        """Fills a view with objects or frames (default: all that is visible), without turning its camera. A view of a
+        recording or a server gets a camera of its own, and so in chase()."""
+        views.fit(self._one(view), things)
+
+    def chase(self, view=None, frame=None, distance=None):
+        """Lets the camera of a view follow a frame from behind, at `distance` [m] (default: three and a half times the
+        size of what is on it). Without a frame it stands still where it is."""
+        views.chase(self._one(view), frame, distance)
+
+    def open_map(self, view=None):
+        """A new view from above, orthographic and north up, kept in step with `view`. Returns a
+        dspace.application.views.MapLink, whose close() ends that."""
+        view = self._one(view)
+        made = views.copy(self, view)
+        link = self.link_map(made, view)
+        self.show(made, f"map of {view.name}")
+        self._arrange("split", made, beside=view.name, side="right")
+        return link
+
+    def link_map(self, map_view, view):
+        """Makes a view a map and keeps it in step with another one of its scene: it follows where the other one looks, and
+        a pan of the map moves the other one. Returns a dspace.application.views.MapLink."""
+        for link in [link for link in self.map_links if link.map == map_view]:
+            link.close()
+        link = views.MapLink(self, map_view, view)
+        self.map_links.append(link)
+        return link
+
+    def _one(self, view):
+        return views.required(self.view if view is None else view)
+
+    def _arrange(self, what, view=None, **fields):
+        self._host.extend(json.dumps({"do": "views", "what": what, "view": "" if view is None else view.name, **fields}))
+
+    def _watch_pictures(self, view, function):
+        """Calls function() after each new picture of a view."""
+        self._watched.setdefault(view.name, []).append(function)
+        self._arrange("watch", view, on=True)
+
+    def _unwatch_pictures(self, view, function):
+        functions = self._watched.get(view.name, [])
+        if function in functions:
+            functions.remove(function)
+        if not functions:
+            self._watched.pop(view.name, None)
+            self._arrange("watch", view, on=False)
+
+    def _drawn(self, name):
+        """A view that is watched has a new picture."""
+        for function in list(self._watched.get(name, ())):
+            function()
 
     # --- Plug-ins ------------------------------------------------------------------------------
 
@@ -146,6 +231,36 @@ class App:
             if run._player is shown:
                 return run
         return Shown(shown, scene)
+
+    # --- Movies --------------------------------------------------------------------------------
+
+    @property
+    def movie(self):
+        """The camera key frames of the recording in the docks, as dspace.application.key_frames.KeyFrames; those of any
+        recording: Run.movie. Raises dspace.NotFound where no recording is there."""
+        shown, _ = self._host.active()
+        for run in self.runs:
+            if run._player is shown:
+                return run.movie
+        raise errors.NotFound("the scene in the docks is no recording; accepted: one opened by app.open()", "movie")
+
+    def export_movie(self, out, movie=None, size=None, rate=None, samples=None, jobs=1):
+        """Makes a movie in a process of its own and returns at once, with a dspace.application.export.Export.
+
+        out: .mp4 (H.264), .webm (VP9), or a folder of PNGs (a name without a dot). movie: that of a Run (default:
+        App.movie). size, rate, samples: in place of the movie's. jobs: number of processes that draw, 1 to 64. A file
+        that is there stays whole until the new one is complete; a cancelled or failed export goes on from its pictures
+        (OUT.work) when it is asked for again."""
+        made = begin(self, out, movie, size, rate, samples, jobs)
+        self.exports = [each for each in self.exports if each.state == "working"] + [made]
+        return made
+
+    def _moved(self):
+        """The timeline shows another time."""
+        shown, _ = self._host.active()
+        for run in self.runs:
+            if run._player is shown:
+                run.movie._moved()
 
     # --- Files ---------------------------------------------------------------------------------
 
@@ -207,17 +322,22 @@ class App:
             run.close()
             raise
         self.runs.append(run)
+        run.movie = KeyFrames(self, run)
         if not views:
             self._host.message(f"{path} has no viewport; add one: app.runs[-1].session.scenes[...].add_viewport()")
         return run
 
     def _closed(self, run):
         """Forgets a recording that is closed."""
+        if run.movie is not None:
+            run.movie.close()
         if run in self.runs:
             self.runs.remove(run)
         self._forget(run.session._client if run.session is not None else None)
 
     def _forget(self, gone):
+        for link in [link for link in self.map_links if link.view._client is gone]:
+            link.close()
         self.views = {name: view for name, view in self.views.items() if view._client is not gone}
         if self.view is not None and self.view._client is gone:
             self.view = next(reversed(self.views.values()), None)
@@ -303,7 +423,7 @@ class App:
     def close(self):
         for number in list(self._timers):
             self.cancel(number)
-        for each in (*self.runs, *self.links):
+        for each in (*self.exports, *self.runs, *self.links):
             each.close()
         for server in self._servers:
             server.wait()

@@ -41,9 +41,11 @@ class Run(Playback):
     """A dspace.Playback whose time the timeline shows and moves; App.open() returns it.
 
     seek() and step() wait for the step, play() and follow() return at once. Views and cameras whose names begin with
-    "viewer:" stay when it moves; other additions to its session are lost when it moves back."""
+    "viewer:" stay when it moves; other additions to its session are lost when it moves back. movie: its camera key
+    frames, as dspace.application.key_frames.KeyFrames."""
 
     def __init__(self, path, host, session, closed=None, check_assets=True):
+        self.movie = None
         self._host, self._told_closed = host, closed
         self._player = _vtk.vtkDspacePlayer()
         self._player.ShareRenderContext(session)

@@ -5,6 +5,7 @@ import sys
 
 from dspace._core.traits import SAMPLES
 from dspace.command_line import terrain as values
+from dspace.movies.progress import left_words
 
 
 def add_arguments(parser):
@@ -77,14 +78,3 @@ class Bar:
     def end(self):
         if self.terminal:
             print("\r\x1b[K", end="", file=self.stream, flush=True)
-
-
-def left_words(done, total, seconds, drawn):
-    """Returns the time left, estimated from the rate so far, as text."""
-    if done >= total:
-        return "all drawn"
-    if not drawn:
-        return "time left unknown"
-    rest = round((total - done) * seconds / drawn)
-    hours, rest = divmod(rest, 3600)
-    return (f"{hours}:{rest // 60:02d}" if hours else f"{rest // 60}") + f":{rest % 60:02d} left"

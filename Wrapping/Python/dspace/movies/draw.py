@@ -193,6 +193,7 @@ class Stage:
                                       samples=self.movie.samples)
         viewport.ornaments = view.ornaments
         viewport.corner_axes = view.corner_axes
+        viewport.set(**view.look)
         if view.background is not None:
             viewport.set_background(view.background, top=view.background_top)
         self.shown[view.name] = []

@@ -78,7 +78,7 @@ class Movie:
             raise NotFound(f"view {view!r}: there is no such view; there are: {', '.join(map(repr, self.views))}",
                            view)
         if viewport is not None:
-            seen = _seen(viewport, values.pop("frame", None))
+            seen = seen_through(viewport, values.pop("frame", None))
             if any(name in values for name in LENSES):
                 seen = {name: value for name, value in seen.items() if name not in LENSES}
             values = {**seen, **values}
@@ -223,8 +223,9 @@ def _tables(values, name, about):
     return tables
 
 
-def _seen(viewport, frame):
-    """Returns the values of a key at the present pose of a Camera or of a viewport's camera."""
+def seen_through(viewport, frame=None):
+    """Returns the values of a key at the present pose of a Camera or of a viewport's camera, in `frame` (default: that of
+    the camera)."""
     camera = viewport if isinstance(viewport, Camera) else viewport.camera
     if camera is None:
         camera = viewport.scene.vantages[viewport.vantage].active

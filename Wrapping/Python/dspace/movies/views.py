@@ -6,10 +6,12 @@ from dataclasses import dataclass, field
 from dspace._core.fields import color, flag, integer, number, numbers, reject, text
 from dspace._core.traits import DEFAULT_SCENE, FONT_SIZES
 from dspace.errors import WrongType
+from dspace.scene.look import TONES
 from dspace.scene.viewport import ANCHORS
 
 FIELD = re.compile(r"\{\{|\}\}|\{([^{}:]*)(?::([^{}]*))?\}")  # {name:format}, and {{ and }}, which are braces
 WIDEST = 99
+LOOK = ("shadows", "fill", "exposure", "automatic_exposure", "tone")
 
 
 def writable(form, is_number):
@@ -34,8 +36,8 @@ class View:
     camera: the name of a camera of the scene; "": the view follows its keys. near, far: clip distances in metres
     along Z (default: automatic, see Camera.set_projection). hide: names of fragments that the view does not draw. ornaments: whether
     ornamental objects are drawn. background: sRGB, 0 to 1, or a color name; background_top: the top color of a
-    gradient. corner_axes: whether the root's axes are drawn in the corner. Raises dspace.InvalidArgument or
-    dspace.WrongType for other values."""
+    gradient. corner_axes: whether the root's axes are drawn in the corner. shadows, fill, exposure, automatic_exposure,
+    tone: as of a dspace.Viewport. Raises dspace.InvalidArgument or dspace.WrongType for other values."""
     name: str = "main"
     rectangle: tuple = (0.0, 0.0, 1.0, 1.0)
     scene: str = DEFAULT_SCENE
@@ -48,6 +50,11 @@ class View:
     background: object = None
     background_top: object = None
     corner_axes: bool = False
+    shadows: bool = False
+    fill: float = 0.2
+    exposure: float = 1.0
+    automatic_exposure: bool = False
+    tone: str = "linear"
     keys: list = field(default_factory=list)
 
     def __post_init__(self):
@@ -60,13 +67,29 @@ class View:
             reject(about, "the rectangle", self.rectangle, "left, top, width, height within 0 to 1")
         for name in ("scene", "vantage", "camera"):
             text(getattr(self, name), name, about)
-        for name in ("ornaments", "corner_axes"):
+        for name in ("ornaments", "corner_axes", "shadows", "automatic_exposure"):
             flag(getattr(self, name), name, about)
         if isinstance(self.hide, str) or not all(isinstance(each, str) for each in self.hide):
             reject(about, "hide", self.hide, "a list of fragments' names", WrongType)
         self.hide = tuple(self.hide)
         self._check_colors(about)
         self._check_distances(about)
+        self._check_light(about)
+
+    def _check_light(self, about):
+        self.fill = number(self.fill, "fill", about)
+        if not 0 <= self.fill <= 1:
+            reject(about, "fill", self.fill, "0 to 1")
+        self.exposure = number(self.exposure, "exposure", about)
+        if not 0 < self.exposure <= 1e12:
+            reject(about, "exposure", self.exposure, "above 0, up to 1e12")
+        if self.tone not in TONES:
+            reject(about, "tone", self.tone, " or ".join(map(repr, TONES)))
+
+    @property
+    def look(self):
+        """How it is lit and exposed, as Viewport.set() takes it."""
+        return {name: getattr(self, name) for name in LOOK}
 
     def _check_colors(self, about):
         for name in ("background", "background_top"):

@@ -299,6 +299,11 @@ class Viewport(ViewportLook, ViewportNavigation):
         self._do("set_viewport_fragment", visible=False,
                  fragment=self.scene._fragment_name(fragment, None))
 
+    @property
+    def hidden_fragments(self):
+        """The names of the fragments that are hidden in this viewport only; see hide() and show()."""
+        return list(self._info().hidden_fragment)
+
     def set_table(self, name, rows, title="", anchor="top left", font_size=None, margin=None,
                   color=None, background=None, background_opacity=None):
         """Labels and values over the picture: rows is a dict or pairs of anything with a str.

@@ -108,6 +108,7 @@ struct ScrubBar::Internals {
   void Outdate() {
     this->outdated = true;
     this->widget->update();
+    emit this->widget->viewChanged();
   }
 
   // Events from the first to the last one (not included) near a place.

@@ -40,6 +40,7 @@ public:
   QSize minimumSizeHint() const override;
 
 signals:
+  void viewChanged(); // other times, or at other places
   void scrubbed(double time_s);
   void loopChosen(double begin_s, double end_s);
   void markAsked(double time_s);      // a new one

@@ -18,6 +18,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include <dspace/widgets/timeline/KeyTrack.h>
 #include <dspace/widgets/timeline/RateMeter.h>
 #include <dspace/widgets/timeline/ScrubBar.h>
 #include <dspace/widgets/timeline/TimeTexts.h>
@@ -59,6 +60,8 @@ struct TimelineWidget::Internals {
   QThreadPool writer;
 
   ScrubBar* bar = nullptr;
+  KeyTrack* keys = nullptr;
+  QHBoxLayout* tools = nullptr;
   QLabel* utc = nullptr;
   QLabel* elapsed = nullptr;
   QLabel* j2000 = nullptr;
@@ -293,6 +296,8 @@ TimelineWidget::TimelineWidget(QWidget* parent)
   self.Add(
       *row, TransportIcon::Live, "Live", "Stay at the live end",
       [&self] { self.source->Follow(!self.state.following); }, true);
+  self.tools = new QHBoxLayout;
+  row->addLayout(self.tools);
   row->addStretch(1);
 
   const QFont fixed = QFontDatabase::systemFont(QFontDatabase::FixedFont);
@@ -322,6 +327,13 @@ TimelineWidget::TimelineWidget(QWidget* parent)
 
   self.bar = new ScrubBar;
   column->addWidget(self.bar);
+  self.keys = new KeyTrack(self.bar);
+  self.keys->hide();
+  column->addWidget(self.keys);
+  connect(self.keys, &KeyTrack::goAsked, this, [this](double time_s) {
+    Internals& impl = *this->Impl_;
+    impl.Ask([&] { impl.source->Seek(time_s); });
+  });
   self.failure = new QLabel;
   self.failure->setTextFormat(Qt::PlainText);
   self.failure->setWordWrap(true);
@@ -464,6 +476,14 @@ ScrubBar* TimelineWidget::Bar() const {
   return this->Impl_->bar;
 }
 
+KeyTrack* TimelineWidget::Keys() const {
+  return this->Impl_->keys;
+}
+
+void TimelineWidget::AddTool(QWidget* tool) {
+  this->Impl_->tools->addWidget(tool);
+}
+
 void TimelineWidget::keyPressEvent(QKeyEvent* event) {
   Internals& self = *this->Impl_;
   const bool seeks = self.source && self.state.canSeek && self.state.range;
@@ -497,6 +517,11 @@ void TimelineWidget::keyPressEvent(QKeyEvent* event) {
   case Qt::Key_M:
     if (self.source && self.state.range) {
       self.EditMark({NewMarkId(), self.state.time_s, ""}, "New mark");
+    }
+    return;
+  case Qt::Key_K:
+    if (self.source && self.state.range && !self.keys->isHidden()) {
+      emit self.keys->addAsked(self.state.time_s);
     }
     return;
   default:

@@ -14,6 +14,7 @@
 
 namespace dspace::widgets {
 
+class KeyTrack;
 class ScrubBar;
 
 // Buttons, the clock (UTC, time since the beginning of the range, seconds past J2000), the
@@ -41,6 +42,10 @@ public:
   // Drives the source and shows its state now. `wall_s`: the wall clock [s]; none: the system's.
   void Refresh(std::optional<double> wall_s = {});
   ScrubBar* Bar() const;
+  // Camera keys below the bar, hidden at first; K asks it for a key at the present time.
+  KeyTrack* Keys() const;
+  // A button beside the others.
+  void AddTool(QWidget* tool);
 
 signals:
   void timeChanged(double time_s);

@@ -355,6 +355,9 @@ vtkDspaceViewport* ViewportWidget::GetViewport() const {
 void ViewportWidget::SetMovingSamples(int samples) {
   this->Impl_->movingSamples = std::clamp(samples, 1, 8);
 }
+int ViewportWidget::OwnSamples() const {
+  return this->Impl_->ownSamples.value_or(this->Impl_->viewport->GetSamples());
+}
 void ViewportWidget::Refresh() {
   this->Impl_->Look();
 }

@@ -67,6 +67,8 @@ public:
   // Supersampling while the user moves the camera, 1 to 8, at most that of the viewport; default 1.
   // 0.3 s after the last movement the viewport's own is back.
   void SetMovingSamples(int samples);
+  // Those of the viewport while the camera rests.
+  int OwnSamples() const;
   // Looks for changes now.
   void Refresh();
   // Whether pictures stay on the GPU.

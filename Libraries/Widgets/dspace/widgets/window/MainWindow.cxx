@@ -1,30 +1,24 @@
 #include <dspace/widgets/window/MainWindow.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include <QAction>
 #include <QApplication>
 #include <QCloseEvent>
-#include <QComboBox>
 #include <QDockWidget>
 #include <QDropEvent>
 #include <QFileDialog>
 #include <QFileInfo>
-#include <QHBoxLayout>
 #include <QInputDialog>
 #include <QJsonArray>
 #include <QJsonDocument>
-#include <QLabel>
 #include <QMenuBar>
 #include <QMimeData>
 #include <QSaveFile>
-#include <QSpinBox>
 #include <QStandardPaths>
 #include <QStatusBar>
 #include <QTimer>
-#include <QToolButton>
 
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceSession.h"
@@ -46,40 +40,24 @@
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/FileCommands.h>
+#include <dspace/widgets/window/KeyTable.h>
+#include <dspace/widgets/window/MovieTrack.h>
 #include <dspace/widgets/window/PlugIns.h>
+#include <dspace/widgets/window/PythonText.h>
 #include <dspace/widgets/window/Shell.h>
 #include <dspace/widgets/window/ShownScenes.h>
 #include <dspace/widgets/window/TaskStrip.h>
 #include <dspace/widgets/window/TelemetryDocks.h>
+#include <dspace/widgets/window/ViewBar.h>
+#include <dspace/widgets/window/ViewKeys.h>
+#include <dspace/widgets/window/ViewPanes.h>
+#include <dspace/widgets/window/ViewSelection.h>
 #include <dspace/widgets/window/WindowPlugIn.h>
 
 namespace dspace::widgets {
 namespace {
 
 const char* const SceneName = "scene"; // of dspace.Session.scene() without a name
-
-// A text as Python writes it.
-QString Quoted(const QString& text) {
-  QString quoted = text;
-  quoted.replace('\\', QStringLiteral("\\\\")).replace('"', QStringLiteral("\\\""));
-  quoted.replace('\n', QStringLiteral("\\n"));
-  return '"' + quoted + '"';
-}
-
-const char* const Keys =
-    "<table cellspacing=6>"
-    "<tr><td><b>Left drag</b></td><td>orbits about the point under the pointer</td></tr>"
-    "<tr><td><b>Middle drag, Shift+left drag</b></td><td>pans</td></tr>"
-    "<tr><td><b>Wheel, right drag</b></td><td>moves towards the point under the pointer</td></tr>"
-    "<tr><td><b>Arrows, + and -</b></td><td>orbit, move nearer and farther</td></tr>"
-    "<tr><td><b>Double click</b></td><td>turns to the point under the pointer</td></tr>"
-    "<tr><td><b>Escape</b></td><td>cancels a drag</td></tr>"
-    "<tr><td><b>W A S D</b></td><td>walk, where the view's bar says so; Shift hurries</td></tr>"
-    "<tr><td><b>F</b></td><td>shows everything</td></tr>"
-    "<tr><td><b>R</b></td><td>returns to the first view</td></tr>"
-    "<tr><td><b>Ctrl+O</b></td><td>opens files</td></tr>"
-    "<tr><td><b>Ctrl+T</b></td><td>tiles the views</td></tr>"
-    "<tr><td><b>F1</b></td><td>shows this table</td></tr></table>";
 
 } // namespace
 
@@ -129,6 +107,14 @@ MainWindow::MainWindow(const QString& packages)
     const auto given = QJsonDocument::fromJson(QByteArray::fromStdString(request)).object();
     if (given["do"].toString() == "library") {
       this->Libraries_->Load(given["path"].toString());
+      return std::string("{}");
+    }
+    if (MovieTrack::Handles(given) || ViewPanes::Handles(given)) { // also while the window ends
+      if (this->Movies_ && MovieTrack::Handles(given)) {
+        this->Movies_->Handle(given);
+      } else if (this->Panes_ && ViewPanes::Handles(given)) {
+        this->Panes_->Handle(given);
+      }
       return std::string("{}");
     }
     return QJsonDocument(Shell::Takes(given) ? this->Shell_->Handle(given)
@@ -191,6 +177,7 @@ MainWindow::MainWindow(const QString& packages)
   this->addDockWidget(Qt::BottomDockWidgetArea, this->TimeDock_);
   this->splitDockWidget(this->TimeDock_, this->ConsoleDock_, Qt::Vertical);
   this->AddTelemetry(timeline);
+  this->AddViewParts(tree, timeline);
   this->MakeMenus();
   this->statusBar()->showMessage(
       tr("Open or drop a model, a raster of heights, a robot, a recording or a Python script"));
@@ -205,6 +192,12 @@ MainWindow::~MainWindow() {
   this->Libraries_ = nullptr;
   delete this->PlugIns_;
   this->PlugIns_ = nullptr;
+  delete this->ViewKeys_;
+  delete this->Selection_;
+  delete this->Movies_;
+  this->Movies_ = nullptr;
+  delete this->Panes_;
+  this->Panes_ = nullptr;
   delete this->Telemetry_;
   this->Telemetry_ = nullptr;
   delete this->Tasks_;
@@ -259,14 +252,37 @@ void MainWindow::MakeMenus() {
   view->addAction(tr("New &plot"), QKeySequence(Qt::CTRL | Qt::Key_P), this,
                   [this] { this->Run(QStringLiteral("app.plot()")); });
   view->addAction(tr("&Tile views"), QKeySequence(Qt::CTRL | Qt::Key_T), this,
-                  [this] { this->Tile(); });
+                  [this] { this->Run(QStringLiteral("app.tile_views()")); });
+  const auto ofView = [this, view](const QString& text, const QKeySequence& key,
+                                   const QString& line) {
+    view->addAction(text, key, this, [this, line] {
+      const QString used = this->CurrentView(true);
+      if (!used.isEmpty()) {
+        this->Run(line.arg(used));
+      }
+    });
+  };
+  view->addAction(tr("&Maximise view, and back"), QKeySequence(Qt::Key_F11), this, [this] {
+    const QString used = this->CurrentView(true);
+    if (this->Panes_->IsMaximized()) {
+      this->Run(QStringLiteral("app.restore_views()"));
+    } else if (!used.isEmpty()) {
+      this->Run(QStringLiteral("app.maximize_view(%1)").arg(used));
+    }
+  });
+  ofView(tr("Split &right"), {}, QStringLiteral("app.split_view(%1)"));
+  ofView(tr("Split &below"), {}, QStringLiteral("app.split_view(%1, \"below\")"));
+  ofView(tr("Open a m&ap in step"), {}, QStringLiteral("app.open_map(%1)"));
+  ofView(tr("&Copy picture"), QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_C),
+         QStringLiteral("app.copy_picture(%1)"));
   view->addSeparator();
   view->addAction(this->SceneDock_->toggleViewAction());
   view->addAction(this->TimeDock_->toggleViewAction());
   view->addAction(this->Telemetry_->TableDock()->toggleViewAction());
   view->addAction(this->ConsoleDock_->toggleViewAction());
+  this->menuBar()->addMenu(this->Movies_->Menu());
   this->Shell_->FillView(view);
-  this->Shell_->FillHelp(this->menuBar()->addMenu(tr("&Help")), tr(Keys), [this] {
+  this->Shell_->FillHelp(this->menuBar()->addMenu(tr("&Help")), KeyTable(), [this] {
     return AboutText(this->Session_->GetRenderContext(), QCoreApplication::applicationVersion());
   });
   CompleteMnemonics(this->menuBar());
@@ -370,84 +386,12 @@ void MainWindow::SavePicture() {
   const QString path =
       QFileDialog::getSaveFileName(this, tr("Save picture"), QString(), tr("PNG (*.png)"));
   if (!path.isEmpty()) {
-    this->Run(QStringLiteral("app.view.save(%1)").arg(Quoted(path)));
+    this->Run(QStringLiteral("%1.save(%2)").arg(this->CurrentView(true), Quoted(path)));
   }
 }
 
 void MainWindow::Report(const QString& text) {
   this->statusBar()->showMessage(text);
-}
-
-QWidget* MainWindow::ToolsOf(ViewportWidget* widget, const std::string& viewport,
-                             const QString& title) {
-  const QString view =
-      QStringLiteral("app.views[%1]").arg(Quoted(QString::fromStdString(viewport)));
-  const vtkDspaceViewport* shown = widget->GetViewport();
-  auto* tools = new QWidget;
-  auto* row = new QHBoxLayout(tools);
-  row->setContentsMargins(4, 2, 4, 2);
-  row->addWidget(new QLabel(title, tools));
-  row->addStretch();
-  const auto toggle = [&](const QString& text, const QString& tip, bool on, const QString& field) {
-    auto* button = new QToolButton(tools);
-    button->setText(text);
-    button->setToolTip(tip);
-    button->setCheckable(true);
-    button->setChecked(on);
-    connect(button, &QToolButton::toggled, this, [this, view, field](bool checked) {
-      this->Run(QStringLiteral("%1.%2 = %3")
-                    .arg(view, field, checked ? QStringLiteral("True") : QStringLiteral("False")));
-    });
-    row->addWidget(button);
-    return button;
-  };
-  QToolButton* shadows = toggle(tr("Shadows"), tr("Shadows of the Sun"),
-                                shown->GetLook().shadows.shown, QStringLiteral("shadows"));
-  toggle(tr("Ornaments"), tr("Ornamental objects: labels, trails, axes"), true,
-         QStringLiteral("ornaments"));
-  connect(widget, &ViewportWidget::shown, shadows, [widget, shadows] { // Python may have set them
-    const QSignalBlocker silent(shadows);
-    shadows->setChecked(widget->GetViewport()->GetLook().shadows.shown);
-  });
-  auto* moves = new QComboBox(tools);
-  for (const char* kind : {"orbit", "walk", "map"}) {
-    moves->addItem(tr(kind));
-  }
-  moves->setObjectName(QStringLiteral("navigation"));
-  moves->setToolTip(tr("How the mouse and keys move the camera: orbit about a point, walk on the "
-                       "ground with W A S D, or a map that does not turn"));
-  connect(moves, &QComboBox::activated, this, [this, view, moves] {
-    this->Run(QStringLiteral("%1.navigation = %2").arg(view, Quoted(moves->currentText())));
-  });
-  row->addWidget(moves);
-  auto* samples = new QSpinBox(tools);
-  samples->setRange(1, 8);
-  samples->setValue(shown->GetSamples());
-  samples->setPrefix(tr("Samples "));
-  samples->setToolTip(tr("Samples a pixel along each side; one while the camera moves"));
-  connect(samples, &QSpinBox::valueChanged, this, [this, view](int value) {
-    this->Run(QStringLiteral("%1.samples = %2").arg(view).arg(value));
-  });
-  row->addWidget(samples);
-  auto* whole = new QToolButton(tools);
-  whole->setText(tr("Fit"));
-  whole->setToolTip(tr("Shows everything, without turning the camera"));
-  connect(whole, &QToolButton::clicked, this,
-          [this, view] { this->Run(QStringLiteral("%1.fit()").arg(view)); });
-  row->addWidget(whole);
-  auto* floating = new QToolButton(tools);
-  floating->setText(tr("Float"));
-  floating->setToolTip(tr("A window of its own, or back"));
-  connect(floating, &QToolButton::clicked, tools, [tools] {
-    for (QWidget* parent = tools->parentWidget(); parent; parent = parent->parentWidget()) {
-      if (auto* dock = qobject_cast<QDockWidget*>(parent)) {
-        dock->setFloating(!dock->isFloating());
-        return;
-      }
-    }
-  });
-  row->addWidget(floating);
-  return tools;
 }
 
 void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std::string& title) {
@@ -470,15 +414,20 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   ConnectToExecutor(
       *widget, [session](const std::string& command) { return session.Execute(command); }, viewport,
       [this, viewport](const std::string& event, const std::string& reply) {
+        this->Selection_->Take(event, reply);
         this->Interpreter_->Tell(viewport, event, reply);
       });
   widget->SetSource([session, viewport] { return session.Viewport(viewport); });
   this->Scenes_->Watch(widget, of, viewport);
   connect(widget, &ViewportWidget::failed, this,
           [this](const QString& message) { this->Report(message); });
-  dock->setTitleBarWidget(this->ToolsOf(widget, viewport, QString::fromStdString(title)));
+  dock->setTitleBarWidget(new ViewBar(widget, session, viewport, QString::fromStdString(title),
+                                      [this](const QString& line) { return this->Run(line); }));
   dock->setWidget(widget);
   view = {dock, widget};
+  this->Panes_->Add(dock, widget, of, viewport);
+  this->Selection_->Add(widget, of, viewport);
+  this->ViewKeys_->Add(widget, viewport);
   this->Libraries_->AddView(widget);
   if (this->Shell_->GetLayouts()->Place(dock)) { // a layout has it
     return;
@@ -487,7 +436,7 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   if (this->Views_.size() == 1) {
     this->PlugIns_->ArrangeBeside(dock);
   }
-  this->Tile();
+  this->Panes_->Tile();
   if (this->Views_.size() == 1) { // the views get the room: the prompt had all of it
     QTimer::singleShot(0, this, [this, dock = QPointer<QDockWidget>(dock)] {
       if (dock) {
@@ -546,26 +495,27 @@ bool MainWindow::IsSettled() const {
   });
 }
 
-void MainWindow::Tile() {
-  std::vector<QDockWidget*> docks;
-  for (const auto& [key, view] : this->Views_) {
-    if (view.dock && view.dock->isVisibleTo(this) && !view.dock->isFloating()) {
-      docks.push_back(view.dock);
-    }
-  }
-  if (docks.empty()) {
-    return;
-  }
-  const auto columns = std::size_t(std::ceil(std::sqrt(double(docks.size()))));
-  for (std::size_t i = 0; i < docks.size(); ++i) {
-    if (i == 0) {
-      this->addDockWidget(Qt::RightDockWidgetArea, docks[i]);
-    } else if (i < columns) { // the first row, and then below it
-      this->splitDockWidget(docks[i - 1], docks[i], Qt::Horizontal);
-    } else {
-      this->splitDockWidget(docks[i - columns], docks[i], Qt::Vertical);
-    }
-  }
+void MainWindow::AddViewParts(SceneTreeWidget* tree, TimelineWidget* timeline) {
+  const auto run = [this](const QString& line) { return this->Run(line); };
+  this->Panes_ = new ViewPanes(this);
+  connect(this->Panes_, &ViewPanes::drawn, this, [this](const QString& viewport) {
+    this->Interpreter_->Run(QStringLiteral("app._drawn(%1)").arg(Quoted(viewport)));
+  });
+  this->Selection_ = new ViewSelection(tree, this->Scenes_, this);
+  this->Movies_ =
+      new MovieTrack(this, timeline, this->Scenes_,
+                     {run, [this](const QString& line) { this->Interpreter_->Run(line); },
+                      [this] { return this->CurrentView(); },
+                      [this](const QString& message) { this->Report(message); }});
+  this->ViewKeys_ = new ViewKeys(timeline, this->Selection_, this->Movies_, run, this);
+}
+
+QString MainWindow::CurrentView(bool any) const {
+  const ViewPanes::Pane pane =
+      this->Panes_->Current(any ? nullptr : this->Scenes_->ActiveScene().first);
+  return pane.dock
+             ? QStringLiteral("app.views[%1]").arg(Quoted(QString::fromStdString(pane.viewport)))
+             : QString();
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

@@ -23,7 +23,12 @@ namespace dspace::widgets {
 
 class ConsoleWidget;
 class FileCommands;
+class MovieTrack;
+class ViewKeys;
+class ViewPanes;
+class ViewSelection;
 class PythonInterpreter;
+class SceneTreeWidget;
 class ShownScenes;
 class PlugIns;
 class Shell;
@@ -68,8 +73,9 @@ public:
   int ViewCount() const;
   // Every visible viewport is up to date.
   bool IsSettled() const;
-  // Docks of all viewports in a grid.
-  void Tile();
+  ViewPanes* Panes() const { return this->Panes_; }
+  ViewSelection* Selection() const { return this->Selection_; }
+  MovieTrack* Movies() const { return this->Movies_; }
 
 protected:
   void closeEvent(QCloseEvent* event) override;
@@ -87,7 +93,10 @@ private:
   void ShowView(vtkObject* of, const std::string& viewport, const std::string& title);
   void CloseView(vtkObject* of, const std::string& viewport);
   void Forget(vtkObject* of);
-  QWidget* ToolsOf(ViewportWidget* widget, const std::string& viewport, const QString& title);
+  void AddViewParts(SceneTreeWidget* tree, TimelineWidget* timeline);
+  // The view that is used, of the scene in the docks or (`any`) of any, as Python; "": there is
+  // none.
+  QString CurrentView(bool any = false) const;
   // Asks for a text that is not empty.
   void AskText(const QString& title, const QString& label, const QString& text,
                const std::function<void(const QString&)>& take);
@@ -103,6 +112,10 @@ private:
   TaskStrip* Tasks_ = nullptr;
   PlugIns* PlugIns_ = nullptr;
   TelemetryDocks* Telemetry_ = nullptr;
+  MovieTrack* Movies_ = nullptr;
+  ViewPanes* Panes_ = nullptr;
+  ViewSelection* Selection_ = nullptr;
+  ViewKeys* ViewKeys_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;
