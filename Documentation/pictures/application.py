@@ -1,6 +1,8 @@
 """Screenshots of DspaceQt, each on a display of its own."""
 import os
+import pathlib
 import subprocess
+import sys
 import tempfile
 
 from pictures.paths import DATA, IMAGES, ROOT
@@ -77,3 +79,62 @@ def application_dark():
         script.write(lines)
         script.flush()
         _screenshot("application_dark", "--after", str(seconds), script.name)
+
+
+# A drive on the shipped field, 20 s, in steps of 0.1 s.
+RECORD = """
+import math, sys
+import dspace
+from dspace.application.demo import shipped_data
+data = shipped_data()
+with dspace.Session() as session, session.record(sys.argv[1]):
+    scene = session.scene()
+    ground = scene.add_terrain(data / "field" / "field.tif", mode="clipmap", image=data / "field" / "field_color.tif")
+    ground.focus([(0, 0)], radius=16)
+    vehicle = dspace.rover.load_vehicle(data / "rover" / "rover.urdf")
+    rover = scene.load(data / "rover" / "rover.urdf")
+    scene.sun.set(direction=(-0.35, 0.80, 0.48))
+    camera = scene.add_camera("chase", eye=(-8, -7, 6), target=(0, 0, 0.3), fov_deg=45)
+    view = scene.add_viewport((640, 400), camera, name="main")
+    view.set(shadows=True, fill=0.05)
+    for step in range(201):
+        angle = 0.03 * step
+        rover.place(vehicle.solve((4 * math.cos(angle), 4 * math.sin(angle), math.degrees(angle) + 90), ground))
+        scene.time = 0.1 * step
+"""
+KEYS = """
+run = app.open({path!r})
+from dspace.application.views import own_camera
+def key(time, eye, target, **values):
+    own_camera(app.view).look_at(eye=eye, target=target)
+    return app.movie.add_key(app.view, time, **values)
+key(1, (-8, -7, 6), (2, 1, 0))
+key(8, (2, -9, 4), (0, 2, 0))
+key(8, (8, -3, 3), (-1, 2, 0), freeze=2)
+key(15, (7, 7, 5), (0, 0, 0))
+app.movie.set_span(2, 14)
+app.movie.edit_key(3, easing="rest")
+run.seek(8)
+own_camera(app.view).look_at(eye=(-9, -16, 11), target=(1, 0, 0))
+app.movie.show_path()
+"""
+
+
+def application_keys():
+    """Camera keys of a recording, with their path."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "drive.dspace")
+        subprocess.run([sys.executable, "-c", RECORD, path], check=True)
+        script = os.path.join(folder, "keys.py")
+        pathlib.Path(script).write_text(KEYS.format(path=path))
+        _screenshot("application_keys", "--after", "8", script)
+
+
+def application_map():
+    """A map in step with a view."""
+    with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
+        script.write("drive = app.demo()\napp.close_view(app.views['mast'])\ndrive.stop()\n"
+                     "view = app.views['chase']\nlink = app.open_map(view)\n"
+                     "link.map.set(shadows=True, fill=0.05)\n")
+        script.flush()
+        _screenshot("application_map", "--after", "8", script.name)

@@ -1,5 +1,5 @@
-// Camera keys on the timeline: added, dragged, frozen, edited and deleted by mouse and keys, kept in
-// the movie's file, previewed in a view, exported.
+// Camera keys on the timeline: added, dragged, frozen, edited and deleted by mouse and keys, kept
+// in the movie's file, previewed in a view, exported.
 #include "WindowFixture.h"
 
 #include <QAction>
@@ -102,7 +102,9 @@ with dspace.Session() as session, session.record(sys.argv[1]):
     }
     ASSERT_EQ(Track()->Keys().size(), 3u) << errors.toStdString();
   }
-  static std::string Runs() { return Value("[(key.time, round(key.run, 6)) for key in app.movie.keys]"); }
+  static std::string Runs() {
+    return Value("[(key.time, round(key.run, 6)) for key in app.movie.keys]");
+  }
   static std::string Script() { return window->Console()->Script().toStdString(); }
 };
 
@@ -156,9 +158,9 @@ TEST_F(MovieTrackTest, KeysAreAddedDraggedAndDeleted) {
 TEST_F(MovieTrackTest, TheFileIsThatOfTheCommandAndIsLoadedAgain) {
   AddThree();
   ASSERT_TRUE(Run("app.movie.flush()"));
-  EXPECT_EQ(Value("[k.run for k in dspace.Movie.load('" + Path() +
-                  ".movie.toml').views['main'].keys]"),
-            "[101.0, 105.0, 109.0]");
+  EXPECT_EQ(
+      Value("[k.run for k in dspace.Movie.load('" + Path() + ".movie.toml').views['main'].keys]"),
+      "[101.0, 105.0, 109.0]");
   ASSERT_TRUE(Run("run.close()\nrun = app.open('" + Path() + "')"));
   ASSERT_TRUE(Wait([] { return Track()->isVisible(); }));
   EXPECT_EQ(Track()->Keys().size(), 3u);
@@ -194,9 +196,8 @@ TEST_F(MovieTrackTest, AViewFollowsTheKeysAndEscapeEndsThat) {
   Look("(1, 2, 30)");
   ASSERT_TRUE(Run(QString("app.movie.follow(app.views['%1'])").arg(View))) << errors.toStdString();
   Seek(103.0);
-  ASSERT_TRUE(Wait([] {
-    return Number("app.views['viewer:main'].camera.pose_in().position[0]") > 2.4;
-  }));
+  ASSERT_TRUE(
+      Wait([] { return Number("app.views['viewer:main'].camera.pose_in().position[0]") > 2.4; }));
   EXPECT_NEAR(Number("app.views['viewer:main'].camera.pose_in().position[0]"), 2.5, 1e-9);
   window->View(View)->setFocus();
   QTest::keyClick(window->View(View), Qt::Key_Escape);

@@ -58,9 +58,9 @@ protected:
   static std::string Selected() {
     const auto item = Tree()->Selected();
     const auto& scene = Tree()->Model()->GetScene();
-    return item.object != 0                          ? scene->Object(item.object).name
-           : item.frame == dspace::NoFrame           ? ""
-                                                     : scene->Frames().Path(item.frame);
+    return item.object != 0                ? scene->Object(item.object).name
+           : item.frame == dspace::NoFrame ? ""
+                                           : scene->Frames().Path(item.frame);
   }
   // The pixel of the view in which a point of the root lies.
   static QPoint PixelOf(const QString& python) {
@@ -91,9 +91,7 @@ protected:
     }
     FAIL() << "no entry " << text.toStdString();
   }
-  static QString LastLine() {
-    return window->Console()->Script().trimmed().section('\n', -1);
-  }
+  static QString LastLine() { return window->Console()->Script().trimmed().section('\n', -1); }
 
   inline static ViewportWidget* view = nullptr;
 };
@@ -113,7 +111,8 @@ TEST_F(ViewsInWindow, AClickSelectsTheRowAndARowIsOutlined) {
     for (int y = 0; y < picture.height(); ++y) {
       for (int x = 0; x < picture.width(); ++x) {
         const QColor color = picture.pixelColor(x, y);
-        const bool near = std::abs(x / picture.devicePixelRatio() - middle.x()) < view->width() / 6.0;
+        const bool near =
+            std::abs(x / picture.devicePixelRatio() - middle.x()) < view->width() / 6.0;
         count += near && color == QColor(0xff, 0x8c, 0x1a) ? 1 : 0;
       }
     }

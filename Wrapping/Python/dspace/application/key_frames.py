@@ -110,7 +110,8 @@ class KeyFrames:
             reject(self._about(), "the run time of a key", run, f"{first:g} to {last:g} s")
 
         def make(time):
-            return Key(time=time, **{**self._seen(view, values), **values})
+            given = {name: value for name, value in values.items() if name != "frame"}
+            return Key(time=time, **{**self._seen(view, values), **given})
 
         with self._changing():
             fresh = not self.keys

@@ -193,8 +193,7 @@ class MapLink:
         eye = np.asarray(target) + ABOVE * self._height * up
         pose = Pose.from_matrix(np.block([[rotation, eye[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]))
         camera = camera_of(self.map)
-        self.map.scene.add_camera(camera.name, pose=pose, height=self._height, vantage=camera.vantage,
-                                  near=-1e3 * self._height, far=1e3 * self._height)
+        self.map.scene.add_camera(camera.name, pose=pose, height=self._height, vantage=camera.vantage)
 
     def _note(self):
         self._seen = camera_of(self.view).pose_in()

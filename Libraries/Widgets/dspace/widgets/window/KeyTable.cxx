@@ -24,7 +24,7 @@ constexpr Entry Entries[] = {
     {"F", "shows the selection, else everything"},
     {"R", "returns to the first view"},
     {"Space", "plays and pauses"},
-    {"K", "on the timeline: a camera key of the movie"},
+    {"K", "a camera key of the movie, where the camera is"},
     {"M", "on the timeline: a mark"},
     {"Escape", "cancels a drag, ends a preview, clears the selection"},
     {"H", "shows and hides these keys"},

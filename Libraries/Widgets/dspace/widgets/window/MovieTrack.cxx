@@ -100,11 +100,7 @@ MovieTrack::MovieTrack(QWidget* window, TimelineWidget* timeline, ShownScenes* s
   button->setPopupMode(QToolButton::MenuButtonPopup);
   button->setMenu(this->Menu_);
   button->setFocusPolicy(Qt::TabFocus);
-  connect(button, &QToolButton::clicked, this, [this] {
-    if (TimeSource* clock = this->Scenes_->Clock()) {
-      this->Add(clock->GetState().time_s);
-    }
-  });
+  connect(button, &QToolButton::clicked, this, [this] { this->AddKey(); });
   timeline->AddTool(button);
   this->Show();
 }
@@ -167,6 +163,15 @@ void MovieTrack::Show() {
   track->SetNote(state["preview"].toBool()   ? tr("Preview (Esc ends it)")
                  : state["follows"].toBool() ? tr("A view follows the keys (Esc ends it)")
                                              : QString());
+}
+
+bool MovieTrack::AddKey() {
+  TimeSource* clock = this->Scenes_->Clock();
+  if (!clock || this->State().isEmpty()) {
+    return false;
+  }
+  this->Add(clock->GetState().time_s);
+  return true;
 }
 
 bool MovieTrack::Stop() {

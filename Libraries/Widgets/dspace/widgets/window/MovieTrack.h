@@ -41,6 +41,8 @@ public:
   void Handle(const QJsonObject& request);
 
   QMenu* Menu() const { return this->Menu_; }
+  // A key at the present time, where the camera of the view is; false: there is no recording.
+  bool AddKey();
   // Ends a preview; false: there is none.
   bool Stop();
 

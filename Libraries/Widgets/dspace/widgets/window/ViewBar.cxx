@@ -298,6 +298,9 @@ struct ViewBar::Internals {
       for (QMenu* sub : menu->findChildren<QMenu*>(Qt::FindDirectChildrenOnly)) {
         sub->deleteLater();
       }
+      for (auto* group : menu->findChildren<QActionGroup*>(Qt::FindDirectChildrenOnly)) {
+        group->deleteLater();
+      }
       menu->clear();
       (this->*fill)(*menu);
     });

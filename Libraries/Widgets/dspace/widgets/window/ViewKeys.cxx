@@ -56,6 +56,8 @@ bool ViewKeys::Take(ViewportWidget* widget, const QString& view, int key) {
                                       : QStringLiteral("app.fit(%1, %1.%2)").arg(view, thing)) ||
            true;
   }
+  case Qt::Key_K:
+    return this->Movies_->AddKey();
   case Qt::Key_H:
     SwitchKeyOverlay(widget);
     return true;

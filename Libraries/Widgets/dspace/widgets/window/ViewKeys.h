@@ -16,9 +16,9 @@ class ViewPanes;
 class ViewSelection;
 class ViewportWidget;
 
-// Space plays and pauses where the time can be played, F shows the selection, H shows the keys,
-// Escape ends a preview, the table of keys or the selection, in this order, and then goes on to the
-// view, which cancels a drag. All other keys are the view's.
+// Space plays and pauses where the time can be played, K adds a camera key of a recording, F shows
+// the selection, H shows the keys, Escape ends a preview, the table of keys or the selection, in
+// this order, and then goes on to the view, which cancels a drag. All other keys are the view's.
 class ViewKeys : public QObject {
   Q_OBJECT
 

@@ -4,7 +4,7 @@
 #include <exception>
 #include <unordered_set>
 
-#include <QEvent>
+#include <QGuiApplication>
 #include <QPainter>
 #include <QPointer>
 #include <QTimer>
@@ -143,8 +143,13 @@ void ViewSelection::Add(ViewportWidget* widget, vtkObject* of, const std::string
   Internals::View* added = view.get();
   connect(view->rest.get(), &QTimer::timeout, this, [this, added] { this->Impl_->Draw(*added); });
   connect(widget, &ViewportWidget::shown, this, [this, added] {
-    if (added->outline && (added->outline->isVisible() || !this->Impl_->Selected().empty())) {
-      added->outline->hide(); // it is that of another picture
+    if (!added->outline || (!added->outline->isVisible() && this->Impl_->Selected().empty())) {
+      return;
+    }
+    if (QGuiApplication::mouseButtons() != Qt::NoButton) { // the user moves the camera
+      added->outline->hide();
+      added->rest->start(Rest_ms);
+    } else if (!added->rest->isActive()) { // a scene that moves has one from time to time
       added->rest->start(Rest_ms);
     }
   });

@@ -20,8 +20,8 @@ class ShownScenes;
 class ViewportWidget;
 
 // A click in a view selects the row of what it hits, and what is selected has an outline in the
-// views of its scene. The outline comes a moment after the camera rests, so that movements stay as
-// fast as they are.
+// views of its scene. The outline comes a moment after a picture, at most eight times a second, and
+// not while the user drags, so that movements stay as fast as they are.
 class ViewSelection : public QObject {
   Q_OBJECT
 
