@@ -63,18 +63,6 @@ float Length(double seconds) {
   return float(std::min(seconds, double(Forever)));
 }
 
-// Whether some of its points let what is behind shine through.
-bool IsTranslucent(const TrajectoryLine& line) {
-  const TrajectoryLook& look = line.Look();
-  if (look.opacity < 1.0 || look.fade || look.ahead < 1.0) {
-    return true;
-  }
-  return std::any_of(line.Strips().begin(), line.Strips().end(), [](const auto& strip) {
-    return std::any_of(strip.colors.begin(), strip.colors.end(),
-                       [](const auto& color) { return color[3] < 255; });
-  });
-}
-
 bool InWindow(const TrajectoryLine& line, double time) {
   const double elapsed = time - line.Time();
   return elapsed >= -line.Look().before && elapsed <= line.Look().after;
@@ -274,7 +262,7 @@ void TrajectoryDrawer::DrawColor(const CustomDrawing& drawing) {
   if (!line) {
     return;
   }
-  const bool translucent = IsTranslucent(*line);
+  const bool translucent = line->IsTranslucent();
   if (translucent && !drawing.light) {
     return; // DrawTranslucent
   }
@@ -285,7 +273,7 @@ void TrajectoryDrawer::DrawColor(const CustomDrawing& drawing) {
 
 void TrajectoryDrawer::DrawTranslucent(const CustomDrawing& drawing, const RenderTarget&) {
   const auto line = this->Line_.lock();
-  if (line && !drawing.light && IsTranslucent(*line)) {
+  if (line && !drawing.light && line->IsTranslucent()) {
     this->Draw(drawing, TrajectoryTimed_frag, true);
   }
 }

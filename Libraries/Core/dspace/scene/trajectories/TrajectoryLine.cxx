@@ -61,7 +61,10 @@ void TrajectoryLine::Check(const std::string& object, const std::vector<Strip>& 
 
 void TrajectoryLine::FindBounds() {
   Eigen::AlignedBox3d box;
+  this->TranslucentColors_ = false;
   for (const Strip& strip : this->Strips_) {
+    this->TranslucentColors_ |= std::any_of(strip.colors.begin(), strip.colors.end(),
+                                            [](const Color& color) { return color[3] < 255; });
     for (const Eigen::Vector3d& p : strip.points) {
       box.extend(p);
     }
@@ -93,6 +96,11 @@ void TrajectoryLine::SetLook(const std::string& object, const TrajectoryLook& lo
           "6 to 64 pixels");
   this->Look_ = look;
   ++this->Revision_;
+}
+
+bool TrajectoryLine::IsTranslucent() const {
+  return this->TranslucentColors_ || this->Look_.opacity < 1.0 || this->Look_.fade ||
+         this->Look_.ahead < 1.0;
 }
 
 bool TrajectoryLine::FollowsTime() const {

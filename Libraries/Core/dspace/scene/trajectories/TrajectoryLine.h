@@ -78,6 +78,8 @@ public:
     Strip points; // empty: none
   };
   const Detail& GetDetail() const { return this->Detail_; }
+  // Whether some of it lets through what is behind it.
+  bool IsTranslucent() const;
   // Whether the picture depends on the scene's time.
   bool FollowsTime() const;
   // When opacity is 0 before and after the scene's time [s]: those of the look, or of the line.
@@ -88,7 +90,7 @@ public:
 
 private:
   static void Check(const std::string& object, const std::vector<Strip>& strips);
-  void FindBounds();
+  void FindBounds(); // and what its colours are
   void FindDetail();
 
   std::vector<Strip> Strips_;
@@ -97,6 +99,7 @@ private:
   TrajectoryLook Look_;
   double Time_ = 0.0;
   Detail Detail_;
+  bool TranslucentColors_ = false;
   BoundingSphere Bounds_;
   std::uint64_t Revision_ = 1;
   std::uint64_t PointsRevision_ = 1;
