@@ -11,7 +11,8 @@ DOCUMENTS = sorted(path for folder in (ROOT, *(ROOT / name for name in (
 # Folders that a path may be relative to, besides the document's own. Architecture.md abbreviates the libraries.
 BASES = ("", "Libraries/Core", "Libraries/Terrain", "Libraries/Session", "Wrapping/Python", "Wrapping/Python/dspace",
          "Testing/Python")
-LETTERS = {"S": "Libraries/Session/dspace", "T": "Libraries/Terrain/dspace", "C": "Libraries/Core/dspace"}
+LETTERS = {"S": "Libraries/Session/dspace", "T": "Libraries/Terrain/dspace", "C": "Libraries/Core/dspace",
+           "A": "Libraries/Analysis/dspace"}
 NAMED = re.compile(r"[`(]((?:[\w.]+/)+\w+\.(?:cxx|h|md|proto|py|txt))[`)]")
 PATTERNS = ("dspace/ROOM/NAME.h",)  # of the recipes
 
