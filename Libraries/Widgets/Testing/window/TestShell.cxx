@@ -114,8 +114,11 @@ TEST_F(ShellTest, LayoutsAreLinesOfPythonAndMakeViewsThatAreGone) {
   ASSERT_TRUE(Run("app.layouts.save('pair')")) << errors.toStdString();
   EXPECT_EQ(Value("app.layouts.names"), "['pair']");
   ASSERT_TRUE(Run("app.close_view(two)"));
-  ASSERT_TRUE(Action("pair")); // in the menu
-  Action("pair")->trigger();
+  QMenu* layouts = Action("Layouts")->menu();
+  ASSERT_TRUE(layouts);
+  EXPECT_EQ(layouts->actions().last()->text(), "&1 pair");
+  EXPECT_EQ(MnemonicFaults(window->menuBar()), QStringList());
+  layouts->actions().last()->trigger();
   dock = window->findChild<QDockWidget*>("view second");
   ASSERT_TRUE(dock) << errors.toStdString();
   EXPECT_TRUE(dock->isFloating());

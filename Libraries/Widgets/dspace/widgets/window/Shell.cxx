@@ -69,7 +69,7 @@ void Shell::FillView(QMenu* menu) {
   menu->addSeparator();
   this->LayoutMenu_ = menu->addMenu(tr("&Layouts"));
   this->FillLayouts();
-  menu->addAction(tr("&Preferences..."), QKeySequence(Qt::CTRL | Qt::Key_Comma), this,
+  menu->addAction(tr("Pre&ferences..."), QKeySequence(Qt::CTRL | Qt::Key_Comma), this,
                   &Shell::ShowPreferences);
 }
 
@@ -94,12 +94,13 @@ void Shell::FillLayouts() {
   auto* remove = this->LayoutMenu_->addMenu(tr("&Remove layout"));
   remove->setEnabled(!names.isEmpty());
   this->LayoutMenu_->addSeparator();
-  const auto add = [this](QMenu* menu, const QString& name, const char* line) {
+  const auto add = [this, &names](QMenu* menu, const QString& name, const char* line) {
     QString shown = name;
     shown.replace('&', QStringLiteral("&&"));
-    menu->addAction(shown, this, [this, name, line] {
-      this->Run_(QString::fromLatin1(line).arg(Literal(name)));
-    });
+    const auto number = names.indexOf(name) + 1; // 1 to 9 are keys
+    menu->addAction(
+        (number < 10 ? QStringLiteral("&%1 ").arg(number) : QString()) + shown, this,
+        [this, name, line] { this->Run_(QString::fromLatin1(line).arg(Literal(name))); });
   };
   for (const QString& name : names) {
     add(this->LayoutMenu_, name, "app.layouts.restore(%1)");
