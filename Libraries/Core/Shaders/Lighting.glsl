@@ -9,6 +9,9 @@ uniform float lightCosCone[DSPACE_LIGHT_COUNT];
 uniform vec2 lightDisc[DSPACE_LIGHT_COUNT]; // sine of the disc's radius, 0 for a point; its cotangent
 #endif
 #endif
+#ifdef DSPACE_SUN_PLACE
+uniform vec3 sunPlaceVC; // of the first light [m]
+#endif
 uniform vec3 ambientLight;
 uniform int cameraParallel;
 
@@ -78,6 +81,15 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
   {
     vec3 L = -lightDirectionVC[i];
     vec3 radiance = lightColor[i];
+#ifdef DSPACE_SUN_PLACE
+    if (i == 0)
+    {
+      vec3 toSun = (sunPlaceVC - positionVC) / 1.495978707e11; // [au]
+      float square = dot(toSun, toSun);
+      L = toSun * inversesqrt(square);
+      radiance /= square;
+    }
+#endif
 #ifdef DSPACE_PLACED_LIGHTS
     if (lightKind[i] == 1 || lightKind[i] == 2)
     {
@@ -105,6 +117,12 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
     {
       litBySun = sunLit(positionVC, planeVC);
       radiance *= litBySun;
+    }
+#endif
+#ifdef DSPACE_ECLIPSES
+    if (i == 0 && NdL > 0.0)
+    {
+      radiance *= sunSeen(DSPACE_ECLIPSE_PLACE);
     }
 #endif
 #ifdef DSPACE_SPECULAR

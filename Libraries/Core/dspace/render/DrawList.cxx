@@ -7,6 +7,7 @@
 
 #include <dspace/scene/PartLook.h>
 #include <dspace/scene/Stretch.h>
+#include <dspace/scene/bodies/CelestialBody.h>
 
 namespace dspace {
 namespace {
@@ -157,6 +158,7 @@ void DrawList::Flatten(const Scene& scene) {
   for (const auto& entry : scene.Objects()) {
     const GraphicsObject& object = entry.second;
     FlatObject flat{&object, {}};
+    flat.body = dynamic_cast<const CelestialBody*>(object.custom.get());
     std::uint32_t number = 0;
     for (const DetailLevel& level : object.levels) {
       FlatLevel flatLevel;
@@ -190,6 +192,39 @@ void DrawList::Flatten(const Scene& scene) {
   this->ContentRevision_ = scene.ContentRevision();
 }
 
+void DrawList::PlaceBodies(const Scene& scene, const Pose& X_CA) {
+  this->SunBody_.reset();
+  this->Eclipsing_.clear();
+  for (const FlatObject& flat : this->Objects_) {
+    if (!flat.body || !flat.object->visible) {
+      continue;
+    }
+    const BodyShape& shape = flat.body->Shape();
+    Eigen::Affine3d X_VO;
+    X_VO.matrix() = (X_CA * this->X_AF_[scene.Frames().Slot(flat.object->frame)]).Matrix();
+    X_VO.matrix().topRows<3>() = ViewFromCamera.asDiagonal() * X_VO.matrix().topRows<3>();
+    X_VO = X_VO * flat.object->X_FO;
+    DrawBody placed;
+    placed.object = flat.object;
+    placed.body = flat.body;
+    placed.center = X_VO.translation();
+    placed.unit = (X_VO.linear() * shape.radii.asDiagonal()).inverse();
+    placed.radius = shape.radii.maxCoeff() * LargestStretch(X_VO);
+    if (shape.sun) {
+      this->SunBody_ = placed;
+    } else if (shape.eclipses) {
+      this->Eclipsing_.push_back(placed);
+    }
+  }
+  if (!this->SunBody_) {
+    this->Eclipsing_.clear();
+  }
+  std::stable_sort(this->Eclipsing_.begin(), this->Eclipsing_.end(),
+                   [](const DrawBody& a, const DrawBody& b) {
+                     return a.radius * b.center.norm() > b.radius * a.center.norm();
+                   });
+}
+
 void DrawList::PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, const Pose& X_CA,
                            double fill) {
   this->Lights_.clear();
@@ -220,15 +255,22 @@ void DrawList::PlaceLights(const Scene& scene, const Eigen::Quaterniond& q_VA, c
     placed.direction = {0.0f, 0.0f, -1.0f};
     if (light.kind != Light::Kind::Head) {
       const Pose& X_AL = this->X_AF_[scene.Frames().Slot(light.frame)];
-      const Eigen::Vector3d d = (q_VA * (X_AL.rotation * light.direction)).normalized();
+      Eigen::Vector3d along = light.direction; // in the light's axes
+      if (placed.sun && this->SunBody_) {
+        const Eigen::Vector3d& sun = this->SunBody_->center;
+        along = (q_VA * X_AL.rotation).conjugate() * -sun.normalized();
+        placed.radius =
+            static_cast<float>(std::asin(std::min(1.0, this->SunBody_->radius / sun.norm())));
+      }
+      const Eigen::Vector3d d = (q_VA * (X_AL.rotation * along)).normalized();
       if (placed.sun) {
         // In the light's own axes, where the direction stands still while the camera moves.
         const Pose X_LC = X_AL.Inverse() * X_CA.Inverse();
         SunPlace sun;
-        sun.axes = LightAxes(-light.direction);
+        sun.axes = LightAxes(-along.normalized());
         sun.camera = (sun.axes * X_LC.position).head<2>() / X_LC.scale;
         sun.axes = sun.axes * (q_VA * X_AL.rotation).conjugate().toRotationMatrix();
-        sun.radius = light.radius_deg * M_PI / 180.0;
+        sun.radius = double(placed.radius);
         this->Sun_ = sun;
       }
       const Eigen::Vector3d p = ViewFromCamera.cwiseProduct(X_CA.Apply(X_AL.Apply(light.position)));
@@ -364,6 +406,7 @@ void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filte
   frames.RelativePoses(view.camera.frame, this->X_AF_);
   const Pose X_CA = view.camera.X_FC.Inverse();
   const Eigen::Quaterniond q_VC(0.0, 1.0, 0.0, 0.0); // half a turn about X
+  this->PlaceBodies(scene, X_CA);
   this->PlaceLights(scene, q_VC * X_CA.rotation, X_CA, view.look.fill);
 
   const float exposure = ExposedByLights(view.look) ? float(view.look.exposure) : 1.0f;

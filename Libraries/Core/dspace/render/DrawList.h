@@ -19,6 +19,8 @@
 
 namespace dspace {
 
+class CelestialBody;
+
 // One instance of a mesh, as the vertex shader reads it (GpuStore declares the layout to OpenGL).
 // Floats are relative to the camera: rounded after the subtraction in double precision.
 struct DrawInstance {
@@ -71,6 +73,16 @@ struct DrawLight {
 struct DrawCustom {
   const GraphicsObject* object = nullptr; // of the scene, as it was when the list was built
   Eigen::Affine3d X_VO = Eigen::Affine3d::Identity(); // OpenGL's view axes from the object's frame
+};
+
+// A body of the scene (scene/bodies) as the camera sees it, whether it is drawn or not.
+struct DrawBody {
+  const GraphicsObject* object = nullptr;
+  const CelestialBody* body = nullptr;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero(); // view axes [m]
+  // From view axes to axes in which it is a unit sphere about the origin [1/m].
+  Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
+  double radius = 0.0; // the largest [m]
 };
 
 // Selects the part of a scene that is drawn.
@@ -130,6 +142,12 @@ public:
   const std::vector<DrawCustom>& Backdrops() const { return this->Backdrops_; }
   const std::vector<DrawLight>& Lights() const { return this->Lights_; }
   const std::optional<SunPlace>& Sun() const { return this->Sun_; }
+  // The body that is the Sun: the light "sun" then comes from it, and its intensity is that at 1
+  // au.
+  const std::optional<DrawBody>& SunBody() const { return this->SunBody_; }
+  // The visible bodies that hide the Sun from other things, those that look largest first; none
+  // without SunBody(). Fragments that a view hides count.
+  const std::vector<DrawBody>& Eclipsing() const { return this->Eclipsing_; }
   // Depths [m] along the view's axis of the seen meshes' bounding spheres. Spheres around the
   // camera begin at 0. Nothing is seen: nearest > farthest.
   double NearestDepth() const { return this->NearestDepth_; }
@@ -159,6 +177,7 @@ private:
   struct FlatObject {
     const GraphicsObject* object;
     std::vector<FlatLevel> levels;
+    const CelestialBody* body = nullptr; // of its geometry
   };
   // An object of the filter whose bounds reach between the view's sides.
   struct SeenObject {
@@ -169,6 +188,7 @@ private:
   };
   void Flatten(const Scene& scene);
   void FindSeen(const Scene& scene, const DrawView& view, const DrawFilter& filter);
+  void PlaceBodies(const Scene& scene, const Pose& X_CA);
   void FindDepths();
   void SetDepths(DrawView& view) const;
   std::uint32_t BatchOf(const GraphicsObject& object, const Part& part, const Material& material,
@@ -194,6 +214,8 @@ private:
   std::vector<DrawCustom> Backdrops_; // CustomGeometry::IsBackdrop()
   std::vector<DrawLight> Lights_;
   std::optional<SunPlace> Sun_;
+  std::optional<DrawBody> SunBody_;
+  std::vector<DrawBody> Eclipsing_;
   double NearestDepth_ = 0.0;
   double FarthestDepth_ = 0.0;
   std::array<float, 3> Ambient_ = {0, 0, 0};

@@ -7,6 +7,7 @@
 #include "vtk_glew.h"
 
 #include "DepthPeel.h"
+#include "Eclipse.h"
 #include "Instance_vert.h"
 #include "Label_frag.h"
 #include "Lighting.h"
@@ -79,6 +80,9 @@ unsigned SurfaceShaders::LightFeatures(const DrawList& list, const DrawView& vie
     features |= list.Lights()[i].kind == Light::Kind::Directional ? 0u : PlacedLights;
     features |= IsDisc(list.Lights()[i]) ? DiscLights : 0u;
   }
+  if (list.SunBody() && list.TowardsSun()) {
+    features |= SunPlace | (list.Eclipsing().empty() ? 0u : unsigned(Eclipses));
+  }
   return features;
 }
 
@@ -146,9 +150,13 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const Shad
   define(Normals, "DSPACE_NORMALS");
   define(Flat, "DSPACE_FLAT");
   define(DiscLights, "DSPACE_DISC_LIGHTS");
+  define(SunPlace, "DSPACE_SUN_PLACE");
   define(GroundMaps, "DSPACE_GROUND_MAPS");
   define(Angles, "DSPACE_ANGLES");
   define(DisplayColor, "DSPACE_DISPLAY_COLOR");
+  if (features & Eclipses) {
+    defines += "#define DSPACE_ECLIPSES " + std::to_string(MaximumEclipsing) + "\n";
+  }
   defines += "#define DSPACE_LIGHT_COUNT " + std::to_string(features >> LightShift & 15u) + "\n";
   const unsigned model = features >> ReflectanceShift & 7u;
   if (model != 0) {
@@ -165,10 +173,12 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const Shad
     made.fragment = WithDefines(coded.fragment.c_str(), defines);
   } else {
     made.vertex = WithDefines(pages.vertex ? pages.vertex : Instance_vert, defines);
-    made.fragment = WithDefines(features & Label ? Label_frag : Surface_frag, defines);
+    const char* whole = features & Label ? Label_frag : Surface_frag;
+    made.fragment = WithDefines(pages.whole ? pages.whole : whole, defines);
     Replace(made.fragment, "//DSPACE::Functions", pages.fragment ? pages.fragment : "");
   }
-  Replace(made.fragment, "//DSPACE::Lighting", std::string(Shadow) + Photometry + Lighting);
+  Replace(made.fragment, "//DSPACE::Lighting",
+          std::string(Shadow) + Photometry + Eclipse + Lighting);
   Replace(made.fragment, "//DSPACE::Peeling", DepthPeel);
   return made;
 }
@@ -183,7 +193,7 @@ vtkShaderProgram* SurfaceShaders::Surface(unsigned features, const ShaderPages& 
   }
   vtkShaderProgram*& program =
       code ? this->Coded_[code.get()].programs[features]
-           : this->Surfaces_[{features, pages.vertex, pages.fragment, pages.defines}];
+           : this->Surfaces_[{features, pages.vertex, pages.fragment, pages.whole, pages.defines}];
   if (program) {
     this->Window_->GetShaderCache()->ReadyShaderProgram(program);
   } else {
@@ -235,6 +245,14 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
     program->SetUniform3f("towardsSunVC", toSun.data());
   }
 
+  if (list.SunBody() && program->IsUniformUsed("sunPlaceVC")) {
+    const Eigen::Vector3f place = list.SunBody()->center.cast<float>();
+    program->SetUniform3f("sunPlaceVC", place.data());
+  }
+  if (list.SunBody() && program->IsUniformUsed("eclipsingCount")) {
+    SetEclipses(program, list.Eclipsing(), *list.SunBody(), Eigen::Affine3d::Identity());
+  }
+
   if (program->IsUniformUsed("litColors")) {
     program->SetUniformi("litColors", view.look.shadows.litColors ? 1 : 0);
   }
@@ -276,6 +294,32 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
   if (program->IsUniformUsed("lightDisc")) {
     program->SetUniform2fv("lightDisc", count, disc);
   }
+}
+
+void SurfaceShaders::SetEclipses(vtkShaderProgram* program, const std::vector<DrawBody>& bodies,
+                                 const DrawBody& sun, const Eigen::Affine3d& X) {
+  const int count = std::min<int>(int(bodies.size()), MaximumEclipsing);
+  float place[MaximumEclipsing][3] = {};
+  float unit[3 * MaximumEclipsing][3] = {};
+  const Eigen::Matrix3d back = X.linear().inverse();
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d center = X * bodies[std::size_t(i)].center;
+    const Eigen::Matrix3d axes = bodies[std::size_t(i)].unit * back;
+    for (int k = 0; k < 3; ++k) {
+      place[i][k] = float(center[k]);
+    }
+    for (int k = 0; k < 9; ++k) {
+      unit[3 * i + k / 3][k % 3] = float(axes(k / 3, k % 3));
+    }
+  }
+  const Eigen::Vector3d center = X * sun.center;
+  const double scale = std::cbrt(std::abs(X.linear().determinant()));
+  const float disc[4] = {float(center.x()), float(center.y()), float(center.z()),
+                         float(sun.radius * scale)};
+  program->SetUniformi("eclipsingCount", count);
+  program->SetUniform3fv("eclipsingPlace", SurfaceShaders::MaximumEclipsing, place);
+  program->SetUniform3fv("eclipsingUnit", 3 * SurfaceShaders::MaximumEclipsing, unit);
+  program->SetUniform4f("sunDisc", disc);
 }
 
 void SurfaceShaders::SetShadows(vtkShaderProgram* program, const CascadeFit& fit) const {

@@ -28,11 +28,14 @@ struct ShaderPages {
   const char* vertex = nullptr;   // null: Instance.vert
   const char* fragment = nullptr; // null: none
   std::string defines;            // whole lines
+  // A fragment shader in place of Surface.frag and Label.frag, with the same markers. Null: none.
+  const char* whole = nullptr;
 };
 
 class SurfaceShaders {
 public:
   static constexpr int MaximumLights = 8;
+  static constexpr int MaximumEclipsing = 8; // bodies: those that look largest
 
   enum Feature : unsigned {
     Lit = 1,
@@ -43,16 +46,18 @@ public:
     Label = 32,
     Emissive = 64,
     Specular = 128,
-    PlacedLights = 256,     // some light is not directional
-    Mixed = 512,            // a function mixedColor() of the pages stands for the texture
-    Normals = 1024,         // of objects with shader code: the mesh has normals
-    Flat = 2048,            // of objects with shader code: triangles without normals
-    NormalMap = 4096,       // a texture of normals, with Lit
-    ObjectNormals = 8192,   // one in the mesh's own axes, with opacity
-    DiscLights = 16384,     // the disc of some light but the Sun is so wide that it sets slowly
-    GroundMaps = 1u << 27,  // CascadeFit::ground
-    Angles = 1u << 28,      // photometric angles in place of the colour; with Lit where it is lit
-    DisplayColor = 1u << 29 // the colour is a display value in a picture that is exposed later
+    PlacedLights = 256,      // some light is not directional
+    Mixed = 512,             // a function mixedColor() of the pages stands for the texture
+    Normals = 1024,          // of objects with shader code: the mesh has normals
+    Flat = 2048,             // of objects with shader code: triangles without normals
+    NormalMap = 4096,        // a texture of normals, with Lit
+    ObjectNormals = 8192,    // one in the mesh's own axes, with opacity
+    DiscLights = 16384,      // the disc of some light but the Sun is so wide that it sets slowly
+    SunPlace = 32768,        // the Sun is a body of the scene, at a place
+    GroundMaps = 1u << 27,   // CascadeFit::ground
+    Angles = 1u << 28,       // photometric angles in place of the colour; with Lit where it is lit
+    DisplayColor = 1u << 29, // the colour is a display value in a picture that is exposed later
+    Eclipses = 1u << 30      // bodies may hide the Sun, with SunPlace
   };
   static constexpr unsigned LightShift = 16;       // above the features: the number of lights,
   static constexpr unsigned CascadeShift = 20;     // of the Sun's shadow maps,
@@ -96,6 +101,10 @@ public:
   // Projection, lights and what else is the same for everything in one picture.
   void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view, int samples,
                bool firstLayer = false);
+  // Replaces the bodies that SetView() set (feature Eclipses): those of `bodies`, at most
+  // MaximumEclipsing, and the Sun, in other axes: `X` takes view axes to them.
+  static void SetEclipses(vtkShaderProgram* program, const std::vector<DrawBody>& bodies,
+                          const DrawBody& sun, const Eigen::Affine3d& X);
   // The view's shadow maps and their tiles (ShadowMaps), OpenGL texture arrays.
   void SetShadowMaps(unsigned int maps, unsigned int tiles) {
     this->ShadowMaps_ = maps;
@@ -109,7 +118,8 @@ private:
   vtkDspaceHubWindow* Window_;
   unsigned int ShadowMaps_ = 0;
   unsigned int ShadowTiles_ = 0;
-  std::map<std::tuple<unsigned, const char*, const char*, std::string>, vtkShaderProgram*>
+  std::map<std::tuple<unsigned, const char*, const char*, const char*, std::string>,
+           vtkShaderProgram*>
       Surfaces_;
   // By the code, which is kept, so that its address is not used again.
   struct Coded {

@@ -156,6 +156,7 @@ struct Programs {
   void AddScreens();
   void AddStars();
   void AddTrajectories();
+  void AddBodies();
   void AddExample();
   void AddBenchmark();
 
@@ -170,6 +171,7 @@ struct Programs {
     this->AddScreens();
     this->AddStars();
     this->AddTrajectories();
+    this->AddBodies();
     this->AddExample();
     this->AddBenchmark();
   }
@@ -311,7 +313,7 @@ void Programs::AddScreens() {
     if (path.parent_path() != folder || name.find(".frag.glsl") == std::string::npos ||
         text.rfind("#version", 0) != 0 || name == "Surface.frag.glsl" ||
         name == "Label.frag.glsl" || name == "Coded.frag.glsl" || name == "Star.frag.glsl" ||
-        name.rfind("Trajectory", 0) == 0) {
+        name.rfind("Trajectory", 0) == 0 || name.rfind("Body", 0) == 0) {
       continue;
     }
     EXPECT_EQ(text.rfind("#version 330 core\n" + marker, 0), 0u) << name;
@@ -341,6 +343,45 @@ void Programs::AddExample() {
   for (const unsigned lights : LightCounts) {
     this->Add("sail", Shaders::Lit | Shaders::Mixed | lights << Shaders::LightShift, pages, nullptr,
               true);
+  }
+}
+
+// As BodyDrawer asks for them.
+void Programs::AddBodies() {
+  const fs::path folder = fs::path(DSPACE_SOURCES) / "Libraries/Core/Shaders";
+  const std::string vertex = TextOf(folder / "Body.vert.glsl");
+  const std::string rays = TextOf(folder / "BodyRays.glsl");
+  const std::string surface = TextOf(folder / "Body.frag.glsl");
+  const std::string air = TextOf(folder / "BodyAir.frag.glsl");
+  const std::string ring = TextOf(folder / "BodyRing.frag.glsl");
+  ShaderPages pages;
+  pages.vertex = vertex.c_str();
+  pages.fragment = rays.c_str();
+  pages.whole = surface.c_str();
+  const unsigned lit = Shaders::Lit | 1u << Shaders::LightShift;
+  const unsigned placed = lit | Shaders::SunPlace;
+  for (const char* disc : {"", "#define DSPACE_DISC 12\n"}) {
+    pages.defines = disc;
+    for (const unsigned features :
+         {0u, lit, placed, placed | Shaders::Eclipses, unsigned(Shaders::Label),
+          lit | Shaders::DiscLights, lit | Shaders::PlacedLights, unsigned(Shaders::DisplayColor),
+          placed | Shaders::Texture | 3u << Shaders::ReflectanceShift}) {
+      this->Add("body", features, pages, nullptr, true);
+    }
+  }
+  pages.defines.clear();
+  for (const unsigned features : {Shaders::Angles | Shaders::Lit, unsigned(Shaders::Angles)}) {
+    this->Add("body", features, pages, nullptr, true);
+  }
+  this->Add("body", lit | 4u << Shaders::CascadeShift, pages, nullptr, true);
+  this->Add("surface", placed | Shaders::Eclipses, {}, nullptr, true);
+  for (const unsigned features : {0u, unsigned(Shaders::Eclipses)}) {
+    pages.whole = air.c_str();
+    pages.defines = "#define DSPACE_AIR_STEPS 24\n";
+    this->Add("air", features, pages, nullptr, true);
+    pages.whole = ring.c_str();
+    pages.defines = "#define DSPACE_RINGS 16\n";
+    this->Add("rings", features, pages, nullptr, true);
   }
 }
 

@@ -1,0 +1,61 @@
+// A planet, a moon or the Sun.
+#ifndef DSPACE_SCENE_CELESTIAL_BODY_H
+#define DSPACE_SCENE_CELESTIAL_BODY_H
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <dspace/scene/CustomGeometry.h>
+#include <dspace/scene/bodies/Atmosphere.h>
+
+namespace dspace {
+
+// A ring of even density in the plane of the body's equator.
+struct RingBand {
+  double inner = 0.0; // radii [m]
+  double outer = 0.0;
+  double opticalDepth = 1.0;               // along the normal, 0 to 100
+  std::array<double, 3> color = {1, 1, 1}; // sRGB: of a surface of its matter, Lambertian
+};
+
+// The shape of a body, in its frame: X to longitude 0, Z to the north pole.
+struct BodyShape {
+  Eigen::Vector3d radii = Eigen::Vector3d::Ones(); // of an ellipsoid [m], 1 to 1e12
+  // Of a texture in plate carree: the longitude [deg, east] of its left edge. Its rows are
+  // planetocentric latitudes, or geodetic ones (of the normal).
+  double leftEdge_deg = -180.0;
+  bool geodetic = false;
+  double brightness = 1.0; // multiplies colour and texture in linear light, 0 to 1000
+  // The light of the name "sun" comes from it, and its disc shines as bright as that light is.
+  bool sun = false;
+  bool eclipses = true;        // it hides the Sun from other things
+  std::vector<RingBand> rings; // from the inside out
+  std::optional<Atmosphere> atmosphere;
+};
+
+// Colour, texture, photometric model and emissive light are those of the object's material: by
+// default Lambertian and grey. Seen from anywhere outside: where its disc is smaller than a few
+// pixels, the light of the disc is shared out among them, so that a distant body has its
+// irradiance.
+class CelestialBody : public CustomGeometry {
+public:
+  // Throws Error(InvalidArgument) naming `object` and the value.
+  CelestialBody(const std::string& object, BodyShape shape);
+
+  const BodyShape& Shape() const { return this->Shape_; }
+  // The body itself with rings and atmosphere, about its centre.
+  BoundingSphere Bounds() const override;
+  std::uint64_t Revision() const override { return 1; }
+
+private:
+  BodyShape Shape_;
+};
+
+} // namespace dspace
+
+#endif
