@@ -35,6 +35,7 @@ inline const std::vector<const char*>& Everything() {
            direction: "\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00" magnitude: "\x00\x00\x80\x3f" })",
       R"(create_trajectory { object { id: 12 name: "orbit" frame: 10 nature: ORNAMENTAL } most_points: 70
            path { conic { position { x: 7e6 } velocity { y: 7500 } mu: 3.986e14 } } begin_s: 0 end_s: 1000 })",
+      R"(create_body { object { id: 13 name: "moon" offset { position { x: 4e8 } } } body: "moon" })",
       R"(create_mesh { object { id: 6 name: "wings" frame: 10 } level { mesh { part: "wing" primitive: POINTS
            position: "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00" } } })",
       R"(load_robot { path: "FOLDER/arm.urdf" name: "arm" })",
@@ -107,6 +108,10 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(create_stars { object { id: 50 name: "more stars" frame: 10 }
            direction: "\x00\x00\x80\x3f\x00\x00\x00\x00\x00\x00\x00\x00" magnitude: "\x00\x00\x80\x3f"
            color_index: "\x00\x00\x80\x3f" look { gain: 100 faintest: 6 } })",
+       {}},
+      {R"(create_body { object { id: 50 name: "ringed" frame: 10 material { color { r: 1 g: 0.9 b: 0.8 } } }
+           body: "saturn" albedo: 0.4 ring { inner: 7e7 outer: 8e7 optical_depth: 1 }
+           atmosphere { top: 1e5 rayleigh { x: 1e-6 y: 2e-6 z: 3e-6 } } })",
        {}},
       {R"(set_stars { object: 9 look { spread: 2 } })", {}},
       {R"(clear_trail { object: 2 })", {}},

@@ -43,6 +43,7 @@ Interpreter::Interpreter() {
   AddPrimitiveCommands(this->Registry_);
   AddMeshCommands(this->Registry_);
   AddDrawnCommands(this->Registry_);
+  AddBodyCommands(this->Registry_);
   AddStarCommands(this->Registry_);
   AddTrailCommands(this->Registry_);
   AddTrajectoryCommands(this->Registry_);

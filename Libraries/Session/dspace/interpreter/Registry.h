@@ -64,6 +64,7 @@ void AddObjectRequests(Registry& registry);
 void AddPrimitiveCommands(Registry& registry);
 void AddMeshCommands(Registry& registry);
 void AddDrawnCommands(Registry& registry);
+void AddBodyCommands(Registry& registry);
 void AddStarCommands(Registry& registry);
 void AddTrailCommands(Registry& registry);
 void AddTrajectoryCommands(Registry& registry);

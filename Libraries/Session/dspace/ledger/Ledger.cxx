@@ -115,6 +115,9 @@ struct LedgerScene {
     case C::kCreateTrajectory:
       this->objects.Create(command, command.create_trajectory().object());
       return true;
+    case C::kCreateBody:
+      this->objects.Create(command, command.create_body().object());
+      return true;
     case C::kCreateStars:
       this->objects.Create(command, command.create_stars().object());
       return true;

@@ -38,6 +38,8 @@ v1::ObjectSettings* SettingsOf(v1::Command& command) {
     return command.mutable_create_text()->mutable_object();
   case v1::Command::kCreateMesh:
     return command.mutable_create_mesh()->mutable_object();
+  case v1::Command::kCreateBody:
+    return command.mutable_create_body()->mutable_object();
   case v1::Command::kCreateStars:
     return command.mutable_create_stars()->mutable_object();
   case v1::Command::kCreateTrajectory:

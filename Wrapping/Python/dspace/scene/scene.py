@@ -235,6 +235,7 @@ class Scene(Strict):
     add_text = delegate(ObjectFactory, "add_text")
     add_label = delegate(ObjectFactory, "add_label")
     add_trail = delegate(ObjectFactory, "add_trail")
+    add_body = delegate(ObjectFactory, "add_body")
     add_stars = delegate(ObjectFactory, "add_stars")
     add_trajectory = delegate(TrajectoryFactory, "add_trajectory")
     orbit = delegate(TrajectoryFactory, "orbit")

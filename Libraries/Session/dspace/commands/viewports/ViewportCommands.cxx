@@ -5,6 +5,7 @@
 #include <dspace/Checks.h>
 #include <dspace/clipmap/gl/ClipmapDrawing.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/render/bodies/BodyDrawer.h>
 #include <dspace/render/props/VtkPropDrawer.h>
 #include <dspace/render/stars/StarDrawer.h>
 #include <dspace/render/trajectories/TrajectoryDrawer.h>
@@ -139,6 +140,7 @@ void ViewportCommands::SetRenderContext(vtkDspaceRenderContext* context) {
   this->RenderContext_ = context;
   if (context) {
     RegisterClipmapDrawer(context->GetDrawers());
+    RegisterBodyDrawer(context->GetDrawers());
     RegisterStarDrawer(context->GetDrawers());
     RegisterTrajectoryDrawer(context->GetDrawers());
     RegisterVtkPropDrawer(context->GetDrawers());
