@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include <MissingPackage.h>
 #include <TestData.h>
 
 #include <dspace/Error.h>
@@ -169,7 +170,7 @@ TEST(Frames, LunarRotationsAsSpiceHasThem) {
 TEST(Frames, Moon405AgainstDe421) {
   DSPACE_REAL_DATA(folder, "ephemeris");
   if (!De405Source::IsInstalled()) {
-    GTEST_SKIP() << "casacore-data-jpl-de405 is not installed";
+    DSPACE_MISSING_PACKAGE("casacore-data-jpl-de405");
   }
   const Frames truth(Load(folder, {"moon_080317.tf", "moon_pa_de421_1900-2050.bpc"}));
   FrameSources sources;

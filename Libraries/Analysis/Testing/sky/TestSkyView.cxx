@@ -1,4 +1,5 @@
 // Bodies over a site, and sub-points: SPICE's and Horizons' recorded values.
+#include <MissingPackage.h>
 #include <TestData.h>
 
 #include <dspace/Error.h>
@@ -52,7 +53,7 @@ const std::string Kernels = "spice_test_kernels/";
 TEST(SkyView, SunAtTheLunarSiteAsHorizonsHasIt) {
   DSPACE_REAL_DATA(folder, "ephemeris");
   if (!De405Source::IsInstalled()) {
-    GTEST_SKIP() << "casacore-data-jpl-de405 is not installed";
+    DSPACE_MISSING_PACKAGE("casacore-data-jpl-de405");
   }
   struct Row {
     const char* utc;
