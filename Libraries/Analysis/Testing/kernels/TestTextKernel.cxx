@@ -36,7 +36,7 @@ std::string Rejected(const std::string& data) {
 
 TEST(TextKernel, ReadsAssignmentsOfAllForms) {
   const TextKernel kernel = TextKernel::Parse("KPL/FK\nA = 1 is a comment\n  \\begindata  \r\n"
-                                              "A=1\tB += ( 1.5D3, -2e-1\n +.5 4. )\n"
+                                              "A=1\tB += ( 1.5D3, -2d-1\n +.5 4. )\n"
                                               "\\begintext\nC = 2\n\\begindata\n"
                                               "NAME/x-1 = 'it''s' L = ( 'a' 'b','c', )\n",
                                               "k.tf");
