@@ -34,38 +34,8 @@ int DayOf(int year, int month) {
   return int(mjd);
 }
 
-} // namespace
-
-const char* LeapSeconds::SystemList() {
-  return "/usr/share/zoneinfo/leap-seconds.list";
-}
-
-LeapSeconds LeapSeconds::FromErfa() {
-  static const LeapSeconds table = [] {
-    eraLEAPSECOND* rows = nullptr;
-    const int count = eraGetLeapSeconds(&rows);
-    std::vector<Step> steps;
-    for (int i = 0; i < count; ++i) {
-      if (rows[i].iyear >= 1972) {
-        steps.push_back({DayOf(rows[i].iyear, rows[i].month), rows[i].delat});
-      }
-    }
-    // eraDat calls years dubious that are well after its release.
-    std::optional<int> expires;
-    for (int year = 2021; year < 2200 && !expires; ++year) {
-      double difference = 0.0;
-      if (eraDat(year, 1, 1, 0.0, &difference) == 1) {
-        expires = DayOf(year, 1);
-      }
-    }
-    return FromSteps(std::move(steps), "ERFA", expires);
-  }();
-  return table;
-}
-
-LeapSeconds LeapSeconds::FromList(const std::string& path) {
+LeapSeconds ReadList(const std::string& path) {
   const std::string object = "leap seconds '" + path + "'";
-  NoteFileRead(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw Error(Error::Kind::Io, object, "the file cannot be opened");
@@ -80,7 +50,7 @@ LeapSeconds LeapSeconds::FromList(const std::string& path) {
     }
     return NtpZero + int(seconds / 86400.0);
   };
-  std::vector<Step> steps;
+  std::vector<LeapSeconds::Step> steps;
   std::optional<int> expires;
   std::string line;
   std::size_t length = 0;
@@ -111,10 +81,44 @@ LeapSeconds LeapSeconds::FromList(const std::string& path) {
     throw damaged("the file has no leap seconds");
   }
   try {
-    return FromSteps(std::move(steps), "'" + path + "'", expires);
+    return LeapSeconds::FromSteps(std::move(steps), "'" + path + "'", expires);
   } catch (const Error& error) {
     throw damaged(error.what());
   }
+}
+
+} // namespace
+
+const char* LeapSeconds::SystemList() {
+  return "/usr/share/zoneinfo/leap-seconds.list";
+}
+
+LeapSeconds LeapSeconds::FromErfa() {
+  static const LeapSeconds table = [] {
+    eraLEAPSECOND* rows = nullptr;
+    const int count = eraGetLeapSeconds(&rows);
+    std::vector<Step> steps;
+    for (int i = 0; i < count; ++i) {
+      if (rows[i].iyear >= 1972) {
+        steps.push_back({DayOf(rows[i].iyear, rows[i].month), rows[i].delat});
+      }
+    }
+    // eraDat calls years dubious that are well after its release.
+    std::optional<int> expires;
+    for (int year = 2021; year < 2200 && !expires; ++year) {
+      double difference = 0.0;
+      if (eraDat(year, 1, 1, 0.0, &difference) == 1) {
+        expires = DayOf(year, 1);
+      }
+    }
+    return FromSteps(std::move(steps), "ERFA", expires);
+  }();
+  return table;
+}
+
+LeapSeconds LeapSeconds::FromList(const std::string& path) {
+  NoteFileRead(path);
+  return ReadList(path);
 }
 
 LeapSeconds LeapSeconds::FromSystem() {
@@ -124,8 +128,8 @@ LeapSeconds LeapSeconds::FromSystem() {
       return erfa;
     }
     try {
-      const FilesReadScope unseen; // a file of the system, not of a command
-      LeapSeconds list = FromList(SystemList());
+      LeapSeconds list =
+          ReadList(SystemList()); // not noted: a file of the system, not of a command
       const bool goesOn = list.Steps_.size() >= erfa.Steps_.size() &&
                           std::equal(erfa.Steps_.begin(), erfa.Steps_.end(), list.Steps_.begin(),
                                      [](const Step& a, const Step& b) {
