@@ -1,10 +1,8 @@
 """Pictures of trajectories: Artemis I as it flew, about the Earth and in axes that turn with the Earth and the Moon."""
-import math
-
 import numpy as np
 
 import dspace
-from dspace.trajectories import States, rotating
+from dspace.trajectories import rotating
 
 from pictures.paths import DATA, IMAGES
 
@@ -13,32 +11,15 @@ SHARE = 4902.800118 / (398600.435507 + 4902.800118)  # the Moon's part of the ma
 PHASES = ["#60a0ff", "#ffb040", "#50d070"]
 
 
-def tdb(utc):
-    """TDB seconds past J2000 of a time of UTC in 2022, to 2 ms."""
-    return float((np.datetime64(utc) - np.datetime64("2000-01-01T12:00")) / np.timedelta64(1, "s")) + 69.184
-
-
-def moon_states(scene, begin, end, step=3600.0):
-    """The Moon about the Earth in J2000 from the ephemeris of the scene, by its frame at many times."""
-    frame = scene.add_celestial_frame("sampled", "moon", center="earth")
-    times = np.linspace(begin, end, int(math.ceil((end - begin) / step)) + 1)
-    positions = []
-    for time in times:
-        scene.time = time
-        positions.append(frame.pose.position)
-    frame.remove()
-    return States(times, positions, interpolation="lagrange", degree=9)
-
-
 def artemis(name, relative, camera, scale):
     with dspace.Session() as session:
         scene = session.scene("artemis")
         orion = scene.add_trajectory(OEM, visible=False)
         begin, end = orion.span
         orion.remove()
-        moon = moon_states(scene, begin, end)
+        moon = scene.body_path("moon", "earth", begin, end, tolerance=1000.0)
         axes = rotating(None, moon, SHARE) if relative else None
-        outbound, away, home = begin, tdb("2022-11-21T12:57"), tdb("2022-12-05T16:42")  # flybys of the Moon
+        outbound, away, home = begin, scene.tdb("2022-11-21T12:57"), scene.tdb("2022-12-05T16:42")  # flybys of the Moon
         scene.add_trajectory(OEM, relative_to=axes, line_width=2, tick_interval=2 * 86400.0, font_size=13, tick_size=6,
                              phases=[(outbound, PHASES[0]), (away, PHASES[1]), (home, PHASES[2])])
         path = scene.add_trajectory(moon, relative_to=axes, color="#909090", line_width=1, clock="utc", name="moon")

@@ -309,3 +309,34 @@ def test_artemis_is_farthest_where_nasa_said(scene):
     # 2022-11-28T21:04:34 UTC is 69.184 s behind TDB; the file's rows are four minutes apart.
     farthest = (np.datetime64("2022-11-28T21:04:34") - np.datetime64("2000-01-01T12:00:00")).astype(float) + 69.184
     assert times[distances.argmax()] == pytest.approx(farthest, abs=150.0)
+
+
+def test_quaternions_of_all_turns():
+    from dspace.objects.trajectories import quaternions_of
+    random = np.random.default_rng(3)
+    q = random.normal(size=(200, 4))
+    q[:4] = np.eye(4)  # none, and half turns about each axis
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    matrices = np.stack([np.stack([rotate(each, axis) for axis in np.eye(3)], axis=1) for each in q])
+    found = quaternions_of(matrices)
+    assert np.abs(np.abs(np.sum(found * q, axis=1)) - 1).max() < 1e-14
+
+
+def test_paths_and_axes_of_the_ephemeris(scene):
+    """The Moon's path of sampled states against the ephemeris itself between them; its far side stays in MOON_ME."""
+    begin, end = scene.tdb("2022-11-16T00:00"), scene.tdb("2022-12-11T00:00")
+    moon = scene.body_path("moon", "earth", begin, end, step=6 * 3600.0)
+    line = scene.add_trajectory(moon, name="moon")
+    times = np.linspace(begin, end, 5001)
+    assert np.abs(line.states(times)[0] - scene.ephemeris("moon", "earth", times).position).max() < 0.01
+    # The Earth about the Moon in the Moon's axes: within its optical librations (8 degrees) of longitude 0.
+    earth = scene.body_path("earth", "moon", begin, end, step=6 * 3600.0)
+    seen = scene.add_trajectory(earth, relative_to=scene.turning_axes("MOON_ME", begin, end, step=3600.0)).states(times)[0]
+    assert np.degrees(np.arctan2(np.hypot(seen[:, 1], seen[:, 2]), seen[:, 0])).max() < 11.0
+    exact = np.einsum("nij,nj->ni", scene.reference_frames.rotation("J2000", "MOON_ME", times),
+                      scene.ephemeris("earth", "moon", times).position)
+    assert np.abs(seen - exact).max() < 50.0  # a turn at constant rate over an hour: 1e-7 rad
+    with pytest.raises(dspace.Error):
+        scene.body_path("moon", "earth", end, begin)
+    with pytest.raises(dspace.Error):
+        scene.body_path("no such body", "earth", begin, end)

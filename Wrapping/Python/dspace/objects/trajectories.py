@@ -6,8 +6,8 @@ from dspace.errors import InvalidArgument, WrongType
 from dspace.objects.arrays import map_scalars
 from dspace.objects.graphics import GraphicsObject, put_settings
 from dspace.proto.trajectories_pb2 import TrajectoryPath
-from dspace.trajectories.axes import Axes, Pointing
-from dspace.trajectories.states import pack, put_path
+from dspace.trajectories.axes import Axes, Pointing, turning
+from dspace.trajectories.states import States, pack, put_path
 
 LOOK = ("color", "opacity", "before", "after", "ahead", "fade", "tick_size", "tick_labels", "font_size")
 CLOCKS = {"utc": 0, "seconds": 1}
@@ -111,6 +111,77 @@ class TrajectoryFactory:
         put_vector(command.get_orbit.velocity, velocity, "the velocity", "orbit")
         put(command.get_orbit, "orbit", mu=mu)
         return Orbit(self._scene._execute(command).orbit)
+
+
+    def body_path(self, body, center, begin, end, step=3600.0, tolerance=1.0, axes="J2000"):
+        """The path of a body or spacecraft about another one from the scene's ephemeris (loaded SPKs, DE405, ERFA), as
+        dspace.trajectories.States: for add_trajectory, and for moving axes.
+
+        begin, end [s past J2000 TDB]. step [s] is halved until Hermite's interpolation errs by at most `tolerance` [m]
+        midway between the states, up to a million of them. axes: an inertial reference frame."""
+        about = f"path of {body!r}"
+        times = _times(begin, end, step, about)
+        tolerance = number(tolerance, "the tolerance", about)
+        if not tolerance > 0:
+            reject(about, "the tolerance", tolerance, "a positive number of metres")
+        while True:
+            found = self._scene.ephemeris(body, center, times, axes)
+            states = States(times, found.position, found.velocity)
+            middle = 0.5 * (times[1:] + times[:-1])
+            truth = self._scene.ephemeris(body, center, middle, axes).position
+            worst = np.linalg.norm(midway(states) - truth, axis=1).max()
+            if worst <= tolerance:
+                return states
+            if 2 * len(times) > 1_000_000:
+                raise InvalidArgument(f"{about}: with {len(times)} states it errs by {worst:.3g} m; accepted: a tolerance of more, "
+                                      "or a shorter time", about)
+            times = np.sort(np.concatenate((times, middle)))
+
+    def turning_axes(self, frame, begin, end, step=600.0, origin=None):
+        """The axes of a reference frame ("IAU_MARS", "MOON_ME", a frame of loaded kernels) as `relative_to` of
+        add_trajectory, for paths in J2000. begin, end [s past J2000 TDB]; step [s]: between two rotations of the table, over
+        which they turn at constant rate. origin: the path of the body; None: the centre."""
+        times, quaternions = self.attitude(frame, begin, end, step)
+        return turning(times, quaternions, origin)
+
+    def attitude(self, frame, begin, end, step=10.0):
+        """The attitude of a reference frame, of a CK for one, as (times, quaternions) for Trajectory.move: each takes
+        components in the frame to J2000. begin, end [s past J2000 TDB], step [s]."""
+        times = _times(begin, end, step, f"frame {frame!r}")
+        return times, quaternions_of(self._scene.reference_frames.rotation(frame, "J2000", times))
+
+
+def _times(begin, end, step, about):
+    begin, end = number(begin, "the begin", about), number(end, "the end", about)
+    step = number(step, "the step", about)
+    if not (np.isfinite(begin) and np.isfinite(end) and begin < end):
+        raise InvalidArgument(f"{about}: it is from {begin:g} to {end:g} s; accepted: finite times, the begin before the end",
+                              about)
+    if not 0 < step < np.inf or (end - begin) / step > 1_000_000:
+        reject(about, "the step", step, "a positive number of seconds, at most a million times")
+    return np.linspace(begin, end, max(9, int(np.ceil((end - begin) / step)) + 1))
+
+
+def midway(states):
+    """Positions midway between the states of a table, by Hermite's interpolation of the two beside each (degree 3): an upper
+    bound of the error of degree 7."""
+    h = np.diff(states.times)[:, None]
+    p, v = states.positions, states.velocities
+    return 0.5 * (p[1:] + p[:-1]) + h / 8.0 * (v[:-1] - v[1:])
+
+
+def quaternions_of(rotations):
+    """Unit quaternions (n, 4), w x y z, of rotation matrices (n, 3, 3)."""
+    r = np.asarray(rotations, float).reshape(-1, 3, 3)
+    # The largest of the four squares is at least a quarter: no digits are lost (S. Shepperd, 1978).
+    squares = np.stack((1 + r[:, 0, 0] + r[:, 1, 1] + r[:, 2, 2], 1 + r[:, 0, 0] - r[:, 1, 1] - r[:, 2, 2],
+                        1 - r[:, 0, 0] + r[:, 1, 1] - r[:, 2, 2], 1 - r[:, 0, 0] - r[:, 1, 1] + r[:, 2, 2]), axis=1)
+    x, y, z = r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]
+    xy, xz, yz = r[:, 0, 1] + r[:, 1, 0], r[:, 0, 2] + r[:, 2, 0], r[:, 1, 2] + r[:, 2, 1]
+    forms = np.stack((np.stack((squares[:, 0], x, y, z), axis=1), np.stack((x, squares[:, 1], xy, xz), axis=1),
+                      np.stack((y, xy, squares[:, 2], yz), axis=1), np.stack((z, xz, yz, squares[:, 3]), axis=1)), axis=1)
+    q = forms[np.arange(len(r)), np.argmax(squares, axis=1)]
+    return q / np.linalg.norm(q, axis=1, keepdims=True)
 
 
 class Orbit:
