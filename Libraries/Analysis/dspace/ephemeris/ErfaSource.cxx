@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include <Eigen/Core>
+
 #include <erfa.h>
 
 namespace dspace {
@@ -40,10 +42,18 @@ State MoonFromEarth(double tdb) {
   return StateOf(pv);
 }
 
-State PlanetFromSun(double tdb, int planet) {
+Eigen::Vector3d PlanetAt(double tdb, int planet) {
   double pv[2][3];
   eraPlan94(J2000Jd, tdb / Day, planet, pv);
-  return StateOf(pv);
+  return StateOf(pv).position;
+}
+
+// eraPlan94's own velocity is that of an ellipse, without the changes of its elements: up to 37 m/s
+// off. Differences of the positions are up to 6 m/s off.
+State PlanetFromSun(double tdb, int planet) {
+  constexpr double Step = 600.0;
+  return {PlanetAt(tdb, planet),
+          (PlanetAt(tdb + Step, planet) - PlanetAt(tdb - Step, planet)) / (2.0 * Step)};
 }
 
 } // namespace
@@ -69,33 +79,33 @@ const std::string& ErfaSource::Name() const {
   return name;
 }
 
-// As eraMoon98, eraEpv00 and eraPlan94 document them: largest errors.
+// The Moon, the Earth and the Sun as eraMoon98 and eraEpv00 document them. Planets: the largest
+// distance from DE405 in 1960 to 2060 (TestEphemeris); eraPlan94 documents angles.
 std::string ErfaSource::Accuracy(int body) const {
   switch (body) {
   case 301:
     return "up to 32 km off (eraMoon98)";
   case 3:
   case 399:
-    return "up to 14 km off (eraEpv00)";
   case 10:
     return "up to 14 km off (eraEpv00)";
   case 1:
   case 199:
-    return "up to 4\" and 300 km off (eraPlan94)";
+    return "up to 1,500 km off in 1960 to 2060 (eraPlan94)";
   case 2:
   case 299:
-    return "up to 5\" and 800 km off (eraPlan94)";
+    return "up to 3,200 km off in 1960 to 2060 (eraPlan94)";
   case 4:
   case 499:
-    return "up to 9,000 km off in 1960 to 2060, 17\" and 7,700 km in 1800 to 2050 (eraPlan94)";
+    return "up to 27,000 km off in 1960 to 2060 (eraPlan94)";
   case 5:
-    return "up to 71\" and 76,000 km off (eraPlan94)";
+    return "up to 180,000 km off in 1960 to 2060 (eraPlan94)";
   case 6:
-    return "up to 81\" and 267,000 km off (eraPlan94)";
+    return "up to 540,000 km off in 1960 to 2060 (eraPlan94)";
   case 7:
-    return "up to 86\" and 712,000 km off (eraPlan94)";
+    return "up to 970,000 km off in 1960 to 2060 (eraPlan94)";
   case 8:
-    return "up to 11\" and 253,000 km off (eraPlan94)";
+    return "up to 260,000 km off in 1960 to 2060 (eraPlan94)";
   default:
     return {};
   }

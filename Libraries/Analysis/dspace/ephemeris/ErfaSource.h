@@ -12,7 +12,7 @@ namespace dspace {
 // The Sun and the Earth (eraEpv00), the Moon (eraMoon98) and the planets up to Neptune (eraPlan94),
 // from 1900 to 2100. Accuracy() states the largest errors, and Warning() repeats them: it is
 // meant to be shown wherever these states are used.
-// Source: ERFA 2.0 (BSD), the errors as its functions document them.
+// Source: ERFA 2.0 (BSD). Errors of the planets are measured against DE405.
 class ErfaSource final : public StateSource {
 public:
   ErfaSource();

@@ -5,7 +5,7 @@ namespace dspace {
 SpkSource::SpkSource(const std::string& path) : SpkSource(std::make_shared<const SpkFile>(path)) {}
 
 SpkSource::SpkSource(std::shared_ptr<const SpkFile> file)
-    : File_(std::move(file)), Name_(this->File_->File().Label()) {
+    : File_(std::move(file)), Name_("kernel '" + this->File_->File().Path() + "'") {
   const auto& segments = this->File_->Segments();
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const SpkFile::Segment& segment = segments[i];

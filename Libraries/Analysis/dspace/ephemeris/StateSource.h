@@ -33,7 +33,7 @@ public:
 
   virtual ~StateSource() = default;
 
-  // "kernel 'de430.bsp'", "JPL DE405", "ERFA": unique among the sources of an ephemeris.
+  // "kernel '/data/de430.bsp'", "JPL DE405", "ERFA": unique among the sources of an ephemeris.
   virtual const std::string& Name() const = 0;
   // The stated accuracy of a body's states in words: "within 32 km"; empty: not stated.
   virtual std::string Accuracy(int body) const = 0;

@@ -81,7 +81,8 @@ DafFile::DafFile(const std::string& path) : Path_(path), Blocks_(std::make_uniqu
   blocks.file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};
   if (blocks.file < 0 || ::fstat(blocks.file, &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw Error(errno == ENOENT ? Error::Kind::NotFound : Error::Kind::Io, this->Label(),
+    const bool absent = blocks.file < 0 && errno == ENOENT;
+    throw Error(absent ? Error::Kind::NotFound : Error::Kind::Io, this->Label(),
                 blocks.file < 0 ? "the file cannot be opened: " + std::string(std::strerror(errno))
                                 : "it is not a regular file");
   }
