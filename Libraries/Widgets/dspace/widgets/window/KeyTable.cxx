@@ -28,10 +28,6 @@ constexpr Entry Entries[] = {
     {"M", "on the timeline: a mark"},
     {"Escape", "cancels a drag, ends a preview, clears the selection"},
     {"H", "shows and hides these keys"},
-    {"Ctrl+O", "opens files"},
-    {"Ctrl+N, Ctrl+T", "a new view, all views in a grid"},
-    {"F11", "maximises the view, and back"},
-    {"F1", "shows this table"},
 };
 
 class KeyOverlay : public QLabel {

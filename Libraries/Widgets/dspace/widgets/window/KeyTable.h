@@ -8,7 +8,7 @@ class QWidget;
 
 namespace dspace::widgets {
 
-QString KeyTable(); // rich text
+QString KeyTable(); // rich text, of keys that are in no menu
 
 // Shows the table over a view, or removes it. A click removes it, too.
 void SwitchKeyOverlay(QWidget* view);

@@ -212,7 +212,7 @@ void MovieTrack::FillMenu() {
       [this, view] { this->Host_.run(QStringLiteral("app.movie.follow(%1)").arg(view)); });
   add(tr("&Stop"), tr("The view has its own camera again (Esc)"), looks, [this] { this->Stop(); });
   QAction* path =
-      add(tr("Show the &path"), tr("Draws the path and the keys of the camera in views"), keys,
+      add(tr("Show the pat&h"), tr("Draws the path and the keys of the camera in views"), keys,
           [this, shown = state["path"].toBool()] {
             this->Host_.run(QStringLiteral("app.movie.show_path(%1)").arg(PythonOf(!shown)));
           });
