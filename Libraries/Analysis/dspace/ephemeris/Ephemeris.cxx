@@ -19,17 +19,30 @@ constexpr std::size_t LongestChain = 20;
 
 // One body's way towards the barycentre.
 struct Way {
-  std::array<int, LongestChain> bodies{};
-  std::array<State, LongestChain> states; // of the way's first body from each
+  std::array<int, LongestChain> bodies;
+  // Columns: position and velocity of the way's first body from each. Those behind the last are not
+  // set, which is half of the time of a state.
+  Eigen::Matrix<double, 6, int(LongestChain)> states;
   std::size_t length = 1;
   bool ended = false;
 
-  explicit Way(int body) { this->bodies[0] = body; }
+  explicit Way(int body) {
+    this->bodies[0] = body;
+    this->states.col(0).setZero();
+  }
   int Last() const { return this->bodies[this->length - 1]; }
   // Index of `body`; `length`: it is not on the way.
   std::size_t Find(int body) const {
     return std::size_t(std::find(this->bodies.begin(), this->bodies.begin() + this->length, body) -
                        this->bodies.begin());
+  }
+  void Add(int body, const State& state) {
+    const auto last = Eigen::Index(this->length - 1);
+    this->bodies[this->length] = body;
+    this->states.col(last + 1) = this->states.col(last);
+    this->states.col(last + 1).head<3>() += state.position;
+    this->states.col(last + 1).tail<3>() += state.velocity;
+    ++this->length;
   }
 };
 
@@ -197,10 +210,7 @@ State Ephemeris::Geometric(int target, int observer, double tdb, std::vector<int
                           " lead in a circle at body " + this->Names_.NameOf(body) + " (" +
                           this->Sources_[known->source]->Name() + ")");
         }
-        way.bodies[way.length] = known->link.center;
-        way.states[way.length] = way.states[way.length - 1];
-        way.states[way.length] += this->AxesJ2000(known->link, tdb);
-        ++way.length;
+        way.Add(known->link.center, this->AxesJ2000(known->link, tdb));
         const std::size_t met = other.Find(way.Last());
         if (met != other.length) {
           const std::size_t last = way.length - 1;
@@ -210,9 +220,10 @@ State Ephemeris::Geometric(int target, int observer, double tdb, std::vector<int
               used->insert(used->end(), ways[i].bodies.begin(), ways[i].bodies.begin() + ends[i]);
             }
           }
-          State state = ways[0].states[turn == 0 ? last : met];
-          state -= ways[1].states[turn == 0 ? met : last];
-          return state;
+          const Eigen::Matrix<double, 6, 1> state =
+              ways[0].states.col(Eigen::Index(turn == 0 ? last : met)) -
+              ways[1].states.col(Eigen::Index(turn == 0 ? met : last));
+          return {state.head<3>(), state.tail<3>()};
         }
       }
     }
