@@ -96,11 +96,12 @@ void main()
   // The pixel of the middle, and those whose middles it covers.
   vec2 middle = 0.5 * (discBox.xy + discBox.zw);
   bool central = all(lessThanEqual(window - 0.5, middle)) && all(greaterThan(window + 0.5, middle));
-  if (!central && !crossing(window).found)
+  Hit hit = crossing(window);
+  if (!central && !hit.found)
   {
     discard;
   }
-  gl_FragDepth = discDepth;
+  gl_FragDepth = hit.found ? depthOf(hit.positionVC.z) : discDepth;
   fragLabel = uint(objectLabel);
 #else
   if (any(lessThanEqual(size, vec2(0.0))) || texelFetch(opaqueDepth, ivec2(gl_FragCoord.xy), 0).r > discDepth)

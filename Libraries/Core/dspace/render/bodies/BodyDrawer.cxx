@@ -28,8 +28,14 @@ namespace {
 
 constexpr double AstronomicalUnit = 1.495978707e11; // [m]
 constexpr int MaximumRings = 16;
-constexpr int AirSteps = 24;    // of each ray
-constexpr int DiscSamples = 12; // a side of what a pixel sees of a small disc
+constexpr int AirSteps = 24; // of each ray
+
+// Along each side of what a pixel sees of a small disc.
+std::string DiscDefine(const BodyView& body, int samples) {
+  const double radius = body.radius / samples; // [pixels]
+  const int side = radius < 1.0 ? 48 : radius < 3.0 ? 24 : 12;
+  return "#define DSPACE_DISC " + std::to_string(side) + "\n";
+}
 
 void SetMatrix(vtkShaderProgram* program, const char* name, const Eigen::Matrix3d& matrix) {
   Eigen::Matrix3f columns = matrix.cast<float>(); // column-major, as OpenGL reads it
@@ -169,8 +175,8 @@ vtkShaderProgram* BodyDrawer::Ready(const CustomDrawing& drawing, const BodyView
   SetMatrix(program, "rayDirection", body.rayDirection);
   program->SetUniformf("gap", body.near ? float(body.gap) : -2.0f);
   const Eigen::Matrix4d clip = view.ClipFromView();
-  const float rows[2][2] = {{float(clip(2, 2)), float(clip(2, 3))},
-                            {float(clip(3, 2)), float(clip(3, 3))}};
+  const float rows[2][2] = {{float(-clip(2, 2)), float(clip(2, 3))},
+                            {float(-clip(3, 2)), float(clip(3, 3))}};
   program->SetUniform2fv("depthRows", 2, rows);
   if (features & SurfaceShaders::Eclipses) {
     SurfaceShaders::SetEclipses(program, before, *drawing.list.SunBody(), X_VO.inverse());
@@ -203,7 +209,7 @@ void BodyDrawer::DrawSurface(const CustomDrawing& drawing, const BodyView& view,
   features |= texture && !angles ? SurfaceShaders::Texture : 0u;
   std::string defines;
   if (small) {
-    defines = "#define DSPACE_DISC " + std::to_string(DiscSamples) + "\n";
+    defines = DiscDefine(view, drawing.samples);
   }
   vtkShaderProgram* program = this->Ready(drawing, view, features, defines, Body_frag);
   const Eigen::Matrix3d linear = drawing.object.X_VO.linear();
@@ -354,8 +360,7 @@ void BodyDrawer::DrawLabels(const CustomDrawing& drawing) {
     return;
   }
   const bool small = IsSmall(view, drawing);
-  const std::string defines =
-      small ? "#define DSPACE_DISC " + std::to_string(DiscSamples) + "\n" : "";
+  const std::string defines = small ? DiscDefine(view, drawing.samples) : "";
   vtkShaderProgram* program = this->Ready(drawing, view, SurfaceShaders::Label, defines, Body_frag);
   program->SetUniformi("objectLabel", int(drawing.object.object->id));
   if (small) {

@@ -22,7 +22,7 @@ void RegisterBodyDrawer(CustomDrawers& drawers);
 // what they hide of the Sun is SurfaceShaders::Eclipses.
 class BodyDrawer : public CustomDrawer {
 public:
-  static constexpr double SmallRadius = 4.0; // [pixels]
+  static constexpr double SmallRadius = 12.0; // [pixels]
 
   explicit BodyDrawer(std::shared_ptr<const CelestialBody> body) : Body_(std::move(body)) {}
   BodyDrawer(const BodyDrawer&) = delete;
