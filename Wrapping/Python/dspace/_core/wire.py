@@ -53,3 +53,20 @@ def get_array(message, field, dtype=np.float64):
     data = message.SerializeToString()
     count = len(getattr(message, field))
     return np.frombuffer(data, dtype=dtype, offset=len(data) - count * np.dtype(dtype).itemsize)
+
+
+def get_arrays(message, *fields):
+    """Packed fields of doubles as arrays of their own, quick: no other field of the message may be set, and their numbers
+    ascend."""
+    data = message.SerializeToString()
+    end = len(data)
+    arrays = []
+    for field in reversed(fields):
+        count = len(getattr(message, field))
+        arrays.append(np.frombuffer(data, np.float64, count, end - 8 * count).copy())
+        if count:
+            number = message.DESCRIPTOR.fields_by_name[field].number
+            end -= 8 * count + len(_varint(8 * count)) + len(_varint(number << 3))
+    if end:
+        raise ValueError(f"fields besides {fields} are set")
+    return arrays[::-1]

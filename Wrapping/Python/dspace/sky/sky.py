@@ -258,9 +258,10 @@ class SceneSky:
         array, single = _times(times, about)
         wire.put_array(message, "time_s", array)
         reply = self._scene._execute(command).ephemeris
-        state = np.array(reply.state).reshape(-1, 6)
-        light_time = np.array(reply.light_time_s)
         sources = [StateSource(s.body, s.center, s.source, s.accuracy, tuple(s.hidden)) for s in reply.source]
+        reply.ClearField("source")
+        state, light_time = wire.get_arrays(reply, "state", "light_time_s")
+        state = state.reshape(-1, 6)
         if single:
             return States(state[0, :3], state[0, 3:], float(light_time[0]), sources)
         return States(state[:, :3], state[:, 3:], light_time, sources)
