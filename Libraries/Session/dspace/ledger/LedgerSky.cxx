@@ -8,7 +8,7 @@
 namespace dspace::session {
 namespace {
 
-v1::Command& New(const std::string& scene, std::vector<v1::Command>& out) {
+v1::Command& Added(const std::string& scene, std::vector<v1::Command>& out) {
   out.emplace_back().set_scene(scene);
   return out.back();
 }
@@ -72,21 +72,21 @@ bool LedgerSky::Add(const v1::Command& command) {
 std::vector<v1::Command> LedgerSky::Effects(const v1::Command& command, const v1::Reply& reply) {
   std::vector<v1::Command> out;
   const auto pose = [&](const auto& frames, const auto& poses) {
-    v1::SetPoses* set = New(command.scene(), out).mutable_set_poses();
+    v1::SetPoses* set = Added(command.scene(), out).mutable_set_poses();
     set->mutable_frame()->Add(frames.begin(), frames.end());
     set->mutable_pose()->Add(poses.begin(), poses.end());
   };
   if (command.has_set_frame_motion()) {
     pose(std::vector<std::uint64_t>{command.set_frame_motion().frame()}, reply.poses().pose());
   } else if (command.has_set_sun_motion() && command.set_sun_motion().has_sun()) {
-    *New(command.scene(), out).mutable_set_sun()->mutable_sun() = command.set_sun_motion().sun();
+    *Added(command.scene(), out).mutable_set_sun()->mutable_sun() = command.set_sun_motion().sun();
   } else if (command.has_set_time() && command.set_time().has_sky()) {
     const v1::SkyStep& step = command.set_time().sky();
     if (step.frame_size() > 0) {
       pose(step.frame(), step.pose());
     }
     if (step.has_sun()) {
-      *New(command.scene(), out).mutable_set_sun()->mutable_sun() = step.sun();
+      *Added(command.scene(), out).mutable_set_sun()->mutable_sun() = step.sun();
     }
   }
   return out;
@@ -103,19 +103,19 @@ void LedgerSky::RemoveOn(const std::unordered_set<std::uint64_t>& frames) {
 
 void LedgerSky::Put(const std::string& scene, Emit out) const {
   if (!this->Kernels_.empty()) {
-    v1::LoadKernels* load = New(scene, out).mutable_load_kernels();
+    v1::LoadKernels* load = Added(scene, out).mutable_load_kernels();
     for (const std::string& path : this->Kernels_) {
       load->add_path(path);
     }
   }
   for (const auto& [frame, motion] : this->Frames_) {
-    *New(scene, out).mutable_set_frame_motion() = motion;
+    *Added(scene, out).mutable_set_frame_motion() = motion;
   }
 }
 
 void LedgerSky::PutLast(const std::string& scene, Emit out) const {
   if (this->Sun_) {
-    *New(scene, out).mutable_set_sun_motion() = *this->Sun_;
+    *Added(scene, out).mutable_set_sun_motion() = *this->Sun_;
   }
 }
 
