@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <limits>
 
 #include <dspace/Error.h>
 #include <dspace/ephemeris/BodyNames.h>
@@ -145,6 +146,8 @@ FrameClass ToClass(int kind, const std::string& variable) {
   return FrameClass(kind);
 }
 
+constexpr int UnknownBody = std::numeric_limits<int>::min();
+
 // The value of FRAME_<id>_<item> or FRAME_<name>_<item>; null: neither.
 const KernelVariable* ItemOf(const KernelPool& pool, const FrameInfo& info, const char* item,
                              std::string* variable) {
@@ -172,7 +175,14 @@ FrameTable::FrameTable(const KernelPool& pool) {
   this->Add({"MOON_PA", FrameMoonPa, FrameClass::Pck, FrameMoonPa, 301, {}});
   this->Add({"MOON_ME", FrameMoonMe, FrameClass::Pck, FrameMoonMe, 301, {}});
 
-  const BodyNames bodies;
+  BodyNames bodies;
+  if (pool.Has("NAIF_BODY_NAME") && pool.Has("NAIF_BODY_CODE")) {
+    const std::vector<std::string>& names = pool.Texts("NAIF_BODY_NAME");
+    const std::vector<double>& codes = pool.Numbers("NAIF_BODY_CODE", names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      bodies.Define(names[i], int(codes[i]));
+    }
+  }
   const std::string prefix = "FRAME_";
   for (auto it = pool.Variables().lower_bound(prefix); it != pool.Variables().end(); ++it) {
     const auto& [variable, value] = *it;
@@ -202,13 +212,8 @@ FrameTable::FrameTable(const KernelPool& pool) {
                   "kernel '" + value.file + "' defines it without " + item);
     }
     if (center->isText) {
-      const std::string& name = pool.Text(item);
-      const std::optional<int> body = bodies.Find(name);
-      if (!body) {
-        throw Error(Error::Kind::Corrupt, "kernel variable '" + item + "'",
-                    "the body '" + name + "' is not known");
-      }
-      info.center = *body;
+      // A spacecraft whose name no loaded kernel knows: an error where the centre is needed.
+      info.center = bodies.Find(pool.Text(item)).value_or(UnknownBody);
     } else {
       info.center = pool.Integer(item);
     }

@@ -108,12 +108,25 @@ Frames::Frames(FrameSources sources)
           !this->Pool().Has("TKFRAME_10081_RELATIVE")) {
         continue; // SPICE leaves its definition to a kernel
       }
-      this->Fixed_[info.id] = this->TkLink(info);
+      try {
+        this->Fixed_[info.id] = this->TkLink(info);
+      } catch (const Error& error) {
+        // Relative to a frame of a kernel that may be loaded later: an error where it is used.
+        if (error.GetKind() != Error::Kind::NotFound) {
+          throw;
+        }
+      }
     }
   }
   for (const int clock : ClockKernel::Clocks(this->Pool())) {
-    this->Clocks_[clock] =
-        std::make_shared<const ClockKernel>(this->Pool(), clock, this->Sources_.scales);
+    try {
+      this->Clocks_[clock] =
+          std::make_shared<const ClockKernel>(this->Pool(), clock, this->Sources_.scales);
+    } catch (const Error& error) {
+      if (error.GetKind() != Error::Kind::Unsupported) { // that one where it is used
+        throw;
+      }
+    }
   }
   // Loops among fixed frames are found now, others when they are met.
   for (const auto& [id, link] : this->Fixed_) {
@@ -303,6 +316,10 @@ Frames::Link Frames::CkLink(const FrameInfo& info, double tdb) const {
   const int clockId = this->ClockOf(info.classId);
   const auto found = this->Clocks_.find(clockId);
   if (found == this->Clocks_.end()) {
+    const std::vector<int> clocks = ClockKernel::Clocks(this->Pool());
+    if (std::find(clocks.begin(), clocks.end(), clockId) != clocks.end()) {
+      const ClockKernel unsupported(this->Pool(), clockId, this->Sources_.scales); // throws
+    }
     throw Error(Error::Kind::NotFound, Label(info),
                 "its attitude needs the SCLK kernel of clock " + std::to_string(clockId) +
                     "; accepted: that kernel, loaded");
@@ -386,6 +403,9 @@ Frames::Link Frames::LinkOf(const FrameInfo& info, double tdb) const {
   case FrameClass::Tk: {
     const auto found = this->Fixed_.find(info.id);
     if (found == this->Fixed_.end()) {
+      if (!info.kernel.empty()) {
+        return this->TkLink(info);
+      }
       throw Error(Error::Kind::NotFound, Label(info),
                   "no loaded frame kernel defines it (TKFRAME_" + info.name + "_SPEC)");
     }
@@ -511,7 +531,13 @@ bool Frames::IsInertial(int frame) const {
 }
 
 int Frames::Center(int frame) const {
-  return this->Table_.Get(frame).center;
+  const FrameInfo& info = this->Table_.Get(frame);
+  if (info.center == std::numeric_limits<int>::min()) {
+    throw Error(Error::Kind::NotFound, Label(info),
+                "the body at its centre is not known; accepted: a kernel that defines its name "
+                "(NAIF_BODY_NAME), loaded");
+  }
+  return info.center;
 }
 
 } // namespace dspace

@@ -16,7 +16,8 @@ const char* KindName(FrameClass kind) {
   return Names[int(kind) - 1];
 }
 
-void Describe(const KernelSet& kernels, v1::KernelsReply* reply) {
+void Describe(const KernelSet& kernels, v1::KernelsReply* reply,
+              google::protobuf::RepeatedPtrField<std::string>* warnings) {
   for (const std::string& path : kernels.Paths()) {
     reply->add_path(path);
   }
@@ -44,14 +45,26 @@ void Describe(const KernelSet& kernels, v1::KernelsReply* reply) {
     frame->set_kernel(info->kernel);
   }
   for (const int id : ClockKernel::Clocks(kernels.Pool())) {
-    const ClockKernel clock(kernels.Pool(), id, kernels.Scales());
-    v1::KernelsReply::Clock* out = reply->add_clock();
-    out->set_id(id);
-    out->set_begin_s(clock.FirstTdb());
-    out->set_end_s(clock.LastTdb());
+    try {
+      const ClockKernel clock(kernels.Pool(), id, kernels.Scales());
+      v1::KernelsReply::Clock* out = reply->add_clock();
+      out->set_id(id);
+      out->set_begin_s(clock.FirstTdb());
+      out->set_end_s(clock.LastTdb());
+    } catch (const Error& error) {
+      if (error.GetKind() != Error::Kind::Unsupported) {
+        throw;
+      }
+    }
   }
   for (const int id : Instruments(kernels.Pool())) {
-    const FieldOfView field = FieldOfViewOf(kernels.Pool(), id);
+    FieldOfView field;
+    try {
+      field = FieldOfViewOf(kernels.Pool(), id);
+    } catch (const Error& error) {
+      *warnings->Add() = error.what(); // the other kernels are good all the same
+      continue;
+    }
     v1::KernelsReply::Instrument* out = reply->add_instrument();
     out->set_id(id);
     out->set_shape(FieldShapeName(field.shape));
@@ -78,7 +91,7 @@ void LoadKernels(const Context& context, v1::LoadKernels& command) {
     path = std::filesystem::absolute(path).lexically_normal().string();
     kernels = kernels->With(path);
   }
-  Describe(*kernels, context.reply.mutable_kernels());
+  Describe(*kernels, context.reply.mutable_kernels(), context.reply.mutable_warning());
   context.scene->sky.kernels = kernels;
 }
 
@@ -90,12 +103,13 @@ void UnloadKernels(const Context& context, v1::UnloadKernels& command) {
   if (command.path().empty()) {
     kernels = SkyMotions::Standard();
   }
-  Describe(*kernels, context.reply.mutable_kernels());
+  Describe(*kernels, context.reply.mutable_kernels(), context.reply.mutable_warning());
   context.scene->sky.kernels = kernels;
 }
 
 void ListKernels(const Context& context, v1::ListKernels&) {
-  Describe(*context.scene->sky.kernels, context.reply.mutable_kernels());
+  Describe(*context.scene->sky.kernels, context.reply.mutable_kernels(),
+           context.reply.mutable_warning());
 }
 
 } // namespace
