@@ -120,6 +120,9 @@ def test_the_file_may_hold_more_and_keeps_it(app, path):
     run.movie.flush()
     kept = dspace.Movie.load(side)
     assert kept.size == (320, 200) and kept.rate == 12 and kept.overlays[0].title == "CART"
+    run.movie.clear()
+    run.movie.flush()
+    assert dspace.Movie.load(side).overlays[0].title == "CART"  # no valid movie is left, and the file stays
     assert kept.views["main"].hide == ("ornamental",) and kept.views["main"].keys[1].target_frame == "cart"
 
 

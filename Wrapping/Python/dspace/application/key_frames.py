@@ -36,7 +36,7 @@ class KeyFrames:
 
     def __init__(self, app, run):
         self._app, self._run, self._host = app, run, app._host
-        self.path = os.fspath(run.file.path) + ENDING
+        self.path = self._side = os.fspath(run.file.path) + ENDING
         self._writer = concurrent.futures.ThreadPoolExecutor(1)  # the windows do not wait for the disk
         self._writing, self._looking = [], None
         self._on_disk = None
@@ -170,7 +170,7 @@ class KeyFrames:
                 self._editor()
 
     def clear(self):
-        """Removes all keys, and the side file."""
+        """Removes all keys, and the side file where it holds nothing else; another file stays as it is."""
         with self._changing():
             if self.view is not None:
                 self.view.keys = []
@@ -243,6 +243,8 @@ class KeyFrames:
         if self.path is None:
             return
         path, words = self.path, self.movie.text.encode() if self.keys else None
+        if words is None and (path != self._side or self.movie.overlays or len(self.movie.views) > 1):
+            return  # no valid movie, and more than the keys would be lost
 
         def write():
             if words is not None:
@@ -432,7 +434,9 @@ class _Changing:
         self._frames._require_unchanged()
         movie = self._frames.movie
         self._before = [(view, list(view.keys)) for view in movie.views.values()]
-        self._duration, self._count = movie._duration, len(self._frames.keys)
+        self._duration = movie._duration
+        if len(self._frames.keys) == 1 and movie._duration == STILL:
+            movie._duration = None
         self._settings = {name: getattr(movie, name) for name in ("size", "rate", "samples", "start", "speed")}
 
     def __exit__(self, kind, error, trace):
@@ -442,8 +446,6 @@ class _Changing:
                 count = len(frames.keys)
                 if count == 1 and movie._duration is None:
                     movie._duration = STILL
-                elif count != 1 and self._count == 1 and movie._duration == STILL:
-                    movie._duration = None
                 if count:
                     movie.check()
             except Error:
