@@ -1,11 +1,14 @@
 """Stars: catalogues against published places, drawn stars through a known camera, recordings, bad input."""
 import math
+import pathlib
 
 import numpy as np
 import pytest
+from needs import lacks
 
 import dspace
-from dspace.stars import StarCatalog, bright_stars, read_stars
+from dspace.stars import StarCatalog, bright_stars, read_kstars, read_stars
+from dspace.stars.kstars import KSTARS_PATH
 
 # ICRS places of the epoch and equinox J2000 and V magnitudes (SIMBAD, CDS Strasbourg).
 PUBLISHED = {"Sirius": (101.287155, -16.716116, -1.46), "Vega": (279.234735, 38.783689, 0.03),
@@ -157,3 +160,21 @@ def test_csv_files(tmp_path, sky):
     with pytest.raises(dspace.WrongType, match="StarCatalog"):
         sky.add_stars(stars=[1, 2, 3])
     assert not sky.objects
+
+
+def test_the_catalogue_of_kstars_agrees_with_the_shipped_one(tmp_path):
+    if not pathlib.Path(KSTARS_PATH).exists():
+        lacks("kstars-data")
+    stars = read_kstars()
+    assert len(stars) == 125982
+    bright = bright_stars()
+    for name in ("Sirius", "Vega", "Arcturus", "Procyon", "Rigel", "Capella", "Antares", "Pollux"):  # fast ones among them
+        apart = np.linalg.norm(stars.named(name).directions() - bright.named(name).directions())
+        assert np.degrees(apart) * 3600.0 < 1.0, name  # the shipped one has whole arcseconds
+        assert abs(stars.named(name).magnitude[0] - bright.named(name).magnitude[0]) < 0.15
+    with pytest.raises(dspace.NotFound, match="kstars-data"):
+        read_kstars(tmp_path / "missing.dat")
+    path = tmp_path / "stars.dat"
+    path.write_text("# nothing\nabc\n", encoding="utf-8")
+    with pytest.raises(dspace.Corrupt, match="no line of it has a star"):
+        read_kstars(path)

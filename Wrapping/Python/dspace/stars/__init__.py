@@ -1,4 +1,5 @@
 """Catalogues of stars: where they are, how bright, of which colour."""
 from dspace.stars.catalog import StarCatalog, bright_stars, read_stars
+from dspace.stars.kstars import read_kstars
 
-__all__ = ["StarCatalog", "bright_stars", "read_stars"]
+__all__ = ["StarCatalog", "bright_stars", "read_kstars", "read_stars"]
