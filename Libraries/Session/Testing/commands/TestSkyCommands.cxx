@@ -201,7 +201,8 @@ TEST_F(SkyCommands, RejectsAndChangesNothing) {
   holds(this->Rejected("load_kernels {}"), "at least one");
   holds(this->Rejected("unload_kernels { path: \"a.bsp\" }"), "it is not loaded");
   holds(this->Rejected("sky_state {}"), "accepted: place, site or celestial");
-  holds(this->Rejected("sky_state { place { frame: 20 } }"), "it follows no body");
+  this->Give("scene: \"other\" create_scene {}");
+  holds(this->Rejected("scene: \"other\" sky_state { place {} }"), "it follows no body");
   holds(this->Rejected(R"(sky_state { celestial { body: "moon" site {} } target: "moon" })"),
         "the body of the site");
   holds(this->Rejected(R"(find_sub_points { body: "mars" below_observer: true })"),
