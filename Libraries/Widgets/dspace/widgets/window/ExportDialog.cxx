@@ -14,7 +14,6 @@
 #include <QLineEdit>
 #include <QPushButton>
 #include <QRegularExpression>
-#include <QSettings>
 #include <QSpinBox>
 #include <QThread>
 
@@ -24,7 +23,6 @@ namespace dspace::widgets {
 namespace {
 
 constexpr int LargestSide = 16384;
-const char* const FolderKey = "exportFolder";
 
 // Width and height; (0, 0) for other texts.
 QSize SizeOf(const QString& text) {
@@ -36,6 +34,12 @@ QSize SizeOf(const QString& text) {
                  size.width() <= LargestSide && size.height() <= LargestSide
              ? size
              : QSize(0, 0);
+}
+
+// Of the last export of this process.
+QString& LastFolder() {
+  static QString folder = QDir::homePath();
+  return folder;
 }
 
 bool IsVideo(const QString& path) {
@@ -51,7 +55,7 @@ ExportDialog::ExportDialog(const QJsonArray& size, double rate, int samples, dou
   this->setWindowTitle(tr("Export movie"));
   auto* form = new QFormLayout(this);
   auto* row = new QHBoxLayout;
-  const QString folder = QSettings().value(FolderKey, QDir::homePath()).toString();
+  const QString& folder = LastFolder();
   this->Path_ = new QLineEdit(QDir(folder).filePath(QStringLiteral("movie.mp4")));
   this->Path_->setObjectName("path");
   this->Path_->setMinimumWidth(360);
@@ -101,7 +105,7 @@ ExportDialog::ExportDialog(const QJsonArray& size, double rate, int samples, dou
   this->Buttons_->button(QDialogButtonBox::Ok)->setText(tr("Export"));
   this->Buttons_->button(QDialogButtonBox::Ok)->setObjectName("export");
   connect(this->Buttons_, &QDialogButtonBox::accepted, this, [this] {
-    QSettings().setValue(FolderKey, QFileInfo(this->Path_->text()).absolutePath());
+    LastFolder() = QFileInfo(this->Path_->text()).path();
     this->accept();
   });
   connect(this->Buttons_, &QDialogButtonBox::rejected, this, &QDialog::reject);
@@ -142,10 +146,9 @@ void ExportDialog::Check() {
                            : tr("%1 pictures, %2 s%3")
                                  .arg(count, 0, 'f', 0)
                                  .arg(this->Duration_s, 0, 'g', 6)
-                                 .arg(QFileInfo::exists(path) && IsVideo(path)
-                                          ? tr("; the file that is there is replaced when the "
-                                               "movie is complete")
-                                          : QString()));
+                                 .arg(IsVideo(path) ? tr("; a file that is there is replaced when "
+                                                         "the movie is complete")
+                                                    : QString()));
   this->Buttons_->button(QDialogButtonBox::Ok)->setEnabled(fault.isEmpty());
 }
 
