@@ -319,7 +319,7 @@ void DrawList::FindSeen(const Scene& scene, const DrawView& view, const DrawFilt
   for (const FlatObject& flat : this->Objects_) {
     const GraphicsObject& object = *flat.object;
     if (!object.visible || (flat.levels.empty() && !object.custom) || !shown[object.fragment] ||
-        (filter.pickableOnly && !object.pickable)) {
+        (filter.pickableOnly && !object.pickable) || (filter.castersOnly && flat.body)) {
       continue;
     }
     const Pose X_CF = X_CA * this->X_AF_[frames.Slot(object.frame)];
