@@ -154,6 +154,32 @@ TEST(Ephemeris, De405IsTheKernel) {
   }
 }
 
+// What De405Source::Accuracy states.
+TEST(Ephemeris, De405AgainstDe430) {
+  DSPACE_REAL_DATA(path, "ephemeris/de430_excerpt_2015-03-02.bsp");
+  if (!De405Source::IsInstalled()) {
+    DSPACE_MISSING_PACKAGE("casacore-data-jpl-de405");
+  }
+  Ephemeris de405, de430;
+  de405.Load(std::make_shared<De405Source>());
+  de430.Load(std::make_shared<SpkSource>(path));
+  const double tdb = (57083.0 - 51544.5) * 86400.0;
+  struct Stated {
+    int body, observer;
+    double kilometres;
+  };
+  for (const Stated& stated :
+       {Stated{301, 399, 0.0105}, Stated{1, 10, 1.0}, Stated{2, 10, 1.0}, Stated{399, 10, 1.0},
+        Stated{4, 10, 1.0}, Stated{5, 10, 130.0}, Stated{6, 10, 620.0}, Stated{7, 10, 2300.0},
+        Stated{8, 10, 5000.0}, Stated{9, 10, 12400.0}}) {
+    const Ephemeris::Query query{stated.body, stated.observer};
+    const double difference =
+        (de405.Find(query, tdb).state.position - de430.Find(query, tdb).state.position).norm();
+    EXPECT_LT(difference, 1e3 * stated.kilometres) << stated.body;
+    EXPECT_GT(difference, 0.4e3 * stated.kilometres) << stated.body;
+  }
+}
+
 // ERFA's series stay within their stated errors of DE405, and their warnings say so.
 TEST(Ephemeris, ErfaWithinItsStatedErrors) {
   if (!De405Source::IsInstalled()) {

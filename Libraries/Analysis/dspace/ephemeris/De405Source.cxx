@@ -203,14 +203,11 @@ const std::string& De405Source::Name() const {
   return name;
 }
 
+// Distances from DE430 on 2015-03-02, which has 15 years more of observations (TestEphemeris).
 std::string De405Source::Accuracy(int body) const {
-  // Standish, IOM 312.F-98-048, section V: the inner planets to 0.001", within 2 km; outer ones
-  // 0.1".
   switch (body) {
-  case 10:
-    return {};
   case 301:
-    return "within 2 m of the Earth in 1970 to 2000 (DE405's fit to laser ranges)";
+    return "10 m from DE430 in 2015";
   case 1:
   case 2:
   case 3:
@@ -218,11 +215,21 @@ std::string De405Source::Accuracy(int body) const {
   case 199:
   case 299:
   case 399:
-    return "within 2 km (DE405, 0.001\")";
+    return "1 km from DE430 in 2015";
   case 499:
-    return "within 2 km (DE405, 0.001\"); taken as Mars's barycentre, off by up to 0.2 m";
+    return "1 km from DE430 in 2015; taken as Mars's barycentre, off by up to 0.2 m";
+  case 5:
+    return "130 km from DE430 in 2015";
+  case 6:
+    return "620 km from DE430 in 2015";
+  case 7:
+    return "2,300 km from DE430 in 2015";
+  case 8:
+    return "5,000 km from DE430 in 2015";
+  case 9:
+    return "12,400 km from DE430 in 2015";
   default:
-    return "within 0.1\" (DE405)";
+    return {};
   }
 }
 

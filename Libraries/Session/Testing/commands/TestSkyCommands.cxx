@@ -224,6 +224,15 @@ TEST_F(SkyCommands, TimesAreConverted) {
   EXPECT_EQ(times.utc(0), "1997-03-20T12:53:29.000");
   EXPECT_EQ(times.utc(1), times.utc(0));
   this->Rejected(R"(convert_times { text: "2026-13-01" })");
+  // Before UTC there are texts in other scales alone; after the last known leap second a warning.
+  const v1::TimesReply early =
+      this->Give(R"(convert_times { text: "1900-01-01T00:00:00 TDB" })").times();
+  EXPECT_EQ(early.time_s(0), -3155716800.0);
+  EXPECT_EQ(early.utc(0), "");
+  this->Rejected("convert_times { time_s: -3155716800 }");
+  const v1::Reply late = this->Give(R"(convert_times { text: "2040-01-01" })");
+  ASSERT_EQ(late.warning_size(), 1);
+  EXPECT_NE(late.warning(0).find("leap seconds"), std::string::npos) << late.warning(0);
 }
 
 // SPICE (spice_checks.json): Mars from the Earth, 2003-07-04T19:00:00 UTC, with de405s; here DE405

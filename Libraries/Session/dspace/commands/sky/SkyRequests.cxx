@@ -12,6 +12,9 @@
 namespace dspace::session {
 namespace {
 
+// TDB [s past J2000] of 1960-01-01T12:00 UTC: UTC began half a day before.
+constexpr double Utc1960 = -1262260800.0;
+
 template<class Message>
 std::vector<double> TimesOf(const Context& context, const Message& command) {
   if (command.time_s().empty()) {
@@ -137,8 +140,21 @@ void ConvertTimes(const Context& context, v1::ConvertTimes& command) {
   for (const double tdb : command.time_s()) {
     reply->add_time_s(tdb);
   }
-  for (const double tdb : reply->time_s()) {
+  std::string expired;
+  for (int i = 0; i < reply->time_s_size(); ++i) {
+    const double tdb = reply->time_s(i);
+    if (i < command.text_size() && tdb < Utc1960) {
+      reply->add_utc(""); // a text in another scale
+      continue;
+    }
     reply->add_utc(UtcText(tdb, scales, int(command.decimals())));
+    const int day = scales.UtcFromTai(scales.Convert(tdb, TimeScale::Tdb, TimeScale::Tai)).mjd;
+    if (expired.empty()) {
+      expired = scales.GetLeapSeconds().WarningAt(day);
+    }
+  }
+  if (!expired.empty()) {
+    context.reply.add_warning(expired);
   }
 }
 
