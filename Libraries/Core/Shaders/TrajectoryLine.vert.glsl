@@ -20,11 +20,18 @@ vec3 linear(vec3 c)
   return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
+// What a compiler does not move additions across: it may add eyeHigh and eyeLow first, which loses eyeLow.
+vec3 kept(vec3 difference)
+{
+  return clamp(difference, -1e30, 1e30);
+}
+
 void main()
 {
-  vec3 p = (high - eyeHigh) + (low - eyeLow);
+  vec3 p = kept(high - eyeHigh) + kept(low - eyeLow);
   gl_Position = clipFromView * vec4(viewFromObject * p, 1.0);
   gl_PointSize = pointSize;
-  elapsed = (time.x - now.x) + (time.y - now.y);
+  vec2 since = kept(vec3(time - now, 0.0)).xy;
+  elapsed = since.x + since.y;
   pointColor = vec4(linear(color.rgb), color.a);
 }
