@@ -18,6 +18,8 @@ from dspace.objects.models import Model
 from dspace.objects.polydata import make_polydata
 from dspace.objects.robots import Robot
 from dspace.stars.catalog import StarCatalog, bright_stars
+from dspace.stars.lines import constellations
+from dspace.stars.lines import grid as sky_grid
 
 # The rotation that turns a file's axis to Z.
 _TURNS = {"z": (1, 0, 0, 0), "y": tuple(quaternion_of_axis("x", 90)),
@@ -345,6 +347,32 @@ class ObjectFactory:
         put(message.look, label, gain=gain, spread=spread)
         put_given(message.look, label, faintest=faintest)
         return self._make(command, Stars)
+
+    def add_sky_grid(self, kind="equatorial", step_deg=15.0, color=(0.25, 0.35, 0.6), **settings):
+        """Adds meridians and parallels of the sky, 1e17 m away, as an ornament without label. Returns a Mesh.
+
+        kind: "equatorial" (right ascension and declination) or "ecliptic" (of J2000), in a `frame` whose axes are those of
+        J2000 (X to the equinox, Z to the north pole); "horizon" (azimuth and elevation), in a frame of a site with Z up.
+        step_deg: between lines, 1 to 90, a whole part of 90. Lines are a circle each; those of Z's poles end beside them."""
+        points, lines = sky_grid(kind, step_deg, "sky grid")
+        return self._add_sky_lines(points, lines, f"{kind} grid", color, settings)
+
+    def add_constellations(self, path, color=(0.35, 0.5, 0.45), **settings):
+        """Adds the figures of constellations, 1e17 m away, as an ornament without label. Returns a Mesh.
+
+        path: a GeoJSON file of lines whose longitudes are right ascensions and whose latitudes are declinations [deg], such
+        as constellations.lines.json of d3-celestial (O. Frohn, BSD-3). Arcs of great circles. The axes of `frame` are
+        those of J2000, as for add_stars."""
+        points, lines = constellations(path)
+        return self._add_sky_lines(points, lines, "constellations", color, settings)
+
+    def _add_sky_lines(self, points, lines, name, color, settings):
+        given = {"lit": False, "ornamental": True, "pickable": False, "color": color, **settings}
+        if given.get("name") is None:
+            taken = self._scene.objects
+            given["name"] = name if name not in taken else next(
+                f"{name} {i}" for i in range(2, len(taken) + 3) if f"{name} {i}" not in taken)
+        return self.add_mesh(points, lines=lines, **given)
 
     def add_body(self, body=None, radii=None, texture=None, left_edge_deg=None, geodetic=None, albedo=None, sun=None,
                  eclipses=None, rings=None, atmosphere=None, **settings):

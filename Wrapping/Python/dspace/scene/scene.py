@@ -237,6 +237,8 @@ class Scene(Strict):
     add_trail = delegate(ObjectFactory, "add_trail")
     add_body = delegate(ObjectFactory, "add_body")
     add_stars = delegate(ObjectFactory, "add_stars")
+    add_sky_grid = delegate(ObjectFactory, "add_sky_grid")
+    add_constellations = delegate(ObjectFactory, "add_constellations")
     add_trajectory = delegate(TrajectoryFactory, "add_trajectory")
     orbit = delegate(TrajectoryFactory, "orbit")
     body_path = delegate(TrajectoryFactory, "body_path")
