@@ -128,6 +128,16 @@ TEST_F(SkyCommands, RecordedCommandsAndSnapshotsNeedNoKernels) {
   ASSERT_FALSE(other.Execute(time).has_error());
   this->Give("set_time { time_s: 2e8 }");
   EXPECT_TRUE(other.FindScene("scene")->Frames().LocalPose(12) == this->PoseOf(12));
+  // A frame that stops keeps its pose, in a snapshot too.
+  this->Give("set_frame_motion { frame: 12 }");
+  Interpreter stopped;
+  for (v1::Command command : this->Ledger_.Commands()) {
+    ASSERT_FALSE(stopped.Execute(command).has_error());
+  }
+  EXPECT_TRUE(stopped.FindScene("scene")->Frames().LocalPose(12) == this->PoseOf(12));
+  v1::Command on = Parse("set_time { time_s: 3e8 }");
+  ASSERT_FALSE(stopped.Execute(on).has_error());
+  EXPECT_TRUE(stopped.FindScene("scene")->Frames().LocalPose(12) == this->PoseOf(12));
   // A step that was computed for another time is not used.
   v1::Command again = Parse("set_time { time_s: 1e8 }");
   *again.mutable_set_time()->mutable_sky() = time.set_time().sky();
@@ -159,6 +169,13 @@ TEST_F(SkyCommands, TheSunFollows) {
   const Eigen::Vector3d earth = -(site.rotation.conjugate() * site.position).normalized();
   EXPECT_NEAR(std::asin(earth.z()) * 180.0 / M_PI, sky.body(1).elevation_deg(), 0.01);
   EXPECT_NEAR(sky.body(1).range(), site.position.norm(), 3e4);
+  // It moves with the time: half a year later it is as far as the sky says then, and elsewhere.
+  this->Give("set_time { time_s: 8.56e8 }");
+  const v1::SunInfo later = this->Give("get_sun {}").sun();
+  const v1::SkyReply then = this->Give(R"(sky_state { place { frame: 11 } })").sky();
+  EXPECT_NEAR(later.distance_au(), then.body(0).range() / 149597870700.0, 1e-12);
+  EXPECT_GT(std::abs(later.distance_au() - sun.distance_au()), 0.01);
+  EXPECT_NEAR(later.radius_deg(), then.body(0).radius_deg(), 1e-12);
   // It cannot be set meanwhile, and again when it has stopped.
   EXPECT_NE(this->Rejected("set_sun { sun { radius_deg: 1 } }").find("follows"), std::string::npos);
   this->Give("set_sun_motion { stop: true }");
