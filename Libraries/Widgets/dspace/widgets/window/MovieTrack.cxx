@@ -237,14 +237,17 @@ void MovieTrack::FillKeyMenu(QMenu& menu, int key, double run_s) {
     return;
   }
   add(tr("Edit key..."), [this, key] { this->Edit(key); });
+  add(tr("Freeze the run here..."), [this, key] { this->Freeze(key); });
+  add(tr("Delete key"),
+      [this, key] { this->Host_.run(QStringLiteral("app.movie.delete_key(%1)").arg(key)); });
+  if (this->Host_.view().isEmpty()) { // what follows takes its camera
+    return;
+  }
+  menu.addSeparator();
   add(tr("Take the place of the view's camera"), [this, key] {
     this->Host_.run(QStringLiteral("app.movie.take_view(%1, %2)").arg(key).arg(this->Host_.view()));
   });
-  add(tr("Freeze the run here..."), [this, key] { this->Freeze(key); });
   add(tr("Freeze, and move the camera to the view..."), [this, key] { this->AddFrozen(key); });
-  menu.addSeparator();
-  add(tr("Delete key"),
-      [this, key] { this->Host_.run(QStringLiteral("app.movie.delete_key(%1)").arg(key)); });
 }
 
 void MovieTrack::Add(double run_s) {
