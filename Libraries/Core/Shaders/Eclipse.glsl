@@ -56,7 +56,8 @@ float sunSeen(vec3 place)
     }
     vec3 aside = body - along * s;
     float sine = length(aside);
-    vec3 u = sine > 1e-6 ? aside / sine : normalize(cross(s, abs(s.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+    vec3 other = abs(s.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    vec3 u = sine > 1e-6 ? aside / sine : normalize(cross(s, other));
     float a = sunDisc.w * length(columns * u) / away;
     seen *= discLeft(a, asin(inversesqrt(square)), atan(sine, along));
   }

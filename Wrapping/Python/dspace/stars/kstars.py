@@ -14,7 +14,8 @@ def read_kstars(path=KSTARS_PATH):
     """The star catalogue that the Debian package kstars-data installs, as a StarCatalog of the epoch J2000.
 
     The file is read where it is and never copied: it is under the GPL, made of the Hipparcos and Tycho catalogues (ESA
-    1997, public domain), to magnitude 9. Its positions are those of 2000.0, to 0.2 arcsec. Lines without position or magnitude are left out with a warning. Names are the common ones."""
+    1997, public domain), to magnitude 9. Positions are those of 2000.0, to 0.2 arcsec. Names are the common ones. Lines
+    without position or magnitude are left out with a warning."""
     path = os.fspath(path)
     label = f"file {path!r}"
     try:
