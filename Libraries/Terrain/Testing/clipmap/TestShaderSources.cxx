@@ -82,10 +82,10 @@ bool Together(unsigned features, unsigned lights, bool coded) {
   }
   if (!has(Shaders::Lit)) {
     return lights == 0 && !has(Shaders::Specular | Shaders::PlacedLights | Shaders::DiscLights |
-                               Shaders::NormalMap | Shaders::ObjectNormals);
+                               Shaders::NormalMap | Shaders::ObjectNormals | Shaders::SunPlace);
   }
   return !has(Shaders::Billboard) &&
-         (lights > 0 || !has(Shaders::PlacedLights | Shaders::DiscLights)) &&
+         (lights > 0 || !has(Shaders::PlacedLights | Shaders::DiscLights | Shaders::SunPlace)) &&
          !(has(Shaders::NormalMap) && has(Shaders::ObjectNormals));
 }
 
