@@ -16,7 +16,7 @@ EVERYWHERE = (scenes.first_picture, scenes.views, scenes.demo_drive, scenes.movi
               application.application_keys, application.application_map)
 OF_REAL_DATA = (scenes.drives, models.formats, terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
                 terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth, application.application_terrain,
-                trajectories.artemis_inertial, trajectories.artemis_rotating, sky.frames)
+                trajectories.artemis_inertial, trajectories.artemis_rotating)
 
 
 def main(*names):

@@ -154,7 +154,7 @@ def test_terrain_on_the_moon_has_a_sky(scene):
     assert abs(sun.azimuth_deg - same.azimuth_deg) < 1e-9
     assert abs(sun.range - same.range) < 1e-3
     with pytest.raises(dspace.InvalidArgument, match="off its data"):
-        terrain.sky(1e9, 0)
+        terrain.sky(0, 1e9)
 
 
 def test_a_recording_plays_without_its_kernels(tmp_path):
