@@ -28,6 +28,7 @@ namespace {
 
 constexpr double Farther = 1e7; // [m] than what shadows are sharp for: lines take none
 constexpr float Forever = 3e38f;
+constexpr std::size_t MostFreeMarks = 1000;
 
 struct Vertex {
   float high[3];
@@ -300,8 +301,19 @@ std::vector<Caption> TrajectoryDrawer::Captions(const CustomDrawing& drawing,
   };
   std::vector<Box> taken;
   std::vector<Caption> captions;
-  // Every 2^k-th tick first, then those between them: labels that remain are evenly spread.
   const auto& ticks = line->Ticks();
+  // Marks stay free of the labels of others, unless they make a band.
+  if (look.tickSize > 0.0 && ticks.size() <= MostFreeMarks) {
+    for (const TrajectoryLine::Tick& tick : ticks) {
+      const Eigen::Vector4d p = clip * (drawing.object.X_VO * tick.point).homogeneous();
+      if (InWindow(*line, tick.time) && p.w() > 0.0) {
+        taken.push_back({0.5 * (p.x() / p.w() + 1.0) * width - 0.5,
+                         0.5 * (1.0 - p.y() / p.w()) * height - 0.5, 0.5 * look.tickSize,
+                         0.5 * look.tickSize});
+      }
+    }
+  }
+  // Every 2^k-th tick first, then those between them: labels that remain are evenly spread.
   std::size_t stride = 1;
   while (stride * 2 < ticks.size()) {
     stride *= 2;
