@@ -1,6 +1,6 @@
 #include <dspace/widgets/window/MovieTrack.h>
 
-#include <limits>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -134,19 +134,25 @@ void MovieTrack::Show() {
   }
   const QJsonArray told = state["keys"].toArray();
   TimeSource* clock = this->Scenes_->Clock();
-  const auto range = clock ? clock->GetState().range : std::optional<TimeRange>();
+  double begin = -1e300; // of the run
+  double end = 1e300;
+  double zero = 0.0;
+  if (clock) {
+    const TimeSource::State now = clock->GetState();
+    if (now.range) {
+      zero = begin = now.range->begin;
+      end = now.range->end;
+    }
+  }
+  const double beyond = 1e-3 * (end - begin);
   std::vector<TimelineKey> keys;
   for (qsizetype i = 0; i < told.size(); ++i) {
     const QJsonObject given = told[i].toObject();
     TimelineKey key;
     key.run_s = given["run"].toDouble();
     key.movie_s = given["time"].toDouble();
-    key.low_s = given["low"].toDouble(range ? range->begin - 1.0 : -1e300);
-    key.high_s = given["high"].toDouble(range ? range->end + 1.0 : 1e300);
-    if (range) { // the run is known within it
-      key.low_s = std::max(key.low_s, range->begin - 1e-3 * range->Length());
-      key.high_s = std::min(key.high_s, range->end + 1e-3 * range->Length());
-    }
+    key.low_s = std::max(given["low"].toDouble(begin - beyond), begin - beyond);
+    key.high_s = std::min(given["high"].toDouble(end + beyond), end + beyond);
     key.cut = given["cut"].toBool();
     key.rest = given["rest"].toBool();
     double stands = 0.0;
@@ -156,7 +162,7 @@ void MovieTrack::Show() {
         stands = next["time"].toDouble() - key.movie_s;
       }
     }
-    key.text = TextOf(int(i), given, range ? range->begin : 0.0, stands);
+    key.text = TextOf(int(i), given, zero, stands);
     keys.push_back(std::move(key));
   }
   track->SetKeys(std::move(keys));
