@@ -44,7 +44,7 @@ def run(options):
             if not (step > 0.0 and times[1] >= times[0] and (times[1] - times[0]) / step < MOST_TIMES):
                 raise Failed(f"--time {options.time!r}: accepted: T1 not before T0, a step above 0 s, and fewer than "
                              f"{MOST_TIMES} times")
-            times = times[0] + step * np.arange(int(np.floor((times[1] - times[0]) / step * (1 + 1e-12))) + 1)
+            times = times[0] + step * np.arange(int(np.floor((times[1] - times[0]) / step + 1e-6)) + 1)
         states = scene.ephemeris(options.target, options.observer, times, options.frame, options.correction)
         rows = [(scene.utc(float(t), 3), float(t), *map(float, p), *map(float, v), float(l)) for t, p, v, l in zip(
             times, states.position, states.velocity, states.light_time)]
