@@ -27,7 +27,8 @@ FOUND = {"assimp": "libassimp-dev", "Coin": "libcoin-dev", "console_bridge": "li
 OPTIONAL = {"DSPACE_CCACHE"}  # used where it is installed
 PROGRAMS = {"ffmpeg": "ffmpeg", "ffprobe": "ffmpeg", "openssl": "openssl", "ruby": "ruby-grpc",
             "protoc": "protobuf-compiler", "clang-format": "clang-format", "clang-tidy": "clang-tidy", "git": "git",
-            "Xvfb": "xvfb", "xauth": "xauth", "openbox": "openbox", "glslangValidator": "glslang-tools"}
+            "Xvfb": "xvfb", "xauth": "xauth", "openbox": "openbox", "glslangValidator": "glslang-tools",
+            "xdotool": "xdotool"}
 
 
 def listed(*kinds):
