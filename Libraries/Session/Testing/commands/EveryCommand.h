@@ -9,8 +9,8 @@
 namespace dspace::testing {
 
 // Commands are v1::Command in protobuf's text format. FOLDER stands for a folder that the test may
-// write into: it holds arm.urdf, array.gltf, ground.asc, box.obj, moon.tpc and tracks.json. VIEW is a
-// viewport of 48 x 32 pixels.
+// write into: it holds arm.urdf, array.gltf, ground.asc, box.obj, moon.tpc and tracks.json. VIEW is
+// a viewport of 48 x 32 pixels.
 struct CommandInstance {
   const char* command;             // the command's name is the name of its field
   std::vector<const char*> before; // given first, after Everything()
@@ -294,7 +294,8 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(set_frame_motion { frame: 40 place { body: "moon" axes: "IAU_MOON" } parent { body: "earth" }
            correction: "LT" })",
        {R"(create_frame { id: 40 name: "moon" })"}},
-      {R"(set_sun_motion { place { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } })", {}},
+      {R"(set_sun_motion { place { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } })",
+       {}},
       {R"(convert_times { text: "2026-11-01T00:00" time_s: 0 decimals: 3 })", {}},
       {R"(turn_frames { from: "J2000" to: "IAU_MARS" time_s: [0, 100] rates: true })", {}},
       {R"(find_sub_points { body: "mars" observer: "earth" })", {}},
@@ -315,7 +316,8 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(simulate_image {})", {}},
       {R"(project_points {})", {}},
       {R"(unproject_pixels {})", {}},
-      {R"(ephemeris { target: "moon" observer: "earth" time_s: [0, 100] correction: APPARENT })", {}},
+      {R"(ephemeris { target: "moon" observer: "earth" time_s: [0, 100] correction: APPARENT })",
+       {}},
       {R"(sky_state { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } }
            target: ["sun", "earth"] })",
        {}},
