@@ -13,7 +13,7 @@ namespace {
 using namespace dspace;
 using dspace::session::Interpreter;
 
-constexpr int Frames = 5;
+constexpr int FrameCount = 5;
 
 v1::WatchReply Message(const v1::Command& command) {
   v1::WatchReply message;
@@ -57,7 +57,7 @@ void Build(Interpreter& interpreter) {
     create.set_scene(scene);
     create.mutable_create_scene();
     ASSERT_FALSE(interpreter.Execute(create).has_error());
-    for (int i = 0; i < Frames; ++i) {
+    for (int i = 0; i < FrameCount; ++i) {
       v1::Command frame;
       frame.set_scene(scene);
       frame.mutable_create_frame()->set_id(std::uint64_t(i + 2));
@@ -73,7 +73,7 @@ std::string StateOf(Interpreter& interpreter) {
   for (const char* scene : {"scene", "other"}) {
     v1::Command poses;
     poses.set_scene(scene);
-    for (int i = 0; i < Frames; ++i) {
+    for (int i = 0; i < FrameCount; ++i) {
       poses.mutable_get_poses()->add_frame(std::uint64_t(i + 2));
     }
     text += interpreter.Execute(poses).SerializeAsString();
@@ -156,7 +156,7 @@ TEST(LatestSteps, TheStateIsTheSameToTheBit) {
       const std::string scene = up(3) ? "scene" : "other";
       switch (up(12)) {
       case 0:
-        messages.push_back(Rename(std::uint64_t(2 + up(Frames)), "r" + std::to_string(i)));
+        messages.push_back(Rename(std::uint64_t(2 + up(FrameCount)), "r" + std::to_string(i)));
         break;
       case 1:
       case 2:
@@ -165,7 +165,7 @@ TEST(LatestSteps, TheStateIsTheSameToTheBit) {
         break;
       default: {
         std::vector<std::uint64_t> frames;
-        for (std::uint64_t id = 2; id < 2 + Frames; ++id) {
+        for (std::uint64_t id = 2; id < 2 + FrameCount; ++id) {
           if (up(3)) {
             frames.push_back(id);
           }
