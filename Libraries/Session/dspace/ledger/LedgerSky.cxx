@@ -78,7 +78,8 @@ std::vector<v1::Command> LedgerSky::Effects(const v1::Command& command, const v1
   };
   if (command.has_set_frame_motion()) {
     pose(std::vector<std::uint64_t>{command.set_frame_motion().frame()}, reply.poses().pose());
-  } else if (command.has_set_sun_motion() && command.set_sun_motion().has_sun()) {
+  } else if (command.has_set_sun_motion() && !command.set_sun_motion().stop() &&
+             command.set_sun_motion().has_sun()) {
     *Added(command.scene(), out).mutable_set_sun()->mutable_sun() = command.set_sun_motion().sun();
   } else if (command.has_set_time() && command.set_time().has_sky()) {
     const v1::SkyStep& step = command.set_time().sky();

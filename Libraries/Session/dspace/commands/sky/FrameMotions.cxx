@@ -101,6 +101,7 @@ void SetFrameMotion(const Context& context, v1::SetFrameMotion& command) {
 void SetSunMotion(const Context& context, v1::SetSunMotion& command) {
   SkyMotions& sky = context.scene->sky;
   if (command.stop()) {
+    command.clear_sun(); // it stays where it is
     sky.sun.reset();
     return;
   }
