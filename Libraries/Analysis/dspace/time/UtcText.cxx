@@ -284,15 +284,16 @@ std::string TimeText(double tdb, TimeScale scale, const TimeScales& scales, int 
   const std::int64_t second = count / unit;
   const bool leap = second >= 86400;
   const std::int64_t inDay = leap ? 86399 : second;
-  char text[48];
-  const int written = std::snprintf(text, sizeof(text), "%04d-%02d-%02dT%02d:%02d:%02d", year,
-                                    month, date, int(inDay / 3600), int(inDay / 60 % 60),
-                                    int(inDay % 60) + (leap ? int(second - 86399) : 0));
+  char text[96] = "";
+  std::snprintf(text, sizeof(text), "%04d-%02d-%02dT%02d:%02d:%02d", year, month, date,
+                int(inDay / 3600), int(inDay / 60 % 60),
+                int(inDay % 60) + (leap ? int(second - 86399) : 0));
+  std::string out = text;
   if (decimals > 0) {
-    std::snprintf(text + written, sizeof(text) - std::size_t(written), ".%0*lld", decimals,
-                  static_cast<long long>(count % unit));
+    const std::string digits = std::to_string(count % unit);
+    out += "." + std::string(std::size_t(decimals) - digits.size(), '0') + digits;
   }
-  return text;
+  return out;
 }
 
 std::string UtcText(double tdb, const TimeScales& scales, int decimals) {

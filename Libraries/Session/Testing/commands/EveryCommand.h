@@ -110,14 +110,15 @@ inline const std::vector<CommandInstance>& EveryCommand() {
            color_index: "\x00\x00\x80\x3f" look { gain: 100 faintest: 6 } })",
        {}},
       {R"(create_body { object { id: 50 name: "ringed" frame: 10 material { color { r: 1 g: 0.9 b: 0.8 } } }
-           body: "saturn" albedo: 0.4 ring { inner: 7e7 outer: 8e7 optical_depth: 1 }
+           body: "saturn" ring { inner: 7e7 outer: 8e7 optical_depth: 1 }
            atmosphere { top: 1e5 rayleigh { x: 1e-6 y: 2e-6 z: 3e-6 } } })",
        {}},
       {R"(set_stars { object: 9 look { spread: 2 } })", {}},
       {R"(clear_trail { object: 2 })", {}},
-      {R"(create_trajectory { object { id: 50 name: "seen from a follower" frame: 10 nature: ORNAMENTAL }
+      {R"(create_trajectory { object { id: 50 name: "seen between two bodies" frame: 10 nature: ORNAMENTAL }
             path { conic { position { x: 7e6 } velocity { y: 7500 z: 10 } mu: 3.986e14 } }
-            axes { kind: LVLH origin { conic { position { x: 7e6 } velocity { y: 7500 } mu: 3.986e14 } } }
+            axes { kind: ROTATING origin { conic { position { x: 7e6 } velocity { y: 7500 } mu: 3.986e14 } }
+                   other { conic { position { x: -7e6 } velocity { y: -7500 } mu: 3.986e14 } } }
             begin_s: 0 end_s: 1000 tick_interval_s: 100 clock: SECONDS
             color_time: "\x00\x00\x00\x00\x00\x00\x00\x00" color_at: "\xff\x80\x00\xff"
             look { color { r: 1 g: 0.5 } before_s: 500 ahead: 0.5 } })",

@@ -127,7 +127,7 @@ class PlugIns:
         (dspace/widgets/window/WindowPlugIn.h) and returns None."""
         name = os.fspath(name)
         about = f"plug-in {name!r}"
-        if name.endswith(".so"):
+        if name.endswith(".so") or ".so." in os.path.basename(name):
             self._ask({"do": "library", "path": os.path.abspath(name)})
             return None
         if name.endswith(".py"):

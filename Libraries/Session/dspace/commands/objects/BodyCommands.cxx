@@ -148,7 +148,8 @@ void CreateBody(const Context& context, v1::CreateBody& command) {
       settings.name().empty() ? FreeObjectName(context.GetScene(), wanted) : settings.name();
   const std::string label = "object '" + name + "'";
   const KnownBody* known = command.body().empty() ? nullptr : &FindBody(label, command.body());
-  if (settings.has_line_width() || settings.has_point_size() || settings.material().has_opacity() ||
+  if (settings.has_line_width() || settings.has_point_size() ||
+      (settings.material().has_opacity() && settings.material().opacity() != 1.0) ||
       settings.material().has_wireframe()) {
     Reject(label, "opacity, wireframe, a line width or a point size is given; accepted for bodies: "
                   "none of these");

@@ -22,6 +22,7 @@
 #include <dspace/widgets/scene/ScenePropertyPanel.h>
 #include <dspace/widgets/scene/SceneTreeModel.h>
 #include <dspace/widgets/scene/SceneTreeView.h>
+#include <dspace/widgets/settings/DisplayUnits.h>
 
 namespace dspace::widgets {
 namespace {
@@ -367,6 +368,10 @@ SceneTreeWidget::SceneTreeWidget(QWidget* parent)
   connect(find, &QShortcut::activated, this, [this] {
     this->Impl_->search->setFocus();
     this->Impl_->search->selectAll();
+  });
+  connect(&DisplayUnits::The(), &DisplayUnits::changed, this, [this] {
+    this->Impl_->panelOutdated = true;
+    this->Refresh();
   });
   self.ShowEmpty();
 }

@@ -6,8 +6,10 @@
 #include <QFileInfo>
 #include <QJsonDocument>
 #include <QLockFile>
-#include <QSaveFile>
 #include <QStandardPaths>
+
+#include <dspace/AtomicFile.h>
+#include <dspace/Error.h>
 
 namespace dspace::widgets {
 namespace {
@@ -109,13 +111,14 @@ bool SettingsFile::Set(const QString& name, const QJsonValue& value) {
   }
   put(values);
   this->Values_ = values;
-  QSaveFile file(this->Path_); // beside it, and then renamed
   const QByteArray text =
       QJsonDocument(
           QJsonObject{{"version", Version}, {"sha256", DigestOf(values)}, {"settings", values}})
           .toJson();
-  if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.commit()) {
-    return fail(file.errorString());
+  try {
+    AtomicFile::Save(this->Path_.toStdString(), text.constData(), std::size_t(text.size()));
+  } catch (const Error& error) {
+    return fail(QString::fromUtf8(error.what()));
   }
   return true;
 }
