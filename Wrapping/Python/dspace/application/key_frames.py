@@ -104,8 +104,10 @@ class KeyFrames:
         one). freeze: the run stands still for so many seconds of the movie after the key that is at `run`, while the
         camera moves to the new one. values: see dspace.movies.keys.Key (frame=, easing=, cut=, ...)."""
         view = self._required(view)
-        run = self._run.time if run is None else number(run, "the run time", self._about())
         first, last = self._extent()
+        if run is None:  # what precedes the first step of the simulation is its beginning
+            run = min(max(self._run.time, first), last)
+        run = number(run, "the run time", self._about())
         if not first <= run <= last:
             reject(self._about(), "the run time of a key", run, f"{first:g} to {last:g} s")
 
@@ -378,7 +380,7 @@ class KeyFrames:
             size = min(max(0.03 * length, 0.1), 0.3 * (length or 1.0) + 0.1)
             for key, time in zip(shot.keys, shot.times):
                 place, quaternion, projection = shot.at(time, relative)
-                self._drawn.append(scene.add_frustum(size, self.movie.size, pose=Pose(place, quaternion),
+                self._drawn.append(scene.add_frustum(size, self.movie.size, position=place, quaternion=quaternion,
                                                      name=f"{PATH} {number_} key {self.keys.index(key)}", **projection,
                                                      **settings))
 
