@@ -203,10 +203,14 @@ bool ViewerViews::RemoveConflicting(Interpreter& interpreter, const v1::Command&
     this->BeforeSnapshot(interpreter);
     this->Suspend(interpreter, scene);
     const std::vector<std::string> names = this->ViewportsIn(interpreter, scene);
-    for (const std::string& name : names) {
-      v1::Command remove;
-      remove.mutable_remove_viewport()->set_viewport(name);
-      this->Execute(interpreter, remove);
+    for (const v1::Command& suspended : this->Suspended_[scene].commands) {
+      if (suspended.has_create_viewport()) { // before a snapshot they are already gone
+        v1::Command remove;
+        remove.mutable_remove_viewport()->set_viewport(suspended.create_viewport().name());
+        if (this->Execute(interpreter, remove).has_error()) {
+          this->Track(remove, {});
+        }
+      }
     }
     this->Names_.erase(scene);
     this->Vantages_.erase(this->Vantages_.lower_bound({scene, ""}),

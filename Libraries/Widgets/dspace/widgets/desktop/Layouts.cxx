@@ -56,6 +56,13 @@ bool Layouts::Put(const QJsonObject& layout) {
     this->Window_->restoreState(before, Version);
     return false;
   }
+  this->Awaited_.clear();
+  for (const QJsonValue& view : layout["views"].toArray()) {
+    const QString dock = ViewPrefix + view.toString();
+    if (!this->Window_->findChild<QDockWidget*>(dock)) {
+      this->Awaited_.insert(dock);
+    }
+  }
   return true;
 }
 
@@ -123,7 +130,8 @@ bool Layouts::RestoreLast() {
 }
 
 bool Layouts::Place(QDockWidget* dock) {
-  return this->Window_->restoreDockWidget(dock);
+  // Qt also remembers where docks were that the user closed: they come back as new ones.
+  return this->Awaited_.remove(dock->objectName()) && this->Window_->restoreDockWidget(dock);
 }
 
 } // namespace dspace::widgets

@@ -5,6 +5,7 @@
 #include <QByteArray>
 #include <QJsonObject>
 #include <QObject>
+#include <QSet>
 #include <QStringList>
 
 class QDockWidget;
@@ -38,7 +39,7 @@ public:
   bool SaveLast();
   bool RestoreLast();
   // Puts a dock that is made after a layout was restored where the layout has it. False: it has
-  // none; the dock is where it was.
+  // none, or had it and it was closed since; the dock is where it was.
   bool Place(QDockWidget* dock);
 
 signals:
@@ -53,6 +54,7 @@ private:
 
   QMainWindow* Window_;
   SettingsFile* File_;
+  QSet<QString> Awaited_; // docks of the restored layout that are not there yet
 };
 
 } // namespace dspace::widgets

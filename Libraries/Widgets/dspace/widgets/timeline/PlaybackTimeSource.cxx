@@ -80,6 +80,9 @@ TimeSource::State PlaybackTimeSource::GetState() const {
 }
 
 void PlaybackTimeSource::Seek(double time_s) {
+  if (!this->Playback_.IsMoving()) { // where a script moved it to no longer counts
+    this->Known_ = this->Playback_.Index();
+  }
   this->Steps_ = 0;
   this->Sought_ = true;
   this->Clock_.Seek(time_s);

@@ -486,6 +486,9 @@ void TimelineWidget::AddTool(QWidget* tool) {
 
 void TimelineWidget::keyPressEvent(QKeyEvent* event) {
   Internals& self = *this->Impl_;
+  if (self.source) { // a key or a mark is made at the time of now, not of the last refresh
+    self.state = self.source->GetState();
+  }
   const bool seeks = self.source && self.state.canSeek && self.state.range;
   switch (event->key()) {
   case Qt::Key_Space:

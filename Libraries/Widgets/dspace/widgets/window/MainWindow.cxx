@@ -491,6 +491,10 @@ int MainWindow::ViewCount() const {
 bool MainWindow::IsSettled() const {
   return std::all_of(this->Views_.begin(), this->Views_.end(), [](const auto& entry) {
     ViewportWidget* widget = entry.second.widget;
+    const QDockWidget* dock = entry.second.dock;
+    if (dock && dock->isHidden() && !dock->testAttribute(Qt::WA_WState_ExplicitShowHide)) {
+      return false; // Qt shows a new dock in the next turn of the event loop
+    }
     return !widget || !widget->isVisible() || widget->IsUpToDate();
   });
 }
