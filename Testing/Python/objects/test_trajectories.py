@@ -180,14 +180,14 @@ def test_colors_by_value_and_by_phase(scene):
     scene.add_trajectory(states_of(count=98), values=(times, times), colormap=("red", "blue"), line_width=3)
     view = look_down(scene)
     image = view.image()
-    x, y = (int(round(v)) for v in pixel(circle(0.0)[0]))
+    x, y = (int(round(v)) for v in pixel(circle(100.0)[0]))  # not where the end of the orbit meets its beginning
     assert image[y, x, 0] > 200 and image[y, x, 2] < 60
     x, y = (int(round(v)) for v in pixel(circle(97 * 30.0)[0]))
     assert 90 < image[y, x, 0] < 165 and 90 < image[y, x, 2] < 165
     scene.objects["trajectory"].remove()
     scene.add_trajectory(states_of(count=98), phases=[(0, "red"), (2000, "lime")], line_width=3)
     image = view.image()
-    for time, channel in ((0.0, 0), (1950.0, 0), (2050.0, 1), (5000.0, 1)):
+    for time, channel in ((100.0, 0), (1950.0, 0), (2050.0, 1), (5000.0, 1)):
         x, y = (int(round(v)) for v in pixel(circle(time)[0]))
         assert image[y, x, channel] > 200 and image[y, x, 1 - channel] < 60, time
 
@@ -228,8 +228,8 @@ def test_it_is_recorded_and_in_snapshots(session, scene, tmp_path):
         for time in (1000.0, 4000.0):
             scene.time = time
             images.append(view.image())
+        scene.time = 5000.0  # what follows belongs to this step
         line.set(color="cyan")
-        scene.time = 5000.0
         images.append(view.image())
     name = view.name
     with dspace.Playback(tmp_path / "run.dspace") as playback:

@@ -60,11 +60,13 @@ class Plume:
         time = self._scene.time if time is None else number(time, "the time", "plume")
         positions, ages = [np.empty((0, 3))], [np.empty(0)]
         for i, (begin, made, rate, speed) in enumerate(self._parts):
-            end = min(time, self._parts[i + 1][0] if i + 1 < len(self._parts) else time)
+            replaced = i + 1 < len(self._parts) and self._parts[i + 1][0] <= time
+            end = self._parts[i + 1][0] if replaced else time
             if rate <= 0 or end < begin:
                 continue
             first = int(np.ceil(made + rate * max(0.0, time - self._lifetime - begin)))
-            last = int(np.floor(made + rate * (end - begin)))
+            # What begins at the time of a change belongs to the new numbers.
+            last = int(np.ceil(self._parts[i + 1][1])) - 1 if replaced else int(np.floor(made + rate * (end - begin)))
             k = np.arange(first, last + 1)
             age = time - (begin + (k - made) / rate)
             k, age = k[(age >= 0) & (age < self._lifetime)], age[(age >= 0) & (age < self._lifetime)]

@@ -68,7 +68,8 @@ def on_ellipsoid(origin, directions, radii):
 
 
 def _radii(radii, about):
-    radii = numbers(np.broadcast_to(np.asarray(radii, float), 3) if np.ndim(radii) == 0 else radii, 3, "the radii", about)
+    radii = array_of(radii, "the radii", "one number of metres, or 3", about)
+    radii = numbers(np.broadcast_to(radii, 3) if radii.ndim == 0 else radii, 3, "the radii", about)
     if not (np.all(np.isfinite(radii)) and np.all(radii > 0)):
         reject(about, "the radii", radii.tolist(), "3 positive numbers of metres")
     return radii

@@ -1,10 +1,9 @@
 """Lines of the sky: grids and the figures of constellations, as points on a far sphere."""
 import json
-import os
 
 import numpy as np
 
-from dspace._core.fields import number, reject, word
+from dspace._core.fields import file_path, number, reject, word
 from dspace.errors import Corrupt, Io, NotFound
 
 RADIUS = 1e17  # [m]: a step of one astronomical unit moves the lines by 0.3 arcsec
@@ -63,7 +62,7 @@ def grid(kind, step_deg, about):
 def constellations(path):
     """The figures of a GeoJSON file whose longitudes are right ascensions and whose latitudes are declinations [deg], such
     as constellations.lines.json of d3-celestial (O. Frohn, BSD-3). Points and lines as joined() has them."""
-    path = os.fspath(path)
+    path = file_path(path, "the path", "constellations")
     label = f"file {path!r}"
     try:
         with open(path, encoding="utf-8") as file:
