@@ -264,6 +264,8 @@ class SensorFactory:
         centre. lift [m]: how far it is drawn above the surface; default 1e-3 of the mean radius. look: as in
         Scene.add_trajectory (before, after, fade, color, ticks)."""
         about = "ground track"
+        if not (hasattr(trajectory, "states") and hasattr(trajectory, "span")):
+            reject(about, "the trajectory", trajectory, "a dspace.Trajectory", WrongType)
         radii = _radii(radii, about)
         first, last = trajectory.span
         first = first if begin is None else number(begin, "begin", about)
@@ -288,9 +290,12 @@ class SensorFactory:
 
         states: a dict of colors by the state; the first one is its state at first; default: good (green), weak (yellow),
         lost (red)."""
-        states = dict(STATES if states is None else states)
-        if not states:
-            reject("link", "the states", states, "one and more colors by name")
+        states = STATES if states is None else states
+        if not isinstance(states, dict) or not states:
+            reject("link", "the states", states, "a dict of one and more colors by name", WrongType)
+        if "frame" in settings:
+            reject("link", "the frame", settings["frame"], "none: the line is on frame a")
+        states = dict(states)
         for state, value in states.items():
             color_of(value, f"the color of state {state!r}", "link")
         return Link(self._scene, a, b, states, {"ornamental": True, "lit": False, **settings})

@@ -1,7 +1,8 @@
 """Trajectories of a scene: their lines, their states, and the frames that move along them."""
 import numpy as np
 
-from dspace._core.fields import array_of, color as color_of, keywords, number, put, put_color, put_given, put_vector, reject
+from dspace._core.fields import array_of, color as color_of, keywords, number, put, put_color, put_given, put_vector, \
+    reject, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.objects.arrays import map_scalars
 from dspace.objects.graphics import GraphicsObject, put_settings
@@ -96,9 +97,7 @@ class TrajectoryFactory:
             message.color_time, message.color_at = pack(times), colors.tobytes()
         if clock is None:
             clock = "utc" if message.path.WhichOneof("kind") in ("oem", "xyzv") else "seconds"
-        if clock not in CLOCKS:
-            reject(label, "the clock", clock, "'utc' or 'seconds'")
-        message.clock = CLOCKS[clock]
+        message.clock = word(clock, CLOCKS, "the clock", label)
         _put_look(message.look, label, color, before, after, opacity=opacity, ahead=ahead, fade=fade, tick_size=tick_size,
                   tick_labels=tick_labels, font_size=font_size)
         reply = self._scene._execute(command)

@@ -4,7 +4,7 @@ import collections
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, file_path, flag, integer, items, reject, text, word
+from dspace._core.fields import array_of, file_path, flag, integer, items, put, reject, text, word
 from dspace._core.strict import Strict
 from dspace.errors import InvalidArgument, WrongType
 from dspace.sky.places import put_place
@@ -284,7 +284,7 @@ class SceneSky:
         """UTC as text of seconds past J2000 TDB (a list for an array; None: the scene's time)."""
         about = "time"
         command = self._scene._command()
-        command.convert_times.decimals = integer(decimals, "the decimals", about)
+        put(command.convert_times, about, decimals=decimals)
         array, single = _times(self._scene.time if times is None else times, about)
         wire.put_array(command.convert_times, "time_s", array)
         texts = list(self._scene._execute(command).times.utc)
