@@ -58,7 +58,7 @@ def test_the_sun_over_the_lunar_site_is_horizons(capsys, tmp_path):
 
 def test_without_kernels_planets_and_grids_are_drawn(capsys, tmp_path):
     stars, ruled = tmp_path / "stars.png", tmp_path / "ruled.png"
-    words = ("--time", "2026-01-10T04:00", "--site", "8,50,300", "--azimuth", "180", "--elevation", "20",
+    words = ("--time", "2026-01-10T04:00", "--site", "8,50,-300", "--azimuth", "180", "--elevation", "20",
              "--size", "320x200")
     code, out, err = run(capsys, *words, "--out", stars)
     assert code == 0 and "camera azimuth 180.000000" in out, err

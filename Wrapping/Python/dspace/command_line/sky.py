@@ -131,7 +131,7 @@ def axes_of(name):
 
 def draw(scene, options, site, size, azimuth, elevation):
     """Writes the picture. The scene's root is the centre of the site's body with J2000's axes, which the stars have.
-    Bodies stand where light time and aberration show them from that centre: within 0.4 arcsec of what is printed, because
+    Bodies stand where light time and aberration show them from that centre: within 0.4 arcsec of what is told, because
     a place on the Earth moves at up to 0.47 km/s about it."""
     from dspace.stars import read_stars
     place = scene.add_celestial_frame("site", options.body, site=site, center=options.body)
@@ -156,7 +156,7 @@ def draw(scene, options, site, size, azimuth, elevation):
     a, e = math.radians(azimuth), math.radians(elevation)
     ahead = (math.cos(e) * math.sin(a), math.cos(e) * math.cos(a), math.sin(e))
     up = (0.0, 0.0, 1.0) if abs(elevation) < 89.999 else (math.sin(a), math.cos(a), 0.0)
-    eye = (0.0, 0.0, EYE_HEIGHT)
+    eye = (0.0, 0.0, EYE_HEIGHT + max(0.0, -site[2]))  # never inside the ellipsoid
     camera = scene.add_camera("sky", frame=place, eye=eye, target=tuple(p + q for p, q in zip(eye, ahead)), up=up,
                               fov_deg=options.fov)
     view = scene.add_viewport(size, camera, samples=2)
