@@ -19,6 +19,7 @@
 #include <dspace/ephemeris/De405Source.h>
 #include <dspace/ephemeris/Ephemeris.h>
 #include <dspace/ephemeris/ErfaSource.h>
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/ephemeris/SpkSource.h>
 #include <dspace/time/UtcText.h>
 
@@ -318,6 +319,69 @@ TEST(Ephemeris, LaterSourcesWinAndTheOthersAreNamed) {
   ephemeris.Unload("second");
   EXPECT_EQ(ephemeris.FromBarycenter(7, 5.0).position.x(), 1.0);
   EXPECT_THROW(ephemeris.Unload("second"), Error);
+}
+
+// A source with a warning behind one that ends at 100 s.
+class Worse final : public StateSource {
+public:
+  explicit Worse(int body) : Line_("worse", body, {{3e10, 0.0, 0.0}, {0.0, 0.0, 0.0}}) {}
+  const std::string& Name() const override { return this->Line_.Name(); }
+  std::string Accuracy(int /*body*/) const override { return "7 km off"; }
+  std::string Warning(int /*body*/) const override { return "worse, 7 km off"; }
+  const std::vector<Coverage>& Coverages() const override { return this->Line_.Coverages(); }
+  std::optional<Link> Find(int body, double tdb) const override {
+    return this->Line_.Find(body, tdb);
+  }
+
+private:
+  Straight Line_;
+};
+
+TEST(Fallbacks, EveryTimeIsLookedAt) {
+  Ephemeris ephemeris;
+  const State far{{3e10, 0.0, 0.0}, {0.0, 0.0, 0.0}}; // 100 s of light
+  ephemeris.Load(std::make_shared<Straight>("good", 7, far, 0, 0.0, 1000.0));
+  ephemeris.Load(std::make_shared<Worse>(7), Ephemeris::Priority::Last);
+  ephemeris.Load(std::make_shared<Straight>("seer", 8, State{}));
+  const auto warnings = [&](const std::vector<double>& times, Correction correction) {
+    const FallbackScope scope;
+    std::vector<Ephemeris::Result> results(times.size());
+    ephemeris.FindMany({7, 8, "J2000", correction}, times.data(), times.size(), results.data());
+    ephemeris.Explain({7, 8}, times[0]); // adds nothing
+    return scope.Warnings(TimeScales());
+  };
+  EXPECT_TRUE(warnings({0.0, 500.0, 1000.0}, Correction::None).empty());
+  // It starts inside and ends outside.
+  const auto late = warnings({500.0, 900.0, 1100.0, 1200.0}, Correction::None);
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_EQ(late[0].find("worse, 7 km off (at 2 of 4 times: "), 0u) << late[0];
+  EXPECT_NE(
+      late[0].find(TimeLabel(1100.0, TimeScales()) + " to " + TimeLabel(1200.0, TimeScales())),
+      std::string::npos)
+      << late[0];
+  // And the other way round: the last time is not counted.
+  const auto early = warnings({1100.0, 900.0}, Correction::None);
+  ASSERT_EQ(early.size(), 1u);
+  EXPECT_NE(early[0].find("(at 1 of 2 times: " + TimeLabel(1100.0, TimeScales()) + ")"),
+            std::string::npos)
+      << early[0];
+  // The light left before the good source begins.
+  EXPECT_TRUE(warnings({50.0}, Correction::None).empty());
+  for (const Correction correction : {Correction::LightTime, Correction::ConvergedStar}) {
+    EXPECT_EQ(warnings({50.0}, correction), std::vector<std::string>{"worse, 7 km off"});
+    EXPECT_TRUE(warnings({150.0, 900.0}, correction).empty());
+  }
+}
+
+TEST(Fallbacks, TheInnermostScopeCollects) {
+  const FallbackScope outer;
+  {
+    const FallbackScope inner;
+    FallbackScope::Note("inside");
+    FallbackScope::Note("");
+    EXPECT_EQ(FallbackScope::Noted(), std::vector<std::string>{"inside"});
+  }
+  EXPECT_TRUE(FallbackScope::Noted().empty());
 }
 
 std::string MessageOf(const Ephemeris& ephemeris, const Ephemeris::Query& query, double tdb) {

@@ -10,6 +10,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/ephemeris/Ephemeris.h>
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/kernels/LeapSecondKernel.h>
 #include <dspace/orientation/AxisTurns.h>
 #include <dspace/orientation/BodyConstants.h>
@@ -293,6 +294,33 @@ TEST(Frames, EarthByErfaBinaryPckAndElements) {
   EXPECT_NE(withUt1.Explain("J2000", "ITRF93", tdb)[0].accuracy.find("0.6 arcsec"),
             std::string::npos);
   EXPECT_THROW(plain.Rotation("J2000", "ITRF93", -1.5e9), Error); // 1952: no UTC
+}
+
+// Outside of what a binary PCK covers, ERFA's Earth stands in for it, and a warning says so.
+TEST(Frames, OutsideOfABinaryPckIsSaid) {
+  DSPACE_REAL_DATA(folder, "ephemeris");
+  const FrameSources sources =
+      Load(folder, {"naif0012.tls", Kernels + "earth_031228_231229_predict.bpc"});
+  const Frames binary(sources);
+  const Frames plain;
+  const double inside = TdbFromText("2010-01-01", sources.scales);
+  const double outside = TdbFromText("2026-11-01", sources.scales);
+  const auto warnings = [&](const Frames& frames, const std::vector<double>& times) {
+    const FallbackScope scope;
+    for (const double tdb : times) {
+      FallbackScope::Begin(tdb);
+      frames.Turn("J2000", "ITRF93", tdb);
+    }
+    return scope.Warnings(sources.scales);
+  };
+  EXPECT_TRUE(warnings(binary, {inside, inside + 86400.0}).empty());
+  EXPECT_TRUE(warnings(plain, {inside, outside}).empty()); // there ERFA stands in for nothing
+  const auto found = warnings(binary, {inside, outside});
+  ASSERT_EQ(found.size(), 1u);
+  for (const char* part :
+       {"'ITRF93'", "ERFA", "14 arcsec", "binary PCKs cover", "at 1 of 2 times: 2026-11-01"}) {
+    EXPECT_NE(found[0].find(part), std::string::npos) << part << "\n" << found[0];
+  }
 }
 
 // The IAU's report (Archinal et al. 2018, table 1) by hand at epochs where its terms are simple.

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <dspace/Checks.h>
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/time/UtcText.h>
 
 namespace dspace {
@@ -20,6 +21,7 @@ constexpr std::size_t LongestChain = 20;
 // One body's way towards the barycentre.
 struct Way {
   std::array<int, LongestChain> bodies;
+  std::array<std::size_t, LongestChain> sources; // of the link from each body to the next
   // Columns: position and velocity of the way's first body from each. Those behind the last are not
   // set, which is half of the time of a state.
   Eigen::Matrix<double, 6, int(LongestChain)> states;
@@ -36,8 +38,9 @@ struct Way {
     return std::size_t(std::find(this->bodies.begin(), this->bodies.begin() + this->length, body) -
                        this->bodies.begin());
   }
-  void Add(int body, const State& state) {
+  void Add(int body, const State& state, std::size_t source) {
     const auto last = Eigen::Index(this->length - 1);
+    this->sources[this->length - 1] = source;
     this->bodies[this->length] = body;
     this->states.col(last + 1) = this->states.col(last);
     this->states.col(last + 1).head<3>() += state.position;
@@ -210,19 +213,21 @@ State Ephemeris::Geometric(int target, int observer, double tdb, std::vector<int
                           " lead in a circle at body " + this->Names_.NameOf(body) + " (" +
                           this->Sources_[known->source]->Name() + ")");
         }
-        way.Add(known->link.center, this->AxesJ2000(known->link, tdb));
+        way.Add(known->link.center, this->AxesJ2000(known->link, tdb), known->source);
         const std::size_t met = other.Find(way.Last());
         if (met != other.length) {
           const std::size_t last = way.length - 1;
-          if (used) {
-            const std::size_t ends[2] = {turn == 0 ? last : met, turn == 0 ? met : last};
-            for (int i = 0; i < 2; ++i) {
+          const std::size_t ends[2] = {turn == 0 ? last : met, turn == 0 ? met : last};
+          for (int i = 0; i < 2; ++i) {
+            for (std::size_t k = 0; k < ends[i]; ++k) {
+              FallbackScope::Note(this->Sources_[ways[i].sources[k]]->Warning(ways[i].bodies[k]));
+            }
+            if (used) {
               used->insert(used->end(), ways[i].bodies.begin(), ways[i].bodies.begin() + ends[i]);
             }
           }
           const Eigen::Matrix<double, 6, 1> state =
-              ways[0].states.col(Eigen::Index(turn == 0 ? last : met)) -
-              ways[1].states.col(Eigen::Index(turn == 0 ? met : last));
+              ways[0].states.col(Eigen::Index(ends[0])) - ways[1].states.col(Eigen::Index(ends[1]));
           return {state.head<3>(), state.tail<3>()};
         }
       }
@@ -323,6 +328,7 @@ void Ephemeris::FindMany(const Query& query, const double* tdb, std::size_t coun
     turn = this->Frames_->Turn(J2000, frame, 0.0);
   }
   for (std::size_t i = 0; i < count; ++i) {
+    FallbackScope::Begin(tdb[i]);
     results[i] = this->Evaluate(query, frame, tdb[i], turn ? &*turn : nullptr);
   }
 }
@@ -335,6 +341,7 @@ State Ephemeris::Find(const std::string& target, const std::string& observer, do
 }
 
 std::vector<Ephemeris::Used> Ephemeris::Explain(const Query& query, double tdb) const {
+  const FallbackScope aside; // nothing is computed from these states
   std::vector<int> bodies;
   this->Geometric(query.target, query.observer, tdb, &bodies);
   std::vector<Used> all;

@@ -82,7 +82,8 @@ public:
 
   // Throws Error(NotFound) for a body that no source knows and for an unknown frame,
   // Error(InvalidArgument) for a time outside of what the sources cover, with the spans that they
-  // do cover, and what sources throw.
+  // do cover, and what sources throw. Where a state, also one that a light time or an aberration
+  // needs, comes from a source with a warning, a FallbackScope has it.
   Result Find(const Query& query, double tdb) const;
   // The same for many times; `results` holds `count`.
   void FindMany(const Query& query, const double* tdb, std::size_t count, Result* results) const;

@@ -10,6 +10,7 @@
 #include <Eigen/SVD>
 
 #include <dspace/Checks.h>
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/orientation/AxisTurns.h>
 #include <dspace/orientation/BodyConstants.h>
 #include <dspace/orientation/EarthRotation.h>
@@ -234,6 +235,9 @@ Frames::Link Frames::MoonLink(const FrameInfo& info, double tdb) const {
     link.turn = BodyRotation(this->Pool(), 301, tdb).turn;
     link.source = "IAU_MOON in place of MOON_ME";
     link.accuracy = "within 155 m on the ground: the IAU's series of the libration";
+    link.warning = Label(info) + " is taken from IAU_MOON, " + link.accuracy +
+                   "; load a lunar frame kernel with its binary PCK, or install Debian's "
+                   "casacore-data-jpl-de405 (1960 to 2060)";
     return link;
   }
   const Eigen::Vector3d& angle = libration->angles;
@@ -280,15 +284,26 @@ Frames::Link Frames::PckLink(const FrameInfo& info, double tdb) const {
     Reject(Label(info), "the time is " + TimeLabel(tdb, this->Sources_.scales) +
                             "; the binary PCKs cover " + SpansText(spans, this->Sources_.scales));
   }
+  const auto warn = [&] {
+    if (!spans.empty()) {
+      link.warning = Label(info) + " is taken from " + link.source +
+                     (link.accuracy.empty() ? "" : ", " + link.accuracy) +
+                     ", outside of what the loaded binary PCKs cover: " +
+                     SpansText(spans, this->Sources_.scales);
+    }
+  };
   if (info.id == FrameMoonPa || info.id == FrameMoonMe) {
     if (info.kernel.empty()) {
-      return this->MoonLink(info, tdb);
+      link = this->MoonLink(info, tdb);
+      warn();
+      return link;
     }
   } else if (info.id == FrameItrf93) {
     link.base = FrameJ2000;
     link.turn = EarthRotation(tdb, this->Sources_.scales);
     link.source = "ERFA's IAU 2006/2000A precession and nutation";
     link.accuracy = EarthRotationAccuracy(tdb, this->Sources_.scales);
+    warn();
     return link;
   }
   if (!hasElements) {
@@ -304,6 +319,7 @@ Frames::Link Frames::PckLink(const FrameInfo& info, double tdb) const {
   link.accuracy = info.classId == 301   ? "within 155 m of MOON_ME on the ground"
                   : info.classId == 399 ? "within 0.2 deg before 2050: no nutation, UT1 of 2000"
                                         : "as the IAU's report states";
+  warn();
   return link;
 }
 
@@ -479,9 +495,11 @@ StateTurn Frames::Turn(int from, int to, double tdb) const {
   const auto [up, down] = this->Meet(from, to, tdb);
   StateTurn out; // from `from` to the frame in common
   for (const Link& link : up.links) {
+    FallbackScope::Note(link.warning);
     out = link.turn.Inverse() * out;
   }
   for (auto link = down.links.rbegin(); link != down.links.rend(); ++link) {
+    FallbackScope::Note(link->warning);
     out = link->turn * out;
   }
   return out;

@@ -39,6 +39,9 @@ struct FrameSources {
 // - CK frames: the attitude kernels, through the clock CK_<id>_SCLK, or the id divided by 1000.
 // Dynamic and switch frames are named in the error.
 //
+// Where IAU_MOON stands in for MOON_ME, or other data for a binary PCK at a time outside of what it
+// covers, a FallbackScope (Fallbacks.h) has a warning.
+//
 // R = Rotation(from, to, tdb) takes components in `from` to those in `to`: v_to = R v_from.
 //
 // Frames whose chains meet before J2000 need data only up to there. Immutable after construction,
@@ -87,6 +90,7 @@ private:
     StateTurn turn; // components in the base to those in the frame
     std::string source;
     std::string accuracy;
+    std::string warning; // data of lower accuracy stand in for others; empty: none
   };
   struct Chain;
   Link LinkOf(const FrameInfo& info, double tdb) const;

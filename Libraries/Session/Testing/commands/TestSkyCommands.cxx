@@ -4,6 +4,7 @@
 #include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
+#include <dspace/ephemeris/De405Source.h>
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/ledger/Ledger.h>
 #include <dspace/orientation/BodyConstants.h>
@@ -267,6 +268,30 @@ TEST_F(SkyCommands, StatesComeWithTheirSources) {
   }
   this->Rejected(R"(ephemeris { target: "499" observer: "399" time_s: 9e9 })");
   this->Rejected(R"(ephemeris { target: "vulcan" observer: "399" })");
+}
+
+// DE405 ends in 2060; ERFA goes on with a warning, at any time of a request.
+TEST_F(SkyCommands, RepliesSayWhereErfaStandsIn) {
+  const auto count = [](const v1::Reply& reply, const std::string& part) {
+    int found = 0;
+    for (const std::string& warning : reply.warning()) {
+      found += warning.find(part) != std::string::npos;
+    }
+    return found;
+  };
+  const bool installed = De405Source::IsInstalled();
+  EXPECT_EQ(count(this->Give(R"(ephemeris { target: "moon" observer: "earth" time_s: [0, 1e8] })"),
+                  "ERFA"),
+            installed ? 0 : 1);
+  const v1::Reply later =
+      this->Give(R"(ephemeris { target: "moon" observer: "earth" time_s: [0, 1.95e9, 2e9] })");
+  EXPECT_EQ(count(later, "body 301 is taken from ERFA's series, up to 32 km off"), 1);
+  EXPECT_EQ(count(later, installed ? "(at 2 of 3 times: 2061-" : "(at 3 of 3 times: "), 1);
+  // What follows the time warns once, not at every step.
+  this->AddMoon();
+  this->Give("set_time { time_s: 1e8 }");
+  EXPECT_EQ(count(this->Give("set_time { time_s: 1.95e9 }"), "body 301"), installed ? 1 : 0);
+  EXPECT_EQ(count(this->Give("set_time { time_s: 1.96e9 }"), "body 301"), 0);
 }
 
 TEST_F(SkyCommands, FrameTurnsNameTheirSources) {

@@ -4,6 +4,7 @@
 
 #include <google/protobuf/unknown_field_set.h>
 
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/ErrorReply.h>
@@ -104,9 +105,15 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   const std::string name = SceneName(command);
   SceneState* scene = entry->needs == Needs::Scene ? &this->State_.FindScene(name) : nullptr;
   RequireLimits(command);
+  const std::shared_ptr<const KernelSet> kernels =
+      scene ? scene->sky.kernels : SkyMotions::Standard(); // the command may remove the scene
   const FilesReadScope read;
+  const FallbackScope fallbacks;
   entry->run(Context{this->State_, scene, name, reply}, command);
   this->State_.files.Note(command, read.Files());
+  for (std::string& warning : fallbacks.Warnings(kernels->Scales())) {
+    reply.add_warning(std::move(warning));
+  }
   if (this->Depth_ == 1) {
     this->State_.frameEvents.MoveTo(reply); // before listeners are notified: they forward the reply
   }

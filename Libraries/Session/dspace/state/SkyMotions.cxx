@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include <dspace/Checks.h>
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/messages/Convert.h>
 
 namespace dspace::session {
@@ -112,6 +113,16 @@ v1::SkyStep SkyMotions::At(const FrameTree& tree, double tdb) const {
     *step.mutable_sun() = this->SunAt(tree, *this->sun, tdb);
   }
   return step;
+}
+
+std::vector<std::string> SkyMotions::NewFallbacks() {
+  std::vector<std::string> added;
+  for (std::string& text : FallbackScope::Noted()) {
+    if (this->fallbacks.insert(text).second) {
+      added.push_back(std::move(text));
+    }
+  }
+  return added;
 }
 
 void SkyMotions::EraseRemoved(const FrameTree& tree) {

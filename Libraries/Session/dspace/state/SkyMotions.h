@@ -5,7 +5,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include <dspace/FrameTree.h>
 #include <dspace/proto/sky.pb.h>
@@ -19,6 +21,8 @@ struct SkyMotions {
   std::shared_ptr<const KernelSet> kernels = Standard();
   std::map<FrameId, v1::SetFrameMotion> frames;
   std::optional<v1::SetSunMotion> sun;
+  // Warnings of data of lower accuracy that were given already (FallbackScope).
+  std::set<std::string> fallbacks;
 
   // The set without kernels, made once.
   static std::shared_ptr<const KernelSet> Standard();
@@ -37,6 +41,9 @@ struct SkyMotions {
   v1::SunState SunAt(const FrameTree& tree, const v1::SetSunMotion& motion, double tdb) const;
   // All of them at a time. Throws what computing one throws, naming its frame.
   v1::SkyStep At(const FrameTree& tree, double tdb) const;
+
+  // What the innermost FallbackScope of this thread has and `fallbacks` lacks; adds it to them.
+  std::vector<std::string> NewFallbacks();
 
   // Forgets frames that are no more.
   void EraseRemoved(const FrameTree& tree);

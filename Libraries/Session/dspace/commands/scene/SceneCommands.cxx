@@ -5,6 +5,7 @@
 
 #include <dspace/Checks.h>
 #include <dspace/commands/scene/CameraTools.h>
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/SunMessages.h>
@@ -79,11 +80,15 @@ void SetTime(const Context& context, v1::SetTime& command) {
     lags[{lag.vantage(), lag.camera()}] = {true, lag.time_s(), lag.frame(), lag.parent(),
                                            ToVector(lag.position())};
   }
-  const SkyMotions& sky = context.scene->sky;
+  SkyMotions& sky = context.scene->sky;
   if (!command.has_sky() || command.sky().time_s() != command.time_s()) {
     command.clear_sky();
     if (sky.Any()) {
+      const FallbackScope scope; // a warning is given once, not at every step
       *command.mutable_sky() = sky.At(context.Frames(), command.time_s());
+      for (std::string& warning : sky.NewFallbacks()) {
+        context.reply.add_warning(std::move(warning));
+      }
     }
   }
   MoveSky(context, command.sky());

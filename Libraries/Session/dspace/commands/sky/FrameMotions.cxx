@@ -92,6 +92,7 @@ void SetFrameMotion(const Context& context, v1::SetFrameMotion& command) {
   Put(X, command.mutable_pose());
   sky.frames[frame] = command;
   sky.frames[frame].clear_pose();
+  sky.NewFallbacks(); // the reply has them
   for (const double value : {X.position.x(), X.position.y(), X.position.z(), X.rotation.w(),
                              X.rotation.x(), X.rotation.y(), X.rotation.z(), X.scale}) {
     context.reply.mutable_poses()->add_pose(value);
@@ -112,6 +113,7 @@ void SetSunMotion(const Context& context, v1::SetSunMotion& command) {
   context.GetScene().SetLight(MovedSun(context.GetScene(), command.sun()));
   sky.sun = command;
   sky.sun->clear_sun();
+  sky.NewFallbacks();
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include <dspace/Checks.h>
 #include <dspace/commands/sky/SkyTools.h>
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/orientation/BodyConstants.h>
 #include <dspace/sky/SubPoints.h>
@@ -38,6 +39,7 @@ void TurnFrames(const Context& context, v1::TurnFrames& command) {
   const std::vector<double> times = TimesOf(context, command);
   v1::FrameTurnsReply* reply = context.reply.mutable_frame_turns();
   for (const double tdb : times) {
+    FallbackScope::Begin(tdb);
     const StateTurn turn = frames.Turn(from, to, tdb);
     AddRows(turn.rotation, reply->mutable_rotation());
     if (command.rates()) {
@@ -98,9 +100,6 @@ void FindStates(const Context& context, v1::Ephemeris& command) {
     for (const std::string& name : used.hidden) {
       source->add_hidden(name);
     }
-    if (!used.warning.empty()) {
-      context.reply.add_warning(used.warning);
-    }
   }
 }
 
@@ -120,6 +119,7 @@ void FindSubPoints(const Context& context, v1::FindSubPoints& command) {
   v1::SubPointsReply* reply = context.reply.mutable_sub_points();
   reply->set_frame(frame);
   for (const double tdb : TimesOf(context, command)) {
+    FallbackScope::Begin(tdb);
     const SubPoint point =
         command.below_observer()
             ? SubObserverPoint(ephemeris, kernels.GetFrames(), body, frame, *observer, tdb)

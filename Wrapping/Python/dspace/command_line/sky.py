@@ -1,0 +1,180 @@
+"""`dspace sky`: the sky over a site as a picture, and where a body stands in it."""
+import json
+import math
+import pathlib
+import sys
+
+from dspace.command_line import Failed
+from dspace.errors import InvalidArgument, NotFound
+
+BODIES = ("sun", "moon", "mercury", "venus", "earth", "mars", "jupiter", "saturn", "uranus", "neptune")
+# DE405 and ERFA have no places of these in their systems: the barycentre stands for the planet (Jupiter: 200 km).
+BARYCENTERS = ("jupiter", "saturn", "uranus", "neptune")
+STAR_GAIN = 3e5  # shows stars beside lit bodies at exposure 1
+EYE_HEIGHT = 2.0  # [m] above the site: a body is drawn from a metre above its ground on
+
+
+class Wrong(Failed):
+    """Input that the command line cannot have: exit code 2."""
+
+
+def add_arguments(parser):
+    parser.add_argument("--time", required=True, metavar="UTC",
+                        help="UTC in ISO 8601, or with ' TDB', ' TT' or ' TAI' behind it")
+    parser.add_argument("--body", default="earth", metavar="BODY", help="on which the site is (default: earth)")
+    parser.add_argument("--site", required=True, metavar="LON,LAT[,H]",
+                        help="longitude (east) and planetocentric latitude [deg], height above the ellipsoid [m] "
+                        "(default: 0)")
+    parser.add_argument("--look-at", metavar="BODY", help="the body in the middle of the picture; its place is printed")
+    parser.add_argument("--azimuth", type=float, metavar="DEG", help="of the camera, clockwise from north")
+    parser.add_argument("--elevation", type=float, metavar="DEG", help="of the camera, -90 to 90 (default: 0)")
+    parser.add_argument("--fov", type=float, default=45.0, metavar="DEG",
+                        help="height of the picture, 0.001 to 170 (default: 45)")
+    parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (default: 1280x720)")
+    parser.add_argument("--exposure", type=float, default=1.0, metavar="X",
+                        help="a factor, 1e-12 to 1e12: 1 suits sunlit ground (default: 1)")
+    parser.add_argument("--catalogue", metavar="CSV", help="stars with columns ra_deg, dec_deg, magnitude, color_index "
+                        "(default: the Bright Star Catalogue)")
+    parser.add_argument("--kernel", action="append", nargs="+", default=[], metavar="FILE",
+                        help="SPICE kernels; later ones are asked first")
+    parser.add_argument("--grid", choices=("horizon", "equatorial"), help="meridians and parallels over the picture")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--out", metavar="PNG", help="the picture; without it, none is drawn")
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    try:
+        show(options)
+    except (Wrong, InvalidArgument, NotFound) as error:
+        print("dspace: " + " ".join(str(error).split()), file=sys.stderr)
+        return 2
+
+
+def show(options):
+    import dspace
+    site, size = site_of(options.site), size_of(options.size)
+    if (options.look_at is None) == (options.azimuth is None):
+        raise Wrong("--look-at, --azimuth: accepted: one of them")
+    if options.elevation is not None and options.azimuth is None:
+        raise Wrong("--elevation: accepted: with --azimuth")
+    check("--azimuth", options.azimuth, -360.0, 360.0)
+    check("--elevation", options.elevation, -90.0, 90.0)
+    check("--fov", options.fov, 1e-3, 170.0)
+    check("--exposure", options.exposure, 1e-12, 1e12)
+    if options.out is not None:
+        out = pathlib.Path(options.out)
+        if out.suffix.lower() != ".png":
+            raise Wrong(f"--out '{out}': accepted: a name with .png")
+        if not out.resolve().parent.is_dir():
+            raise Wrong(f"--out '{out}': there is no folder {out.resolve().parent}")
+    with dspace.Session() as session:
+        scene = session.scene()
+        for kernel in (each for group in options.kernel for each in group):
+            scene.kernels.load(kernel)
+        scene.time = scene.tdb(options.time)
+        target = None
+        if options.look_at is not None:
+            target = sky_of(scene, options.look_at, options.body, site)
+            azimuth, elevation = target.azimuth_deg, target.elevation_deg
+        else:
+            sky_of(scene, "sun", options.body, site)  # body and time are known
+            azimuth, elevation = options.azimuth, options.elevation or 0.0
+        if options.out is not None:
+            draw(scene, options, site, size, azimuth, elevation)
+        tell(options, scene.utc(), target, azimuth, elevation)
+    if options.out is not None and not options.json:
+        print(f"{out}: {size[0]} x {size[1]} pixels")
+
+
+def check(name, value, least, most):
+    if value is not None and not least <= value <= most:  # NaN too
+        raise Wrong(f"{name} {value:g}: accepted: {least:g} to {most:g}")
+
+
+def site_of(text):
+    """Longitude, latitude [deg], height [m] of "LON,LAT[,H]"."""
+    accepted = "accepted: LON,LAT[,H], with LON -360 to 360, LAT -90 to 90 deg, H in m"
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (2, 3) or not all(map(math.isfinite, numbers)):
+        raise Wrong(f"--site {text!r}: {accepted}")
+    longitude, latitude, height = (*numbers, 0.0)[:3]
+    if not (abs(longitude) <= 360.0 and abs(latitude) <= 90.0):
+        raise Wrong(f"--site {text!r}: {accepted}")
+    return longitude, latitude, height
+
+
+def size_of(text):
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal() and 0 < int(width) <= 16384 and 0 < int(height) <= 16384):
+        raise Wrong(f"--size {text!r}: accepted: WxH, 1 to 16384 pixels each")
+    return int(width), int(height)
+
+
+def sky_of(scene, name, body, site):
+    """The SkyBody of a target over the site. A planet whose own place no source has is taken at its barycentre."""
+    try:
+        return scene.sky(name, body=body, site=site)[name]
+    except (InvalidArgument, NotFound):
+        if name.lower() not in BARYCENTERS:
+            raise
+        return scene.sky(name + " barycenter", body=body, site=site)[name + " barycenter"]
+
+
+def axes_of(name):
+    """The body-fixed reference frame of a body."""
+    return {"moon": "MOON_ME", "earth": "ITRF93"}.get(name, f"IAU_{name.upper()}")
+
+
+def draw(scene, options, site, size, azimuth, elevation):
+    """Writes the picture. The scene's root is the centre of the site's body with J2000's axes, which the stars have.
+    Bodies stand where light time and aberration show them from that centre: within 0.4 arcsec of what is told, because
+    a place on the Earth moves at up to 0.47 km/s about it."""
+    from dspace.stars import read_stars
+    place = scene.add_celestial_frame("site", options.body, site=site, center=options.body)
+    columns = {name: name for name in ("ra_deg", "dec_deg", "magnitude", "color_index")}
+    scene.add_stars(None if options.catalogue is None else read_stars(options.catalogue, columns), gain=STAR_GAIN,
+                    spread=0.9)
+    for name in BODIES:
+        here = name == options.body.lower()
+        for source in (name, f"{name} barycenter"):
+            try:
+                frame = scene.add_celestial_frame(name, source, axes=axes_of(name), center=options.body,
+                                                  correction="NONE" if here else "CN+S")
+                break
+            except (InvalidArgument, NotFound):
+                if source != name or name not in BARYCENTERS:
+                    raise
+        scene.add_body(name, frame=frame)
+    if options.grid == "horizon":
+        scene.add_sky_grid("horizon", frame=place)
+    elif options.grid == "equatorial":
+        scene.add_sky_grid("equatorial")
+    a, e = math.radians(azimuth), math.radians(elevation)
+    ahead = (math.cos(e) * math.sin(a), math.cos(e) * math.cos(a), math.sin(e))
+    up = (0.0, 0.0, 1.0) if abs(elevation) < 89.999 else (math.sin(a), math.cos(a), 0.0)
+    eye = (0.0, 0.0, EYE_HEIGHT + max(0.0, -site[2]))  # never inside the ellipsoid
+    camera = scene.add_camera("sky", frame=place, eye=eye, target=tuple(p + q for p, q in zip(eye, ahead)), up=up,
+                              fov_deg=options.fov)
+    view = scene.add_viewport(size, camera, samples=2)
+    view.set(exposure=options.exposure, fill=0.0)  # the night is dark
+    view.save(options.out)
+
+
+def tell(options, utc, target, azimuth, elevation):
+    """Prints the target, or the camera's direction where there is none."""
+    found = {"utc": utc, "body": options.body, "azimuth_deg": azimuth, "elevation_deg": elevation}
+    if target is not None:
+        found.update(target=options.look_at, range_m=target.range, diameter_deg=2.0 * target.radius_deg,
+                     lit_fraction=target.lit_fraction)
+    if options.json:
+        json.dump(found, sys.stdout, indent=2, allow_nan=False)
+        print()
+    elif target is None:
+        print(f"{utc}  camera azimuth {azimuth:.6f} elevation {elevation:.6f} deg")
+    else:
+        print(f"{utc}  {options.look_at}  azimuth {azimuth:.6f} elevation {elevation:.6f} deg  range "
+              f"{target.range / 1e3:.3f} km  diameter {2.0 * target.radius_deg:.6f} deg")
