@@ -232,6 +232,22 @@ class App:
                 return run
         return Shown(shown, scene)
 
+    # --- The operator --------------------------------------------------------------------------
+
+    def answer(self, question, text):
+        """Answers an open question of the scene in the docks (scene.ask): the simulation of this window, or that of a
+        server, hears it. Raises dspace.Unsupported for a recording."""
+        shown, _ = self._host.active()
+        if any(run._player is shown for run in self.runs):
+            raise errors.Unsupported("nobody hears an answer to a recording; accepted: a live scene or a server",
+                                     f"question {question!r}")
+        for link in self.links:
+            if link._client.shown() is shown:
+                link.answer(question, text)
+                return
+        self.session.answer(question, text)
+        self.session.process_events()
+
     # --- Movies --------------------------------------------------------------------------------
 
     @property

@@ -1,6 +1,8 @@
 #include <dspace/widgets/window/MainWindow.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <stdexcept>
 
 #include <QAction>
@@ -20,6 +22,7 @@
 #include <QStatusBar>
 #include <QTimer>
 
+#include "vtkDspacePlayer.h"
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceSession.h"
 #include "vtkDspaceViewport.h"
@@ -33,6 +36,7 @@
 #include <dspace/widgets/desktop/MenuKeys.h>
 #include <dspace/widgets/desktop/NoticeBar.h>
 #include <dspace/widgets/desktop/RecentFiles.h>
+#include <dspace/widgets/operator/MessageWidget.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/viewport/QtContext.h>
@@ -43,6 +47,7 @@
 #include <dspace/widgets/window/KeyTable.h>
 #include <dspace/widgets/window/MovieTrack.h>
 #include <dspace/widgets/window/PlugIns.h>
+#include <dspace/widgets/window/PointerReadout.h>
 #include <dspace/widgets/window/PythonText.h>
 #include <dspace/widgets/window/Shell.h>
 #include <dspace/widgets/window/ShownScenes.h>
@@ -140,6 +145,8 @@ MainWindow::MainWindow(const QString& packages)
   };
   host.message = [this](const std::string& text) { this->Report(QString::fromStdString(text)); };
   this->Tasks_ = new TaskStrip(this);
+  this->Pointer_ = new PointerReadout(this);
+  this->statusBar()->addPermanentWidget(this->Pointer_);
   this->statusBar()->addPermanentWidget(this->Tasks_);
   this->Files_ = new FileCommands(this->Session_, this->Tasks_, this);
   host.readFiles = [this](const std::string& command) { this->Files_->Read(command); };
@@ -177,6 +184,7 @@ MainWindow::MainWindow(const QString& packages)
   this->addDockWidget(Qt::BottomDockWidgetArea, this->TimeDock_);
   this->splitDockWidget(this->TimeDock_, this->ConsoleDock_, Qt::Vertical);
   this->AddTelemetry(timeline);
+  this->AddMessages();
   this->AddViewParts(tree, timeline);
   this->MakeMenus();
   this->statusBar()->showMessage(
@@ -198,6 +206,8 @@ MainWindow::~MainWindow() {
   this->Movies_ = nullptr;
   delete this->Panes_;
   this->Panes_ = nullptr;
+  delete this->MessageDock_;
+  this->MessageDock_ = nullptr;
   delete this->Telemetry_;
   this->Telemetry_ = nullptr;
   delete this->Tasks_;
@@ -222,7 +232,32 @@ void MainWindow::AddTelemetry(TimelineWidget* timeline) {
             this->Run(QStringLiteral("app.plots[%1].add(%2)").arg(plot).arg(Quoted(channel)));
           });
   this->addDockWidget(Qt::BottomDockWidgetArea, this->Telemetry_->TableDock());
-  this->tabifyDockWidget(this->Telemetry_->TableDock(), this->ConsoleDock_);
+}
+
+void MainWindow::AddMessages() {
+  auto* messages = new MessageWidget(this);
+  messages->SetSource([scenes = this->Scenes_] {
+    const auto [of, scene] = scenes->ActiveScene();
+    MessageWidget::Shown shown;
+    shown.log = scenes->MessagesOf(of, scene);
+    shown.scene = std::hash<std::string>()(scene) ^ std::uint64_t(std::uintptr_t(of));
+    shown.canAnswer = vtkDspacePlayer::SafeDownCast(of) == nullptr;
+    return shown;
+  });
+  this->MessageDock_ = new QDockWidget(tr("Messages"), this);
+  this->MessageDock_->setObjectName(QStringLiteral("messages"));
+  this->MessageDock_->setWidget(messages);
+  connect(messages, &MessageWidget::answered, this,
+          [this](const QString& question, const QString& answer) {
+            this->Run(QStringLiteral("app.answer(%1, %2)").arg(Quoted(question), Quoted(answer)));
+          });
+  connect(messages, &MessageWidget::asked, this, [this] {
+    this->MessageDock_->show();
+    this->MessageDock_->raise();
+  });
+  this->addDockWidget(Qt::BottomDockWidgetArea, this->MessageDock_);
+  this->tabifyDockWidget(this->Telemetry_->TableDock(), this->MessageDock_);
+  this->tabifyDockWidget(this->MessageDock_, this->ConsoleDock_);
 }
 
 void MainWindow::MakeMenus() {
@@ -279,6 +314,7 @@ void MainWindow::MakeMenus() {
   view->addAction(this->SceneDock_->toggleViewAction());
   view->addAction(this->TimeDock_->toggleViewAction());
   view->addAction(this->Telemetry_->TableDock()->toggleViewAction());
+  view->addAction(this->MessageDock_->toggleViewAction());
   view->addAction(this->ConsoleDock_->toggleViewAction());
   this->menuBar()->addMenu(this->Movies_->Menu());
   this->Shell_->FillView(view);
@@ -428,6 +464,7 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   this->Panes_->Add(dock, widget, of, viewport);
   this->Selection_->Add(widget, of, viewport);
   this->ViewKeys_->Add(widget, viewport);
+  this->Pointer_->Add(widget, of, viewport);
   this->Libraries_->AddView(widget);
   if (this->Shell_->GetLayouts()->Place(dock)) { // a layout has it
     return;
@@ -438,7 +475,9 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   }
   this->Panes_->Tile();
   if (this->Views_.size() == 1) { // the views get the room: the prompt had all of it
+    this->Arranging_ = true;
     QTimer::singleShot(0, this, [this, dock = QPointer<QDockWidget>(dock)] {
+      this->Arranging_ = false;
       if (dock) {
         this->resizeDocks({dock, this->ConsoleDock_}, {4 * this->height() / 5, this->height() / 5},
                           Qt::Vertical);
@@ -489,14 +528,15 @@ int MainWindow::ViewCount() const {
 }
 
 bool MainWindow::IsSettled() const {
-  return std::all_of(this->Views_.begin(), this->Views_.end(), [](const auto& entry) {
-    ViewportWidget* widget = entry.second.widget;
-    const QDockWidget* dock = entry.second.dock;
-    if (dock && dock->isHidden() && !dock->testAttribute(Qt::WA_WState_ExplicitShowHide)) {
-      return false; // Qt shows a new dock in the next turn of the event loop
-    }
-    return !widget || !widget->isVisible() || widget->IsUpToDate();
-  });
+  return !this->Arranging_ &&
+         std::all_of(this->Views_.begin(), this->Views_.end(), [](const auto& entry) {
+           ViewportWidget* widget = entry.second.widget;
+           const QDockWidget* dock = entry.second.dock;
+           if (dock && dock->isHidden() && !dock->testAttribute(Qt::WA_WState_ExplicitShowHide)) {
+             return false; // Qt shows a new dock in the next turn of the event loop
+           }
+           return !widget || !widget->isVisible() || widget->IsUpToDate();
+         });
 }
 
 void MainWindow::AddViewParts(SceneTreeWidget* tree, TimelineWidget* timeline) {

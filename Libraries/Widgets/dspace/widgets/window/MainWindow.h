@@ -30,7 +30,9 @@ class ViewSelection;
 class PythonInterpreter;
 class SceneTreeWidget;
 class ShownScenes;
+class MessageWidget;
 class PlugIns;
+class PointerReadout;
 class Shell;
 class TaskStrip;
 class TelemetryDocks;
@@ -88,6 +90,7 @@ private:
     QPointer<QDockWidget> dock;
     QPointer<ViewportWidget> widget;
   };
+  void AddMessages();
   void AddTelemetry(TimelineWidget* timeline);
   void MakeMenus();
   void ShowView(vtkObject* of, const std::string& viewport, const std::string& title);
@@ -116,6 +119,9 @@ private:
   ViewPanes* Panes_ = nullptr;
   ViewSelection* Selection_ = nullptr;
   ViewKeys* ViewKeys_ = nullptr;
+  PointerReadout* Pointer_ = nullptr;
+  bool Arranging_ = false; // the first view gets its room in the next turn of the event loop
+  QDockWidget* MessageDock_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;

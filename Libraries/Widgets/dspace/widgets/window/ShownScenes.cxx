@@ -333,6 +333,16 @@ const session::Telemetry* ShownScenes::TelemetryOf(vtkObject* of, const std::str
   return found == scenes.end() ? nullptr : &found->second.telemetry;
 }
 
+const session::MessageLog* ShownScenes::MessagesOf(vtkObject* of, const std::string& scene) const {
+  Internals::Entry* entry = this->Impl_->Find(of);
+  if (!entry) {
+    return nullptr;
+  }
+  const auto& scenes = entry->session.Session()->GetInterpreter().GetState().scenes;
+  const auto found = scenes.find(scene);
+  return found == scenes.end() ? nullptr : &found->second.messages;
+}
+
 QString ShownScenes::Active() const {
   return this->Impl_->list->currentText();
 }

@@ -13,8 +13,9 @@ class vtkDspaceSession;
 class vtkObject;
 
 namespace dspace::session {
+class MessageLog;
 class Telemetry;
-}
+} // namespace dspace::session
 
 namespace dspace::widgets {
 
@@ -51,6 +52,8 @@ public:
   std::pair<vtkObject*, std::string> ActiveScene() const;
   // The channels of a scene; null: there is no such scene now. They may be gone after any command.
   const session::Telemetry* TelemetryOf(vtkObject* of, const std::string& scene) const;
+  // Likewise: its events and open questions.
+  const session::MessageLog* MessagesOf(vtkObject* of, const std::string& scene) const;
   // What is in the docks: the text of the list, and its clock.
   QString Active() const;
   TimeSource* Clock() const;

@@ -1,0 +1,109 @@
+// What the status bar shows of the point under the pointer.
+#include "WindowFixture.h"
+
+#include <cmath>
+
+#include <dspace/proto/commands.pb.h>
+#include <dspace/widgets/viewport/ViewportWidget.h>
+#include <dspace/widgets/window/PointerReadout.h>
+
+using dspace::widgets::PointerReadout;
+using dspace::widgets::ViewportWidget;
+
+namespace {
+
+class PointerReadoutTest : public WindowFixture {
+protected:
+  void TearDown() override {
+    EXPECT_TRUE(Run("for each in list(app.views.values()): app.close_view(each)\n"
+                    "[each.remove() for each in list(scene.objects.values())]\n"))
+        << errors.toStdString();
+    QTest::qWait(0);
+  }
+  // A view 10 m above the origin, looking down, with +X to the right.
+  static ViewportWidget* View() {
+    EXPECT_TRUE(QTest::qWaitForWindowExposed(window));
+    EXPECT_TRUE(Run("view = app.new_view()\n"
+                    "view.camera.look_at(eye=(0, 0, 10), target=(0, 0, 0), up=(0, 1, 0))\n"))
+        << errors.toStdString();
+    ViewportWidget* view = window->View(Value("view.name"));
+    // The first view gets three quarters of the window.
+    EXPECT_TRUE(Wait([&] { return view && view->width() > 0.6 * window->width(); }));
+    EXPECT_TRUE(Settled());
+    return view;
+  }
+  static QString Text() { return window->findChild<PointerReadout*>()->text(); }
+  static void MoveTo(ViewportWidget* view, const QPoint& place) {
+    QTest::mouseMove(view, place);
+    QMouseEvent move(QEvent::MouseMove, place, view->mapToGlobal(QPointF(place)), Qt::NoButton,
+                     Qt::NoButton, Qt::NoModifier);
+    QApplication::sendEvent(view, &move);
+  }
+  static double After(const QString& text, const QString& word) {
+    const QRegularExpression end(QString("[ ,%1]").arg(QChar(0xb0)));
+    return text.section(word, 1).trimmed().section(end, 0, 0).toDouble();
+  }
+};
+
+} // namespace
+
+TEST_F(PointerReadoutTest, ShowsTheObjectAndItsPlace) {
+  ASSERT_TRUE(Run("scene.add_box((1, 1, 1), position=(2, 0, 0), name='crate')"));
+  ViewportWidget* view = View();
+  ASSERT_TRUE(view);
+  // Pixels a metre at the top of the box, 9.5 m away: 45 degrees are the height of the picture.
+  const double scale = 0.5 * view->height() / std::tan(M_PI / 8) / 9.5;
+  MoveTo(view, {int(view->width() / 2 + 2.0 * scale), view->height() / 2});
+  ASSERT_TRUE(Wait([] { return Text().startsWith("crate "); })) << Text().toStdString();
+  EXPECT_NEAR(After(Text(), " x "), 2.0, 0.05); // two pixels
+  EXPECT_NEAR(After(Text(), " y "), 0.0, 0.05);
+  EXPECT_NEAR(After(Text(), " z "), 0.5, 1e-3);
+  // Beside it there is nothing, and outside of the view nothing is shown.
+  MoveTo(view, {4, 4});
+  EXPECT_TRUE(Wait([] { return Text().isEmpty(); })) << Text().toStdString();
+  MoveTo(view, {int(view->width() / 2 + 2.0 * scale), view->height() / 2});
+  ASSERT_TRUE(Wait([] { return !Text().isEmpty(); }));
+  QEvent leave(QEvent::Leave);
+  QApplication::sendEvent(view, &leave);
+  EXPECT_TRUE(Text().isEmpty());
+}
+
+TEST_F(PointerReadoutTest, ShowsWhatTerrainKnows) {
+  // A plane that rises by 0.1 m a metre to the east.
+  ASSERT_TRUE(
+      Run(QString("import os\n"
+                  "path = os.path.join(r'%1', 'slope.asc')\n"
+                  "open(path, 'w').write('ncols 41\\nnrows 41\\nxllcorner 1000\\n"
+                  "yllcorner 2000\\ncellsize 1\\n' + '\\n'.join(' '.join("
+                  "str(0.1 * x) for x in range(41)) for y in range(41)))\n"
+                  "ground = scene.add_terrain(path, name='ground', origin=(1020.5, 2020.5))\n")
+              .arg(folder->path())))
+      << errors.toStdString();
+  ViewportWidget* view = View();
+  ASSERT_TRUE(view);
+  MoveTo(view, {view->width() / 2, view->height() / 2});
+  ASSERT_TRUE(Wait([] { return Text().contains("slope"); })) << Text().toStdString();
+  EXPECT_NEAR(After(Text(), "slope"), std::atan(0.1) * 180.0 / M_PI, 0.05); // one decimal
+  const QString map = Text().section("map ", 1);
+  EXPECT_NEAR(map.section(',', 0, 0).toDouble(), 1020.5, 0.05);
+  EXPECT_NEAR(map.section(',', 1).trimmed().section(' ', 0, 0).toDouble(), 2020.5, 0.05);
+  EXPECT_NEAR(After(Text(), "height"), 2.0, 0.01);
+  EXPECT_FALSE(Text().contains(QChar(0xb0) + QString(" E"))); // a raster without a CRS
+  ASSERT_TRUE(Run("ground.remove()"));
+}
+
+TEST(PointerReadout, WritesLongitudesToTheSideThatTheyAreOn) {
+  dspace::v1::Reply reply;
+  auto* pick = reply.mutable_pick();
+  pick->set_object(3);
+  pick->set_object_name("Gale");
+  pick->set_terrain("gale");
+  pick->mutable_map()->set_z(-4501.25);
+  pick->mutable_coordinates()->set_longitude_deg(137.4416);
+  pick->mutable_coordinates()->set_latitude_deg(-4.5895);
+  const QString text = PointerReadout::TextOf(reply.SerializeAsString(), {});
+  EXPECT_TRUE(text.contains(QString("137.441600%1 E  4.589500%1 S").arg(QChar(0xb0))))
+      << text.toStdString();
+  EXPECT_TRUE(text.contains("height -4501.250 m")) << text.toStdString();
+  EXPECT_EQ(PointerReadout::TextOf({}, {}), "");
+}

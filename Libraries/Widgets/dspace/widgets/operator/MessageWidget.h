@@ -1,0 +1,91 @@
+// The messages of a simulation and its open questions.
+#ifndef DSPACE_WIDGETS_MESSAGE_WIDGET_H
+#define DSPACE_WIDGETS_MESSAGE_WIDGET_H
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include <QTimer>
+#include <QWidget>
+
+class QComboBox;
+class QLabel;
+class QLineEdit;
+class QTreeWidget;
+class QVBoxLayout;
+
+namespace dspace::session {
+class MessageLog;
+}
+
+namespace dspace::widgets {
+
+// A table of the logged events of a scene, the newest last: time [s], severity, kind, frame, text.
+// It shows the newest 1,000 that match the filters. Above it each open question has a panel with
+// its choices, or with a line for any text. Changes are shown within 0.2 s while the widget is
+// visible.
+class MessageWidget : public QWidget {
+  Q_OBJECT
+
+public:
+  static constexpr int MostRows = 1000;
+
+  // `log` is null where there is no scene. It is used before control returns.
+  struct Shown {
+    const session::MessageLog* log = nullptr;
+    std::uint64_t scene = 0; // another number: another scene
+    bool canAnswer = true;   // false: a recording, where nobody hears the answer
+  };
+  using Source = std::function<Shown()>;
+
+  explicit MessageWidget(QWidget* parent = nullptr);
+  ~MessageWidget() override;
+
+  void SetSource(Source source);
+  // Looks for changes now, also while it is hidden.
+  void Refresh();
+  // The rows of the table.
+  int Count() const;
+  // Of a row: the columns' texts, separated by tabs.
+  QString Row(int row) const;
+
+signals:
+  // The operator answered an open question of the scene that is shown.
+  void answered(const QString& question, const QString& answer);
+  // A question was asked that was not there before.
+  void asked(const QString& question);
+
+private:
+  struct State { // of what is shown
+    std::uint64_t scene = 0;
+    std::uint64_t last = 0;
+    std::size_t kept = 0;
+    bool any = false;
+    bool canAnswer = true;
+    bool operator==(const State& other) const {
+      return this->scene == other.scene && this->last == other.last && this->kept == other.kept &&
+             this->any == other.any && this->canAnswer == other.canAnswer;
+    }
+  };
+
+  void ShowEvents(const session::MessageLog* log);
+  void ShowQuestions(const Shown& shown);
+  QWidget* Panel(const QString& name, const QString& text, const QStringList& choices, int severity,
+                 bool canAnswer);
+
+  Source Source_;
+  QTimer Timer_;
+  QComboBox* Severity_ = nullptr;
+  QLineEdit* Filter_ = nullptr;
+  QTreeWidget* Table_ = nullptr;
+  QVBoxLayout* Questions_ = nullptr;
+  std::map<std::string, QWidget*> Panels_; // by question
+  State State_;
+  bool Filtered_ = false; // by other filters than those of the table
+};
+
+} // namespace dspace::widgets
+
+#endif

@@ -1,0 +1,151 @@
+#include <dspace/widgets/window/PointerReadout.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include <QEvent>
+#include <QGuiApplication>
+#include <QMouseEvent>
+#include <QStringList>
+
+#include <dspace/proto/commands.pb.h>
+#include <dspace/widgets/viewport/ShownSession.h>
+#include <dspace/widgets/viewport/ViewportWidget.h>
+
+namespace dspace::widgets {
+namespace {
+
+constexpr int Rest_ms = 100;    // between two picks
+constexpr int MostLetters = 60; // of a name
+constexpr int MostFields = 4;   // of a terrain
+const QChar Degree(0xb0);
+
+QString Shortened(const std::string& name) {
+  const QString text = QString::fromStdString(name);
+  return text.size() <= MostLetters ? text : text.left(MostLetters - 1) + QChar(0x2026);
+}
+
+// With a millimetre's digits, which a float of a picture does not exceed.
+QString Metres(double value) {
+  return std::isfinite(value) ? QString::number(value, 'f', 3) : QObject::tr("no data");
+}
+
+// "137.441635° E"
+QString Angle(double degrees, const QString& positive, const QString& negative) {
+  return QString::number(std::abs(degrees), 'f', 6) + Degree + ' ' +
+         (degrees < 0.0 ? negative : positive);
+}
+
+} // namespace
+
+PointerReadout::PointerReadout(QWidget* parent) : QLabel(parent) {
+  this->setObjectName(QStringLiteral("pointer"));
+  this->setTextFormat(Qt::PlainText);
+  this->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  this->setAccessibleName(tr("What is under the pointer"));
+  this->setToolTip(
+      tr("The point under the pointer: in the root [m]; on terrain also in its map [m], "
+         "and its height above the vertical datum [m]"));
+  this->Rest_.setSingleShot(true);
+  connect(&this->Rest_, &QTimer::timeout, this, [this] { this->Look(); });
+}
+
+void PointerReadout::Add(ViewportWidget* widget, vtkObject* of, const std::string& viewport) {
+  this->Views_[widget] = {of, viewport};
+  widget->setMouseTracking(true);
+  widget->installEventFilter(this);
+  connect(widget, &QObject::destroyed, this, [this](QObject* gone) { this->Views_.erase(gone); });
+}
+
+bool PointerReadout::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::MouseMove && this->Views_.count(watched) > 0) {
+    const auto* moved = static_cast<QMouseEvent*>(event);
+    if (moved->buttons() == Qt::NoButton) {
+      this->Over_ = static_cast<ViewportWidget*>(watched);
+      this->Place_ = moved->position();
+      if (!this->Rest_.isActive()) {
+        this->Rest_.start(Rest_ms);
+      }
+    }
+  } else if (event->type() == QEvent::Leave && watched == this->Over_) {
+    this->Over_ = nullptr;
+    this->clear();
+  }
+  return QLabel::eventFilter(watched, event);
+}
+
+void PointerReadout::Look() {
+  const auto found = this->Views_.find(this->Over_);
+  if (!this->Over_ || found == this->Views_.end()) {
+    return;
+  }
+  if (QGuiApplication::mouseButtons() != Qt::NoButton || !this->Over_->IsUpToDate()) {
+    this->Rest_.start(Rest_ms);
+    return;
+  }
+  try {
+    const ShownSession session(found->second.of);
+    if (!session.Viewport(found->second.viewport)) {
+      return; // a playback is between two steps
+    }
+    const double ratio = this->Over_->devicePixelRatioF();
+    v1::Command command;
+    v1::Pick* pick = command.mutable_pick();
+    pick->set_viewport(found->second.viewport);
+    pick->set_x(this->Place_.x() * ratio - 0.5);
+    pick->set_y(this->Place_.y() * ratio - 0.5);
+    const std::string picked = session.Execute(command.SerializeAsString());
+    v1::Reply reply;
+    std::string slope;
+    if (reply.ParseFromString(picked) && !reply.pick().terrain().empty()) {
+      v1::Command ask;
+      ask.set_scene(session.SceneOf(found->second.viewport));
+      v1::QueryTerrain* query = ask.mutable_query_terrain();
+      query->set_terrain(reply.pick().terrain());
+      const v1::Vector3& at = reply.pick().in_object_frame();
+      for (const double value : {at.x(), at.y(), at.z()}) {
+        query->add_point(value);
+      }
+      query->set_spatial(true);
+      query->set_slope(true);
+      slope = session.Execute(ask.SerializeAsString());
+    }
+    this->setText(PointerReadout::TextOf(picked, slope));
+  } catch (const std::exception&) {
+    this->clear(); // the view itself reports what fails
+  }
+}
+
+QString PointerReadout::TextOf(const std::string& picked, const std::string& slope) {
+  v1::Reply reply;
+  if (!reply.ParseFromString(picked) || reply.pick().object() == 0) {
+    return {};
+  }
+  const v1::PickReply& pick = reply.pick();
+  QStringList parts;
+  const QString part = Shortened(pick.part());
+  parts << Shortened(pick.object_name()) + (part.isEmpty() ? QString() : " / " + part);
+  if (pick.terrain().empty()) {
+    const v1::Vector3& at = pick.in_root();
+    parts << tr("x %1  y %2  z %3 m").arg(Metres(at.x()), Metres(at.y()), Metres(at.z()));
+  } else {
+    parts << tr("map %1, %2 m").arg(Metres(pick.map().x()), Metres(pick.map().y()));
+    if (pick.has_coordinates()) {
+      parts << Angle(pick.coordinates().longitude_deg(), tr("E"), tr("W")) + "  " +
+                   Angle(pick.coordinates().latitude_deg(), tr("N"), tr("S"));
+    }
+    parts << tr("height %1 m").arg(Metres(pick.map().z()));
+    v1::Reply told;
+    if (told.ParseFromString(slope) && told.terrain_values().slope_deg_size() == 1 &&
+        std::isfinite(told.terrain_values().slope_deg(0))) {
+      parts << tr("slope %1").arg(told.terrain_values().slope_deg(0), 0, 'f', 1) + Degree;
+    }
+    for (int i = 0; i < std::min(MostFields, pick.field_size()); ++i) {
+      parts << Shortened(pick.field(i).name()) + ' ' + QString::number(pick.field(i).value());
+    }
+  }
+  return parts.join(QStringLiteral("   "));
+}
+
+} // namespace dspace::widgets

@@ -1,0 +1,55 @@
+// What is under the pointer: the object, its place, and what its terrain knows there.
+#ifndef DSPACE_WIDGETS_POINTER_READOUT_H
+#define DSPACE_WIDGETS_POINTER_READOUT_H
+
+#include <map>
+#include <string>
+
+#include <QLabel>
+#include <QPointer>
+#include <QTimer>
+
+class vtkObject;
+
+namespace dspace::widgets {
+
+class ViewportWidget;
+
+// For a status bar. The pixel under a pointer that rests over a view is picked, at most ten times a
+// second, from a picture that is drawn already, and not while a button is held. Of an object the
+// label shows the name and the point in the root [m]; of terrain the map coordinates [m], longitude
+// and latitude [deg], height above the vertical datum [m], slope [deg] and fields too. Its text can
+// be selected; its context menu copies it.
+class PointerReadout : public QLabel {
+  Q_OBJECT
+
+public:
+  explicit PointerReadout(QWidget* parent = nullptr);
+
+  // From now on the pointer over the view of a viewport is followed.
+  void Add(ViewportWidget* widget, vtkObject* of, const std::string& viewport);
+
+  // Of a serialized Reply with a PickReply, and one with the terrain's slope there (may be empty).
+  // "": nothing was hit.
+  static QString TextOf(const std::string& pick, const std::string& slope);
+
+protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+private:
+  struct View {
+    vtkObject* of;
+    std::string viewport;
+  };
+
+  void Look();
+
+  std::map<QObject*, View> Views_;
+  QPointer<ViewportWidget> Over_; // the view that the pointer is over
+  QPointF Place_;                 // in it
+  QTimer Rest_;
+};
+
+} // namespace dspace::widgets
+
+#endif
