@@ -2,6 +2,7 @@
 #include "WindowFixture.h"
 
 #include <cmath>
+#include <utility>
 
 #include <dspace/proto/commands.pb.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
@@ -27,14 +28,16 @@ protected:
                     "view.camera.look_at(eye=(0, 0, 10), target=(0, 0, 0), up=(0, 1, 0))\n"))
         << errors.toStdString();
     ViewportWidget* view = window->View(Value("view.name"));
-    // The first view gets three quarters of the window.
-    EXPECT_TRUE(Wait([&] { return view && view->width() > 0.6 * window->width(); }));
+    QSize last; // the docks move into their places
+    EXPECT_TRUE(Wait([&] {
+      QTest::qWait(200);
+      return view && std::exchange(last, view->size()) == view->size();
+    }));
     EXPECT_TRUE(Settled());
     return view;
   }
   static QString Text() { return window->findChild<PointerReadout*>()->text(); }
   static void MoveTo(ViewportWidget* view, const QPoint& place) {
-    QTest::mouseMove(view, place);
     QMouseEvent move(QEvent::MouseMove, place, view->mapToGlobal(QPointF(place)), Qt::NoButton,
                      Qt::NoButton, Qt::NoModifier);
     QApplication::sendEvent(view, &move);
