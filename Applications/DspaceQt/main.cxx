@@ -35,10 +35,16 @@ void TakeScreenshot(dspace::widgets::MainWindow& window, const QString& path, do
   auto* timer = new QTimer(&window);
   auto clock = std::make_shared<QElapsedTimer>();
   clock->start();
-  QObject::connect(timer, &QTimer::timeout, &window, [&window, path, after_s, clock] {
+  auto calm = std::make_shared<QElapsedTimer>(); // since the window is settled
+  calm->start();
+  QObject::connect(timer, &QTimer::timeout, &window, [&window, path, after_s, clock, calm] {
     const double elapsed = 1e-3 * double(clock->elapsed());
     constexpr double Patience = 2.0; // [s] for scenes that never stand still
-    if (elapsed < after_s || (!window.IsSettled() && elapsed < after_s + Patience)) {
+    constexpr qint64 Calm_ms = 300;  // docks find their places, and show what they look at
+    if (!window.IsSettled()) {
+      calm->start();
+    }
+    if (elapsed < after_s || (calm->elapsed() < Calm_ms && elapsed < after_s + Patience)) {
       return;
     }
     QPixmap picture = window.grab();

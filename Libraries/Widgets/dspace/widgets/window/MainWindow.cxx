@@ -145,6 +145,7 @@ MainWindow::MainWindow(const QString& packages)
   };
   host.message = [this](const std::string& text) { this->Report(QString::fromStdString(text)); };
   this->Tasks_ = new TaskStrip(this);
+  this->setAnimated(false); // docks that move would resize the views' pictures again and again
   this->Pointer_ = new PointerReadout(this);
   this->statusBar()->addPermanentWidget(this->Pointer_);
   this->statusBar()->addPermanentWidget(this->Tasks_);
