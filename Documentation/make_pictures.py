@@ -13,7 +13,7 @@ from pictures.paths import DATA, IMAGES  # noqa: E402
 EVERYWHERE = (scenes.first_picture, scenes.views, scenes.demo_drive, scenes.movie, scenes.banner, vtk.pipeline, vtk.props,
               vtk.own_object, light.photometry, sky.stars, application.application,
               application.application_telemetry, application.application_console, application.application_dark,
-              application.application_keys, application.application_map)
+              application.application_keys, application.application_map, application.application_messages)
 OF_REAL_DATA = (scenes.drives, models.formats, terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
                 terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth, application.application_terrain,
                 trajectories.artemis_inertial, trajectories.artemis_rotating)

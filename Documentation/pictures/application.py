@@ -138,3 +138,14 @@ def application_map():
                      "link.map.set(shadows=True, fill=0.05)\n")
         script.flush()
         _screenshot("application_map", "--after", "8", script.name)
+
+
+def application_messages():
+    """Messages of the simulation, and a question that it asks."""
+    with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
+        script.write("drive = app.demo()\napp.close_view(app.views['mast'])\ndrive.stop()\n"
+                     "scene.log_event('mode', 'drive mode', severity='caution')\n"
+                     "scene.log_event('fault', 'wheel 3 is stuck', severity='alarm')\n"
+                     "scene.ask('drive', 'The slope ahead is 18 degrees. Go on?', ['Yes', 'No', 'Turn left'], severity='warning')\n")
+        script.flush()
+        _screenshot("application_messages", "--after", "8", script.name)

@@ -240,8 +240,8 @@ TEST_F(MovieTrackTest, TheDialogExportsWhileTheWindowLives) {
   ASSERT_TRUE(ok->isEnabled());
   QTest::mouseClick(ok, Qt::LeftButton);
   auto* tasks = window->findChild<dspace::widgets::TaskStrip*>();
-  EXPECT_EQ(tasks->Count(), 1);
-  // The window draws and takes events meanwhile.
+  EXPECT_TRUE(Wait([&] { return tasks->Count() == 1; }));
+  // The window draws and takes events during the export.
   int beats = 0;
   double longest = 0.0;
   QElapsedTimer clock;

@@ -16,6 +16,7 @@
 #include <QRegularExpression>
 #include <QSpinBox>
 #include <QThread>
+#include <QTimer>
 
 #include <dspace/widgets/window/PythonText.h>
 
@@ -106,7 +107,7 @@ ExportDialog::ExportDialog(const QJsonArray& size, double rate, int samples, dou
   this->Buttons_->button(QDialogButtonBox::Ok)->setObjectName("export");
   connect(this->Buttons_, &QDialogButtonBox::accepted, this, [this] {
     LastFolder() = QFileInfo(this->Path_->text()).path();
-    this->accept();
+    QTimer::singleShot(0, this, &QDialog::accept); // it ends after the button's event
   });
   connect(this->Buttons_, &QDialogButtonBox::rejected, this, &QDialog::reject);
   form->addRow(this->Buttons_);

@@ -338,7 +338,8 @@ void MovieTrack::Export() {
   auto* dialog =
       new ExportDialog(state["size"].toArray(), state["rate"].toDouble(30.0),
                        state["samples"].toInt(2), state["duration"].toDouble(), this->Window_);
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  // Not by WA_DeleteOnClose: hiding may run events, which would delete it too early.
+  connect(dialog, &QDialog::finished, dialog, &QObject::deleteLater);
   connect(dialog, &QDialog::accepted, this, [this, dialog] { this->Host_.run(dialog->Line()); });
   dialog->open();
 }
