@@ -80,4 +80,4 @@ def test_without_kernels_planets_and_grids_are_drawn(capsys, tmp_path):
     ("--look-at", "sun", "--kernel", "/nonexistent.bsp")])
 def test_bad_input_is_one_line(capsys, arguments):
     code, out, err = run(capsys, "--time", "2026-11-01", *SITE, *arguments)
-    assert code == 2 and out == "" and len(err.strip().splitlines()) == 1
+    assert code == 1 and out == "" and len(err.strip().splitlines()) == 1

@@ -1,4 +1,4 @@
-// Tells when answers come from data of lower accuracy than those that were loaded.
+// Reports when results come from data of lower accuracy than the loaded data.
 #ifndef DSPACE_ANALYSIS_FALLBACKS_H
 #define DSPACE_ANALYSIS_FALLBACKS_H
 

@@ -71,6 +71,29 @@ TEST_F(PointerReadoutTest, ShowsTheObjectAndItsPlace) {
   EXPECT_TRUE(Text().isEmpty());
 }
 
+// In a scene that changes all the time, and under a pointer that does not move.
+TEST_F(PointerReadoutTest, FollowsWhatMovesUnderThePointer) {
+  ASSERT_TRUE(Run("lift = scene.add_frame('lift')\n"
+                  "scene.add_box((4, 4, 1), frame=lift, name='crate')\n"));
+  ViewportWidget* view = View();
+  ASSERT_TRUE(view);
+  int steps = 0;
+  QTimer timer;
+  QObject::connect(&timer, &QTimer::timeout, [&] {
+    window->Interpreter()->Run(QString("lift.pose = dspace.Pose((0, 0, %1))").arg(0.002 * ++steps));
+  });
+  timer.start(2);
+  MoveTo(view, {view->width() / 2, view->height() / 2});
+  ASSERT_TRUE(Wait([] { return Text().startsWith("crate "); })) << Text().toStdString();
+  const double before = After(Text(), " z ");
+  EXPECT_TRUE(Wait([&] { return After(Text(), " z ") > before + 0.05; })) << Text().toStdString();
+  EXPECT_LE(After(Text(), " z "), 0.5 + 0.002 * steps + 1e-3);
+  timer.stop();
+  EXPECT_TRUE(Wait([&] { return std::abs(After(Text(), " z ") - 0.5 - 0.002 * steps) < 2e-3; }))
+      << Text().toStdString(); // millimetres
+  ASSERT_TRUE(Run("[each.remove() for each in list(scene.objects.values())]; lift.remove()"));
+}
+
 TEST_F(PointerReadoutTest, ShowsWhatTerrainKnows) {
   // A plane that rises by 0.1 m a metre to the east.
   ASSERT_TRUE(

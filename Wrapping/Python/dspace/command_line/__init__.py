@@ -18,7 +18,7 @@ WORDS = {"ephemeris": "print states of bodies and spacecraft",
          "movie": "make a movie of a run from a text file of camera key frames",
          "play": "draw pictures of a recording, without a simulation",
          "serve": "serve a session to simulations and viewers in other processes",
-         "sky": "draw the sky over a site, and tell where a body stands in it",
+         "sky": "draw the sky over a site, and print the direction of a body",
          "terrain": "describe and draw rasters of heights",
          "watch": "draw pictures of a running simulation through its server"}
 

@@ -1,4 +1,4 @@
-"""`dspace sky`: the sky over a site as a picture, and where a body stands in it."""
+"""`dspace sky`: the sky over a site as a picture, and the direction of a body."""
 import json
 import math
 import pathlib
@@ -14,14 +14,10 @@ STAR_GAIN = 3e5  # shows stars beside lit bodies at exposure 1
 EYE_HEIGHT = 2.0  # [m] above the site: a body is drawn from a metre above its ground on
 
 
-class Wrong(Failed):
-    """Input that the command line cannot have: exit code 2."""
-
-
 def add_arguments(parser):
     parser.add_argument("--time", required=True, metavar="UTC",
                         help="UTC in ISO 8601, or with ' TDB', ' TT' or ' TAI' behind it")
-    parser.add_argument("--body", default="earth", metavar="BODY", help="on which the site is (default: earth)")
+    parser.add_argument("--body", default="earth", metavar="BODY", help="the body that the site is on (default: earth)")
     parser.add_argument("--site", required=True, metavar="LON,LAT[,H]",
                         help="longitude (east) and planetocentric latitude [deg], height above the ellipsoid [m] "
                         "(default: 0)")
@@ -44,20 +40,12 @@ def add_arguments(parser):
 
 
 def run(options):
-    try:
-        show(options)
-    except (Wrong, InvalidArgument, NotFound) as error:
-        print("dspace: " + " ".join(str(error).split()), file=sys.stderr)
-        return 2
-
-
-def show(options):
     import dspace
     site, size = site_of(options.site), size_of(options.size)
     if (options.look_at is None) == (options.azimuth is None):
-        raise Wrong("--look-at, --azimuth: accepted: one of them")
+        raise Failed("--look-at, --azimuth: accepted: one of them")
     if options.elevation is not None and options.azimuth is None:
-        raise Wrong("--elevation: accepted: with --azimuth")
+        raise Failed("--elevation: accepted: with --azimuth")
     check("--azimuth", options.azimuth, -360.0, 360.0)
     check("--elevation", options.elevation, -90.0, 90.0)
     check("--fov", options.fov, 1e-3, 170.0)
@@ -65,9 +53,9 @@ def show(options):
     if options.out is not None:
         out = pathlib.Path(options.out)
         if out.suffix.lower() != ".png":
-            raise Wrong(f"--out '{out}': accepted: a name with .png")
+            raise Failed(f"--out '{out}': accepted: a name with .png")
         if not out.resolve().parent.is_dir():
-            raise Wrong(f"--out '{out}': there is no folder {out.resolve().parent}")
+            raise Failed(f"--out '{out}': there is no folder {out.resolve().parent}")
     with dspace.Session() as session:
         scene = session.scene()
         for kernel in (each for group in options.kernel for each in group):
@@ -89,7 +77,7 @@ def show(options):
 
 def check(name, value, least, most):
     if value is not None and not least <= value <= most:  # NaN too
-        raise Wrong(f"{name} {value:g}: accepted: {least:g} to {most:g}")
+        raise Failed(f"{name} {value:g}: accepted: {least:g} to {most:g}")
 
 
 def site_of(text):
@@ -100,17 +88,17 @@ def site_of(text):
     except ValueError:
         numbers = []
     if len(numbers) not in (2, 3) or not all(map(math.isfinite, numbers)):
-        raise Wrong(f"--site {text!r}: {accepted}")
+        raise Failed(f"--site {text!r}: {accepted}")
     longitude, latitude, height = (*numbers, 0.0)[:3]
     if not (abs(longitude) <= 360.0 and abs(latitude) <= 90.0):
-        raise Wrong(f"--site {text!r}: {accepted}")
+        raise Failed(f"--site {text!r}: {accepted}")
     return longitude, latitude, height
 
 
 def size_of(text):
     width, _, height = text.partition("x")
     if not (width.isdecimal() and height.isdecimal() and 0 < int(width) <= 16384 and 0 < int(height) <= 16384):
-        raise Wrong(f"--size {text!r}: accepted: WxH, 1 to 16384 pixels each")
+        raise Failed(f"--size {text!r}: accepted: WxH, 1 to 16384 pixels each")
     return int(width), int(height)
 
 
@@ -131,8 +119,8 @@ def axes_of(name):
 
 def draw(scene, options, site, size, azimuth, elevation):
     """Writes the picture. The scene's root is the centre of the site's body with J2000's axes, which the stars have.
-    Bodies stand where light time and aberration show them from that centre: within 0.4 arcsec of what is told, because
-    a place on the Earth moves at up to 0.47 km/s about it."""
+    Bodies are at their apparent places from that centre, with light time and aberration: within 0.4 arcsec of the
+    printed place, because a site on the Earth moves about the centre at up to 0.47 km/s."""
     from dspace.stars import read_stars
     place = scene.add_celestial_frame("site", options.body, site=site, center=options.body)
     columns = {name: name for name in ("ra_deg", "dec_deg", "magnitude", "color_index")}

@@ -85,13 +85,17 @@ MessageWidget::MessageWidget(QWidget* parent) : QWidget(parent) {
   this->Table_->header()->setStretchLastSection(true);
   column->addWidget(this->Table_, 1);
   const auto filter = [this] {
-    this->Filtered_ = true;
+    this->Stale_ = true;
     this->Refresh();
   };
   connect(this->Severity_, &QComboBox::currentIndexChanged, this, filter);
   connect(this->Filter_, &QLineEdit::textChanged, this, filter);
   connect(&this->Timer_, &QTimer::timeout, this, [this] {
-    this->Refresh(); // while it is hidden, too: a question raises its dock
+    if (this->isVisible()) {
+      this->Refresh();
+    } else { // a question raises the dock
+      this->ShowQuestions(this->Look());
+    }
   });
   this->Timer_.start(Refresh_ms);
 }
@@ -116,27 +120,34 @@ QString MessageWidget::Row(int row) const {
   return texts.join('\t');
 }
 
-void MessageWidget::Refresh() {
+void MessageWidget::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  this->Refresh();
+}
+
+MessageWidget::Shown MessageWidget::Look() {
   const Shown shown = this->Source_ ? this->Source_() : Shown();
-  State state;
-  state.scene = shown.scene;
-  state.any = shown.log != nullptr;
-  state.canAnswer = shown.canAnswer;
-  if (shown.log) {
-    state.last = shown.log->LastNumber();
-    state.kept = shown.log->Events().size();
-  }
-  if (!(state == this->State_) || this->Filtered_) {
-    this->ShowEvents(shown.log);
-  }
-  if (state.scene != this->State_.scene || state.canAnswer != this->State_.canAnswer) {
+  if (shown.scene != this->Last_.scene || shown.canAnswer != this->Last_.canAnswer) {
+    this->Stale_ = true;
     for (const auto& [name, panel] : this->Panels_) {
       delete panel;
     }
     this->Panels_.clear();
   }
-  this->State_ = state;
-  this->Filtered_ = false;
+  this->Last_ = shown;
+  return shown;
+}
+
+void MessageWidget::Refresh() {
+  const Shown shown = this->Look();
+  const std::uint64_t number = shown.log ? shown.log->LastNumber() : 0;
+  const std::size_t kept = shown.log ? shown.log->Events().size() : 0;
+  if (this->Stale_ || number != this->Number_ || kept != this->Kept_) {
+    this->ShowEvents(shown.log);
+    this->Stale_ = false;
+    this->Number_ = number;
+    this->Kept_ = kept;
+  }
   this->ShowQuestions(shown);
 }
 

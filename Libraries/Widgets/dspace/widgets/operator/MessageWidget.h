@@ -11,7 +11,6 @@
 #include <QWidget>
 
 class QComboBox;
-class QLabel;
 class QLineEdit;
 class QTreeWidget;
 class QVBoxLayout;
@@ -57,19 +56,12 @@ signals:
   // A question was asked that was not there before.
   void asked(const QString& question);
 
-private:
-  struct State { // of what is shown
-    std::uint64_t scene = 0;
-    std::uint64_t last = 0;
-    std::size_t kept = 0;
-    bool any = false;
-    bool canAnswer = true;
-    bool operator==(const State& other) const {
-      return this->scene == other.scene && this->last == other.last && this->kept == other.kept &&
-             this->any == other.any && this->canAnswer == other.canAnswer;
-    }
-  };
+protected:
+  void showEvent(QShowEvent* event) override;
 
+private:
+  // The source's log and whether its questions can be answered; panels of another scene go.
+  Shown Look();
   void ShowEvents(const session::MessageLog* log);
   void ShowQuestions(const Shown& shown);
   QWidget* Panel(const QString& name, const QString& text, const QStringList& choices, int severity,
@@ -82,8 +74,10 @@ private:
   QTreeWidget* Table_ = nullptr;
   QVBoxLayout* Questions_ = nullptr;
   std::map<std::string, QWidget*> Panels_; // by question
-  State State_;
-  bool Filtered_ = false; // by other filters than those of the table
+  Shown Last_;                             // of the last look; its log is not used
+  std::uint64_t Number_ = 0;               // the last event in the table
+  std::size_t Kept_ = 0;                   // the number of events in the log at that time
+  bool Stale_ = true;                      // the table has another scene, or other filters
 };
 
 } // namespace dspace::widgets

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <utility>
 
+#include <QElapsedTimer>
 #include <QEvent>
 #include <QGuiApplication>
 #include <QMouseEvent>
@@ -16,7 +18,8 @@
 namespace dspace::widgets {
 namespace {
 
-constexpr int Rest_ms = 100;    // between two picks
+constexpr int Rest_ms = 100;    // between two picks, at least
+constexpr int PickShare = 10;   // one part of so many goes into picks
 constexpr int MostLetters = 60; // of a name
 constexpr int MostFields = 4;   // of a terrain
 const QChar Degree(0xb0);
@@ -39,7 +42,7 @@ QString Angle(double degrees, const QString& positive, const QString& negative) 
 
 } // namespace
 
-PointerReadout::PointerReadout(QWidget* parent) : QLabel(parent) {
+PointerReadout::PointerReadout(QWidget* parent) : QLabel(parent), Pause_ms_(Rest_ms) {
   this->setObjectName(QStringLiteral("pointer"));
   this->setTextFormat(Qt::PlainText);
   this->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -56,6 +59,17 @@ void PointerReadout::Add(ViewportWidget* widget, vtkObject* of, const std::strin
   widget->setMouseTracking(true);
   widget->installEventFilter(this);
   connect(widget, &QObject::destroyed, this, [this](QObject* gone) { this->Views_.erase(gone); });
+  connect(widget, &ViewportWidget::shown, this, [this, widget] {
+    if (this->Over_ != widget) {
+      return;
+    }
+    if (std::exchange(this->Waiting_, false)) {
+      this->Fresh_ = true;
+      this->Rest_.start(0); // after the painting
+    } else {                // something else may be under the pointer now
+      this->Later();
+    }
+  });
 }
 
 bool PointerReadout::eventFilter(QObject* watched, QEvent* event) {
@@ -64,15 +78,20 @@ bool PointerReadout::eventFilter(QObject* watched, QEvent* event) {
     if (moved->buttons() == Qt::NoButton) {
       this->Over_ = static_cast<ViewportWidget*>(watched);
       this->Place_ = moved->position();
-      if (!this->Rest_.isActive()) {
-        this->Rest_.start(Rest_ms);
-      }
+      this->Later();
     }
   } else if (event->type() == QEvent::Leave && watched == this->Over_) {
     this->Over_ = nullptr;
+    this->Waiting_ = false;
     this->clear();
   }
   return QLabel::eventFilter(watched, event);
+}
+
+void PointerReadout::Later() {
+  if (!this->Rest_.isActive() && !this->Waiting_) {
+    this->Rest_.start(this->Pause_ms_);
+  }
 }
 
 void PointerReadout::Look() {
@@ -80,10 +99,17 @@ void PointerReadout::Look() {
   if (!this->Over_ || found == this->Views_.end()) {
     return;
   }
-  if (QGuiApplication::mouseButtons() != Qt::NoButton || !this->Over_->IsUpToDate()) {
+  if (QGuiApplication::mouseButtons() != Qt::NoButton) {
     this->Rest_.start(Rest_ms);
     return;
   }
+  if (!std::exchange(this->Fresh_, false) &&
+      !this->Over_->IsUpToDate()) { // the pick would draw the view's next picture
+    this->Waiting_ = true;
+    return;
+  }
+  QElapsedTimer clock;
+  clock.start();
   try {
     const ShownSession session(found->second.of);
     if (!session.Viewport(found->second.viewport)) {
@@ -115,6 +141,7 @@ void PointerReadout::Look() {
   } catch (const std::exception&) {
     this->clear(); // the view itself reports what fails
   }
+  this->Pause_ms_ = std::max(Rest_ms, (PickShare - 1) * int(clock.elapsed()));
 }
 
 QString PointerReadout::TextOf(const std::string& picked, const std::string& slope) {

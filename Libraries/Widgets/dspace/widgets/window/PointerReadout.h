@@ -15,11 +15,12 @@ namespace dspace::widgets {
 
 class ViewportWidget;
 
-// For a status bar. The pixel under a pointer that rests over a view is picked, at most ten times a
-// second, from a picture that is drawn already, and not while a button is held. Of an object the
-// label shows the name and the point in the root [m]; of terrain the map coordinates [m], longitude
-// and latitude [deg], height above the vertical datum [m], slope [deg] and fields too. Its text can
-// be selected; its context menu copies it.
+// For a status bar. The pixel under the pointer is picked after the pointer moved and after each
+// new picture of the view: at most ten times a second and a tenth of the time, from a picture that
+// is drawn already, and not while a button is held. Of an object the label shows the name and the
+// point in the root [m]; of terrain the map coordinates [m], longitude and latitude [deg], height
+// above the vertical datum [m], slope [deg] and fields too. Its text can be selected; its context
+// menu copies it.
 class PointerReadout : public QLabel {
   Q_OBJECT
 
@@ -42,12 +43,16 @@ private:
     std::string viewport;
   };
 
+  void Later(); // a look, unless one is due
   void Look();
 
   std::map<QObject*, View> Views_;
   QPointer<ViewportWidget> Over_; // the view that the pointer is over
   QPointF Place_;                 // in it
   QTimer Rest_;
+  int Pause_ms_;         // before the next look
+  bool Waiting_ = false; // for a new picture of the view
+  bool Fresh_ = false;   // it has come
 };
 
 } // namespace dspace::widgets

@@ -323,24 +323,24 @@ std::pair<vtkObject*, std::string> ShownScenes::ActiveScene() const {
   return this->Impl_->active;
 }
 
-const session::Telemetry* ShownScenes::TelemetryOf(vtkObject* of, const std::string& scene) const {
+const session::SceneState* ShownScenes::StateOf(vtkObject* of, const std::string& scene) const {
   Internals::Entry* entry = this->Impl_->Find(of);
   if (!entry) {
     return nullptr;
   }
   const auto& scenes = entry->session.Session()->GetInterpreter().GetState().scenes;
   const auto found = scenes.find(scene);
-  return found == scenes.end() ? nullptr : &found->second.telemetry;
+  return found == scenes.end() ? nullptr : &found->second;
+}
+
+const session::Telemetry* ShownScenes::TelemetryOf(vtkObject* of, const std::string& scene) const {
+  const session::SceneState* state = this->StateOf(of, scene);
+  return state ? &state->telemetry : nullptr;
 }
 
 const session::MessageLog* ShownScenes::MessagesOf(vtkObject* of, const std::string& scene) const {
-  Internals::Entry* entry = this->Impl_->Find(of);
-  if (!entry) {
-    return nullptr;
-  }
-  const auto& scenes = entry->session.Session()->GetInterpreter().GetState().scenes;
-  const auto found = scenes.find(scene);
-  return found == scenes.end() ? nullptr : &found->second.messages;
+  const session::SceneState* state = this->StateOf(of, scene);
+  return state ? &state->messages : nullptr;
 }
 
 QString ShownScenes::Active() const {

@@ -15,6 +15,7 @@ class vtkObject;
 namespace dspace::session {
 class MessageLog;
 class Telemetry;
+struct SceneState;
 } // namespace dspace::session
 
 namespace dspace::widgets {
@@ -66,6 +67,8 @@ protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
 
 private:
+  const session::SceneState* StateOf(vtkObject* of, const std::string& scene) const; // or null
+
   struct Internals;
   std::unique_ptr<Internals> Impl_;
 };
