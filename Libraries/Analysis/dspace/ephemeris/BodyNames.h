@@ -8,6 +8,8 @@
 
 namespace dspace {
 
+constexpr int BodySun = 10;
+
 // Built-in names of the Sun, the planets, their barycentres, moons, asteroids and spacecraft that
 // are often asked for, and names that are defined (NAIF_BODY_NAME of a text kernel). Case, and
 // underscores for blanks, do not matter. A number as text is its own id.

@@ -18,6 +18,7 @@
 #include <dspace/Checks.h>
 #include <dspace/SystemFiles.h>
 #include <dspace/kernels/ChebyshevRecords.h>
+#include <dspace/time/Days.h>
 
 namespace dspace {
 namespace {
@@ -26,11 +27,9 @@ constexpr std::int64_t Header = 12;
 constexpr std::int64_t RecordBytes = 8160;
 constexpr std::size_t RecordWords = 1018;
 constexpr std::int64_t Records = 1143;
-constexpr double Day = 86400.0;
-constexpr double RecordSeconds = 32.0 * Day;
-constexpr double Begin = (36912.0 - 51544.5) * Day; // TDB [s past J2000]
+constexpr double RecordSeconds = 32.0 * DaySeconds;
+constexpr double Begin = (36912.0 - (J2000Mjd + 0.5)) * DaySeconds; // TDB [s past J2000]
 constexpr double End = Begin + double(Records) * RecordSeconds;
-constexpr double MoonPart = 1.0 / (1.0 + 81.30056); // of the masses of Earth and Moon
 
 // Where a body's coefficients are in a record: from word `first` on `count` a component, in `parts`
 // intervals.
@@ -255,7 +254,7 @@ std::optional<StateSource::Link> De405Source::Find(int body, double tdb) const {
   case 301:
   case 399: {
     State moon = this->Table_->At(tdb, Moon);
-    const double part = body == 301 ? 1.0 - MoonPart : -MoonPart;
+    const double part = body == 301 ? 1.0 - MoonMassShare : -MoonMassShare;
     moon.position *= part;
     moon.velocity *= part;
     return link(body == 301 ? 10 : 11, moon);

@@ -15,7 +15,6 @@
 namespace dspace {
 namespace {
 
-constexpr int J2000 = 1;
 constexpr std::size_t LongestChain = 20;
 
 // One body's way towards the barycentre.
@@ -185,8 +184,8 @@ std::optional<Ephemeris::Known> Ephemeris::LinkOf(int body, double tdb) const {
 }
 
 State Ephemeris::AxesJ2000(const StateSource::Link& link, double tdb) const {
-  return link.frame == J2000 ? link.state
-                             : this->Frames_->Turn(link.frame, J2000, tdb) * link.state;
+  return link.frame == FrameJ2000 ? link.state
+                                  : this->Frames_->Turn(link.frame, FrameJ2000, tdb) * link.state;
 }
 
 State Ephemeris::Geometric(int target, int observer, double tdb, std::vector<int>* used) const {
@@ -292,7 +291,7 @@ Ephemeris::Result Ephemeris::Evaluate(const Query& query, int frame, double tdb,
   Result result = this->Apparent(query.target, query.observer, tdb, query.correction, &rate);
   if (turn) {
     result.state = *turn * result.state;
-  } else if (frame != J2000) {
+  } else if (frame != FrameJ2000) {
     // A turning frame is seen as its centre is: delayed by the light time.
     double delay = 0.0;
     double delayRate = 0.0;
@@ -307,7 +306,7 @@ Ephemeris::Result Ephemeris::Evaluate(const Query& query, int frame, double tdb,
         delay = this->Apparent(center, query.observer, tdb, plain, &delayRate).lightTime;
       }
     }
-    StateTurn moving = this->Frames_->Turn(J2000, frame, tdb - delay);
+    StateTurn moving = this->Frames_->Turn(FrameJ2000, frame, tdb - delay);
     moving.rate *= 1.0 - delayRate;
     result.state = moving * result.state;
   }
@@ -324,8 +323,8 @@ void Ephemeris::FindMany(const Query& query, const double* tdb, std::size_t coun
                          Result* results) const {
   const int frame = this->Frames_->FrameId(query.frame);
   std::optional<StateTurn> turn;
-  if (frame != J2000 && this->Frames_->IsInertial(frame)) {
-    turn = this->Frames_->Turn(J2000, frame, 0.0);
+  if (frame != FrameJ2000 && this->Frames_->IsInertial(frame)) {
+    turn = this->Frames_->Turn(FrameJ2000, frame, 0.0);
   }
   for (std::size_t i = 0; i < count; ++i) {
     FallbackScope::Begin(tdb[i]);

@@ -6,21 +6,20 @@
 
 #include <erfa.h>
 
+#include <dspace/time/Days.h>
+
 namespace dspace {
 namespace {
 
-constexpr double Au = 149597870700.0; // [m] (IAU 2012 B2)
-constexpr double Day = 86400.0;
-constexpr double J2000Jd = 2451545.0;
-constexpr double Begin = -3155716800.0; // 1900-01-01
-constexpr double End = 3155760000.0;    // 2100-01-01 12:00
-constexpr double MoonPart = 1.0 / (1.0 + 81.30056);
+constexpr double Au = 149597870700.0;         // [m] (IAU 2012 B2)
+constexpr double SeriesBegin = -3155716800.0; // 1900-01-01
+constexpr double SeriesEnd = 3155760000.0;    // 2100-01-01 12:00
 
 State StateOf(const double pv[2][3]) {
   State state;
   for (int i = 0; i < 3; ++i) {
     state.position[i] = pv[0][i] * Au;
-    state.velocity[i] = pv[1][i] * Au / Day;
+    state.velocity[i] = pv[1][i] * Au / DaySeconds;
   }
   return state;
 }
@@ -28,7 +27,7 @@ State StateOf(const double pv[2][3]) {
 // The Sun, or the Earth, from the barycentre.
 State FromBarycenter(double tdb, bool sun) {
   double heliocentric[2][3], barycentric[2][3];
-  eraEpv00(J2000Jd, tdb / Day, heliocentric, barycentric);
+  eraEpv00(J2000Julian, tdb / DaySeconds, heliocentric, barycentric);
   State state = StateOf(barycentric);
   if (sun) {
     state -= StateOf(heliocentric);
@@ -38,13 +37,13 @@ State FromBarycenter(double tdb, bool sun) {
 
 State MoonFromEarth(double tdb) {
   double pv[2][3];
-  eraMoon98(J2000Jd, tdb / Day, pv);
+  eraMoon98(J2000Julian, tdb / DaySeconds, pv);
   return StateOf(pv);
 }
 
 Eigen::Vector3d PlanetAt(double tdb, int planet) {
   double pv[2][3];
-  eraPlan94(J2000Jd, tdb / Day, planet, pv);
+  eraPlan94(J2000Julian, tdb / DaySeconds, planet, pv);
   return StateOf(pv).position;
 }
 
@@ -60,7 +59,7 @@ State PlanetFromSun(double tdb, int planet) {
 
 ErfaSource::ErfaSource() {
   const auto add = [this](int body, int center) {
-    this->Coverages_.push_back({body, center, 1, Begin, End, {}});
+    this->Coverages_.push_back({body, center, 1, SeriesBegin, SeriesEnd, {}});
   };
   add(10, 0);
   add(399, 0);
@@ -117,7 +116,7 @@ std::string ErfaSource::Warning(int body) const {
 }
 
 std::optional<StateSource::Link> ErfaSource::Find(int body, double tdb) const {
-  if (!(tdb >= Begin && tdb <= End)) {
+  if (!(tdb >= SeriesBegin && tdb <= SeriesEnd)) {
     return std::nullopt;
   }
   switch (body) {
@@ -129,8 +128,8 @@ std::optional<StateSource::Link> ErfaSource::Find(int body, double tdb) const {
     return Link{399, 1, MoonFromEarth(tdb), 2};
   case 3: {
     State moon = MoonFromEarth(tdb);
-    moon.position *= MoonPart;
-    moon.velocity *= MoonPart;
+    moon.position *= MoonMassShare;
+    moon.velocity *= MoonMassShare;
     return Link{399, 1, moon, 3};
   }
   case 1:

@@ -7,8 +7,6 @@
 namespace dspace {
 namespace {
 
-constexpr int J2000 = 1;
-constexpr int Ecliptic = 17;
 constexpr const char* Accepted = "accepted: J2000, ECLIPJ2000";
 
 // Components in J2000 to those in the ecliptic of J2000: the IAU 1980 obliquity 84381.448".
@@ -25,7 +23,7 @@ const Eigen::Matrix3d& EclipticFromJ2000() {
 }
 
 void RequireKnown(int frame) {
-  if (frame != J2000 && frame != Ecliptic) {
+  if (frame != FrameJ2000 && frame != FrameEclipJ2000) {
     throw Error(Error::Kind::NotFound, "frame " + std::to_string(frame),
                 std::string("it is unknown; ") + Accepted);
   }
@@ -35,19 +33,19 @@ void RequireKnown(int frame) {
 
 int InertialTurns::FrameId(const std::string& name) const {
   if (name == "J2000") {
-    return J2000;
+    return FrameJ2000;
   }
   if (name == "ECLIPJ2000") {
-    return Ecliptic;
+    return FrameEclipJ2000;
   }
   throw Error(Error::Kind::NotFound, "frame '" + name + "'",
               std::string("it is unknown; ") + Accepted);
 }
 
 std::string InertialTurns::FrameName(int frame) const {
-  return frame == J2000      ? "J2000"
-         : frame == Ecliptic ? "ECLIPJ2000"
-                             : "frame " + std::to_string(frame);
+  return frame == FrameJ2000        ? "J2000"
+         : frame == FrameEclipJ2000 ? "ECLIPJ2000"
+                                    : "frame " + std::to_string(frame);
 }
 
 bool InertialTurns::IsInertial(int frame) const {
@@ -66,7 +64,7 @@ StateTurn InertialTurns::Turn(int from, int to, double /*tdb*/) const {
   StateTurn turn;
   if (from != to) {
     turn.rotation = EclipticFromJ2000();
-    if (from == Ecliptic) {
+    if (from == FrameEclipJ2000) {
       turn.rotation.transposeInPlace();
     }
   }

@@ -10,6 +10,9 @@
 
 namespace dspace {
 
+constexpr int FrameJ2000 = 1; // NAIF's ids
+constexpr int FrameEclipJ2000 = 17;
+
 // From one frame's components to another's: position' = rotation position,
 // velocity' = rotation velocity + rate position.
 struct StateTurn {

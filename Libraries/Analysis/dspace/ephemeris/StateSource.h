@@ -10,6 +10,9 @@
 
 namespace dspace {
 
+// Of the masses of the Earth and the Moon together, with DE405's ratio of the two.
+constexpr double MoonMassShare = 1.0 / (1.0 + 81.30056);
+
 // A source of states of bodies: a kernel, a table of a trajectory, a theory. Bodies and frames have
 // NAIF's ids. A source is immutable, and several threads call it.
 class StateSource {

@@ -10,6 +10,8 @@
 
 namespace dspace {
 
+constexpr double Degree = M_PI / 180.0; // [rad]
+
 // NAIF's [angle]axis: from a frame's components to those of the frame that is turned by `angle`
 // [rad] about its axis 1 (x), 2 (y) or 3 (z).
 inline Eigen::Matrix3d AxisTurn(double angle, int axis) {

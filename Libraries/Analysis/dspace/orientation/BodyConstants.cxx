@@ -6,6 +6,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/orientation/AxisTurns.h>
+#include <dspace/time/Days.h>
 
 namespace dspace {
 namespace {
@@ -15,9 +16,7 @@ constexpr const char* StandardText =
 #include <dspace/orientation/BodyConstants.inc>
     ;
 
-constexpr double Degree = M_PI / 180.0;
-constexpr double Day = 86400.0;
-constexpr double Century = 36525.0 * Day;
+constexpr double Century = 36525.0 * DaySeconds;
 
 std::string Variable(int body, const char* item) {
   return "BODY" + std::to_string(body) + "_" + item;
@@ -173,13 +172,14 @@ BodyTurn BodyRotation(const KernelPool& pool, int body, double tdb) {
   }
   const std::string epoch = Variable(body, "CONSTANTS_JED_EPOCH");
   const double seconds =
-      constants->Has(epoch) ? tdb - (constants->Number(epoch) - 2451545.0) * Day : tdb;
+      constants->Has(epoch) ? tdb - (constants->Number(epoch) - J2000Julian) * DaySeconds : tdb;
   const std::vector<Value> angles = SystemAngles(*constants, SystemOf(body), seconds);
   const Value ra =
       Element(*constants, body, "POLE_RA", "NUT_PREC_RA", false, angles, seconds, Century);
   const Value dec =
       Element(*constants, body, "POLE_DEC", "NUT_PREC_DEC", true, angles, seconds, Century);
-  const Value pm = Element(*constants, body, "PM", "NUT_PREC_PM", false, angles, seconds, Day);
+  const Value pm =
+      Element(*constants, body, "PM", "NUT_PREC_PM", false, angles, seconds, DaySeconds);
   out.turn = PoleTurn((90.0 + ra.value) * Degree, ra.rate * Degree, (90.0 - dec.value) * Degree,
                       -dec.rate * Degree, std::fmod(pm.value, 360.0) * Degree, pm.rate * Degree);
   return out;

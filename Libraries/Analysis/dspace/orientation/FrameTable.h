@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <dspace/ephemeris/FrameTurns.h>
 #include <dspace/kernels/KernelPool.h>
 
 namespace dspace {
@@ -52,8 +53,6 @@ private:
   std::map<std::string, int> Ids_; // by upper-case name
 };
 
-constexpr int FrameJ2000 = 1;
-constexpr int FrameEclipJ2000 = 17;
 constexpr int FrameItrf93 = 13000;
 constexpr int FrameEarthFixed = 10081;
 constexpr int FrameMoonPa = 31000; // as NAIF's lunar frame kernels number them

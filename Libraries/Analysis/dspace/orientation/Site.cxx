@@ -3,13 +3,10 @@
 #include <cmath>
 
 #include <dspace/Checks.h>
+#include <dspace/orientation/AxisTurns.h>
 
 namespace dspace {
-namespace {
-
-constexpr double Degree = M_PI / 180.0;
-
-} // namespace
+namespace {} // namespace
 
 LocalAxes AxesAt(const Site& site, const Eigen::Vector3d& radii) {
   RequireFinite("site", "its longitude", site.longitude_deg);

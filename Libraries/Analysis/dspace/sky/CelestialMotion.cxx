@@ -1,12 +1,11 @@
 #include <dspace/sky/CelestialMotion.h>
 
 #include <dspace/Checks.h>
+#include <dspace/ephemeris/BodyNames.h>
 #include <dspace/orientation/BodyConstants.h>
 
 namespace dspace {
 namespace {
-
-constexpr int Sun = 10;
 
 LocalAxes LocalOf(const KernelSet& kernels, const CelestialPlace& place) {
   if (place.site) {
@@ -54,7 +53,7 @@ Pose PoseOf(const KernelSet& kernels, const CelestialPlace& place, const Celesti
 
 SunAt SunAtPlace(const KernelSet& kernels, const CelestialPlace& place, double tdb) {
   const SkyBody sun = Look(kernels.GetEphemeris(), kernels.GetFrames(),
-                           SkyPlaceOf(kernels, place, Pose()), Sun, tdb);
+                           SkyPlaceOf(kernels, place, Pose()), BodySun, tdb);
   return {sun.eastNorthUp, sun.range, sun.radius_deg};
 }
 

@@ -5,12 +5,12 @@
 #include <Eigen/Geometry>
 
 #include <dspace/Checks.h>
+#include <dspace/ephemeris/BodyNames.h>
 #include <dspace/orientation/BodyConstants.h>
 
 namespace dspace {
 namespace {
 
-constexpr int Sun = 10;
 constexpr int MostIterations = 10;
 
 // Radii of bodies that have none stay unknown.
@@ -75,11 +75,11 @@ SkyBody Look(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& p
   if (radius > 0.0) {
     out.radius_deg = std::asin(std::min(1.0, radius / out.range)) * 180.0 / M_PI;
   }
-  if (target != Sun) {
+  if (target != BodySun) {
     // The light that arrives now left the target then, and the Sun before.
     const double left = tdb - sighting.lightTime;
     const Eigen::Vector3d toSun =
-        Sight(ephemeris, Sun, ephemeris.FromBarycenter(target, left), left).state.position;
+        Sight(ephemeris, BodySun, ephemeris.FromBarycenter(target, left), left).state.position;
     const double cosine = toSun.normalized().dot(-sighting.state.position.normalized());
     out.litFraction = 0.5 * (1.0 + cosine);
   }

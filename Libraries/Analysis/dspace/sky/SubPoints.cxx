@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include <dspace/Checks.h>
+#include <dspace/ephemeris/BodyNames.h>
 #include <dspace/orientation/BodyConstants.h>
 #include <dspace/orientation/Site.h>
 #include <dspace/sky/SkyView.h>
 
 namespace dspace {
 namespace {
-
-constexpr int Sun = 10;
 
 // The point below `direction` (J2000) at `epoch`.
 SubPoint Below(const Frames& frames, int body, const std::string& frame, double epoch,
@@ -41,14 +40,14 @@ void RequireOther(const Ephemeris& ephemeris, int body, int other) {
 // The Sun's direction as it arrives at the body's centre.
 Eigen::Vector3d SunFrom(const Ephemeris& ephemeris, int body, double epoch) {
   const State at = ephemeris.FromBarycenter(body, epoch);
-  return Aberrated(Sight(ephemeris, Sun, at, epoch).state.position, at.velocity);
+  return Aberrated(Sight(ephemeris, BodySun, at, epoch).state.position, at.velocity);
 }
 
 } // namespace
 
 SubPoint SubSolarPoint(const Ephemeris& ephemeris, const Frames& frames, int body,
                        const std::string& frame, double tdb, std::optional<int> observer) {
-  RequireOther(ephemeris, body, Sun);
+  RequireOther(ephemeris, body, BodySun);
   const std::string axes = FrameOf(frames, body, frame);
   if (!observer) {
     return Below(frames, body, axes, tdb, SunFrom(ephemeris, body, tdb));

@@ -11,13 +11,13 @@
 #include <dspace/Checks.h>
 #include <dspace/FilesRead.h>
 #include <dspace/SystemFiles.h>
+#include <dspace/time/Days.h>
 
 namespace dspace {
 namespace {
 
 constexpr int FirstDay = 36934;      // 1960-01-01
 constexpr int FirstWholeDay = 41317; // 1972-01-01: whole seconds from here on
-constexpr double MjdZero = 2400000.5;
 
 std::string DayText(int mjd) {
   int year = 0, month = 0, day = 0;

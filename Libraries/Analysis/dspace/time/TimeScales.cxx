@@ -4,23 +4,22 @@
 #include <cmath>
 
 #include <dspace/Checks.h>
+#include <dspace/time/Days.h>
 
 namespace dspace {
 namespace {
 
-constexpr double Day = 86400.0;
-constexpr int J2000Day = 51544;              // MJD of 2000-01-01
 constexpr double Earliest = -378677160000.0; // about -9999-01-01
 constexpr double Latest = 252455616000.0;    // 10000-01-01 12:00
 
 double SecondsOf(int mjd) {
-  return (mjd - J2000Day) * Day - 0.5 * Day;
+  return (mjd - J2000Mjd) * DaySeconds - 0.5 * DaySeconds;
 }
 
 // Day and seconds in it, of days of 86400 s.
 TimeScales::UtcDay Split(double seconds) {
-  const double days = std::floor((seconds + 0.5 * Day) / Day);
-  const int mjd = J2000Day + int(days);
+  const double days = std::floor((seconds + 0.5 * DaySeconds) / DaySeconds);
+  const int mjd = J2000Mjd + int(days);
   return {mjd, seconds - SecondsOf(mjd)};
 }
 
@@ -108,11 +107,11 @@ TimeScales::UtcDay TimeScales::UtcFromTai(double tai) const {
   if (tai < begin(steps.front())) { // UTC ran at a rate of its own
     UtcDay utc = Split(tai);
     for (int i = 0; i < 4; ++i) {
-      const double fraction = std::clamp(utc.seconds / Day, 0.0, 1.0);
+      const double fraction = std::clamp(utc.seconds / DaySeconds, 0.0, 1.0);
       utc = Split(tai - this->Leaps_.TaiMinusUtc(utc.mjd, fraction));
     }
     if (utc.mjd >= steps.front().mjd) { // within the last 0.1 s of 1971
-      utc.seconds += (utc.mjd - (steps.front().mjd - 1)) * Day;
+      utc.seconds += (utc.mjd - (steps.front().mjd - 1)) * DaySeconds;
       utc.mjd = steps.front().mjd - 1;
     }
     return utc;
@@ -122,14 +121,15 @@ TimeScales::UtcDay TimeScales::UtcFromTai(double tai) const {
       [&](double time, const LeapSeconds::Step& step) { return time < begin(step); });
   UtcDay utc = Split(tai - std::prev(after)->taiMinusUtc);
   if (after != steps.end() && utc.mjd >= after->mjd) { // in the leap second
-    utc.seconds += (utc.mjd - (after->mjd - 1)) * Day;
+    utc.seconds += (utc.mjd - (after->mjd - 1)) * DaySeconds;
     utc.mjd = after->mjd - 1;
   }
   return utc;
 }
 
 double TimeScales::TaiFromUtc(const UtcDay& utc) const {
-  return SecondsOf(utc.mjd) + utc.seconds + this->Leaps_.TaiMinusUtc(utc.mjd, utc.seconds / Day);
+  return SecondsOf(utc.mjd) + utc.seconds +
+         this->Leaps_.TaiMinusUtc(utc.mjd, utc.seconds / DaySeconds);
 }
 
 double TimeScales::Convert(double seconds, TimeScale from, TimeScale to) const {
@@ -156,7 +156,7 @@ double TimeScales::Convert(double seconds, TimeScale from, TimeScale to) const {
   case TimeScale::Ut1: {
     UtcDay utc = Split(seconds);
     for (int i = 0; i < 3; ++i) {
-      tai = seconds - this->Ut1MinusTai(utc.mjd + utc.seconds / Day);
+      tai = seconds - this->Ut1MinusTai(utc.mjd + utc.seconds / DaySeconds);
       utc = this->UtcFromTai(tai);
     }
     break;
@@ -177,7 +177,7 @@ double TimeScales::Convert(double seconds, TimeScale from, TimeScale to) const {
     break;
   }
   const UtcDay utc = this->UtcFromTai(tai);
-  return tai + this->Ut1MinusTai(utc.mjd + utc.seconds / Day);
+  return tai + this->Ut1MinusTai(utc.mjd + utc.seconds / DaySeconds);
 }
 
 } // namespace dspace

@@ -9,13 +9,10 @@
 #include <erfa.h>
 
 #include <dspace/Checks.h>
+#include <dspace/time/Days.h>
 
 namespace dspace {
 namespace {
-
-constexpr double Day = 86400.0;
-constexpr int J2000Day = 51544;
-constexpr double MjdZero = 2400000.5;
 
 // Reads a text from left to right.
 class TimeParser {
@@ -215,28 +212,28 @@ private:
       this->Fail("its year is beyond 1 to 9999");
     }
     const double ofDay = half >= 1.0 ? half - 1.0 : half;
-    return this->Combine(mjd, ofDay * Day, suffix);
+    return this->Combine(mjd, ofDay * DaySeconds, suffix);
   }
 
   double Combine(int mjd, double seconds, const Suffix& suffix) const {
     if (this->Leaping_) {
       // Local midnight may be any hour of UTC, but the second is always the last of a day of UTC.
       const double utc = seconds - suffix.offset_min * 60.0;
-      const int day = mjd + int(std::floor((utc - 1.0) / Day));
+      const int day = mjd + int(std::floor((utc - 1.0) / DaySeconds));
       const bool real = suffix.scale == TimeScale::Utc &&
                         this->Scales_.GetLeapSeconds().SecondsOfDay(day) == 86401 &&
-                        utc - (day - mjd) * Day >= Day;
+                        utc - (day - mjd) * DaySeconds >= DaySeconds;
       if (!real) {
         this->Fail("it is in second 60, and there is no leap second");
       }
-      return this->FromUtc({day, utc - (day - mjd) * Day});
+      return this->FromUtc({day, utc - (day - mjd) * DaySeconds});
     }
     if (suffix.scale == TimeScale::Utc) {
       const double utc = seconds - suffix.offset_min * 60.0;
-      const double days = std::floor(utc / Day);
-      return this->FromUtc({mjd + int(days), utc - days * Day});
+      const double days = std::floor(utc / DaySeconds);
+      return this->FromUtc({mjd + int(days), utc - days * DaySeconds});
     }
-    const double whole = (mjd - J2000Day) * Day - 0.5 * Day + seconds;
+    const double whole = (mjd - J2000Mjd) * DaySeconds - 0.5 * DaySeconds + seconds;
     return this->Scales_.Convert(whole, suffix.scale, TimeScale::Tdb);
   }
 
@@ -259,14 +256,14 @@ double TdbFromText(const std::string& text, const TimeScales& scales) {
 std::string TimeText(double tdb, TimeScale scale, const TimeScales& scales, int decimals) {
   Require(decimals >= 0 && decimals <= 9, "time", "the number of decimals", decimals, "0 to 9");
   TimeScales::UtcDay day{};
-  double length = Day;
+  double length = DaySeconds;
   if (scale == TimeScale::Utc) {
     day = scales.UtcFromTai(scales.Convert(tdb, TimeScale::Tdb, TimeScale::Tai));
     length = scales.GetLeapSeconds().SecondsOfDay(day.mjd);
   } else {
     const double seconds = scales.Convert(tdb, TimeScale::Tdb, scale);
-    day.mjd = J2000Day + int(std::floor((seconds + 0.5 * Day) / Day));
-    day.seconds = seconds - ((day.mjd - J2000Day) * Day - 0.5 * Day);
+    day.mjd = J2000Mjd + int(std::floor((seconds + 0.5 * DaySeconds) / DaySeconds));
+    day.seconds = seconds - ((day.mjd - J2000Mjd) * DaySeconds - 0.5 * DaySeconds);
   }
   const auto unit = std::int64_t(std::llround(std::pow(10.0, decimals)));
   std::int64_t count = std::llround(day.seconds * double(unit));

@@ -2,13 +2,11 @@
 
 #include <utility>
 
+#include <dspace/time/Days.h>
 #include <dspace/trajectories/TextLines.h>
 
 namespace dspace {
 namespace {
-
-constexpr double J2000 = 2451545.0; // Julian date
-constexpr double Day = 86400.0;     // [s]
 
 // What follows `key` in a comment, without the id in parentheses.
 bool Find(const std::string& line, const char* key, std::string& value) {
@@ -46,7 +44,7 @@ XyzvFile::XyzvFile(const std::string& path) {
     for (std::size_t i = 0; i < 7; ++i) {
       numbers[i] = lines.Number(words[i], i == 0 ? "the Julian date" : "a number of the state");
     }
-    const double time = (numbers[0] - J2000) * Day;
+    const double time = (numbers[0] - J2000Julian) * DaySeconds;
     if (!content.times.empty() && time <= content.times.back()) {
       if (time < content.times.back()) {
         lines.Damaged("its time " + words[0] + " is before that of the state before it");

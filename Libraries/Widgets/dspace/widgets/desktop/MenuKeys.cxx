@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <utility>
 
 #include <QAction>
 #include <QDialog>
@@ -16,7 +17,7 @@ namespace dspace::widgets {
 namespace {
 
 QString Plain(QString text) {
-  return text.remove('&').remove(QStringLiteral("..."));
+  return WithoutMnemonics(std::move(text)).remove(QStringLiteral("..."));
 }
 
 // Each action of the menus with the titles of its menus.
@@ -75,6 +76,10 @@ void Complete(const QList<QAction*>& actions) {
 }
 
 } // namespace
+
+QString WithoutMnemonics(QString text) {
+  return text.remove('&');
+}
 
 QString KeysOfMenus(const QMenuBar* menus) {
   QString rows;

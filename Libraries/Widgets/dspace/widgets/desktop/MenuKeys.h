@@ -11,6 +11,8 @@ class QMenuBar;
 
 namespace dspace::widgets {
 
+// A menu's text without the marks of its letters ("&").
+QString WithoutMnemonics(QString text);
 // A dialog: `fixed` is a table of HTML with keys and mouse buttons that are no menu's; below it
 // stand the menus' own.
 void ShowKeys(QMainWindow* window, const QString& fixed);

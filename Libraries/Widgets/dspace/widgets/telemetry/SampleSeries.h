@@ -11,6 +11,11 @@
 
 namespace dspace::widgets {
 
+// NaN equals NaN.
+inline bool SameValue(double a, double b) {
+  return a == b || (a != a && b != b);
+}
+
 // The least and the greatest value of some samples. NaN samples do not count; without any other
 // sample both are NaN.
 struct SampleExtent {

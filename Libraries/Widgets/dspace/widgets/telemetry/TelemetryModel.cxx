@@ -17,6 +17,7 @@
 #include <dspace/state/Telemetry.h>
 #include <dspace/state/TelemetryColors.h>
 #include <dspace/widgets/telemetry/ChannelMime.h>
+#include <dspace/widgets/telemetry/SampleSeries.h>
 
 namespace dspace::widgets {
 namespace {
@@ -24,7 +25,7 @@ namespace {
 using Info = v1::TelemetryInfo;
 using Kind = v1::CreateTelemetry;
 
-constexpr double None = std::numeric_limits<double>::quiet_NaN();
+constexpr double NoLimit = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t MostRuns = 64; // of rows that come or go one by one
 
 struct Row {
@@ -33,16 +34,12 @@ struct Row {
   QString unit;
   QString description;
   Kind::Kind kind = Kind::NUMBER;
-  double value = None;
+  double value = NoLimit;
   std::string text; // of a text, or the label of a choice
-  double time_s = None;
+  double time_s = NoLimit;
   Info::State state = Info::NO_VALUE;
-  std::array<double, 4> limits = {None, None, None, None}; // ascending
+  std::array<double, 4> limits = {NoLimit, NoLimit, NoLimit, NoLimit}; // ascending
 };
-
-bool Same(double a, double b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
-}
 
 QColor ToColor(const std::array<double, 3>& color) {
   return QColor::fromRgbF(float(color[0]), float(color[1]), float(color[2]));
@@ -51,16 +48,16 @@ QColor ToColor(const std::array<double, 3>& color) {
 // Takes the state of a channel; true: something that cells show has changed.
 bool Update(Row& row, const session::Telemetry::Channel& channel,
             const session::Telemetry& telemetry) {
-  row.time_s = channel.time_s.value_or(None);
+  row.time_s = channel.time_s.value_or(NoLimit);
   const Info::State state = session::StateOf(channel);
   const v1::TelemetryLimits& given = channel.about.limits();
-  const std::array<double, 4> limits = {given.has_alarm_low() ? given.alarm_low() : None,
-                                        given.has_warning_low() ? given.warning_low() : None,
-                                        given.has_warning_high() ? given.warning_high() : None,
-                                        given.has_alarm_high() ? given.alarm_high() : None};
-  const bool changed = state != row.state || !Same(channel.value, row.value) ||
+  const std::array<double, 4> limits = {given.has_alarm_low() ? given.alarm_low() : NoLimit,
+                                        given.has_warning_low() ? given.warning_low() : NoLimit,
+                                        given.has_warning_high() ? given.warning_high() : NoLimit,
+                                        given.has_alarm_high() ? given.alarm_high() : NoLimit};
+  const bool changed = state != row.state || !SameValue(channel.value, row.value) ||
                        (row.kind == Kind::TEXT && channel.text != row.text) ||
-                       !std::equal(limits.begin(), limits.end(), row.limits.begin(), Same);
+                       !std::equal(limits.begin(), limits.end(), row.limits.begin(), SameValue);
   if (!changed) {
     return false;
   }

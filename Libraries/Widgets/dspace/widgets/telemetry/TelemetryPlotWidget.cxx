@@ -33,6 +33,7 @@
 #include <dspace/widgets/telemetry/ChannelMime.h>
 #include <dspace/widgets/telemetry/PlotPicture.h>
 #include <dspace/widgets/telemetry/SampleCsv.h>
+#include <dspace/widgets/telemetry/SampleSeries.h>
 #include <dspace/widgets/telemetry/SvgPaintDevice.h>
 
 namespace dspace::widgets {
@@ -45,10 +46,6 @@ constexpr double Grip = 5.0;         // to a line that is dragged
 constexpr double TipDistance = 10.0; // to a sample
 constexpr double ValueMargin = 0.05; // above and below the values
 constexpr double LeastRectangle = 6.0;
-
-bool Same(double a, double b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
-}
 
 } // namespace
 
@@ -310,8 +307,8 @@ struct TelemetryPlotWidget::Internals {
           channel->about.kind() == v1::CreateTelemetry::TEXT) {
         continue;
       }
-      if (channel->about.id() == known.id && Same(*channel->time_s, known.time_s) &&
-          Same(channel->value, known.value)) {
+      if (channel->about.id() == known.id && SameValue(*channel->time_s, known.time_s) &&
+          SameValue(channel->value, known.value)) {
         continue;
       }
       SampleSeries& samples = *series->samples;

@@ -19,8 +19,8 @@
 namespace dspace::widgets {
 namespace {
 
-constexpr int Tick_ms = 34;    // at most 30 times a second
-constexpr int LeastShare = 20; // of the time between looks that a look may take
+constexpr int TableTick_ms = 34; // at most 30 times a second
+constexpr int LeastShare = 20;   // of the time between looks that a look may take
 
 // Sorts, and leaves out what lacks a word.
 class SearchModel : public QSortFilterProxyModel {
@@ -154,7 +154,7 @@ TelemetryTableWidget::TelemetryTableWidget(QWidget* parent)
     QElapsedTimer clock;
     clock.start();
     this->Refresh();
-    this->Impl_->ticks.setInterval(std::max(Tick_ms, LeastShare * int(clock.elapsed())));
+    this->Impl_->ticks.setInterval(std::max(TableTick_ms, LeastShare * int(clock.elapsed())));
   });
   self.view->viewport()->installEventFilter(this);
   self.view->installEventFilter(this);
@@ -209,7 +209,7 @@ QSize TelemetryTableWidget::sizeHint() const {
 
 void TelemetryTableWidget::showEvent(QShowEvent* event) {
   this->Refresh();
-  this->Impl_->ticks.start(Tick_ms);
+  this->Impl_->ticks.start(TableTick_ms);
   QWidget::showEvent(event);
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int Height = 22;
 constexpr double Half = 5.5;     // of a key [pixels]
-constexpr double Near = 7.0;     // [pixels] from what is meant
+constexpr double KeyReach = 7.0; // [pixels] from what is meant
 constexpr double DragFrom = 3.0; // [pixels] before a press becomes a drag
 const QColor KeyColor(0xff, 0xb0, 0x20);
 
@@ -52,7 +52,7 @@ struct KeyTrack::Internals {
   // Of keys at one place, the selected one, else the first.
   int KeyNear(double x) const {
     int nearest = -1;
-    double distance = Near;
+    double distance = KeyReach;
     for (std::size_t i = 0; i < this->keys.size(); ++i) {
       const double away = std::abs(this->X(this->keys[i].run_s) - x);
       const bool again = int(i) == this->selected && away <= distance;

@@ -25,8 +25,8 @@ constexpr int Side = 14; // pixels left and right of the bar
 constexpr int MarkLane = 16;
 constexpr int BarHeight = 14;
 constexpr int TickHeight = 5;
-constexpr double Near = 6.0; // pixels from what is meant
-constexpr int MostTexts = 6; // of a tool tip
+constexpr double MarkReach = 6.0; // pixels from what is meant
+constexpr int MostTexts = 6;      // of a tool tip
 
 QColor ColorOf(TimelineEvent::Severity severity) {
   switch (severity) {
@@ -116,14 +116,15 @@ struct ScrubBar::Internals {
     const auto before = [](const TimelineEvent& event, double time_s) {
       return event.time_s < time_s;
     };
-    const auto first =
-        std::lower_bound(this->events.begin(), this->events.end(), this->Time(x - Near), before);
-    const auto last = std::lower_bound(first, this->events.end(), this->Time(x + Near), before);
+    const auto first = std::lower_bound(this->events.begin(), this->events.end(),
+                                        this->Time(x - MarkReach), before);
+    const auto last =
+        std::lower_bound(first, this->events.end(), this->Time(x + MarkReach), before);
     return {std::size_t(first - this->events.begin()), std::size_t(last - this->events.begin())};
   }
   const TimelineMark* MarkNear(double x) const {
     const TimelineMark* nearest = nullptr;
-    double distance = Near;
+    double distance = MarkReach;
     for (const TimelineMark& mark : this->marks) {
       if (std::abs(this->X(mark.time_s) - x) <= distance) {
         distance = std::abs(this->X(mark.time_s) - x);
@@ -157,7 +158,7 @@ struct ScrubBar::Internals {
     }
     const double toBegin = std::abs(this->X(this->state.loop->begin) - place.x());
     const double toEnd = std::abs(this->X(this->state.loop->end) - place.x());
-    if (std::min(toBegin, toEnd) > Near) {
+    if (std::min(toBegin, toEnd) > MarkReach) {
       return {};
     }
     return toBegin < toEnd ? this->state.loop->end : this->state.loop->begin;
@@ -372,7 +373,7 @@ QString ScrubBar::TextAt(const QPoint& place) const {
     }
   };
   for (const TimelineMark& mark : self.marks) {
-    if (std::abs(self.X(mark.time_s) - place.x()) <= Near) {
+    if (std::abs(self.X(mark.time_s) - place.x()) <= MarkReach) {
       add(QString("%1  Mark: %2").arg(time(mark.time_s), QString::fromStdString(mark.note)));
     }
   }

@@ -8,6 +8,7 @@
 #include <QMenuBar>
 
 #include <dspace/Error.h>
+#include <dspace/widgets/desktop/MenuKeys.h>
 #include <dspace/widgets/panel/PanelWidget.h>
 
 namespace dspace::widgets {
@@ -15,11 +16,6 @@ namespace {
 
 [[noreturn]] void Refuse(const QString& object, const QString& message) {
   throw Error(Error::Kind::InvalidArgument, object.toStdString(), message.toStdString());
-}
-
-// Without the marks of mnemonics.
-QString Plain(QString text) {
-  return text.remove('&');
 }
 
 } // namespace
@@ -106,21 +102,23 @@ int PlugIns::AddAction(const QString& menu, const QString& text, const QString& 
   }
   for (const QAction* other : this->Window_->findChildren<QAction*>()) {
     if (!sequence.isEmpty() && other->shortcut() == sequence) {
-      Refuse("action '" + text + "'",
-             "its key " + key + " is that of '" + Plain(other->text()) + "'; accepted: a free one");
+      Refuse("action '" + text + "'", "its key " + key + " is that of '" +
+                                          WithoutMnemonics(other->text()) +
+                                          "'; accepted: a free one");
     }
   }
   QMenu* in = nullptr;
   if (!menu.isEmpty()) {
     for (QAction* each : this->Window_->menuBar()->actions()) {
-      in = each->menu() && Plain(each->text()) == Plain(menu) ? each->menu() : in;
+      in = each->menu() && WithoutMnemonics(each->text()) == WithoutMnemonics(menu) ? each->menu()
+                                                                                    : in;
     }
     in = in ? in : this->Window_->menuBar()->addMenu(menu);
   }
   const int number = ++this->LastAction_;
   auto* action = new QAction(text, this->Window_);
   action->setShortcut(sequence);
-  action->setToolTip(tip.isEmpty() ? Plain(text) : tip);
+  action->setToolTip(tip.isEmpty() ? WithoutMnemonics(text) : tip);
   connect(action, &QAction::triggered, this, [this, number] { emit this->triggered(number); });
   this->Window_->addAction(action);
   if (in) {

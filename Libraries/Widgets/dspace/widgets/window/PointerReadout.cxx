@@ -18,10 +18,10 @@
 namespace dspace::widgets {
 namespace {
 
-constexpr int Rest_ms = 100;    // between two picks, at least
-constexpr int PickShare = 10;   // one part of so many goes into picks
-constexpr int MostLetters = 60; // of a name
-constexpr int MostFields = 4;   // of a terrain
+constexpr int PickRest_ms = 100; // between two picks, at least
+constexpr int PickShare = 10;    // one part of so many goes into picks
+constexpr int MostLetters = 60;  // of a name
+constexpr int MostFields = 4;    // of a terrain
 const QChar Degree(0xb0);
 
 QString Shortened(const std::string& name) {
@@ -42,7 +42,7 @@ QString Angle(double degrees, const QString& positive, const QString& negative) 
 
 } // namespace
 
-PointerReadout::PointerReadout(QWidget* parent) : QLabel(parent), Pause_ms_(Rest_ms) {
+PointerReadout::PointerReadout(QWidget* parent) : QLabel(parent), Pause_ms_(PickRest_ms) {
   this->setObjectName(QStringLiteral("pointer"));
   this->setTextFormat(Qt::PlainText);
   this->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -100,7 +100,7 @@ void PointerReadout::Look() {
     return;
   }
   if (QGuiApplication::mouseButtons() != Qt::NoButton) {
-    this->Rest_.start(Rest_ms);
+    this->Rest_.start(PickRest_ms);
     return;
   }
   if (!std::exchange(this->Fresh_, false) &&
@@ -141,7 +141,7 @@ void PointerReadout::Look() {
   } catch (const std::exception&) {
     this->clear(); // the view itself reports what fails
   }
-  this->Pause_ms_ = std::max(Rest_ms, (PickShare - 1) * int(clock.elapsed()));
+  this->Pause_ms_ = std::max(PickRest_ms, (PickShare - 1) * int(clock.elapsed()));
 }
 
 QString PointerReadout::TextOf(const std::string& picked, const std::string& slope) {

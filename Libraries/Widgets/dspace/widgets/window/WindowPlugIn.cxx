@@ -15,6 +15,7 @@
 #include <QTimer>
 
 #include <dspace/Error.h>
+#include <dspace/widgets/desktop/MenuKeys.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 
 namespace dspace::widgets {
@@ -53,10 +54,6 @@ protected:
 private:
   std::function<void(QPainter&)> Draw_;
 };
-
-QString Plain(QString text) {
-  return text.remove('&');
-}
 
 } // namespace
 
@@ -156,7 +153,7 @@ QAction* WindowPlugIn::MakeAction(const QString& text, const QString& key,
     if (!sequence.isEmpty() && other->shortcut() == sequence) {
       throw Error(Error::Kind::InvalidArgument, label,
                   "its key " + key.toStdString() + " is that of '" +
-                      Plain(other->text()).toStdString() + "'; accepted: a free one");
+                      WithoutMnemonics(other->text()).toStdString() + "'; accepted: a free one");
     }
   }
   auto* action = new QAction(text, this->Window_);
@@ -173,7 +170,8 @@ QAction* WindowPlugIn::AddAction(const QString& menu, const QString& text, const
   QAction* action = this->MakeAction(text, key, std::move(chosen));
   QMenu* in = nullptr;
   for (QAction* each : this->Window_->menuBar()->actions()) {
-    in = each->menu() && Plain(each->text()) == Plain(menu) ? each->menu() : in;
+    in = each->menu() && WithoutMnemonics(each->text()) == WithoutMnemonics(menu) ? each->menu()
+                                                                                  : in;
   }
   if (!in) {
     in = this->Window_->menuBar()->addMenu(menu);
