@@ -8,7 +8,7 @@ namespace {
 
 using namespace dspace;
 
-KernelPool PoolOf(const std::string& data) {
+KernelPool InstrumentOf(const std::string& data) {
   KernelPool pool;
   pool.Add(TextKernel::Parse("\\begindata\n" + data + "\n", "k.ti"));
   return pool;
@@ -48,15 +48,16 @@ TEST(FieldOfView, CassinisCameras) {
 
 TEST(FieldOfView, CornersAndEllipses) {
   const FieldOfView polygon = FieldOfViewOf(
-      PoolOf(Start + "INS-1_FOV_SHAPE = 'polygon' INS-1_FOV_BOUNDARY = ( 1 0 1  0 1 1  -1 -1 1 )"),
+      InstrumentOf(Start +
+                   "INS-1_FOV_SHAPE = 'polygon' INS-1_FOV_BOUNDARY = ( 1 0 1  0 1 1  -1 -1 1 )"),
       -1);
   EXPECT_EQ(polygon.shape, FieldShape::Polygon);
   EXPECT_NEAR(polygon.boundary[0].x(), std::sqrt(0.5), 1e-15);
-  const FieldOfView ellipse =
-      FieldOfViewOf(PoolOf(Start + "INS-1_FOV_SHAPE = 'ELLIPSE' INS-1_FOV_CLASS_SPEC = 'ANGLES' "
-                                   "INS-1_FOV_REF_VECTOR = ( 1 0 1 ) INS-1_FOV_REF_ANGLE = 0.2 "
-                                   "INS-1_FOV_CROSS_ANGLE = 0.1 INS-1_FOV_ANGLE_UNITS = 'RADIANS'"),
-                    -1);
+  const FieldOfView ellipse = FieldOfViewOf(
+      InstrumentOf(Start + "INS-1_FOV_SHAPE = 'ELLIPSE' INS-1_FOV_CLASS_SPEC = 'ANGLES' "
+                           "INS-1_FOV_REF_VECTOR = ( 1 0 1 ) INS-1_FOV_REF_ANGLE = 0.2 "
+                           "INS-1_FOV_CROSS_ANGLE = 0.1 INS-1_FOV_ANGLE_UNITS = 'RADIANS'"),
+      -1);
   EXPECT_TRUE(
       ellipse.boundary[0].isApprox(Eigen::Vector3d(std::sin(0.2), 0, std::cos(0.2)), 1e-15));
   EXPECT_TRUE(
@@ -80,9 +81,9 @@ TEST(FieldOfView, RejectsIncompleteOnes) {
         std::string("INS-1_FOV_SHAPE = 'RECTANGLE' INS-1_FOV_BOUNDARY = ( 1 0 1 0 1 1 )"),
         std::string("INS-1_FOV_SHAPE = 'POLYGON' INS-1_FOV_BOUNDARY = ( 1 0 1 0 1 1 0 1 -1 )"),
         std::string("INS-1_FOV_SHAPE = 'POLYGON' INS-1_FOV_BOUNDARY = ( 1 0 1 0 1 1 0 0 0 )")}) {
-    EXPECT_THROW(FieldOfViewOf(PoolOf(Start + bad), -1), Error) << bad;
+    EXPECT_THROW(FieldOfViewOf(InstrumentOf(Start + bad), -1), Error) << bad;
   }
-  EXPECT_THROW(FieldOfViewOf(PoolOf(Start), -1), Error);
+  EXPECT_THROW(FieldOfViewOf(InstrumentOf(Start), -1), Error);
 }
 
 } // namespace

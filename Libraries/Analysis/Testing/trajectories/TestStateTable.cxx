@@ -11,14 +11,14 @@
 namespace dspace {
 namespace {
 
-constexpr double Earth = 398600.4418e9;
+constexpr double EarthMu = 398600.4418e9;
 
 // An eccentric orbit whose states are known in closed form: by Kepler's equation, solved here with
 // Newton's steps, and not by the code under test.
 State OnEllipse(double t) {
   const double a = 8000e3;
   const double e = 0.15;
-  const double n = std::sqrt(Earth / (a * a * a));
+  const double n = std::sqrt(EarthMu / (a * a * a));
   const double m = n * t;
   double E = m;
   for (int i = 0; i < 50; ++i) {
@@ -82,7 +82,7 @@ TEST(StateTable, LagrangeFollowsAnOrbitWithAndWithoutVelocities) {
 }
 
 TEST(StateTable, LinearErrsByTheSagOfTheChord) {
-  const double highest = Earth / std::pow(8000e3 * 0.85, 2); // acceleration at periapsis
+  const double highest = EarthMu / std::pow(8000e3 * 0.85, 2); // acceleration at periapsis
   const double bound = highest * 60.0 * 60.0 / 8.0;
   const Errors errors = ErrorsOf(60.0, {Kind::Linear, 1});
   EXPECT_LT(errors.position, bound);

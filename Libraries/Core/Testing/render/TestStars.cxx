@@ -70,7 +70,7 @@ struct StarTest : RenderingFixture {
   }
 };
 
-Star At(const Eigen::Vector3d& direction, double magnitude) {
+Star StarAt(const Eigen::Vector3d& direction, double magnitude) {
   Star star;
   star.direction = direction.cast<float>();
   star.magnitude = float(magnitude);
@@ -88,7 +88,7 @@ TEST_F(StarTest, AStarsPixelsAddUpToItsIrradianceAtItsPlace) {
       StarLook look;
       look.spread = spread;
       look.gain = 1e6; // not in physical pictures
-      Add({At(DirectionOf(40.3, 77.9), 0.0), At(DirectionOf(170.75, 15.5), 2.5)}, look);
+      Add({StarAt(DirectionOf(40.3, 77.9), 0.0), StarAt(DirectionOf(170.75, 15.5), 2.5)}, look);
       auto viewport = View(Size, Size);
       viewport->SetSamples(samples);
       const std::vector<double> radiances = Radiances(*viewport);
@@ -112,7 +112,7 @@ TEST_F(StarTest, AGaussianIsIntegratedOverEachPixel) {
   look.spread = 0.8;
   const double x = 100.2;
   const double y = 99.7;
-  Add({At(DirectionOf(x, y), 1.0)}, look);
+  Add({StarAt(DirectionOf(x, y), 1.0)}, look);
   auto viewport = View(Size, Size);
   const std::vector<double> radiances = Radiances(*viewport);
   const double all = 2.6903e-8 * std::pow(10.0, -0.4) / SolidAngle(x, y);
@@ -129,7 +129,7 @@ TEST_F(StarTest, AGaussianIsIntegratedOverEachPixel) {
 }
 
 TEST_F(StarTest, DisplayColorsFollowGainAndExposureAndFaintStarsAreLeftOut) {
-  const auto field = Add({At(DirectionOf(50, 50), 3.0)});
+  const auto field = Add({StarAt(DirectionOf(50, 50), 3.0)});
   auto viewport = View(Size, Size);
   const auto brightest = [&] {
     const std::vector<std::uint8_t> picture = viewport->GetCapture({}).color;
@@ -163,7 +163,7 @@ TEST_F(StarTest, DisplayColorsFollowGainAndExposureAndFaintStarsAreLeftOut) {
 }
 
 TEST_F(StarTest, ObjectsHideStarsAndStarsHaveNoDepth) {
-  Add({At(DirectionOf(100, 100), 0.0), At(DirectionOf(20, 20), 0.0)});
+  Add({StarAt(DirectionOf(100, 100), 0.0), StarAt(DirectionOf(20, 20), 0.0)});
   GraphicsObject ball;
   ball.name = "ball";
   ball.levels = {
@@ -191,7 +191,7 @@ TEST_F(StarTest, EveryViewHasAllOfItsStars) {
     const double z = 1.0 - (2.0 * i + 1.0) / 2000.0;
     const double angle = 2.399963 * i;
     const double r = std::sqrt(1.0 - z * z);
-    stars.push_back(At({r * std::cos(angle), r * std::sin(angle), z}, 0.0));
+    stars.push_back(StarAt({r * std::cos(angle), r * std::sin(angle), z}, 0.0));
   }
   Add(stars);
   auto viewport = View(Size, Size);
@@ -220,7 +220,7 @@ TEST_F(StarTest, EveryViewHasAllOfItsStars) {
 TEST_F(StarTest, ALargeStarBeyondTheEdgeReachesIntoThePicture) {
   StarLook look;
   look.spread = 6.0;
-  Add({At(DirectionOf(-3.0, 100.0), 0.0)}, look);
+  Add({StarAt(DirectionOf(-3.0, 100.0), 0.0)}, look);
   auto viewport = View(Size, Size);
   const Blob seen = Sum(Radiances(*viewport), 0, Size);
   // The part of the Gaussian right of the picture's edge at x = -0.5.

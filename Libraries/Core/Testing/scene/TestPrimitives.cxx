@@ -21,7 +21,7 @@ using dspace::Projection;
 using Eigen::Vector3d;
 
 constexpr double Pi = 3.14159265358979323846;
-constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
 
 Vector3d At(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
@@ -257,7 +257,8 @@ TEST(Primitives, LinesAndPoints) {
 }
 
 TEST(Primitives, Rejections) {
-  for (const double bad : {0.0, -1.0, NaN, std::numeric_limits<double>::infinity(), 1e16, 1e-10}) {
+  for (const double bad :
+       {0.0, -1.0, NotANumber, std::numeric_limits<double>::infinity(), 1e16, 1e-10}) {
     ExpectRejected("box", [&] { dspace::MakeBox({1, bad, 1}); });
     ExpectRejected("sphere", [&] { dspace::MakeSphere(bad); });
     ExpectRejected("cylinder", [&] { dspace::MakeCylinder(bad, 1); });
@@ -288,7 +289,7 @@ TEST(Primitives, Rejections) {
   ExpectRejected("1 points", [] { dspace::MakeLineSet({{0, 0, 0}}); });
   ExpectRejected("2 points", [] { dspace::MakeLineSet({{0, 0, 0}, {1, 0, 0}}, true); });
   ExpectRejected("0 points", [] { dspace::MakePointSet({}); });
-  ExpectRejected("nan", [] { dspace::MakePointSet({{0, NaN, 0}}); });
+  ExpectRejected("nan", [] { dspace::MakePointSet({{0, NotANumber, 0}}); });
   ExpectRejected("0 x 5", [] { dspace::MakeFrustumPyramid(Projection(), 1, 0, 5); });
   Projection bad;
   bad.nearDistance = -1;
@@ -391,7 +392,7 @@ TEST(Markers, TiltReddens) {
     EXPECT_LE(b[1] - b[0], a[1] - a[0] + 1e-12);
   }
   ExpectRejected("tilt", [] { dspace::TiltColor(-1, 15, 30); });
-  ExpectRejected("tilt", [] { dspace::TiltColor(NaN, 15, 30); });
+  ExpectRejected("tilt", [] { dspace::TiltColor(NotANumber, 15, 30); });
   ExpectRejected("limit", [] { dspace::TiltColor(1, 15, 181); });
   ExpectRejected("warning", [] { dspace::TiltColor(1, 30, 30); });
   ExpectRejected("warning", [] { dspace::TiltColor(1, 0, 30); });

@@ -17,9 +17,9 @@ template<class T> std::string Bytes(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-const std::string Triangle = Bytes<float>({0, 0, 0, 2, 0, 0, 0, 2, 0});
+const std::string TriangleBytes = Bytes<float>({0, 0, 0, 2, 0, 0, 0, 2, 0});
 
-v1::Command Create(const std::string& name, const std::string& positions = Triangle) {
+v1::Command Create(const std::string& name, const std::string& positions = TriangleBytes) {
   v1::Command command;
   command.mutable_create_mesh()->mutable_object()->set_name(name);
   v1::MeshData* mesh = command.mutable_create_mesh()->add_level()->add_mesh();
@@ -61,7 +61,7 @@ TEST_F(MeshCommands, ArraysBecomeAMeshWithNormalsAndIndices) {
   EXPECT_EQ(part.X_OP.translation().x(), 1e9);
   const v1::MeshReply reply = this->Get(id);
   ASSERT_EQ(reply.mesh_size(), 1);
-  EXPECT_EQ(reply.mesh(0).position(), Triangle);
+  EXPECT_EQ(reply.mesh(0).position(), TriangleBytes);
   EXPECT_EQ(reply.mesh(0).origin().x(), 1e9);
   EXPECT_EQ(reply.mesh(0).part(), "wing");
 }
@@ -128,12 +128,12 @@ TEST_F(MeshCommands, BadArraysAreRejectedByName) {
     this->Reject(set, v1::Error::INVALID_ARGUMENT, text);
   };
   const auto cut = [](std::string bytes) { return bytes.substr(0, bytes.size() - 1); };
-  reject([&](auto& m) { m.set_position(cut(Triangle)); },
+  reject([&](auto& m) { m.set_position(cut(TriangleBytes)); },
          "part 'wing': the array of its positions has 35 bytes; accepted: a multiple of 12");
   reject([&](auto& m) { m.set_position(""); }, "it has no points; accepted: 1 or more");
   reject([&](auto& m) { m.set_position(Bytes<float>({0, 0, NAN})); }, "a number of its positions");
   reject([&](auto& m) { m.set_position(Bytes<float>({0, 0, 0, 1, 1, 1})); }, "indices");
-  reject([&](auto& m) { m.set_normal(Triangle); }, "the normal of vertex 0 has length 0");
+  reject([&](auto& m) { m.set_normal(TriangleBytes); }, "the normal of vertex 0 has length 0");
   reject([&](auto& m) { m.set_normal("abc"); }, "the array of its normals has 3 bytes");
   reject([&](auto& m) { m.set_normal(Bytes<float>({0, 0, 1})); }, "numbers of normals");
   reject([&](auto& m) { m.set_tcoord(Bytes<float>({0, 0})); }, "numbers of texture coordinates");

@@ -12,7 +12,7 @@
 namespace dspace::testing {
 namespace {
 
-constexpr int Cells = 60;
+constexpr int RangeCells = 60;
 
 double Slope(double c, double r) {
   return 0.5 * c - 0.25 * r + 3.0 * std::sin(0.4 * c) * std::cos(0.3 * r);
@@ -21,13 +21,13 @@ double Slope(double c, double r) {
 } // namespace
 
 TEST(ClipmapRanges, HoldTheGroundOfEachBlockWhileTheViewMoves) {
-  const auto posts = std::make_shared<FormulaPosts>(701, 701, false, Slope, Cells);
-  ClipmapLevels levels(std::make_shared<ElevationPyramid>(posts), Cells);
+  const auto posts = std::make_shared<FormulaPosts>(701, 701, false, Slope, RangeCells);
+  ClipmapLevels levels(std::make_shared<ElevationPyramid>(posts), RangeCells);
   ClipmapRanges ranges;
   const auto upload = [&](int level, const ClipmapUpdate&, const ClipmapTexel*) {
     ranges.Changed(level);
   };
-  const int across = ClipmapIndices::BlocksOf(Cells);
+  const int across = ClipmapIndices::BlocksOf(RangeCells);
   // The last two windows reach beyond the lattice.
   for (const Eigen::Vector2d& place : {Eigen::Vector2d(350, 350), Eigen::Vector2d(362, 341),
                                        Eigen::Vector2d(3, 20), Eigen::Vector2d(698, 690)}) {
@@ -50,8 +50,8 @@ TEST(ClipmapRanges, HoldTheGroundOfEachBlockWhileTheViewMoves) {
               const std::int64_t c = window.column + column * ClipmapIndices::BlockCells + i;
               const std::int64_t r = window.row + row * ClipmapIndices::BlockCells + j;
               if (c < 0 || r < 0 || c >= levels.Lattice().ColumnsAt(level) ||
-                  r >= levels.Lattice().RowsAt(level) || c > window.column + Cells ||
-                  r > window.row + Cells) {
+                  r >= levels.Lattice().RowsAt(level) || c > window.column + RangeCells ||
+                  r > window.row + RangeCells) {
                 continue;
               }
               const double height = levels.Texel(level, c, r).height;

@@ -17,7 +17,7 @@ namespace {
 using namespace dspace;
 using namespace dspace::testing;
 
-constexpr double Moon = 1737400.0;
+constexpr double MoonRadius = 1737400.0;
 
 // North-up square posts `size` metres apart.
 PostPlacement Plane(double size) {
@@ -98,7 +98,7 @@ TEST(HorizonSweep, ASpheresHorizonDips) {
   const TemporaryFolder folder;
   Globe globe;
   globe.width = 360;
-  globe.radius = Moon;
+  globe.radius = MoonRadius;
   globe.height = [](double, double) { return 500.0; };
   StreamedTerrainOptions onBody;
   onBody.onBody = true;
@@ -118,8 +118,8 @@ TEST(HorizonSweep, ASpheresHorizonDips) {
       const double post =
           std::ldexp(terrain->Placement().CellSize({0.0, lattice.rows / 2.0}), level);
       EXPECT_LE(all, 1e-4);
-      EXPECT_GE(all, -0.71 * post / Moon / ToRadians - 1e-4);
-      EXPECT_LE(distant, -7.9 * post / Moon / ToRadians + 1e-4);
+      EXPECT_GE(all, -0.71 * post / MoonRadius / ToRadians - 1e-4);
+      EXPECT_LE(distant, -7.9 * post / MoonRadius / ToRadians + 1e-4);
     }
   }
 }
@@ -129,7 +129,7 @@ TEST(HorizonSweep, ALunarSummitIsSeenOverTheCurvature) {
   const TemporaryFolder folder;
   Globe globe;
   globe.width = 1440; // 7.6 km a pixel
-  globe.radius = Moon;
+  globe.radius = MoonRadius;
   const double lon = 10.125;
   const double lat = 30.125; // a pixel's centre
   globe.height = [&](double x, double y) {
@@ -142,7 +142,7 @@ TEST(HorizonSweep, ALunarSummitIsSeenOverTheCurvature) {
   options.heights = {0.0, 10800.0};
   const PostPlacement& placement = terrain->Placement();
   const HorizonSweep sweep(terrain->Pyramid(), placement, options);
-  const double reach = std::acos(Moon / (Moon + 10800.0)) * Moon;
+  const double reach = std::acos(MoonRadius / (MoonRadius + 10800.0)) * MoonRadius;
   EXPECT_NEAR(reach, 194e3, 1e3);
   const Eigen::Vector2d summit =
       (Eigen::Vector2d(lon, lat) * ToRadians - placement.First()).cwiseQuotient(placement.Step());
@@ -383,7 +383,7 @@ TEST(HorizonSweep, ABlockIsItsPosts) {
 Globe RoughGlobe() {
   Globe globe;
   globe.width = 1440;
-  globe.radius = Moon;
+  globe.radius = MoonRadius;
   globe.height = [](double lon, double lat) {
     const double x = lon * Degree;
     const double y = lat * Degree;

@@ -27,7 +27,7 @@ using dspace::testing::Texels;
 
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 
-class FalseColor : public testing::Test {
+class FalseColor : public ::testing::Test {
 protected:
   FalseColor() : Grid(GridAt(Crs(), {0.0, 64.0}, {4.0, -4.0})) {
     this->Place.name = "terrain 'ground'";
@@ -53,7 +53,7 @@ protected:
   ColorGrid Grid;
 };
 
-using Texel = std::array<int, 4>;
+using ColorTexel = std::array<int, 4>;
 
 } // namespace
 
@@ -66,9 +66,9 @@ TEST_F(FalseColor, ValuesAreMeansBeforeTheyAreColoured) {
       this->File(GDT_Int16, value).Write(this->Folder / "turns.tif"), this->Place, colors);
   EXPECT_EQ(layer->Range()[0], -20.0);
   EXPECT_EQ(layer->Range()[1], 20.0);
-  EXPECT_EQ(this->At(*layer, 2, 4, 4), (Texel{0, 0, 0, 255}));
-  EXPECT_EQ(this->At(*layer, 2, 5, 4), (Texel{0, 0, 0, 255}));
-  EXPECT_EQ(this->At(*layer, 1, 4, 4), (Texel{255, 255, 255, 255}));
+  EXPECT_EQ(this->At(*layer, 2, 4, 4), (ColorTexel{0, 0, 0, 255}));
+  EXPECT_EQ(this->At(*layer, 2, 5, 4), (ColorTexel{0, 0, 0, 255}));
+  EXPECT_EQ(this->At(*layer, 1, 4, 4), (ColorTexel{255, 255, 255, 255}));
   const Texels fine = ReadTexels(*layer, this->Grid, {6, 700, 700, 40, 1});
   for (int x = 0; x < 40; ++x) { // between two pixels the values in between
     const double column = (700 + x + 0.5) / 16.0 - 0.5;
@@ -92,18 +92,20 @@ TEST_F(FalseColor, ScaleOffsetNoDataAndEnds) {
   EXPECT_EQ(all->Range()[0], 20.0); // 0.5 * 100 - 30
   EXPECT_EQ(all->Range()[1], 51.5);
   EXPECT_TRUE(all->Warnings().empty());
-  EXPECT_EQ(this->At(*all, 2, 0, 0), (Texel{0, 0, 255, 255}));
-  EXPECT_EQ(this->At(*all, 2, 63, 0), (Texel{255, 128, 0, 255}));
+  EXPECT_EQ(this->At(*all, 2, 0, 0), (ColorTexel{0, 0, 255, 255}));
+  EXPECT_EQ(this->At(*all, 2, 63, 0), (ColorTexel{255, 128, 0, 255}));
   EXPECT_FALSE(ReadTexels(*all, this->Grid, {2, 5, 3, 1, 1}).any);
-  const Texel edge = this->At(*all, 1, 15, 1); // rows 2 and 3: half of it, its colour that of row 2
+  const ColorTexel edge =
+      this->At(*all, 1, 15, 1); // rows 2 and 3: half of it, its colour that of row 2
   EXPECT_EQ(edge[3], 128);
   EXPECT_NEAR(edge[0], 255.0 * 30.5 / 63.0, 0.51);
   colors.low = 30.0;
   colors.high = 40.0;
   const auto some = OpenFalseColorLayer(path, this->Place, colors);
-  EXPECT_EQ(this->At(*some, 2, 0, 0), (Texel{0, 0, 255, 255})); // beyond the ends their colours
-  EXPECT_EQ(this->At(*some, 2, 63, 0), (Texel{255, 128, 0, 255}));
-  EXPECT_EQ(this->At(*some, 2, 30, 0), (Texel{128, 64, 128, 255})); // 35
+  EXPECT_EQ(this->At(*some, 2, 0, 0),
+            (ColorTexel{0, 0, 255, 255})); // beyond the ends their colours
+  EXPECT_EQ(this->At(*some, 2, 63, 0), (ColorTexel{255, 128, 0, 255}));
+  EXPECT_EQ(this->At(*some, 2, 30, 0), (ColorTexel{128, 64, 128, 255})); // 35
 }
 
 TEST_F(FalseColor, LargeValuesKeepTheirDigits) {
@@ -124,7 +126,7 @@ TEST_F(FalseColor, OneValueHasTheMiddlesColour) {
   const auto layer = OpenFalseColorLayer(
       this->File(GDT_Byte, [](int, int, int) { return 7.0; }).Write(this->Folder / "one.tif"),
       this->Place, {1, {{0, 0, 0}, {1, 1, 1}}, {}, {}});
-  EXPECT_EQ(this->At(*layer, 2, 9, 9), (Texel{128, 128, 128, 255}));
+  EXPECT_EQ(this->At(*layer, 2, 9, 9), (ColorTexel{128, 128, 128, 255}));
   EXPECT_EQ(layer->Warnings().size(), 1u);
 }
 

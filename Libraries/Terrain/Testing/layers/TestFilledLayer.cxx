@@ -24,14 +24,14 @@ using dspace::testing::RasterFile;
 using dspace::testing::ReadTexels;
 using dspace::testing::Texels;
 
-constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double Hole = std::numeric_limits<double>::quiet_NaN();
 
 bool IsHole(int column, int row) {
   return column >= 20 && column < 40 && row >= 10 && row < 30;
 }
 
 // 64 x 64 pixels of 1 m; texels are 4 m at zoom 0, 1 m at zoom 2, 0.25 m at zoom 4.
-class Filled : public testing::Test {
+class Filled : public ::testing::Test {
 protected:
   Filled() : Grid(GridAt(Crs(), {0.0, 64.0}, {4.0, -4.0})) {
     this->Place.name = "terrain 'ground'";
@@ -67,7 +67,7 @@ double Ramp(double x, double from, double to) {
 } // namespace
 
 TEST_F(Filled, PixelsWithoutDataAreMarkedAndNoOthers) {
-  for (const double missing : {-9999.0, NaN}) {
+  for (const double missing : {-9999.0, Hole}) {
     const auto layer =
         OpenFilledLayer(this->Raster("holes.tif", missing), 1, this->Place, {0, 0, 64, 64});
     const Texels texels = this->Read(*layer, 2, 80); // 16 of them beyond the raster
@@ -88,7 +88,7 @@ TEST_F(Filled, PixelsWithoutDataAreMarkedAndNoOthers) {
 
 TEST_F(Filled, OpacityIsTheShareWithoutData) {
   const auto layer =
-      OpenFilledLayer(this->Raster("holes.tif", NaN), 1, this->Place, {0, 0, 64, 64});
+      OpenFilledLayer(this->Raster("holes.tif", Hole), 1, this->Place, {0, 0, 64, 64});
   // Columns 20 to 39 are texels 5 to 9; rows 10 and 11, 28 and 29 are halves of texels 2 and 7.
   const Texels far = this->Read(*layer, 0, 16);
   ASSERT_TRUE(far.any);
@@ -112,7 +112,7 @@ TEST_F(Filled, AWindowIsWhereItsPixelsAre) {
   this->Place.pixelToMap.translation() << 16.0, 56.0;
   this->Place.columns = this->Place.rows = 48;
   const auto layer =
-      OpenFilledLayer(this->Raster("holes.tif", NaN), 1, this->Place, {16, 8, 48, 48});
+      OpenFilledLayer(this->Raster("holes.tif", Hole), 1, this->Place, {16, 8, 48, 48});
   const Texels texels = this->Read(*layer, 2, 64);
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 64; ++x) {
@@ -131,7 +131,7 @@ TEST_F(Filled, GroundOfAPatchIsNotMarked) {
   RasterFile beside = patch;
   beside.geotransform = {{3000.0, 1.0, 0.0, 64.0, 0.0, -1.0}};
   const auto layer =
-      OpenFilledLayer(this->Raster("holes.tif", NaN), 1, this->Place, {0, 0, 64, 64}, {},
+      OpenFilledLayer(this->Raster("holes.tif", Hole), 1, this->Place, {0, 0, 64, 64}, {},
                       {{patch.Write(this->Folder / "patch.tif"), 1, std::nullopt},
                        {beside.Write(this->Folder / "beside.tif"), 1, std::nullopt}});
   const Texels texels = this->Read(*layer, 2, 64);
@@ -143,8 +143,8 @@ TEST_F(Filled, GroundOfAPatchIsNotMarked) {
 }
 
 TEST_F(Filled, BadColoursAreRejected) {
-  const std::string path = this->Raster("holes.tif", NaN);
-  for (const double bad : {-0.1, 1.1, NaN}) {
+  const std::string path = this->Raster("holes.tif", Hole);
+  for (const double bad : {-0.1, 1.1, Hole}) {
     FilledLayerOptions options;
     options.color[1] = bad;
     EXPECT_THROW(OpenFilledLayer(path, 1, this->Place, {0, 0, 64, 64}, options), dspace::Error);

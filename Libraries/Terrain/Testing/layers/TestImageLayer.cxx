@@ -53,7 +53,7 @@ Eigen::Vector3d Sky(const Eigen::Vector3d& direction) {
   return Eigen::Vector3d::Constant(127.5) + 120.0 * direction;
 }
 
-class Images : public testing::Test {
+class Images : public ::testing::Test {
 protected:
   // Unaligned with everything: 120 x 90 pixels of 10 m, red rises to the east, green to the north.
   RasterFile Sloped() {

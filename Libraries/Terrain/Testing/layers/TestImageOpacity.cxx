@@ -26,7 +26,7 @@ using dspace::testing::Texels;
 using Texel = std::array<int, 4>;
 
 // Pixels of 1 m, of zoom 2 one a texel: texels of zoom 1 are means of four, of zoom 0 of sixteen.
-class Pixels : public testing::Test {
+class Pixels : public ::testing::Test {
 protected:
   Pixels() : Grid(GridAt(Crs(), {0.0, 64.0}, {4.0, -4.0})) {
     this->Place.name = "terrain 'ground'";

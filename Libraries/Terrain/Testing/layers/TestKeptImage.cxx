@@ -24,7 +24,7 @@ using dspace::testing::Texels;
 constexpr int Columns = 301;
 constexpr int Rows = 207;
 
-class KeptImage : public testing::Test {
+class KeptImage : public ::testing::Test {
 protected:
   KeptImage() : Grid(GridAt(Crs(), {0.0, Rows}, {11.0, -11.0})) {
     this->Place.name = "terrain 'ground'";

@@ -26,33 +26,33 @@ using dspace::testing::RasterFile;
 using dspace::testing::ReadTexels;
 using dspace::testing::Texels;
 
-constexpr int Columns = 4501; // no multiple of anything
-constexpr int Rows = 333;
+constexpr int OverviewColumns = 4501; // no multiple of anything
+constexpr int OverviewRows = 333;
 
-class Overviews : public testing::Test {
+class Overviews : public ::testing::Test {
 protected:
-  Overviews() : Grid(GridAt(Crs(), {0.0, Rows}, {32.0, -32.0})) {
+  Overviews() : Grid(GridAt(Crs(), {0.0, OverviewRows}, {32.0, -32.0})) {
     this->Place.name = "terrain 'ground'";
     this->Place.pixelToMap.linear() << 1.0, 0.0, 0.0, -1.0;
-    this->Place.pixelToMap.translation() << 0.0, Rows;
-    this->Place.columns = Columns;
-    this->Place.rows = Rows;
+    this->Place.pixelToMap.translation() << 0.0, OverviewRows;
+    this->Place.columns = OverviewColumns;
+    this->Place.rows = OverviewRows;
     std::filesystem::create_directories(this->Data);
   }
   // Stripes of a pixel about a slope; clear where `clear` says so.
   static double Slope(const Eigen::Vector2d& map) { return 30.0 + map.x() / 30.0 + map.y() / 9.0; }
   std::string Write(double added = 0.0) {
     RasterFile file;
-    file.width = Columns;
-    file.height = Rows;
+    file.width = OverviewColumns;
+    file.height = OverviewRows;
     file.bands = 2;
     file.type = GDT_Byte;
     file.value = [=](int c, int r, int b) {
       const double stripe = (c + r) % 2 ? 20.0 : -20.0;
       return b == 1 ? (c % 512 < 256 ? 255.0 : 0.0)
-                    : std::round(Slope({c + 0.5, Rows - r - 0.5}) + stripe + added);
+                    : std::round(Slope({c + 0.5, OverviewRows - r - 0.5}) + stripe + added);
     };
-    file.geotransform = {{0.0, 1.0, 0.0, double(Rows), 0.0, -1.0}};
+    file.geotransform = {{0.0, 1.0, 0.0, double(OverviewRows), 0.0, -1.0}};
     return file.Write(this->Data + "/large.tif");
   }
   std::shared_ptr<const ColorLayer> Open(const std::string& folder) {
@@ -65,7 +65,7 @@ protected:
     double worst = 0.0;
     for (int zoom : {0, 1, 2}) {
       const int side = 32 >> zoom;
-      const ColorBlock block{zoom, 0, 0, Columns / side, Rows / side};
+      const ColorBlock block{zoom, 0, 0, OverviewColumns / side, OverviewRows / side};
       const Texels texels = ReadTexels(layer, this->Grid, block);
       EXPECT_TRUE(texels.any);
       int seen = 0;
@@ -160,7 +160,8 @@ TEST_F(Overviews, ThreadsMakeThemOnce) {
   std::array<std::vector<std::uint8_t>, 4> got;
   for (auto& rgba : got)
     threads.emplace_back([&] {
-      rgba = ReadTexels(*layer, this->Grid, {0, 0, 0, Columns / 32, Rows / 32}).rgba;
+      rgba =
+          ReadTexels(*layer, this->Grid, {0, 0, 0, OverviewColumns / 32, OverviewRows / 32}).rgba;
     });
   for (std::thread& thread : threads)
     thread.join();

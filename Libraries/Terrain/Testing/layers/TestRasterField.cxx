@@ -81,7 +81,7 @@ double ByHand(const Whole& raster, double x, double y) {
   return above + (r - j) * (below - above);
 }
 
-class Field : public testing::Test {
+class Field : public ::testing::Test {
 protected:
   Field() {
     this->Place.name = "terrain 'ground'";

@@ -29,7 +29,7 @@ using dspace::testing::RasterFile;
 
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-class Raster : public testing::Test {
+class Raster : public ::testing::Test {
 protected:
   RasterFile File(int width = 8, int height = 6) const {
     RasterFile file;
@@ -45,7 +45,7 @@ protected:
   // nothing on stderr.
   void Rejected(const std::string& path, Error::Kind kind, const std::string& words,
                 const GridTerrainOptions& options = {}) {
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     std::string message;
     try {
       GridTerrain::Load(path, options);
@@ -56,7 +56,7 @@ protected:
       EXPECT_NE(message.find(path), std::string::npos) << message;
     }
     EXPECT_NE(message.find(words), std::string::npos) << message;
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   }
 
   bool Warns(const ElevationSource& source, const std::string& words) {
@@ -216,9 +216,9 @@ TEST_F(Raster, RejectsTruncatedFiles) {
     std::filesystem::copy_file(path, cut, std::filesystem::copy_options::overwrite_existing);
     std::filesystem::resize_file(cut,
                                  static_cast<std::uintmax_t>(static_cast<double>(size) * part));
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     EXPECT_THROW(GridTerrain::Load(cut), Error) << part;
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   }
 }
 

@@ -26,13 +26,13 @@ using dspace::testing::NorthUp;
 using dspace::testing::RasterFile;
 using dspace::testing::Sampled;
 
-std::shared_ptr<const GridTerrain> Flat(int columns, int rows, const Eigen::Affine2d& pixelToMap,
-                                        const Crs& crs) {
+std::shared_ptr<const GridTerrain> FlatGround(int columns, int rows,
+                                              const Eigen::Affine2d& pixelToMap, const Crs& crs) {
   return std::make_shared<GridTerrain>("flat", columns, rows,
                                        std::vector<double>(columns * rows, 1.0), pixelToMap, crs);
 }
 
-class Drape : public testing::Test {
+class Drape : public ::testing::Test {
 protected:
   // A whole body in plate carree, 2 degrees a pixel: red by longitude, green by latitude, `left`
   // its left edge; red turns round smoothly.
@@ -122,7 +122,7 @@ TEST_F(Drape, ReliefColoursByHeightFromTheTopRow) {
 }
 
 TEST_F(Drape, ReliefRejectsBadOptions) {
-  const auto flat = Flat(4, 4, NorthUp(0.0, 0.0, 1.0), Crs());
+  const auto flat = FlatGround(4, 4, NorthUp(0.0, 0.0, 1.0), Crs());
   const auto rejected = [&](const std::function<void(ShadedReliefOptions&)>& change) {
     ShadedReliefOptions options;
     change(options);
@@ -149,7 +149,7 @@ TEST_F(Drape, TheSameGridIsCopied) {
   file.geotransform = {{100.0, 2.0, 0.0, 500.0, 0.0, -2.0}};
   file.crs = "+proj=eqc +R=1737400 +type=crs";
   const std::string path = file.Write(this->Folder / "same.tif");
-  const auto terrain = Flat(16, 12, NorthUp(100.0, 500.0, 2.0), Crs::FromText(file.crs));
+  const auto terrain = FlatGround(16, 12, NorthUp(100.0, 500.0, 2.0), Crs::FromText(file.crs));
   const DrapeImage image = WarpImage(PlaceOf(*terrain), {path, {}, {}});
   ASSERT_EQ(image.width, 16);
   ASSERT_EQ(image.height, 12);
@@ -166,7 +166,7 @@ TEST_F(Drape, AnotherProjectionByProj) {
   const std::string path = this->Globe(-180.0, "IAU_2015:30100");
   // Around the north pole, across every meridian.
   const Crs polar = Crs::FromText("+proj=stere +lat_0=90 +lon_0=0 +R=1737400 +type=crs");
-  const auto pole = Flat(60, 60, NorthUp(-600000.0, 600000.0, 20000.0), polar);
+  const auto pole = FlatGround(60, 60, NorthUp(-600000.0, 600000.0, 20000.0), polar);
   const DrapeImage image = WarpImage(PlaceOf(*pole), {path, {}, {}});
   ASSERT_EQ(image.width, 60);
   // At the pole itself 180 columns meet, which bilinear interpolation does not follow: looked at
@@ -193,13 +193,13 @@ TEST_F(Drape, AGlobeWhoseLeftEdgeIsElsewhere) {
       Eigen::Affine2d m = Eigen::Affine2d::Identity();
       m.linear() << 4.0, 0.0, 0.0, -4.0;
       m.translation() << west, 88.0;
-      const auto globe = Flat(90, 44, m, mars);
+      const auto globe = FlatGround(90, 44, m, mars);
       this->ExpectGlobe(*globe, WarpImage(PlaceOf(*globe), {path, {}, {}}), 1.6);
     }
     Eigen::Affine2d m = Eigen::Affine2d::Identity(); // a window across the seam
     m.linear() << 0.5, 0.0, 0.0, -0.5;
     m.translation() << left - 10.0, 10.0;
-    const auto window = Flat(40, 40, m, mars);
+    const auto window = FlatGround(40, 40, m, mars);
     this->ExpectGlobe(*window, WarpImage(PlaceOf(*window), {path, {}, {}}), 1.6);
   }
 }
@@ -207,7 +207,7 @@ TEST_F(Drape, AGlobeWhoseLeftEdgeIsElsewhere) {
 TEST_F(Drape, PartialImagesAreMarkedAndLaidOver) {
   const std::string path = this->Globe(-180.0, "IAU_2015:49900");
   const Crs mars = Crs::FromText("IAU_2015:49900");
-  const auto terrain = Flat(40, 20, NorthUp(0.0, 10.0, 1.0), mars);
+  const auto terrain = FlatGround(40, 20, NorthUp(0.0, 10.0, 1.0), mars);
   DrapeSource source{path, {}, {{20.0, 10.0, 60.0, -10.0}}}; // only the eastern half
   const DrapeImage part = WarpImage(PlaceOf(*terrain), source);
   ShadedReliefOptions relief;
@@ -230,14 +230,14 @@ TEST_F(Drape, PartialImagesAreMarkedAndLaidOver) {
 
 TEST_F(Drape, RejectsWhatDoesNotFit) {
   const std::string path = this->Globe(-180.0, "IAU_2015:49900");
-  const auto mars = Flat(4, 4, NorthUp(0.0, 4.0, 1.0), Crs::FromText("IAU_2015:49900"));
-  const auto moon = Flat(4, 4, NorthUp(0.0, 4.0, 1.0), Crs::FromText("IAU_2015:30100"));
+  const auto mars = FlatGround(4, 4, NorthUp(0.0, 4.0, 1.0), Crs::FromText("IAU_2015:49900"));
+  const auto moon = FlatGround(4, 4, NorthUp(0.0, 4.0, 1.0), Crs::FromText("IAU_2015:30100"));
   const auto warp = [](const GridTerrain& terrain, const DrapeSource& source, int size = 4096) {
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     dspace::WarpOptions options;
     options.maximumSize = size;
     const Error::Kind kind = KindOf([&] { WarpImage(PlaceOf(terrain), source, options); });
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
     return kind;
   };
   EXPECT_EQ(warp(*moon, {path, {}, {}}), Error::Kind::Unsupported); // another body

@@ -21,7 +21,7 @@ using dspace::testing::Globe;
 using dspace::testing::RasterFile;
 using dspace::testing::TemporaryFolder;
 
-StreamedTerrainOptions OnBody() {
+StreamedTerrainOptions DegreesOnBody() {
   StreamedTerrainOptions options;
   options.onBody = true;
   return options;
@@ -33,7 +33,8 @@ TEST(StreamedDegrees, FormsOfDegreeGridsAreOneGround) {
   const TemporaryFolder folder;
   Globe globe;
   globe.height = Bulges;
-  const auto whole = StreamedTerrain::Open(globe.File().Write(folder / "whole.tif"), OnBody());
+  const auto whole =
+      StreamedTerrain::Open(globe.File().Write(folder / "whole.tif"), DegreesOnBody());
   const auto compare = [&](const StreamedTerrain& other, double lon0, double lon1, double lat0,
                            double lat1, double tolerance) {
     std::mt19937 random(2);
@@ -69,13 +70,15 @@ TEST(StreamedDegrees, FormsOfDegreeGridsAreOneGround) {
   const double wide = side * (1.0 + 3e-7);
   metres.geotransform = std::array<double, 6>{500.0 - 210.0 * Degree * globe.radius, wide, 0,
                                               0.5 * globe.width / 2 * wide,          0,    -wide};
-  const auto projected = StreamedTerrain::Open(metres.Write(folder / "metres.tif"), OnBody());
+  const auto projected =
+      StreamedTerrain::Open(metres.Write(folder / "metres.tif"), DegreesOnBody());
   EXPECT_TRUE(projected->Pyramid()->Lattice().periodic);
   compare(*projected, -180.0, 180.0, -90.0, 90.0, 5e-2);
 
   RasterFile repeated = globe.File();
   repeated.width += 1;
-  const auto again = StreamedTerrain::Open(repeated.Write(folder / "repeated.tif"), OnBody());
+  const auto again =
+      StreamedTerrain::Open(repeated.Write(folder / "repeated.tif"), DegreesOnBody());
   EXPECT_EQ(again->Info().window.width, globe.width);
   compare(*again, -180.0, 180.0, -90.0, 90.0, 1e-9);
 
@@ -87,7 +90,7 @@ TEST(StreamedDegrees, FormsOfDegreeGridsAreOneGround) {
   part.value = [&](int c, int r, int) {
     return double(float(Bulges(60.0 + (c + 0.5) * globe.Step(), 60.0 - (r + 0.5) * globe.Step())));
   };
-  const auto regional = StreamedTerrain::Open(part.Write(folder / "part.tif"), OnBody());
+  const auto regional = StreamedTerrain::Open(part.Write(folder / "part.tif"), DegreesOnBody());
   EXPECT_FALSE(regional->Pyramid()->Lattice().periodic);
   compare(*regional, 62.0, 357.9, -50.0, 58.0, 1e-2); // floats at other places
   EXPECT_FALSE(regional->Sample(2e6 * Direction(30.0, 0.0)).valid);
@@ -111,7 +114,7 @@ TEST(StreamedDegrees, RaysFromOrbitMeetALargeRastersHighestPlace) {
   file.value = [](int c, int r, int) {
     return c == 1003 && r == 750 ? 50000.0 : 1500.0 * std::sin(0.02 * c) * std::cos(0.03 * r);
   };
-  const auto terrain = StreamedTerrain::Open(file.Write(folder / "large.tif"), OnBody());
+  const auto terrain = StreamedTerrain::Open(file.Write(folder / "large.tif"), DegreesOnBody());
   EXPECT_FALSE(terrain->HeightRangeIsExact());
   EXPECT_LT(terrain->HeightRange()[1], 40000.0);
   const Eigen::Vector3d needle = Direction(120.0 + 1003.5 * 0.01, 10.0 - 750.5 * 0.01);
@@ -148,7 +151,7 @@ TEST(StreamedDegrees, WhatCannotStandOnABodyIsRejected) {
   globe.height = Bulges;
   const auto kindOf = [&](const RasterFile& file, const std::string& says) {
     try {
-      StreamedTerrain::Open(file.Write(folder / "rejected.tif"), OnBody());
+      StreamedTerrain::Open(file.Write(folder / "rejected.tif"), DegreesOnBody());
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
       return error.GetKind();
@@ -175,7 +178,7 @@ TEST(StreamedDegrees, WhatCannotStandOnABodyIsRejected) {
   file = globe.File();
   file.geotransform = std::array<double, 6>{-180, 5.0, 0, 90, 0, -3.75};
   EXPECT_EQ(kindOf(file, "more than once"), Error::Kind::InvalidArgument);
-  StreamedTerrainOptions options = OnBody();
+  StreamedTerrainOptions options = DegreesOnBody();
   options.origin = Eigen::Vector2d(0.0, 0.0);
   EXPECT_THROW(StreamedTerrain::Open(globe.File().Write(folder / "o.tif"), options), Error);
 }
@@ -215,7 +218,7 @@ void ExpectPixels(const StreamedTerrain& terrain, const std::string& path, doubl
 
 TEST(StreamedDegrees, WholeMarsIsMola) {
   DSPACE_REAL_DATA(path, "terrain/mars_mola_megt90n000cb_4ppd_m.tif");
-  StreamedTerrainOptions options = OnBody();
+  StreamedTerrainOptions options = DegreesOnBody();
   options.elevation.verticalDatum = VerticalDatum::FromText("areoid");
   const auto terrain = StreamedTerrain::Open(path, options);
   ExpectPixels(*terrain, path, 0.0, 1.0);
@@ -243,14 +246,14 @@ TEST(StreamedDegrees, WholeMarsIsMola) {
 TEST(StreamedDegrees, WholeMoonIsLola) {
   DSPACE_REAL_DATA(km, "terrain/moon_lola_global_4ppd_km.tif");
   DSPACE_REAL_DATA(cube, "terrain/moon_lola_ldem4_reduced.cub");
-  StreamedTerrainOptions options = OnBody();
+  StreamedTerrainOptions options = DegreesOnBody();
   options.elevation.verticalScale = 1000.0;
   options.elevation.verticalDatum = VerticalDatum::FromText("sphere:1737400");
   const auto fine = StreamedTerrain::Open(km, options);
   ExpectPixels(*fine, km, -180.0, 1000.0);
   EXPECT_NEAR(fine->HeightRange()[0], -8878.0, 1.0);
   EXPECT_NEAR(fine->HeightRange()[1], 10504.0, 1.0);
-  const auto coarse = StreamedTerrain::Open(cube, OnBody());
+  const auto coarse = StreamedTerrain::Open(cube, DegreesOnBody());
   EXPECT_TRUE(coarse->Pyramid()->Lattice().periodic);
   ExpectPixels(*coarse, cube, 0.0, 0.5);
   EXPECT_EQ(coarse->Placement().Radius(), 1737400.0);

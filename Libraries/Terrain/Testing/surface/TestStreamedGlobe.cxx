@@ -19,7 +19,7 @@ using dspace::testing::Direction;
 using dspace::testing::Globe;
 using dspace::testing::TemporaryFolder;
 
-StreamedTerrainOptions OnBody() {
+StreamedTerrainOptions GlobeOnBody() {
   StreamedTerrainOptions options;
   options.onBody = true;
   return options;
@@ -32,7 +32,8 @@ TEST(StreamedGlobe, OnABodyHeightsAreThoseByHand) {
     globe.west_deg = west;
     globe.direction = direction;
     globe.height = Bulges;
-    const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+    const auto terrain =
+        StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), GlobeOnBody());
     EXPECT_TRUE(terrain->HeightRangeIsExact());
     EXPECT_GE(terrain->Subdivisions(), 1);
     // Flat cells stay within a millimetre of the sphere.
@@ -68,7 +69,8 @@ TEST(StreamedGlobe, RaysMeetASphereWhereTheClosedFormDoes) {
   const TemporaryFolder folder;
   Globe globe;
   globe.height = [](double, double) { return 1200.0; };
-  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const auto terrain =
+      StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), GlobeOnBody());
   const double radius = globe.radius + 1200.0;
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
@@ -113,7 +115,8 @@ TEST(StreamedGlobe, RaysThatTouchASphereAreSeenTo) {
   globe.height = [](double lon, double lat) {
     return lon < -170.0 && lat < -80.0 ? 9000.0 : 1200.0;
   };
-  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const auto terrain =
+      StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), GlobeOnBody());
   const double radius = globe.radius + 1200.0;
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -136,7 +139,8 @@ TEST(StreamedGlobe, RaysAlongAndAcrossTheLinesOfTheGridMeetTheGround) {
   const TemporaryFolder folder;
   Globe globe;
   globe.height = Bulges;
-  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const auto terrain =
+      StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), GlobeOnBody());
   const auto ground = [&](double lon, double lat) {
     return terrain->Sample(Direction(lon, lat)).position_S;
   };
@@ -178,7 +182,8 @@ TEST(StreamedGlobe, RaysMeetABodysGroundWhereStepsDo) {
       return 0.3 * Bulges(lon, lat) +
              150.0 * std::sin(lon * Degree * 11.0) * std::cos(lat * Degree);
     };
-    const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+    const auto terrain =
+        StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), GlobeOnBody());
     const auto above = [&](const Eigen::Vector3d& p) {
       const double lat = std::atan2(p.z(), p.head<2>().norm()) / Degree;
       return p.norm() - globe.radius - ByHand(globe, std::atan2(p.y(), p.x()) / Degree, lat);
@@ -240,7 +245,8 @@ TEST(StreamedGlobe, NormalsAreThoseOfTheCurvedSurface) {
   Globe globe;
   globe.radius = 30000.0;
   globe.height = Bulges;
-  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const auto terrain =
+      StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), GlobeOnBody());
   const auto place = [&](double lon, double lat) {
     return Eigen::Vector3d((globe.radius + ByHand(globe, lon, lat)) * Direction(lon, lat));
   };
@@ -291,7 +297,8 @@ TEST(StreamedGlobe, NoSeamAtTheDateLineNorAtThePoles) {
     Globe globe;
     globe.west_deg = west;
     globe.height = Bulges;
-    const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+    const auto terrain =
+        StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), GlobeOnBody());
     const auto walk = [&](const std::function<Eigen::Vector3d(double)>& at, double stride) {
       constexpr int Steps = 2000;
       Rows3 points(Steps, 3);
@@ -335,7 +342,8 @@ TEST(StreamedGlobe, RoughnessIsTakenAlongTheSphere) {
     const auto row = std::lround((90.0 - lat) / globe.Step() - 0.5);
     return (column + row) % 2 == 0 ? 60.0 : 20.0;
   };
-  const auto terrain = StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), OnBody());
+  const auto terrain =
+      StreamedTerrain::Open(globe.File().Write(folder / "globe.tif"), GlobeOnBody());
   Rows3 points(5, 3);
   points.row(0) = Direction(10.0, 20.0);
   points.row(1) = Direction(179.9, -30.0);
@@ -351,7 +359,7 @@ TEST(StreamedGlobe, RoughnessIsTakenAlongTheSphere) {
   EXPECT_TRUE(std::isnan(roughness[0])); // no four pixels
   // A slope is no roughness: 1000 m of height a radian of latitude.
   globe.height = [](double, double lat) { return 1000.0 * lat * Degree; };
-  const auto slope = StreamedTerrain::Open(globe.File().Write(folder / "slope.tif"), OnBody());
+  const auto slope = StreamedTerrain::Open(globe.File().Write(folder / "slope.tif"), GlobeOnBody());
   slope->Roughness(points.topRows(1), 16.0 * Degree * globe.radius, roughness.head(1));
   EXPECT_LT(roughness[0], 5.0); // 140 m without the plane
 }

@@ -23,7 +23,7 @@ using dspace::widgets::WriteCsv;
 
 namespace {
 
-const double NaN = std::numeric_limits<double>::quiet_NaN();
+const double CsvNaN = std::numeric_limits<double>::quiet_NaN();
 const double Infinity = std::numeric_limits<double>::infinity();
 
 std::string Content(const std::string& path) {
@@ -71,7 +71,7 @@ TEST_F(TestSampleCsv, ALineForEachTimeAndQuotesAroundWhatNeedsThem) {
   CsvColumn state{"state", {}};
   torque.samples.Append(-1.0, 99.0); // before the interval
   torque.samples.Append(0.0, 0.1);
-  torque.samples.Append(1.0, NaN);
+  torque.samples.Append(1.0, CsvNaN);
   torque.samples.Append(2.0, -3e-7);
   torque.samples.Append(2.0, 5.0); // a second one at that time
   state.samples.Append(0.5, 1.0);

@@ -18,7 +18,7 @@ using dspace::widgets::SampleSeries;
 
 namespace {
 
-const double NaN = std::numeric_limits<double>::quiet_NaN();
+const double SeriesNaN = std::numeric_limits<double>::quiet_NaN();
 
 void ExpectSame(double a, double b, const std::string& what) {
   EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << what << ": " << a << ", not " << b;
@@ -33,10 +33,10 @@ struct Reference {
              const std::string& what) const {
     ASSERT_EQ(column.end - column.begin, samples.size()) << what;
     if (samples.empty()) {
-      ExpectSame(column.first, NaN, what + " first");
-      ExpectSame(column.last, NaN, what + " last");
-      ExpectSame(column.extent.min, NaN, what + " min");
-      ExpectSame(column.extent.max, NaN, what + " max");
+      ExpectSame(column.first, SeriesNaN, what + " first");
+      ExpectSame(column.last, SeriesNaN, what + " last");
+      ExpectSame(column.extent.min, SeriesNaN, what + " min");
+      ExpectSame(column.extent.max, SeriesNaN, what + " max");
       return;
     }
     EXPECT_EQ(column.begin, samples.front()) << what;
@@ -46,8 +46,8 @@ struct Reference {
       min = std::fmin(min, values[i]);
       max = std::fmax(max, values[i]);
     }
-    ExpectSame(column.extent.min, std::isinf(min) ? NaN : min, what + " min");
-    ExpectSame(column.extent.max, std::isinf(max) ? NaN : max, what + " max");
+    ExpectSame(column.extent.min, std::isinf(min) ? SeriesNaN : min, what + " min");
+    ExpectSame(column.extent.max, std::isinf(max) ? SeriesNaN : max, what + " max");
     ExpectSame(column.first, values[samples.front()], what + " first");
     ExpectSame(column.last, values[samples.back()], what + " last");
   }
@@ -76,8 +76,9 @@ TEST(SampleSeries, ColumnsHaveWhatASearchThroughAllSamplesFinds) {
       if (random() % 500 == 0) {
         eighths += 4000.0;
       }
-      const double value =
-          random() % 20 == 0 ? NaN : std::ldexp(double(random()) - 2e9, int(random() % 40) - 20);
+      const double value = random() % 20 == 0
+                               ? SeriesNaN
+                               : std::ldexp(double(random()) - 2e9, int(random() % 40) - 20);
       series.Append(eighths / 8.0, value);
       all.times.push_back(eighths / 8.0);
       all.values.push_back(value);
@@ -154,14 +155,14 @@ TEST(SampleSeries, RejectsWhatIsEarlierOrInfinite) {
   series.Append(10.0, 2.0); // the same time is no earlier one
   EXPECT_EQ(Rejected(series, 9.75, 3.0),
             "samples: a time is 9.75; accepted: at least that of the last sample, 10");
-  EXPECT_EQ(Rejected(series, NaN, 3.0), "samples: a time is nan; accepted: a finite number");
+  EXPECT_EQ(Rejected(series, SeriesNaN, 3.0), "samples: a time is nan; accepted: a finite number");
   EXPECT_EQ(Rejected(series, 11.0, -std::numeric_limits<double>::infinity()),
             "samples: a value is -inf; accepted: a finite number, or NaN for a gap");
   EXPECT_EQ(series.Size(), 2u);
   EXPECT_EQ(series.Time(1), 10.0);
   EXPECT_EQ(series.Value(1), 2.0);
   EXPECT_THROW(series.Decimate(1.0, 1.0, 10), dspace::Error);
-  EXPECT_THROW(series.Decimate(0.0, NaN, 10), dspace::Error);
+  EXPECT_THROW(series.Decimate(0.0, SeriesNaN, 10), dspace::Error);
   EXPECT_THROW(series.Decimate(-1.5e308, 1.5e308, 10), dspace::Error);
   EXPECT_THROW(series.Decimate(0.0, 1.0, 0), dspace::Error);
   EXPECT_THROW(series.Decimate(0.0, 1.0, 1000001), dspace::Error);
@@ -185,8 +186,8 @@ TEST(SampleSeries, AfterRemovingItIsASeriesOfTheRest) {
     for (std::size_t begin = 0; begin < whole.Size(); begin += 997) {
       for (std::size_t end = begin; end <= whole.Size(); end += 1733) {
         const SampleExtent a = cut.Extent(begin, end);
-        double min = NaN;
-        double max = NaN;
+        double min = SeriesNaN;
+        double max = SeriesNaN;
         for (std::size_t i = begin; i < end; ++i) {
           min = std::fmin(min, whole.Value(i));
           max = std::fmax(max, whole.Value(i));
@@ -236,17 +237,17 @@ TEST(SampleSeries, ValuesBetweenSamples) {
   series.Append(1.0, 10.0);
   series.Append(3.0, 20.0);
   series.Append(3.0, 40.0);
-  series.Append(5.0, NaN);
+  series.Append(5.0, SeriesNaN);
   series.Append(6.0, 7.0);
   const auto at = [&](double time_s) { return series.At(time_s, false); };
-  ExpectSame(at(0.9), NaN, "before the first");
+  ExpectSame(at(0.9), SeriesNaN, "before the first");
   EXPECT_EQ(at(1.0), 10.0);
   EXPECT_EQ(at(2.5), 17.5);
   EXPECT_EQ(at(3.0), 40.0); // the last of two
-  ExpectSame(at(4.0), NaN, "beside a gap");
-  ExpectSame(at(5.5), NaN, "beside a gap");
+  ExpectSame(at(4.0), SeriesNaN, "beside a gap");
+  ExpectSame(at(5.5), SeriesNaN, "beside a gap");
   EXPECT_EQ(at(6.0), 7.0);
-  ExpectSame(at(6.1), NaN, "after the last");
+  ExpectSame(at(6.1), SeriesNaN, "after the last");
   EXPECT_EQ(series.At(2.5, true), 10.0);
   EXPECT_EQ(series.At(4.0, true), 40.0);
   EXPECT_EQ(series.At(99.0, true), 7.0);

@@ -36,7 +36,7 @@ namespace v1 = dspace::v1;
 
 namespace {
 
-const double NaN = std::numeric_limits<double>::quiet_NaN();
+const double PlotNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::shared_ptr<SampleSeries> Line(double from, double to, double first, double last, int count) {
   auto samples = std::make_shared<SampleSeries>();
@@ -296,7 +296,7 @@ TEST_F(TelemetryPlot, AClickChoosesATimeAndTheLineFollowsTheHand) {
   ExpectRange(widget.XRange(), 0.0, 100.0, 0.0); // nothing has moved
   widget.SetCurrentTime({});
   EXPECT_FALSE(widget.CurrentTime());
-  EXPECT_THROW(widget.SetCurrentTime(NaN), dspace::Error);
+  EXPECT_THROW(widget.SetCurrentTime(PlotNaN), dspace::Error);
 }
 
 TEST_F(TelemetryPlot, CursorsReadValuesAndAreDragged) {
@@ -343,7 +343,7 @@ TEST_F(TelemetryPlot, ASlidingWindowFollowsUntilTheUserZooms) {
   widget.SetWindow(0.0);
   ExpectRange(widget.XRange(), 0.0, 120.0, 0.0);
   EXPECT_THROW(widget.SetWindow(-1.0), dspace::Error);
-  EXPECT_THROW(widget.SetWindow(NaN), dspace::Error);
+  EXPECT_THROW(widget.SetWindow(PlotNaN), dspace::Error);
 }
 
 TEST_F(TelemetryPlot, DroppedChannelsAreFollowed) {
@@ -368,7 +368,7 @@ TEST_F(TelemetryPlot, DroppedChannelsAreFollowed) {
   Set(angle, 5.0, 11.0); // nothing new of the torque
   widget.Refresh();
   EXPECT_EQ(samples->Size(), 2u);
-  Set(torque, NaN, 12.0);
+  Set(torque, PlotNaN, 12.0);
   widget.Refresh();
   Set(torque, 4.0, 13.0);
   widget.Refresh();
@@ -474,7 +474,7 @@ TEST_F(TelemetryPlot, LegendAndToolTips) {
 TEST_F(TelemetryPlot, GapsAreLeftOut) {
   auto samples = std::make_shared<SampleSeries>();
   for (int i = 0; i <= 1000; ++i) {
-    samples->Append(0.1 * i, i > 400 && i < 600 ? NaN : 1.0);
+    samples->Append(0.1 * i, i > 400 && i < 600 ? PlotNaN : 1.0);
   }
   widget.AddSeries("gap", "m", samples);
   const QImage image = widget.grab().toImage();

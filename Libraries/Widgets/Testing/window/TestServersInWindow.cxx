@@ -25,7 +25,7 @@ using dspace::widgets::ViewportWidget;
 
 namespace {
 
-const char* const View = "viewer:main";
+const char* const ServerView = "viewer:main";
 
 const char* const Tools = R"(
 import os, signal, subprocess, sys, textwrap
@@ -79,7 +79,7 @@ protected:
   }
   // Where the box is in the picture, from 0 to 1; -1: nowhere.
   static double BoxAt() {
-    const QImage picture = window->View(View)->grab().toImage();
+    const QImage picture = window->View(ServerView)->grab().toImage();
     double sum = 0.0, count = 0.0;
     for (int y = 0; y < picture.height() * 3 / 4; ++y) { // the notice is below
       for (int x = 0; x < picture.width(); ++x) {
@@ -94,7 +94,7 @@ protected:
   }
   // What differs from black at the bottom of the picture: the notice.
   static int NoticePixels() {
-    const QImage picture = window->View(View)->grab().toImage();
+    const QImage picture = window->View(ServerView)->grab().toImage();
     int count = 0;
     for (int y = picture.height() * 3 / 4; y < picture.height(); ++y) {
       for (int x = 0; x < picture.width(); ++x) {
@@ -105,7 +105,7 @@ protected:
   }
   static bool BoxIsOn(bool left) {
     return Wait([&] {
-      const double at = window->View(View) ? BoxAt() : -1.0;
+      const double at = window->View(ServerView) ? BoxAt() : -1.0;
       return at >= 0.0 && (left ? at < 0.45 : at > 0.55);
     });
   }
@@ -118,7 +118,7 @@ TEST_F(ServersInWindow, ASimulationDrivesTheWindowDiesAndComesBack) {
   ASSERT_TRUE(WaitFor("link.state", "connected")) << errors.toStdString();
   EXPECT_TRUE(Strip()->Text(1).endsWith(": no simulation")) << Strip()->Text(1).toStdString();
   ASSERT_TRUE(Run("one = simulate(link.address, -1, 50)"));
-  ASSERT_TRUE(Wait([] { return window->View(View) != nullptr; })) << errors.toStdString();
+  ASSERT_TRUE(Wait([] { return window->View(ServerView) != nullptr; })) << errors.toStdString();
   ASSERT_TRUE(BoxIsOn(true));
   EXPECT_TRUE(window->Scenes()->Active().startsWith("Simulation at 127.0.0.1:"));
   ASSERT_TRUE(Wait([] { return NoticePixels() == 0; }));
@@ -131,12 +131,12 @@ TEST_F(ServersInWindow, ASimulationDrivesTheWindowDiesAndComesBack) {
   const double stood = Number("link.scenes['place'].time");
   EXPECT_GT(stood, 0.0);
   // Another one takes over: in the same view.
-  ViewportWidget* const view = window->View(View);
+  ViewportWidget* const view = window->View(ServerView);
   ASSERT_TRUE(Run("two = simulate(link.address, 1, 50, 'two')"));
   ASSERT_TRUE(WaitFor("link.simulation", "cart two")) << errors.toStdString();
   ASSERT_TRUE(BoxIsOn(false));
   ASSERT_TRUE(Wait([] { return NoticePixels() == 0; }));
-  EXPECT_EQ(window->View(View), view);
+  EXPECT_EQ(window->View(ServerView), view);
   EXPECT_EQ(window->ViewCount(), 1);
   ASSERT_TRUE(Run("end(two)"));
   EXPECT_EQ(errors.toStdString(), "");
@@ -156,7 +156,7 @@ one = simulate(address, -1, 20)
 one.stdout.readline()
 link = app.connect(address))"))
       << errors.toStdString();
-  ASSERT_TRUE(Wait([] { return window->View(View) != nullptr; })) << errors.toStdString();
+  ASSERT_TRUE(Wait([] { return window->View(ServerView) != nullptr; })) << errors.toStdString();
   ASSERT_TRUE(BoxIsOn(true));
   ASSERT_TRUE(Run("end(one); end(server)"));
   ASSERT_TRUE(WaitFor("link.state", "lost"));
@@ -177,7 +177,7 @@ TEST_F(ServersInWindow, AThousandStepsASecondLeaveTheWindowAlive) {
   ASSERT_TRUE(Run("link = app.listen()"));
   ASSERT_TRUE(WaitFor("link.state", "connected")) << errors.toStdString();
   ASSERT_TRUE(Run("one = simulate(link.address, -1, 1000)"));
-  ASSERT_TRUE(Wait([] { return window->View(View) != nullptr; })) << errors.toStdString();
+  ASSERT_TRUE(Wait([] { return window->View(ServerView) != nullptr; })) << errors.toStdString();
   ASSERT_TRUE(BoxIsOn(true));
   const double before = Number("link.scenes['place'].time");
   qint64 longest = 0;
@@ -198,7 +198,7 @@ TEST_F(ServersInWindow, AThousandStepsASecondLeaveTheWindowAlive) {
   EXPECT_GT(factor, 0.0); // the machine also runs the simulation and the server
   EXPECT_GT(Number("link.sequence"), 500.0);
   // The person at the window moves the camera meanwhile, and the simulation does not.
-  ViewportWidget* view = window->View(View);
+  ViewportWidget* view = window->View(ServerView);
   const std::string pose = Value("app.views['viewer:main'].camera.pose.position");
   const QPoint center = view->rect().center();
   QTest::mousePress(view, Qt::LeftButton, Qt::NoModifier, center);
