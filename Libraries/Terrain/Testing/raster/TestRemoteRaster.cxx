@@ -125,12 +125,21 @@ template<class Call> Error Rejection(const Call& call, const std::string& url) {
   return rejection;
 }
 
+// Read in parts, whose answers come within Short on a busy machine.
 void ExpectHeights(const ElevationSource& source, const RasterWindow& w) {
-  const std::vector<double> heights = Within10Attempts([&] { return source.Read(w); });
+  constexpr int Part = 256;
   int wrong = 0;
-  for (int j = 0; j < w.height; ++j) {
-    for (int i = 0; i < w.width; ++i) {
-      wrong += heights[std::size_t(j) * w.width + i] != Height(w.column + i, w.row + j);
+  for (int y = 0; y < w.height; y += Part) {
+    for (int x = 0; x < w.width; x += Part) {
+      const RasterWindow part{w.column + x, w.row + y, std::min(Part, w.width - x),
+                              std::min(Part, w.height - y)};
+      const std::vector<double> heights = Within10Attempts([&] { return source.Read(part); });
+      for (int j = 0; j < part.height; ++j) {
+        for (int i = 0; i < part.width; ++i) {
+          wrong += heights[std::size_t(j) * std::size_t(part.width) + std::size_t(i)] !=
+                   Height(part.column + i, part.row + j);
+        }
+      }
     }
   }
   EXPECT_EQ(wrong, 0);
