@@ -99,7 +99,8 @@ private:
     glBindBuffer(GL_ARRAY_BUFFER, 0);
   }
 
-  void Draw(const dspace::CustomDrawing& drawing, unsigned features, const char* fragment) {
+  void Draw(const dspace::CustomDrawing& drawing, dspace::SurfaceShaders::Features features,
+            const char* fragment) {
     dspace::ShaderPages pages;
     pages.vertex = SailVertex;
     pages.fragment = fragment;

@@ -49,6 +49,30 @@ with dspace.Session() as session:
     sail.remove()
     assert not view.labels().any()
 
+    # A flat sail 4 m wide hangs 5 m over a floor under the Sun: its shadow is as large, though the picture does not show it.
+    floor = scene.add_plane(40, 40, color="#ffffff", position=(0, 0, -5))
+    scene.sun.direction = (0, 0, 1)
+    scene.add_camera("low", eye=(0, -7, -2), target=(0, 0, -5))
+    low = scene.add_viewport(size=(80, 60), camera="low", samples=1)
+    assert (low.lit_fraction()[low.labels() == floor.id] == 1).all()
+    sail = scene.add_drawn("solar_sail", struct.pack("<3d", 4.0, 0.0, 0.0))
+    lit = low.lit_fraction()
+    assert not (low.labels() == sail.id).any()
+    inside = outside = 0
+    for y in range(0, 60, 3):
+        for x in range(0, 80, 3):
+            hit = low.pick(x, y)
+            if hit is None:
+                continue
+            aside = max(abs(hit.in_root[0]), abs(hit.in_root[1])) - 2.0  # beyond the sail's edge [m]
+            inside += aside < -0.05
+            outside += aside > 0.05
+            if abs(aside) > 0.05:
+                assert lit[y, x] == (aside > 0), (x, y, hit.in_root, lit[y, x])
+    assert inside > 20 and outside > 100, (inside, outside)
+    sail.frame = scene.add_frame("far", position=(100, 0, 0))
+    assert (low.lit_fraction()[low.labels() == floor.id] == 1).all()
+
 with warnings.catch_warnings(record=True) as told:
     warnings.simplefilter("always")
     with dspace.Playback(path) as playback:

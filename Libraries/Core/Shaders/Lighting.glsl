@@ -63,7 +63,7 @@ float discCosine(float c, vec2 disc)
 vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
 {
   vec3 light = ambientLight * color;
-#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+#ifdef DSPACE_SHADOWED
   vec3 planeVC = cross(dFdx(positionVC), dFdy(positionVC)); // here, where all pixels come by
   float litBySun = 0.0;
 #endif
@@ -112,7 +112,7 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
 #else
     float NdL = max(dot(N, L), 0.0);
 #endif
-#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+#ifdef DSPACE_SHADOWED
     if (i == 0 && NdL > 0.0) // the Sun stands first
     {
       litBySun = sunLit(positionVC, planeVC);
@@ -140,7 +140,7 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
 #if DSPACE_CASCADES > 0
   light *= cascadeTint(positionVC);
 #endif
-#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+#ifdef DSPACE_SHADOWED
   light = litColors == 1 ? litColor(litBySun) : light;
 #endif
   return light;

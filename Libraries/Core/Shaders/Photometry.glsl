@@ -86,7 +86,7 @@ vec4 photometricAngles(vec3 N, vec3 positionVC, int parallel)
 {
   vec3 V = parallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
   float lit = 1.0;
-#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+#ifdef DSPACE_SHADOWED
   lit = sunLit(positionVC, cross(dFdx(positionVC), dFdy(positionVC)));
 #endif
   return vec4(degreesBetween(N, towardsSunVC), degreesBetween(N, V),

@@ -1,5 +1,8 @@
 // How much of the Sun's disc is seen from a place, by the shadow maps (dspace/render/ShadowMaps.h).
 // Lengths are metres along the light's axes: U, V across its rays, S towards the Sun.
+#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON) || defined(DSPACE_LIT_MASK)
+#define DSPACE_SHADOWED
+#endif
 #if DSPACE_CASCADES > 0
 uniform sampler2DArray shadowMaps; // heights along S, 0 to 1
 uniform sampler2DArray shadowTops; // dspace/render/shadows/CasterTiles.h
@@ -10,7 +13,10 @@ uniform vec2 shadowRange[DSPACE_CASCADES]; // the height that is 0; the height o
 // before it reaches.
 uniform vec3 shadowReaches[DSPACE_CASCADES];
 uniform int shadowSize; // texels a side of each map
-uniform int groundSize; // of the maps of the ground
+uniform int groundSize; // of the maps of ground
+#if DSPACE_GROUNDS > 0
+uniform int ownGround; // its maps are not those of this receiver; -1: none
+#endif
 uniform int cascadeColors; // 1: each map's part of the view in a colour of its own
 uniform float sunRadius; // tangent of the disc's angular radius
 
@@ -131,7 +137,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
   float depth = -positionVC.z;
   float steep = length(at.slope);
   float grounds = float(shadowSize) / float(groundSize);
-  int maps = 0; // bits: those that may hold blockers, of objects and then of the ground
+  int maps = 0; // bits: those that may hold blockers, of objects and then of each ground
   int count = 0;
   for (int k = 0; k < DSPACE_CASCADES; ++k)
   {
@@ -142,12 +148,16 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
       && texelFetch(shadowTops, ivec3(tile, k), 0).r > above + cascadeHeights(k, 1.0, depth, steep).x;
     maps |= any ? 1 << k : 0;
     count += any ? 1 : 0;
-#if defined(DSPACE_GROUND_MAPS) && !defined(DSPACE_HORIZON)
+#if DSPACE_GROUNDS > 0
     above = at.place.z - steep * 3.0 * place.z / float(groundSize);
-    any = depth <= place.w && texelFetch(shadowTops, ivec3(tile, k + DSPACE_CASCADES), 0).r
-      > above + cascadeHeights(k, grounds, depth, steep).x;
-    maps |= any ? 1 << (k + DSPACE_CASCADES) : 0;
-    count += any ? 1 : 0;
+    for (int g = 0; g < DSPACE_GROUNDS; ++g)
+    {
+      int layer = k + DSPACE_CASCADES * (1 + g);
+      any = g != ownGround && depth <= place.w && texelFetch(shadowTops, ivec3(tile, layer), 0).r
+        > above + cascadeHeights(k, grounds, depth, steep).x;
+      maps |= any ? 1 << layer : 0;
+      count += any ? 1 : 0;
+    }
 #endif
   }
   float lit = 1.0;
@@ -158,13 +168,17 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
     int bit = 0;
     for (int k = 0; k < DSPACE_CASCADES; ++k)
     {
-#if defined(DSPACE_GROUND_MAPS) && !defined(DSPACE_HORIZON)
-      if ((maps >> (k + DSPACE_CASCADES) & 1) == 1)
+#if DSPACE_GROUNDS > 0
+      for (int g = 0; g < DSPACE_GROUNDS; ++g)
       {
-        bit = 1 << (k + DSPACE_CASCADES);
-        map = ShadowMap(shadowPlace[k], shadowRange[k], groundSize,
-          ivec3(k % 4 * groundSize, k / 4 * groundSize, DSPACE_CASCADES),
-          cascadeHeights(k, grounds, depth, steep));
+        int layer = k + DSPACE_CASCADES * (1 + g);
+        if ((maps >> layer & 1) == 1)
+        {
+          bit = 1 << layer;
+          map = ShadowMap(shadowPlace[k], shadowRange[k], groundSize,
+            ivec3(k % 4 * groundSize, k / 4 * groundSize, DSPACE_CASCADES + g),
+            cascadeHeights(k, grounds, depth, steep));
+        }
       }
 #endif
       if ((maps >> k & 1) == 1)
@@ -181,10 +195,13 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
 }
 #endif
 
+#ifdef DSPACE_LIT_MASK
+uniform sampler2D litMask; // SunMask.frag
+#endif
 #ifdef DSPACE_HORIZON
 float horizonLit(); // of the terrain's own page, ClipmapHorizon.frag
 #endif
-#if DSPACE_CASCADES > 0 || defined(DSPACE_HORIZON)
+#ifdef DSPACE_SHADOWED
 uniform int litColors; // 1: the lit fraction in false colours, in place of light
 
 // Linear light of a lit fraction.
@@ -194,12 +211,15 @@ vec3 litColor(float lit)
     max(2.0 * lit - 1.0, 0.0));
 }
 
-// Ground that knows its horizon takes from the maps what other things throw on it.
+// Ground that knows its horizon takes from the maps what other things and other ground throw on it.
 float sunLit(vec3 positionVC, vec3 planeVC)
 {
   float lit = 1.0;
 #if DSPACE_CASCADES > 0
   lit = cascadesLit(positionVC, planeVC);
+#endif
+#ifdef DSPACE_LIT_MASK
+  lit = texelFetch(litMask, ivec2(gl_FragCoord.xy), 0).r;
 #endif
 #ifdef DSPACE_HORIZON
   lit = min(lit, horizonLit());

@@ -398,3 +398,110 @@ def test_changes_anywhere_in_a_pipeline_are_seen(scene):
     smoke.GetMapper().GetInput().GetPointData().GetScalars().Modified()
     smoke.GetMapper().GetInput().Modified()
     assert view.render() and not view.render()
+
+
+# --- Shadows -----------------------------------------------------------------------------------------
+
+def cube(size=(1.0, 1.0, 1.0), opacity=1.0, center=(0.0, 0.0, 0.0)):
+    source = vtkCubeSource()
+    source.SetXLength(size[0])
+    source.SetYLength(size[1])
+    source.SetZLength(size[2])
+    source.SetCenter(*center)
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputConnection(source.GetOutputPort())
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetOpacity(opacity)
+    return actor
+
+
+def lit_floor(scene, eye=(-3, -4, 4), target=(0.3, 0.3, 0)):
+    """A floor under a Sun to the south-west, and its lit fraction in a picture."""
+    floor = scene.add_plane(40, 40, color=(1, 1, 1), name="floor")
+    scene.sun.set(azimuth_deg=225, elevation_deg=35)
+    scene.add_camera("eye", eye=eye, target=target, fov_deg=50, near=0.1)
+    view = scene.add_viewport(size=(160, 120), camera="eye", samples=1)
+
+    def lit():
+        planes = view.capture(False, lit_fraction=True, label=True, physical_only=True)
+        return np.where(planes["label"] == floor.id, planes["lit_fraction"], np.nan)
+    return lit
+
+
+@pytest.mark.parametrize("target", [(0.3, 0.3, 0), (2.0, 2.3, 0)], ids=["in the picture", "outside of it"])
+def test_a_prop_throws_the_shadow_of_the_same_box(scene, target):
+    """Turned, stretched, and with a matrix of its own."""
+    place = scene.add_frame("place", position=(0, 0, 1.2), quaternion=(np.cos(0.3), 0, 0, np.sin(0.3)))
+    lit = lit_floor(scene, eye=(-3, -4, 4) if target[0] < 1 else (1.0, 1.2, 1.5), target=target)
+    bare = lit()
+    assert (bare[np.isfinite(bare)] == 1).all()
+    box = scene.add_box((1.5, 0.6, 0.8), frame=place, color=(1, 1, 1))
+    expected = lit()
+    box.remove()
+    assert 0.02 < (expected < 0.1).sum() / np.isfinite(expected).sum() < 0.6
+    actor = cube((0.75, 0.6, 0.4))
+    moved = vtkTransform()
+    moved.Scale(1.0, 1.0, 2.0)
+    actor.SetUserTransform(moved)
+    prop = scene.add_prop(actor, frame=place, stretch=(2, 1, 1))
+    drawn = lit()
+    both = np.isfinite(expected) & np.isfinite(drawn)
+    assert both.mean() > 0.3
+    assert (np.abs(drawn - expected)[both] > 0.05).sum() <= 2
+    actor.VisibilityOff()
+    np.testing.assert_array_equal(lit(), bare)
+    actor.VisibilityOn()
+    prop.visible = False
+    np.testing.assert_array_equal(lit(), bare)
+
+
+def test_what_of_props_throws_no_shadow(scene):
+    lit = lit_floor(scene)
+    bare = lit()
+    wire = cube()
+    wire.GetProperty().SetRepresentationToWireframe()
+    dots = cube()
+    dots.GetProperty().SetRepresentationToPoints()
+    for prop, settings in ((fog(), {}), (cube(opacity=0.5), {}), (cube(), dict(nature="ornamental")), (wire, {}), (dots, {})):
+        added = scene.add_prop(prop, position=(-6, -6, 6), **settings)  # out of the picture, its shadow in the middle
+        np.testing.assert_array_equal(lit(), bare)
+        added.remove()
+    added = scene.add_prop(cube(), position=(-6, -6, 6))
+    assert np.nansum(np.abs(lit() - bare)) > 20
+    added.remove()
+
+
+def test_props_beside_other_things_throw_their_shadows_together(scene, tmp_path):
+    """Assemblies and glyphs; over streamed ground, and before meshes and other props are drawn."""
+    from terrain_support import write_raster
+    ground = scene.add_terrain(write_raster(tmp_path / "level.tif", np.zeros((65, 65)), 0.5), mode="clipmap", color=(1, 1, 1))
+    scene.sun.set(azimuth_deg=180, elevation_deg=45)
+    scene.add_camera("down", eye=(0, 2, 20), target=(0, 2, 0), up=(0, 1, 0), height=12, near=1)
+    view = scene.add_viewport(size=(120, 120), camera="down", samples=1)
+    assembly = vtkAssembly()
+    assembly.AddPart(cube())
+    assembly.AddPart(cube(center=(-2, 0, 0)))
+    points = vtkPoints()
+    points.InsertNextPoint(2, 0, 0)
+    places = vtkPolyData()
+    places.SetPoints(points)
+    mapper = vtkGlyph3DMapper()
+    mapper.SetInputData(places)
+    mapper.SetSourceConnection(cube().GetMapper().GetInputConnection(0, 0))
+    mapper.ScalingOff()
+    glyphs = vtkActor()
+    glyphs.SetMapper(mapper)
+    scene.add_prop(glyphs, position=(0, 0, 3))
+    scene.add_prop(assembly, position=(0, 0, 3))
+    scene.add_box((1, 1, 1), position=(4, 0, 3), color=(1, 1, 1))
+    planes = view.capture(False, lit_fraction=True, label=True)
+    lit = np.where(planes["label"] == ground.object.id, planes["lit_fraction"], np.nan)
+    column = lambda x: int((x + 6) * 10)  # noqa: E731
+    row = int((8 - 3) * 10)  # shadows lie 3 m to the north of what throws them
+    for x in (-2, 0, 2, 4):
+        assert lit[row, column(x)] == 0, x
+        assert lit[row, column(x) + 10] == 1, x
+    # As by hand: a cube's shadow is 1 m wide and 2 m long, and its upper edge hides nothing of it here.
+    shadow = (lit < 0.5).sum() / 100
+    assert abs(shadow - 4 * 2.0) < 0.4, shadow

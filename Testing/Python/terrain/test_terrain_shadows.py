@@ -273,3 +273,79 @@ def test_nothing_shows_where_the_last_shadow_map_ends(scene, tmp_path):
     for part, expected in ((depth > 1.001 * end, seen), (depth < 0.98 * end, whole)):
         assert (threw & part).any()
         assert (np.abs(cut - expected)[ground & part] > 0.25).mean() < 0.005
+
+
+# --- Separate terrains -------------------------------------------------------------------------------
+
+def floor_and_wall(scene, tmp_path, floor_mode, wall_mode):
+    """Level ground, and beside it a ridge of another terrain that rises 3 m above it, from west to east at y = 12 m."""
+    post = 0.25
+    floor = scene.add_terrain(write_raster(tmp_path / "floor.tif", np.zeros((161, 161)), post), name="floor", mode=floor_mode,
+                              level_size=252, color=WHITE)
+    place = np.array((0.0, 12.0, -1.0))
+    wall = scene.add_terrain(write_raster(tmp_path / "wall.tif", ridge(161, post), post), name="wall", mode=wall_mode,
+                             level_size=252, color=WHITE, frame=scene.add_frame("wall", position=tuple(place)))
+    return floor, wall, place
+
+
+def lit_past_wall(wall, place, points, to_sun, count=60):
+    """Of the disc, by rays that the wall's terrain meets."""
+    start = points[:, None] + (0, 0, 1e-3) - place
+    return np.isinf(wall.intersect(start, disc(to_sun, count)[None])).mean(axis=1)
+
+
+@pytest.mark.parametrize("floor_mode, wall_mode",
+                         [("clipmap", "clipmap"), ("clipmap", "triangles"), ("triangles", "clipmap")])
+@pytest.mark.parametrize("eye, target, elevation",
+                         [((-7.0, -6.0, 6.0), (0.0, 6.0, 0.0), 20), ((0.0, 9.0, 2.0), (0.0, 0.0, 0.0), 15)],
+                         ids=["both in the picture", "the wall behind the camera"])
+def test_separate_terrains_shade_each_other(scene, tmp_path, floor_mode, wall_mode, eye, target, elevation):
+    floor, wall, place = floor_and_wall(scene, tmp_path, floor_mode, wall_mode)
+    scene.sun.set(azimuth_deg=8, elevation_deg=elevation)
+    eye = np.array(eye)
+    view = seen_from(scene, eye, target, (160, 120))
+    planes = view.capture(False, depth=True, label=True, lit_fraction=True, physical_only=True)
+    assert (planes["label"] == wall.object.id).any() == (eye[1] < 0)
+    points, _ = points_of(planes["depth"], eye, target, FOV)
+    seen = planes["label"] == floor.object.id
+    exact = lit_past_wall(wall, place, points[seen], scene.sun.direction)
+    off = np.abs(planes["lit_fraction"][seen] - exact)
+    assert seen.sum() > 5000 and (exact < 0.1).mean() > 0.05 and (exact > 0.9).mean() > 0.2
+    assert (off > 0.25).mean() < 0.02
+    assert off.mean() < 0.02
+    # It does not matter what was in the picture before.
+    scene.cameras["eye"].look_at(eye=tuple(eye), target=(0.0, 14.0, 1.0) if eye[1] > 0 else (0.0, -14.0, 0.0))
+    view.image()
+    scene.cameras["eye"].look_at(eye=tuple(eye), target=tuple(target))
+    np.testing.assert_array_equal(view.lit_fraction(), planes["lit_fraction"])
+
+
+def test_separate_terrains_shade_what_stands_on_the_other(scene, tmp_path):
+    floor, wall, place = floor_and_wall(scene, tmp_path, "clipmap", "clipmap")
+    scene.sun.set(azimuth_deg=0, elevation_deg=20)
+    shaded = scene.add_box((1, 1, 0.6), position=(0, 7, 0.3), color=WHITE)
+    lit = scene.add_box((1, 1, 0.6), position=(0, -1, 0.3), color=WHITE)
+    eye, target = (-4.0, 3.0, 9.0), (0.0, 3.0, 0.0)
+    planes = seen_from(scene, eye, target, (160, 120)).capture(False, label=True, lit_fraction=True, incidence=True)
+    for box, expected in ((shaded, 0.0), (lit, 1.0)):
+        of = planes["lit_fraction"][(planes["label"] == box.id) & (planes["incidence"] < 80)]
+        assert of.size > 50 and np.abs(of - expected).mean() < 0.02
+
+
+def test_more_terrains_than_layers_of_maps(scene, tmp_path):
+    """Five of them: each of the others shades the floor, and none of them itself where it does not."""
+    floor, wall, place = floor_and_wall(scene, tmp_path, "clipmap", "clipmap")
+    for i in range(3):
+        scene.add_terrain(tmp_path / "wall.tif", name=f"wall {i}", mode="clipmap", color=WHITE,
+                          frame=scene.add_frame(f"wall {i}", position=(0.0, -3.0 - 5.0 * i, -2.5)))
+    scene.sun.set(azimuth_deg=0, elevation_deg=25)
+    eye, target = np.array((0.0, -3.0, 30.0)), (0.0, -3.0, 0.0)
+    scene.add_camera("down", eye=tuple(eye), target=target, up=(0, 1, 0), height=32.0, near=1)
+    planes = scene.add_viewport((80, 160), "down", samples=1).capture(False, label=True, lit_fraction=True)
+    rows = -3.0 + (79.5 - np.arange(160)) * 0.2
+    lit, labels = planes["lit_fraction"][:, 40], planes["label"][:, 40]
+    for crest, rise in ((12.0, 3.0), (-3.0, 1.5), (-8.0, 1.5), (-13.0, 1.5)):
+        tip = crest - rise / np.tan(np.radians(25))
+        for y, expected in ((tip + 0.5, 0.0), (tip - 0.5, 1.0)):
+            row = np.argmin(np.abs(rows - y))
+            assert labels[row] == floor.object.id and abs(lit[row] - expected) < 0.1, (crest, y, lit[row])

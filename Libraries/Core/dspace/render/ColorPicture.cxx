@@ -140,7 +140,7 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   }
   this->List_.Build(scene, view, request.filter);
   this->Complete_ = this->Drawer_->Prepare(this->List_, view, samples);
-  this->Drawer_->DrawShadows(scene, this->List_, view, samples);
+  this->Complete_ &= this->Drawer_->DrawShadows(scene, this->List_, view, samples);
   this->ActivateScene();
   if (this->Renderer_->GetViewProps()->GetNumberOfItems() > 0) {
     MirrorCamera(scene, view, this->Renderer_);

@@ -38,13 +38,14 @@ class CustomDrawer {
 public:
   virtual ~CustomDrawer() = default;
   // Uploads the data that the view needs, before its target is bound. Returns false if some data is
-  // not loaded yet; with view.complete it waits instead (Error(DeadlineExceeded)).
+  // not loaded yet; with view.complete it waits instead (Error(DeadlineExceeded)). What is outside
+  // the picture and may throw a shadow into it is prepared with `drawing.labels`.
   virtual bool Prepare(const CustomDrawing& drawing) = 0;
   // About how far from the camera [m], along the view's axis, the nearest of it that may be seen
   // is; after Prepare(). Shadow maps are fitted to it. 0: unknown.
   virtual double NearestDepth(const CustomDrawing&) { return 0.0; }
   // Whether its own shader says which shadows it throws on itself (a terrain's horizon): then the
-  // maps that it is in are those of other receivers only. After Prepare().
+  // maps that it is in are those of other receivers only (ShadowGround). After Prepare().
   virtual bool ShadowsItself(const CustomDrawing&) { return false; }
   // Where DrawLabels() may draw it in the drawing's view. By default all of its bounds. After
   // Prepare().

@@ -102,6 +102,14 @@ struct DrawFilter {
   }
 };
 
+// Terrain that finds its own shadows without maps (CustomDrawer::ShadowsItself), whose shadows all
+// else takes from one layer of maps of ground.
+struct ShadowGround {
+  static constexpr std::size_t Most = 3; // layers; further terrain is in the last one
+  std::vector<ObjectId> objects;         // one, but in the last layer
+  std::vector<CasterTiles> tiles;        // one a cascade
+};
+
 // The view of one camera, ready for OpenGL.
 struct DrawView {
   CameraPose camera;
@@ -119,6 +127,7 @@ struct DrawView {
   std::optional<Eigen::Matrix4d> clip;
   std::optional<CascadeFit> shadows; // of the Sun's maps, where they are drawn
   std::shared_ptr<const std::vector<CasterTiles>> shadowTiles; // of all but ground, with `shadows`
+  std::shared_ptr<const std::vector<ShadowGround>> shadowGrounds; // layer by layer, with `shadows`
 
   Eigen::Matrix4d ClipFromView() const {
     return this->clip ? *this->clip : this->projection.ClipFromView(this->width, this->height);

@@ -81,6 +81,10 @@ void RenderTarget::Resize(int width, int height) {
     this->Color_->SetInternalFormat(GL_RGBA32F);
     this->Color_->Allocate2D(width, height, 4, VTK_FLOAT);
     break;
+  case Format::Number:
+    this->Color_->SetInternalFormat(GL_R32F);
+    this->Color_->Allocate2D(width, height, 1, VTK_FLOAT);
+    break;
   case Format::Label:
     this->Color_->SetInternalFormat(GL_R32UI);
     this->Color_->SetFormat(GL_RED_INTEGER);

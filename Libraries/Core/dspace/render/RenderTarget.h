@@ -15,10 +15,11 @@ namespace dspace {
 
 // A colour texture with 32-bit float depth. The formats: Display is sRGB bytes (decoded when
 // read, encoded when written under GL_FRAMEBUFFER_SRGB); Linear is half floats for blending;
-// Light is 32-bit floats of linear light; Label is one 32-bit unsigned integer.
+// Light is 32-bit floats of linear light; Label is one 32-bit unsigned integer; Number is one
+// 32-bit float.
 class RenderTarget {
 public:
-  enum class Format { Display, Linear, Light, Label };
+  enum class Format { Display, Linear, Light, Label, Number };
   // Depth: the format of the depth texture. Window is what VTK's volume mapper copies with a blit,
   // which OpenGL allows between equal formats only.
   enum class DepthFormat { None, Float, Window };

@@ -53,6 +53,13 @@ private:
   vtkOpenGLState* State_;
 };
 
+// What finds its shadows a pixel at a time, after all of it was drawn. Lines and points have no
+// plane, and code of an object may move it.
+bool IsMasked(const DrawBatch& batch) {
+  return batch.lit && !batch.translucent && !batch.shader && !batch.billboard && !batch.wireframe &&
+         batch.mesh->primitive == Mesh::Primitive::Triangles;
+}
+
 } // namespace
 
 SceneDrawer::SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, const CustomDrawers& drawers,
@@ -70,6 +77,8 @@ void SceneDrawer::Release() {
   }
   this->Sum_.reset();
   this->Coarse_.reset();
+  this->Planes_.reset();
+  this->LitMask_.reset();
   this->Shadows_.Release();
   if (this->Window_->GetContext()) {
     this->Window_->MakeCurrent();
@@ -122,7 +131,7 @@ void SceneDrawer::Upload(const DrawList& list) {
 }
 
 vtkShaderProgram* SceneDrawer::ProgramOf(const DrawBatch& batch, const DrawList& list,
-                                         unsigned features) {
+                                         SurfaceShaders::Features features) {
   try {
     return this->Shaders_.Surface(features, {}, batch.shader);
   } catch (const Error& error) {
@@ -138,21 +147,28 @@ vtkShaderProgram* SceneDrawer::ProgramOf(const DrawBatch& batch, const DrawList&
 }
 
 void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool translucent,
-                              unsigned features, int samples) {
+                              SurfaceShaders::Features features, int samples) {
   vtkOpenGLState* state = this->Window_->GetState();
   std::map<vtkShaderProgram*, bool> prepared;
   const bool labels = (features & SurfaceShaders::Label) != 0;
   const bool angles = (features & SurfaceShaders::Angles) != 0;
-  const unsigned lighting = SurfaceShaders::LightFeatures(list, view);
+  const bool planes = (features & SurfaceShaders::Planes) != 0;
+  const SurfaceShaders::Features mapped = SurfaceShaders::LightFeatures(list, view);
+  const SurfaceShaders::Features masked = this->Masked_ ? SurfaceShaders::Masked(mapped) : mapped;
   for (const DrawBatch& batch : list.Batches()) {
     if (!labels && !angles && batch.translucent != translucent) {
       continue;
     }
+    if (planes && !IsMasked(batch)) {
+      continue;
+    }
     const GpuMesh& mesh = this->Store_.MeshOf(batch.mesh);
-    unsigned wanted = features;
+    const SurfaceShaders::Features lighting = IsMasked(batch) ? masked : mapped;
+    SurfaceShaders::Features wanted = features;
     wanted |= batch.billboard ? SurfaceShaders::Billboard : 0u;
-    wanted |= batch.texture ? SurfaceShaders::Texture : 0u;
-    if (!labels) {
+    wanted |= batch.texture && !planes ? SurfaceShaders::Texture : 0u;
+    wanted |= planes ? SurfaceShaders::Lit : 0u;
+    if (!labels && !planes) {
       wanted |= !batch.lit ? 0u : angles ? SurfaceShaders::ShadowFeatures(view) : lighting;
       wanted |= batch.lit && batch.specular && !angles ? SurfaceShaders::Specular : 0u;
       wanted |= angles ? 0u : SurfaceShaders::ReflectanceFeature(batch.reflectance);
@@ -165,7 +181,7 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     }
     if (batch.shader) {
       wanted |= SurfaceShaders::CodeFeatures(*batch.mesh, batch.texture != nullptr);
-      wanted &= ~unsigned(SurfaceShaders::Emissive); // always there
+      wanted &= ~SurfaceShaders::Features(SurfaceShaders::Emissive); // always there
     }
     vtkShaderProgram* program = this->ProgramOf(batch, list, wanted);
     if (!prepared[program]) {
@@ -175,10 +191,10 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     if (batch.shader) {
       SetCodeUniforms(program, *batch.shader);
     }
-    if (SurfaceShaders::ReflectanceFeature(batch.reflectance) != 0) {
+    if (!planes && SurfaceShaders::ReflectanceFeature(batch.reflectance) != 0) {
       SurfaceShaders::SetReflectance(program, batch.reflectance);
     }
-    if (batch.texture) {
+    if (batch.texture && !planes) {
       const unsigned int texture = this->Store_.TextureOf(batch.texture, batch.repeatTexture);
       BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, texture);
     }
@@ -257,36 +273,59 @@ bool SceneDrawer::Prepare(const DrawList& list, const DrawView& view, int sample
   for (auto it = this->Customs_.begin(); it != this->Customs_.end();) {
     it = it->second.geometry.expired() ? this->Customs_.erase(it) : std::next(it);
   }
+  this->Prepared_.clear();
   bool complete = true;
   for (const auto* customs : {&list.Customs(), &list.Backdrops()}) {
     for (const DrawCustom& object : *customs) {
-      Custom& custom = this->Customs_[object.object->custom.get()];
-      if (!custom.drawer) {
-        custom = {object.object->custom, this->Drawers_.Make(object.object->custom)};
-      }
-      CustomDrawing drawing = this->Drawing(object, list, view, samples);
-      drawing.labels = labels;
-      complete &= custom.drawer->Prepare(drawing);
+      complete &= this->PrepareOne(object, list, view, samples, labels);
     }
   }
   return complete;
 }
 
-void SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView& view,
+bool SceneDrawer::PrepareOne(const DrawCustom& object, const DrawList& list, const DrawView& view,
+                             int samples, bool labels) {
+  Custom& custom = this->Customs_[object.object->custom.get()];
+  if (!custom.drawer) {
+    custom = {object.object->custom, this->Drawers_.Make(object.object->custom)};
+  }
+  this->Prepared_.insert(object.object->id);
+  CustomDrawing drawing = this->Drawing(object, list, view, samples);
+  drawing.labels = labels;
+  return custom.drawer->Prepare(drawing);
+}
+
+bool SceneDrawer::PrepareCasters(const DrawList& casters, const DrawView& view) {
+  bool complete = true;
+  for (const DrawCustom& object : casters.Customs()) {
+    if (this->Prepared_.count(object.object->id) == 0) {
+      complete &= this->PrepareOne(object, casters, view, 1, true);
+    }
+  }
+  return complete;
+}
+
+bool SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView& view,
                               int samples) {
   view.shadows.reset();
   view.shadowTiles.reset();
+  view.shadowGrounds.reset();
+  this->Grounds_.clear();
   if (!view.look.shadows.shown || !list.Sun()) {
-    return;
+    return true;
   }
   double nearest = list.NearestDepth();
-  bool ground = false;
   bool others = !list.Batches().empty(); // what takes the shadows of the ground from maps
   for (const DrawCustom& object : list.Customs()) {
     CustomDrawer& drawer = *this->Customs_[object.object->custom.get()].drawer;
     const CustomDrawing drawing = this->Drawing(object, list, view, samples);
     nearest = std::min(nearest, drawer.NearestDepth(drawing));
-    (drawer.ShadowsItself(drawing) ? ground : others) = true;
+    if (drawer.ShadowsItself(drawing)) {
+      const std::size_t layer = std::min(this->Grounds_.size(), ShadowGround::Most - 1);
+      this->Grounds_.emplace(object.object->id, int(layer));
+    } else {
+      others = true;
+    }
   }
   // Where the camera is within a thing's bounds, its distance from it is not known.
   constexpr double Usual = 1.0; // [m]
@@ -301,16 +340,16 @@ void SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView
   }
   CascadeFit fit = FitCascades(view.projection, view.width, view.height, *list.Sun(), nearest,
                                farthest, view.look.shadows);
-  fit.ground = ground && others;
-  this->Shadows_.Update(scene, list, view, std::move(fit), *this);
+  fit.ground = this->Grounds_.size() > 1 || (!this->Grounds_.empty() && others);
+  const bool complete = this->Shadows_.Update(scene, list, view, std::move(fit), *this);
   this->Window_->GetState()->vtkglEnable(GL_BLEND);
   this->Shaders_.SetShadowMaps(this->Shadows_.Texture(), this->Shadows_.Tiles());
+  return complete;
 }
 
-bool SceneDrawer::IsGround(const DrawCustom& object, const DrawList& list, const DrawView& view) {
-  const auto custom = this->Customs_.find(object.object->custom.get());
-  return custom != this->Customs_.end() && custom->second.drawer &&
-         custom->second.drawer->ShadowsItself(this->Drawing(object, list, view, 1));
+int SceneDrawer::GroundOf(const DrawCustom& object) {
+  const auto ground = this->Grounds_.find(object.object->id);
+  return ground == this->Grounds_.end() ? ShadowMaps::NoGround : ground->second;
 }
 
 std::vector<LightHull> SceneDrawer::Hulls(const DrawCustom& object, const DrawList& list,
@@ -322,15 +361,15 @@ std::vector<LightHull> SceneDrawer::Hulls(const DrawCustom& object, const DrawLi
   return custom->second.drawer->Hulls(this->Drawing(object, list, view, 1));
 }
 
-void SceneDrawer::Draw(const DrawList& casters, const DrawView& view, bool ground) {
-  if (!ground) {
+void SceneDrawer::Draw(const DrawList& casters, const DrawView& view, int ground) {
+  if (ground == ShadowMaps::NoGround) {
     this->Upload(casters);
     this->DrawBatches(casters, view, false, SurfaceShaders::Label, 1);
   }
   for (const DrawCustom& object : casters.Customs()) {
     const auto custom = this->Customs_.find(object.object->custom.get());
     if (custom != this->Customs_.end() && custom->second.drawer &&
-        this->IsGround(object, casters, view) == ground) {
+        this->GroundOf(object) == ground) {
       custom->second.drawer->DrawLabels(this->Drawing(object, casters, view, 1));
     }
   }
@@ -399,6 +438,43 @@ void SceneDrawer::DrawBackground(const Background& background, int height) {
   this->DrawTriangleOverScreen(); // at depth 0: only where nothing was drawn
 }
 
+void SceneDrawer::DrawLitMask(const DrawList& list, const DrawView& view,
+                              const RenderTarget& target) {
+  constexpr long long Most = 1LL << 23; // samples; more memory is not worth the time
+  this->Masked_ = false;
+  if (!view.shadows || view.look.shadows.cascadeColors ||
+      (long long)view.width * view.height > Most ||
+      std::none_of(list.Batches().begin(), list.Batches().end(), IsMasked)) {
+    return;
+  }
+  if (!this->Planes_) {
+    this->Planes_ = std::make_unique<RenderTarget>(this->Window_, RenderTarget::Format::Light,
+                                                   RenderTarget::DepthFormat::Float);
+    this->LitMask_ = std::make_unique<RenderTarget>(this->Window_, RenderTarget::Format::Number,
+                                                    RenderTarget::DepthFormat::None);
+  }
+  this->Planes_->Resize(view.width, view.height);
+  this->LitMask_->Resize(view.width, view.height);
+  vtkOpenGLState* state = this->Window_->GetState();
+  state->PushFramebufferBindings();
+  this->Planes_->Bind();
+  state->vtkglClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+  state->vtkglClearDepth(0.0);
+  state->vtkglClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  state->vtkglClearDepth(1.0);
+  this->DrawBatches(list, view, false, SurfaceShaders::Planes, 1);
+  this->LitMask_->Bind();
+  state->vtkglDisable(GL_DEPTH_TEST);
+  this->Shaders_.SunMask(list, view, this->Planes_->Color());
+  this->DrawTriangleOverScreen();
+  state->vtkglEnable(GL_DEPTH_TEST);
+  state->PopFramebufferBindings();
+  state->vtkglViewport(0, 0, target.Width(), target.Height());
+  state->vtkglScissor(0, 0, target.Width(), target.Height());
+  this->Shaders_.SetLitMask(this->LitMask_->Color());
+  this->Masked_ = true;
+}
+
 void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target,
                             int samples, const Background* background) {
   vtkOpenGLState* state = this->Window_->GetState();
@@ -410,7 +486,9 @@ void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTa
   this->Statistics_.translucentLayers = 0;
   this->Upload(list);
   state->vtkglDisable(GL_BLEND);
+  this->DrawLitMask(list, view, target);
   this->DrawBatches(list, view, false, 0, samples);
+  this->Masked_ = false;
   for (const DrawCustom& object : list.Customs()) {
     this->Customs_[object.object->custom.get()].drawer->DrawColor(
         this->Drawing(object, list, view, samples));

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include <dspace/render/CustomDrawer.h>
@@ -48,8 +49,9 @@ public:
   // false if some data is not loaded yet.
   bool Prepare(const DrawList& list, const DrawView& view, int samples, bool labels = false);
   // Draws the Sun's shadow maps where the view has shadows, and sets `view.shadows`; after
-  // Prepare(), before any target is bound.
-  void DrawShadows(const Scene& scene, const DrawList& list, DrawView& view, int samples);
+  // Prepare(), before any target is bound. Returns false if some data of what is outside the
+  // picture, and may throw a shadow into it, is not loaded yet.
+  bool DrawShadows(const Scene& scene, const DrawList& list, DrawView& view, int samples);
   // `samples` is the supersampling factor: lines, points and billboards scale with it.
   void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples,
                  const Background* background = nullptr);
@@ -74,17 +76,22 @@ private:
   std::array<double, 2> SeenDepths(const DrawList& list, const DrawView& view);
   // The list's labels and depths into what is bound.
   void DrawDepths(const DrawList& list, const DrawView& view);
-  // Custom geometry that shadows itself; into shadow maps, it or all else.
-  bool IsGround(const DrawCustom& object, const DrawList& list, const DrawView& view) override;
+  bool PrepareOne(const DrawCustom& object, const DrawList& list, const DrawView& view, int samples,
+                  bool labels);
+  bool PrepareCasters(const DrawList& casters, const DrawView& view) override;
+  int GroundOf(const DrawCustom& object) override;
   std::vector<LightHull> Hulls(const DrawCustom& object, const DrawList& list,
                                const DrawView& view) override;
-  void Draw(const DrawList& casters, const DrawView& view, bool ground) override;
+  void Draw(const DrawList& casters, const DrawView& view, int ground) override;
   void DrawBackground(const Background& background, int height);
   void DrawTriangleOverScreen();
   void Upload(const DrawList& list);
-  vtkShaderProgram* ProgramOf(const DrawBatch& batch, const DrawList& list, unsigned features);
-  void DrawBatches(const DrawList& list, const DrawView& view, bool translucent, unsigned features,
-                   int samples);
+  vtkShaderProgram* ProgramOf(const DrawBatch& batch, const DrawList& list,
+                              SurfaceShaders::Features features);
+  void DrawBatches(const DrawList& list, const DrawView& view, bool translucent,
+                   SurfaceShaders::Features features, int samples);
+  // What the shadow maps say of the list's opaque meshes (SurfaceShaders::SunMask).
+  void DrawLitMask(const DrawList& list, const DrawView& view, const RenderTarget& target);
   void DrawTranslucentCustoms(const DrawList& list, const DrawView& view, RenderTarget& target,
                               int samples);
   // Puts geometry that has no angles in front of what has.
@@ -104,6 +111,8 @@ private:
     std::unique_ptr<CustomDrawer> drawer;
   };
   std::map<const CustomGeometry*, Custom> Customs_;
+  std::set<ObjectId> Prepared_;     // of the picture, and what throws shadows into it
+  std::map<ObjectId, int> Grounds_; // of the picture: ShadowGround
   std::vector<DrawInstance> Uploaded_;
   unsigned int InstanceBuffer_ = 0;
   std::size_t InstanceCapacity_ = 0;
@@ -112,6 +121,9 @@ private:
   std::unique_ptr<RenderTarget> Layers_[2]; // Linear, with depth: the layer now and the one before
   std::unique_ptr<RenderTarget> Coarse_;    // Label, with depth: for SeenDepths()
   std::unique_ptr<RenderTarget> Sum_;       // Linear: layers blended so far, front to back
+  std::unique_ptr<RenderTarget> Planes_;    // Light, with depth: for DrawLitMask()
+  std::unique_ptr<RenderTarget> LitMask_;   // Number
+  bool Masked_ = false;                     // the lit mask is there
   bool FirstLayer_ = false;                 // for the peel uniforms
   bool Light_ = false;                      // the target of the colours is Light
 };

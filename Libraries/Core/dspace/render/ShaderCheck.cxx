@@ -113,8 +113,8 @@ std::vector<std::string> CheckShaderCode(vtkDspaceHubWindow* window, const Graph
   }
   SurfaceShaders shaders(window);
   const auto shared = std::make_shared<const ShaderCode>(code);
-  std::set<unsigned> checked;
-  const auto check = [&](unsigned features) {
+  std::set<SurfaceShaders::Features> checked;
+  const auto check = [&](SurfaceShaders::Features features) {
     if (checked.insert(features).second) {
       CompileProgram(shaders.SourcesFor(features, {}, shared.get()), label);
     }
@@ -122,11 +122,12 @@ std::vector<std::string> CheckShaderCode(vtkDspaceHubWindow* window, const Graph
   for (const DetailLevel& level : object.levels) {
     for (const Part& part : level.parts) {
       const Material look = LookOf(object, part);
-      const unsigned plain = SurfaceShaders::CodeFeatures(*part.mesh, look.texture != nullptr);
-      const unsigned lit = look.lit ? SurfaceShaders::Lit | SurfaceShaders::Specular |
-                                          SurfaceShaders::PlacedLights |
-                                          (1u << SurfaceShaders::LightShift)
-                                    : 0u;
+      const SurfaceShaders::Features plain =
+          SurfaceShaders::CodeFeatures(*part.mesh, look.texture != nullptr);
+      const SurfaceShaders::Features lit =
+          look.lit ? SurfaceShaders::Lit | SurfaceShaders::Specular | SurfaceShaders::PlacedLights |
+                         (1u << SurfaceShaders::LightShift)
+                   : 0u;
       check(plain | lit);
       check(plain | lit | SurfaceShaders::Peel);
       check(plain | SurfaceShaders::Label);

@@ -131,16 +131,16 @@ LightHull ShadowMaps::HullOf(const DrawBatch& batch, const DrawInstance& instanc
   return hull;
 }
 
-std::vector<LightHull> ShadowMaps::HullsOf(const DrawList& list, const DrawView& view, bool ground,
+std::vector<LightHull> ShadowMaps::HullsOf(const DrawList& list, const DrawView& view, int ground,
                                            Painter& painter) const {
   std::vector<LightHull> hulls;
   for (const DrawBatch& batch : list.Batches()) {
-    for (std::uint32_t i = batch.first; i < batch.first + batch.count && !ground; ++i) {
+    for (std::uint32_t i = batch.first; i < batch.first + batch.count && ground == NoGround; ++i) {
       hulls.push_back(this->HullOf(batch, list.Instances()[i]));
     }
   }
   for (const DrawCustom& object : list.Customs()) {
-    if (painter.IsGround(object, list, view) == ground) {
+    if (painter.GroundOf(object) == ground) {
       const std::vector<LightHull> more = painter.Hulls(object, list, view);
       hulls.insert(hulls.end(), more.begin(), more.end());
     }
@@ -156,12 +156,13 @@ void ShadowMaps::UploadTiles(const CasterTiles& tiles, int layer) const {
 
 // `texels`: of the map that need be drawn.
 void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::array<int, 4>& texels,
-                         const CascadeFit& fit, int k, bool ground, Painter& painter) {
+                         const CascadeFit& fit, int k, int ground, Painter& painter) {
   const CascadeFit::Cascade& cascade = fit.cascades[std::size_t(k)];
-  const int size = ground ? fit.GroundSize() : fit.size;
+  const bool object = ground == NoGround;
+  const int size = object ? fit.size : fit.GroundSize();
   const int across = CascadeFit::GroundsAcross;
   const Eigen::Array2i corner =
-      ground ? Eigen::Array2i(k % across, k / across) * size : Eigen::Array2i(0, 0);
+      object ? Eigen::Array2i(0, 0) : Eigen::Array2i(k % across, k / across) * size;
   const Eigen::Array2i first(texels[0], texels[1]);
   const Eigen::Array2i extent = Eigen::Array2i(texels[2], texels[3]) - first;
   const Eigen::Array2i place = corner + first;
@@ -173,8 +174,8 @@ void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::arra
   }
   view.clip = part * fit.ClipFromView(cascade);
   vtkOpenGLState* state = this->Window_->GetState();
-  glBindFramebuffer(GL_FRAMEBUFFER,
-                    this->Framebuffers_[ground ? fit.cascades.size() : std::size_t(k)]);
+  const std::size_t layer = object ? std::size_t(k) : fit.cascades.size() + std::size_t(ground);
+  state->vtkglBindFramebuffer(GL_FRAMEBUFFER, this->Framebuffers_[layer]);
   state->vtkglViewport(place[0], place[1], extent[0], extent[1]);
   state->vtkglScissor(place[0], place[1], extent[0], extent[1]);
   state->vtkglDepthMask(GL_TRUE);
@@ -186,60 +187,88 @@ void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::arra
   glDisable(GL_DEPTH_CLAMP);
 }
 
-void ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view, CascadeFit fit,
+bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view, CascadeFit fit,
                         Painter& painter) {
   vtkOpenGLState* state = this->Window_->GetState();
-  DrawFilter casters = seen.Filter();
-  casters.physicalOnly = true; // ornaments throw no shadow
-  casters.castersOnly = true;
+  DrawFilter filter = seen.Filter();
+  filter.physicalOnly = true; // ornaments throw no shadow
+  filter.castersOnly = true;
   const int count = int(fit.cascades.size());
+  const std::vector<LightHull> objects = this->HullsOf(seen, view, NoGround, painter);
+  auto grounds = std::make_shared<std::vector<ShadowGround>>();
+  std::vector<std::vector<LightHull>> groundHulls; // layer by layer
+  std::vector<LightHull> receivers = objects;
+  for (const DrawCustom& object : seen.Customs()) {
+    const int layer = painter.GroundOf(object);
+    if (layer == NoGround) {
+      continue;
+    }
+    grounds->resize(std::max(grounds->size(), std::size_t(layer) + 1));
+    (*grounds)[std::size_t(layer)].objects.push_back(object.object->id);
+  }
+  for (std::size_t ground = 0; ground < grounds->size(); ++ground) {
+    groundHulls.push_back(this->HullsOf(seen, view, int(ground), painter));
+    receivers.insert(receivers.end(), groundHulls.back().begin(), groundHulls.back().end());
+  }
+  if (!fit.ground) {
+    grounds->clear();
+  }
+  this->Casters_.resize(std::size_t(count));
+  bool complete = true;
+  for (int k = 0; k < count; ++k) {
+    DrawView map = view;
+    map.clip = fit.ClipFromView(fit.cascades[std::size_t(k)]);
+    this->Casters_[std::size_t(k)].Build(scene, map, filter);
+    complete &= painter.PrepareCasters(this->Casters_[std::size_t(k)], view);
+  }
   auto allTiles = std::make_shared<std::vector<CasterTiles>>();
-  const std::vector<LightHull> objects = this->HullsOf(seen, view, false, painter);
-  std::vector<LightHull> receivers = this->HullsOf(seen, view, true, painter);
-  receivers.insert(receivers.end(), objects.begin(), objects.end());
   const vtkOpenGLState::ScopedglEnableDisable scissor(state, GL_SCISSOR_TEST);
   state->vtkglEnable(GL_SCISSOR_TEST);
   state->PushFramebufferBindings();
   try {
-    this->Resize(view.viewport, fit.size, fit.ground ? count + 1 : count);
-    this->ResizeTiles(2 * count);
-    this->Casters_.resize(std::size_t(count));
+    this->Resize(view.viewport, fit.size, count + int(grounds->size()));
+    this->ResizeTiles(count * (1 + int(grounds->size())));
     for (int k = 0; k < count; ++k) {
       CascadeFit::Cascade& cascade = fit.cascades[std::size_t(k)];
       DrawList& list = this->Casters_[std::size_t(k)];
-      DrawView map = view;
-      map.clip = fit.ClipFromView(cascade);
-      list.Build(scene, map, casters);
       const MapReceivers taking(fit, k, receivers);
       list.Keep([&](const DrawBatch& batch, const DrawInstance& instance) {
         return taking.Take(this->HullOf(batch, instance));
       });
       cascade.high = std::max(cascade.high, list.HighestToSun());
+      DrawView map = view;
       map.clip = fit.ClipFromView(cascade); // ground is found by it, too
       CasterTiles tiles(fit, cascade);
-      for (const LightHull& hull : this->HullsOf(list, map, false, painter)) {
+      for (const LightHull& hull : this->HullsOf(list, map, NoGround, painter)) {
         tiles.Add(hull);
       }
       this->UploadTiles(tiles, k);
       if (!tiles.Empty()) {
-        this->DrawMap(list, map, tiles.Texels(), fit, k, false, painter);
+        this->DrawMap(list, map, tiles.Texels(), fit, k, NoGround, painter);
       }
       allTiles->push_back(std::move(tiles));
-      if (!fit.ground) {
-        continue;
-      }
       CascadeFit coarse = fit;
       coarse.size = fit.GroundSize();
-      const MapReceivers near(coarse, k, objects);
-      CasterTiles ground(coarse, cascade);
-      for (const LightHull& hull : this->HullsOf(list, map, true, painter)) {
-        if (near.Take(hull)) {
-          ground.Add(hull);
+      for (int ground = 0; ground < int(grounds->size()); ++ground) {
+        std::vector<LightHull> others = objects;
+        for (int other = 0; other < int(groundHulls.size()); ++other) {
+          if (other != ground) {
+            const std::vector<LightHull>& hulls = groundHulls[std::size_t(other)];
+            others.insert(others.end(), hulls.begin(), hulls.end());
+          }
         }
-      }
-      this->UploadTiles(ground, count + k);
-      if (!ground.Empty()) {
-        this->DrawMap(list, map, near.Texels(), fit, k, true, painter);
+        const MapReceivers near(coarse, k, others);
+        CasterTiles casting(coarse, cascade);
+        for (const LightHull& hull : this->HullsOf(list, map, ground, painter)) {
+          if (near.Take(hull)) {
+            casting.Add(hull);
+          }
+        }
+        this->UploadTiles(casting, count * (1 + ground) + k);
+        if (!casting.Empty()) {
+          this->DrawMap(list, map, near.Texels(), fit, k, ground, painter);
+        }
+        (*grounds)[std::size_t(ground)].tiles.push_back(std::move(casting));
       }
     }
   } catch (...) {
@@ -250,6 +279,8 @@ void ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
   state->PopFramebufferBindings();
   view.shadows = std::move(fit);
   view.shadowTiles = std::move(allTiles);
+  view.shadowGrounds = std::move(grounds);
+  return complete;
 }
 
 } // namespace dspace

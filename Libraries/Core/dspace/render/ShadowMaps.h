@@ -13,9 +13,10 @@ namespace dspace {
 
 class GpuStore;
 
-// One layer of a depth texture a cascade, and one more with all maps of the ground, cascade k at
-// the place (k mod 4, k / 4) of its 4 x 4; 32-bit floats, 1 towards the Sun, so that what receives
-// shadows is resolved best. Casters that stand higher than a map's range are drawn at its end.
+// One layer of a depth texture a cascade, and one more for each ground (ShadowGround) with all of
+// its maps, cascade k at the place (k mod 4, k / 4) of its 4 x 4; 32-bit floats, 1 towards the Sun,
+// so that what receives shadows is resolved best. Casters that stand higher than a map's range are
+// drawn at its end.
 // Only the texels of CasterTiles are cleared and drawn: those of tiles without casters mean
 // nothing.
 class ShadowMaps {
@@ -26,36 +27,40 @@ public:
   ~ShadowMaps() { this->Release(); }
 
   // What draws casters: `casters` in the view that a map is drawn for, with reversed depth, the map
-  // bound. Custom geometry is drawn into the map of the ground or into the other; meshes into the
-  // other.
+  // bound. Custom geometry is drawn into the maps of its ground or into the others; meshes into the
+  // others.
+  static constexpr int NoGround = -1;
   class Painter {
   public:
     virtual ~Painter() = default;
-    virtual bool IsGround(const DrawCustom& object, const DrawList& list, const DrawView& view) = 0;
+    // Makes ready the casters that the picture does not show. Returns false if some of their data
+    // are not there yet.
+    virtual bool PrepareCasters(const DrawList& casters, const DrawView& view) = 0;
+    virtual int GroundOf(const DrawCustom& object) = 0; // its layer, or NoGround
     virtual std::vector<LightHull> Hulls(const DrawCustom& object, const DrawList& list,
                                          const DrawView& view) = 0; // CustomDrawer::Hulls()
-    virtual void Draw(const DrawList& casters, const DrawView& view, bool ground) = 0;
+    virtual void Draw(const DrawList& casters, const DrawView& view, int ground) = 0;
   };
   // Draws all maps of a fit for what `seen` shows, and sets them in `view`. Extends the fit's
-  // ranges to the casters. Throws Error(Resource) about `viewport` when there is no memory for the
-  // maps.
-  void Update(const Scene& scene, const DrawList& seen, DrawView& view, CascadeFit fit,
+  // ranges to the casters. Returns whether all casters' data were there. Throws Error(Resource)
+  // about `viewport` when there is no memory for the maps.
+  bool Update(const Scene& scene, const DrawList& seen, DrawView& view, CascadeFit fit,
               Painter& painter);
   unsigned int Texture() const { return this->Texture_; }
-  // CasterTiles::Tops(): a layer a cascade, and as many of the ground.
+  // CasterTiles::Tops(): a layer a cascade, and as many for each ground.
   unsigned int Tiles() const { return this->Tiles_; }
   void Release();
 
 private:
   void Resize(const std::string& viewport, int size, int count);
   void ResizeTiles(int count);
-  // Where the list's ground is, or all else.
-  std::vector<LightHull> HullsOf(const DrawList& list, const DrawView& view, bool ground,
+  // Where the list's ground of a layer is, or all else.
+  std::vector<LightHull> HullsOf(const DrawList& list, const DrawView& view, int ground,
                                  Painter& painter) const;
   LightHull HullOf(const DrawBatch& batch, const DrawInstance& instance) const;
   void UploadTiles(const CasterTiles& tiles, int layer) const;
   void DrawMap(const DrawList& casters, DrawView view, const std::array<int, 4>& texels,
-               const CascadeFit& fit, int k, bool ground, Painter& painter);
+               const CascadeFit& fit, int k, int ground, Painter& painter);
 
   vtkDspaceHubWindow* Window_;
   GpuStore& Store_;

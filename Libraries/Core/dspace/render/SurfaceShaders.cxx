@@ -12,8 +12,10 @@
 #include "Label_frag.h"
 #include "Lighting.h"
 #include "Photometry.h"
+#include "Plane_frag.h"
 #include "Screen_vert.h"
 #include "Shadow.h"
+#include "SunMask_frag.h"
 #include "Surface_frag.h"
 
 #include "vtkDspaceHubWindow.h"
@@ -57,10 +59,11 @@ void BindTextureUnit(vtkDspaceHubWindow* window, int unit, unsigned int target, 
   glBindTexture(target, name);
 }
 
-unsigned SurfaceShaders::ShadowFeatures(const DrawView& view) {
+SurfaceShaders::Features SurfaceShaders::ShadowFeatures(const DrawView& view) {
   const std::size_t cascades = view.shadows ? view.shadows->cascades.size() : 0;
+  const std::size_t grounds = cascades > 0 && view.shadowGrounds ? view.shadowGrounds->size() : 0;
   return Lit | static_cast<unsigned>(cascades << CascadeShift) |
-         (view.shadows && view.shadows->ground ? GroundMaps : 0u);
+         static_cast<unsigned>(grounds << GroundShift);
 }
 
 namespace {
@@ -73,20 +76,20 @@ bool IsDisc(const DrawLight& light) {
 
 } // namespace
 
-unsigned SurfaceShaders::LightFeatures(const DrawList& list, const DrawView& view) {
+SurfaceShaders::Features SurfaceShaders::LightFeatures(const DrawList& list, const DrawView& view) {
   const auto lights = std::min<std::size_t>(list.Lights().size(), MaximumLights);
-  unsigned features = ShadowFeatures(view) | static_cast<unsigned>(lights << LightShift);
+  Features features = ShadowFeatures(view) | static_cast<unsigned>(lights << LightShift);
   for (std::size_t i = 0; i < lights; ++i) {
     features |= list.Lights()[i].kind == Light::Kind::Directional ? 0u : PlacedLights;
     features |= IsDisc(list.Lights()[i]) ? DiscLights : 0u;
   }
   if (list.SunBody() && list.TowardsSun()) {
-    features |= SunPlace | (list.Eclipsing().empty() ? 0u : unsigned(Eclipses));
+    features |= SunPlace | (list.Eclipsing().empty() ? 0u : Features(Eclipses));
   }
   return features;
 }
 
-unsigned SurfaceShaders::ReflectanceFeature(const Reflectance& reflectance) {
+SurfaceShaders::Features SurfaceShaders::ReflectanceFeature(const Reflectance& reflectance) {
   const auto model = static_cast<unsigned>(reflectance.model);
   return model > static_cast<unsigned>(Reflectance::Model::Lambert) ? model << ReflectanceShift : 0;
 }
@@ -117,9 +120,22 @@ void SurfaceShaders::Release() {
   this->Coded_.clear();
   this->Screens_.clear();
   this->Programs_.clear();
+  this->SunMasks_.clear();
 }
 
-unsigned SurfaceShaders::CodeFeatures(const Mesh& mesh, bool textured) {
+namespace {
+
+// How many shadow maps there are, and what reading them needs.
+std::string ShadowDefines(Features features) {
+  const unsigned cascades = features >> SurfaceShaders::CascadeShift & 15u;
+  return std::string(cascades != 0 ? "#extension GL_ARB_texture_gather : require\n" : "") +
+         "#define DSPACE_CASCADES " + std::to_string(cascades) + "\n#define DSPACE_GROUNDS " +
+         std::to_string(features >> SurfaceShaders::GroundShift & 3u) + "\n";
+}
+
+} // namespace
+
+SurfaceShaders::Features SurfaceShaders::CodeFeatures(const Mesh& mesh, bool textured) {
   const bool triangles = mesh.primitive == Mesh::Primitive::Triangles;
   return (textured ? Texture : 0u) | (mesh.colors.empty() ? 0u : VertexColor) |
          (!mesh.normals.empty() ? Normals
@@ -127,7 +143,7 @@ unsigned SurfaceShaders::CodeFeatures(const Mesh& mesh, bool textured) {
                                 : 0u);
 }
 
-SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const ShaderPages& pages,
+SurfaceShaders::Sources SurfaceShaders::SourcesFor(Features features, const ShaderPages& pages,
                                                    const ShaderCode* code) {
   std::string defines = pages.defines;
   const auto define = [&](Feature feature, const char* name) {
@@ -151,9 +167,9 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const Shad
   define(Flat, "DSPACE_FLAT");
   define(DiscLights, "DSPACE_DISC_LIGHTS");
   define(SunPlace, "DSPACE_SUN_PLACE");
-  define(GroundMaps, "DSPACE_GROUND_MAPS");
   define(Angles, "DSPACE_ANGLES");
   define(DisplayColor, "DSPACE_DISPLAY_COLOR");
+  define(LitMask, "DSPACE_LIT_MASK");
   if (features & Eclipses) {
     defines += "#define DSPACE_ECLIPSES " + std::to_string(MaximumEclipsing) + "\n";
   }
@@ -162,10 +178,7 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const Shad
   if (model != 0) {
     defines += "#define DSPACE_REFLECTANCE " + std::to_string(model) + "\n";
   }
-  defines += "#define DSPACE_CASCADES " + std::to_string(features >> CascadeShift & 15u) + "\n";
-  if ((features >> CascadeShift & 15u) != 0) {
-    defines = "#extension GL_ARB_texture_gather : require\n" + defines;
-  }
+  defines = ShadowDefines(features) + defines; // an extension stands first
   Sources made;
   if (code) {
     const CodedSources coded = SourcesOf(*code);
@@ -173,7 +186,9 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const Shad
     made.fragment = WithDefines(coded.fragment.c_str(), defines);
   } else {
     made.vertex = WithDefines(pages.vertex ? pages.vertex : Instance_vert, defines);
-    const char* whole = features & Label ? Label_frag : Surface_frag;
+    const char* whole = features & Label    ? Label_frag
+                        : features & Planes ? Plane_frag
+                                            : Surface_frag;
     made.fragment = WithDefines(pages.whole ? pages.whole : whole, defines);
     Replace(made.fragment, "//DSPACE::Functions", pages.fragment ? pages.fragment : "");
   }
@@ -183,7 +198,7 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(unsigned features, const Shad
   return made;
 }
 
-vtkShaderProgram* SurfaceShaders::Surface(unsigned features, const ShaderPages& pages,
+vtkShaderProgram* SurfaceShaders::Surface(Features features, const ShaderPages& pages,
                                           const std::shared_ptr<const ShaderCode>& code) {
   if (code && this->Coded_.count(code.get()) == 0) {
     for (auto it = this->Coded_.begin(); it != this->Coded_.end();) { // code that no object has
@@ -223,6 +238,30 @@ vtkShaderProgram* SurfaceShaders::Screen(const char* fragment, const std::string
   return program;
 }
 
+SurfaceShaders::Sources SurfaceShaders::SunMaskSources(Features features) {
+  Sources made{WithDefines(Screen_vert, ""), WithDefines(SunMask_frag, ShadowDefines(features))};
+  Replace(made.fragment, "//DSPACE::Shadow", Shadow);
+  return made;
+}
+
+vtkShaderProgram* SurfaceShaders::SunMask(const DrawList& list, const DrawView& view,
+                                          unsigned int planes) {
+  const Features features = ShadowFeatures(view);
+  vtkShaderProgram*& program = this->SunMasks_[features];
+  if (program) {
+    this->Window_->GetShaderCache()->ReadyShaderProgram(program);
+  } else {
+    const Sources sources = SunMaskSources(features);
+    program = Ready(this->Window_, sources.vertex, sources.fragment);
+  }
+  this->SetView(program, list, view, 1);
+  const float size[2] = {float(view.width), float(view.height)};
+  program->SetUniform2f("viewSize", size);
+  BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, planes);
+  program->SetUniformi("planes", ColorUnit);
+  return program;
+}
+
 void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view,
                              int samples, bool firstLayer) {
   const Eigen::Matrix4f clip = view.ClipFromView().cast<float>();
@@ -255,6 +294,10 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
 
   if (program->IsUniformUsed("litColors")) {
     program->SetUniformi("litColors", view.look.shadows.litColors ? 1 : 0);
+  }
+  if (program->IsUniformUsed("litMask")) {
+    BindTextureUnit(this->Window_, ShadowUnit, GL_TEXTURE_2D, this->LitMask_);
+    program->SetUniformi("litMask", ShadowUnit);
   }
   if (view.shadows && program->IsUniformUsed("shadowMaps")) {
     this->SetShadows(program, *view.shadows);
@@ -348,6 +391,7 @@ void SurfaceShaders::SetShadows(vtkShaderProgram* program, const CascadeFit& fit
   program->SetUniformf("sunRadius", float(std::tan(std::min(fit.sun.radius, 1.5))));
   program->SetUniformi("shadowSize", fit.size);
   program->SetUniformi("groundSize", fit.GroundSize());
+  program->SetUniformi("ownGround", -1);
   program->SetUniformi("shadowMaps", ShadowUnit);
   BindTextureUnit(this->Window_, ShadowUnit, GL_TEXTURE_2D_ARRAY, this->ShadowMaps_);
   program->SetUniformi("shadowTops", ShadowUnit + 1);

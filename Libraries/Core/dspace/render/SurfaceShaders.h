@@ -2,6 +2,7 @@
 #ifndef DSPACE_RENDER_SURFACE_SHADERS_H
 #define DSPACE_RENDER_SURFACE_SHADERS_H
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -37,7 +38,8 @@ public:
   static constexpr int MaximumLights = 8;
   static constexpr int MaximumEclipsing = 8; // bodies: those that look largest
 
-  enum Feature : unsigned {
+  using Features = std::uint64_t; // a set of Feature
+  enum Feature : Features {
     Lit = 1,
     Texture = 2,
     VertexColor = 4,
@@ -54,49 +56,62 @@ public:
     ObjectNormals = 8192,    // one in the mesh's own axes, with opacity
     DiscLights = 16384,      // the disc of some light but the Sun is so wide that it sets slowly
     SunPlace = 32768,        // the Sun is a body of the scene, at a place
-    GroundMaps = 1u << 27,   // CascadeFit::ground
+    LitMask = 1u << 27,      // SunMask() has what the shadow maps say
     Angles = 1u << 28,       // photometric angles in place of the colour; with Lit where it is lit
     DisplayColor = 1u << 29, // the colour is a display value in a picture that is exposed later
-    Eclipses = 1u << 30      // bodies may hide the Sun, with SunPlace
+    Eclipses = Features(1) << 32, // bodies may hide the Sun, with SunPlace
+    Planes = Features(1) << 33    // with Lit alone: what SunMask() reads, in place of the colour
   };
   static constexpr unsigned LightShift = 16;       // above the features: the number of lights,
   static constexpr unsigned CascadeShift = 20;     // of the Sun's shadow maps,
-  static constexpr unsigned ReflectanceShift = 24; // and the photometric model, 3 bits
+  static constexpr unsigned ReflectanceShift = 24; // the photometric model, 3 bits,
+  static constexpr unsigned GroundShift = 30;      // and the layers of maps of ground, 2 bits
 
   explicit SurfaceShaders(vtkDspaceHubWindow* window) : Window_(window) {}
 
   // The features that the list's lights and the view's shadows require of a lit surface's program.
-  static unsigned LightFeatures(const DrawList& list, const DrawView& view);
+  static Features LightFeatures(const DrawList& list, const DrawView& view);
 
   // Those of a surface that is lit or not by the view's shadows alone, without lights.
-  static unsigned ShadowFeatures(const DrawView& view);
+  static Features ShadowFeatures(const DrawView& view);
 
   // Those of a surface on which the view's maps throw no shadow.
-  static unsigned WithoutMaps(unsigned features) {
-    return features & ~(15u << CascadeShift) & ~unsigned(GroundMaps);
+  static Features WithoutMaps(Features features) {
+    return WithoutGrounds(features) & ~(Features(15) << CascadeShift);
+  }
+  // Those of a surface that takes what the maps say from SunMask().
+  static Features Masked(Features features) { return WithoutMaps(features) | LitMask; }
+  // Those of ground on which no other ground throws a shadow.
+  static Features WithoutGrounds(Features features) {
+    return features & ~(Features(3) << GroundShift);
   }
 
   // The feature of a lit surface's photometric model; 0: that of the default, or of Lambert.
-  static unsigned ReflectanceFeature(const Reflectance& reflectance);
+  static Features ReflectanceFeature(const Reflectance& reflectance);
   // Sets its parameters in a program with this feature.
   static void SetReflectance(vtkShaderProgram* program, const Reflectance& reflectance);
 
   // The features that a mesh's program has for shader code, lit or not.
-  static unsigned CodeFeatures(const Mesh& mesh, bool textured);
+  static Features CodeFeatures(const Mesh& mesh, bool textured);
 
   // The text of a surface's program. `code`: of the object (CodedShaders.h); null: none.
   struct Sources {
     std::string vertex;
     std::string fragment;
   };
-  static Sources SourcesFor(unsigned features, const ShaderPages& pages, const ShaderCode* code);
+  static Sources SourcesFor(Features features, const ShaderPages& pages, const ShaderCode* code);
 
   // Ready to draw with. Throws Error(Internal) when the driver rejects it.
-  vtkShaderProgram* Surface(unsigned features, const ShaderPages& pages = {},
+  vtkShaderProgram* Surface(Features features, const ShaderPages& pages = {},
                             const std::shared_ptr<const ShaderCode>& code = nullptr);
   // Of two pages that are no surface's; they are told apart as those of ShaderPages.
   vtkShaderProgram* Program(const char* vertex, const char* fragment);
   vtkShaderProgram* Screen(const char* fragment, const std::string& defines = "");
+
+  // How much of the Sun's disc is seen, by the view's maps, from what was drawn with Planes into a
+  // texture of the view's size.
+  vtkShaderProgram* SunMask(const DrawList& list, const DrawView& view, unsigned int planes);
+  static Sources SunMaskSources(Features features);
 
   // Projection, lights and what else is the same for everything in one picture.
   void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view, int samples,
@@ -110,6 +125,8 @@ public:
     this->ShadowMaps_ = maps;
     this->ShadowTiles_ = tiles;
   }
+  // What SunMask() drew; an OpenGL texture.
+  void SetLitMask(unsigned int mask) { this->LitMask_ = mask; }
   void Release();
 
 private:
@@ -118,13 +135,15 @@ private:
   vtkDspaceHubWindow* Window_;
   unsigned int ShadowMaps_ = 0;
   unsigned int ShadowTiles_ = 0;
-  std::map<std::tuple<unsigned, const char*, const char*, const char*, std::string>,
+  unsigned int LitMask_ = 0;
+  std::map<Features, vtkShaderProgram*> SunMasks_; // by features
+  std::map<std::tuple<Features, const char*, const char*, const char*, std::string>,
            vtkShaderProgram*>
       Surfaces_;
   // By the code, which is kept, so that its address is not used again.
   struct Coded {
     std::shared_ptr<const ShaderCode> code;
-    std::map<unsigned, vtkShaderProgram*> programs; // by features
+    std::map<Features, vtkShaderProgram*> programs; // by features
   };
   std::map<const ShaderCode*, Coded> Coded_;
   std::map<std::pair<const char*, std::string>, vtkShaderProgram*> Screens_;

@@ -61,9 +61,9 @@ std::vector<unsigned> FeatureBits(const ShaderCode* code) {
 }
 
 // Whether the drawing code asks for them together. A feature that is not named here goes with all.
-bool Together(unsigned features, unsigned lights, bool coded) {
-  const auto has = [&](unsigned feature) { return (features & feature) != 0; };
-  const unsigned geometry = Shaders::Texture | Shaders::Normals | Shaders::Flat;
+bool Together(Shaders::Features features, unsigned lights, bool coded) {
+  const auto has = [&](Shaders::Features feature) { return (features & feature) != 0; };
+  const Shaders::Features geometry = Shaders::Texture | Shaders::Normals | Shaders::Flat;
   if (has(Shaders::Mixed)) { // only with pages that have mixedColor()
     return false;
   }
@@ -75,9 +75,12 @@ bool Together(unsigned features, unsigned lights, bool coded) {
             : has(Shaders::Normals | Shaders::Flat)) {
     return false;
   }
+  if (has(Shaders::Planes)) {
+    return lights == 0 && features == (Shaders::Planes | Shaders::Lit);
+  }
   if (has(Shaders::Label)) {
-    const unsigned plain = geometry | Shaders::Label | Shaders::Billboard |
-                           (coded ? unsigned(Shaders::VertexColor) : 0u);
+    const Shaders::Features plain = geometry | Shaders::Label | Shaders::Billboard |
+                                    (coded ? Shaders::Features(Shaders::VertexColor) : 0u);
     return lights == 0 && (features & ~plain) == 0;
   }
   if (!has(Shaders::Lit)) {
@@ -93,7 +96,7 @@ struct Programs {
   testing::ShaderValidator validator;
   int count = 0;
 
-  void Add(const std::string& name, unsigned features, const ShaderPages& pages,
+  void Add(const std::string& name, Shaders::Features features, const ShaderPages& pages,
            const ShaderCode* code, bool link) {
     std::ostringstream full;
     full << name << ", features 0x" << std::hex << features;
@@ -106,10 +109,11 @@ struct Programs {
 
   // Photometric models under lights, angles, and display colours.
   void AddPhotometry(const std::string& name, const ShaderCode* code) {
-    const unsigned plain = code ? unsigned(Shaders::Normals) : 0u;
+    const Shaders::Features plain = code ? Shaders::Features(Shaders::Normals) : 0u;
     for (unsigned model = 2; model <= 4; ++model) { // Lommel-Seeliger to Hapke
-      for (const unsigned more : {0u, unsigned(Shaders::PlacedLights),
-                                  unsigned(Shaders::DiscLights), unsigned(Shaders::Peel)}) {
+      for (const Shaders::Features more :
+           {Shaders::Features(0), Shaders::Features(Shaders::PlacedLights),
+            Shaders::Features(Shaders::DiscLights), Shaders::Features(Shaders::Peel)}) {
         this->Add(name,
                   plain | Shaders::Lit | more | 2u << Shaders::LightShift |
                       model << Shaders::ReflectanceShift,
@@ -118,13 +122,23 @@ struct Programs {
     }
     // Shadows of ground on other things, in several maps.
     for (const unsigned maps : {1u, 4u, 8u}) {
-      this->Add(name,
-                plain | Shaders::Lit | Shaders::GroundMaps | maps << Shaders::CascadeShift |
-                    1u << Shaders::LightShift,
-                {}, code, true);
+      for (const unsigned grounds : {1u, 3u}) {
+        this->Add(name,
+                  plain | Shaders::Lit | grounds << Shaders::GroundShift |
+                      maps << Shaders::CascadeShift | 1u << Shaders::LightShift,
+                  {}, code, true);
+      }
     }
-    for (const unsigned more : {0u, unsigned(Shaders::Lit), unsigned(Shaders::Texture),
-                                Shaders::Lit | Shaders::Texture | Shaders::VertexColor}) {
+    for (const Shaders::Features more :
+         {Shaders::Features(0), Shaders::Features(Shaders::Specular)}) {
+      if (!code) {
+        this->Add(name, Shaders::Lit | Shaders::LitMask | more | 1u << Shaders::LightShift, {},
+                  code, true);
+      }
+    }
+    for (const Shaders::Features more : {Shaders::Features(0), Shaders::Features(Shaders::Lit),
+                                         Shaders::Features(Shaders::Texture),
+                                         Shaders::Lit | Shaders::Texture | Shaders::VertexColor}) {
       this->Add(name, plain | Shaders::Angles | more, {}, code, true);
     }
     this->Add(name, plain | Shaders::DisplayColor, {}, code, true);
@@ -135,7 +149,7 @@ struct Programs {
   void AddSurfaces(const std::string& name, const ShaderCode* code) {
     const std::vector<unsigned> bits = FeatureBits(code);
     for (unsigned choice = 0; choice < 1u << bits.size(); ++choice) {
-      unsigned features = 0;
+      Shaders::Features features = 0;
       int more = 0;
       for (std::size_t i = 0; i < bits.size(); ++i) {
         if (choice >> i & 1u) {
@@ -154,6 +168,7 @@ struct Programs {
 
   void AddClipmaps();
   void AddScreens();
+  void AddSunMasks();
   void AddStars();
   void AddTrajectories();
   void AddBodies();
@@ -169,6 +184,7 @@ struct Programs {
     }
     this->AddClipmaps();
     this->AddScreens();
+    this->AddSunMasks();
     this->AddStars();
     this->AddTrajectories();
     this->AddBodies();
@@ -261,8 +277,8 @@ void Programs::AddClipmaps() {
       {"ellipsoid", PostPlacement::OnEllipsoid(first, step, oblate)},
       {"pole", PostPlacement::OnPole(false, 100.0, 512.0, 1737400.0)},
       {"ellipsoid's pole", PostPlacement::OnPole(true, 100.0, 512.0, oblate)}};
-  const unsigned lit = Shaders::Lit | 1u << Shaders::LightShift;
-  const unsigned bright =
+  const Shaders::Features lit = Shaders::Lit | 1u << Shaders::LightShift;
+  const Shaders::Features bright =
       Shaders::Lit | Shaders::Specular | Shaders::PlacedLights | 3u << Shaders::LightShift;
   for (const auto& [name, placement] : placements) {
     const bool pole = placement.GetKind() == PostPlacement::Kind::Pole;
@@ -273,7 +289,8 @@ void Programs::AddClipmaps() {
     for (const char* holes : {"", "#define DSPACE_HOLES\n"}) {
       ShaderPages pages = bare;
       pages.defines += holes;
-      for (const unsigned features : {0u, lit, bright, unsigned(Shaders::Label)}) {
+      for (const Shaders::Features features :
+           {0u, lit, bright, Shaders::Features(Shaders::Label)}) {
         this->Add(called, features, pages, nullptr, !*holes);
         if (!pole && features != Shaders::Label) {
           this->Add(called, features | Shaders::Texture, pages, nullptr, false);
@@ -288,7 +305,9 @@ void Programs::AddClipmaps() {
           continue;
         }
         pages.defines = look.defines + texture;
-        for (const unsigned features : {0u, lit, bright, lit | 4u << Shaders::CascadeShift}) {
+        for (const Shaders::Features features :
+             {0u, lit, bright, lit | 4u << Shaders::CascadeShift,
+              lit | 4u << Shaders::CascadeShift | 2u << Shaders::GroundShift}) {
           if (!(features & Shaders::Lit) &&
               (pages.defines.find("DSPACE_LAYER_NORMALS") != std::string::npos ||
                pages.defines.find("DSPACE_HORIZON") != std::string::npos)) {
@@ -313,7 +332,8 @@ void Programs::AddScreens() {
     if (path.parent_path() != folder || name.find(".frag.glsl") == std::string::npos ||
         text.rfind("#version", 0) != 0 || name == "Surface.frag.glsl" ||
         name == "Label.frag.glsl" || name == "Coded.frag.glsl" || name == "Star.frag.glsl" ||
-        name.rfind("Trajectory", 0) == 0 || name.rfind("Body", 0) == 0) {
+        name.rfind("Trajectory", 0) == 0 || name.rfind("Body", 0) == 0 ||
+        name == "Plane.frag.glsl" || name == "SunMask.frag.glsl") {
       continue;
     }
     EXPECT_EQ(text.rfind("#version 330 core\n" + marker, 0), 0u) << name;
@@ -327,6 +347,17 @@ void Programs::AddScreens() {
         continue;
       }
       this->validator.Add(name + " " + more, vertex, with, true);
+      ++this->count;
+    }
+  }
+}
+
+void Programs::AddSunMasks() {
+  for (const unsigned maps : {1u, 4u, 8u}) {
+    for (const unsigned grounds : {0u, 1u, 3u}) {
+      const Shaders::Sources made = Shaders::SunMaskSources(
+          Shaders::Lit | maps << Shaders::CascadeShift | grounds << Shaders::GroundShift);
+      this->validator.Add("mask of the Sun", made.vertex, made.fragment, true);
       ++this->count;
     }
   }
@@ -358,24 +389,26 @@ void Programs::AddBodies() {
   pages.vertex = vertex.c_str();
   pages.fragment = rays.c_str();
   pages.whole = surface.c_str();
-  const unsigned lit = Shaders::Lit | 1u << Shaders::LightShift;
+  const Shaders::Features lit = Shaders::Lit | 1u << Shaders::LightShift;
   const unsigned placed = lit | Shaders::SunPlace;
   for (const char* disc : {"", "#define DSPACE_DISC 12\n"}) {
     pages.defines = disc;
-    for (const unsigned features :
-         {0u, lit, placed, placed | Shaders::Eclipses, unsigned(Shaders::Label),
-          lit | Shaders::DiscLights, lit | Shaders::PlacedLights, unsigned(Shaders::DisplayColor),
+    for (const Shaders::Features features :
+         {0u, lit, placed, placed | Shaders::Eclipses, Shaders::Features(Shaders::Label),
+          lit | Shaders::DiscLights, lit | Shaders::PlacedLights,
+          Shaders::Features(Shaders::DisplayColor),
           placed | Shaders::Texture | 3u << Shaders::ReflectanceShift}) {
       this->Add("body", features, pages, nullptr, true);
     }
   }
   pages.defines.clear();
-  for (const unsigned features : {Shaders::Angles | Shaders::Lit, unsigned(Shaders::Angles)}) {
+  for (const Shaders::Features features :
+       {Shaders::Angles | Shaders::Lit, Shaders::Features(Shaders::Angles)}) {
     this->Add("body", features, pages, nullptr, true);
   }
   this->Add("body", lit | 4u << Shaders::CascadeShift, pages, nullptr, true);
   this->Add("surface", placed | Shaders::Eclipses, {}, nullptr, true);
-  for (const unsigned features : {0u, unsigned(Shaders::Eclipses)}) {
+  for (const Shaders::Features features : {0u, Shaders::Features(Shaders::Eclipses)}) {
     pages.whole = air.c_str();
     pages.defines = "#define DSPACE_AIR_STEPS 24\n";
     this->Add("air", features, pages, nullptr, true);

@@ -147,7 +147,7 @@ double BodyDrawer::NearestDepth(const CustomDrawing& drawing) {
 }
 
 vtkShaderProgram* BodyDrawer::Ready(const CustomDrawing& drawing, const BodyView& body,
-                                    unsigned features, const std::string& defines,
+                                    SurfaceShaders::Features features, const std::string& defines,
                                     const char* fragment) {
   ShaderPages pages;
   pages.vertex = Body_vert;
@@ -162,7 +162,8 @@ vtkShaderProgram* BodyDrawer::Ready(const CustomDrawing& drawing, const BodyView
     before = BodiesBefore(
         drawing.list, X_VO.translation(), shape->Bounds().radius * LargestStretch(X_VO),
         shape->Shape().rings.empty() || fragment == Body_frag ? shape.get() : nullptr);
-    features &= before.empty() ? ~unsigned(SurfaceShaders::Eclipses) : ~0u;
+    features &= before.empty() ? ~SurfaceShaders::Features(SurfaceShaders::Eclipses)
+                               : ~SurfaceShaders::Features(0);
   }
   vtkShaderProgram* program = drawing.shaders.Surface(features, pages);
   drawing.shaders.SetView(program, drawing.list, view, drawing.samples);
@@ -191,10 +192,10 @@ void BodyDrawer::DrawSurface(const CustomDrawing& drawing, const BodyView& view,
   const bool angles = drawing.labels;
   const bool lit = material.lit.value_or(true) && !shape.sun;
   Reflectance reflectance = material.reflectance.value_or(Reflectance());
-  unsigned features = 0;
+  SurfaceShaders::Features features = 0;
   if (angles) {
-    features =
-        SurfaceShaders::Angles | (lit ? SurfaceShaders::ShadowFeatures(drawing.view) : unsigned(0));
+    features = SurfaceShaders::Angles |
+               (lit ? SurfaceShaders::ShadowFeatures(drawing.view) : SurfaceShaders::Features(0));
     features = SurfaceShaders::WithoutMaps(features);
   } else {
     if (lit) {
@@ -262,10 +263,10 @@ void BodyDrawer::DrawRings(const CustomDrawing& drawing, const BodyView& view) {
   const BodyShape& shape = body->Shape();
   const auto sun = SunAt(drawing.list, drawing.object.X_VO.translation());
   const int count = std::min<int>(int(shape.rings.size()), MaximumRings);
-  unsigned features = 0;
+  SurfaceShaders::Features features = 0;
   if (sun) {
     features = SurfaceShaders::LightFeatures(drawing.list, drawing.view) &
-               unsigned(SurfaceShaders::Eclipses);
+               SurfaceShaders::Features(SurfaceShaders::Eclipses);
   }
   vtkShaderProgram* program =
       this->Ready(drawing, view, features,
@@ -314,10 +315,10 @@ void BodyDrawer::DrawAir(const CustomDrawing& drawing, const BodyView& view) {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   }
-  unsigned features = 0;
+  SurfaceShaders::Features features = 0;
   if (sun) {
     features = SurfaceShaders::LightFeatures(drawing.list, drawing.view) &
-               unsigned(SurfaceShaders::Eclipses);
+               SurfaceShaders::Features(SurfaceShaders::Eclipses);
   }
   vtkShaderProgram* program =
       this->Ready(drawing, view, features,

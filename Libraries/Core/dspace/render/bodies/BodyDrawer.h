@@ -39,8 +39,9 @@ public:
 private:
   static bool IsSmall(const BodyView& body, const CustomDrawing& drawing);
   // Ready to draw, with what all programs of bodies share.
-  vtkShaderProgram* Ready(const CustomDrawing& drawing, const BodyView& body, unsigned features,
-                          const std::string& defines, const char* fragment);
+  vtkShaderProgram* Ready(const CustomDrawing& drawing, const BodyView& body,
+                          SurfaceShaders::Features features, const std::string& defines,
+                          const char* fragment);
   void DrawSurface(const CustomDrawing& drawing, const BodyView& body, bool small);
   // Draws over the part of the picture in which an ellipsoid of these radii is.
   static void SetBoxWithin(const CustomDrawing& drawing, vtkShaderProgram* program,

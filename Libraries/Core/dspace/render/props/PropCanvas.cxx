@@ -216,6 +216,22 @@ void PropCanvas::DrawOpaque(vtkProp3D* prop, const CustomDrawing& drawing) {
   prop->RenderOpaqueGeometry(this->Renderer_);
 }
 
+void PropCanvas::DrawShadow(vtkProp3D* prop, const CustomDrawing& drawing) {
+  vtkOpenGLState* state = this->Window_->GetState();
+  state->Push();
+  {
+    const PlacedProp placed(prop, drawing.object.X_VO);
+    this->SetView(drawing, *drawing.view.clip, 0.0, 1.0);
+    this->Renderer_->GetActiveCamera()->SetParallelProjection(true);
+    prop->SetAllocatedRenderTime(10.0, this->Renderer_);
+    prop->RenderOpaqueGeometry(this->Renderer_);
+  }
+  glBindVertexArray(0);
+  glBindBuffer(GL_ARRAY_BUFFER, 0);
+  state->Pop();
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+}
+
 void PropCanvas::DrawIntoTarget(vtkProp3D* prop, const CustomDrawing& drawing) {
   vtkOpenGLState* state = this->Window_->GetState();
   state->PushFramebufferBindings();

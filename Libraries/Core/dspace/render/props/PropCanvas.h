@@ -30,6 +30,8 @@ public:
   // The same as linear light into what is bound (Light, with depth), with an alpha of 0: not
   // exposed.
   void DrawLinear(vtkProp3D* prop, const CustomDrawing& drawing);
+  // Depth of its opaque surfaces into the shadow map that is bound, in the drawing's view.
+  void DrawShadow(vtkProp3D* prop, const CustomDrawing& drawing);
   // Its translucent polygons and volumes, blended over what is in `target`, which is bound.
   void DrawTranslucent(vtkProp3D* prop, const CustomDrawing& drawing, const RenderTarget& target);
 

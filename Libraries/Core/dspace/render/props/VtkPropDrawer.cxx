@@ -86,6 +86,11 @@ void VtkPropDrawer::DrawLabels(const CustomDrawing& drawing) {
   vtkProp3D* prop = this->Geometry_->Prop();
   if (prop->GetVisibility() && !prop->IsA("vtkVolume")) {
     this->Geometry_->Revision();
+    if (drawing.view.clip) {
+      this->Canvas_->DrawShadow(prop, drawing);
+      this->Geometry_->ForgetChanges();
+      return;
+    }
     const bool parts = drawing.list.Filter().partsOf != 0; // labels are those of its parts
     this->Canvas_->DrawLabel(prop, drawing, parts ? 0 : drawing.object.object->id);
     this->Geometry_->ForgetChanges();

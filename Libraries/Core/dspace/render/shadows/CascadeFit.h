@@ -39,8 +39,8 @@ struct CascadeFit {
   };
   SunPlace sun;
   int size = 0; // texels a side
-  // There are as many maps again, coarser, of what takes the shadows that it throws on itself from
-  // elsewhere (CustomDrawer::ShadowsItself), for all else.
+  // There are more maps, coarser, of what takes the shadows that it throws on itself from elsewhere
+  // (CustomDrawer::ShadowsItself), for all else: one a cascade for each ShadowGround.
   bool ground = false;
   int GroundSize() const { return this->size / GroundsAcross; }
   static constexpr int GroundsAcross = 4; // ground maps side by side in one of the others

@@ -351,7 +351,7 @@ void ClipmapDrawer::DrawColor(const CustomDrawing& drawing) {
   const GraphicsObject& object = *drawing.object.object;
   const Material& material = *this->Terrain_->Options().material;
   const MaterialOverride& over = object.material;
-  unsigned features = 0;
+  SurfaceShaders::Features features = 0;
   if (this->IsLit(drawing)) {
     features |= SurfaceShaders::LightFeatures(drawing.list, drawing.view);
     const Reflectance reflectance = over.reflectance.value_or(material.reflectance);
@@ -378,7 +378,7 @@ void ClipmapDrawer::DrawLabels(const CustomDrawing& drawing) {
 }
 
 bool ClipmapDrawer::DrawAngles(const CustomDrawing& drawing) {
-  unsigned features = SurfaceShaders::Angles;
+  SurfaceShaders::Features features = SurfaceShaders::Angles;
   features |= this->IsLit(drawing) ? SurfaceShaders::ShadowFeatures(drawing.view) : 0u;
   this->Draw(drawing, features);
   return true;
@@ -417,7 +417,7 @@ std::vector<LightHull> ClipmapDrawer::Hulls(const CustomDrawing& drawing) {
   return hulls;
 }
 
-void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
+void ClipmapDrawer::Draw(const CustomDrawing& drawing, SurfaceShaders::Features features) {
   const ClipmapCamera camera(drawing.object.X_VO, this->Active_->placement);
   const Blocks blocks = this->BlocksIn(camera, drawing.view);
   const DrawView& view = drawing.view;
@@ -427,15 +427,35 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, unsigned features) {
     return;
   }
   // Most ground is near no caster: its program reads no maps.
+  const int own = this->OwnGround(drawing);
   const auto shaded = [&](const ClipmapBlocks::Block& block) {
-    return MayBeShaded(*view.shadows, *view.shadowTiles, HullOf(camera, block.bounds));
+    const LightHull hull = HullOf(camera, block.bounds);
+    bool may = MayBeShaded(*view.shadows, *view.shadowTiles, hull);
+    for (int i = 0; i < int(view.shadowGrounds->size()) && !may; ++i) {
+      may =
+          i != own && MayBeShaded(*view.shadows, (*view.shadowGrounds)[std::size_t(i)].tiles, hull);
+    }
+    return may;
   };
   this->DrawBlocks(drawing, features, camera, blocks, shaded);
   this->DrawBlocks(drawing, SurfaceShaders::WithoutMaps(features), camera, blocks,
                    [&](const ClipmapBlocks::Block& block) { return !shaded(block); });
 }
 
-void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, unsigned features,
+int ClipmapDrawer::OwnGround(const CustomDrawing& drawing) {
+  constexpr int None = -1;
+  if (!drawing.view.shadowGrounds) {
+    return None;
+  }
+  const std::vector<ShadowGround>& grounds = *drawing.view.shadowGrounds;
+  const auto own = std::find_if(grounds.begin(), grounds.end(), [&](const ShadowGround& ground) {
+    const auto& ids = ground.objects;
+    return std::find(ids.begin(), ids.end(), drawing.object.object->id) != ids.end();
+  });
+  return own == grounds.end() ? None : int(own - grounds.begin());
+}
+
+void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Features features,
                                const ClipmapCamera& camera, const Blocks& blocks,
                                const std::function<bool(const ClipmapBlocks::Block&)>& chosen) {
   const Chart& chart = *this->Active_;
@@ -472,14 +492,18 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, unsigned features,
   }
   const bool horizon =
       (features & SurfaceShaders::Lit) != 0 && this->HasFarShadows(drawing) && chart.horizon;
+  const int ownGround = this->OwnGround(drawing);
   if (horizon) {
     pages.defines += "#define DSPACE_HORIZON\n";
+    if (ownGround >= 0 && drawing.view.shadowGrounds->size() == 1) {
+      features = SurfaceShaders::WithoutGrounds(features);
+    }
   }
   if (mixed || normals || horizon) {
     pages.fragment = ClipmapFragmentFunctions();
   }
   if (poleTexture) {
-    features &= ~unsigned(SurfaceShaders::Texture);
+    features &= ~SurfaceShaders::Features(SurfaceShaders::Texture);
     pages.defines += "#define DSPACE_POLE_TEXTURE\n";
   }
   vtkShaderProgram* program = drawing.shaders.Surface(features, pages);
@@ -490,6 +514,9 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, unsigned features,
     BindTextureUnit(drawing.window, HorizonUnit, GL_TEXTURE_2D_ARRAY, chart.horizonTexture);
     program->SetUniformi("horizons", HorizonUnit);
     program->SetUniformf("horizonRadius", float(drawing.list.Sun()->radius));
+  }
+  if (program->IsUniformUsed("ownGround")) {
+    program->SetUniformi("ownGround", ownGround);
   }
   const ClipmapUniforms uniforms(program, *this->Terrain_, style, chart.placement, chart.levels,
                                  chart.state, camera);

@@ -66,12 +66,14 @@ private:
   bool HasFarShadows(const CustomDrawing& drawing) const;
   bool PrepareHorizon(const CustomDrawing& drawing);
   std::size_t ActiveIndex() const; // of the terrain's charts
-  void Draw(const CustomDrawing& drawing, unsigned features);
+  // Of DrawView::shadowGrounds that with this terrain; -1: none.
+  static int OwnGround(const CustomDrawing& drawing);
+  void Draw(const CustomDrawing& drawing, SurfaceShaders::Features features);
   // Of each level, from the finest on.
   using Blocks = std::vector<std::vector<ClipmapBlocks::Block>>;
   Blocks BlocksIn(const ClipmapCamera& camera, const DrawView& view) const;
-  void DrawBlocks(const CustomDrawing& drawing, unsigned features, const ClipmapCamera& camera,
-                  const Blocks& blocks,
+  void DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Features features,
+                  const ClipmapCamera& camera, const Blocks& blocks,
                   const std::function<bool(const ClipmapBlocks::Block&)>& chosen);
 
   const ClipmapTerrain* Terrain_;

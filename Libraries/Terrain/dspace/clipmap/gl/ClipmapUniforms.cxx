@@ -86,7 +86,8 @@ std::string ClipmapUniforms::Defines(const PostPlacement& placement, const Clipm
   return defines;
 }
 
-void ClipmapUniforms::SetLook(const GraphicsObject& object, unsigned features) const {
+void ClipmapUniforms::SetLook(const GraphicsObject& object,
+                              SurfaceShaders::Features features) const {
   const Material& material = *this->Terrain_.Options().material;
   const MaterialOverride& over = object.material;
   const std::array<double, 3> color = over.color.value_or(material.color);

@@ -39,7 +39,8 @@ public:
   // Lines of definitions that the placement and the style ask of the shaders.
   static std::string Defines(const PostPlacement& placement, const ClipmapStyle* style);
 
-  void SetLook(const GraphicsObject& object, unsigned features) const; // not for labels
+  void SetLook(const GraphicsObject& object,
+               SurfaceShaders::Features features) const; // not for labels
   void SetStyle(const CustomDrawing& drawing) const;
   void SetPlacement() const; // the same for all levels
   void SetLevel(int level) const;
