@@ -416,7 +416,7 @@ def cube(size=(1.0, 1.0, 1.0), opacity=1.0, center=(0.0, 0.0, 0.0)):
     return actor
 
 
-def lit_floor(scene, eye=(-3, -4, 4), target=(0.3, 0.3, 0)):
+def lit_floor(scene, eye=(4, -3, 4), target=(0.6, 0.6, 0)):
     """A floor under a Sun to the south-west, and its lit fraction in a picture."""
     floor = scene.add_plane(40, 40, color=(1, 1, 1), name="floor")
     scene.sun.set(azimuth_deg=225, elevation_deg=35)
@@ -429,11 +429,11 @@ def lit_floor(scene, eye=(-3, -4, 4), target=(0.3, 0.3, 0)):
     return lit
 
 
-@pytest.mark.parametrize("target", [(0.3, 0.3, 0), (2.0, 2.3, 0)], ids=["in the picture", "outside of it"])
+@pytest.mark.parametrize("target", [(0.6, 0.6, 0), (2.0, 2.3, 0)], ids=["in the picture", "outside of it"])
 def test_a_prop_throws_the_shadow_of_the_same_box(scene, target):
     """Turned, stretched, and with a matrix of its own."""
     place = scene.add_frame("place", position=(0, 0, 1.2), quaternion=(np.cos(0.3), 0, 0, np.sin(0.3)))
-    lit = lit_floor(scene, eye=(-3, -4, 4) if target[0] < 1 else (1.0, 1.2, 1.5), target=target)
+    lit = lit_floor(scene, eye=(4, -3, 4) if target[0] < 1 else (1.0, 1.2, 1.5), target=target)
     bare = lit()
     assert (bare[np.isfinite(bare)] == 1).all()
     box = scene.add_box((1.5, 0.6, 0.8), frame=place, color=(1, 1, 1))
@@ -463,10 +463,16 @@ def test_what_of_props_throws_no_shadow(scene):
     wire.GetProperty().SetRepresentationToWireframe()
     dots = cube()
     dots.GetProperty().SetRepresentationToPoints()
-    for prop, settings in ((fog(), {}), (cube(opacity=0.5), {}), (cube(), dict(nature="ornamental")), (wire, {}), (dots, {})):
+    for prop, settings in ((fog(), {}), (cube(opacity=0.5), {}), (cube(), dict(ornamental=True)), (wire, {}), (dots, {})):
         added = scene.add_prop(prop, position=(-6, -6, 6), **settings)  # out of the picture, its shadow in the middle
         np.testing.assert_array_equal(lit(), bare)
         added.remove()
+    assembly = vtkAssembly()
+    assembly.AddPart(wire)
+    added = scene.add_prop(assembly, position=(-6, -6, 6))
+    np.testing.assert_array_equal(lit(), bare)
+    assert wire.GetVisibility()
+    added.remove()
     added = scene.add_prop(cube(), position=(-6, -6, 6))
     assert np.nansum(np.abs(lit() - bare)) > 20
     added.remove()
@@ -488,7 +494,8 @@ def test_props_beside_other_things_throw_their_shadows_together(scene, tmp_path)
     places.SetPoints(points)
     mapper = vtkGlyph3DMapper()
     mapper.SetInputData(places)
-    mapper.SetSourceConnection(cube().GetMapper().GetInputConnection(0, 0))
+    part = cube()  # a connection does not keep it
+    mapper.SetSourceConnection(part.GetMapper().GetInputConnection(0, 0))
     mapper.ScalingOff()
     glyphs = vtkActor()
     glyphs.SetMapper(mapper)

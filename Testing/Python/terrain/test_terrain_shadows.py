@@ -336,7 +336,7 @@ def test_more_terrains_than_layers_of_maps(scene, tmp_path):
     """Five of them: each of the others shades the floor, and none of them itself where it does not."""
     floor, wall, place = floor_and_wall(scene, tmp_path, "clipmap", "clipmap")
     for i in range(3):
-        scene.add_terrain(tmp_path / "wall.tif", name=f"wall {i}", mode="clipmap", color=WHITE,
+        scene.add_terrain(tmp_path / "wall.tif", name=f"wall {i}", mode="clipmap", level_size=252, color=WHITE,
                           frame=scene.add_frame(f"wall {i}", position=(0.0, -3.0 - 5.0 * i, -2.5)))
     scene.sun.set(azimuth_deg=0, elevation_deg=25)
     eye, target = np.array((0.0, -3.0, 30.0)), (0.0, -3.0, 0.0)

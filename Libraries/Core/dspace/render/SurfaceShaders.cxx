@@ -126,7 +126,7 @@ void SurfaceShaders::Release() {
 namespace {
 
 // How many shadow maps there are, and what reading them needs.
-std::string ShadowDefines(Features features) {
+std::string ShadowDefines(SurfaceShaders::Features features) {
   const unsigned cascades = features >> SurfaceShaders::CascadeShift & 15u;
   return std::string(cascades != 0 ? "#extension GL_ARB_texture_gather : require\n" : "") +
          "#define DSPACE_CASCADES " + std::to_string(cascades) + "\n#define DSPACE_GROUNDS " +
@@ -146,7 +146,7 @@ SurfaceShaders::Features SurfaceShaders::CodeFeatures(const Mesh& mesh, bool tex
 SurfaceShaders::Sources SurfaceShaders::SourcesFor(Features features, const ShaderPages& pages,
                                                    const ShaderCode* code) {
   std::string defines = pages.defines;
-  const auto define = [&](Feature feature, const char* name) {
+  const auto define = [&](Features feature, const char* name) {
     if (features & feature) {
       defines += std::string("#define ") + name + "\n";
     }

@@ -38,30 +38,33 @@ public:
   static constexpr int MaximumLights = 8;
   static constexpr int MaximumEclipsing = 8; // bodies: those that look largest
 
-  using Features = std::uint64_t; // a set of Feature
-  enum Feature : Features {
-    Lit = 1,
-    Texture = 2,
-    VertexColor = 4,
-    Billboard = 8,
-    Peel = 16,
-    Label = 32,
-    Emissive = 64,
-    Specular = 128,
-    PlacedLights = 256,      // some light is not directional
-    Mixed = 512,             // a function mixedColor() of the pages stands for the texture
-    Normals = 1024,          // of objects with shader code: the mesh has normals
-    Flat = 2048,             // of objects with shader code: triangles without normals
-    NormalMap = 4096,        // a texture of normals, with Lit
-    ObjectNormals = 8192,    // one in the mesh's own axes, with opacity
-    DiscLights = 16384,      // the disc of some light but the Sun is so wide that it sets slowly
-    SunPlace = 32768,        // the Sun is a body of the scene, at a place
-    LitMask = 1u << 27,      // SunMask() has what the shadow maps say
-    Angles = 1u << 28,       // photometric angles in place of the colour; with Lit where it is lit
-    DisplayColor = 1u << 29, // the colour is a display value in a picture that is exposed later
-    Eclipses = Features(1) << 32, // bodies may hide the Sun, with SunPlace
-    Planes = Features(1) << 33    // with Lit alone: what SunMask() reads, in place of the colour
-  };
+  using Features = std::uint64_t; // a sum of what follows
+  static constexpr Features Lit = 1;
+  static constexpr Features Texture = 2;
+  static constexpr Features VertexColor = 4;
+  static constexpr Features Billboard = 8;
+  static constexpr Features Peel = 16;
+  static constexpr Features Label = 32;
+  static constexpr Features Emissive = 64;
+  static constexpr Features Specular = 128;
+  static constexpr Features PlacedLights = 256; // some light is not directional
+  static constexpr Features Mixed =
+      512; // a function mixedColor() of the pages stands for the texture
+  static constexpr Features Normals = 1024; // of objects with shader code: the mesh has normals
+  static constexpr Features Flat = 2048; // of objects with shader code: triangles without normals
+  static constexpr Features NormalMap = 4096;     // a texture of normals, with Lit
+  static constexpr Features ObjectNormals = 8192; // one in the mesh's own axes, with opacity
+  static constexpr Features DiscLights =
+      16384; // the disc of some light but the Sun is so wide that it sets slowly
+  static constexpr Features SunPlace = 32768;   // the Sun is a body of the scene, at a place
+  static constexpr Features LitMask = 1u << 27; // SunMask() has what the shadow maps say
+  static constexpr Features Angles =
+      1u << 28; // photometric angles in place of the colour; with Lit where it is lit
+  static constexpr Features DisplayColor =
+      1u << 29; // the colour is a display value in a picture that is exposed later
+  static constexpr Features Eclipses = Features(1) << 32; // bodies may hide the Sun, with SunPlace
+  static constexpr Features Planes =
+      Features(1) << 33; // with Lit alone: what SunMask() reads, in place of the colour
   static constexpr unsigned LightShift = 16;       // above the features: the number of lights,
   static constexpr unsigned CascadeShift = 20;     // of the Sun's shadow maps,
   static constexpr unsigned ReflectanceShift = 24; // the photometric model, 3 bits,

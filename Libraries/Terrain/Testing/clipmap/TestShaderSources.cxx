@@ -48,13 +48,14 @@ std::vector<fs::path> ShaderFiles() {
 }
 
 // The bits that change a program's text: a feature that is added later is among them.
-std::vector<unsigned> FeatureBits(const ShaderCode* code) {
+std::vector<Shaders::Features> FeatureBits(const ShaderCode* code) {
   const Shaders::Sources none = Shaders::SourcesFor(0, {}, code);
-  std::vector<unsigned> bits;
+  std::vector<Shaders::Features> bits;
   for (unsigned shift = 0; shift < Shaders::LightShift; ++shift) {
-    const Shaders::Sources with = Shaders::SourcesFor(1u << shift, {}, code);
+    const Shaders::Features bit = Shaders::Features(1) << shift;
+    const Shaders::Sources with = Shaders::SourcesFor(bit, {}, code);
     if (with.vertex != none.vertex || with.fragment != none.fragment) {
-      bits.push_back(1u << shift);
+      bits.push_back(bit);
     }
   }
   return bits;
@@ -147,7 +148,7 @@ struct Programs {
   // All features together that may be. Those with at most one more than a lit, an unlit or a
   // label's program are linked.
   void AddSurfaces(const std::string& name, const ShaderCode* code) {
-    const std::vector<unsigned> bits = FeatureBits(code);
+    const std::vector<Shaders::Features> bits = FeatureBits(code);
     for (unsigned choice = 0; choice < 1u << bits.size(); ++choice) {
       Shaders::Features features = 0;
       int more = 0;
@@ -290,7 +291,7 @@ void Programs::AddClipmaps() {
       ShaderPages pages = bare;
       pages.defines += holes;
       for (const Shaders::Features features :
-           {0u, lit, bright, Shaders::Features(Shaders::Label)}) {
+           {Shaders::Features(0), lit, bright, Shaders::Features(Shaders::Label)}) {
         this->Add(called, features, pages, nullptr, !*holes);
         if (!pole && features != Shaders::Label) {
           this->Add(called, features | Shaders::Texture, pages, nullptr, false);
@@ -306,7 +307,7 @@ void Programs::AddClipmaps() {
         }
         pages.defines = look.defines + texture;
         for (const Shaders::Features features :
-             {0u, lit, bright, lit | 4u << Shaders::CascadeShift,
+             {Shaders::Features(0), lit, bright, lit | 4u << Shaders::CascadeShift,
               lit | 4u << Shaders::CascadeShift | 2u << Shaders::GroundShift}) {
           if (!(features & Shaders::Lit) &&
               (pages.defines.find("DSPACE_LAYER_NORMALS") != std::string::npos ||
@@ -361,6 +362,7 @@ void Programs::AddSunMasks() {
       ++this->count;
     }
   }
+  this->Add("planes for it", Shaders::Planes | Shaders::Lit, {}, nullptr, true);
 }
 
 void Programs::AddExample() {
@@ -390,12 +392,12 @@ void Programs::AddBodies() {
   pages.fragment = rays.c_str();
   pages.whole = surface.c_str();
   const Shaders::Features lit = Shaders::Lit | 1u << Shaders::LightShift;
-  const unsigned placed = lit | Shaders::SunPlace;
+  const Shaders::Features placed = lit | Shaders::SunPlace;
   for (const char* disc : {"", "#define DSPACE_DISC 12\n"}) {
     pages.defines = disc;
     for (const Shaders::Features features :
-         {0u, lit, placed, placed | Shaders::Eclipses, Shaders::Features(Shaders::Label),
-          lit | Shaders::DiscLights, lit | Shaders::PlacedLights,
+         {Shaders::Features(0), lit, placed, placed | Shaders::Eclipses,
+          Shaders::Features(Shaders::Label), lit | Shaders::DiscLights, lit | Shaders::PlacedLights,
           Shaders::Features(Shaders::DisplayColor),
           placed | Shaders::Texture | 3u << Shaders::ReflectanceShift}) {
       this->Add("body", features, pages, nullptr, true);
@@ -408,7 +410,8 @@ void Programs::AddBodies() {
   }
   this->Add("body", lit | 4u << Shaders::CascadeShift, pages, nullptr, true);
   this->Add("surface", placed | Shaders::Eclipses, {}, nullptr, true);
-  for (const Shaders::Features features : {0u, Shaders::Features(Shaders::Eclipses)}) {
+  for (const Shaders::Features features :
+       {Shaders::Features(0), Shaders::Features(Shaders::Eclipses)}) {
     pages.whole = air.c_str();
     pages.defines = "#define DSPACE_AIR_STEPS 24\n";
     this->Add("air", features, pages, nullptr, true);

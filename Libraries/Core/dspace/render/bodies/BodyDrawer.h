@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <dspace/render/CustomDrawer.h>
+#include <dspace/render/SurfaceShaders.h>
 #include <dspace/render/bodies/BodyView.h>
 #include <dspace/scene/bodies/CelestialBody.h>
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "vtk_glew.h"
 
@@ -10,6 +11,9 @@
 #include "PropLight_frag.h"
 #include "StandardDepth_frag.h"
 
+#include "vtkActor.h"
+#include "vtkAssemblyNode.h"
+#include "vtkAssemblyPath.h"
 #include "vtkCamera.h"
 #include "vtkDspaceHubWindow.h"
 #include "vtkLight.h"
@@ -18,6 +22,7 @@
 #include "vtkOpenGLRenderer.h"
 #include "vtkOpenGLState.h"
 #include "vtkProp3D.h"
+#include "vtkProperty.h"
 #include "vtkRendererCollection.h"
 #include "vtkShaderProgram.h"
 #include "vtkSmartPointer.h"
@@ -62,6 +67,37 @@ private:
   vtkSmartPointer<vtkLinearTransform> Transform_;
   vtkSmartPointer<vtkMatrix4x4> Matrix_;
   PlacedPlanes Planes_;
+};
+
+// Whether it is an actor that draws edges or points in place of surfaces.
+bool IsLinesOrPoints(vtkProp* prop) {
+  vtkActor* actor = vtkActor::SafeDownCast(prop);
+  return actor && actor->GetProperty()->GetRepresentation() != VTK_SURFACE;
+}
+
+// Hides the parts of an assembly that draw edges or points while it lives.
+class HiddenLines {
+public:
+  explicit HiddenLines(vtkProp* prop) {
+    prop->InitPathTraversal();
+    while (vtkAssemblyPath* path = prop->GetNextPath()) {
+      vtkProp* part = path->GetLastNode()->GetViewProp();
+      if (part != prop && part->GetVisibility() && IsLinesOrPoints(part)) {
+        part->VisibilityOff();
+        this->Parts_.push_back(part);
+      }
+    }
+  }
+  HiddenLines(const HiddenLines&) = delete;
+  HiddenLines& operator=(const HiddenLines&) = delete;
+  ~HiddenLines() {
+    for (vtkProp* part : this->Parts_) {
+      part->VisibilityOn();
+    }
+  }
+
+private:
+  std::vector<vtkProp*> Parts_;
 };
 
 struct Range {
@@ -217,9 +253,13 @@ void PropCanvas::DrawOpaque(vtkProp3D* prop, const CustomDrawing& drawing) {
 }
 
 void PropCanvas::DrawShadow(vtkProp3D* prop, const CustomDrawing& drawing) {
+  if (IsLinesOrPoints(prop)) {
+    return;
+  }
   vtkOpenGLState* state = this->Window_->GetState();
   state->Push();
   {
+    const HiddenLines hidden(prop);
     const PlacedProp placed(prop, drawing.object.X_VO);
     this->SetView(drawing, *drawing.view.clip, 0.0, 1.0);
     this->Renderer_->GetActiveCamera()->SetParallelProjection(true);

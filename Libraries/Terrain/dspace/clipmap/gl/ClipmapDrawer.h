@@ -14,6 +14,7 @@
 #include <dspace/clipmap/arithmetic/ClipmapIndices.h>
 #include <dspace/clipmap/gl/LayerDrawing.h>
 #include <dspace/render/CustomDrawer.h>
+#include <dspace/render/SurfaceShaders.h>
 
 namespace dspace {
 

@@ -7,6 +7,7 @@
 #include <dspace/clipmap/ClipmapLevels.h>
 #include <dspace/clipmap/ClipmapTerrain.h>
 #include <dspace/render/CustomDrawer.h>
+#include <dspace/render/SurfaceShaders.h>
 
 class vtkShaderProgram;
 
