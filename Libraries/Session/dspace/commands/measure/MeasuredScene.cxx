@@ -102,9 +102,10 @@ MeasuredScene::Spot MeasuredScene::At(const v1::Place& place, const std::string&
   spot.frame = ToFrame(place.frame());
   const Pose& X_RF = this->Context_.Frames().WorldPose(spot.frame);
   const Eigen::Vector3d p_F = ToVector(place.position());
-  const std::string path = this->Context_.Frames().Path(spot.frame);
   spot.label = what + ", " + VectorText(p_F) + " in " +
-               (path.empty() ? std::string("the root") : "frame '" + path + "'");
+               (spot.frame == RootFrame
+                    ? std::string("the root")
+                    : "frame '" + this->Context_.Frames().Path(spot.frame) + "'");
   RequirePosition(spot.label, "its position", p_F);
   spot.p_R = X_RF.Apply(p_F);
   return spot;
