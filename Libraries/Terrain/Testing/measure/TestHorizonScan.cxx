@@ -84,7 +84,8 @@ TEST(HorizonScan, ASmoothSphereDipsByItsTangent) {
     const double dip = std::acos(globe.radius / (globe.radius + height)) / Degree;
     // A millimetre of a chord changes a dip of 2 m by half as much as it changes the height.
     const double bound = dip * 0.5 * 1e-3 / height + 2e-6;
-    for (const HorizonPoint& p : ScanHorizon(obstacles, place, {north.cross(up), north, up}, 16, "p"))
+    for (const HorizonPoint& p :
+         ScanHorizon(obstacles, place, {north.cross(up), north, up}, 16, "p"))
       EXPECT_NEAR(p.elevation_deg, -dip, bound) << height;
   }
 }
@@ -123,8 +124,8 @@ TEST(HorizonScan, RoughGroundAgreesWithItsProfiles) {
 }
 
 TEST(HorizonScan, OutsideTheDataTheGroundIsFoundAndWhereThereIsNoneNothing) {
-  const auto ground = Sampled(101, 101, NorthUp(-0.5, 100.5, 1.0),
-                              [](const Eigen::Vector2d&) { return 20.0; });
+  const auto ground =
+      Sampled(101, 101, NorthUp(-0.5, 100.5, 1.0), [](const Eigen::Vector2d&) { return 20.0; });
   Obstacles obstacles;
   obstacles.Add(Obstacles::Ground{"flat", ground.get(), {}});
   const V place = ground->MapToScene({-100.0, 50.0, 70.0}); // west of the data

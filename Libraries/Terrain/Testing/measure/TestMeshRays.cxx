@@ -43,8 +43,8 @@ double FirstByHand(const Mesh& mesh, const V& origin, const V& direction) {
     const V normal = (b - a).cross(c - a);
     const double at = normal.dot(a - origin) / normal.dot(direction);
     const V p = origin + at * direction;
-    const double areas = (b - p).cross(c - p).norm() + (c - p).cross(a - p).norm() +
-                         (a - p).cross(b - p).norm();
+    const double areas =
+        (b - p).cross(c - p).norm() + (c - p).cross(a - p).norm() + (a - p).cross(b - p).norm();
     if (at >= 0.0 && at <= 1.0 && areas <= normal.norm() * (1.0 + 1e-9)) {
       best = std::min(best, at);
     }

@@ -157,8 +157,7 @@ TEST_F(OnSphere, TwoMastsSeeEachOtherOverTheBulgeOrDoNot) {
     // The elevation of the end over the tangent at the start.
     const double elevation = -0.5 * angle;
     const double tangent = -std::acos(this->Radius_ / (this->Radius_ + 10.0));
-    EXPECT_NEAR(line.Angle(), (elevation - tangent) / Degree, 2e-5)
-        << share;
+    EXPECT_NEAR(line.Angle(), (elevation - tangent) / Degree, 2e-5) << share;
   }
 }
 
@@ -204,7 +203,8 @@ TEST(SightLine, APlaceBelowTheGroundIsAnError) {
   const auto ground = WithPost(0.0);
   const Obstacles obstacles = Over(*ground);
   try {
-    LineOver(obstacles, ground->MapToScene({50.0, 0.0, 1.0}), ground->MapToScene({60.0, 0.0, -2.5}));
+    LineOver(obstacles, ground->MapToScene({50.0, 0.0, 1.0}),
+             ground->MapToScene({60.0, 0.0, -2.5}));
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.GetObjectName(), "end");

@@ -16,8 +16,7 @@ class GroundScan {
 public:
   GroundScan(const Obstacles& obstacles, const Obstacles::Ground& ground, const V& place_R,
              const LevelAxes& axes, const std::string& label)
-      : Obstacles_(obstacles), Ground_(ground),
-        Place_(obstacles.Stand(ground, place_R, label)),
+      : Obstacles_(obstacles), Ground_(ground), Place_(obstacles.Stand(ground, place_R, label)),
         IsOver_(std::isfinite(Obstacles::HeightOver(ground, this->Place_))), Axes_(axes) {
     const Eigen::Quaterniond toGround = ground.X_RS.rotation.conjugate();
     for (V* axis : {&this->Axes_.east, &this->Axes_.north, &this->Axes_.up}) {
@@ -55,8 +54,8 @@ private:
   // Keeps the hit of the highest ray that met the ground.
   bool Meets(double elevation) {
     this->Obstacles_.Check();
-    const V direction = std::cos(elevation * Degree) * this->Level_ +
-                        std::sin(elevation * Degree) * this->Axes_.up;
+    const V direction =
+        std::cos(elevation * Degree) * this->Level_ + std::sin(elevation * Degree) * this->Axes_.up;
     const RayHit hit = this->Ground_.surface->Intersect(this->Place_, direction);
     if (hit.hit) {
       this->Best_ = hit;
@@ -137,8 +136,9 @@ void AddTriangle(const std::array<V, 3>& corners, std::uint32_t object, const V&
     }
     if (greatest - least < M_PI) {
       first = std::int64_t(std::floor((start + least) / (2.0 * M_PI) * double(count))) - 1;
-      last = std::min(first + count - 1,
-                      std::int64_t(std::ceil((start + greatest) / (2.0 * M_PI) * double(count))) + 1);
+      last =
+          std::min(first + count - 1,
+                   std::int64_t(std::ceil((start + greatest) / (2.0 * M_PI) * double(count))) + 1);
     }
   }
   for (std::int64_t k = first; k <= last; ++k) {
@@ -198,8 +198,7 @@ std::vector<HorizonPoint> ScanHorizon(const Obstacles& obstacles, const V& place
     GroundScan scan(obstacles, ground, place_R, axes, label);
     for (std::size_t k = 0; k < count; ++k) {
       const HorizonPoint found = scan.Find(2.0 * M_PI * double(k) / double(count));
-      if (found.elevation_deg > horizon[k].elevation_deg ||
-          !std::isfinite(horizon[k].distance)) {
+      if (found.elevation_deg > horizon[k].elevation_deg || !std::isfinite(horizon[k].distance)) {
         horizon[k] = found;
       }
     }

@@ -76,7 +76,8 @@ void Segments(const V& p1, const V& q1, const V& p2, const V& q2, V& on1, V& on2
   const double c = d1.dot(r);
   const double b = d1.dot(d2);
   const double denominator = a * e - b * b;
-  double s = denominator > 1e-14 * a * e ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
+  double s =
+      denominator > 1e-14 * a * e ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
   double t = (b * s + f) / e;
   if (t < 0.0) {
     t = 0.0;

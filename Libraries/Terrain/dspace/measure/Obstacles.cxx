@@ -26,8 +26,8 @@ Eigen::Vector3d Obstacles::Stand(const Ground& ground, const Eigen::Vector3d& p_
                           (p_R.cwiseAbs().maxCoeff() + p_S.cwiseAbs().maxCoeff());
   const double touch = Touch + rounding;
   if (height < -touch) {
-    Reject(label, "it is " + NumberText(-height) + " m below the ground of terrain '" + ground.name +
-                      "'; accepted: places on or above the ground");
+    Reject(label, "it is " + NumberText(-height) + " m below the ground of terrain '" +
+                      ground.name + "'; accepted: places on or above the ground");
   }
   return height < touch
              ? Eigen::Vector3d(p_S + (touch - height) / ground.X_RS.scale * ground.surface->Up(p_S))

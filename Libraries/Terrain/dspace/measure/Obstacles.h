@@ -33,8 +33,8 @@ public:
   };
   struct Hit {
     bool hit = false;
-    std::string terrain;      // empty: an object
-    std::uint32_t object = 0; // 0: a terrain
+    std::string terrain;                                       // empty: an object
+    std::uint32_t object = 0;                                  // 0: a terrain
     double distance = std::numeric_limits<double>::infinity(); // [m] from the start
     Eigen::Vector3d point = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   };
@@ -66,8 +66,8 @@ public:
   static double HeightOver(const Ground& ground, const Eigen::Vector3d& p_S);
 
   // The first obstacle of the line. `labels` as for Stand(). Throws what it throws.
-  Hit First(const Eigen::Vector3d& from_R, const Eigen::Vector3d& to_R, const std::string& fromLabel,
-            const std::string& toLabel) const;
+  Hit First(const Eigen::Vector3d& from_R, const Eigen::Vector3d& to_R,
+            const std::string& fromLabel, const std::string& toLabel) const;
 
 private:
   std::vector<Ground> Grounds_;

@@ -99,9 +99,7 @@ private:
   static constexpr double First = 1e-3; // [m] of a search without any known height
   static constexpr double Most = 1e10;
 
-  Eigen::Vector3d At(double place) const {
-    return this->From_ + place * (this->To_ - this->From_);
-  }
+  Eigen::Vector3d At(double place) const { return this->From_ + place * (this->To_ - this->From_); }
   Eigen::Vector3d Lowered(const Joint& joint, double factor) const {
     const Eigen::Vector3d p = this->At(joint.place);
     return p - (factor * joint.weight / this->Ground_.X_RS.scale) * this->Ground_.surface->Up(p);
@@ -205,8 +203,7 @@ SightLine::Beside SightLine::Solids() const {
         solid.rays->Nearest(solid.X_RM, this->From_, this->To_, best.distance);
     if (found.distance < best.distance) {
       best.distance = found.distance;
-      best.angle_deg =
-          AngleBetween(this->To_ - this->From_, found.point - this->From_) * Degrees;
+      best.angle_deg = AngleBetween(this->To_ - this->From_, found.point - this->From_) * Degrees;
     }
   }
   return best;

@@ -4,7 +4,7 @@ import sys
 import numpy as np
 
 from dspace.command_line import Failed
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, write
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, unit_of, write
 
 
 def add_arguments(parser):
@@ -55,11 +55,14 @@ def draw(figure, horizon, title):
     foot = (known.min() - 0.05 * max(np.ptp(known), 1e-3)) if known.size else -90.0
     above.fill_between(azimuth, elevation, foot, color="#b9b1a6", linewidth=0)
     above.plot(azimuth, elevation, color="#5c5348", linewidth=1.0)
+    above.set_ylim(bottom=foot)
     above.axhline(0.0, color="#808080", linewidth=0.6)
     above.set_ylabel("elevation [deg]")
     above.set_title(f"Horizon at {title}", fontsize=10)
-    below.semilogy(azimuth, np.where(np.isfinite(distance), distance, np.nan), color="#2c56c8", linewidth=1.0)
-    below.set_ylabel("distance [m]")
+    unit, name = unit_of(distance)
+    below.plot(azimuth, np.where(np.isfinite(distance), distance, np.nan) / unit, color="#2c56c8", linewidth=1.0)
+    below.set_ylim(bottom=0.0)
+    below.set_ylabel(f"distance [{name}]")
     below.set_xlabel("azimuth [deg], clockwise from north")
     below.set_xlim(0.0, 360.0)
     below.set_xticks(np.arange(0, 361, 45), ("N", "NE", "E", "SE", "S", "SW", "W", "NW", "N"))

@@ -4,7 +4,7 @@ import sys
 import numpy as np
 
 from dspace.command_line import Failed
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, write
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, unit_of, write
 
 SAMPLES = 1001  # of the profiles in plots
 MOST_PROFILES = 6
@@ -95,17 +95,21 @@ def draw(figure, ground, sites, lines, wavelength):
     for i in range(count):
         axes = figure.add_subplot(rows, 1 if count == 1 else 2, i + 1)
         distance, height = profile(ground, *sites[i])
-        axes.fill_between(distance, -height, np.nanmin(-height) - 0.05 * np.ptp(height[np.isfinite(height)]), color="#b9b1a6",
-                          linewidth=0)
-        axes.plot(distance, -height, color="#5c5348", linewidth=1.0)
+        unit, name = unit_of(distance)
+        shown = [-height]
         clear = bool(lines.clear[i])
-        axes.plot(distance[[0, -1]], [0, 0], color="#2c7a3f" if clear else "#b3261e", linewidth=1.5)
+        axes.plot(distance[[0, -1]] / unit, [0, 0], color="#2c7a3f" if clear else "#b3261e", linewidth=1.5)
         if wavelength:
-            zone = np.sqrt(wavelength * distance * (distance[-1] - distance) / distance[-1])
-            axes.plot(distance, -zone, color="#2c56c8", linewidth=0.8, linestyle="--")
+            shown.append(-np.sqrt(wavelength * distance * (distance[-1] - distance) / distance[-1]))
+            axes.plot(distance / unit, shown[1], color="#2c56c8", linewidth=0.8, linestyle="--")
+        low, high = np.nanmin(shown), max(np.nanmax(shown), 0.0)
+        foot = low - 0.05 * max(high - low, 1e-3)
+        axes.fill_between(distance / unit, -height, foot, color="#b9b1a6", linewidth=0)
+        axes.plot(distance / unit, -height, color="#5c5348", linewidth=1.0)
+        axes.set_ylim(bottom=foot)
         if not clear:
-            axes.plot([lines.distance[i]], [0], "o", color="#b3261e", markersize=5)
+            axes.plot([lines.distance[i] / unit], [0], "o", color="#b3261e", markersize=5)
         axes.set_title(f"line {i + 1}: {'clear' if clear else 'blocked'}, clearance {lines.clearance[i]:.3g} m", fontsize=10)
-        axes.set_xlabel("distance along the line [m]")
+        axes.set_xlabel(f"distance along the line [{name}]")
         axes.set_ylabel("ground from the line [m]")
         axes.margins(x=0)

@@ -106,6 +106,12 @@ def _is_degree_grid(options, osr):
     return bool(crs and crs.IsGeographic())
 
 
+def unit_of(distances):
+    """The unit of an axis of distances [m], and its name."""
+    known = np.asarray(distances)[np.isfinite(distances)]
+    return (1000.0, "km") if known.size and known.max() > 10000.0 else (1.0, "m")
+
+
 def place_of(text, names, counts, option):
     """The numbers of "LON,LAT,..."."""
     try:

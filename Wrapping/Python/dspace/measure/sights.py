@@ -31,7 +31,7 @@ class Sights:
         names, that are no obstacles. without: objects, or their names, that are none, such as the antennas. A terrain on
         its body hides by the body's curvature too; a terrain on a plane is flat.
 
-        clearance=False: only whether the line is clear, and what blocks it first: fifty times as fast. deadline: longest
+        clearance=False: only whether the line is clear, and what blocks it first: some twenty times as fast. deadline: longest
         time [s]; default: none. method: "exact"; "image" and "both" are not implemented yet (dspace.Unimplemented).
 
         Raises dspace.InvalidArgument for a start that is its end, for a place below the ground of a terrain that is an

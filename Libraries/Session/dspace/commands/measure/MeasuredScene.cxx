@@ -102,10 +102,10 @@ MeasuredScene::Spot MeasuredScene::At(const v1::Place& place, const std::string&
   spot.frame = ToFrame(place.frame());
   const Pose& X_RF = this->Context_.Frames().WorldPose(spot.frame);
   const Eigen::Vector3d p_F = ToVector(place.position());
-  spot.label = what + ", " + VectorText(p_F) + " in " +
-               (spot.frame == RootFrame
-                    ? std::string("the root")
-                    : "frame '" + this->Context_.Frames().Path(spot.frame) + "'");
+  spot.label =
+      what + ", " + VectorText(p_F) + " in " +
+      (spot.frame == RootFrame ? std::string("the root")
+                               : "frame '" + this->Context_.Frames().Path(spot.frame) + "'");
   RequirePosition(spot.label, "its position", p_F);
   spot.p_R = X_RF.Apply(p_F);
   return spot;
@@ -140,8 +140,8 @@ MeasuredScene::Spot MeasuredScene::At(const v1::Site& site, const std::string& w
   }
   const FrameId frame = this->Context_.GetScene().Object(spot.terrain->Object()).frame;
   const Pose& X_RS = this->Context_.Frames().WorldPose(frame);
-  spot.p_R = X_RS.Apply(sample.position_S +
-                        site.height() / X_RS.scale * surface.Up(sample.position_S));
+  spot.p_R =
+      X_RS.Apply(sample.position_S + site.height() / X_RS.scale * surface.Up(sample.position_S));
   return spot;
 }
 
