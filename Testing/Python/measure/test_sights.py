@@ -191,17 +191,21 @@ def test_objects_block_and_limit_lines_and_make_horizons(scene):
     assert scene.horizon(mast, 4).object[0] is None  # ornaments hide nothing
 
 
-def test_masts_on_a_sphere_see_each_other_as_far_as_the_bulge_lets_them(scene, tmp_path):
+def smooth_ball(scene, tmp_path, radius):
     path = tmp_path / "ball.tif"
     data = gdal.GetDriverByName("GTiff").Create(str(path), 96, 48, 1, gdal.GDT_Float32)
     data.SetGeoTransform((-180, 3.75, 0, 90, 0, -3.75))
-    data.SetProjection('GEOGCS["m",DATUM["m",SPHEROID["m",1737400,0]],PRIMEM["G",0],UNIT["degree",0.0174532925199433]]')
+    data.SetProjection(f'GEOGCS["m",DATUM["m",SPHEROID["m",{radius},0]],PRIMEM["G",0],UNIT["degree",0.0174532925199433]]')
     data.SetMetadataItem("VERTICAL_DATUM", "sphere")
     data.GetRasterBand(1).WriteArray(np.zeros((48, 96), np.float32))
     data = None
     with pytest.warns(dspace.DspaceWarning, match="suspiciously small"):
-        ball = scene.add_terrain(path, name="ball", on_body=True)
+        return scene.add_terrain(path, name="ball", on_body=True)
+
+
+def test_masts_on_a_sphere_see_each_other_as_far_as_the_bulge_lets_them(scene, tmp_path):
     a, height = 1737400.0, 15.0
+    ball = smooth_ball(scene, tmp_path, a)
     most = np.degrees(2 * np.arccos(a / (a + height)))
     share = np.array([0.3, 0.9, 0.999, 1.001, 1.2])
     lines = scene.line_of_sight(ball.site(20.0, 0.0, height), ball.site(20.0 + share * most, 0.0, height))
@@ -210,6 +214,23 @@ def test_masts_on_a_sphere_see_each_other_as_far_as_the_bulge_lets_them(scene, t
     np.testing.assert_allclose(lines.clearance, middle, atol=2e-3)  # chords of posts: a millimetre
     dip = np.degrees(np.arccos(a / (a + height)))
     np.testing.assert_allclose(scene.horizon(ball.site(20.0, 0.0, height), 8).elevation_deg, -dip, atol=2e-5)
+
+
+def test_a_target_as_far_as_the_earth_is_seen_down_to_the_dip(scene, tmp_path):
+    a, height = 1737400.0, 100.0
+    ball = smooth_ball(scene, tmp_path, a)
+    site = ball.site(20.0, 0.0, height)
+    place = scene.horizon(site, 1).place
+    up = place / np.linalg.norm(place)
+    north = np.array((0.0, 0.0, 1.0))
+    dip = np.degrees(np.arccos(a / (a + height)))
+    elevation = np.array([-dip - 0.01, -dip + 0.01, 0.0, 30.0])
+    targets = place + 3.844e8 * (np.cos(np.radians(elevation))[:, None] * north + np.sin(np.radians(elevation))[:, None] * up)
+    lines = scene.line_of_sight(site, targets, wavelength=0.036)
+    assert lines.clear.tolist() == [False, True, True, True]
+    np.testing.assert_allclose(lines.clearance_deg, elevation + dip, atol=2e-5)
+    # The tangent touches the sphere: a line that is lower by an angle is deeper by that angle times the distance.
+    assert lines.clearance[0] < 0 < lines.clearance[1] and lines.clearance[2] == pytest.approx(height, abs=2e-3)
 
 
 def test_a_served_scene_answers_alike(anywhere, tmp_path):

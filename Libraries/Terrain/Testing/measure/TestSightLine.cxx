@@ -60,8 +60,8 @@ TEST(SightLine, AHalfMetrePostFlipsTheAnswer) {
   // The flank rises from the post before, 0.5 m in 1 m: 0.4 m after 0.8 m.
   EXPECT_NEAR(blocked.First().distance, 199.8, 1e-9);
   EXPECT_NEAR(blocked.Height(), -0.1, 2e-6);
-  // The end must rise so that the line passes over the top half way.
-  EXPECT_NEAR(blocked.Angle(), -std::atan2(0.2, 400.0) / Degree, 1e-7);
+  // The line must turn up so that it passes over the top half way.
+  EXPECT_NEAR(blocked.Angle(), -std::atan2(0.1, 200.0) / Degree, 1e-7);
   // At 3 cm the first zone's radius half way is sqrt(0.03 * 400) / 2.
   EXPECT_NEAR(blocked.Fresnel(0.03), -0.1 / (0.5 * std::sqrt(12.0)), 1e-3);
 }

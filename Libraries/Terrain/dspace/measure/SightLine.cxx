@@ -85,14 +85,53 @@ public:
     return 0.5 * (low + high);
   }
 
-  // The angle at the start between the line and the line to the end lowered by `by` [root metres].
-  double AngleTo(double by) const {
-    if (!std::isfinite(by)) {
-      return by;
+  // By how much the line can be turned down about its start until it meets the ground before the
+  // vertical of its end; negative: must be turned up until it is clear. [deg]
+  double Angle() const {
+    const TerrainSurface& surface = *this->Ground_.surface;
+    const Eigen::Vector3d up = surface.Up(this->From_);
+    const Eigen::Vector3d line = this->To_ - this->From_;
+    const double length = line.norm();
+    Eigen::Vector3d level = line - line.dot(up) * up;
+    const double across = level.norm();
+    const bool isVertical = !(across > 1e-9 * length);
+    level = isVertical ? surface.North(this->From_) : Eigen::Vector3d(level / across);
+    const double elevation = std::atan2(line.dot(up), line.dot(level)) * Degrees;
+    const auto isBlocked = [&](double at) {
+      this->Obstacles_.Check();
+      const Eigen::Vector3d direction =
+          std::cos(at / Degrees) * level + std::sin(at / Degrees) * up;
+      const double limit = isVertical ? length : across / std::cos(at / Degrees);
+      return surface.Intersect(this->From_, direction, limit).hit;
+    };
+    double low = -90.0; // meets the ground
+    double high = 90.0; // meets nothing
+    if (isBlocked(elevation)) {
+      low = elevation;
+    } else if (std::isfinite(Obstacles::HeightOver(this->Ground_, this->From_))) {
+      // Every ray below one that meets the ground meets it too.
+      high = elevation;
+      if (!isBlocked(low)) {
+        return Unlimited;
+      }
+    } else {
+      constexpr double Step = 0.25; // ground that ends may be passed below
+      high = elevation;
+      low = high - Step;
+      while (low > -90.0 && !isBlocked(low)) {
+        high = low;
+        low -= Step;
+      }
+      if (low <= -90.0) {
+        return Unlimited;
+      }
     }
-    const Eigen::Vector3d moved = this->Lowered({1.0, 1.0}, by);
-    const double angle = AngleBetween(this->To_ - this->From_, moved - this->From_) * Degrees;
-    return by < 0.0 ? -angle : angle;
+    constexpr double Accuracy_deg = 1e-8;
+    while (high - low > Accuracy_deg) {
+      const double middle = 0.5 * (low + high);
+      (isBlocked(middle) ? low : high) = middle;
+    }
+    return elevation - 0.5 * (low + high);
   }
 
 private:
@@ -171,7 +210,7 @@ double SightLine::Height() const {
 double SightLine::Angle() const {
   double least = Unlimited;
   for (const Course& course : this->Courses()) {
-    least = std::min(least, course.AngleTo(course.Margin({{0.0, 0.0}, {1.0, 1.0}}, 1e-6)));
+    least = std::min(least, course.Angle());
   }
   return least;
 }

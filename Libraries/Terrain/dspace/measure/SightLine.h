@@ -16,7 +16,7 @@ namespace dspace {
 // line and the local verticals at its ends span the plane. What a margin is:
 //   Height()  both ends are moved along their verticals by the same length. The result is the least
 //             height of the line above the ground, and where that is negative the greatest depth.
-//   Angle()   the end is moved and the start stays.
+//   Angle()   the line turns about its start. Only ground before the vertical of its end counts.
 //   Fresnel() the line bends as the first Fresnel zone does, in 32 chords (0.1 % of its radius).
 // All are +infinity where there is no ground below.
 class SightLine {
@@ -30,7 +30,7 @@ public:
   const Obstacles::Hit& First() const { return this->First_; }
 
   double Height() const;                   // [m], to 1e-6 of itself, at least 1e-6 m
-  double Angle() const;                    // [deg] at the start, to 1e-6 of itself
+  double Angle() const;                    // [deg] at the start, to 1e-8 deg
   double Fresnel(double wavelength) const; // of the zone's radius, to 1e-3 of itself
 
   // The triangles: the distance from the nearest one, and the angle at the start between the line

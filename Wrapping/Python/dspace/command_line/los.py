@@ -42,12 +42,12 @@ def run(options):
         rows = rows_of(ground, starts, ends, lines)
         if out is not None:
             write(out, {"terrain": str(options.terrain), "on_body": ground.on_body, "lines": rows}, rows,
-                  lambda figure: draw(figure, ground, sites, lines, options.wavelength))
+                  lambda figure: draw(figure, ground, sites, lines, rows, options.wavelength))
     if options.json:
         sys.stdout.write(text_of({"terrain": str(options.terrain), "on_body": ground.on_body, "lines": rows}))
         return
-    for i, row in enumerate(rows):
-        print(f"{i + 1}: " + told(row))
+    for row in rows:
+        print(told(row))
     if out is not None:
         print(f"{out}: {count} line{'s' if count != 1 else ''}")
 
@@ -67,10 +67,14 @@ def rows_of(ground, starts, ends, lines):
     return rows
 
 
+def place_text(row, end):
+    return ",".join(f"{row[f'{end}_{name}']:.9g}" for name in ("lon_deg", "lat_deg", "height_m"))
+
+
 def told(row):
-    text = "clear" if row["clear"] else (
+    text = f"{place_text(row, 'from')} to {place_text(row, 'to')}: " + ("clear" if row["clear"] else (
         f"blocked after {row['obstacle_distance_m']:.3f} m at {row['obstacle_lon_deg']:.7g}, "
-        f"{row['obstacle_lat_deg']:.7g}, height {row['obstacle_height_m']:.3f} m")
+        f"{row['obstacle_lat_deg']:.7g}, height {row['obstacle_height_m']:.3f} m"))
     text += f"; range {row['range_m']:.3f} m, clearance {row['clearance_m']:.3f} m, {row['clearance_deg']:.5f} deg"
     if "fresnel_free" in row:
         text += f", {row['fresnel_free']:.3f} of the first Fresnel zone"
@@ -88,12 +92,12 @@ def profile(ground, start, end):
             points[:, 2] - ground.terrain.height(points[:, 0], points[:, 1], map=True))
 
 
-def draw(figure, ground, sites, lines, wavelength):
+def draw(figure, ground, sites, lines, rows, wavelength):
     count = min(len(sites), MOST_PROFILES)
-    rows = -(-count // 2) if count > 1 else 1
-    figure.set_size_inches(9.0, 4.5 if rows == 1 else 2.8 * rows)
+    down = -(-count // 2)
+    figure.set_size_inches(9.0, 4.5 if down == 1 else 2.8 * down)
     for i in range(count):
-        axes = figure.add_subplot(rows, 1 if count == 1 else 2, i + 1)
+        axes = figure.add_subplot(down, 1 if count == 1 else 2, i + 1)
         distance, height = profile(ground, *sites[i])
         unit, name = unit_of(distance)
         shown = [-height]
@@ -109,7 +113,8 @@ def draw(figure, ground, sites, lines, wavelength):
         axes.set_ylim(bottom=foot)
         if not clear:
             axes.plot([lines.distance[i] / unit], [0], "o", color="#b3261e", markersize=5)
-        axes.set_title(f"line {i + 1}: {'clear' if clear else 'blocked'}, clearance {lines.clearance[i]:.3g} m", fontsize=10)
+        axes.set_title(f"{place_text(rows[i], 'from')} to {place_text(rows[i], 'to')}\n{'clear' if clear else 'blocked'}, "
+                       f"clearance {lines.clearance[i]:.3g} m", fontsize=9)
         axes.set_xlabel(f"distance along the line [{name}]")
         axes.set_ylabel("ground from the line [m]")
         axes.margins(x=0)

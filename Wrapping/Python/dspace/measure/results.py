@@ -17,8 +17,8 @@ class LinesOfSight:
 
     clearance [m]: least height of the line above the ground along the local vertical, its ends included, or the least
     distance from an object if that is less; negative: greatest depth below the ground; 0: only an object blocks; infinity:
-    nothing is near. clearance_deg: the angle at the start by which the end can be lowered until the line meets the ground;
-    negative: must be raised until it is clear. Both are NaN with clearance=False.
+    nothing is near. clearance_deg: the angle by which the line can be turned down about its start until it meets ground before
+    the end's vertical; negative: must be turned up until it is clear. Both are NaN with clearance=False.
 
     fresnel_free: least height above the ground over the radius of the first Fresnel zone: 1 or more is free, 0 or less
     blocked; None without a wavelength."""
