@@ -308,9 +308,11 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(find_grid_references { mgrs: "38SMB4488" })", {}},
       {R"(get_geoid_heights { place: [1, 2] geoid: "egm96_15.gtx" })", {}},
 
-      {R"(line_of_sight {})", {}},
+      {R"(line_of_sight { measuring { hidden_fragment: "parts" deadline_s: 30 } wavelength: 0.1 without_object: 1
+           pair { from_site { terrain: "ground" map_x: 0.5 map_y: 0.25 height: 2 } to { frame: 11 position { z: 9 } } } })",
+       {}},
       {R"(lit_area {})", {}},
-      {R"(horizon {})", {}},
+      {R"(horizon { site { terrain: "ground" map_x: 0.5 map_y: 0.25 height: 2 } azimuths: 8 without_object: 1 })", {}},
       {R"(horizon_map {})", {}},
       {R"(viewshed {})", {}},
       {R"(illumination_map {})", {}},

@@ -55,6 +55,7 @@ Interpreter::Interpreter() {
   AddSkyCommands(this->Registry_);
   AddCameraCommands(this->Registry_);
   AddTerrainCommands(this->Registry_);
+  AddSightRequests(this->Registry_);
   AddExportCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);
   AddMessageCommands(this->Registry_);

@@ -75,6 +75,7 @@ void AddSunCommands(Registry& registry);
 void AddSkyCommands(Registry& registry);
 void AddCameraCommands(Registry& registry);
 void AddTerrainCommands(Registry& registry);
+void AddSightRequests(Registry& registry);
 void AddExportCommands(Registry& registry);
 void AddTelemetryCommands(Registry& registry);
 void AddMessageCommands(Registry& registry);

@@ -13,8 +13,10 @@ import warnings
 from dspace.errors import Error
 
 WORDS = {"ephemeris": "print states of bodies and spacecraft",
+         "horizon": "measure the horizon around a site on terrain",
          "kernels": "describe SPICE kernels",
          "log": "show, compare, cut, pack and salvage recordings",
+         "los": "test lines of sight over terrain",
          "movie": "make a movie of a run from a text file of camera key frames",
          "play": "draw pictures of a recording, without a simulation",
          "serve": "serve a session to simulations and viewers in other processes",

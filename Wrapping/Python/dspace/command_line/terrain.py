@@ -56,6 +56,11 @@ def add_arguments(parser):
 def add_raster(parser):
     """Adds the raster files, and options for properties that the files lack or state wrongly."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="any raster that GDAL opens")
+    add_raster_options(parser)
+
+
+def add_raster_options(parser):
+    """Adds options for properties that a raster file lacks or states wrongly."""
     parser.add_argument("--band", type=int)
     parser.add_argument("--crs", help="CRS of the raster: WKT, PROJ, AUTHORITY:CODE")
     parser.add_argument("--vertical-datum", metavar="DATUM", help="ellipsoid, sphere:R, areoid, relative, ...")

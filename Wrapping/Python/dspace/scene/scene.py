@@ -11,6 +11,7 @@ from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
+from dspace.measure.sights import Sights
 from dspace.objects.fragments import Fragment, Light, put_light
 from dspace.objects.assemblies import Assembly
 from dspace.objects.factory import ObjectFactory
@@ -275,6 +276,11 @@ class Scene(Strict):
     add_terrain = delegate(TerrainFactory, "add_terrain")
     terrains = delegate(TerrainFactory, "terrains")
     geodesy = delegate(TerrainFactory, "geodesy")
+
+    # --- Measurements --------------------------------------------------------------------------
+
+    line_of_sight = delegate(Sights, "line_of_sight")
+    horizon = delegate(Sights, "horizon")
 
     # --- Fragments and lights ------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ from dspace.terrain.coordinates import coordinates_of
 from dspace.terrain.fields import TerrainFields
 from dspace.terrain.geodesy import Geodesy
 from dspace.terrain.layers import TerrainLayers
+from dspace.terrain.site import Site
 from dspace.terrain.style import TerrainStyle
 from dspace.terrain.tracks import TerrainTracks
 
@@ -222,6 +223,12 @@ class Terrain(Strict):
             message.body = text(str(body), "the body", self._label())
         put_targets(message, targets, time, self._label())
         return sky_of(self._scene._execute(command))
+
+    def site(self, x, y, height=0.0):
+        """A Site: points at map x, y (longitude and latitude of a degree grid; numbers or arrays whose shapes broadcast),
+        `height` metres above the ground, 0 or more. For Scene.line_of_sight() and Scene.horizon(), which raise
+        dspace.InvalidArgument where there is no data."""
+        return Site(self, x, y, height)
 
     def normal(self, x, y, z=None, map=False):
         """Returns the unit normals (..., 3) of the surface, in the terrain's frame, at x, y as for height()."""

@@ -1,0 +1,172 @@
+#include <dspace/commands/measure/MeasuredScene.h>
+
+#include <chrono>
+#include <set>
+
+#include <dspace/Checks.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/messages/ErrorReply.h>
+
+namespace dspace::session {
+namespace {
+
+constexpr double MostHeight = 1e12; // [m] of a site
+
+} // namespace
+
+bool RejectMethod(const Context& context, const v1::Measuring& measuring,
+                  const std::string& command) {
+  if (measuring.method() == v1::Measuring::EXACT) {
+    return false;
+  }
+  if (!v1::Measuring::Method_IsValid(measuring.method())) {
+    Reject(command,
+           "the method is " + std::to_string(int(measuring.method())) + "; accepted: EXACT");
+  }
+  PutError(context.reply.mutable_error(), v1::Error::UNIMPLEMENTED, command,
+           command + ": the method is " + v1::Measuring::Method_Name(measuring.method()) +
+               ", and this version does not measure by pictures; accepted: EXACT");
+  return true;
+}
+
+MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measuring,
+                             const google::protobuf::RepeatedField<std::uint32_t>& without,
+                             const std::string& command)
+    : Context_(context) {
+  Scene& scene = context.GetScene();
+  std::set<std::string> hidden;
+  for (const std::string& name : measuring.hidden_fragment()) {
+    hidden.insert(scene.Fragments().Get(name).name);
+  }
+  std::set<ObjectId> left;
+  for (const ObjectId id : without) {
+    left.insert(scene.Object(id).id);
+  }
+  if (measuring.has_deadline_s()) {
+    using Clock = std::chrono::steady_clock;
+    const double seconds = measuring.deadline_s();
+    this->Obstacles_.SetCheck([start = Clock::now(), seconds, command] {
+      if (std::chrono::duration<double>(Clock::now() - start).count() > seconds) {
+        throw Error(Error::Kind::DeadlineExceeded, command,
+                    "it takes longer than its deadline of " + NumberText(seconds) +
+                        " s; accepted: a later deadline, fewer lines or azimuths, or none");
+      }
+    });
+  }
+  for (const auto& [id, object] : scene.Objects()) {
+    const bool counts = object.nature == Nature::Physical && object.visible &&
+                        scene.Fragments().Get(object.fragment).visible &&
+                        hidden.count(object.fragment) == 0 && left.count(id) == 0;
+    if (!counts) {
+      continue;
+    }
+    if (const TerrainObject* terrain = context.scene->TerrainOf(id)) {
+      if (!measuring.no_terrain()) {
+        this->Obstacles_.Add(Obstacles::Ground{terrain->Name(), &terrain->Surface(),
+                                               context.Frames().WorldPose(object.frame)});
+      }
+    } else if (!measuring.no_objects()) {
+      this->AddObject(context, object);
+    }
+  }
+}
+
+void MeasuredScene::AddObject(const Context& context, const GraphicsObject& object) {
+  bool any = false;
+  const Pose& X_RF = context.Frames().WorldPose(object.frame);
+  Eigen::Affine3d X_RO = Eigen::Affine3d::Identity();
+  X_RO.matrix() = X_RF.Matrix();
+  X_RO = X_RO * object.X_FO;
+  static const std::vector<Part> none;
+  for (const Part& part : object.levels.empty() ? none : object.levels.front().parts) {
+    const auto over = object.parts.find(part.name);
+    const bool shown = over == object.parts.end() || over->second.visible;
+    const bool finest = !part.range || part.range->from <= 0.0;
+    if (!part.mesh || part.mesh->primitive != Mesh::Primitive::Triangles ||
+        part.mesh->indices.empty()) {
+      continue;
+    }
+    any = true;
+    if (shown && finest && !object.billboard) {
+      this->Obstacles_.Add(object.id, std::make_shared<MeshRays>(part.mesh), X_RO * part.X_OP);
+    }
+  }
+  if (!any && !(object.custom && object.custom->IsBackdrop())) {
+    context.reply.add_warning("object '" + object.name +
+                              "': it has no triangles, so it is no obstacle");
+  }
+}
+
+MeasuredScene::Spot MeasuredScene::At(const v1::Place& place, const std::string& what) const {
+  Spot spot;
+  spot.frame = ToFrame(place.frame());
+  const Pose& X_RF = this->Context_.Frames().WorldPose(spot.frame);
+  const Eigen::Vector3d p_F = ToVector(place.position());
+  spot.label =
+      what + ", " + VectorText(p_F) + " in " +
+      (spot.frame == RootFrame ? std::string("the root")
+                               : "frame '" + this->Context_.Frames().Path(spot.frame) + "'");
+  RequirePosition(spot.label, "its position", p_F);
+  spot.p_R = X_RF.Apply(p_F);
+  return spot;
+}
+
+MeasuredScene::Spot MeasuredScene::At(const v1::Site& site, const std::string& what) const {
+  const auto found = this->Context_.scene->terrains.find(site.terrain());
+  if (found == this->Context_.scene->terrains.end()) {
+    throw Error(Error::Kind::NotFound, "terrain '" + site.terrain() + "'",
+                "there is no such terrain in scene '" + this->Context_.sceneName + "'");
+  }
+  Spot spot;
+  spot.terrain = found->second.get();
+  spot.label = what + ", site (" + NumberText(site.map_x()) + ", " + NumberText(site.map_y()) +
+               ") of terrain '" + site.terrain() + "'";
+  const TerrainSurface& surface = spot.terrain->Surface();
+  const Eigen::Vector2d map(site.map_x(), site.map_y());
+  Require(site.height() >= 0.0 && site.height() <= MostHeight, spot.label,
+          "its height above the ground", site.height(), "0 to 1e12 m");
+  if (!map.allFinite()) {
+    Reject(spot.label, "its map coordinates are not finite; accepted: numbers on the data");
+  }
+  const SurfaceSample sample = surface.SampleMap(map);
+  if (!sample.valid) {
+    const Eigen::AlignedBox2d& data = surface.GetBounds().map;
+    const bool outside = !data.isEmpty() && !data.contains(map);
+    Reject(spot.label,
+           std::string(outside ? "it is off the terrain's data" : "the terrain has no data there") +
+               "; accepted: map x " + NumberText(data.min().x()) + " to " +
+               NumberText(data.max().x()) + ", y " + NumberText(data.min().y()) + " to " +
+               NumberText(data.max().y()) + ", where there is data");
+  }
+  const FrameId frame = this->Context_.GetScene().Object(spot.terrain->Object()).frame;
+  const Pose& X_RS = this->Context_.Frames().WorldPose(frame);
+  spot.p_R =
+      X_RS.Apply(sample.position_S + site.height() / X_RS.scale * surface.Up(sample.position_S));
+  return spot;
+}
+
+LevelAxes MeasuredScene::AxesAt(const Spot& spot) const {
+  const auto on = [&](const TerrainSurface& surface, const Pose& X_RS) {
+    const Eigen::Vector3d p_S = X_RS.Inverse().Apply(spot.p_R);
+    LevelAxes axes;
+    axes.up = X_RS.rotation * surface.Up(p_S);
+    axes.north = X_RS.rotation * surface.North(p_S);
+    axes.north = (axes.north - axes.north.dot(axes.up) * axes.up).normalized();
+    axes.east = axes.north.cross(axes.up);
+    return axes;
+  };
+  if (spot.terrain) {
+    const FrameId frame = this->Context_.GetScene().Object(spot.terrain->Object()).frame;
+    return on(spot.terrain->Surface(), this->Context_.Frames().WorldPose(frame));
+  }
+  for (const Obstacles::Ground& ground : this->Obstacles_.Grounds()) {
+    if (ground.surface->Sample(ground.X_RS.Inverse().Apply(spot.p_R)).valid) {
+      return on(*ground.surface, ground.X_RS);
+    }
+  }
+  const Eigen::Quaterniond& q_RF = this->Context_.Frames().WorldPose(spot.frame).rotation;
+  return {q_RF * Eigen::Vector3d::UnitX(), q_RF * Eigen::Vector3d::UnitY(),
+          q_RF * Eigen::Vector3d::UnitZ()};
+}
+
+} // namespace dspace::session

@@ -1,0 +1,58 @@
+// The obstacles of a scene for a measurement, and its places.
+#ifndef DSPACE_SESSION_MEASURED_SCENE_H
+#define DSPACE_SESSION_MEASURED_SCENE_H
+
+#include <cstdint>
+#include <string>
+
+#include <google/protobuf/repeated_field.h>
+
+#include <dspace/interpreter/Registry.h>
+#include <dspace/measure/HorizonScan.h>
+#include <dspace/measure/Obstacles.h>
+#include <dspace/proto/sights.pb.h>
+
+namespace dspace::session {
+
+// Of the scene at its present time. The scene must not change while this exists.
+class MeasuredScene {
+public:
+  // A place with the words that name it in errors.
+  struct Spot {
+    Eigen::Vector3d p_R = Eigen::Vector3d::Zero(); // in the root [m]
+    std::string label;
+    FrameId frame = RootFrame;              // of a place
+    const TerrainObject* terrain = nullptr; // of a site
+  };
+
+  // Physical objects and terrains that the scene shows, without the `without` and hidden ones.
+  // Physical objects without triangles are named in warnings of the reply. Throws
+  // Error(NotFound) for an unknown fragment or object.
+  MeasuredScene(const Context& context, const v1::Measuring& measuring,
+                const google::protobuf::RepeatedField<std::uint32_t>& without,
+                const std::string& command);
+
+  const Obstacles& Get() const { return this->Obstacles_; }
+  // Throws Error: NotFound for an unknown frame or terrain, InvalidArgument for a position or a
+  // height out of range and for a site off the terrain's data. `what` begins the label: "start 3".
+  Spot At(const v1::Place& place, const std::string& what) const;
+  Spot At(const v1::Site& site, const std::string& what) const;
+  // A site: of its terrain. A place: of the first terrain by name that is an obstacle and has data
+  // below it; without one, the axes of its frame.
+  LevelAxes AxesAt(const Spot& spot) const;
+
+private:
+  void AddObject(const Context& context, const GraphicsObject& object);
+
+  const Context& Context_;
+  Obstacles Obstacles_;
+};
+
+// Whether the method is not implemented; the reply then has the error UNIMPLEMENTED, which says
+// which part is missing. Throws Error(InvalidArgument) for an unknown method.
+bool RejectMethod(const Context& context, const v1::Measuring& measuring,
+                  const std::string& command);
+
+} // namespace dspace::session
+
+#endif

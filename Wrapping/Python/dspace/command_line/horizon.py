@@ -1,0 +1,68 @@
+"""`dspace horizon`: the horizon around a site on terrain."""
+import sys
+
+import numpy as np
+
+from dspace.command_line import Failed
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, unit_of, write
+
+
+def add_arguments(parser):
+    add_ground(parser, "a file of the horizon: .json, .csv, or .png (a plot)")
+    parser.add_argument("--site", required=True, metavar="LON,LAT",
+                        help="longitude (east) and latitude [deg]; map x and y without a CRS")
+    parser.add_argument("--height", type=float, default=2.0, metavar="H", help="above the ground [m], 0 or more (default: 2)")
+    parser.add_argument("--azimuths", type=int, default=360, metavar="N",
+                        help="evenly spaced, clockwise from north, 1 to 1000000 (default: 360)")
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    import dspace
+    out = out_of(options)
+    site = place_of(options.site, "LON,LAT", (2,), "--site")
+    if not 1 <= options.azimuths <= 1_000_000:
+        raise Failed(f"--azimuths {options.azimuths}: accepted: 1 to 1000000")
+    with dspace.Session() as session:
+        ground = MeasuredGround(session.scene(), options)
+        horizon = ground.scene.horizon(ground.site((*site, options.height)), options.azimuths)
+        where = ground.degrees_of(horizon.point)
+    rows = [{"azimuth_deg": azimuth, "elevation_deg": elevation, "distance_m": distance, "lon_deg": point[0],
+             "lat_deg": point[1], "height_m": point[2]}
+            for azimuth, elevation, distance, point in zip(horizon.azimuth_deg, horizon.elevation_deg, horizon.distance, where)]
+    found = {"terrain": str(options.terrain), "on_body": ground.on_body, "lon_deg": site[0], "lat_deg": site[1],
+             "height_m": options.height, "horizon": rows}
+    if out is not None:
+        write(out, found, rows, lambda figure: draw(figure, horizon, f"{site[0]:g}, {site[1]:g}, {options.height:g} m above "
+                                                    "the ground"))
+    if options.json:
+        sys.stdout.write(text_of(found))
+        return
+    low, high = (int(find(horizon.elevation_deg)) for find in (np.argmin, np.argmax))
+    print(f"{len(rows)} azimuths: elevation {horizon.elevation_deg[low]:.5f} (azimuth {horizon.azimuth_deg[low]:g}) to "
+          f"{horizon.elevation_deg[high]:.5f} deg (azimuth {horizon.azimuth_deg[high]:g}, {horizon.distance[high]:.1f} m away)")
+    if out is not None:
+        print(f"{out}: {len(rows)} azimuths")
+
+
+def draw(figure, horizon, title):
+    """The elevation over the azimuth, and the distance below it."""
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    azimuth = np.append(horizon.azimuth_deg, 360.0)
+    elevation = np.where(np.isfinite(horizon.distance), horizon.elevation_deg, np.nan)
+    elevation, distance = (np.append(values, values[0]) for values in (elevation, horizon.distance))
+    known = elevation[np.isfinite(elevation)]
+    foot = (known.min() - 0.05 * max(np.ptp(known), 1e-3)) if known.size else -90.0
+    above.fill_between(azimuth, elevation, foot, color="#b9b1a6", linewidth=0)
+    above.plot(azimuth, elevation, color="#5c5348", linewidth=1.0)
+    above.set_ylim(bottom=foot)
+    above.axhline(0.0, color="#808080", linewidth=0.6)
+    above.set_ylabel("elevation [deg]")
+    above.set_title(f"Horizon at {title}", fontsize=10)
+    unit, name = unit_of(distance)
+    below.plot(azimuth, np.where(np.isfinite(distance), distance, np.nan) / unit, color="#2c56c8", linewidth=1.0)
+    below.set_ylim(bottom=0.0)
+    below.set_ylabel(f"distance [{name}]")
+    below.set_xlabel("azimuth [deg], clockwise from north")
+    below.set_xlim(0.0, 360.0)
+    below.set_xticks(np.arange(0, 361, 45), ("N", "NE", "E", "SE", "S", "SW", "W", "NW", "N"))

@@ -1,0 +1,167 @@
+"""What `dspace los` and `dspace horizon` share: the terrain, places on it, and the files that they write."""
+import io
+import json
+import math
+import pathlib
+import sys
+
+import numpy as np
+
+from dspace._core.files import atomic_write
+from dspace.command_line import Failed
+from dspace.command_line.terrain import add_raster_options
+from dspace.command_line.terrain_rasters import add, degrees, gdal_modules
+
+ENDINGS = (".json", ".csv", ".png")
+
+
+def add_ground(parser, file_help):
+    """Adds the options of the terrain, and those of the output."""
+    parser.add_argument("--terrain", required=True, metavar="FILE", help="any raster of heights that GDAL opens")
+    parser.add_argument("--plane", action="store_true",
+                        help="place the terrain on a plane, without the body's curvature (default: a degree grid is placed "
+                        "on its body, any other raster on a plane)")
+    add_raster_options(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--out", metavar="FILE", help=file_help)
+
+
+def out_of(options):
+    """The path of --out, or None. Says what is wrong before the work starts."""
+    if options.out is None:
+        return None
+    out = pathlib.Path(options.out)
+    if out.suffix.lower() not in ENDINGS:
+        raise Failed(f"--out '{out}': accepted: a name with {', '.join(ENDINGS)}")
+    if not out.resolve().parent.is_dir():
+        raise Failed(f"--out '{out}': there is no folder {out.resolve().parent}")
+    if out.suffix.lower() == ".png":
+        figures()
+    return out
+
+
+def figures():
+    """Matplotlib's Figure, which draws without a display."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise Failed("matplotlib, which draws plots, is not installed (Debian: python3-matplotlib)") from None
+    return Figure
+
+
+class MeasuredGround:
+    """The terrain of the command in a scene, and its places."""
+
+    def __init__(self, scene, options):
+        _, osr = gdal_modules()
+        self.scene = scene
+        self.on_body = not options.plane and _is_degree_grid(options, osr)
+        self.terrain, warned = add(scene, options.terrain, options, name="terrain", on_body=self.on_body)
+        for warning in warned:
+            print(f"dspace: note: {options.terrain}: {warning}", file=sys.stderr)
+        if not self.on_body:
+            print(f"dspace: note: {options.terrain}: the terrain is on a plane: the body's curvature is left out",
+                  file=sys.stderr)
+        self.crs = degrees(osr, self.terrain.crs)
+
+    def site(self, place):
+        """The Site of longitude, latitude and height above the ground; of map x and y without a CRS."""
+        x, y, height = place
+        if self.crs and not self.crs[0].IsGeographic():
+            _, osr = gdal_modules()
+            x, y, _ = osr.CoordinateTransformation(self.crs[1], self.crs[0]).TransformPoint(x, y)
+        elif self.crs:  # the turn of the longitude that the raster has
+            left, _, right, _ = self.terrain.map_extent
+            middle = 0.5 * (left + right)
+            x = middle + (x - middle + 180.0) % 360.0 - 180.0
+        return self.terrain.site(x, y, height)
+
+    def degrees_of(self, points):
+        """Longitude, latitude [deg] and height above the datum [m] of points (n, 3) in the root; map x, y without a
+        CRS."""
+        points = np.asarray(points, float).reshape(-1, 3)
+        found = np.full(points.shape, np.nan)
+        known = np.isfinite(points).all(axis=1)
+        if known.any():
+            map_points = self.terrain.to_map(points[known])
+            if self.crs:
+                where = self.terrain.locate(points[known])
+                map_points = np.column_stack((where.longitude, where.latitude, map_points[:, 2]))
+            found[known] = map_points
+        return found
+
+
+def _is_degree_grid(options, osr):
+    if options.crs:
+        crs = osr.SpatialReference()
+        try:
+            crs.SetFromUserInput(options.crs)
+        except RuntimeError:
+            return False  # Dspace names what is wrong with it
+        return bool(crs.IsGeographic())
+    gdal, _ = gdal_modules()
+    name = str(options.terrain)
+    data = gdal.Open("/vsicurl/" + name if name.startswith(("http://", "https://")) else name)
+    crs = data.GetSpatialRef()
+    return bool(crs and crs.IsGeographic())
+
+
+def unit_of(distances):
+    """The unit of an axis of distances [m], and its name."""
+    known = np.asarray(distances)[np.isfinite(distances)]
+    return (1000.0, "km") if known.size and known.max() > 10000.0 else (1.0, "m")
+
+
+def place_of(text, names, counts, option):
+    """The numbers of "LON,LAT,..."."""
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in counts or not all(map(math.isfinite, numbers)):
+        raise Failed(f"{option} {text!r}: accepted: {names}, finite numbers")
+    return tuple(numbers)
+
+
+def plain(value):
+    """A value for JSON: null in place of NaN and infinity."""
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [plain(each) for each in value]
+    if isinstance(value, dict):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    if isinstance(value, (float, np.floating)):
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def text_of(found):
+    return json.dumps(plain(found), indent=2, allow_nan=False) + "\n"
+
+
+def write(out, found, rows, draw):
+    """Writes a file by its ending. found: for JSON; rows: a list of dicts for CSV; draw: a function that draws into a
+    Figure, for PNG."""
+    ending = out.suffix.lower()
+    if ending == ".json":
+        atomic_write(out, text_of(found).encode())
+    elif ending == ".csv":
+        lines = [",".join(rows[0])] + [",".join(_cell(value) for value in row.values()) for row in rows]
+        atomic_write(out, ("\n".join(lines) + "\n").encode())
+    else:
+        figure = figures()(figsize=(9.0, 4.5), dpi=100, layout="constrained")
+        draw(figure)
+        data = io.BytesIO()
+        figure.savefig(data, format="png", metadata={"Software": None})
+        atomic_write(out, data.getvalue())
+
+
+def _cell(value):
+    value = plain(value)
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "1" if value else "0"
+    text = repr(value) if isinstance(value, float) else str(value)
+    return f'"{text}"' if "," in text else text

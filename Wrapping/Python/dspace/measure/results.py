@@ -1,0 +1,67 @@
+"""What lines of sight and horizons return."""
+from dataclasses import dataclass
+
+import numpy as np
+
+from dspace._core.fields import array_of
+
+
+@dataclass(frozen=True)
+class LinesOfSight:
+    """The answer for one line (bools, numbers, arrays (3,)) or for many (arrays of the shape that start and end broadcast
+    to). Points are in the scene's root [m].
+
+    clear: nothing is in the way. terrain: the name of the terrain that blocks the line first, else "". object: the
+    GraphicsObject that blocks it first, else None. point, distance: where [m], and how far from the start [m]; NaN and
+    infinity of a clear line. range: between the two places [m].
+
+    clearance [m]: least height of the line above the ground along the local vertical, its ends included, or the least
+    distance from an object if that is less; negative: greatest depth below the ground; 0: only an object blocks; infinity:
+    nothing is near. clearance_deg: the angle by which the line can be turned down about its start until it meets ground before
+    the end's vertical; negative: must be turned up until it is clear. Both are NaN with clearance=False.
+
+    fresnel_free: least height above the ground over the radius of the first Fresnel zone: 1 or more is free, 0 or less
+    blocked; None without a wavelength."""
+    clear: object
+    terrain: object
+    object: object
+    point: np.ndarray
+    distance: object
+    range: object
+    clearance: object
+    clearance_deg: object
+    fresnel_free: object
+
+    def __repr__(self):
+        clear = np.asarray(self.clear)
+        if clear.shape:
+            return f"<dspace.LinesOfSight {int(clear.sum())} of {clear.size} clear>"
+        by = f"terrain {self.terrain!r}" if self.terrain else f"object {getattr(self.object, 'name', None)!r}"
+        return (f"<dspace.LinesOfSight {'clear' if clear else f'blocked by {by} after {self.distance:.6g} m'}, "
+                f"range {self.range:.6g} m, clearance {self.clearance:.6g} m>")
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """The horizon around a place.
+
+    azimuth_deg (n,): clockwise from north, from 0 on. elevation_deg (n,): the greatest elevation at which a ray meets an
+    obstacle, over the plane that is normal to the local vertical; -90 where there is none. distance (n,): along that ray
+    [m]; infinity where there is none. point (n, 3): where it meets the obstacle, in the scene's root [m]; NaN where there is
+    none. object (n,): the GraphicsObject that makes the horizon; None: terrain, or nothing. place (3,): in the root [m]."""
+    azimuth_deg: np.ndarray
+    elevation_deg: np.ndarray
+    distance: np.ndarray
+    point: np.ndarray
+    object: np.ndarray
+    place: np.ndarray
+
+    def elevation_at(self, azimuth_deg):
+        """Returns the elevation [deg] at azimuths (a number or an array) [deg], linear between the horizon's own."""
+        azimuth = array_of(azimuth_deg, "the azimuth", "a number or an array of numbers", "horizon")
+        found = np.interp(azimuth, self.azimuth_deg, self.elevation_deg, period=360.0)
+        return float(found) if azimuth.shape == () else found
+
+    def __repr__(self):
+        return (f"<dspace.Horizon {len(self.azimuth_deg)} azimuths, elevation {self.elevation_deg.min():.6g} to "
+                f"{self.elevation_deg.max():.6g} deg>")

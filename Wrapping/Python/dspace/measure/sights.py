@@ -1,0 +1,176 @@
+"""Lines of sight and horizons of a scene."""
+import numpy as np
+
+from dspace._core.fields import array_of, flag, integer, items, put, put_given, reject, word
+from dspace.errors import InvalidArgument, WrongType
+from dspace.measure.results import Horizon, LinesOfSight
+from dspace.objects.graphics import GraphicsObject
+from dspace.terrain.site import Site
+
+METHODS = {"exact": 0, "image": 1, "both": 2}  # Measuring.Method
+MOST_LINES = 1_000_000
+PLACE = "a Site, a Frame, a path, or an array (..., 3) of points [m]"
+
+
+class Sights:
+    """Measures lines of sight and horizons for a Scene, which delegates to it."""
+
+    def __init__(self, scene):
+        self._scene = scene
+
+    def line_of_sight(self, start, end, *, frame=None, wavelength=None, terrain=True, objects=True, hide=(), without=(),
+                      clearance=True, deadline=None, method="exact"):
+        """Tests lines of sight by rays in double precision. Returns LinesOfSight.
+
+        start, end: a Site (Terrain.site), a Frame or the path of one (its origin), or an array (..., 3) of points [m] in
+        `frame` (default: the root). Shapes broadcast: one start and many ends, or pairs; at most a million lines.
+        wavelength: of radio waves [m], 1e-9 to 1e9: the result then has fresnel_free.
+
+        Obstacles are all terrains (terrain=False: none) with their exact triangles between posts, and the triangles of
+        the physical objects that the scene shows (objects=False: none), at their finest level. hide: fragments, or their
+        names, that are no obstacles. without: objects, or their names, that are none, such as the antennas. A terrain on
+        its body hides by the body's curvature too; a terrain on a plane is flat.
+
+        clearance=False: only whether the line is clear, and what blocks it first: some twenty times as fast. deadline: longest
+        time [s]; default: none. method: "exact"; "image" and "both" are not implemented yet (dspace.Unimplemented).
+
+        Raises dspace.InvalidArgument for a start that is its end, for a place below the ground of a terrain that is an
+        obstacle, and for a Site off the data or where there is none; dspace.DeadlineExceeded."""
+        about = "line of sight"
+        command = self._scene._command()
+        message = command.line_of_sight
+        self._put_measuring(message.measuring, about, terrain, objects, hide, deadline, method)
+        put_given(message, about, wavelength=wavelength)
+        message.no_clearance = not flag(clearance, "clearance", about)
+        message.without_object.extend(self._ids(without, about))
+        starts, ends = self._places(start, "the start", frame, about), self._places(end, "the end", frame, about)
+        try:
+            shape = np.broadcast_shapes(starts.shape, ends.shape)
+        except ValueError:
+            raise InvalidArgument(f"{about}: the start and the end have the shapes {starts.shape} and {ends.shape}; "
+                                  "accepted: shapes that broadcast", about) from None
+        count = int(np.prod(shape, dtype=np.int64))
+        if not 1 <= count <= MOST_LINES:
+            reject(about, "the number of lines", count, f"1 to {MOST_LINES}")
+        starts, ends = starts.spread(shape), ends.spread(shape)
+        for i in range(count):
+            pair = message.pair.add()
+            starts.put(i, pair, "from", "from_site")
+            ends.put(i, pair, "to", "to_site")
+        return self._lines(self._scene._execute(command).line_of_sight.sight, shape, wavelength is not None)
+
+    def horizon(self, place, azimuths=1440, *, frame=None, terrain=True, objects=True, hide=(), without=(), deadline=None,
+                method="exact"):
+        """Measures the horizon around a place by rays in double precision. Returns a Horizon: at each of `azimuths` (1 to
+        a million) evenly spaced azimuths the greatest elevation at which a ray meets an obstacle, to 1e-6 degrees.
+
+        place: one place, as for line_of_sight(): a Site, a Frame, a path, or a point (3,) in `frame`. North is that of the
+        terrain below the place; without terrain the Y axis of the place's frame, whose Z axis is up. terrain, objects,
+        hide, without, deadline, method and errors: as for line_of_sight()."""
+        about = "horizon"
+        command = self._scene._command()
+        message = command.horizon
+        self._put_measuring(message.measuring, about, terrain, objects, hide, deadline, method)
+        put(message, about, azimuths=azimuths)
+        if integer(azimuths, "azimuths", about) < 1:
+            reject(about, "azimuths", azimuths, "1 to 1000000")
+        message.without_object.extend(self._ids(without, about))
+        places = self._places(place, "the place", frame, about)
+        if places.shape != ():
+            raise InvalidArgument(f"{about}: the place has the shape {places.shape}; accepted: one place", about)
+        places.put(0, message, "place", "site")
+        reply = self._scene._execute(command).horizon
+        cache, origin = {0: None}, getattr(reply, "from")
+        objects = np.array([self._cached(cache, id) for id in reply.object], dtype=object)
+        return Horizon(np.arange(azimuths) * (360.0 / azimuths), np.array(reply.elevation_deg), np.array(reply.distance),
+                       np.array(reply.point).reshape(-1, 3), objects,
+                       np.array([origin.x, origin.y, origin.z]))
+
+    # --- Arguments -----------------------------------------------------------------------------
+
+    def _put_measuring(self, message, about, terrain, objects, hide, deadline, method):
+        message.method = word(method, METHODS, "the method", about)
+        message.no_terrain = not flag(terrain, "terrain", about)
+        message.no_objects = not flag(objects, "objects", about)
+        hide = (hide,) if isinstance(hide, str) else items(hide, "hide", about, "fragments or their names")
+        message.hidden_fragment.extend(self._scene._fragment_name(fragment, None) for fragment in hide)
+        put_given(message, about, deadline_s=deadline)
+
+    def _ids(self, things, about):
+        ids = []
+        if isinstance(things, (str, GraphicsObject)):
+            things = (things,)
+        for thing in items(things, "without", about, "objects or their names"):
+            if isinstance(thing, str):
+                thing = self._scene.object(thing)
+            if not isinstance(thing, GraphicsObject):
+                reject(about, "the object", thing, "a dspace.GraphicsObject or its name", WrongType)
+            self._scene._require_own(thing, f"object {thing.name!r}", about)
+            ids.append(thing.id)
+        return ids
+
+    def _places(self, place, what, frame, about):
+        if isinstance(place, Site):
+            self._scene._require_own(place.terrain, f"terrain {place.terrain.name!r}", about)
+            return _Sites(place)
+        if isinstance(place, (np.ndarray, list, tuple)):
+            points = array_of(place, what, PLACE, about)
+            if points.shape[-1:] != (3,):
+                raise InvalidArgument(f"{about}: {what} has the shape {points.shape}; accepted: {PLACE}", about)
+            return _Points(points, self._scene._frame_id(frame))
+        if place is None:
+            reject(about, what, place, PLACE, WrongType)
+        return _Points(np.zeros(3), self._scene._frame_id(place))
+
+    # --- Results -------------------------------------------------------------------------------
+
+    def _cached(self, cache, id):
+        if id and cache.get(id) is None:
+            cache[id] = self._scene._object(id)
+        return cache[id]
+
+    def _lines(self, sights, shape, waves):
+        cache = {0: None}
+        point = np.array([[s.point.x, s.point.y, s.point.z] if not s.clear else [np.nan] * 3 for s in sights])
+
+        def of(values, kind=float):
+            array = np.array(values, dtype=kind).reshape(shape)
+            return array[()] if shape == () and kind is object else array.item() if shape == () else array
+        return LinesOfSight(of([s.clear for s in sights], bool), of([s.terrain for s in sights], object),
+                            of([self._cached(cache, s.object) for s in sights], object), point.reshape(shape + (3,)),
+                            of([s.distance for s in sights]), of([s.range for s in sights]),
+                            of([s.clearance for s in sights]), of([s.clearance_deg for s in sights]),
+                            of([s.fresnel_free for s in sights]) if waves else None)
+
+
+class _Points:
+    """Points of one frame."""
+
+    def __init__(self, points, frame):
+        self._points, self._frame = points, frame
+        self.shape = points.shape[:-1]
+
+    def spread(self, shape):
+        return _Points(np.broadcast_to(self._points, shape + (3,)).reshape(-1, 3), self._frame)
+
+    def put(self, i, message, place, _):
+        field = getattr(message, place)
+        field.frame = self._frame
+        field.position.x, field.position.y, field.position.z = map(float, self._points.reshape(-1, 3)[i])
+
+
+class _Sites:
+    """The points of a Site."""
+
+    def __init__(self, site, arrays=None):
+        self._site = site
+        self._arrays = arrays or (site.x, site.y, site.height)
+        self.shape = self._arrays[0].shape
+
+    def spread(self, shape):
+        return _Sites(self._site, tuple(np.broadcast_to(array, shape).reshape(-1) for array in self._arrays))
+
+    def put(self, i, message, _, site):
+        field = getattr(message, site)
+        field.terrain = self._site.terrain.name
+        field.map_x, field.map_y, field.height = (float(array.reshape(-1)[i]) for array in self._arrays)
