@@ -247,7 +247,7 @@ def test_numbers_beyond_their_limits_are_in_colour(session):
 
 
 def test_requests_of_later_versions_say_so(session):
-    for fill in (lambda c: c.viewshed.SetInParent(), lambda c: c.lit_area.SetInParent(),
+    for fill in (lambda c: c.viewshed.SetInParent(), lambda c: c.illumination_map.SetInParent(),
                  lambda c: c.horizon_map.SetInParent()):
         command = pb.Command()
         fill(command)

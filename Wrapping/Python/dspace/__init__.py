@@ -39,7 +39,7 @@ _HOMES = {
     "Orbit": "objects.trajectories", "Trajectory": "objects.trajectories",
     "Animation": "objects.models", "Model": "objects.models",
     "Joint": "objects.robots", "Robot": "objects.robots",
-    "Horizon": "measure.results", "LinesOfSight": "measure.results", "Site": "terrain.site",
+    "Horizon": "measure.results", "LinesOfSight": "measure.results", "LitArea": "measure.results", "Site": "terrain.site",
     "Movie": "movies.movie",
     "Playback": "playback.playback", "Recording": "recording.recording", "RecordingFile": "recording.file",
     "Kernels": "sky.sky", "ReferenceFrames": "sky.sky",

@@ -311,7 +311,7 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(line_of_sight { measuring { hidden_fragment: "parts" deadline_s: 30 } wavelength: 0.1 without_object: 1
            pair { from_site { terrain: "ground" map_x: 0.5 map_y: 0.25 height: 2 } to { frame: 11 position { z: 9 } } } })",
        {}},
-      {R"(lit_area {})", {}},
+      {R"(lit_area { object: 1 samples: 16 efficiency: 0.3 sun { direction { z: 1 } } })", {}},
       {R"(horizon { site { terrain: "ground" map_x: 0.5 map_y: 0.25 height: 2 } azimuths: 8 without_object: 1 })", {}},
       {R"(horizon_map {})", {}},
       {R"(viewshed {})", {}},

@@ -56,6 +56,7 @@ Interpreter::Interpreter() {
   AddCameraCommands(this->Registry_);
   AddTerrainCommands(this->Registry_);
   AddSightRequests(this->Registry_);
+  AddLitAreaRequest(this->Registry_);
   AddExportCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);
   AddMessageCommands(this->Registry_);

@@ -76,6 +76,7 @@ void AddSkyCommands(Registry& registry);
 void AddCameraCommands(Registry& registry);
 void AddTerrainCommands(Registry& registry);
 void AddSightRequests(Registry& registry);
+void AddLitAreaRequest(Registry& registry);
 void AddExportCommands(Registry& registry);
 void AddTelemetryCommands(Registry& registry);
 void AddMessageCommands(Registry& registry);

@@ -1,4 +1,4 @@
-"""What lines of sight and horizons return."""
+"""What measurements return."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,3 +65,29 @@ class Horizon:
     def __repr__(self):
         return (f"<dspace.Horizon {len(self.azimuth_deg)} azimuths, elevation {self.elevation_deg.min():.6g} to "
                 f"{self.elevation_deg.max():.6g} deg>")
+
+
+@dataclass(frozen=True)
+class LitArea:
+    """The sunlit area of one object (numbers) or of several (arrays (n,)).
+
+    object: the GraphicsObject, or a list of them. area [m^2]: of the faces that count. lit_area [m^2]: their sunlit part,
+    weighted by the part of the Sun's disc that each place sees. projected_area [m^2]: projected towards the Sun.
+    power [W]: projected area times irradiance times efficiency. irradiance [W/m^2]: on a surface that faces the Sun.
+    sun (3,): unit vector towards the Sun, in the scene's root."""
+    object: object
+    area: object
+    lit_area: object
+    projected_area: object
+    power: object
+    irradiance: float
+    sun: np.ndarray
+
+    @property
+    def fraction(self):
+        """The lit part of the area, 0 to 1."""
+        return self.lit_area / self.area
+
+    def __repr__(self):
+        return (f"<dspace.LitArea {np.sum(self.lit_area):.6g} of {np.sum(self.area):.6g} m^2 lit, "
+                f"{np.sum(self.power):.6g} W>")

@@ -1,13 +1,12 @@
 """Lines of sight and horizons of a scene."""
 import numpy as np
 
-from dspace._core.fields import array_of, flag, integer, items, put, put_given, reject, word
+from dspace._core.fields import array_of, flag, integer, put, put_given, reject
 from dspace.errors import InvalidArgument, WrongType
+from dspace.measure.obstacles import object_ids, put_measuring
 from dspace.measure.results import Horizon, LinesOfSight
-from dspace.objects.graphics import GraphicsObject
 from dspace.terrain.site import Site
 
-METHODS = {"exact": 0, "image": 1, "both": 2}  # Measuring.Method
 MOST_LINES = 1_000_000
 PLACE = "a Site, a Frame, a path, or an array (..., 3) of points [m]"
 
@@ -39,10 +38,10 @@ class Sights:
         about = "line of sight"
         command = self._scene._command()
         message = command.line_of_sight
-        self._put_measuring(message.measuring, about, terrain, objects, hide, deadline, method)
+        put_measuring(self._scene, message.measuring, about, terrain, objects, hide, deadline, method)
         put_given(message, about, wavelength=wavelength)
         message.no_clearance = not flag(clearance, "clearance", about)
-        message.without_object.extend(self._ids(without, about))
+        message.without_object.extend(object_ids(self._scene, without, about))
         starts, ends = self._places(start, "the start", frame, about), self._places(end, "the end", frame, about)
         try:
             shape = np.broadcast_shapes(starts.shape, ends.shape)
@@ -70,11 +69,11 @@ class Sights:
         about = "horizon"
         command = self._scene._command()
         message = command.horizon
-        self._put_measuring(message.measuring, about, terrain, objects, hide, deadline, method)
+        put_measuring(self._scene, message.measuring, about, terrain, objects, hide, deadline, method)
         put(message, about, azimuths=azimuths)
         if integer(azimuths, "azimuths", about) < 1:
             reject(about, "azimuths", azimuths, "1 to 1000000")
-        message.without_object.extend(self._ids(without, about))
+        message.without_object.extend(object_ids(self._scene, without, about))
         places = self._places(place, "the place", frame, about)
         if places.shape != ():
             raise InvalidArgument(f"{about}: the place has the shape {places.shape}; accepted: one place", about)
@@ -87,27 +86,6 @@ class Sights:
                        np.array([origin.x, origin.y, origin.z]))
 
     # --- Arguments -----------------------------------------------------------------------------
-
-    def _put_measuring(self, message, about, terrain, objects, hide, deadline, method):
-        message.method = word(method, METHODS, "the method", about)
-        message.no_terrain = not flag(terrain, "terrain", about)
-        message.no_objects = not flag(objects, "objects", about)
-        hide = (hide,) if isinstance(hide, str) else items(hide, "hide", about, "fragments or their names")
-        message.hidden_fragment.extend(self._scene._fragment_name(fragment, None) for fragment in hide)
-        put_given(message, about, deadline_s=deadline)
-
-    def _ids(self, things, about):
-        ids = []
-        if isinstance(things, (str, GraphicsObject)):
-            things = (things,)
-        for thing in items(things, "without", about, "objects or their names"):
-            if isinstance(thing, str):
-                thing = self._scene.object(thing)
-            if not isinstance(thing, GraphicsObject):
-                reject(about, "the object", thing, "a dspace.GraphicsObject or its name", WrongType)
-            self._scene._require_own(thing, f"object {thing.name!r}", about)
-            ids.append(thing.id)
-        return ids
 
     def _places(self, place, what, frame, about):
         if isinstance(place, Site):

@@ -11,6 +11,7 @@ from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
+from dspace.measure.lit import Lit
 from dspace.measure.sights import Sights
 from dspace.objects.fragments import Fragment, Light, put_light
 from dspace.objects.assemblies import Assembly
@@ -281,6 +282,7 @@ class Scene(Strict):
 
     line_of_sight = delegate(Sights, "line_of_sight")
     horizon = delegate(Sights, "horizon")
+    lit_area = delegate(Lit, "lit_area")
 
     # --- Fragments and lights ------------------------------------------------------------------
 

@@ -30,10 +30,14 @@ class Sun(Strict):
 
         Brightness: irradiance [W/m^2] on a surface that faces it, 0 to 1.361e15; or distance_au, above 0: the irradiance
         is 1361 / distance_au**2. Either makes the light white."""
+        command = self._scene._command()
+        self._fill(command.set_sun.sun, values)
+        self._scene._execute(command)
+
+    def _fill(self, message, values):
+        """Fills a SunState from the arguments of set()."""
         keywords(values, SUN, "light 'sun'")
         values = {key: value for key, value in values.items() if value is not None}
-        command = self._scene._command()
-        message = command.set_sun.sun
         message.SetInParent()
         angles = [key for key in ("azimuth_deg", "elevation_deg") if key in values]
         if len(angles) == 1:
@@ -55,7 +59,6 @@ class Sun(Strict):
             self._put_place(message.horizontal, values.get("terrain"), values.get("at"))
         put_given(message, "light 'sun'", radius_deg=values.get("radius_deg"), irradiance=values.get("irradiance"),
                   distance_au=values.get("distance_au"))
-        self._scene._execute(command)
 
     def follow(self, frame=None, body=None, axes=None, site=None, geodetic=False):
         """Lets it follow the scene's time: direction, disc and irradiance (1361 W/m^2 at 1 au) as the Sun shines on a

@@ -71,12 +71,13 @@ MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measur
   }
 }
 
-void MeasuredScene::AddObject(const Context& context, const GraphicsObject& object) {
-  bool any = false;
+std::vector<MeasuredScene::ShownPart>
+MeasuredScene::PartsOf(const Context& context, const GraphicsObject& object, bool* any) {
   const Pose& X_RF = context.Frames().WorldPose(object.frame);
   Eigen::Affine3d X_RO = Eigen::Affine3d::Identity();
   X_RO.matrix() = X_RF.Matrix();
   X_RO = X_RO * object.X_FO;
+  std::vector<ShownPart> parts;
   static const std::vector<Part> none;
   for (const Part& part : object.levels.empty() ? none : object.levels.front().parts) {
     const auto over = object.parts.find(part.name);
@@ -86,10 +87,20 @@ void MeasuredScene::AddObject(const Context& context, const GraphicsObject& obje
         part.mesh->indices.empty()) {
       continue;
     }
-    any = true;
-    if (shown && finest && !object.billboard) {
-      this->Obstacles_.Add(object.id, std::make_shared<MeshRays>(part.mesh), X_RO * part.X_OP);
+    if (any) {
+      *any = true;
     }
+    if (shown && finest && !object.billboard) {
+      parts.push_back({part.name, part.mesh, X_RO * part.X_OP});
+    }
+  }
+  return parts;
+}
+
+void MeasuredScene::AddObject(const Context& context, const GraphicsObject& object) {
+  bool any = false;
+  for (const ShownPart& part : PartsOf(context, object, &any)) {
+    this->Obstacles_.Add(object.id, std::make_shared<MeshRays>(part.mesh), part.X_RM);
   }
   if (!any && !(object.custom && object.custom->IsBackdrop())) {
     context.reply.add_warning("object '" + object.name +

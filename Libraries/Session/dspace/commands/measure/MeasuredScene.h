@@ -3,7 +3,9 @@
 #define DSPACE_SESSION_MEASURED_SCENE_H
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <google/protobuf/repeated_field.h>
 
@@ -31,6 +33,16 @@ public:
   MeasuredScene(const Context& context, const v1::Measuring& measuring,
                 const google::protobuf::RepeatedField<std::uint32_t>& without,
                 const std::string& command);
+
+  // Triangles of an object that the scene shows, at their finest level.
+  struct ShownPart {
+    std::string name;
+    std::shared_ptr<const Mesh> mesh;
+    Eigen::Affine3d X_RM = Eigen::Affine3d::Identity();
+  };
+  // `any`, if given: whether it has triangles, shown or not.
+  static std::vector<ShownPart> PartsOf(const Context& context, const GraphicsObject& object,
+                                        bool* any = nullptr);
 
   const Obstacles& Get() const { return this->Obstacles_; }
   // Throws Error: NotFound for an unknown frame or terrain, InvalidArgument for a position or a

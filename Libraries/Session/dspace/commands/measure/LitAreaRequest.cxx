@@ -1,0 +1,120 @@
+// Sunlit areas.
+#include <algorithm>
+#include <set>
+
+#include <dspace/Checks.h>
+#include <dspace/commands/measure/MeasuredScene.h>
+#include <dspace/measure/LitArea.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/state/SunPlace.h>
+
+namespace dspace::session {
+namespace {
+
+constexpr int MostObjects = 10000;
+
+std::string Quoted(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "'" : ", '") + name + "'";
+  }
+  return text.empty() ? "none" : text;
+}
+
+void AddFaces(const MeasuredScene::ShownPart& part, std::vector<Face>& faces) {
+  const bool mirrored = part.X_RM.linear().determinant() < 0.0;
+  MeshRays(part.mesh).ForEach(
+      [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+        faces.push_back(
+            {part.X_RM * a, part.X_RM * (mirrored ? c : b), part.X_RM * (mirrored ? b : c)});
+      });
+}
+
+// The triangles of each object, in the command's order.
+std::vector<std::vector<Face>> FacesOf(const Context& context, const v1::LitArea& command) {
+  const std::set<std::string> wanted(command.part().begin(), command.part().end());
+  std::set<std::string> names;
+  std::vector<std::vector<Face>> faces;
+  for (const ObjectId id : command.object()) {
+    const GraphicsObject& object = context.GetScene().Object(id);
+    const std::string label = "object '" + object.name + "'";
+    if (context.scene->TerrainOf(id)) {
+      Reject(label, "it is terrain, which has no lit area; accepted: objects with triangles");
+    }
+    faces.emplace_back();
+    if (!object.visible || !context.GetScene().Fragments().Get(object.fragment).visible) {
+      Reject(label, "it is not shown; accepted: objects that the scene shows");
+    }
+    for (const MeasuredScene::ShownPart& part : MeasuredScene::PartsOf(context, object)) {
+      names.insert(part.name);
+      if (wanted.empty() || wanted.count(part.name) != 0) {
+        AddFaces(part, faces.back());
+      }
+    }
+    const bool area = std::any_of(faces.back().begin(), faces.back().end(), [](const Face& face) {
+      return (face[1] - face[0]).cross(face[2] - face[0]).squaredNorm() > 0.0;
+    });
+    if (!area) {
+      Reject(label, std::string(wanted.empty() ? "it has" : "its chosen parts have") +
+                        " no faces with an area that the scene shows; accepted: objects with "
+                        "triangles; parts shown: " +
+                        Quoted(names));
+    }
+  }
+  for (const std::string& name : wanted) {
+    if (names.count(name) == 0) {
+      throw Error(Error::Kind::NotFound, "part '" + name + "'",
+                  "none of the objects shows a part of this name; accepted: " + Quoted(names));
+    }
+  }
+  return faces;
+}
+
+void FindLitArea(const Context& context, v1::LitArea& command) {
+  const std::string name = "command lit_area";
+  if (RejectMethod(context, command.measuring(), name)) {
+    return;
+  }
+  if (command.object_size() < 1 || command.object_size() > MostObjects) {
+    Reject(name, std::to_string(command.object_size()) + " objects; accepted: 1 to 10,000");
+  }
+  const Scene& scene = context.GetScene();
+  const Light* present = FindSunLight(scene);
+  if (!command.has_sun() && !(present && IsSun(*present))) {
+    Reject(name, "scene '" + context.sceneName +
+                     "' has no Sun; accepted: a scene with a Sun, or the argument sun");
+  }
+  const Light light = command.has_sun() ? MovedSun(scene, command.sun()) : *present;
+  const SunDisc sun{TowardsSun(scene, light, RootFrame), light.radius_deg * M_PI / 180.0};
+  const double brightest = *std::max_element(light.color.begin(), light.color.end());
+  const bool off = !command.has_sun() && !light.enabled;
+  const double irradiance = off ? 0.0 : SolarConstant * light.intensity * brightest;
+  const double efficiency = command.has_efficiency() ? command.efficiency() : 1.0;
+  constexpr std::size_t Standard = 4096;
+  const std::size_t samples = command.samples() == 0 ? Standard : command.samples();
+  const std::vector<std::vector<Face>> faces = FacesOf(context, command);
+  const MeasuredScene measured(context, command.measuring(), command.without_object(), name);
+  v1::LitAreaReply reply;
+  for (int i = 0; i < command.object_size(); ++i) {
+    const LitArea lit =
+        MeasureLitArea(measured.Get(), sun, faces[i], command.both_sides(), samples);
+    v1::LitAreaReply::Surface* surface = reply.add_surface();
+    surface->set_object(command.object(i));
+    surface->set_area(lit.area);
+    surface->set_lit_area(lit.lit);
+    surface->set_projected_area(lit.projected);
+    surface->set_power(lit.projected * irradiance * efficiency);
+  }
+  reply.set_irradiance(irradiance);
+  Put(sun.towards_R, reply.mutable_sun());
+  context.reply.mutable_lit_area()->Swap(&reply);
+}
+
+} // namespace
+
+void AddLitAreaRequest(Registry& registry) {
+  using C = v1::Command;
+  registry.Add(C::kLitArea, &C::mutable_lit_area, FindLitArea);
+}
+
+} // namespace dspace::session

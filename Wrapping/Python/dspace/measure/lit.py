@@ -1,0 +1,68 @@
+"""Sunlit areas and the power of solar cells in a scene."""
+import numpy as np
+
+from dspace._core.fields import flag, items, put_given, reject
+from dspace.errors import WrongType
+from dspace.measure.obstacles import object_ids, put_measuring
+from dspace.measure.results import LitArea
+
+MOST_OBJECTS = 10_000
+
+
+class Lit:
+    """Measures sunlit areas for a Scene, which delegates to it."""
+
+    def __init__(self, scene):
+        self._scene = scene
+
+    def lit_area(self, objects, *, parts=(), sun=None, efficiency=1.0, both_sides=False, samples=4096, terrain=True,
+                 obstacles=True, hide=(), without=(), deadline=None, method="exact"):
+        """Measures the sunlit area of objects and the power of solar cells on them, by rays in double precision. Returns
+        LitArea.
+
+        objects: one object (or its name), for numbers, or a list of up to 10,000, for arrays (n,). parts: names of parts of
+        the objects, such as the solar cells of a model; default: all. both_sides=True: both sides of faces count, and the
+        area is twice as large; default: the front, from which the corners run counter-clockwise.
+
+        sun: a dict with the arguments of Sun.set(), such as dict(azimuth_deg=90, elevation_deg=5); default: the scene's Sun.
+        efficiency: of the cells, 0 to 1. The power is the irradiance times the area projected towards the Sun times the
+        efficiency. The temperature of cells does not count.
+
+        From `samples` places of each object (1 to ten million, spread over its faces, at least one on each), rays run to 16
+        points of the Sun's disc. The lit fraction of a face of which a straight shadow hides a part is off by some
+        1/samples**0.75. Shadows are those of the objects themselves, of other objects (obstacles=False: none) and of all
+        terrains (terrain=False: none); hide, without, deadline and method: as for line_of_sight(). A place below the ground
+        is dark.
+
+        Raises dspace.InvalidArgument for terrain, for objects whose faces have no area or are not shown, and for a scene without
+        a Sun; dspace.NotFound for unknown parts; dspace.DeadlineExceeded."""
+        about = "lit area"
+        command = self._scene._command()
+        message = command.lit_area
+        single = isinstance(objects, str) or not isinstance(objects, (list, tuple, set, frozenset, np.ndarray))
+        ids = object_ids(self._scene, [objects] if single else objects, about)
+        if not 1 <= len(ids) <= MOST_OBJECTS:
+            reject(about, "the number of objects", len(ids), f"1 to {MOST_OBJECTS}")
+        put_measuring(self._scene, message.measuring, about, terrain, obstacles, hide, deadline, method)
+        message.object.extend(ids)
+        for part in items([parts] if isinstance(parts, str) else parts, "parts", about, "names of parts"):
+            if not isinstance(part, str):
+                reject(about, "the part", part, "a name", WrongType)
+            message.part.append(part)
+        message.without_object.extend(object_ids(self._scene, without, about))
+        message.both_sides = flag(both_sides, "both_sides", about)
+        put_given(message, about, efficiency=efficiency, samples=samples)
+        if samples == 0:
+            reject(about, "samples", samples, "1 to 10000000")
+        if sun is not None:
+            if not isinstance(sun, dict):
+                reject(about, "the Sun", sun, "a dict with arguments of Sun.set()", WrongType)
+            self._scene.sun._fill(message.sun, sun)
+        reply = self._scene._execute(command).lit_area
+
+        def of(name):
+            values = np.array([getattr(surface, name) for surface in reply.surface])
+            return float(values[0]) if single else values
+        things = [self._scene._object(surface.object) for surface in reply.surface]
+        return LitArea(things[0] if single else things, of("area"), of("lit_area"), of("projected_area"), of("power"),
+                       reply.irradiance, np.array([reply.sun.x, reply.sun.y, reply.sun.z]))
