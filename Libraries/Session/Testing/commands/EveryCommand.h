@@ -308,11 +308,15 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(find_grid_references { mgrs: "38SMB4488" })", {}},
       {R"(get_geoid_heights { place: [1, 2] geoid: "egm96_15.gtx" })", {}},
 
-      {R"(line_of_sight { measuring { hidden_fragment: "parts" deadline_s: 30 } wavelength: 0.1 without_object: 1
-           pair { from_site { terrain: "ground" map_x: 0.5 map_y: 0.25 height: 2 } to { frame: 11 position { z: 9 } } } })",
+      // Without obstacles, so that no limit of the deadline or of the azimuths takes time.
+      {R"(line_of_sight { measuring { no_terrain: true no_objects: true hidden_fragment: "parts" deadline_s: 30 }
+           pair { from_site { terrain: "ground" map_x: 105.5 map_y: 205.25 height: 2 } to { frame: 11 position { z: 9 } } }
+           wavelength: 0.1 without_object: 1 })",
        {}},
       {R"(lit_area { object: 1 samples: 16 efficiency: 0.3 sun { direction { z: 1 } } })", {}},
-      {R"(horizon { site { terrain: "ground" map_x: 0.5 map_y: 0.25 height: 2 } azimuths: 8 without_object: 1 })", {}},
+      {R"(horizon { measuring { no_terrain: true no_objects: true }
+           site { terrain: "ground" map_x: 105.5 map_y: 205.25 height: 2 } azimuths: 8 without_object: 1 })",
+       {}},
       {R"(horizon_map {})", {}},
       {R"(viewshed {})", {}},
       {R"(illumination_map {})", {}},

@@ -95,7 +95,7 @@ V OnTriangle(const V& p, const V& a, const V& b, const V& c) {
   const V normal = (b - a).cross(c - a);
   const double area = normal.squaredNorm();
   if (area > 0.0) {
-    const V foot = p - normal * (normal.dot(p - a) / area);
+    V foot = p - normal * (normal.dot(p - a) / area);
     if (normal.dot((b - a).cross(foot - a)) >= 0.0 && normal.dot((c - b).cross(foot - b)) >= 0.0 &&
         normal.dot((a - c).cross(foot - c)) >= 0.0) {
       return foot;
