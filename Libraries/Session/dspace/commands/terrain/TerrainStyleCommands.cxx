@@ -148,8 +148,12 @@ const ViewportState& FindViewport(const Context& context, const std::string& nam
 }
 
 void DescribeTerrainStyle(const Context& context, v1::DescribeTerrainStyle& command) {
-  const ClipmapTerrain& terrain = FindClipmap(FindTerrain(context, command.terrain())).Clipmap();
+  ClipmapTerrainObject& found = FindClipmap(FindTerrain(context, command.terrain()));
+  const ClipmapTerrain& terrain = found.Clipmap();
   v1::TerrainStyleReply* reply = context.reply.mutable_terrain_style();
+  if (found.StyleCommand()) {
+    *reply->mutable_given() = *found.StyleCommand();
+  }
   if (!command.viewport().empty()) {
     FindViewport(context, command.viewport());
     reply->set_own(terrain.HasStyleIn(command.viewport()));
@@ -216,6 +220,7 @@ void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
   ClipmapTerrainObject& terrain = FindClipmap(FindTerrain(context, command.terrain()));
   terrain.Clipmap().SetStyle(ToStyle(context, context.GetScene(), terrain.Surface(), command,
                                      "terrain '" + command.terrain() + "'"));
+  terrain.SetStyleCommand(command);
 }
 
 void StyleTerrainInViewport(const Context& context, v1::StyleTerrainInViewport& command) {
