@@ -130,7 +130,7 @@ TEST_F(TerrainWidgetTest, ShowsTheChosenTerrainWithItsLegend) {
   this->widget.findChild<QComboBox*>("terrains")->setCurrentIndex(1);
   EXPECT_EQ(this->widget.Terrain(), "other");
   EXPECT_EQ(this->widget.Layers()->topLevelItemCount(), 0);
-  EXPECT_FALSE(this->widget.Style()->isEnabled()); // triangles
+  EXPECT_FALSE(this->widget.Style()->findChild<QComboBox*>("ramp")->isEnabled()); // triangles
   EXPECT_TRUE(this->widget.Legend()->Entries().empty());
   EXPECT_EQ(this->changes.size(), 0);
 }
@@ -165,7 +165,7 @@ TEST_F(TerrainWidgetTest, ShowsThatThereIsNoTerrainAndChangesNothingOfARecording
     EXPECT_FALSE(this->widget.findChild<QToolButton*>(name)->isEnabled()) << name;
   }
   EXPECT_FALSE(this->widget.findChild<QSlider*>("opacity")->isEnabled());
-  EXPECT_FALSE(this->widget.Style()->isEnabled());
+  EXPECT_FALSE(this->widget.Style()->findChild<QComboBox*>("ramp")->isEnabled());
   EXPECT_EQ(this->widget.Legend()->Entries().size(), 2u);
   this->busy = true; // between two steps
   this->present = false;

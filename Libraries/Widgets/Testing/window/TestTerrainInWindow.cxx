@@ -159,7 +159,7 @@ TEST_F(TerrainInWindow, ARecordingIsShownAndNotChanged) {
   ASSERT_TRUE(Wait([&] { return entries.size() == 1 && entries[0].title == "Slope [deg]"; }));
   EXPECT_EQ(entries[0].low, 1.0);
   EXPECT_EQ(entries[0].high, 12.0);
-  EXPECT_FALSE(Widget()->Style()->isEnabled());
+  EXPECT_FALSE(Widget()->Style()->findChild<QComboBox*>("ramp")->isEnabled());
   ASSERT_TRUE(Run("run.close()")) << errors.toStdString();
   EXPECT_TRUE(Wait([] { return Widget()->Terrain() == "ground"; }));
 }

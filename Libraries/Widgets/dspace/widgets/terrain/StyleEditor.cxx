@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include <QCheckBox>
 #include <QColorDialog>
@@ -101,14 +102,14 @@ StyleEditor::StyleEditor(QWidget* parent) : QWidget(parent) {
   this->Elevation_->setDecimals(1);
   this->Elevation_->setSuffix(tr("°"));
   this->Elevation_->setValue(45.0);
-  auto* sun = new QPushButton(tr("Set"));
-  sun->setObjectName(QStringLiteral("sun"));
-  sun->setMaximumWidth(sun->fontMetrics().horizontalAdvance(sun->text()) + 24);
-  sun->setToolTip(tr("Shades the hills by a Sun there (the Sun of the scene)"));
+  this->Sun_ = new QPushButton(tr("Set"));
+  this->Sun_->setObjectName(QStringLiteral("sun"));
+  this->Sun_->setMaximumWidth(this->Sun_->fontMetrics().horizontalAdvance(this->Sun_->text()) + 24);
+  this->Sun_->setToolTip(tr("Shades the hills by a Sun there (the Sun of the scene)"));
   row = new QHBoxLayout;
   row->addWidget(this->Azimuth_, 1);
   row->addWidget(this->Elevation_, 1);
-  row->addWidget(sun);
+  row->addWidget(this->Sun_);
   form->addRow(tr("Move Sun to"), row);
 
   connect(this->By_, &QComboBox::activated, this, [this](int index) {
@@ -155,7 +156,7 @@ StyleEditor::StyleEditor(QWidget* parent) : QWidget(parent) {
   connect(this->Levels_, &QCheckBox::toggled, this, [this](bool on) {
     emit this->styleWanted(on ? QStringLiteral("levels=0.5") : QStringLiteral("levels=None"));
   });
-  connect(sun, &QPushButton::clicked, this,
+  connect(this->Sun_, &QPushButton::clicked, this,
           [this] { emit this->sunWanted(this->Azimuth_->value(), this->Elevation_->value()); });
 }
 
@@ -203,7 +204,16 @@ void StyleEditor::ShowLines(const Lines& lines, bool shown, const v1::StyleTerra
 }
 
 void StyleEditor::Show(const TerrainState& state) {
-  this->setEnabled(state.layered && state.canChange);
+  const bool styled = state.layered && state.canChange;
+  for (QWidget* each : std::initializer_list<QWidget*>{
+           this->By_, this->Contours_.shown, this->Contours_.interval, this->Contours_.color,
+           this->Grid_.shown, this->Grid_.interval, this->Grid_.color, this->Levels_}) {
+    each->setEnabled(styled);
+  }
+  for (QWidget* each :
+       std::initializer_list<QWidget*>{this->Azimuth_, this->Elevation_, this->Sun_}) {
+    each->setEnabled(state.canChange);
+  }
   this->setToolTip(state.layered ? QString()
                                  : tr("Terrain drawn as triangles has no style: open it with "
                                       "mode=\"clipmap\""));
@@ -215,9 +225,9 @@ void StyleEditor::Show(const TerrainState& state) {
   const bool ramp = style.has_ramp();
   this->By_->setCurrentIndex(ramp ? int(style.ramp().by()) + 1 : 0);
   const bool ranged = ramp && style.ramp().by() != v1::StyleTerrain::Ramp::NORMAL;
-  this->Low_->setEnabled(ranged);
-  this->High_->setEnabled(ranged);
-  this->Opacity_->setEnabled(ramp);
+  this->Low_->setEnabled(styled && ranged);
+  this->High_->setEnabled(styled && ranged);
+  this->Opacity_->setEnabled(styled && ramp);
   if (ranged) {
     this->Low_->setValue(style.ramp().low());
     this->High_->setValue(style.ramp().high());
@@ -227,7 +237,7 @@ void StyleEditor::Show(const TerrainState& state) {
   }
   ShowLines(this->Contours_, style.has_contours(), style.contours());
   ShowLines(this->Grid_, style.has_grid(), style.grid());
-  this->Labels_->setEnabled(style.has_grid());
+  this->Labels_->setEnabled(styled && style.has_grid());
   this->Labels_->setChecked(style.has_grid_labels());
   this->Levels_->setChecked(style.has_levels() && style.levels() > 0.0);
 }

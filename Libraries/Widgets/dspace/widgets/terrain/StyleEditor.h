@@ -9,6 +9,7 @@
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
+class QPushButton;
 class QToolButton;
 
 namespace dspace::widgets {
@@ -52,6 +53,7 @@ private:
   Lines Grid_;
   QDoubleSpinBox* Azimuth_;
   QDoubleSpinBox* Elevation_;
+  QPushButton* Sun_;
 };
 
 } // namespace dspace::widgets
