@@ -15,7 +15,7 @@ EVERYWHERE = (scenes.first_picture, scenes.views, scenes.demo_drive, scenes.movi
               application.application_telemetry, application.application_console, application.application_dark,
               application.application_keys, application.application_map, application.application_messages)
 OF_REAL_DATA = (scenes.drives, measure.measure_horizon, models.formats, terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
-                terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth, application.application_terrain,
+                terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth, application.application_terrain, application.application_terrain_dock,
                 trajectories.artemis_inertial, trajectories.artemis_rotating)
 
 

@@ -45,6 +45,32 @@ def application_terrain():
     _screenshot("application_terrain", "--after", "6", os.path.join(DATA, "terrain", "mars_gale_mola_128ppd_m.tif"))
 
 
+# Gale crater by MOLA: the layers are HRSC's picture, and slopes that a rover does not climb.
+TERRAIN = """
+import pathlib
+data = pathlib.Path({data!r})
+path = data / "terrain" / "mars_gale_mola_128ppd_m.tif"
+ground = scene.add_terrain(path, name="Gale", mode="clipmap", color=(0.8, 0.78, 0.75), vertical_datum="areoid")
+ground.add_image(data / "textures" / "mars_gale_hrsc_color_4096.jpg", name="HRSC",
+                 crs="+proj=eqc +lat_ts=0 +lon_0=0 +R=3396190 +units=m", extent=(8068200, -223600, 8268200, -413600))
+ground.add_false_color(path, name="MOLA heights", opacity=0.5)
+ground.set_style(contours=dict(interval=500, color="black", width=1), grid=1, grid_labels=True)
+scene.sun.set(azimuth_deg=300, elevation_deg=35, terrain=ground)
+x, y, _ = ground.from_map([[137.8, -5.0, 0.0]])[0]
+view = app.new_view()
+view.camera.look_at(eye=(x - 30e3, y - 190e3, 130e3), target=(x, y - 10e3, -4000))
+app.show_dock("terrain")
+"""
+
+
+def application_terrain_dock():
+    """The layers, the legend and the style of real terrain."""
+    with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
+        script.write(TERRAIN.format(data=os.fspath(DATA)))
+        script.flush()
+        _screenshot("application_terrain_dock", "--after", "8", "--empty", script.name)
+
+
 # --- A tour: each stop is a script, a name, and seconds; at both sizes ---------------------------------
 
 TOUR = {

@@ -447,6 +447,33 @@ void vtkDspaceWatcher::CancelSendEvent() {
   }
 }
 
+std::string vtkDspaceWatcher::QueueEvent(const std::string& bytes) {
+  return dspace::session::Catch([&] {
+           Internals& self = *this->Impl;
+           dspace::v1::ViewerEvent event;
+           if (!event.ParseFromString(bytes)) {
+             throw dspace::Error(dspace::Error::Kind::Corrupt, "event",
+                                 "the bytes are not a ViewerEvent");
+           }
+           if (!self.background) {
+             throw dspace::Error(dspace::Error::Kind::Unsupported, "event",
+                                 "nothing sends it later; accepted: SetInBackground first");
+           }
+           if (!this->GetWriterConnected()) {
+             throw dspace::Error(dspace::Error::Kind::NotFound, "simulation",
+                                 "the server has no driver; the event is dropped");
+           }
+           if (self.events.size() >= MostEvents) {
+             throw dspace::Error(dspace::Error::Kind::Resource, "event",
+                                 std::to_string(MostEvents) +
+                                     " others wait to be sent; accepted: fewer");
+           }
+           self.Send(event);
+           return dspace::v1::Reply();
+         })
+      .SerializeAsString();
+}
+
 vtkDspaceSession* vtkDspaceWatcher::GetSession() {
   return this->Impl->session;
 }

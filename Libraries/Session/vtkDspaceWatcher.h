@@ -75,6 +75,10 @@ public:
   std::string BeginSendEvent(const std::string& event);
   int WaitForSendEvent(double seconds);
   void CancelSendEvent();
+  /// Sends a serialized ViewerEvent to the simulation without waiting: now, and in later calls of
+  /// Update. Returns a serialized Reply: NOT_FOUND if there is no driver, RESOURCE if 100 events
+  /// wait already, UNSUPPORTED without SetInBackground(true).
+  std::string QueueEvent(const std::string& event);
   /// The session that draws; a new one after each snapshot.
   vtkDspaceSession* GetSession();
   void Close();

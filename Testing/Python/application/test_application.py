@@ -10,6 +10,8 @@ import dspace
 from dspace import vtk
 from dspace.application import App
 from dspace.application.demo import Drive
+from dspace.application.link import LinkClient
+from dspace.proto.service_pb2 import ViewerEvent
 
 
 class Host:
@@ -191,3 +193,40 @@ def test_the_demo_drives_on_the_ground(app, data, monkeypatch):
     assert lit(app.views["chase"]) > 0.3
     drive.stop()
     assert app._host.timers == {}
+
+
+def test_questions_are_answered_and_points_are_sent_as_goals(app, tmp_path):
+    asked = app.scene.ask("go", "Deploy?", choices=["yes", "no"])
+    app.answer("go", "no")
+    assert asked.answer == "no"
+    heard = []
+    app.session.on_event(lambda event: heard.append(event.dragged), "dragged")
+    app.send_goal((1, 2, 3))
+    app.send_goal((0, 0, 4), goal="tool")
+    assert [(each.scene, each.goal, each.done) for each in heard] == [("scene", "goal", True), ("scene", "tool", True)]
+    assert (heard[0].pose.position.x, heard[0].pose.position.y, heard[0].pose.position.z) == (1, 2, 3)
+    with pytest.raises(dspace.Error):
+        app.send_goal("here")
+    path = tmp_path / "asked.dspace"
+    with dspace.Session() as session, session.record(path):
+        scene = session.scene()
+        scene.ask("go", "Deploy?")
+        scene.time = 1.0
+    run = app.open(path)
+    app._host.activated = (run._player, "scene")
+    for send in (lambda: app.answer("go", "yes"), lambda: app.send_goal((0, 0, 0))):
+        with pytest.raises(dspace.Unsupported, match="recording"):
+            send()
+
+
+def test_an_event_that_nobody_takes_is_rejected_at_once():
+    watcher = vtk.vtkDspaceWatcher()
+    client = LinkClient(watcher)
+    event = ViewerEvent()
+    event.answer.question = "go"
+    with pytest.raises(dspace.Unsupported, match="SetInBackground"):
+        client.send_event(event)
+    watcher.SetInBackground(True)
+    with pytest.raises(dspace.NotFound, match="no driver"):
+        client.send_event(event)
+    client.close()

@@ -114,3 +114,64 @@ def test_triangles_have_no_style(scene):
     ground = scene.add_terrain(FIELD, mode="triangles")
     with pytest.raises(dspace.Unsupported, match="clipmap"):
         ground.set_style(levels=1)
+
+
+def given(ground):
+    """The terrain's own style as the session keeps it."""
+    return ground._scene._ask("describe_terrain_style", terrain=ground.name, viewport="").terrain_style.given
+
+
+def test_a_change_keeps_the_rest(scene, slope):
+    ground, view, _ = slope
+    scene.add_fragment("lines")
+    ground.set_style(color_by="height", range=(0, 40), colors=["black", "white"], opacity=0.5, ornamental=False,
+                     contours=dict(interval=4.0, width=3, color="red", fragment="lines"), grid=10.0, grid_labels=True,
+                     levels=dict(opacity=0.3, fragment="lines"))
+    before, plain = given(ground), view.image()
+    ground.change_style()
+    assert given(ground) == before
+    np.testing.assert_array_equal(view.image(), plain)
+    ground.change_style(range=(0, 30))
+    after = given(ground)
+    assert (after.ramp.low, after.ramp.high, after.ramp.opacity) == (0, 30, 0.5)
+    after.ramp.high = 40
+    assert after == before
+    assert (view.image() != plain).any()
+    ground.change_style(opacity=1.0, range=(0, 40), contours={"interval": 2.0}, grid=5)
+    after = given(ground)
+    assert (after.ramp.opacity, after.contours.interval, after.grid.interval) == (1.0, 2.0, 5.0)
+    after.ramp.opacity, after.contours.interval, after.grid.interval = 0.5, 4.0, 10.0
+    assert after == before
+    # Another false color has the defaults of its own, and is seen as the one before.
+    ground.change_style(color_by="slope", levels=None)
+    assert ground.style["range"] == (0.0, 45.0) and len(ground.style["colors"]) > 2 and not ground.style["ornamental"]
+    assert not given(ground).HasField("levels") and not given(ground).HasField("levels_member")
+    ground.change_style(range=None, colors=["blue", "red"])
+    assert ground.style["range"] == (0.0, 45.0) and ground.style["colors"] == [(0, 0, 1), (1, 0, 0)]
+    ground.change_style(color_by="normal")
+    ground.change_style(color_by=None, grid=None, contours=None)
+    assert ground.style == {} and given(ground) == type(before)(terrain=ground.name)
+
+
+def test_a_change_keeps_the_false_color_that_a_terrain_has_from_the_start(scene):
+    ground = scene.add_terrain(FIELD, mode="clipmap", relief=dict(color_by_height=True))
+    before = ground.style
+    assert before["color_by"] == "height"
+    ground.change_style(grid=20.0)
+    assert ground.style == before and given(ground).grid.interval == 20.0
+
+
+def test_what_a_change_refuses_changes_nothing(scene, slope):
+    ground, view, _ = slope
+    ground.set_style(color_by="height", range=(0, 40), contours=4.0)
+    before = given(ground)
+    for bad in (dict(range=(40, 40)), dict(opacity=2.0), dict(color_by="size"), dict(contours={"interval": -1}),
+                dict(color_by=None, range=(0, 1)), dict(color_by=None, opacity=0.5)):
+        with pytest.raises(dspace.InvalidArgument, match=ground.name):
+            ground.change_style(**bad)
+        assert given(ground) == before
+    for bad in ("red", {"thickness": 1}):
+        with pytest.raises(dspace.WrongType):
+            ground.change_style(contours=bad)
+    with pytest.raises(dspace.Unsupported, match="clipmap"):
+        scene.add_terrain(FIELD, mode="triangles").change_style(grid=1.0)

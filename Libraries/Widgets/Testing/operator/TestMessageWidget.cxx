@@ -136,3 +136,20 @@ TEST_F(MessageWidgetTest, ARecordingsQuestionIsNotAnswered) {
   ASSERT_TRUE(this->Panel("drive"));
   EXPECT_FALSE(this->Panel("drive")->findChild<QPushButton*>("answer Yes")->isEnabled());
 }
+
+TEST_F(MessageWidgetTest, AnAnswerThatWasNotSentIsGivenAgain) {
+  QSignalSpy answered(&this->widget, &MessageWidget::answered);
+  this->Ask("drive", {"Yes"});
+  this->widget.Refresh();
+  auto* yes = this->Panel("drive")->findChild<QPushButton*>("answer Yes");
+  QTest::mouseClick(yes, Qt::LeftButton);
+  EXPECT_FALSE(yes->isEnabled());
+  this->widget.TakeAnswerAgain("another"); // nothing happens
+  EXPECT_FALSE(yes->isEnabled());
+  this->widget.TakeAnswerAgain("drive");
+  EXPECT_TRUE(yes->isEnabled());
+  QTest::mouseClick(yes, Qt::LeftButton);
+  EXPECT_EQ(answered.size(), 2);
+  EXPECT_FALSE(yes->isEnabled());
+  EXPECT_TRUE(QTest::qWaitFor([&] { return yes->isEnabled(); }, 10000)); // the question stays open
+}

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <dspace/proto/commands.pb.h>
+#include <dspace/widgets/settings/DisplayUnits.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/PointerReadout.h>
 
@@ -132,4 +133,29 @@ TEST(PointerReadout, WritesLongitudesToTheSideThatTheyAreOn) {
       << text.toStdString();
   EXPECT_TRUE(text.contains("height -4501.250 m")) << text.toStdString();
   EXPECT_EQ(PointerReadout::TextOf({}, {}), "");
+}
+
+TEST(PointerReadout, WritesTheUnitsThatThePreferencesChoose) {
+  dspace::v1::Reply reply;
+  auto* pick = reply.mutable_pick();
+  pick->set_object(3);
+  pick->set_object_name("Gale");
+  pick->mutable_in_root()->set_x(1234.5678);
+  auto& units = dspace::widgets::DisplayUnits::The();
+  using dspace::widgets::UnitChoice;
+  EXPECT_TRUE(
+      PointerReadout::TextOf(reply.SerializeAsString(), {}).contains("x 1234.568  y 0.000"));
+  units.Set({UnitChoice::Length::Kilometre, UnitChoice::Angle::Radian});
+  EXPECT_TRUE(PointerReadout::TextOf(reply.SerializeAsString(), {})
+                  .contains("x 1.234568  y 0.000000  z 0.000000 km"));
+  pick->set_terrain("gale");
+  pick->mutable_map()->set_z(-4501.25);
+  pick->mutable_coordinates()->set_longitude_deg(-180.0);
+  dspace::v1::Reply slope;
+  slope.mutable_terrain_values()->add_slope_deg(90.0);
+  const QString text = PointerReadout::TextOf(reply.SerializeAsString(), slope.SerializeAsString());
+  units.Set({});
+  EXPECT_TRUE(text.contains("3.14159265 rad W")) << text.toStdString();
+  EXPECT_TRUE(text.contains("height -4.501250 km")) << text.toStdString();
+  EXPECT_TRUE(text.contains("slope 1.571 rad")) << text.toStdString();
 }

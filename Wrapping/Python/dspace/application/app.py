@@ -112,6 +112,11 @@ class App:
         """Opens the dialog "preferences", "guide", "keys", "messages" or "about"; nothing waits for it."""
         layouts.show_dialog(self._host, name)
 
+    def show_dock(self, name):
+        """Shows a dock and brings it to the front: "scene", "terrain", "time", "telemetry", "messages", "console", "view
+        NAME" of a viewport, "plot N". Raises dspace.NotFound for another name."""
+        layouts.show_dock(self._host, name)
+
     def set_theme(self, name):
         """The colours of all windows, also at the next start: "system", "dark" or "light"."""
         layouts.set_theme(self._host, name)
@@ -235,17 +240,28 @@ class App:
     # --- The operator --------------------------------------------------------------------------
 
     def answer(self, question, text):
-        """Answers an open question of the scene in the docks (scene.ask): the simulation of this window, or that of a
-        server, hears it. Raises dspace.Unsupported for a recording."""
-        shown, _ = self._host.active()
+        """Answers an open question of the scene in the docks (scene.ask), and returns at once: the simulation of this
+        window, or that of a server, hears it. Raises dspace.NotFound if the server has no simulation,
+        dspace.Unsupported for a recording."""
+        self._send(f"question {question!r}", lambda session, scene: session.answer(question, text))
+
+    def send_goal(self, position, goal="goal"):
+        """Sends a point of the scene in the docks (root, [m]) to its simulation as the position of a goal, and returns
+        at once: on_event(callback, "dragged") hears it, as from session.dragged(). Nothing in the scene moves. Raises
+        dspace.NotFound if the server has no simulation, dspace.Unsupported for a recording."""
+        self._send("goal", lambda session, scene: session.dragged(goal, position, scene=scene))
+
+    def _send(self, about, send):
+        """Calls `send` with the session, or Link, and the name of the scene in the docks."""
+        shown, scene = self._host.active()
         if any(run._player is shown for run in self.runs):
-            raise errors.Unsupported("nobody hears an answer to a recording; accepted: a live scene or a server",
-                                     f"question {question!r}")
+            raise errors.Unsupported("nobody hears what is sent to a recording; accepted: a live scene or a server",
+                                     about)
         for link in self.links:
             if link._client.shown() is shown:
-                link.answer(question, text)
+                send(link, scene)
                 return
-        self.session.answer(question, text)
+        send(self.session, scene)
         self.session.process_events()
 
     # --- Movies --------------------------------------------------------------------------------

@@ -37,6 +37,11 @@ def show_dialog(host, name):
     host.extend(json.dumps({"do": "dialog", "name": text(name, "the name", "dialog")}))
 
 
+def show_dock(host, name):
+    """Brings a dock to the front, by its name."""
+    host.extend(json.dumps({"do": "dock", "name": text(name, "the name", "dock")}))
+
+
 def set_theme(host, name):
     """The colours of all windows, kept in the user's settings: "system", "dark", "light"."""
     host.extend(json.dumps({"do": "theme", "name": text(name, "the theme", "theme")}))

@@ -7,6 +7,7 @@ import sys
 from dspace import vtk as _vtk
 from dspace._core.fields import items, path as path_of, reject, text
 from dspace._core.replies import make_error, to_reply
+from dspace._core.wire import encode
 from dspace.application.run import require
 from dspace.errors import Io
 from dspace.links.connection import prepare
@@ -23,6 +24,10 @@ class LinkClient(WatchClient):
 
     def shown(self):
         return self.watcher()
+
+    def send_event(self, event):
+        """Does not wait: later looks send what the connection has not taken."""
+        require(self.watcher().QueueEvent(encode(event, "event")))
 
 
 class Link(Watcher):

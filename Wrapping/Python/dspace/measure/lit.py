@@ -28,7 +28,7 @@ class Lit:
         efficiency: of the cells, 0 to 1. The power is the irradiance times the area projected towards the Sun times the
         efficiency. The temperature of cells does not count.
 
-        From `samples` places of each object (1 to ten million, spread over its faces, at least one on each), rays run to 16
+        From `samples` places of each object (1 to a million, spread over its faces, at least one on each), rays run to 16
         points of the Sun's disc. The lit fraction of a face of which a straight shadow hides a part is off by some
         1/samples**0.75. Shadows are those of the objects themselves, of other objects (obstacles=False: none) and of all
         terrains (terrain=False: none); hide, without, deadline and method: as for line_of_sight(). A place below the ground
@@ -53,7 +53,7 @@ class Lit:
         message.both_sides = flag(both_sides, "both_sides", about)
         put_given(message, about, efficiency=efficiency, samples=samples)
         if samples == 0:
-            reject(about, "samples", samples, "1 to 10000000")
+            reject(about, "samples", samples, "1 to 1000000")
         if sun is not None:
             if not isinstance(sun, dict):
                 reject(about, "the Sun", sun, "a dict with arguments of Sun.set()", WrongType)

@@ -3,6 +3,7 @@ from dspace._core.fields import file_path, flag, items, keywords, numbers, put, 
 from dspace.terrain.members import MEMBER, put_member
 from dspace.errors import InvalidArgument, WrongType
 
+KEEP = object()  # of change_style()
 COLOR_BY = {"height": 0, "slope": 1, "aspect": 2, "normal": 3}  # StyleTerrain.Ramp.By
 
 
@@ -58,18 +59,76 @@ class TerrainStyle:
             style = message.style
             style.SetInParent()
         common = {"fragment": fragment, "ornamental": ornamental}
-        if color_by is not None:
-            style.ramp.by = word(color_by, COLOR_BY, "color_by", label)
-            put(style.ramp, label, opacity=opacity)
-            put_member(style.ramp.member, self._scene, {}, common, f"{label}, color_by")
-            if range is not None:
-                low, high = numbers(range, 2, "the range", label, "low, high")
-                put(style.ramp, label, low=low, high=high)
-            for value in items(() if colors is None else colors, "the colours", label, "colours"):
-                put_color(style.ramp.color.add(), value, "a colour of the ramp", label)
-        elif range is not None or colors is not None:
-            raise InvalidArgument(f"{label}: a range and colours need color_by, which is not given; "
+        _put_ramp(style, self._scene, common, label, color_by, range, colors, opacity)
+        self._fill(style, label, common, levels, contours, grid, details, tracks, noise, grid_labels)
+        self._scene._execute(command)
+
+    def change_style(self, color_by=KEEP, range=KEEP, colors=KEEP, opacity=KEEP, levels=KEEP, contours=KEEP, grid=KEEP,
+                     details=KEEP, tracks=KEEP, noise=KEEP, grid_labels=KEEP):
+        """Changes parts of the terrain's own style, and keeps all that is not given.
+
+        The arguments are those of set_style(). range, colors and opacity alone change the false color that is there;
+        None is their default. Another color_by has the defaults of its own. A dict of contours or grid changes what it
+        names. None removes a part (details: (), grid_labels: False); the labels go with their grid."""
+        label = self._terrain._label()
+        command = self._scene._command()
+        style = command.style_terrain
+        reply = self._scene._ask("describe_terrain_style", terrain=self._name, viewport="").terrain_style
+        if reply.HasField("given"):
+            style.CopyFrom(reply.given)
+        elif reply.HasField("ramp"):  # a terrain without an image has it from the start
+            style.ramp.CopyFrom(reply.ramp)
+        put(style, label, terrain=self._name)
+        taken = {"levels": levels, "contours": contours, "grid": grid, "detail": details, "tracks": tracks,
+                 "noise": noise, "grid_labels": grid_labels}
+        kept = type(style)()
+        kept.CopyFrom(style)
+        for field in ("contours", "grid"):
+            if style.HasField(field) and not (taken[field] is KEEP or taken[field] is None):
+                taken[field] = _with_kept(taken[field], getattr(kept, field))
+        for field, value in taken.items():
+            if value is not KEEP:
+                style.ClearField(field)
+        if levels is not KEEP:
+            style.ClearField("levels_member")
+        if grid is None and grid_labels is KEEP:
+            style.ClearField("grid_labels")  # they need a grid
+        given = {field: None if value is KEEP else value for field, value in taken.items()}
+        self._fill(style, label, {}, given["levels"], given["contours"], given["grid"], given["detail"] or (),
+                   given["tracks"], given["noise"], given["grid_labels"] or False)
+        for field in ("contours", "grid"):
+            if isinstance(given[field], dict) and not any(word in given[field] for word in MEMBER):
+                getattr(style, field).member.CopyFrom(getattr(kept, field).member)
+        self._change_ramp(style, label, color_by, range, colors, opacity)
+        self._scene._execute(command)
+
+    def _change_ramp(self, style, label, color_by, range, colors, opacity):
+        """The false color of change_style()."""
+        if all(value is KEEP for value in (color_by, range, colors, opacity)):
+            return
+        old = type(style.ramp)()
+        old.CopyFrom(style.ramp)
+        there = style.HasField("ramp")
+        same = there and (color_by is KEEP or color_by is not None and word(color_by, COLOR_BY, "color_by", label) == old.by)
+        if color_by is KEEP:
+            color_by = list(COLOR_BY)[old.by] if there else None
+        if color_by is None and opacity is not KEEP:
+            raise InvalidArgument(f"{label}: an opacity needs color_by, which is not given; "
                                   f"accepted: color_by {', '.join(map(repr, COLOR_BY))}", label)
+        style.ClearField("ramp")
+        _put_ramp(style, self._scene, {}, label, color_by, None if range is KEEP else range,
+                  None if colors is KEEP else colors, (old.opacity if same else 1.0) if opacity is KEEP else opacity)
+        if color_by is None or not there:
+            return
+        style.ramp.member.CopyFrom(old.member)
+        if same and range is KEEP:
+            put_given(style.ramp, label, low=old.low if old.HasField("low") else None,
+                      high=old.high if old.HasField("high") else None)
+        if same and colors is KEEP:
+            style.ramp.color.extend(old.color)
+
+    def _fill(self, style, label, common, levels, contours, grid, details, tracks, noise, grid_labels):
+        """Writes the parts that are given, other than the false color, into a StyleTerrain."""
         for detail in items(details, "details", label, "a list of dicts"):
             _put_detail(style.detail.add(), detail, self._scene, f"{label}, a detail")
         if tracks is not None:
@@ -88,7 +147,6 @@ class TerrainStyle:
         _put_grid_labels(style.grid_labels, grid_labels, label)
         if noise is not None:
             _put_noise(style.noise, noise, f"{label}, noise")
-        self._scene._execute(command)
 
     def remove_style(self, viewport):
         """Shows the terrain's own style in the viewport again. Does nothing if the viewport has no style of its own."""
@@ -115,6 +173,29 @@ class TerrainStyle:
                 "range": (ramp.low, ramp.high) if ramp.HasField("low") else None,
                 "colors": [(color.r, color.g, color.b) for color in ramp.color], "opacity": ramp.opacity,
                 "fragment": ramp.member.fragment, "ornamental": ramp.member.nature == 1}
+
+
+def _put_ramp(style, scene, common, label, color_by, range, colors, opacity):
+    """Writes the false color into a StyleTerrain. Does nothing for None."""
+    if color_by is not None:
+        style.ramp.by = word(color_by, COLOR_BY, "color_by", label)
+        put(style.ramp, label, opacity=opacity)
+        put_member(style.ramp.member, scene, {}, common, f"{label}, color_by")
+        if range is not None:
+            low, high = numbers(range, 2, "the range", label, "low, high")
+            put(style.ramp, label, low=low, high=high)
+        for value in items(() if colors is None else colors, "the colours", label, "colours"):
+            put_color(style.ramp.color.add(), value, "a colour of the ramp", label)
+    elif range is not None or colors is not None:
+        raise InvalidArgument(f"{label}: a range and colours need color_by, which is not given; "
+                              f"accepted: color_by {', '.join(map(repr, COLOR_BY))}", label)
+
+
+def _with_kept(lines, kept):
+    """A number or a dict of lines, with what it does not name as it was."""
+    color = kept.color
+    return {"interval": kept.interval, "width": kept.width, "opacity": kept.opacity, "color": (color.r, color.g, color.b),
+            **(lines if isinstance(lines, dict) else {"interval": lines})}
 
 
 def _put_detail(message, detail, scene, label):

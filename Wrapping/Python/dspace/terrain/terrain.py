@@ -163,6 +163,7 @@ class Terrain(Strict):
     fields = delegate(TerrainFields, "fields")
     value = delegate(TerrainFields, "value")
     set_style = delegate(TerrainStyle, "set_style")
+    change_style = delegate(TerrainStyle, "change_style")
     remove_style = delegate(TerrainStyle, "remove_style")
     style = delegate(TerrainStyle, "style")
     style_in = delegate(TerrainStyle, "style_in")

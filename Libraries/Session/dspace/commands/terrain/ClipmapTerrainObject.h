@@ -33,6 +33,11 @@ public:
   void DescribeLayers(v1::TerrainLayerList& list) const;
   bool OnBody() const override { return this->Surface_->Placement().OnBody(); }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
+  // The command that set its own style; null: none.
+  const v1::StyleTerrain* StyleCommand() const {
+    return this->StyleCommand_ ? &*this->StyleCommand_ : nullptr;
+  }
+  void SetStyleCommand(const v1::StyleTerrain& command) { this->StyleCommand_ = command; }
   TrackedGround& Ground() override { return *this->Surface_; }
   const StreamedTerrain& Undisturbed() const override { return this->Surface_->Undisturbed(); }
   RasterPlace Place() const override { return PlaceOf(*this->Surface_); }
@@ -52,6 +57,7 @@ public:
 
 private:
   std::shared_ptr<StreamedTerrain> Surface_;
+  std::optional<v1::StyleTerrain> StyleCommand_;
   std::shared_ptr<ClipmapTerrain> Clipmap_;
   TerrainLayers Layers_;
   std::string CacheFolder_;

@@ -1,5 +1,6 @@
 // The overlays of a terrain's own colour.
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include <dspace/Checks.h>
@@ -148,8 +149,12 @@ const ViewportState& FindViewport(const Context& context, const std::string& nam
 }
 
 void DescribeTerrainStyle(const Context& context, v1::DescribeTerrainStyle& command) {
-  const ClipmapTerrain& terrain = FindClipmap(FindTerrain(context, command.terrain())).Clipmap();
+  ClipmapTerrainObject& found = FindClipmap(FindTerrain(context, command.terrain()));
+  const ClipmapTerrain& terrain = found.Clipmap();
   v1::TerrainStyleReply* reply = context.reply.mutable_terrain_style();
+  if (found.StyleCommand()) {
+    *reply->mutable_given() = *found.StyleCommand();
+  }
   if (!command.viewport().empty()) {
     FindViewport(context, command.viewport());
     reply->set_own(terrain.HasStyleIn(command.viewport()));
@@ -214,8 +219,15 @@ ClipmapStyle ToStyle(const Context& context, const Scene& scene, const StreamedT
 
 void StyleTerrain(const Context& context, v1::StyleTerrain& command) {
   ClipmapTerrainObject& terrain = FindClipmap(FindTerrain(context, command.terrain()));
-  terrain.Clipmap().SetStyle(ToStyle(context, context.GetScene(), terrain.Surface(), command,
-                                     "terrain '" + command.terrain() + "'"));
+  const ClipmapStyle style = ToStyle(context, context.GetScene(), terrain.Surface(), command,
+                                     "terrain '" + command.terrain() + "'");
+  terrain.Clipmap().SetStyle(style);
+  v1::StyleTerrain given = command;
+  if (style.gridLabels) { // with its defaults
+    given.mutable_grid_labels()->set_font_size(std::uint32_t(style.gridLabels->fontSize));
+    given.mutable_grid_labels()->set_background_opacity(style.gridLabels->backgroundOpacity);
+  }
+  terrain.SetStyleCommand(given);
 }
 
 void StyleTerrainInViewport(const Context& context, v1::StyleTerrainInViewport& command) {

@@ -21,7 +21,8 @@ namespace dspace::widgets {
 namespace {
 
 constexpr int Refresh_ms = 200;
-constexpr int MostButtons = 6; // more choices are a list
+constexpr int Patience_ms = 5000; // for the simulation to close an answered question
+constexpr int MostButtons = 6;    // more choices are a list
 
 enum Column { Time, Severity, Kind, Frame, Text, Columns };
 
@@ -105,6 +106,15 @@ MessageWidget::~MessageWidget() = default;
 void MessageWidget::SetSource(Source source) {
   this->Source_ = std::move(source);
   this->Refresh();
+}
+
+void MessageWidget::TakeAnswerAgain(const QString& question) {
+  const auto found = this->Panels_.find(question.toStdString());
+  if (found != this->Panels_.end() && this->Last_.canAnswer) {
+    auto* controls = found->second->findChild<QWidget*>(QStringLiteral("controls"));
+    controls->setEnabled(true);
+    controls->setToolTip({});
+  }
 }
 
 int MessageWidget::Count() const {
@@ -247,11 +257,13 @@ QWidget* MessageWidget::Panel(const QString& name, const QString& text, const QS
   words->setTextInteractionFlags(Qt::TextSelectableByMouse);
   column->addWidget(words);
   auto* controls = new QWidget;
+  controls->setObjectName(QStringLiteral("controls"));
   auto* row = new QHBoxLayout(controls);
   row->setContentsMargins(0, 0, 0, 0);
   const auto answer = [this, controls, name](const QString& given) {
     controls->setEnabled(false); // one answer; the panel goes when the simulation closes it
     controls->setToolTip(tr("The answer is sent"));
+    QTimer::singleShot(Patience_ms, controls, [this, name] { this->TakeAnswerAgain(name); });
     emit this->answered(name, given);
   };
   if (choices.isEmpty()) {

@@ -43,6 +43,9 @@ public:
   ~MessageWidget() override;
 
   void SetSource(Source source);
+  // An answer was not sent: the question takes another one. So it does by itself 5 s after an
+  // answer, where it is still open.
+  void TakeAnswerAgain(const QString& question);
   // Looks for changes now, also while it is hidden.
   void Refresh();
   // The rows of the table.

@@ -69,6 +69,20 @@ PreferencesDialog::PreferencesDialog(const Preferences& shown, QWidget* parent)
   all->addLayout(form);
   all->addStretch();
   all->addWidget(buttons);
+  // Tab goes through the controls, then through the buttons from left to right. Without this order
+  // it reaches one of the buttons only.
+  QWidget* last = this->Theme_;
+  QList<QWidget*> order{this->Samples_, this->Navigation_, this->Length_,
+                        this->Angle_,   this->Recent_,     this->Restore_};
+  for (int i = 0; i < buttons->layout()->count(); ++i) {
+    order << buttons->layout()->itemAt(i)->widget(); // null: a space
+  }
+  for (QWidget* each : order) {
+    if (each) {
+      QWidget::setTabOrder(last, each);
+      last = each;
+    }
+  }
   this->Show(shown);
 }
 

@@ -18,7 +18,7 @@
 #include <QThread>
 #include <QTimer>
 
-#include <dspace/widgets/window/PythonText.h>
+#include <dspace/widgets/script/PythonText.h>
 
 namespace dspace::widgets {
 namespace {

@@ -8,7 +8,7 @@
 #include <QJsonArray>
 #include <QLabel>
 
-#include <dspace/widgets/window/PythonText.h>
+#include <dspace/widgets/script/PythonText.h>
 
 namespace dspace::widgets {
 namespace {

@@ -38,6 +38,8 @@
 #include <dspace/widgets/desktop/RecentFiles.h>
 #include <dspace/widgets/operator/MessageWidget.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
+#include <dspace/widgets/script/PythonText.h>
+#include <dspace/widgets/terrain/TerrainWidget.h>
 #include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/viewport/SessionInput.h>
@@ -48,13 +50,13 @@
 #include <dspace/widgets/window/MovieTrack.h>
 #include <dspace/widgets/window/PlugIns.h>
 #include <dspace/widgets/window/PointerReadout.h>
-#include <dspace/widgets/window/PythonText.h>
 #include <dspace/widgets/window/Shell.h>
 #include <dspace/widgets/window/ShownScenes.h>
 #include <dspace/widgets/window/TaskStrip.h>
 #include <dspace/widgets/window/TelemetryDocks.h>
 #include <dspace/widgets/window/ViewBar.h>
 #include <dspace/widgets/window/ViewKeys.h>
+#include <dspace/widgets/window/ViewMenu.h>
 #include <dspace/widgets/window/ViewPanes.h>
 #include <dspace/widgets/window/ViewSelection.h>
 #include <dspace/widgets/window/WindowPlugIn.h>
@@ -186,6 +188,7 @@ MainWindow::MainWindow(const QString& packages)
   this->splitDockWidget(this->TimeDock_, this->ConsoleDock_, Qt::Vertical);
   this->AddTelemetry(timeline);
   this->AddMessages();
+  this->AddTerrain();
   this->AddViewParts(tree, timeline);
   this->MakeMenus();
   this->statusBar()->showMessage(
@@ -209,6 +212,8 @@ MainWindow::~MainWindow() {
   this->Panes_ = nullptr;
   delete this->MessageDock_;
   this->MessageDock_ = nullptr;
+  delete this->TerrainDock_;
+  this->TerrainDock_ = nullptr;
   delete this->Telemetry_;
   this->Telemetry_ = nullptr;
   delete this->Tasks_;
@@ -249,8 +254,11 @@ void MainWindow::AddMessages() {
   this->MessageDock_->setObjectName(QStringLiteral("messages"));
   this->MessageDock_->setWidget(messages);
   connect(messages, &MessageWidget::answered, this,
-          [this](const QString& question, const QString& answer) {
-            this->Run(QStringLiteral("app.answer(%1, %2)").arg(Quoted(question), Quoted(answer)));
+          [this, messages](const QString& question, const QString& answer) {
+            if (!this->Run(
+                    QStringLiteral("app.answer(%1, %2)").arg(Quoted(question), Quoted(answer)))) {
+              messages->TakeAnswerAgain(question);
+            }
           });
   connect(messages, &MessageWidget::asked, this, [this] {
     this->MessageDock_->show();
@@ -259,6 +267,33 @@ void MainWindow::AddMessages() {
   this->addDockWidget(Qt::BottomDockWidgetArea, this->MessageDock_);
   this->tabifyDockWidget(this->Telemetry_->TableDock(), this->MessageDock_);
   this->tabifyDockWidget(this->MessageDock_, this->ConsoleDock_);
+}
+
+void MainWindow::AddTerrain() {
+  this->Terrain_ = new TerrainWidget(this);
+  this->Terrain_->SetSource([scenes = this->Scenes_, own = this->Session_.Get()] {
+    const auto [of, scene] = scenes->ActiveScene();
+    const ShownSession session(of);
+    TerrainWidget::Shown shown;
+    shown.execute = [session](const std::string& command) { return session.Execute(command); };
+    shown.scene = scene;
+    shown.canChange = of == own;
+    shown.busy = session.Player() && session.Player()->IsMoving();
+    return shown;
+  });
+  this->TerrainDock_ = new QDockWidget(tr("Terrain"), this);
+  this->TerrainDock_->setObjectName(QStringLiteral("terrain"));
+  this->TerrainDock_->setWidget(this->Terrain_);
+  connect(this->Terrain_, &TerrainWidget::changeWanted, this, [this](const QString& change) {
+    const QString scene = QString::fromStdString(this->Scenes_->ActiveScene().second);
+    const QString path = scene == QLatin1String(SceneName)
+                             ? QStringLiteral("app.scene")
+                             : QStringLiteral("app.session.scenes[%1]").arg(Quoted(scene));
+    this->Run(path + '.' + change);
+  });
+  this->addDockWidget(Qt::LeftDockWidgetArea, this->TerrainDock_);
+  this->tabifyDockWidget(this->SceneDock_, this->TerrainDock_);
+  this->SceneDock_->raise();
 }
 
 void MainWindow::MakeMenus() {
@@ -313,6 +348,7 @@ void MainWindow::MakeMenus() {
          QStringLiteral("app.copy_picture(%1)"));
   view->addSeparator();
   view->addAction(this->SceneDock_->toggleViewAction());
+  view->addAction(this->TerrainDock_->toggleViewAction());
   view->addAction(this->TimeDock_->toggleViewAction());
   view->addAction(this->Telemetry_->TableDock()->toggleViewAction());
   view->addAction(this->MessageDock_->toggleViewAction());
@@ -450,8 +486,10 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   auto* widget = new ViewportWidget(shown, dock);
   ConnectToExecutor(
       *widget, [session](const std::string& command) { return session.Execute(command); }, viewport,
-      [this, viewport](const std::string& event, const std::string& reply) {
+      [this, widget, session, viewport](const std::string& event, const std::string& reply) {
         this->Selection_->Take(event, reply);
+        OpenViewMenu(widget, session, event, reply,
+                     [this](const QString& line) { return this->Run(line); });
         this->Interpreter_->Tell(viewport, event, reply);
       });
   widget->SetSource([session, viewport] { return session.Viewport(viewport); });

@@ -36,6 +36,7 @@ class PointerReadout;
 class Shell;
 class TaskStrip;
 class TelemetryDocks;
+class TerrainWidget;
 class TimelineWidget;
 class ViewportWidget;
 class WindowPlugIn;
@@ -78,6 +79,7 @@ public:
   ViewPanes* Panes() const { return this->Panes_; }
   ViewSelection* Selection() const { return this->Selection_; }
   MovieTrack* Movies() const { return this->Movies_; }
+  TerrainWidget* Terrain() const { return this->Terrain_; }
 
 protected:
   void closeEvent(QCloseEvent* event) override;
@@ -92,6 +94,7 @@ private:
   };
   void AddMessages();
   void AddTelemetry(TimelineWidget* timeline);
+  void AddTerrain();
   void MakeMenus();
   void ShowView(vtkObject* of, const std::string& viewport, const std::string& title);
   void CloseView(vtkObject* of, const std::string& viewport);
@@ -115,6 +118,7 @@ private:
   TaskStrip* Tasks_ = nullptr;
   PlugIns* PlugIns_ = nullptr;
   TelemetryDocks* Telemetry_ = nullptr;
+  TerrainWidget* Terrain_ = nullptr;
   MovieTrack* Movies_ = nullptr;
   ViewPanes* Panes_ = nullptr;
   ViewSelection* Selection_ = nullptr;
@@ -123,6 +127,7 @@ private:
   bool Arranging_ = false; // the first view gets its room in the next turn of the event loop
   QDockWidget* MessageDock_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
+  QDockWidget* TerrainDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;
   Shell* Shell_ = nullptr;

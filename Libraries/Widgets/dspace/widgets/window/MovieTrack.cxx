@@ -13,12 +13,12 @@
 
 #include "vtkObject.h"
 
+#include <dspace/widgets/script/PythonText.h>
 #include <dspace/widgets/timeline/KeyTrack.h>
 #include <dspace/widgets/timeline/TimeTexts.h>
 #include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/window/ExportDialog.h>
 #include <dspace/widgets/window/KeyDialog.h>
-#include <dspace/widgets/window/PythonText.h>
 #include <dspace/widgets/window/ShownScenes.h>
 
 namespace dspace::widgets {

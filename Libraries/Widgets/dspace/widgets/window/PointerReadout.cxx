@@ -12,6 +12,7 @@
 #include <QStringList>
 
 #include <dspace/proto/commands.pb.h>
+#include <dspace/widgets/settings/DisplayUnits.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 
@@ -29,15 +30,25 @@ QString Shortened(const std::string& name) {
   return text.size() <= MostLetters ? text : text.left(MostLetters - 1) + QChar(0x2026);
 }
 
-// With a millimetre's digits, which a float of a picture does not exceed.
-QString Metres(double value) {
-  return std::isfinite(value) ? QString::number(value, 'f', 3) : QObject::tr("no data");
+// In the chosen unit, without it. With a millimetre's digits, which a float of a picture does not
+// exceed.
+QString Length(double metres, const UnitChoice& units) {
+  return std::isfinite(metres)
+             ? QString::number(metres * units.LengthFactor(), 'f', units.LengthDecimals(3))
+             : QObject::tr("no data");
+}
+
+// "137.441635°", "2.398809 rad"
+QString Angle(double degrees, int decimals, const UnitChoice& units) {
+  const QString unit = units.AngleUnit();
+  return QString::number(degrees * units.AngleFactor(), 'f', units.AngleDecimals(decimals)) +
+         (unit == Degree ? unit : ' ' + unit);
 }
 
 // "137.441635° E"
-QString Angle(double degrees, const QString& positive, const QString& negative) {
-  return QString::number(std::abs(degrees), 'f', 6) + Degree + ' ' +
-         (degrees < 0.0 ? negative : positive);
+QString Side(double degrees, const QString& positive, const QString& negative,
+             const UnitChoice& units) {
+  return Angle(std::abs(degrees), 6, units) + ' ' + (degrees < 0.0 ? negative : positive);
 }
 
 } // namespace
@@ -48,8 +59,9 @@ PointerReadout::PointerReadout(QWidget* parent) : QLabel(parent), Pause_ms_(Pick
   this->setTextInteractionFlags(Qt::TextSelectableByMouse);
   this->setAccessibleName(tr("What is under the pointer"));
   this->setToolTip(
-      tr("The point under the pointer: in the root [m]; on terrain also in its map [m], "
-         "and its height above the vertical datum [m]"));
+      tr("The point under the pointer: in the root; on terrain also in its map, and its height "
+         "above the vertical datum"));
+  connect(&DisplayUnits::The(), &DisplayUnits::changed, this, [this] { this->Later(); });
   this->Rest_.setSingleShot(true);
   connect(&this->Rest_, &QTimer::timeout, this, [this] { this->Look(); });
 }
@@ -150,23 +162,28 @@ QString PointerReadout::TextOf(const std::string& picked, const std::string& slo
     return {};
   }
   const v1::PickReply& pick = reply.pick();
+  const UnitChoice& units = DisplayUnits::The().Get();
   QStringList parts;
   const QString part = Shortened(pick.part());
   parts << Shortened(pick.object_name()) + (part.isEmpty() ? QString() : " / " + part);
   if (pick.terrain().empty()) {
     const v1::Vector3& at = pick.in_root();
-    parts << tr("x %1  y %2  z %3 m").arg(Metres(at.x()), Metres(at.y()), Metres(at.z()));
+    parts << tr("x %1  y %2  z %3 %4")
+                 .arg(Length(at.x(), units), Length(at.y(), units), Length(at.z(), units),
+                      units.LengthUnit());
   } else {
-    parts << tr("map %1, %2 m").arg(Metres(pick.map().x()), Metres(pick.map().y()));
+    parts << tr("map %1, %2 %3")
+                 .arg(Length(pick.map().x(), units), Length(pick.map().y(), units),
+                      units.LengthUnit());
     if (pick.has_coordinates()) {
-      parts << Angle(pick.coordinates().longitude_deg(), tr("E"), tr("W")) + "  " +
-                   Angle(pick.coordinates().latitude_deg(), tr("N"), tr("S"));
+      parts << Side(pick.coordinates().longitude_deg(), tr("E"), tr("W"), units) + "  " +
+                   Side(pick.coordinates().latitude_deg(), tr("N"), tr("S"), units);
     }
-    parts << tr("height %1 m").arg(Metres(pick.map().z()));
+    parts << tr("height %1 %2").arg(Length(pick.map().z(), units), units.LengthUnit());
     v1::Reply told;
     if (told.ParseFromString(slope) && told.terrain_values().slope_deg_size() == 1 &&
         std::isfinite(told.terrain_values().slope_deg(0))) {
-      parts << tr("slope %1").arg(told.terrain_values().slope_deg(0), 0, 'f', 1) + Degree;
+      parts << tr("slope %1").arg(Angle(told.terrain_values().slope_deg(0), 1, units));
     }
     for (int i = 0; i < std::min(MostFields, pick.field_size()); ++i) {
       parts << Shortened(pick.field(i).name()) + ' ' + QString::number(pick.field(i).value());

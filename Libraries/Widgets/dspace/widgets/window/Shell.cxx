@@ -1,6 +1,7 @@
 #include <dspace/widgets/window/Shell.h>
 
 #include <QAction>
+#include <QDockWidget>
 #include <QInputDialog>
 #include <QJsonArray>
 #include <QJsonDocument>
@@ -15,21 +16,10 @@
 #include <dspace/widgets/desktop/NoticeBar.h>
 #include <dspace/widgets/desktop/RecentFiles.h>
 #include <dspace/widgets/desktop/TextWindow.h>
+#include <dspace/widgets/script/PythonText.h>
 #include <dspace/widgets/settings/PreferencesDialog.h>
 
 namespace dspace::widgets {
-namespace {
-
-// A text as a literal of Python.
-QString Literal(const QString& text) {
-  QString quoted = text;
-  quoted.replace('\\', QStringLiteral("\\\\")).replace('"', QStringLiteral("\\\""));
-  quoted.replace('\n', QStringLiteral("\\n"));
-  return '"' + quoted + '"';
-}
-
-} // namespace
-
 Shell::Shell(QMainWindow* window, std::function<bool(const QString&)> run)
     : QObject(window), Window_(window), Run_(std::move(run)),
       Preferences_(Preferences::Read(this->File_)), Notices_(new NoticeBar(window)),
@@ -45,7 +35,7 @@ Shell::Shell(QMainWindow* window, std::function<bool(const QString&)> run)
   connect(this->Layouts_, &Layouts::viewsWanted, this, [this](const QStringList& names) {
     for (const QString& name : names) {
       if (!name.startsWith(QStringLiteral("viewer:"))) { // of a recording or a server
-        this->Run_(QStringLiteral("app.new_view(name=%1)").arg(Literal(name)));
+        this->Run_(QStringLiteral("app.new_view(name=%1)").arg(Quoted(name)));
       }
     }
   });
@@ -85,7 +75,7 @@ void Shell::FillLayouts() {
     dialog->setLabelText(tr("Name of the layout of docks and views"));
     connect(dialog, &QInputDialog::textValueSelected, this, [this](const QString& name) {
       if (!name.trimmed().isEmpty()) {
-        this->Run_(QStringLiteral("app.layouts.save(%1)").arg(Literal(name.trimmed())));
+        this->Run_(QStringLiteral("app.layouts.save(%1)").arg(Quoted(name.trimmed())));
       }
     });
     dialog->open();
@@ -100,7 +90,7 @@ void Shell::FillLayouts() {
     const auto number = names.indexOf(name) + 1; // 1 to 9 are keys
     menu->addAction(
         (number < 10 ? QStringLiteral("&%1 ").arg(number) : QString()) + shown, this,
-        [this, name, line] { this->Run_(QString::fromLatin1(line).arg(Literal(name))); });
+        [this, name, line] { this->Run_(QString::fromLatin1(line).arg(Quoted(name))); });
   };
   for (const QString& name : names) {
     add(this->LayoutMenu_, name, "app.layouts.restore(%1)");
@@ -141,6 +131,21 @@ void Shell::ShowDialog(const QString& name) {
                 "it is '" + name.toStdString() +
                     "'; accepted: preferences, guide, keys, messages, about");
   }
+}
+
+void Shell::ShowDock(const QString& name) {
+  QStringList names;
+  for (QDockWidget* dock : this->Window_->findChildren<QDockWidget*>()) {
+    names << dock->objectName();
+    if (dock->objectName() == name) {
+      dock->show();
+      dock->raise();
+      return;
+    }
+  }
+  names.sort();
+  throw Error(Error::Kind::NotFound, "dock",
+              "it is '" + name.toStdString() + "'; there are: " + names.join(", ").toStdString());
 }
 
 bool Shell::ShowGuide(const QString& page) {
@@ -191,14 +196,14 @@ void Shell::Choose(const Preferences& preferences) {
 void Shell::Apply() {
   this->Run_(QStringLiteral("app.set_view_defaults(samples=%1, navigation=%2)")
                  .arg(this->Preferences_.samples)
-                 .arg(Literal(this->Preferences_.navigation)));
+                 .arg(Quoted(this->Preferences_.navigation)));
 }
 
 // --- Layouts -------------------------------------------------------------------------------------
 
 bool Shell::Takes(const QJsonObject& request) {
   const QString what = request["do"].toString();
-  return what == "layout" || what == "dialog" || what == "theme";
+  return what == "layout" || what == "dialog" || what == "dock" || what == "theme";
 }
 
 QJsonObject Shell::Handle(const QJsonObject& request) {
@@ -206,6 +211,8 @@ QJsonObject Shell::Handle(const QJsonObject& request) {
   const QString name = request["name"].toString();
   if (request["do"].toString() == "dialog") {
     this->ShowDialog(name);
+  } else if (request["do"].toString() == "dock") {
+    this->ShowDock(name);
   } else if (request["do"].toString() == "theme") {
     Preferences chosen = this->Preferences_;
     const std::optional<Theme> theme = ThemeOf(name);

@@ -69,6 +69,8 @@ private:
   void Apply();
   void FillLayouts();
   void ShowDialog(const QString& name);
+  // Shows a dock and brings it to the front. Throws Error(NotFound) if there is none of the name.
+  void ShowDock(const QString& name);
 
   QMainWindow* Window_;
   std::function<bool(const QString&)> Run_;

@@ -22,8 +22,8 @@
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/scene/Scene.h>
 #include <dspace/state/State.h>
+#include <dspace/widgets/script/PythonText.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
-#include <dspace/widgets/window/PythonText.h>
 
 namespace dspace::widgets {
 namespace {

@@ -16,9 +16,9 @@
 #include <dspace/scene/Scene.h>
 #include <dspace/widgets/scene/SceneTreeModel.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
+#include <dspace/widgets/script/PythonText.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
-#include <dspace/widgets/window/PythonText.h>
 #include <dspace/widgets/window/ShownScenes.h>
 
 namespace dspace::widgets {

@@ -1,4 +1,4 @@
-#include <dspace/widgets/window/PythonText.h>
+#include <dspace/widgets/script/PythonText.h>
 
 #include <cmath>
 
