@@ -203,12 +203,13 @@ void FourCascades(vtkDspaceRenderContext* context) {
         passes.push_back(since(between));
       });
   char behind[240];
-  std::snprintf(behind, sizeof behind,
-                "goal <= 1.25; the frame alone %.1f ms, the maps alone %.1f ms: %zu parts, %llu draws "
-                "of %llu triangles of meshes and ground into 4 + 4 maps; camera and rover move 2 cm",
-                1e3 * Median(frames), 1e3 * Median(passes), drive.parts,
-                static_cast<unsigned long long>(maps.Statistics.drawCalls),
-                static_cast<unsigned long long>(maps.Statistics.trianglesDrawn));
+  std::snprintf(
+      behind, sizeof behind,
+      "goal <= 1.25; the frame alone %.1f ms, the maps alone %.1f ms: %zu parts, %llu draws "
+      "of %llu triangles of meshes and ground into 4 + 4 maps; camera and rover move 2 cm",
+      1e3 * Median(frames), 1e3 * Median(passes), drive.parts,
+      static_cast<unsigned long long>(maps.Statistics.drawCalls),
+      static_cast<unsigned long long>(maps.Statistics.trianglesDrawn));
   Print("frame with four shadow maps drawn anew against the frame and their depth passes", turns, 1,
         behind);
 }

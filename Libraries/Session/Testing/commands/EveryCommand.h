@@ -313,7 +313,8 @@ inline const std::vector<CommandInstance>& EveryCommand() {
            pair { from_site { terrain: "ground" map_x: 105.5 map_y: 205.25 height: 2 } to { frame: 11 position { z: 9 } } }
            wavelength: 0.1 without_object: 1 })",
        {}},
-      {R"(lit_area { measuring { no_terrain: true no_objects: true } object: 1 samples: 16 efficiency: 0.3 sun { direction { z: 1 } } })", {}},
+      {R"(lit_area { measuring { no_terrain: true no_objects: true } object: 1 samples: 16 efficiency: 0.3 sun { direction { z: 1 } } })",
+       {}},
       {R"(horizon { measuring { no_terrain: true no_objects: true }
            site { terrain: "ground" map_x: 105.5 map_y: 205.25 height: 2 } azimuths: 8 without_object: 1 })",
        {}},
