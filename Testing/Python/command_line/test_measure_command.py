@@ -1,4 +1,4 @@
-"""`dspace los` and `dspace horizon`: values, files by their endings, and what is rejected."""
+"""`dspace los`, `dspace horizon` and `dspace lit`: values, files by their endings, and what is rejected."""
 import csv
 import json
 import os
@@ -93,6 +93,106 @@ def test_a_horizon_and_its_files(capsys, wall, tmp_path):
     assert code == 0 and len(rows) == 8 and float(rows[2]["azimuth_deg"]) == 90.0
 
 
+LIT = ("lit", "--site", "50.5,20.5")
+
+
+def test_lit_panels_on_level_ground(capsys, wall, tmp_path):
+    code, out, err = run(capsys, *LIT, "--terrain", wall, "--panel", "2,3", "--sun", "-90,30", "--efficiency", "0.3", "--json",
+                         "--out", tmp_path / "lit.csv")
+    assert code == 0, err
+    found = json.loads(out)
+    assert found["area_m2"] == pytest.approx(6.0) and found["lit_percent"] == pytest.approx(100.0, abs=1e-3)
+    assert found["projected_area_m2"] == pytest.approx(3.0, rel=1e-3)
+    assert found["power_w"] == pytest.approx(1361 * 0.5 * 6 * 0.3, rel=1e-3)
+    assert found["sun_azimuth_deg"] == pytest.approx(270.0) and found["sun_elevation_deg"] == pytest.approx(30.0)
+    assert found["sun_radius_deg"] == pytest.approx(0.2666) and not found["on_body"]
+    rows = list(csv.DictReader(open(tmp_path / "lit.csv")))
+    assert len(rows) == 1 and {name: float(value) for name, value in rows[0].items()} == {name: found[name] for name in rows[0]}
+    # The cosine between the panel's normal and the Sun, and the Sun from 2 au.
+    for facing, cosine in (("-90,30", 1.0), ("270,-15", np.sqrt(0.5)), ("0,30", 0.25), ("90,10", 0.0)):
+        code, out, err = run(capsys, *LIT, "--terrain", wall, "--facing", facing, "--sun", "-90,30", "--distance-au", "2",
+                             "--radius-deg", "0", "--out", tmp_path / "lit.json")
+        assert code == 0, err
+        found = json.loads((tmp_path / "lit.json").read_text())
+        assert found["power_w"] == pytest.approx(1361 / 4 * cosine, abs=1e-6), facing
+        assert out.startswith(f"50.5,20.5: {found['lit_area_m2']:.6g} of 1 m^2 lit (")
+
+
+def test_a_lit_panel_behind_a_wall(capsys, wall):
+    """The wall's edge is 19 m over the panels' centre. Panels 81.5 - 1 to 81.5 + 1 m are half lit at 45 degrees."""
+    for x, elevation, lit in (("90.5", "45", 0.0), ("90.5", "80", 4.0), ("81.5", "45", 2.0), ("70.5", "45", 4.0)):
+        code, out, err = run(capsys, "lit", "--terrain", wall, "--site", f"{x},20.5", "--panel", "2,2", "--sun",
+                             f"90,{elevation}", "--radius-deg", "0", "--irradiance", "1000", "--json")
+        assert code == 0, err
+        found = json.loads(out)
+        assert found["lit_area_m2"] == pytest.approx(lit, abs=0.02)
+        assert found["power_w"] == pytest.approx(1000 * lit * np.sin(np.radians(float(elevation))), abs=20)
+    # The width is level: of a panel that faces up, it runs across the azimuth.
+    for site, panel, facing, percent in (("79.5,20.5", "8,0.02", "0,90", 75.0), ("79.5,20.5", "8,0.02", "90,90", 100.0),
+                                         ("79.5,20.5", "0.02,8", "90,90", 75.0), ("150.5,20.5", "1,2", "90,0", 75.0)):
+        code, out, err = run(capsys, "lit", "--terrain", wall, "--site", site, "--height", "1" if facing != "90,0" else "0.5",
+                             "--panel", panel, "--facing", facing, "--sun", "90,45", "--radius-deg", "0", "--json")
+        assert code == 0, err  # the last is upright, and a quarter of it is below the ground
+        assert json.loads(out)["lit_percent"] == pytest.approx(percent, abs=1.0), (site, panel, facing)
+
+
+def test_a_lit_panel_on_the_moons_body(capsys, moon):
+    """A panel of 1 m, 10 m over the sphere, faces the horizon, which is 0.194 degrees below it."""
+    for site in ("-17,8", "-10,0", "-3,-8"):
+        for elevation, lit in (("-0.15", 1.0), ("-0.25", 0.0)):
+            for azimuth in ("0", "250"):
+                code, out, err = run(capsys, "lit", "--terrain", moon, "--site", site, "--height", "10", "--facing",
+                                     f"{azimuth},0", "--sun", f"{azimuth},{elevation}", "--radius-deg", "0", "--json")
+                assert code == 0, err
+                assert json.loads(out)["projected_area_m2"] == pytest.approx(lit, abs=1e-4), (site, azimuth, elevation)
+
+
+def below_the_sun(time):
+    """The point of the Moon below the Sun: longitude, latitude [deg]."""
+    import dspace
+    with dspace.Session() as session:
+        scene = session.scene()
+        point = scene.reference_frames.sub_solar_point("moon", scene.tdb(time))
+    return point.longitude_deg, point.latitude_deg
+
+
+def test_a_lit_panel_at_a_time(capsys, moon):
+    """The Sun's elevation is 90 degrees less the arc to the point below it, within the parallax of 7e-4 degrees."""
+    time = "2026-11-24T12:00"
+    longitude, latitude = np.radians(below_the_sun(time))
+    code, out, err = run(capsys, "lit", "--terrain", moon, "--site", "-12,5", "--time", time, "--json")
+    assert code == 0, err
+    found = json.loads(out)
+    there = np.radians((-12, 5))
+    height = (np.sin(there[1]) * np.sin(latitude) + np.cos(there[1]) * np.cos(latitude) * np.cos(there[0] - longitude))
+    assert found["time"] == time and found["sun_elevation_deg"] == pytest.approx(np.degrees(np.arcsin(height)), abs=0.01)
+    assert 1361 / 1.02**2 < found["irradiance_w_m2"] < 1361 / 0.98**2
+    assert found["sun_radius_deg"] == pytest.approx(0.2666 * np.sqrt(found["irradiance_w_m2"] / 1361), rel=1e-3)
+    assert found["projected_area_m2"] == pytest.approx(max(height, 0.0), abs=1e-3)
+    code, out, err = run(capsys, "lit", "--terrain", moon, "--site", "-12,5", "--time", time, "--body", "nowhere")
+    assert code == 1 and "nowhere" in err and out == ""
+
+
+def test_a_lit_panel_at_a_time_on_a_projected_map(capsys, tmp_path):
+    """Near the south pole of a polar map the Sun's azimuth, clockwise from the map's Y axis, is the longitude below it."""
+    path = tmp_path / "pole.tif"
+    data = gdal.GetDriverByName("GTiff").Create(str(path), 100, 100, 1, gdal.GDT_Float32)
+    data.SetGeoTransform((-1000, 20, 0, 1000, 0, -20))
+    data.SetProjection(f'PROJCS["p",GEOGCS["m",DATUM["m",SPHEROID["m",{R},0]],PRIMEM["G",0],UNIT["degree",0.0174532925199433]],'
+                       'PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],PARAMETER["central_meridian",0],'
+                       'PARAMETER["scale_factor",1],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]]')
+    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
+    data.GetRasterBand(1).WriteArray(np.zeros((100, 100), np.float32))
+    data = None
+    time = "2026-11-24T12:00"
+    longitude, _ = below_the_sun(time)
+    for site in ("50,-89.99", "-120,-89.98", "0,-90"):
+        code, out, err = run(capsys, "lit", "--terrain", path, "--site", site, "--time", time, "--json")
+        assert code == 0, err
+        off = (json.loads(out)["sun_azimuth_deg"] - longitude + 180.0) % 360.0 - 180.0
+        assert off == pytest.approx(0.0, abs=0.05), site
+
+
 def test_plots(capsys, wall, tmp_path):
     needs_module("matplotlib", "python3-matplotlib")
     for name, arguments in (("h", ("horizon", "--site", "50.5,20.5")),
@@ -117,6 +217,22 @@ def test_plots(capsys, wall, tmp_path):
     (("horizon", "--site", "20,20", "--azimuths", "0"), "--azimuths 0: accepted: 1 to 1000000"),
     (("horizon", "--site", "20,20", "--out", "a.xls"), "--out 'a.xls': accepted: a name with .json, .csv, .png"),
     (("horizon", "--site", "20,20", "--out", "/nowhere/a.csv"), "there is no folder /nowhere"),
+    ((*LIT,), "--sun, --time: accepted: one of them"),
+    ((*LIT, "--sun", "0,30", "--time", "2026-11-24"), "--sun, --time: accepted: one of them"),
+    ((*LIT, "--time", "2026-11-24"), "wall.tif has no CRS; accepted: a terrain with longitudes and latitudes"),
+    ((*LIT, "--sun", "0,30", "--body", "moon"), "--body: accepted: with --time"),
+    ((*LIT, "--sun", "0,91"), "--sun '0,91': accepted: AZ,EL, with AZ -360 to 360 and EL -90 to 90 deg"),
+    ((*LIT, "--sun", "0"), "--sun '0': accepted: AZ,EL, finite numbers"),
+    ((*LIT, "--sun", "0,30", "--facing", "400,0"), "--facing '400,0': accepted: AZ,EL, with AZ -360 to 360"),
+    ((*LIT, "--sun", "0,30", "--panel", "0,1"), "--panel '0,1': accepted: W,H, each above 0 to 1e6 m"),
+    ((*LIT, "--sun", "0,30", "--efficiency", "2"), "--efficiency 2: accepted: 0 to 1"),
+    ((*LIT, "--sun", "0,30", "--samples", "0"), "--samples 0: accepted: 1 to 1000000"),
+    ((*LIT, "--sun", "0,30", "--radius-deg", "nan"), "--radius-deg nan: accepted: 0 to 90"),
+    ((*LIT, "--sun", "0,30", "--irradiance", "1", "--distance-au", "1"), "--irradiance, --distance-au: accepted: at most one"),
+    ((*LIT, "--sun", "0,30", "--distance-au", "0"), "--distance-au 0: accepted: 1e-06 to 1e+06"),
+    ((*LIT, "--sun", "0,30", "--height", "-1"), "its height above the ground is -1; accepted: 0 to 1e12 m"),
+    ((*LIT, "--sun", "0,30", "--out", "a.png"), "--out 'a.png': accepted: a name with .json, .csv"),
+    (("lit", "--site", "900,20", "--sun", "0,30"), "site (900, 20) of terrain 'terrain': it is off the terrain's data"),
 ])
 def test_rejected(capsys, wall, arguments, text):
     code, out, err = run(capsys, arguments[0], "--terrain", wall, *arguments[1:])
@@ -126,6 +242,7 @@ def test_rejected(capsys, wall, arguments, text):
 def test_the_command_line_itself_may_be_wrong(capsys, wall):
     assert run(capsys, "los", "--terrain", wall)[0] == 2
     assert run(capsys, "horizon", "--terrain", wall)[0] == 2
+    assert run(capsys, "lit", "--terrain", wall, "--sun", "0,30")[0] == 2
     code, out, _ = run(capsys, "horizon", "--help")
     assert code == 0 and "--azimuths" in out
 

@@ -153,7 +153,8 @@ LitArea MeasureLitArea(const Obstacles& obstacles, const SunDisc& sun,
           v = 1.0 - v;
         }
         const bool onTip = column % 2 == 1;
-        const double s = (column / 2 + (onTip ? 1.0 - u : u)) / side;
+        const int cell = column / 2;
+        const double s = (cell + (onTip ? 1.0 - u : u)) / side;
         const double t = (row + (onTip ? 1.0 - v : v)) / side;
         const Eigen::Vector3d p_R = face[0] + s * a + t * b;
         const double turn = Fraction(Golden * double(number));

@@ -15,6 +15,7 @@ from dspace.errors import Error
 WORDS = {"ephemeris": "print states of bodies and spacecraft",
          "horizon": "measure the horizon around a site on terrain",
          "kernels": "describe SPICE kernels",
+         "lit": "measure the sunlit area and the power of a panel on terrain",
          "log": "show, compare, cut, pack and salvage recordings",
          "los": "test lines of sight over terrain",
          "movie": "make a movie of a run from a text file of camera key frames",

@@ -4,6 +4,7 @@
 
 #include <dspace/Checks.h>
 #include <dspace/commands/measure/MeasuredScene.h>
+#include <dspace/commands/scene/SunCommands.h>
 #include <dspace/measure/LitArea.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/state/SunPlace.h>
@@ -32,39 +33,43 @@ void AddFaces(const MeasuredScene::ShownPart& part, std::vector<Face>& faces) {
 
 // The triangles of each object, in the command's order.
 std::vector<std::vector<Face>> FacesOf(const Context& context, const v1::LitArea& command) {
-  const std::set<std::string> wanted(command.part().begin(), command.part().end());
+  std::vector<std::vector<MeasuredScene::ShownPart>> parts;
   std::set<std::string> names;
-  std::vector<std::vector<Face>> faces;
   for (const ObjectId id : command.object()) {
     const GraphicsObject& object = context.GetScene().Object(id);
     const std::string label = "object '" + object.name + "'";
     if (context.scene->TerrainOf(id)) {
       Reject(label, "it is terrain, which has no lit area; accepted: objects with triangles");
     }
-    faces.emplace_back();
     if (!object.visible || !context.GetScene().Fragments().Get(object.fragment).visible) {
       Reject(label, "it is not shown; accepted: objects that the scene shows");
     }
-    for (const MeasuredScene::ShownPart& part : MeasuredScene::PartsOf(context, object)) {
+    parts.push_back(MeasuredScene::PartsOf(context, object));
+    for (const MeasuredScene::ShownPart& part : parts.back()) {
       names.insert(part.name);
-      if (wanted.empty() || wanted.count(part.name) != 0) {
-        AddFaces(part, faces.back());
-      }
-    }
-    const bool area = std::any_of(faces.back().begin(), faces.back().end(), [](const Face& face) {
-      return (face[1] - face[0]).cross(face[2] - face[0]).squaredNorm() > 0.0;
-    });
-    if (!area) {
-      Reject(label, std::string(wanted.empty() ? "it has" : "its chosen parts have") +
-                        " no faces with an area that the scene shows; accepted: objects with "
-                        "triangles; parts shown: " +
-                        Quoted(names));
     }
   }
+  const std::set<std::string> wanted(command.part().begin(), command.part().end());
   for (const std::string& name : wanted) {
     if (names.count(name) == 0) {
       throw Error(Error::Kind::NotFound, "part '" + name + "'",
                   "none of the objects shows a part of this name; accepted: " + Quoted(names));
+    }
+  }
+  std::vector<std::vector<Face>> faces(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (const MeasuredScene::ShownPart& part : parts[i]) {
+      if (wanted.empty() || wanted.count(part.name) != 0) {
+        AddFaces(part, faces[i]);
+      }
+    }
+    const bool area = std::any_of(faces[i].begin(), faces[i].end(), [](const Face& face) {
+      return (face[1] - face[0]).cross(face[2] - face[0]).squaredNorm() > 0.0;
+    });
+    if (!area) {
+      Reject("object '" + context.GetScene().Object(command.object(int(i))).name + "'",
+             std::string(wanted.empty() ? "it has" : "its chosen parts have") +
+                 " no faces with an area that the scene shows; accepted: objects with triangles");
     }
   }
   return faces;
@@ -84,7 +89,7 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
     Reject(name, "scene '" + context.sceneName +
                      "' has no Sun; accepted: a scene with a Sun, or the argument sun");
   }
-  const Light light = command.has_sun() ? MovedSun(scene, command.sun()) : *present;
+  const Light light = command.has_sun() ? ChangedSun(context, *command.mutable_sun()) : *present;
   const SunDisc sun{TowardsSun(scene, light, RootFrame), light.radius_deg * M_PI / 180.0};
   const double brightest = *std::max_element(light.color.begin(), light.color.end());
   const bool off = !command.has_sun() && !light.enabled;

@@ -1,4 +1,6 @@
 // The Sun: the directional light "sun".
+#include <dspace/commands/scene/SunCommands.h>
+
 #include <optional>
 #include <utility>
 
@@ -65,14 +67,7 @@ void SetSun(const Context& context, v1::SetSun& command) {
   if (context.scene->sky.sun) {
     Reject(SunLabel, "it follows the scene's time; accepted: set_sun_motion with stop first");
   }
-  if (sun.has_horizontal()) {
-    ResolveHorizontal(context, sun);
-  }
-  if (sun.frame() != NoFrame && !sun.has_direction()) {
-    Reject(SunLabel, "frame " + std::to_string(sun.frame()) +
-                         " is given without a direction; accepted: both, or no frame");
-  }
-  context.GetScene().SetLight(MovedSun(context.GetScene(), sun));
+  context.GetScene().SetLight(ChangedSun(context, sun));
 }
 
 void GetSun(const Context& context, v1::GetSun& command) {
@@ -94,6 +89,17 @@ void GetSun(const Context& context, v1::GetSun& command) {
 }
 
 } // namespace
+
+Light ChangedSun(const Context& context, v1::SunState& sun) {
+  if (sun.has_horizontal()) {
+    ResolveHorizontal(context, sun);
+  }
+  if (sun.frame() != NoFrame && !sun.has_direction()) {
+    Reject(SunLabel, "frame " + std::to_string(sun.frame()) +
+                         " is given without a direction; accepted: both, or no frame");
+  }
+  return MovedSun(context.GetScene(), sun);
+}
 
 void AddSunCommands(Registry& registry) {
   using C = v1::Command;

@@ -1,0 +1,170 @@
+"""`dspace lit`: the sunlit area of a flat panel over terrain, and the power of its solar cells."""
+import pathlib
+import sys
+
+import numpy as np
+
+from dspace.command_line import Failed
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, write
+from dspace.command_line.sky import check
+from dspace.command_line.terrain_rasters import gdal_modules
+
+AU = 149597870700.0
+SUN_RADIUS_DEG = 0.2666  # at 1 au
+MOST_SAMPLES = 1_000_000
+ENDINGS = (".json", ".csv")
+
+
+def add_arguments(parser):
+    add_ground(parser, "a file of the result: .json or .csv")
+    parser.add_argument("--site", required=True, metavar="LON,LAT",
+                        help="longitude (east) and latitude [deg]; map x and y without a CRS")
+    parser.add_argument("--height", type=float, default=1.0, metavar="H",
+                        help="of the panel's centre above the ground [m], 0 or more (default: 1)")
+    parser.add_argument("--panel", default="1,1", metavar="W,H",
+                        help="width (level) and height (along the slope of the panel) [m] (default: 1,1)")
+    parser.add_argument("--facing", default="0,90", metavar="AZ,EL",
+                        help="azimuth, clockwise from north, and elevation of the panel's normal [deg] (default: 0,90, up)")
+    parser.add_argument("--sun", metavar="AZ,EL", help="azimuth and elevation of the Sun at the site [deg]")
+    parser.add_argument("--time", metavar="UTC",
+                        help="in place of --sun: UTC in ISO 8601, or with ' TDB', ' TT' or ' TAI' behind it; needs a terrain "
+                        "with longitudes and latitudes on a known body")
+    parser.add_argument("--body", metavar="BODY", help="the body of --time (default: the one that the terrain's CRS names)")
+    parser.add_argument("--radius-deg", type=float, metavar="R",
+                        help="angular radius of the Sun's disc, 0 to 90 (default: that of --time, or 0.2666 divided by "
+                        "--distance-au)")
+    parser.add_argument("--irradiance", type=float, metavar="W",
+                        help="on a surface that faces the Sun [W/m^2] (default: that of the distance)")
+    parser.add_argument("--distance-au", type=float, metavar="D",
+                        help="from the Sun [au]: the irradiance is 1361 / D^2 (default: that of --time, or 1)")
+    parser.add_argument("--efficiency", type=float, default=1.0, metavar="E", help="of the cells, 0 to 1 (default: 1)")
+    parser.add_argument("--samples", type=int, default=4096, metavar="N",
+                        help="places of the panel that are tested, 1 to 1000000 (default: 4096)")
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    import dspace
+    if options.out is not None and pathlib.Path(options.out).suffix.lower() not in ENDINGS:
+        raise Failed(f"--out '{options.out}': accepted: a name with {', '.join(ENDINGS)}")
+    out = out_of(options)
+    place = place_of(options.site, "LON,LAT", (2,), "--site")
+    size = place_of(options.panel, "W,H", (2,), "--panel")
+    if not all(0.0 < side <= 1e6 for side in size):
+        raise Failed(f"--panel {options.panel!r}: accepted: W,H, each above 0 to 1e6 m")
+    facing = angles_of(options.facing, "--facing")
+    check_sun(options)
+    check("--efficiency", options.efficiency, 0.0, 1.0)
+    if not 1 <= options.samples <= MOST_SAMPLES:
+        raise Failed(f"--samples {options.samples}: accepted: 1 to {MOST_SAMPLES}")
+    with dspace.Session() as session:
+        ground = MeasuredGround(session.scene(), options)
+        site = ground.site((*place, options.height))
+        panel = add_panel(ground.scene, site, size, facing)
+        sun = sun_of(ground, site, place, options)
+        put_sun(ground.scene, site, sun.pop("angles"), **sun)
+        lit = ground.scene.lit_area(panel, efficiency=options.efficiency, samples=options.samples)
+        azimuth, elevation = ground.scene.sun.angles(site.terrain, (float(site.x), float(site.y)))
+        radius = ground.scene.sun.radius_deg
+    row = {"lon_deg": place[0], "lat_deg": place[1], "height_m": options.height, "width_m": size[0], "panel_height_m": size[1],
+           "facing_azimuth_deg": facing[0], "facing_elevation_deg": facing[1], "sun_azimuth_deg": azimuth,
+           "sun_elevation_deg": elevation, "sun_radius_deg": radius, "irradiance_w_m2": lit.irradiance,
+           "efficiency": options.efficiency, "area_m2": lit.area, "lit_area_m2": lit.lit_area,
+           "lit_percent": 100.0 * lit.fraction, "projected_area_m2": lit.projected_area, "power_w": lit.power}
+    found = {"terrain": str(options.terrain), "on_body": ground.on_body, **row}
+    if options.time is not None:
+        found["time"] = options.time
+    if out is not None:
+        write(out, found, [row], None)
+    if options.json:
+        sys.stdout.write(text_of(found))
+        return
+    print(told(row))
+    if out is not None:
+        print(f"{out}: 1 panel")
+
+
+def angles_of(text, option):
+    """Azimuth and elevation [deg] of "AZ,EL"."""
+    azimuth, elevation = place_of(text, "AZ,EL", (2,), option)
+    if not (abs(azimuth) <= 360.0 and abs(elevation) <= 90.0):
+        raise Failed(f"{option} {text!r}: accepted: AZ,EL, with AZ -360 to 360 and EL -90 to 90 deg")
+    return azimuth, elevation
+
+
+def check_sun(options):
+    """Rejects wrong options of the Sun."""
+    if (options.sun is None) == (options.time is None):
+        raise Failed("--sun, --time: accepted: one of them")
+    if options.sun is not None:
+        angles_of(options.sun, "--sun")
+    if options.body is not None and options.time is None:
+        raise Failed("--body: accepted: with --time")
+    if options.irradiance is not None and options.distance_au is not None:
+        raise Failed("--irradiance, --distance-au: accepted: at most one of them")
+    check("--radius-deg", options.radius_deg, 0.0, 90.0)
+    check("--irradiance", options.irradiance, 0.0, 1.361e15)
+    check("--distance-au", options.distance_au, 1e-6, 1e6)
+
+
+def put_sun(scene, site, angles, **more):
+    """Sets the Sun by azimuth and elevation [deg] at the site."""
+    scene.sun.set(azimuth_deg=angles[0], elevation_deg=angles[1], terrain=site.terrain, at=(float(site.x), float(site.y)),
+                  **more)
+
+
+def add_panel(scene, site, size, facing):
+    """Adds the panel. Sets the Sun to find the local axes in the root."""
+    centre = scene.horizon(site, 1).place  # rejects sites off the data
+    axes = []  # east, north, up
+    for angles in ((90.0, 0.0), (0.0, 0.0), (0.0, 90.0)):
+        put_sun(scene, site, angles)
+        axes.append(scene.sun.direction)
+    azimuth, elevation = np.radians(facing)
+    normal = (np.cos(elevation) * np.sin(azimuth), np.cos(elevation) * np.cos(azimuth), np.sin(elevation))
+    slope = (-np.sin(elevation) * np.sin(azimuth), -np.sin(elevation) * np.cos(azimuth), np.cos(elevation))
+    pose = np.eye(4)
+    pose[:3, :3] = np.transpose(axes) @ np.transpose((np.cross(slope, normal), slope, normal))
+    pose[:3, 3] = centre
+    return scene.add_plane(*size, name="panel", frame=scene.add_frame("panel", pose=pose))
+
+
+def sun_of(ground, site, place, options):
+    """The angles at the site, the radius, and the irradiance or the distance of the Sun: arguments of put_sun()."""
+    distance, radius = options.distance_au, options.radius_deg
+    if options.time is None:
+        angles = angles_of(options.sun, "--sun")
+        if radius is None:
+            radius = min(SUN_RADIUS_DEG / (distance or 1.0), 90.0)
+    else:
+        if not ground.crs:
+            raise Failed(f"--time {options.time!r}: {options.terrain} has no CRS; accepted: a terrain with longitudes and "
+                         "latitudes on a known body, or --sun AZ,EL")
+        time = ground.scene.tdb(options.time)
+        sky = ground.terrain.sky(float(site.x), float(site.y), "sun", float(site.height), body=options.body, time=time)["sun"]
+        angles = ((sky.azimuth_deg + north_of(ground, place)) % 360.0, sky.elevation_deg)
+        distance = distance or sky.range / AU
+        radius = sky.radius_deg if radius is None else radius
+    if options.irradiance is not None:
+        return {"angles": angles, "radius_deg": radius, "irradiance": options.irradiance}
+    return {"angles": angles, "radius_deg": radius, "distance_au": distance or 1.0}
+
+
+def north_of(ground, place):
+    """The azimuth of the meridian's north from the terrain's north [deg]: on a projected map that is the map's Y axis."""
+    crs, geographic = ground.crs
+    if crs.IsGeographic():
+        return 0.0
+    _, osr = gdal_modules()
+    step = -1e-4 if place[1] > 0.0 else 1e-4  # away from the nearer pole
+    turn = osr.CoordinateTransformation(geographic, crs)
+    here, there = (np.array(turn.TransformPoint(place[0], latitude)[:2]) for latitude in (place[1], place[1] + step))
+    x, y = (there - here) / step
+    return float(np.degrees(np.arctan2(x, y)))
+
+
+def told(row):
+    return (f"{row['lon_deg']:.9g},{row['lat_deg']:.9g}: {row['lit_area_m2']:.6g} of {row['area_m2']:.6g} m^2 lit "
+            f"({row['lit_percent']:.2f} %), projected area {row['projected_area_m2']:.6g} m^2, power {row['power_w']:.6g} W; Sun "
+            f"azimuth {row['sun_azimuth_deg']:.5f}, elevation {row['sun_elevation_deg']:.5f} deg, "
+            f"{row['irradiance_w_m2']:.6g} W/m^2")
