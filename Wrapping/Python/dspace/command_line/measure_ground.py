@@ -1,4 +1,4 @@
-"""What `dspace los` and `dspace horizon` share: the terrain, places on it, and the files that they write."""
+"""What `dspace los`, `dspace horizon` and `dspace lit` share: the terrain, places on it, and the files that they write."""
 import io
 import json
 import math
