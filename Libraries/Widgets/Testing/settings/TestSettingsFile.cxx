@@ -4,6 +4,8 @@
 #include <csignal>
 #include <cstring>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -162,7 +164,37 @@ TEST_F(SettingsFileTest, AProgramThatIsKilledWhileItWritesLeavesAWholeFile) {
     ASSERT_EQ(text.size(), 200000);
     ASSERT_EQ(text.count(text[0]), 200000);
   }
-  // The lock of the one that was killed is no hindrance.
+  // The lock of the one that was killed is no hindrance, nor is one that was not written to its
+  // end.
   SettingsFile file(this->path);
   EXPECT_TRUE(file.Set("a", 1)) << file.Problem().toStdString();
+  QFile::remove(this->path + ".lock");
+  QFile empty(this->path + ".lock");
+  ASSERT_TRUE(empty.open(QIODevice::WriteOnly));
+  empty.close();
+  EXPECT_TRUE(file.Set("a", 2)) << file.Problem().toStdString();
+}
+
+TEST_F(SettingsFileTest, AnotherProgramThatWritesIsWaitedFor) {
+  SettingsFile file(this->path);
+  ASSERT_TRUE(file.Set("a", 1));
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const int held = open((this->path + ".lock").toLocal8Bit().constData(), O_RDWR);
+    const bool locked = held >= 0 && flock(held, LOCK_EX) == 0;
+    _exit(write(ready[1], locked ? "y" : "n", 1) == 1 && pause() ? 0 : 1);
+  }
+  char answer = 0;
+  ASSERT_EQ(read(ready[0], &answer, 1), 1);
+  EXPECT_EQ(answer, 'y');
+  EXPECT_FALSE(file.Set("a", 2));
+  EXPECT_NE(file.Problem().indexOf("another program holds its lock"), -1);
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(file.Set("a", 2)) << file.Problem().toStdString();
+  close(ready[0]);
+  close(ready[1]);
 }

@@ -1,11 +1,17 @@
 #include <dspace/widgets/settings/SettingsFile.h>
 
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <QCryptographicHash>
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
 #include <QJsonDocument>
-#include <QLockFile>
 #include <QStandardPaths>
 
 #include <dspace/AtomicFile.h>
@@ -17,6 +23,45 @@ namespace {
 constexpr int Version = 1;
 constexpr qint64 MostBytes = 4 << 20;
 constexpr int LockPatience_ms = 500;
+
+// The kernel releases it when the program ends, however it ends. A file with the number of its
+// process, as QLockFile writes it, blocks others if the program is killed before it has written it.
+class FileLock {
+public:
+  explicit FileLock(const QString& path)
+      : File_(::open(QFile::encodeName(path).constData(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)),
+        Error_(errno) {}
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+  ~FileLock() {
+    if (this->File_ >= 0) {
+      ::close(this->File_);
+    }
+  }
+
+  // Null, or why not.
+  const char* Take() {
+    for (int waited = 0; this->File_ >= 0; waited += Pause_ms) {
+      if (::flock(this->File_, LOCK_EX | LOCK_NB) == 0) {
+        return nullptr;
+      }
+      if (errno != EWOULDBLOCK && errno != EINTR) {
+        this->Error_ = errno;
+        break;
+      }
+      if (waited >= LockPatience_ms) {
+        return "another program holds its lock";
+      }
+      ::usleep(Pause_ms * 1000);
+    }
+    return std::strerror(this->Error_);
+  }
+
+private:
+  static constexpr int Pause_ms = 5;
+  int File_;
+  int Error_;
+};
 
 // Keys of QJsonObject are sorted: equal values have one text.
 QString DigestOf(const QJsonObject& values) {
@@ -95,10 +140,9 @@ bool SettingsFile::Set(const QString& name, const QJsonValue& value) {
   if (!QDir().mkpath(info.absolutePath())) {
     return fail(QStringLiteral("its folder cannot be made"));
   }
-  QLockFile lock(this->Path_ + QStringLiteral(".lock"));
-  lock.setStaleLockTime(10000);
-  if (!lock.tryLock(LockPatience_ms)) {
-    return fail(QStringLiteral("another program holds its lock"));
+  FileLock lock(this->Path_ + QStringLiteral(".lock"));
+  if (const char* why = lock.Take()) {
+    return fail(QString::fromLocal8Bit(why));
   }
   QJsonObject values;
   if (this->Damaged_ || !this->Read(values)) {
