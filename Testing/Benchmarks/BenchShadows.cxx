@@ -1,5 +1,5 @@
-// Shadows: four maps drawn anew in each frame against the frame without them and their depth
-// passes alone, and pictures of a scene in which nothing moves.
+// Shadows: (1) a frame that draws four shadow maps, compared with a frame without shadows plus the
+// depth passes of these maps; (2) pictures of a scene in which nothing moves.
 #include <cmath>
 #include <cstdio>
 
@@ -210,8 +210,8 @@ void FourCascades(vtkDspaceRenderContext* context) {
       1e3 * Median(frames), 1e3 * Median(passes), drive.parts,
       static_cast<unsigned long long>(maps.Statistics.drawCalls),
       static_cast<unsigned long long>(maps.Statistics.trianglesDrawn));
-  Print("frame with four shadow maps drawn anew against the frame and their depth passes", turns, 1,
-        behind);
+  Print("a frame that draws four shadow maps against a plain frame plus their depth passes", turns,
+        1, behind);
 }
 
 // Asked for again while nothing moves, and drawn again all the same: the sweep for horizons has

@@ -213,6 +213,15 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
   if (!fit.ground) {
     grounds->clear();
   }
+  std::vector<std::vector<LightHull>> others(grounds->size(), objects); // that take its shadow
+  for (std::size_t ground = 0; ground < others.size(); ++ground) {
+    for (std::size_t other = 0; other < groundHulls.size(); ++other) {
+      if (other != ground) {
+        others[ground].insert(others[ground].end(), groundHulls[other].begin(),
+                              groundHulls[other].end());
+      }
+    }
+  }
   this->Casters_.resize(std::size_t(count));
   bool complete = true;
   for (int k = 0; k < count; ++k) {
@@ -250,14 +259,7 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
       CascadeFit coarse = fit;
       coarse.size = fit.GroundSize();
       for (int ground = 0; ground < int(grounds->size()); ++ground) {
-        std::vector<LightHull> others = objects;
-        for (int other = 0; other < int(groundHulls.size()); ++other) {
-          if (other != ground) {
-            const std::vector<LightHull>& hulls = groundHulls[std::size_t(other)];
-            others.insert(others.end(), hulls.begin(), hulls.end());
-          }
-        }
-        const MapReceivers near(coarse, k, others);
+        const MapReceivers near(coarse, k, others[std::size_t(ground)]);
         CasterTiles casting(coarse, cascade);
         for (const LightHull& hull : this->HullsOf(list, map, ground, painter)) {
           if (near.Take(hull)) {

@@ -1,6 +1,7 @@
 #include <dspace/measure/MeshRays.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace dspace {
@@ -8,6 +9,8 @@ namespace {
 
 using V = Eigen::Vector3d;
 constexpr double Infinity = std::numeric_limits<double>::infinity();
+// Nodes that wait in a walk: halves of 2^32 triangles at most.
+constexpr std::size_t MostDepth = 64;
 
 // Moeller and Trumbore (1997), with edges that belong to both of their triangles.
 double Crossing(const V& origin, const V& direction, const V& a, const V& b, const V& c) {
@@ -121,18 +124,12 @@ MeshRays::MeshRays(std::shared_ptr<const Mesh> mesh) : Mesh_(std::move(mesh)) {
   for (std::size_t t = 0; t < count; ++t) {
     this->Order_.push_back(std::uint32_t(t));
     for (int k = 0; k < 3; ++k) {
-      boxes[t].extend(this->Corner(std::uint32_t(t), k));
+      boxes[t].extend(CornerOf(*this->Mesh_, t, k));
     }
   }
   if (count > 0) {
     this->Build(0, std::uint32_t(count), boxes);
   }
-}
-
-Eigen::Vector3d MeshRays::Corner(std::uint32_t triangle, int corner) const {
-  const float* p = this->Mesh_->positions.data() +
-                   3 * std::size_t(this->Mesh_->indices[3 * std::size_t(triangle) + corner]);
-  return {p[0], p[1], p[2]};
 }
 
 // Halves the triangles at the median of their centres along the longest side of these.
@@ -165,34 +162,45 @@ void MeshRays::Build(std::uint32_t first, std::uint32_t last,
   this->Build(middle, last, boxes);
 }
 
-double MeshRays::Intersect(const V& origin_M, const V& direction_M, double first,
-                           double last) const {
-  double best = Infinity;
-  std::vector<std::uint32_t> todo;
+template<typename Enter, typename Visit>
+void MeshRays::Walk(const Enter& enter, const Visit& visit) const {
+  std::array<std::uint32_t, MostDepth> todo;
+  std::size_t waiting = 0;
   if (!this->Nodes_.empty()) {
-    todo.push_back(0);
+    todo[waiting++] = 0;
   }
-  while (!todo.empty()) {
-    const std::uint32_t at = todo.back();
-    todo.pop_back();
+  while (waiting > 0) {
+    const std::uint32_t at = todo[--waiting];
     const Node& node = this->Nodes_[at];
-    if (!Reaches(node.box, origin_M, direction_M, first, std::min(last, best))) {
+    if (!enter(node.box)) {
       continue;
     }
     if (node.count == 0) {
-      todo.push_back(node.first);
-      todo.push_back(at + 1);
+      todo[waiting++] = node.first;
+      todo[waiting++] = at + 1;
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const std::uint32_t t = this->Order_[i];
-      const double found = Crossing(origin_M, direction_M, this->Corner(t, 0), this->Corner(t, 1),
-                                    this->Corner(t, 2));
-      if (found >= first && found <= last && found < best) {
-        best = found;
-      }
+      visit(CornerOf(*this->Mesh_, t, 0), CornerOf(*this->Mesh_, t, 1),
+            CornerOf(*this->Mesh_, t, 2));
     }
   }
+}
+
+double MeshRays::Intersect(const V& origin_M, const V& direction_M, double first,
+                           double last) const {
+  double best = Infinity;
+  this->Walk(
+      [&](const Eigen::AlignedBox3d& box) {
+        return Reaches(box, origin_M, direction_M, first, std::min(last, best));
+      },
+      [&](const V& a, const V& b, const V& c) {
+        const double found = Crossing(origin_M, direction_M, a, b, c);
+        if (found >= first && found <= last && found < best) {
+          best = found;
+        }
+      });
   return best;
 }
 
@@ -201,55 +209,38 @@ MeshRays::Near MeshRays::Nearest(const Eigen::Affine3d& X_WM, const V& a_W, cons
   Near best;
   best.distance = within;
   bool found = false;
-  std::vector<std::uint32_t> todo;
-  if (!this->Nodes_.empty()) {
-    todo.push_back(0);
-  }
+  const auto offer = [&](const V& onLine, const V& onTriangle) {
+    const double distance = (onLine - onTriangle).norm();
+    if (distance < best.distance) {
+      best = {distance, onTriangle};
+      found = true;
+    }
+  };
   const Eigen::Matrix3d spread = X_WM.linear().cwiseAbs();
-  while (!todo.empty()) {
-    const std::uint32_t at = todo.back();
-    todo.pop_back();
-    const Node& node = this->Nodes_[at];
-    const V center = X_WM * node.box.center();
-    const double radius = (spread * (0.5 * node.box.sizes())).norm();
-    if ((OnSegment(center, a_W, b_W) - center).norm() - radius > best.distance) {
-      continue;
-    }
-    if (node.count == 0) {
-      todo.push_back(node.first);
-      todo.push_back(at + 1);
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const std::uint32_t t = this->Order_[i];
-      const V p = X_WM * this->Corner(t, 0);
-      const V q = X_WM * this->Corner(t, 1);
-      const V r = X_WM * this->Corner(t, 2);
-      const auto offer = [&](const V& onLine, const V& onTriangle) {
-        const double distance = (onLine - onTriangle).norm();
-        if (distance < best.distance) {
-          best = {distance, onTriangle};
-          found = true;
+  this->Walk(
+      [&](const Eigen::AlignedBox3d& box) {
+        const V center = X_WM * box.center();
+        const double radius = (spread * (0.5 * box.sizes())).norm();
+        return (OnSegment(center, a_W, b_W) - center).norm() - radius <= best.distance;
+      },
+      [&](const V& a_M, const V& b_M, const V& c_M) {
+        const V p = X_WM * a_M;
+        const V q = X_WM * b_M;
+        const V r = X_WM * c_M;
+        const double crossing = Crossing(a_W, b_W - a_W, p, q, r);
+        if (crossing >= 0.0 && crossing <= 1.0) {
+          const V point = a_W + crossing * (b_W - a_W);
+          offer(point, point);
         }
-      };
-      const double crossing = Crossing(a_W, b_W - a_W, p, q, r);
-      if (crossing >= 0.0 && crossing <= 1.0) {
-        const V point = a_W + crossing * (b_W - a_W);
-        offer(point, point);
-      }
-      for (const auto& [start, end] : {std::pair(p, q), std::pair(q, r), std::pair(r, p)}) {
-        V onLine, onEdge;
-        Segments(a_W, b_W, start, end, onLine, onEdge);
-        offer(onLine, onEdge);
-      }
-      offer(a_W, OnTriangle(a_W, p, q, r));
-      offer(b_W, OnTriangle(b_W, p, q, r));
-    }
-  }
-  if (!found) {
-    return {};
-  }
-  return best;
+        for (const auto& [start, end] : {std::pair(p, q), std::pair(q, r), std::pair(r, p)}) {
+          V onLine, onEdge;
+          Segments(a_W, b_W, start, end, onLine, onEdge);
+          offer(onLine, onEdge);
+        }
+        offer(a_W, OnTriangle(a_W, p, q, r));
+        offer(b_W, OnTriangle(b_W, p, q, r));
+      });
+  return found ? best : Near();
 }
 
 } // namespace dspace

@@ -13,6 +13,20 @@
 
 namespace dspace {
 
+// A corner of a triangle of a mesh, in the mesh's own frame [m].
+inline Eigen::Vector3d CornerOf(const Mesh& mesh, std::size_t triangle, int corner) {
+  const float* p =
+      mesh.positions.data() + 3 * std::size_t(mesh.indices[3 * triangle + std::size_t(corner)]);
+  return {p[0], p[1], p[2]};
+}
+
+// Calls visit(a, b, c) with the corners of each triangle, in the mesh's order.
+template<typename Visit> void ForEachTriangle(const Mesh& mesh, const Visit& visit) {
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+    visit(CornerOf(mesh, t, 0), CornerOf(mesh, t, 1), CornerOf(mesh, t, 2));
+  }
+}
+
 // A tree of boxes over the triangles, in the mesh's own frame M. Arithmetic is double: a crossing's
 // error is of the order of 1e-15 of the coordinates in M. Lines and points of a mesh are left out.
 // Any thread may call.
@@ -35,10 +49,10 @@ public:
   // points that are not nearer than `within`, none: distance +infinity.
   Near Nearest(const Eigen::Affine3d& X_WM, const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W,
                double within) const;
-  // The corners of the triangles in M.
+  // The triangles in M.
   template<typename Visit> void ForEach(const Visit& visit) const {
-    for (const std::uint32_t t : this->Order_) {
-      visit(this->Corner(t, 0), this->Corner(t, 1), this->Corner(t, 2));
+    if (!this->IsEmpty()) {
+      ForEachTriangle(*this->Mesh_, visit);
     }
   }
 
@@ -48,7 +62,8 @@ private:
     std::uint32_t first = 0; // of Order_ in a leaf; else the second child, the first one follows
     std::uint32_t count = 0; // of triangles; 0: not a leaf
   };
-  Eigen::Vector3d Corner(std::uint32_t triangle, int corner) const;
+  // Visits the corners of each triangle in the boxes that `enter` lets in.
+  template<typename Enter, typename Visit> void Walk(const Enter& enter, const Visit& visit) const;
   void Build(std::uint32_t first, std::uint32_t last,
              const std::vector<Eigen::AlignedBox3d>& boxes);
 

@@ -24,11 +24,11 @@ std::string Quoted(const std::set<std::string>& names) {
 
 void AddFaces(const MeasuredScene::ShownPart& part, std::vector<Face>& faces) {
   const bool mirrored = part.X_RM.linear().determinant() < 0.0;
-  MeshRays(part.mesh).ForEach(
-      [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-        faces.push_back(
-            {part.X_RM * a, part.X_RM * (mirrored ? c : b), part.X_RM * (mirrored ? b : c)});
-      });
+  ForEachTriangle(*part.mesh, [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                  const Eigen::Vector3d& c) {
+    faces.push_back(
+        {part.X_RM * a, part.X_RM * (mirrored ? c : b), part.X_RM * (mirrored ? b : c)});
+  });
 }
 
 // The triangles of each object, in the command's order.

@@ -16,7 +16,7 @@ namespace dspace::widgets {
 
 // The ramp (height, slope, aspect, normals), contour lines, the grid with its labels, the colours
 // of a clipmap's levels, and the Sun's direction, whose light shades the ground. It changes nothing
-// itself: each change is told as the arguments of Terrain.change_style(), or of scene.sun.set().
+// itself: its signals have the arguments of Terrain.change_style(), and those of scene.sun.set().
 class StyleEditor : public QWidget {
   Q_OBJECT
 

@@ -23,8 +23,8 @@ class RampLegend;
 class StyleEditor;
 
 // A list of the terrains; of the chosen one the layers, a legend, and the style. While it is
-// visible it looks for changes three times a second. It changes nothing itself: each change is told
-// by changeWanted() as the Python that makes it, which follows "SCENE.".
+// visible it looks for changes three times a second. It changes nothing itself: changeWanted()
+// has the line of Python that makes a change, without the "SCENE." before it.
 class TerrainWidget : public QWidget {
   Q_OBJECT
 
