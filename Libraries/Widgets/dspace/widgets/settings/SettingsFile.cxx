@@ -3,9 +3,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <QCryptographicHash>
 #include <QDir>
@@ -13,6 +11,7 @@
 #include <QFileInfo>
 #include <QJsonDocument>
 #include <QStandardPaths>
+#include <QThread>
 
 #include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
@@ -28,39 +27,29 @@ constexpr int LockPatience_ms = 500;
 // process, as QLockFile writes it, blocks others if the program is killed before it has written it.
 class FileLock {
 public:
-  explicit FileLock(const QString& path)
-      : File_(::open(QFile::encodeName(path).constData(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)),
-        Error_(errno) {}
-  FileLock(const FileLock&) = delete;
-  FileLock& operator=(const FileLock&) = delete;
-  ~FileLock() {
-    if (this->File_ >= 0) {
-      ::close(this->File_);
-    }
-  }
+  explicit FileLock(const QString& path) : File_(path) {}
 
-  // Null, or why not.
-  const char* Take() {
-    for (int waited = 0; this->File_ >= 0; waited += Pause_ms) {
-      if (::flock(this->File_, LOCK_EX | LOCK_NB) == 0) {
-        return nullptr;
-      }
+  // Empty, or why not.
+  QString Take() {
+    if (!this->File_.open(QIODevice::ReadWrite)) { // a new one where there is none; it stays empty
+      return this->File_.errorString();
+    }
+    for (int waited = 0; ::flock(this->File_.handle(), LOCK_EX | LOCK_NB) != 0;
+         waited += Pause_ms) {
       if (errno != EWOULDBLOCK && errno != EINTR) {
-        this->Error_ = errno;
-        break;
+        return QString::fromLocal8Bit(std::strerror(errno));
       }
       if (waited >= LockPatience_ms) {
-        return "another program holds its lock";
+        return QStringLiteral("another program holds its lock");
       }
-      ::usleep(Pause_ms * 1000);
+      QThread::msleep(static_cast<unsigned long>(Pause_ms));
     }
-    return std::strerror(this->Error_);
+    return {};
   }
 
 private:
   static constexpr int Pause_ms = 5;
-  int File_;
-  int Error_;
+  QFile File_;
 };
 
 // Keys of QJsonObject are sorted: equal values have one text.
@@ -141,8 +130,8 @@ bool SettingsFile::Set(const QString& name, const QJsonValue& value) {
     return fail(QStringLiteral("its folder cannot be made"));
   }
   FileLock lock(this->Path_ + QStringLiteral(".lock"));
-  if (const char* why = lock.Take()) {
-    return fail(QString::fromLocal8Bit(why));
+  if (const QString why = lock.Take(); !why.isEmpty()) {
+    return fail(why);
   }
   QJsonObject values;
   if (this->Damaged_ || !this->Read(values)) {
