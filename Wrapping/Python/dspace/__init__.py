@@ -39,6 +39,8 @@ _HOMES = {
     "Orbit": "objects.trajectories", "Trajectory": "objects.trajectories",
     "Animation": "objects.models", "Model": "objects.models",
     "Joint": "objects.robots", "Robot": "objects.robots",
+    "Battery": "measure.plans", "BodySite": "measure.plans", "Panel": "measure.plans",
+    "Contact": "measure.results", "PowerProfile": "measure.results", "SkyTrack": "measure.results",
     "Horizon": "measure.results", "LinesOfSight": "measure.results", "LitArea": "measure.results", "Site": "terrain.site",
     "Movie": "movies.movie",
     "Playback": "playback.playback", "Recording": "recording.recording", "RecordingFile": "recording.file",

@@ -12,6 +12,8 @@
 
 namespace dspace {
 
+constexpr double AstronomicalUnit = 149597870700.0; // [m] (IAU 2012, resolution B2)
+
 // A place that turns with a body: `axes.position` is from its centre in `frame`.
 struct SkyPlace {
   int body = 0;      // NAIF id

@@ -318,6 +318,15 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(horizon { measuring { no_terrain: true no_objects: true }
            site { terrain: "ground" map_x: 105.5 map_y: 205.25 height: 2 } azimuths: 8 without_object: 1 })",
        {}},
+      {R"(track_sky { place { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } }
+           target { body: "earth" station { longitude_deg: -116.9 latitude_deg: 35.4 } } time_s: [0, 100] })",
+       {}},
+      {R"(find_contacts { place { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } }
+           target { body: "sun" upper: true } mask { elevation_deg: [0, 1] } end_s: 1e5 step_s: 3600 deadline_s: 30 })",
+       {}},
+      {R"(profile_power { place { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } }
+           panel { area: 1 tracking: VERTICAL efficiency: 0.3 } battery { capacity_wh: 10 load: 1 } end_s: 1e5 })",
+       {}},
       {R"(horizon_map {})", {}},
       {R"(viewshed {})", {}},
       {R"(illumination_map {})", {}},

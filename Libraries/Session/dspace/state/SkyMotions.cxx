@@ -9,8 +9,6 @@
 namespace dspace::session {
 namespace {
 
-constexpr double AstronomicalUnit = 149597870700.0; // [m] (IAU 2012, resolution B2)
-
 std::string FrameLabel(const FrameTree& tree, FrameId frame) {
   return "frame '" + tree.Path(frame) + "'";
 }

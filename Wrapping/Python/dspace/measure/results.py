@@ -48,13 +48,17 @@ class Horizon:
     azimuth_deg (n,): clockwise from north, from 0 on. elevation_deg (n,): the greatest elevation at which a ray meets an
     obstacle, over the plane that is normal to the local vertical; -90 where there is none. distance (n,): along that ray
     [m]; infinity where there is none. point (n, 3): where it meets the obstacle, in the scene's root [m]; NaN where there is
-    none. object (n,): the GraphicsObject that makes the horizon; None: terrain, or nothing. place (3,): in the root [m]."""
+    none. object (n,): the GraphicsObject that makes the horizon; None: terrain, or nothing. place (3,): in the root [m].
+
+    first_deg: the azimuth of the first from the meridian's north [deg]: 0 on a body, that of the map's Y axis on a plane; None
+    where no terrain with longitudes and latitudes is below the place."""
     azimuth_deg: np.ndarray
     elevation_deg: np.ndarray
     distance: np.ndarray
     point: np.ndarray
     object: np.ndarray
     place: np.ndarray
+    first_deg: object = None
 
     def elevation_at(self, azimuth_deg):
         """Returns the elevation [deg] at azimuths (a number or an array) [deg], linear between the horizon's own."""
@@ -91,3 +95,70 @@ class LitArea:
     def __repr__(self):
         return (f"<dspace.LitArea {np.sum(self.lit_area):.6g} of {np.sum(self.area):.6g} m^2 lit, "
                 f"{np.sum(self.power):.6g} W>")
+
+
+@dataclass(frozen=True)
+class SkyTrack:
+    """Directions of a target over a place: numbers for one time, arrays (n,) for several. time: seconds past J2000 TDB.
+    azimuth_deg: clockwise from the meridian's north. elevation_deg: of its centre. range [m]."""
+    target: object
+    time: object
+    azimuth_deg: object
+    elevation_deg: object
+    range: object
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A moment of a contact. time: seconds past J2000 TDB; azimuth_deg: clockwise from the meridian's north; range [m]."""
+    time: float
+    azimuth_deg: float
+    elevation_deg: float
+    range: float
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A target above the horizon of a place. rise, set: Moments; peak: that of the greatest elevation. since_before: it has
+    begun before the span, and rise is the span's start; until_after: it ends after the span, and set is the span's end."""
+    target: object
+    rise: Moment
+    set: Moment
+    peak: Moment
+    since_before: bool
+    until_after: bool
+
+    @property
+    def duration(self):
+        """[s]"""
+        return self.set.time - self.rise.time
+
+
+@dataclass(frozen=True)
+class PowerProfile:
+    """The power of panels over a span.
+
+    Arrays (n,), with both ends of the span: time (seconds past J2000 TDB), sun_azimuth_deg (clockwise from the meridian's
+    north), sun_elevation_deg (of the disc's centre), lit (part of the disc above the horizon, 0 to 1), power [W] of all
+    panels, charge of the battery (0 to 1; None without one).
+
+    lit_share: mean of `lit` over the span. energy_wh [W h] of all panels. longest_night [s]: longest time without any of the
+    disc; night_start: when it begins (seconds past J2000 TDB; NaN: there is none). least_charge: 0 to 1. empty [s]: the
+    time in which the battery is empty and the panels do not supply the load, which lacks missing_wh [W h]."""
+    time: np.ndarray
+    sun_azimuth_deg: np.ndarray
+    sun_elevation_deg: np.ndarray
+    lit: np.ndarray
+    power: np.ndarray
+    charge: object
+    lit_share: float
+    energy_wh: float
+    longest_night: float
+    night_start: float
+    least_charge: object
+    empty: float
+    missing_wh: float
+
+    def __repr__(self):
+        return (f"<dspace.PowerProfile {len(self.time)} samples, lit {100.0 * self.lit_share:.6g} %, "
+                f"{self.energy_wh:.6g} W h, longest night {self.longest_night / 3600.0:.6g} h>")

@@ -83,7 +83,7 @@ class Sights:
         objects = np.array([self._cached(cache, id) for id in reply.object], dtype=object)
         return Horizon(np.arange(azimuths) * (360.0 / azimuths), np.array(reply.elevation_deg), np.array(reply.distance),
                        np.array(reply.point).reshape(-1, 3), objects,
-                       np.array([origin.x, origin.y, origin.z]))
+                       np.array([origin.x, origin.y, origin.z]), reply.first_deg if reply.HasField("first_deg") else None)
 
     # --- Arguments -----------------------------------------------------------------------------
 

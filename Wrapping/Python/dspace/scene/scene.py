@@ -13,6 +13,7 @@ from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
 from dspace.measure.lit import Lit
 from dspace.measure.sights import Sights
+from dspace.measure.visibility import Visibility
 from dspace.objects.fragments import Fragment, Light, put_light
 from dspace.objects.assemblies import Assembly
 from dspace.objects.factory import ObjectFactory
@@ -283,6 +284,9 @@ class Scene(Strict):
     line_of_sight = delegate(Sights, "line_of_sight")
     horizon = delegate(Sights, "horizon")
     lit_area = delegate(Lit, "lit_area")
+    sky_track = delegate(Visibility, "sky_track")
+    contacts = delegate(Visibility, "contacts")
+    power_profile = delegate(Visibility, "power_profile")
 
     # --- Fragments and lights ------------------------------------------------------------------
 

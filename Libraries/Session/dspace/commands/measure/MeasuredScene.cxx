@@ -1,6 +1,7 @@
 #include <dspace/commands/measure/MeasuredScene.h>
 
 #include <chrono>
+#include <cmath>
 #include <set>
 
 #include <dspace/Checks.h>
@@ -156,28 +157,61 @@ MeasuredScene::Spot MeasuredScene::At(const v1::Site& site, const std::string& w
   return spot;
 }
 
-LevelAxes MeasuredScene::AxesAt(const Spot& spot) const {
-  const auto on = [&](const TerrainSurface& surface, const Pose& X_RS) {
-    const Eigen::Vector3d p_S = X_RS.Inverse().Apply(spot.p_R);
-    LevelAxes axes;
-    axes.up = X_RS.rotation * surface.Up(p_S);
-    axes.north = X_RS.rotation * surface.North(p_S);
-    axes.north = (axes.north - axes.north.dot(axes.up) * axes.up).normalized();
-    axes.east = axes.north.cross(axes.up);
-    return axes;
-  };
+std::pair<const TerrainSurface*, Pose> MeasuredScene::GroundOf(const Spot& spot) const {
   if (spot.terrain) {
     const FrameId frame = this->Context_.GetScene().Object(spot.terrain->Object()).frame;
-    return on(spot.terrain->Surface(), this->Context_.Frames().WorldPose(frame));
+    return {&spot.terrain->Surface(), this->Context_.Frames().WorldPose(frame)};
   }
   for (const Obstacles::Ground& ground : this->Obstacles_.Grounds()) {
     if (ground.surface->Sample(ground.X_RS.Inverse().Apply(spot.p_R)).valid) {
-      return on(*ground.surface, ground.X_RS);
+      return {ground.surface, ground.X_RS};
     }
   }
-  const Eigen::Quaterniond& q_RF = this->Context_.Frames().WorldPose(spot.frame).rotation;
-  return {q_RF * Eigen::Vector3d::UnitX(), q_RF * Eigen::Vector3d::UnitY(),
-          q_RF * Eigen::Vector3d::UnitZ()};
+  return {nullptr, Pose()};
+}
+
+LevelAxes MeasuredScene::AxesAt(const Spot& spot) const {
+  const auto [surface, X_RS] = this->GroundOf(spot);
+  if (!surface) {
+    const Eigen::Quaterniond& q_RF = this->Context_.Frames().WorldPose(spot.frame).rotation;
+    return {q_RF * Eigen::Vector3d::UnitX(), q_RF * Eigen::Vector3d::UnitY(),
+            q_RF * Eigen::Vector3d::UnitZ()};
+  }
+  const Eigen::Vector3d p_S = X_RS.Inverse().Apply(spot.p_R);
+  LevelAxes axes;
+  axes.up = X_RS.rotation * surface->Up(p_S);
+  axes.north = X_RS.rotation * surface->North(p_S);
+  axes.north = (axes.north - axes.north.dot(axes.up) * axes.up).normalized();
+  axes.east = axes.north.cross(axes.up);
+  return axes;
+}
+
+std::optional<double> MeasuredScene::NorthAt(const Spot& spot) const {
+  const auto [surface, X_RS] = this->GroundOf(spot);
+  if (!surface) {
+    return {};
+  }
+  const Eigen::Vector3d p_S = X_RS.Inverse().Apply(spot.p_R);
+  const Eigen::Vector3d map = surface->SceneToMap(p_S);
+  try {
+    Eigen::Vector3d place = surface->MapToGeographic(map);
+    // A step along the meridian, away from the nearer pole.
+    constexpr double Step = 1e-4; // [deg]
+    const double step = place.y() > 0.0 ? -Step : Step;
+    place.y() += step;
+    const Eigen::Vector3d moved_S = surface->MapToScene(surface->GeographicToMap(place));
+    const Eigen::Vector3d north = surface->North(p_S);
+    const Eigen::Vector3d east = north.cross(surface->Up(p_S));
+    const Eigen::Vector3d meridian = (moved_S - p_S) / step;
+    // The meridian's azimuth in the axes, with the other sign.
+    return -std::atan2(meridian.dot(east), meridian.dot(north)) * 180.0 / M_PI;
+  } catch (const Error& error) {
+    if (error.GetKind() != Error::Kind::Unsupported &&
+        error.GetKind() != Error::Kind::InvalidArgument) {
+      throw;
+    }
+    return {}; // no longitudes and latitudes there
+  }
 }
 
 } // namespace dspace::session

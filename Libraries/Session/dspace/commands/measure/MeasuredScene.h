@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <google/protobuf/repeated_field.h>
@@ -52,8 +54,14 @@ public:
   // A site: of its terrain. A place: of the first terrain by name that is an obstacle and has data
   // below it; without one, the axes of its frame.
   LevelAxes AxesAt(const Spot& spot) const;
+  // The azimuth of AxesAt's north, clockwise from the meridian's north [deg]: 0 on a body; on a
+  // plane that of the map's Y axis. Without terrain below, and without longitudes and latitudes,
+  // nothing.
+  std::optional<double> NorthAt(const Spot& spot) const;
 
 private:
+  // The terrain whose north a place has, and its pose; null: none.
+  std::pair<const TerrainSurface*, Pose> GroundOf(const Spot& spot) const;
   void AddObject(const Context& context, const GraphicsObject& object);
 
   const Context& Context_;

@@ -125,6 +125,9 @@ void FindHorizon(const Context& context, v1::Horizon& command) {
     reply.add_object(point.object);
   }
   Put(spot.p_R, reply.mutable_from());
+  if (const std::optional<double> north = scene.NorthAt(spot)) {
+    reply.set_first_deg(*north);
+  }
   context.reply.mutable_horizon()->Swap(&reply);
 }
 

@@ -125,6 +125,7 @@ void AddSkyCommands(Registry& registry) {
   AddKernelCommands(registry);
   AddFrameMotions(registry);
   AddSkyRequests(registry);
+  AddVisibilityRequests(registry);
 }
 
 } // namespace dspace::session

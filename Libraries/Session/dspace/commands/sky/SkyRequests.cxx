@@ -1,7 +1,6 @@
 // Rotations of reference frames, bodies in the sky, sub-points.
-#include <cctype>
-
 #include <dspace/Checks.h>
+#include <dspace/commands/sky/SkyPlaces.h>
 #include <dspace/commands/sky/SkyTools.h>
 #include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/messages/Convert.h>
@@ -158,102 +157,24 @@ void ConvertTimes(const Context& context, v1::ConvertTimes& command) {
   }
 }
 
-// The body of a terrain's CRS, by its name or by its radius.
-int BodyOf(const KernelSet& kernels, const TerrainObject& terrain) {
-  static const std::pair<const char*, int> Bodies[] = {
-      {"moon", 301},   {"mars", 499},   {"mercury", 199},   {"venus", 299},     {"earth", 399},
-      {"phobos", 401}, {"deimos", 402}, {"ceres", 2000001}, {"vesta", 2000004}, {"titan", 606},
-      {"europa", 502}, {"io", 501},     {"ganymede", 503},  {"callisto", 504},  {"enceladus", 602}};
-  const Crs& crs = terrain.Surface().GetCrs();
-  std::string word; // words of the CRS's WKT, which names the body in its datum
-  for (const char c : crs.GetWkt() + " ") {
-    if (std::isalpha(static_cast<unsigned char>(c))) {
-      word += char(std::tolower(static_cast<unsigned char>(c)));
-      continue;
-    }
-    for (const auto& [name, body] : Bodies) {
-      if (word == name) {
-        return body;
-      }
-    }
-    word.clear();
-  }
-  for (const int body : {399, 301, 499, 199, 299}) {
-    const double radius = BodyRadii(kernels.Pool(), body).x();
-    if (std::abs(crs.GetAxes().semiMajor - radius) < 1e-4 * radius) {
-      return body;
-    }
-  }
-  Reject("terrain '" + terrain.Name() + "'",
-         "its CRS tells no body; accepted: the command with a body");
-}
-
-SkyPlace PlaceOfSite(const Context& context, const v1::SkyState& command) {
-  const v1::Site& site = command.site();
-  const auto found = context.scene->terrains.find(site.terrain());
-  if (found == context.scene->terrains.end()) {
-    throw Error(Error::Kind::NotFound, "terrain '" + site.terrain() + "'",
-                "there is no such terrain in scene '" + context.sceneName + "'");
-  }
-  const TerrainObject& terrain = *found->second;
-  const std::string label = "terrain '" + terrain.Name() + "'";
-  const TerrainSurface& surface = terrain.Surface();
-  const SurfaceSample sample = surface.SampleMap({site.map_x(), site.map_y()});
-  if (!sample.valid) {
-    Reject(label, "the place " + NumberText(site.map_x()) + ", " + NumberText(site.map_y()) +
-                      " is off its data; accepted: map coordinates on its data");
-  }
-  Require(site.height() >= 0.0 && site.height() <= 1e12, label, "the height above the ground",
-          site.height(), "0 to 1e12 m");
-  Rows3 map(1, 3);
-  map << site.map_x(), site.map_y(), sample.height + site.height();
-  const BodyCoordinates place = surface.Locate(map)[0];
-  if (!place.bodyFixed.allFinite()) {
-    throw Error(Error::Kind::Unsupported, label,
-                "its CRS has no longitudes and latitudes; accepted: terrain on a body, or a place "
-                "on a frame that follows the time");
-  }
-  const KernelSet& kernels = *context.scene->sky.kernels;
-  SkyPlace out;
-  out.body = command.body().empty() ? BodyOf(kernels, terrain)
-                                    : kernels.GetEphemeris().Names().IdOf(command.body());
-  out.frame = kernels.GetFrames().Table().BodyFixed(out.body).name;
-  // Up is the normal of the CRS's ellipsoid.
-  out.axes = AxesAt({place.longitude_deg, place.latitude_deg, 0.0, LatitudeKind::Planetocentric},
-                    Eigen::Vector3d::Ones());
-  out.axes.position = place.bodyFixed;
-  return out;
-}
-
-SkyPlace PlaceOnFrame(const Context& context, const v1::Place& place) {
-  const FrameTree& tree = context.Frames();
-  const SkyMotions& sky = context.scene->sky;
-  const FrameId frame = ToFrame(place.frame());
-  FrameId above = frame;
-  while (above != RootFrame && !sky.frames.count(above)) {
-    above = tree.Parent(above);
-  }
-  Pose X = tree.RelativePose(above, frame);
-  X.position = X.Apply(ToVector(place.position()));
-  return SkyPlaceOf(*sky.kernels, sky.PlaceOf(tree, above), X);
-}
-
 void SkyState(const Context& context, v1::SkyState& command) {
   const SkyMotions& sky = context.scene->sky;
-  SkyPlace place;
+  v1::SkyPlace asked;
   switch (command.from_case()) {
   case v1::SkyState::kPlace:
-    place = PlaceOnFrame(context, command.place());
+    *asked.mutable_place() = command.place();
     break;
   case v1::SkyState::kSite:
-    place = PlaceOfSite(context, command);
+    *asked.mutable_site() = command.site();
     break;
   case v1::SkyState::kCelestial:
-    place = SkyPlaceOf(*sky.kernels, sky.PlaceOf(command.celestial()), Pose());
+    *asked.mutable_celestial() = command.celestial();
     break;
   default:
-    Reject("command sky_state", "it names no place; accepted: place, site or celestial");
+    break;
   }
+  asked.set_body(command.body());
+  const dspace::SkyPlace place = PlaceUnderSky(context, asked, "command sky_state");
   const dspace::Ephemeris& ephemeris = sky.kernels->GetEphemeris();
   const double tdb = command.has_time_s() ? command.time_s() : context.GetScene().Time();
   std::vector<std::string> targets(command.target().begin(), command.target().end());

@@ -9,6 +9,7 @@ namespace dspace::session {
 void AddKernelCommands(Registry& registry);
 void AddFrameMotions(Registry& registry);
 void AddSkyRequests(Registry& registry);
+void AddVisibilityRequests(Registry& registry);
 
 } // namespace dspace::session
 

@@ -1,0 +1,56 @@
+// When a target stands above the horizon of a place.
+#ifndef DSPACE_VISIBILITY_CONTACTS_H
+#define DSPACE_VISIBILITY_CONTACTS_H
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <dspace/sky/SkyView.h>
+#include <dspace/visibility/HorizonLine.h>
+
+namespace dspace {
+
+// How a target is seen at a time. The target is in contact while `margin_deg` is not negative.
+struct Sighted {
+  AzimuthElevation direction;
+  double range = 0.0;      // [m]
+  double margin_deg = 0.0; // the least of the heights over the horizon, and over the masks
+};
+
+// One contact. Times are TDB [s past J2000].
+struct Contact {
+  double rise = 0.0;
+  double set = 0.0;
+  double peak = 0.0;        // of the greatest elevation
+  bool sinceBefore = false; // it has begun before the span: `rise` is the span's start
+  bool untilAfter = false;  // it ends after the span: `set` is the span's end
+  Sighted atRise, atSet, atPeak;
+};
+
+// Finds contacts in a span by samples `step` apart and by bisection, to 1e-3 s. Where three samples
+// turn without a change of sign, the extremum between them is found first: contacts and gaps
+// shorter than a step are found too, unless two of them lie within two steps. `start` < `end`, 0 <
+// `step`, at most MostSteps of them: else Error(InvalidArgument). Throws what `look` throws.
+constexpr int MostSteps = 2000000;
+std::vector<Contact> FindContacts(const std::function<Sighted(double)>& look, double start,
+                                  double end, double step);
+
+// A body, a spacecraft, or a station on a body.
+struct ContactTarget {
+  int body = 0;                    // NAIF id
+  std::optional<SkyPlace> station; // absent: the body's centre
+  double stationMask_deg = 0.0;    // least elevation of the place over the station's own horizontal
+};
+
+// `target` at `tdb` over a place with a horizon: with light time and stellar aberration, without
+// refraction. A station sees the place where it is now, from where the station was when its light
+// left, without aberration (at most 0.006 degrees). `upper`: the top of the body's disc counts, not
+// its centre. Other bodies do not hide the target. Throws what Look throws.
+Sighted LookOver(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
+                 const HorizonLine& horizon, const ContactTarget& target, double tdb,
+                 bool upper = false);
+
+} // namespace dspace
+
+#endif

@@ -1,0 +1,211 @@
+// Contacts and power over a span of time.
+#include <chrono>
+#include <utility>
+
+#include <dspace/Checks.h>
+#include <dspace/commands/sky/SkyPlaces.h>
+#include <dspace/commands/sky/SkyTools.h>
+#include <dspace/ephemeris/Fallbacks.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/scene/Light.h>
+#include <dspace/visibility/Contacts.h>
+#include <dspace/visibility/PowerProfile.h>
+
+namespace dspace::session {
+namespace {
+
+constexpr int MostTargets = 1000;
+constexpr int MostPanels = 10000;
+
+HorizonLine LineOf(const v1::HorizonMask& mask) {
+  if (mask.elevation_deg().empty()) {
+    return HorizonLine();
+  }
+  return HorizonLine({mask.elevation_deg().begin(), mask.elevation_deg().end()}, mask.first_deg());
+}
+
+dspace::ContactTarget TargetOf(const Context& context, const v1::ContactTarget& asked) {
+  const SkyMotions& sky = context.scene->sky;
+  dspace::ContactTarget target;
+  target.body = sky.kernels->GetEphemeris().Names().IdOf(asked.body());
+  target.stationMask_deg = asked.station_mask_deg();
+  if (asked.has_station()) {
+    v1::CelestialPlace place;
+    place.set_body(asked.body());
+    *place.mutable_site() = asked.station();
+    target.station = SkyPlaceOf(*sky.kernels, sky.PlaceOf(place), Pose());
+  }
+  return target;
+}
+
+// Ends work after a time.
+class Deadline {
+public:
+  Deadline(bool has, double seconds, std::string command)
+      : Has_(has), Seconds_(seconds), Command_(std::move(command)) {}
+  void Check() {
+    if (!this->Has_ || ++this->Count_ % 256 != 0) {
+      return;
+    }
+    const std::chrono::duration<double> past = Clock::now() - this->Start_;
+    if (past.count() > this->Seconds_) {
+      throw Error(Error::Kind::DeadlineExceeded, this->Command_,
+                  "it takes longer than its deadline of " + NumberText(this->Seconds_) +
+                      " s; accepted: a later deadline, fewer steps, or none");
+    }
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  bool Has_;
+  double Seconds_;
+  std::string Command_;
+  Clock::time_point Start_ = Clock::now();
+  int Count_ = 0;
+};
+
+void TrackSky(const Context& context, v1::TrackSky& command) {
+  const std::string name = "command track_sky";
+  const KernelSet& kernels = *context.scene->sky.kernels;
+  const dspace::SkyPlace place = PlaceUnderSky(context, command.place(), name);
+  const dspace::ContactTarget target = TargetOf(context, command.target());
+  if (command.time_s_size() > MostSteps) {
+    Reject(name, std::to_string(command.time_s_size()) + " times; accepted: 1 to 2,000,000");
+  }
+  if (command.time_s().empty()) {
+    command.add_time_s(context.GetScene().Time());
+  }
+  v1::SkyTrackReply reply;
+  for (const double tdb : command.time_s()) {
+    FallbackScope::Begin(tdb);
+    const Sighted seen =
+        LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place, HorizonLine(), target, tdb);
+    reply.add_azimuth_deg(seen.direction.azimuth_deg);
+    reply.add_elevation_deg(seen.direction.elevation_deg);
+    reply.add_range(seen.range);
+    reply.add_time_s(tdb);
+  }
+  context.reply.mutable_sky_track()->Swap(&reply);
+}
+
+void Put(double time, const Sighted& seen, v1::ContactsReply::Moment* moment) {
+  moment->set_time_s(time);
+  moment->set_azimuth_deg(seen.direction.azimuth_deg);
+  moment->set_elevation_deg(seen.direction.elevation_deg);
+  moment->set_range(seen.range);
+}
+
+void SearchContacts(const Context& context, v1::FindContacts& command) {
+  const std::string name = "command find_contacts";
+  const KernelSet& kernels = *context.scene->sky.kernels;
+  const dspace::SkyPlace place = PlaceUnderSky(context, command.place(), name);
+  if (command.target_size() < 1 || command.target_size() > MostTargets) {
+    Reject(name, std::to_string(command.target_size()) + " targets; accepted: 1 to 1,000");
+  }
+  constexpr double Standard = 60.0; // [s]
+  const double step = command.step_s() == 0.0 ? Standard : command.step_s();
+  const HorizonLine horizon = LineOf(command.mask());
+  Deadline deadline(command.has_deadline_s(), command.deadline_s(), name);
+  v1::ContactsReply reply;
+  for (int i = 0; i < command.target_size(); ++i) {
+    const dspace::ContactTarget target = TargetOf(context, command.target(i));
+    const bool upper = command.target(i).upper();
+    const auto look = [&](double tdb) {
+      deadline.Check();
+      FallbackScope::Begin(tdb);
+      return LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place, horizon, target, tdb,
+                      upper);
+    };
+    for (const Contact& found : FindContacts(look, command.start_s(), command.end_s(), step)) {
+      v1::ContactsReply::Contact* contact = reply.add_contact();
+      contact->set_target(std::uint32_t(i));
+      Put(found.rise, found.atRise, contact->mutable_rise());
+      Put(found.set, found.atSet, contact->mutable_set());
+      Put(found.peak, found.atPeak, contact->mutable_peak());
+      contact->set_since_before(found.sinceBefore);
+      contact->set_until_after(found.untilAfter);
+    }
+  }
+  context.reply.mutable_contacts()->Swap(&reply);
+}
+
+SolarPanel PanelOf(const v1::ProfilePower::Panel& asked, const std::string& label) {
+  SolarPanel panel;
+  switch (asked.tracking()) {
+  case v1::ProfilePower::Panel::FIXED:
+    break;
+  case v1::ProfilePower::Panel::VERTICAL:
+    panel.tracking = SolarPanel::Tracking::Vertical;
+    break;
+  case v1::ProfilePower::Panel::FULL:
+    panel.tracking = SolarPanel::Tracking::Full;
+    break;
+  default:
+    Reject(label, "its tracking is " + std::to_string(int(asked.tracking())) +
+                      "; accepted: FIXED, VERTICAL, FULL");
+  }
+  if (asked.has_normal()) {
+    panel.normal = ToVector(asked.normal());
+  }
+  panel.area = asked.area();
+  panel.efficiency = asked.has_efficiency() ? asked.efficiency() : 1.0;
+  return panel;
+}
+
+void ProfilePowerOf(const Context& context, v1::ProfilePower& command) {
+  const std::string name = "command profile_power";
+  const KernelSet& kernels = *context.scene->sky.kernels;
+  const dspace::SkyPlace place = PlaceUnderSky(context, command.place(), name);
+  if (command.panel_size() > MostPanels) {
+    Reject(name, std::to_string(command.panel_size()) + " panels; accepted: at most 10,000");
+  }
+  std::vector<SolarPanel> panels;
+  for (int i = 0; i < command.panel_size(); ++i) {
+    panels.push_back(PanelOf(command.panel(i), "panel " + std::to_string(i)));
+  }
+  std::optional<Battery> battery;
+  if (command.has_battery()) {
+    const v1::ProfilePower::Battery& asked = command.battery();
+    battery.emplace();
+    battery->capacity = asked.capacity_wh();
+    battery->load = asked.load();
+    battery->initial = asked.has_charge() ? asked.charge() : 1.0;
+    battery->charging = asked.has_charging() ? asked.charging() : 1.0;
+  }
+  constexpr double Standard = 3600.0; // [s]
+  Deadline deadline(command.has_deadline_s(), command.deadline_s(), name);
+  const PowerProfile profile = ProfilePower(
+      kernels.GetEphemeris(), kernels.GetFrames(), place, LineOf(command.mask()), panels, battery,
+      SolarConstant, command.start_s(), command.end_s(),
+      command.step_s() == 0.0 ? Standard : command.step_s(), [&] { deadline.Check(); });
+  v1::PowerProfileReply reply;
+  for (const PowerSample& sample : profile.samples) {
+    reply.add_time_s(sample.time);
+    reply.add_sun_azimuth_deg(sample.sun.azimuth_deg);
+    reply.add_sun_elevation_deg(sample.sun.elevation_deg);
+    reply.add_lit(sample.lit);
+    reply.add_power(sample.power);
+    if (battery) {
+      reply.add_charge(sample.charge);
+    }
+  }
+  reply.set_lit_share(profile.litShare);
+  reply.set_energy(profile.energy);
+  reply.set_longest_night_s(profile.longestNight);
+  reply.set_night_start_s(profile.nightStart);
+  reply.set_least_charge(profile.leastCharge);
+  reply.set_empty_s(profile.empty);
+  reply.set_missing(profile.missing);
+  context.reply.mutable_power_profile()->Swap(&reply);
+}
+
+} // namespace
+
+void AddVisibilityRequests(Registry& registry) {
+  using C = v1::Command;
+  registry.Add(C::kTrackSky, &C::mutable_track_sky, TrackSky);
+  registry.Add(C::kFindContacts, &C::mutable_find_contacts, SearchContacts);
+  registry.Add(C::kProfilePower, &C::mutable_profile_power, ProfilePowerOf);
+}
+
+} // namespace dspace::session

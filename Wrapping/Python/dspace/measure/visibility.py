@@ -1,0 +1,161 @@
+"""What a place sees of moving bodies over a span of time: contacts, and the power of panels."""
+import numpy as np
+
+from dspace._core import wire
+from dspace._core.fields import array_of, flag, items, put, put_given, put_vector, reject, text, word
+from dspace.errors import InvalidArgument, WrongType
+from dspace.measure.plans import Battery, BodySite, Panel
+from dspace.measure.results import Contact, Horizon, Moment, PowerProfile, SkyTrack
+from dspace.sky.places import put_place
+from dspace.terrain.site import Site
+
+PLACE = "a Site, a BodySite, a Frame or the path of one"
+TRACKING = {"fixed": 0, "vertical": 1, "full": 2}  # ProfilePower.Panel.Tracking
+
+
+class Visibility:
+    """Measures over spans of time for a Scene, which delegates to it."""
+
+    def __init__(self, scene):
+        self._scene = scene
+
+    def sky_track(self, place, target, times, *, body=None):
+        """Returns the direction and range of a target over a place at many times: a SkyTrack.
+
+        place: a Site (Terrain.site, of one point) above terrain with longitudes and latitudes, a BodySite, or a Frame that
+        follows the time or hangs on one (or its path), whose axes are X east, Y north, Z up. The scene and its time do not
+        change. body: of a Site: a name or NAIF id; default: the one that the terrain's CRS names. target: the name or NAIF
+        id of a body or spacecraft (its centre), or a BodySite of another body. times: seconds past J2000 TDB, a number or an
+        array of one dimension, at most 2,000,000.
+
+        Directions have light time and stellar aberration, without refraction."""
+        about = "sky track"
+        command = self._scene._command()
+        message = command.track_sky
+        self._put_place(message.place, place, body, about)
+        self._put_target(message.target, target, 0.0, about)
+        array = array_of(times, "the times", "seconds past J2000 TDB: a number or an array of one dimension", about)
+        if array.ndim > 1 or not array.size:
+            raise InvalidArgument(f"{about}: the times have the shape {array.shape}; accepted: one dimension, at least one", about)
+        wire.put_array(message, "time_s", array.reshape(-1))
+        found = wire.get_arrays(self._scene._execute(command).sky_track, "azimuth_deg", "elevation_deg", "range", "time_s")
+        if array.ndim == 0:
+            found = [float(values[0]) for values in found]
+        return SkyTrack(target, found[3], *found[:3])
+
+    def contacts(self, place, targets, start, end, *, step=60.0, mask=0.0, station_mask=0.0, upper=False, body=None,
+                 deadline=None):
+        """Finds when targets stand above the horizon of a place. Returns a list of Contact, by target and time.
+
+        place, body: as for sky_track(). targets: one or a list (at most 1,000) of names or NAIF ids of bodies and spacecraft,
+        and of BodySite: stations of other bodies, such as dspace.BodySite("earth", -116.89, 35.43, 1000.0).
+        start, end: seconds past J2000 TDB, or texts as for tdb().
+
+        mask: the horizon of the place: one elevation [deg], a Horizon (Scene.horizon), or elevations at evenly spaced
+        azimuths, clockwise from north. station_mask [deg]: the least elevation of the place over a station's horizontal.
+        upper=True: the top of a body's disc counts, as for sunrise; else its centre. Other bodies do not hide a target.
+
+        Rise and set are found by samples every `step` seconds (at most 2,000,000) and bisection, to 1 ms. Contacts and gaps
+        shorter than a step are found too, unless two of them lie within two steps. deadline: longest time [s].
+
+        Raises dspace.InvalidArgument for an end that is not after the start; dspace.NotFound for unknown bodies;
+        dspace.DeadlineExceeded."""
+        about = "contacts"
+        command = self._scene._command()
+        message = command.find_contacts
+        self._put_place(message.place, place, body, about)
+        single = isinstance(targets, (str, int, BodySite))
+        targets = [targets] if single else items(targets, "the targets", about, "names of bodies, or BodySites")
+        for target in targets:
+            self._put_target(message.target.add(), target, station_mask, about, flag(upper, "upper", about))
+        self._put_span(message, start, end, step, about)
+        self._put_mask(message.mask, mask, about)
+        put_given(message, about, deadline_s=deadline)
+
+        def moment(at):
+            return Moment(at.time_s, at.azimuth_deg, at.elevation_deg, at.range)
+        return [Contact(targets[c.target], moment(c.rise), moment(c.set), moment(c.peak), c.since_before, c.until_after)
+                for c in self._scene._execute(command).contacts.contact]
+
+    def power_profile(self, place, panels, start, end, *, step=3600.0, mask=0.0, battery=None, body=None, deadline=None):
+        """Computes the power of solar panels at a place over a span of time. Returns a PowerProfile.
+
+        place, body, mask, deadline: as for contacts(). panels: a Panel or a list of them (at most 10,000). battery: a Battery;
+        default: none. start, end, step: the power is linear between the samples, of which there are at most 2,000,000.
+
+        The irradiance is 1361 W/m^2 at 1 au, times the part of the Sun's disc above the horizon. The disc is of even radiance.
+        The temperature of cells, shadows of the lander itself, light from the ground and atmospheres do not count. Nights are
+        found as contacts() finds them, to 1 ms."""
+        about = "power profile"
+        command = self._scene._command()
+        message = command.profile_power
+        self._put_place(message.place, place, body, about)
+        for panel in [panels] if isinstance(panels, Panel) else items(panels, "the panels", about, "dspace.Panel"):
+            if not isinstance(panel, Panel):
+                reject(about, "the panel", panel, "a dspace.Panel", WrongType)
+            out = message.panel.add()
+            put(out, about, area=panel.area, efficiency=panel.efficiency)
+            out.tracking = word(panel.tracking, TRACKING, "the tracking", about)
+            put_vector(out.normal, panel.normal, "the normal", about)
+        if battery is not None:
+            if not isinstance(battery, Battery):
+                reject(about, "the battery", battery, "a dspace.Battery", WrongType)
+            put(message.battery, about, capacity_wh=battery.capacity_wh, load=battery.load, charge=battery.charge,
+                charging=battery.charging)
+        self._put_span(message, start, end, step, about)
+        self._put_mask(message.mask, mask, about)
+        put_given(message, about, deadline_s=deadline)
+        reply = self._scene._execute(command).power_profile
+        arrays = wire.get_arrays(reply, "time_s", "sun_azimuth_deg", "sun_elevation_deg", "lit", "power", "charge")
+        charge = arrays[5] if battery is not None else None
+        return PowerProfile(*arrays[:5], charge, reply.lit_share, reply.energy / 3600.0, reply.longest_night_s, reply.night_start_s,
+                            reply.least_charge if battery is not None else None, reply.empty_s, reply.missing / 3600.0)
+
+    # --- Arguments -----------------------------------------------------------------------------
+
+    def _put_place(self, message, place, body, about):
+        if isinstance(place, Site):
+            if place.shape != ():
+                raise InvalidArgument(f"{about}: the place has the shape {place.shape}; accepted: one place", about)
+            self._scene._require_own(place.terrain, f"terrain {place.terrain.name!r}", about)
+            put(message.site, about, terrain=place.terrain.name, map_x=float(place.x), map_y=float(place.y),
+                height=float(place.height))
+            if body is not None:
+                message.body = text(str(body), "the body", about)
+            return
+        if body is not None:
+            reject(about, "the body", body, "it with a Site")
+        if isinstance(place, BodySite):
+            put_place(message.celestial, place.body, None, (place.longitude_deg, place.latitude_deg, place.height),
+                      place.geodetic, about)
+            return
+        if place is None:
+            reject(about, "the place", place, PLACE, WrongType)
+        message.place.frame = self._scene._frame_id(place)
+
+    def _put_target(self, message, target, station_mask, about, upper=False):
+        if isinstance(target, BodySite):
+            put_place(message, target.body, None, None, False, about)
+            put(message.station, about, longitude_deg=target.longitude_deg, latitude_deg=target.latitude_deg,
+                height=target.height, geodetic=target.geodetic)
+            put(message, about, station_mask_deg=station_mask)
+            return
+        if isinstance(target, int) and not isinstance(target, bool):
+            target = str(target)
+        message.body = text(target, "the target", about, "a name or NAIF id of a body, or a dspace.BodySite")
+        message.upper = upper
+
+    def _put_span(self, message, start, end, step, about):
+        start, end = (self._scene.tdb(time) if isinstance(time, str) else time for time in (start, end))
+        put(message, about, start_s=start, end_s=end, step_s=step)
+        if step == 0:
+            reject(about, "the step", step, "above 0 s")
+
+    def _put_mask(self, message, mask, about):
+        if isinstance(mask, Horizon):
+            put(message, about, first_deg=mask.first_deg or 0.0)
+            mask = mask.elevation_deg
+        array = array_of(mask, "the mask", "an elevation [deg], a Horizon, or elevations at evenly spaced azimuths", about)
+        if array.ndim > 1:
+            raise InvalidArgument(f"{about}: the mask has the shape {array.shape}; accepted: a number, or one dimension", about)
+        wire.put_array(message, "elevation_deg", array.reshape(-1))
