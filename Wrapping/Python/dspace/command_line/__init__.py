@@ -12,7 +12,8 @@ import warnings
 
 from dspace.errors import Error
 
-WORDS = {"ephemeris": "print states of bodies and spacecraft",
+WORDS = {"contacts": "find when bodies, spacecraft and stations stand above the horizon of a site",
+         "ephemeris": "print states of bodies and spacecraft",
          "horizon": "measure the horizon around a site on terrain",
          "kernels": "describe SPICE kernels",
          "lit": "measure the sunlit area and the power of a panel on terrain",
@@ -20,6 +21,7 @@ WORDS = {"ephemeris": "print states of bodies and spacecraft",
          "los": "test lines of sight over terrain",
          "movie": "make a movie of a run from a text file of camera key frames",
          "play": "draw pictures of a recording, without a simulation",
+         "power": "profile the power of solar panels at a site over a span of time",
          "serve": "serve a session to simulations and viewers in other processes",
          "sky": "draw the sky over a site, and print the direction of a body",
          "terrain": "describe and draw rasters of heights",

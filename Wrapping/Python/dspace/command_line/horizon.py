@@ -31,7 +31,7 @@ def run(options):
              "lat_deg": point[1], "height_m": point[2]}
             for azimuth, elevation, distance, point in zip(horizon.azimuth_deg, horizon.elevation_deg, horizon.distance, where)]
     found = {"terrain": str(options.terrain), "on_body": ground.on_body, "lon_deg": site[0], "lat_deg": site[1],
-             "height_m": options.height, "horizon": rows}
+             "height_m": options.height, "first_deg": horizon.first_deg, "horizon": rows}
     if out is not None:
         write(out, found, rows, lambda figure: draw(figure, horizon, f"{site[0]:g}, {site[1]:g}, {options.height:g} m above "
                                                     "the ground"))

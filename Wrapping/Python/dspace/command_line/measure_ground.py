@@ -1,4 +1,4 @@
-"""What `dspace los`, `dspace horizon` and `dspace lit` share: the terrain, places on it, and the files that they write."""
+"""What the commands that measure on terrain share: the terrain, places on it, and the files that they write."""
 import io
 import json
 import math
@@ -15,9 +15,9 @@ from dspace.command_line.terrain_rasters import add, degrees, gdal_modules
 ENDINGS = (".json", ".csv", ".png")
 
 
-def add_ground(parser, file_help):
+def add_ground(parser, file_help, required=True):
     """Adds the options of the terrain, and those of the output."""
-    parser.add_argument("--terrain", required=True, metavar="FILE", help="any raster of heights that GDAL opens")
+    parser.add_argument("--terrain", required=required, metavar="FILE", help="any raster of heights that GDAL opens")
     parser.add_argument("--plane", action="store_true",
                         help="place the terrain on a plane, without the body's curvature (default: a degree grid is placed "
                         "on its body, any other raster on a plane)")

@@ -106,9 +106,9 @@ class Visibility:
         self._put_mask(message.mask, mask, about)
         put_given(message, about, deadline_s=deadline)
         reply = self._scene._execute(command).power_profile
-        arrays = wire.get_arrays(reply, "time_s", "sun_azimuth_deg", "sun_elevation_deg", "lit", "power", "charge")
-        charge = arrays[5] if battery is not None else None
-        return PowerProfile(*arrays[:5], charge, reply.lit_share, reply.energy / 3600.0, reply.longest_night_s, reply.night_start_s,
+        arrays = [np.array(getattr(reply, name)) for name in ("time_s", "sun_azimuth_deg", "sun_elevation_deg", "lit", "power")]
+        charge = np.array(reply.charge) if battery is not None else None
+        return PowerProfile(*arrays, charge, reply.lit_share, reply.energy / 3600.0, reply.longest_night_s, reply.night_start_s,
                             reply.least_charge if battery is not None else None, reply.empty_s, reply.missing / 3600.0)
 
     # --- Arguments -----------------------------------------------------------------------------
