@@ -27,11 +27,12 @@ def run(options):
         ground = MeasuredGround(session.scene(), options)
         horizon = ground.scene.horizon(ground.site((*site, options.height)), options.azimuths)
         where = ground.degrees_of(horizon.point)
-    rows = [{"azimuth_deg": azimuth, "elevation_deg": elevation, "distance_m": distance, "lon_deg": point[0],
-             "lat_deg": point[1], "height_m": point[2]}
+    turn = np.nan if horizon.first_deg is None else horizon.first_deg
+    rows = [{"azimuth_deg": azimuth, "true_azimuth_deg": (azimuth + turn) % 360.0, "elevation_deg": elevation,
+             "distance_m": distance, "lon_deg": point[0], "lat_deg": point[1], "height_m": point[2]}
             for azimuth, elevation, distance, point in zip(horizon.azimuth_deg, horizon.elevation_deg, horizon.distance, where)]
     found = {"terrain": str(options.terrain), "on_body": ground.on_body, "lon_deg": site[0], "lat_deg": site[1],
-             "height_m": options.height, "first_deg": horizon.first_deg, "horizon": rows}
+             "height_m": options.height, "horizon": rows}
     if out is not None:
         write(out, found, rows, lambda figure: draw(figure, horizon, f"{site[0]:g}, {site[1]:g}, {options.height:g} m above "
                                                     "the ground"))

@@ -72,15 +72,15 @@ def mask_of(text):
         path = pathlib.Path(text)
     try:
         if path.suffix.lower() == ".json":
-            found = json.loads(path.read_text())
-            rows, first = found["horizon"], found.get("first_deg") or 0.0
+            rows = json.loads(path.read_text())["horizon"]
         else:
-            rows, first = list(csv.DictReader(path.read_text().splitlines())), 0.0
+            rows = list(csv.DictReader(path.read_text().splitlines()))
         azimuths, elevations = (np.array([float(row[name]) for row in rows]) for name in ("azimuth_deg", "elevation_deg"))
-    except (KeyError, TypeError, ValueError):
+        first = float(rows[0]["true_azimuth_deg"] or 0.0)  # without longitudes and latitudes it is not known
+    except (IndexError, KeyError, TypeError, ValueError):
         raise Failed(f"--mask '{path}': accepted: an elevation [deg], or a .json or .csv file of `dspace horizon`") from None
     count = len(azimuths)
-    if not count or np.abs(azimuths - np.arange(count) * (360.0 / count)).max() > 1e-6:
+    if np.abs(azimuths - np.arange(count) * (360.0 / count)).max() > 1e-6:
         raise Failed(f"--mask '{path}': its azimuths are not evenly spaced from 0 on; accepted: a file of `dspace horizon`")
     # As a Horizon whose first azimuth is known; the mask needs nothing else of it.
     from dspace.measure.results import Horizon

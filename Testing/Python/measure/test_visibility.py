@@ -1,0 +1,216 @@
+"""Contacts and power over spans of time: against python3-skyfield, and against numerical integration of its directions."""
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+import dspace
+import needs
+
+DATA = pathlib.Path(os.environ.get("DSPACE_DATA", "/nonexistent")) / "ephemeris"
+KERNELS = DATA / "spice_test_kernels"
+GOLDSTONE = dspace.BodySite("earth", -116.89, 35.4267, 970.0, geodetic=True)
+LUNAR = (29.1957, -84.7906)  # longitude, latitude [deg]
+START = 150_000_000.0  # 2004-10-02, within de405s
+
+
+def real(*paths):
+    for path in paths:
+        if not path.exists():
+            pytest.skip(f"real data absent: set DSPACE_DATA to the folder that has {path.relative_to(DATA.parent)}")
+    return paths
+
+
+@pytest.fixture
+def sky(scene):
+    """The scene with kernels; the same in skyfield: its planets, its time scale, and the lunar site."""
+    api = needs.needs_module("skyfield.api", "python3-skyfield")
+    planetary = needs.needs_module("skyfield.planetarylib", "python3-skyfield")
+    kernels = real(KERNELS / "de405s_littleendian.bsp", DATA / "moon_080317.tf", DATA / "moon_pa_de421_1900-2050.bpc")
+    scene.kernels.load(*kernels)
+    planets = api.load_file(str(kernels[0]))
+    constants = planetary.PlanetaryConstants()
+    with open(kernels[1], "rb") as text:
+        constants.read_text(text)
+    constants.read_binary(open(kernels[2], "rb"))
+    constants.variables["BODY301_RADII"] = [1737.4] * 3
+    frame = constants.build_frame_named("MOON_ME_DE421")
+    site = planets["moon"] + constants.build_latlon_degrees(frame, LUNAR[1], LUNAR[0])
+    return scene, api, planets, api.load.timescale(builtin=True), site
+
+
+def julian(timescale, seconds):
+    days = np.asarray(seconds) / 86400.0
+    return timescale.tdb_jd(2451545.0 + np.floor(days), days - np.floor(days))
+
+
+def seconds(t):
+    return (t.whole - 2451545.0) * 86400.0 + t.tdb_fraction * 86400.0
+
+
+def events(timescale, api, up, start, end, step):
+    """Skyfield's changes of a condition: seconds past J2000 TDB, and what holds then."""
+    from skyfield.searchlib import find_discrete
+    up.step_days = step / 86400.0
+    times, values = find_discrete(julian(timescale, start), julian(timescale, end), up)
+    return np.array([seconds(t) for t in times]), np.asarray(values)
+
+
+def edges(contacts):
+    return np.array([time for c in contacts for time, cut in ((c.rise.time, c.since_before), (c.set.time, c.until_after)) if not cut])
+
+
+def test_contacts_over_the_earth_are_skyfields(sky):
+    """The Moon's centre over 10 degrees at Goldstone for twenty days. The Earth's turn: skyfield takes its own table of UT1,
+    Dspace what it has without kernels: 1 s of UT1 is 1 s of a rise."""
+    scene, api, planets, timescale, _ = sky
+    ground = planets["earth"] + api.wgs84.latlon(GOLDSTONE.latitude_deg, GOLDSTONE.longitude_deg, elevation_m=GOLDSTONE.height)
+    end = START + 20 * 86400.0
+    found = scene.contacts(GOLDSTONE, "moon", START, end, step=1800.0, mask=10.0)
+
+    def up(t):
+        return ground.at(t).observe(planets["moon"]).apparent().altaz()[0].degrees > 10.0
+    times, values = events(timescale, api, up, START, end, 3600.0)
+    assert len(found) >= 19 and found[0].target == "moon"
+    assert len(edges(found)) == len(times)
+    assert np.abs(edges(found) - times).max() < 1.5
+    for contact in found[1:-1]:
+        t = julian(timescale, contact.peak.time + np.array([-300.0, 0.0, 300.0]))
+        altitude, azimuth, distance = ground.at(t).observe(planets["moon"]).apparent().altaz()
+        assert altitude.degrees[1] > altitude.degrees[0] and altitude.degrees[1] > altitude.degrees[2]
+        assert contact.peak.elevation_deg == pytest.approx(altitude.degrees[1], abs=0.005)
+        assert contact.peak.azimuth_deg == pytest.approx(azimuth.degrees[1], abs=0.05)
+        assert contact.peak.range == pytest.approx(distance.m[1], abs=2e3)
+
+
+def test_contacts_of_a_lunar_site_with_a_station_are_skyfields(sky):
+    """Goldstone from the Moon's south: over a mask there, and the site 15 degrees over the station's horizontal. Ten days."""
+    scene, api, planets, timescale, site = sky
+    station = planets["earth"] + api.wgs84.latlon(GOLDSTONE.latitude_deg, GOLDSTONE.longitude_deg, elevation_m=GOLDSTONE.height)
+    place = dspace.BodySite("moon", *LUNAR)
+    end = START + 20 * 86400.0
+    found = scene.contacts(place, [GOLDSTONE, "earth"], START, end, step=1800.0, mask=4.0, station_mask=15.0)
+
+    def over_mask(t):
+        return site.at(t).observe(station).apparent().altaz()[0].degrees > 4.0
+
+    def both(t):
+        return over_mask(t) & (station.at(t).observe(site).apparent().altaz()[0].degrees > 15.0)
+    times, _ = events(timescale, api, both, START, end, 3600.0)
+    assert len(times) > 10
+    mine = edges([c for c in found if c.target is GOLDSTONE])
+    # The station sees the site's light of 1.3 s before, in which the Earth turns.
+    assert len(mine) == len(times) and np.abs(mine - times).max() < 4.0
+    assert {c.target for c in found} == {GOLDSTONE, "earth"}
+    track = scene.sky_track(place, GOLDSTONE, np.linspace(START, end, 50))
+    altitude, azimuth, distance = site.at(julian(timescale, track.time)).observe(station).apparent().altaz()
+    assert np.abs(track.elevation_deg - altitude.degrees).max() < 2e-4
+    assert np.abs((track.azimuth_deg - azimuth.degrees + 180.0) % 360.0 - 180.0).max() < 2e-4
+    assert np.abs(track.range - distance.m).max() < 1000.0
+
+
+def test_a_panels_lunar_day_is_the_integral(sky):
+    """Power of two panels behind a horizon of known shape over a lunar day, against Simpson's rule on skyfield's directions at a
+    sixth of the step, with the disc as 20,000 points."""
+    scene, _, planets, timescale, site = sky
+    end = START + 29.53 * 86400.0
+    line = 1.5 * np.sin(np.radians(2.0 * np.arange(720) * 0.5))  # elevation: 1.5 sin(2 azimuth)
+    panels = [dspace.Panel(2.0, 0.3, azimuth_deg=30.0, elevation_deg=10.0), dspace.Panel(1.0, 0.25, tracking="vertical")]
+    place = dspace.BodySite("moon", *LUNAR)
+    profile = scene.power_profile(place, panels, START, end, step=3600.0, mask=line)
+    times = np.linspace(START, end, 6 * 708 + 1)
+    altitude, azimuth, distance = site.at(julian(timescale, times)).observe(planets["sun"]).apparent().altaz()
+    altitude, azimuth, au = altitude.degrees, azimuth.degrees, distance.au
+    turn, r = np.meshgrid(np.linspace(0, 2 * np.pi, 400, endpoint=False), np.sqrt((np.arange(50) + 0.5) / 50))
+    radius = np.degrees(np.arcsin(695700.0 / (149597870.7 * au)))
+    lit = np.empty(len(times))
+    for i, (a, z) in enumerate(zip(altitude, azimuth)):
+        if abs(a) > 3.0:
+            lit[i] = a > 0
+            continue
+        x, y = radius[i] * (r * np.cos(turn)).ravel(), radius[i] * (r * np.sin(turn)).ravel()
+        lit[i] = np.mean(a + y > 1.5 * np.sin(np.radians(2.0 * (z + x / np.cos(np.radians(a))))))
+    unit = np.column_stack((np.cos(np.radians(altitude)) * np.sin(np.radians(azimuth)),
+                            np.cos(np.radians(altitude)) * np.cos(np.radians(azimuth)), np.sin(np.radians(altitude))))
+    power = 1361.0 / au**2 * lit * (2.0 * 0.3 * np.maximum(unit @ panels[0].normal, 0.0) + 0.25 * np.hypot(unit[:, 0], unit[:, 1]))
+    weights = np.full(len(times), 2.0)
+    weights[1::2], weights[[0, -1]] = 4.0, 1.0
+    weights /= weights.sum()
+    assert 0.2 < profile.lit_share < 0.8  # day and night
+    assert profile.lit_share == pytest.approx(weights @ lit, abs=5e-4)
+    assert profile.energy_wh == pytest.approx(weights @ power * (end - START) / 3600.0, rel=2e-3)
+    assert np.interp(times[::6], profile.time, profile.power) == pytest.approx(power[::6], abs=5.0)
+    # The longest night: the longest run without any of the disc.
+    dark = np.flatnonzero(np.diff(np.concatenate(([0], (lit == 0).astype(int), [0]))))
+    longest = (np.diff(dark)[::2]).max() * (times[1] - times[0])
+    assert profile.longest_night == pytest.approx(longest, abs=2.5 * (times[1] - times[0]))
+
+
+def test_a_battery_through_the_night(sky):
+    """A load of 10 W: what the battery loses in the night is 10 W times the night, between samples of any step."""
+    scene = sky[0]
+    place, span = dspace.BodySite("moon", 0.0, 0.0), (START, START + 60 * 86400.0)
+    panel = dspace.Panel(5.0, 0.3, tracking="full")
+    night = scene.power_profile(place, panel, *span).longest_night
+    assert 14.5 * 86400 < night < 14.9 * 86400  # half of 29.53 days less the disc's half degree an end
+    profile = scene.power_profile(place, panel, *span, battery=dspace.Battery(10_000.0, load=10.0), step=600.0)
+    assert profile.least_charge == pytest.approx(1.0 - night * 10.0 / 3600.0 / 10_000.0, abs=2e-3)
+    assert profile.empty == 0.0 and profile.missing_wh == 0.0 and profile.charge[-1] <= 1.0
+    short = scene.power_profile(place, panel, *span, battery=dspace.Battery(1_000.0, load=10.0), step=600.0)
+    assert short.least_charge == 0.0
+    assert short.empty / 2 == pytest.approx(night - 100.0 * 3600.0, rel=0.01)  # two nights in 60 days
+
+
+def test_the_horizon_of_terrain_is_the_mask(session, scene, tmp_path):
+    """A ring wall on a polar map: azimuths of the mask are turned from the map's Y axis to the meridian's north."""
+    from terrain_support import gdal
+    path, n = tmp_path / "pole.tif", 201
+    z = np.zeros((n, n), np.float32)
+    z[:, -1] = 5000.0  # a wall in the map's east
+    data = gdal.GetDriverByName("GTiff").Create(str(path), n, n, 1, gdal.GDT_Float32)
+    data.SetGeoTransform((-n * 500.0, 1000.0, 0, n * 500.0, 0, -1000.0))
+    data.SetProjection('PROJCS["south pole",GEOGCS["moon",DATUM["Moon",SPHEROID["Moon",1737400,0]],PRIMEM["G",0],UNIT["degree",'
+                       '0.0174532925199433]],PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],'
+                       'PARAMETER["central_meridian",0],PARAMETER["scale_factor",1],UNIT["metre",1]]')
+    data.GetRasterBand(1).WriteArray(z)
+    del data
+    for on_body in (False, True):
+        terrain = scene.add_terrain(path, name=f"pole{on_body}", on_body=on_body, vertical_datum="sphere:1737400")
+        site = terrain.site(30_000.0, 40_000.0, height=2.0)
+        horizon = scene.horizon(site, 720)
+        # At the south pole the map's Y axis points along longitude 0, away from the pole: x is sin(longitude). The wall is in
+        # the map's east, and north is away from the pole: at longitude atan2(30, 40) the meridian's north.
+        longitude = np.degrees(np.arctan2(30.0, 40.0))
+        peak = (horizon.azimuth_deg[np.argmax(horizon.elevation_deg)] + horizon.first_deg) % 360.0
+        # A unit vector to the map's east, in axes whose north points from the pole through the site.
+        assert peak == pytest.approx(90.0 - longitude, abs=12.0), on_body  # the wall is far longer than it is near
+        assert horizon.first_deg == pytest.approx(0.0 if on_body else -longitude, abs=1e-3)
+        scene.remove(terrain)
+    assert scene.horizon(scene.add_frame("free"), 4).first_deg is None
+
+
+def test_bad_input(scene):
+    place = dspace.BodySite("moon", 0.0, 0.0)
+    with pytest.raises(dspace.InvalidArgument, match="accepted: an end after the start"):
+        scene.contacts(place, "sun", 0.0, 0.0)
+    with pytest.raises(dspace.InvalidArgument, match="the step"):
+        scene.contacts(place, "sun", 0.0, 1e9, step=1.0)
+    with pytest.raises(dspace.NotFound, match="nowhere"):
+        scene.contacts(place, "nowhere", 0.0, 1e5)
+    with pytest.raises(dspace.InvalidArgument, match="elevation is 95"):
+        scene.contacts(place, "sun", 0.0, 1e5, mask=[0.0, 95.0])
+    with pytest.raises(dspace.InvalidArgument, match="body of the site"):
+        scene.contacts(place, "moon", 0.0, 1e5)
+    with pytest.raises(dspace.InvalidArgument, match="the place is on the same body"):
+        scene.contacts(place, dspace.BodySite("moon", 1.0, 1.0), 0.0, 1e5)
+    with pytest.raises(dspace.InvalidArgument, match="follows no body"):
+        scene.contacts("/", "sun", 0.0, 1e5)
+    with pytest.raises(dspace.InvalidArgument, match="its area is 0"):
+        scene.power_profile(place, dspace.Panel(0.0), 0.0, 1e5)
+    with pytest.raises(dspace.WrongType, match="accepted: a dspace.Panel"):
+        scene.power_profile(place, [1.0], 0.0, 1e5)
+    with pytest.raises(dspace.InvalidArgument, match="its capacity is 0"):
+        scene.power_profile(place, dspace.Panel(), 0.0, 1e5, battery=dspace.Battery(0.0))
+    with pytest.raises(dspace.DeadlineExceeded, match="longer than its deadline"):
+        scene.contacts(place, "sun", 0.0, 1e8, step=60.0, deadline=0.05)
