@@ -47,6 +47,7 @@ _HOMES = {
     "Kernels": "sky.sky", "ReferenceFrames": "sky.sky",
     "Scene": "scene.scene", "Sun": "scene.sun", "SceneActors": "scene.exports",
     "Pick": "scene.viewport", "Viewport": "scene.viewport",
+    "Report": "reports.report",
     "Explanation": "scene.explanation", "Input": "scene.inputs",
     "Session": "clients.session", "RemoteSession": "links.remote", "connect": "links.remote",
     "Geodesy": "terrain.geodesy", "Terrain": "terrain.terrain", "TerrainLayer": "terrain.layers",

@@ -9,7 +9,7 @@ STEP = 60.0  # [s]
 
 
 def add_arguments(parser):
-    add_span(parser, "a file of the contacts: .json, .csv, or .png (a bar for each)", STEP)
+    add_span(parser, "a file of the contacts: .json, .csv, .html (a report), or .png (a bar for each)", STEP)
     parser.add_argument("--target", action="append", required=True, metavar="BODY[:LON,LAT[,H]]",
                         help="a body or spacecraft (a name or NAIF id), or a station on a body: longitude (east), geodetic "
                         "latitude [deg], height above the ellipsoid [m]; may be given several times")

@@ -8,7 +8,7 @@ from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_o
 
 
 def add_arguments(parser):
-    add_ground(parser, "a file of the horizon: .json, .csv, or .png (a plot)")
+    add_ground(parser, "a file of the horizon: .json, .csv, .html (a report), or .png (a plot)")
     parser.add_argument("--site", required=True, metavar="LON,LAT",
                         help="longitude (east) and latitude [deg]; map x and y without a CRS")
     parser.add_argument("--height", type=float, default=2.0, metavar="H", help="above the ground [m], 0 or more (default: 2)")

@@ -12,11 +12,11 @@ from dspace.command_line.terrain_rasters import gdal_modules
 AU = 149597870700.0
 SUN_RADIUS_DEG = 0.2666  # at 1 au
 MOST_SAMPLES = 1_000_000
-ENDINGS = (".json", ".csv")
+ENDINGS = (".json", ".csv", ".html")
 
 
 def add_arguments(parser):
-    add_ground(parser, "a file of the result: .json or .csv")
+    add_ground(parser, "a file of the result: .json, .csv or .html")
     parser.add_argument("--site", required=True, metavar="LON,LAT",
                         help="longitude (east) and latitude [deg]; map x and y without a CRS")
     parser.add_argument("--height", type=float, default=1.0, metavar="H",

@@ -11,7 +11,7 @@ MOST_PROFILES = 6
 
 
 def add_arguments(parser):
-    add_ground(parser, "a file of the lines: .json, .csv, or .png (profiles; at most the first six lines)")
+    add_ground(parser, "a file of the lines: .json, .csv, .html (a report), or .png (profiles; at most the first six lines)")
     parser.add_argument("--from", dest="starts", action="append", required=True, metavar="LON,LAT,H",
                         help="longitude (east), latitude [deg], height above the ground [m]; map x, y in place of degrees "
                         "without a CRS; may be given several times")

@@ -3,6 +3,7 @@ import io
 import json
 import math
 import pathlib
+import shlex
 import sys
 
 import numpy as np
@@ -12,7 +13,7 @@ from dspace.command_line import Failed
 from dspace.command_line.terrain import add_raster_options
 from dspace.command_line.terrain_rasters import add, degrees, gdal_modules
 
-ENDINGS = (".json", ".csv", ".png")
+ENDINGS = (".json", ".csv", ".png", ".html")
 
 
 def add_ground(parser, file_help, required=True):
@@ -35,7 +36,7 @@ def out_of(options):
         raise Failed(f"--out '{out}': accepted: a name with {', '.join(ENDINGS)}")
     if not out.resolve().parent.is_dir():
         raise Failed(f"--out '{out}': there is no folder {out.resolve().parent}")
-    if out.suffix.lower() == ".png":
+    if out.suffix.lower() in (".png", ".html"):
         figures()
     return out
 
@@ -142,19 +143,40 @@ def text_of(found):
 
 def write(out, found, rows, draw):
     """Writes a file by its ending. found: for JSON; rows: a list of dicts for CSV; draw: a function that draws into a
-    Figure, for PNG."""
+    Figure, for PNG and HTML, or None. The HTML page also has the numbers, the rows, the command line and the versions."""
     ending = out.suffix.lower()
     if ending == ".json":
         atomic_write(out, text_of(found).encode())
-    elif ending == ".csv":
+        return
+    if ending == ".csv":
         lines = [",".join(rows[0])] + [",".join(_cell(value) for value in row.values()) for row in rows]
         atomic_write(out, ("\n".join(lines) + "\n").encode())
-    else:
+        return
+    figure = None
+    if draw is not None:
         figure = figures()(figsize=(9.0, 4.5), dpi=100, layout="constrained")
         draw(figure)
-        data = io.BytesIO()
-        figure.savefig(data, format="png", metadata={"Software": None})
-        atomic_write(out, data.getvalue())
+    if ending == ".html":
+        report(out, found, rows, figure)
+        return
+    data = io.BytesIO()
+    figure.savefig(data, format="png", metadata={"Software": None})
+    atomic_write(out, data.getvalue())
+
+
+def report(out, found, rows, figure):
+    import dspace
+    page = dspace.Report(f"dspace {sys.argv[1] if len(sys.argv) > 1 else 'measurement'}")
+    section = page.section("Result")
+    section.values({name: value for name, value in found.items() if not isinstance(value, (list, dict))})
+    if figure is not None:
+        section.figure(figure)
+    section.table([{name: plain(value) for name, value in row.items()} for row in rows])
+    given = {"command": shlex.join(["dspace", *sys.argv[1:]])}
+    if found.get("terrain") and pathlib.Path(found["terrain"]).is_file():
+        given["terrain"] = pathlib.Path(found["terrain"])
+    page.inputs(**given)
+    page.write(out)
 
 
 def _cell(value):

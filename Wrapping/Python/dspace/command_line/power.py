@@ -11,7 +11,7 @@ STEP = 3600.0  # [s]
 
 
 def add_arguments(parser):
-    add_span(parser, "a file of the profile: .json, .csv, or .png (a plot)", STEP)
+    add_span(parser, "a file of the profile: .json, .csv, .html (a report), or .png (a plot)", STEP)
     parser.add_argument("--panel", action="append", default=[], metavar="AREA[,AZ,EL]",
                         help="area [m^2], and where the normal points: azimuth, clockwise from north, and elevation [deg] "
                         "(default: up); may be given several times (default: one of 1 m^2)")
