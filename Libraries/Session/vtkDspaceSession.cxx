@@ -10,6 +10,7 @@
 
 #include <dspace/Utf8.h>
 #include <dspace/commands/viewports/DrawerPlugIn.h>
+#include <dspace/commands/viewports/MeasuringPictures.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/messages/MeshMessages.h>
@@ -169,6 +170,8 @@ struct vtkDspaceSession::Internals {
 vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
   dspace::session::Registry& commands = this->Impl->interpreter.Commands();
   this->Impl->viewports.AddTo(commands);
+  this->Impl->interpreter.GetState().pictures =
+      std::make_shared<dspace::session::MeasuringPictures>(this->Impl->viewports);
   dspace::session::AddTextCommands(commands);
   this->Impl->interpreter.SetAround(
       [this](dspace::v1::Reply& reply, const std::function<void()>& run) {

@@ -21,6 +21,7 @@
 #include <dspace/state/MessageLog.h>
 #include <dspace/state/ModelCache.h>
 #include <dspace/state/ModelNodes.h>
+#include <dspace/state/Pictures.h>
 #include <dspace/state/Robot.h>
 #include <dspace/state/SkyMotions.h>
 #include <dspace/state/Telemetry.h>
@@ -94,6 +95,7 @@ struct State {
   DrawnGeometries drawers;           // that CreateDrawn may name
   std::uint64_t lastTelemetryId = 0; // of all scenes, including removed ones
   CommandFiles files;
+  std::shared_ptr<Pictures> pictures; // for measurements; null: this process does not draw
 
   // Throws Error(NotFound) that names the existing scenes.
   SceneState& FindScene(const std::string& name);

@@ -16,7 +16,7 @@ class Lit:
         self._scene = scene
 
     def lit_area(self, objects, *, parts=(), sun=None, efficiency=1.0, both_sides=False, samples=4096, terrain=True,
-                 obstacles=True, hide=(), without=(), deadline=None, method="exact"):
+                 obstacles=True, hide=(), without=(), deadline=None, method="exact", resolution=None):
         """Measures the sunlit area of objects and the power of solar cells on them, by rays in double precision. Returns
         LitArea.
 
@@ -31,8 +31,11 @@ class Lit:
         From `samples` places of each object (1 to a million, spread over its faces, at least one on each), rays run to 16
         points of the Sun's disc. The lit fraction of a face of which a straight shadow hides a part is off by some
         1/samples**0.75. Shadows are those of the objects themselves, of other objects (obstacles=False: none) and of all
-        terrains (terrain=False: none); hide, without, deadline and method: as for line_of_sight(). A place below the ground
+        terrains (terrain=False: none); hide, without and deadline: as for line_of_sight(). A place below the ground
         is dark.
+
+        method: "exact"; "image", by a parallel picture from the Sun of `resolution` pixels a side (default 2048), or "both":
+        image_projected_area beside the exact results. The picture takes the Sun as a point, and both sides of faces.
 
         Raises dspace.InvalidArgument for terrain, for objects whose faces have no area or are not shown, and for a scene without
         a Sun; dspace.NotFound for unknown parts; dspace.DeadlineExceeded."""
@@ -43,7 +46,7 @@ class Lit:
         ids = object_ids(self._scene, [objects] if single else objects, about)
         if not 1 <= len(ids) <= MOST_OBJECTS:
             reject(about, "the number of objects", len(ids), f"1 to {MOST_OBJECTS}")
-        put_measuring(self._scene, message.measuring, about, terrain, obstacles, hide, deadline, method)
+        put_measuring(self._scene, message.measuring, about, terrain, obstacles, hide, deadline, method, resolution)
         message.object.extend(ids)
         for part in items([parts] if isinstance(parts, str) else parts, "parts", about, "names of parts"):
             if not isinstance(part, str):
@@ -65,4 +68,6 @@ class Lit:
             return float(values[0]) if single else values
         things = [self._scene._object(surface.object) for surface in reply.surface]
         return LitArea(things[0] if single else things, of("area"), of("lit_area"), of("projected_area"), of("power"),
-                       reply.irradiance, np.array([reply.sun.x, reply.sun.y, reply.sun.z]))
+                       reply.irradiance, np.array([reply.sun.x, reply.sun.y, reply.sun.z]),
+                       of("image_projected_area") if method != "exact" else None,
+                       of("image_pixel_area") if method != "exact" else None)

@@ -6,14 +6,16 @@ from dspace.objects.graphics import GraphicsObject
 METHODS = {"exact": 0, "image": 1, "both": 2}  # Measuring.Method
 
 
-def put_measuring(scene, message, about, terrain, objects, hide, deadline, method):
+def put_measuring(scene, message, about, terrain, objects, hide, deadline, method, resolution=None):
     """Fills a Measuring from the arguments of a measurement."""
     message.method = word(method, METHODS, "the method", about)
     message.no_terrain = not flag(terrain, "terrain", about)
     message.no_objects = not flag(objects, "objects", about)
     hide = (hide,) if isinstance(hide, str) else items(hide, "hide", about, "fragments or their names")
     message.hidden_fragment.extend(scene._fragment_name(fragment, None) for fragment in hide)
-    put_given(message, about, deadline_s=deadline)
+    if resolution is not None and method == "exact":
+        reject(about, "the resolution", resolution, 'it with the method "image" or "both"')
+    put_given(message, about, deadline_s=deadline, resolution=resolution)
 
 
 def object_ids(scene, things, about):

@@ -21,7 +21,9 @@ class LinesOfSight:
     the end's vertical; negative: must be turned up until it is clear. Both are NaN with clearance=False.
 
     fresnel_free: least height above the ground over the radius of the first Fresnel zone: 1 or more is free, 0 or less
-    blocked; None without a wavelength."""
+    blocked; None without a wavelength.
+
+    image_clear: what pictures show (method "image" or "both"); else None. image_pixel_deg: the angle of their pixels."""
     clear: object
     terrain: object
     object: object
@@ -31,6 +33,8 @@ class LinesOfSight:
     clearance: object
     clearance_deg: object
     fresnel_free: object
+    image_clear: object = None
+    image_pixel_deg: object = None
 
     def __repr__(self):
         clear = np.asarray(self.clear)
@@ -51,7 +55,11 @@ class Horizon:
     none. object (n,): the GraphicsObject that makes the horizon; None: terrain, or nothing. place (3,): in the root [m].
 
     first_deg: the azimuth of the first from the meridian's north [deg]: 0 on a body, that of the map's Y axis on a plane; None
-    where no terrain with longitudes and latitudes is below the place."""
+    where no terrain with longitudes and latitudes is below the place.
+
+    image_elevation_deg (n,): by pictures (method "image" or "both"), the upper edge of the highest pixel; NaN: above the pictures,
+    which end 35 to 45 degrees high; else None. image_pixel_deg: the largest angle of a pixel. With "image" elevation_deg is the
+    same, distance and point are NaN."""
     azimuth_deg: np.ndarray
     elevation_deg: np.ndarray
     distance: np.ndarray
@@ -59,6 +67,8 @@ class Horizon:
     object: np.ndarray
     place: np.ndarray
     first_deg: object = None
+    image_elevation_deg: object = None
+    image_pixel_deg: object = None
 
     def elevation_at(self, azimuth_deg):
         """Returns the elevation [deg] at azimuths (a number or an array) [deg], linear between the horizon's own."""
@@ -78,7 +88,10 @@ class LitArea:
     object: the GraphicsObject, or a list of them. area [m^2]: of the faces that count. lit_area [m^2]: their sunlit part,
     weighted by the part of the Sun's disc that each place sees. projected_area [m^2]: projected towards the Sun.
     power [W]: projected area times irradiance times efficiency. irradiance [W/m^2]: on a surface that faces the Sun.
-    sun (3,): unit vector towards the Sun, in the scene's root."""
+    sun (3,): unit vector towards the Sun, in the scene's root.
+
+    image_projected_area [m^2]: by a picture from the Sun (method "image" or "both"), which takes the Sun as a point, and both sides
+    of faces; image_pixel_area [m^2]: of its pixels; else None. With "image" projected_area is the same, lit_area is NaN."""
     object: object
     area: object
     lit_area: object
@@ -86,6 +99,8 @@ class LitArea:
     power: object
     irradiance: float
     sun: np.ndarray
+    image_projected_area: object = None
+    image_pixel_area: object = None
 
     @property
     def fraction(self):

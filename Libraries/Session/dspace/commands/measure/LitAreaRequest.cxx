@@ -1,9 +1,11 @@
 // Sunlit areas.
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <set>
 
 #include <dspace/Checks.h>
-#include <dspace/commands/measure/MeasuredScene.h>
+#include <dspace/commands/measure/MeasuredPictures.h>
 #include <dspace/commands/scene/SunCommands.h>
 #include <dspace/measure/LitArea.h>
 #include <dspace/messages/Convert.h>
@@ -75,11 +77,17 @@ std::vector<std::vector<Face>> FacesOf(const Context& context, const v1::LitArea
   return faces;
 }
 
+double AreaOf(const std::vector<Face>& faces) {
+  double area = 0.0;
+  for (const Face& face : faces) {
+    area += 0.5 * (face[1] - face[0]).cross(face[2] - face[0]).norm();
+  }
+  return area;
+}
+
 void FindLitArea(const Context& context, v1::LitArea& command) {
   const std::string name = "command lit_area";
-  if (RejectMethod(context, command.measuring(), name)) {
-    return;
-  }
+  const Methods methods = MethodsOf(command.measuring(), name);
   if (command.object_size() < 1 || command.object_size() > MostObjects) {
     Reject(name, std::to_string(command.object_size()) + " objects; accepted: 1 to 10,000");
   }
@@ -100,11 +108,31 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
   const std::vector<std::vector<Face>> faces = FacesOf(context, command);
   const MeasuredScene measured(context, command.measuring(), command.without_object(), name);
   v1::LitAreaReply reply;
+  std::optional<MeasuredPictures> pictures;
+  if (methods.image) {
+    if (command.part_size() > 0) {
+      Reject(name, "parts of objects are asked for by pictures; accepted: whole objects, or the "
+                   "method EXACT");
+    }
+    pictures.emplace(context, command.measuring(), measured, name);
+  }
   for (int i = 0; i < command.object_size(); ++i) {
-    const LitArea lit =
-        MeasureLitArea(measured.Get(), sun, faces[i], command.both_sides(), samples);
     v1::LitAreaReply::Surface* surface = reply.add_surface();
     surface->set_object(command.object(i));
+    if (pictures) {
+      const auto [seen, pixel] = pictures->Seen(command.object(i), faces[i], sun.towards_R);
+      surface->set_image_projected_area(seen);
+      surface->set_image_pixel_area(pixel);
+    }
+    if (!methods.exact) {
+      surface->set_area(AreaOf(faces[i]) * (command.both_sides() ? 2.0 : 1.0));
+      surface->set_lit_area(std::numeric_limits<double>::quiet_NaN());
+      surface->set_projected_area(surface->image_projected_area());
+      surface->set_power(surface->image_projected_area() * irradiance * efficiency);
+      continue;
+    }
+    const LitArea lit =
+        MeasureLitArea(measured.Get(), sun, faces[i], command.both_sides(), samples);
     surface->set_area(lit.area);
     surface->set_lit_area(lit.lit);
     surface->set_projected_area(lit.projected);

@@ -6,7 +6,6 @@
 
 #include <dspace/Checks.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 namespace {
@@ -15,19 +14,18 @@ constexpr double MostHeight = 1e12; // [m] of a site
 
 } // namespace
 
-bool RejectMethod(const Context& context, const v1::Measuring& measuring,
-                  const std::string& command) {
-  if (measuring.method() == v1::Measuring::EXACT) {
-    return false;
+Methods MethodsOf(const v1::Measuring& measuring, const std::string& command) {
+  switch (measuring.method()) {
+  case v1::Measuring::EXACT:
+    return {true, false};
+  case v1::Measuring::IMAGE:
+    return {false, true};
+  case v1::Measuring::BOTH:
+    return {true, true};
+  default:
+    Reject(command, "the method is " + std::to_string(int(measuring.method())) +
+                        "; accepted: EXACT (0), IMAGE (1), BOTH (2)");
   }
-  if (!v1::Measuring::Method_IsValid(measuring.method())) {
-    Reject(command,
-           "the method is " + std::to_string(int(measuring.method())) + "; accepted: EXACT");
-  }
-  PutError(context.reply.mutable_error(), v1::Error::UNIMPLEMENTED, command,
-           command + ": the method is " + v1::Measuring::Method_Name(measuring.method()) +
-               ", and this version does not measure by pictures; accepted: EXACT");
-  return true;
 }
 
 MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measuring,
@@ -63,6 +61,7 @@ MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measur
     }
     if (const TerrainObject* terrain = context.scene->TerrainOf(id)) {
       if (!measuring.no_terrain()) {
+        this->Ids_.insert(id);
         this->Obstacles_.Add(Obstacles::Ground{terrain->Name(), &terrain->Surface(),
                                                context.Frames().WorldPose(object.frame)});
       }
@@ -101,6 +100,7 @@ MeasuredScene::PartsOf(const Context& context, const GraphicsObject& object, boo
 void MeasuredScene::AddObject(const Context& context, const GraphicsObject& object) {
   bool any = false;
   for (const ShownPart& part : PartsOf(context, object, &any)) {
+    this->Ids_.insert(object.id);
     this->Obstacles_.Add(object.id, std::make_shared<MeshRays>(part.mesh), part.X_RM);
   }
   if (!any && !(object.custom && object.custom->IsBackdrop())) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +47,7 @@ public:
   static std::vector<ShownPart> PartsOf(const Context& context, const GraphicsObject& object,
                                         bool* any = nullptr);
 
+  bool IsObstacle(ObjectId object) const { return this->Ids_.count(object) != 0; } // a terrain too
   const Obstacles& Get() const { return this->Obstacles_; }
   // Throws Error: NotFound for an unknown frame or terrain, InvalidArgument for a position or a
   // height out of range and for a site off the terrain's data. `what` begins the label: "start 3".
@@ -66,12 +68,15 @@ private:
 
   const Context& Context_;
   Obstacles Obstacles_;
+  std::set<ObjectId> Ids_; // of the obstacles
 };
 
-// Whether the method is not implemented; the reply then has the error UNIMPLEMENTED, which says
-// which part is missing. Throws Error(InvalidArgument) for an unknown method.
-bool RejectMethod(const Context& context, const v1::Measuring& measuring,
-                  const std::string& command);
+// The methods that a measurement asks for. Throws Error(InvalidArgument) for an unknown one.
+struct Methods {
+  bool exact = true;
+  bool image = false;
+};
+Methods MethodsOf(const v1::Measuring& measuring, const std::string& command);
 
 } // namespace dspace::session
 
