@@ -69,6 +69,4 @@ def test_what_is_rejected(scene, tmp_path):
         assert words in str(told.value), told.value
     with pytest.raises(dspace.NotFound, match="part 'cells'"):
         scene.lit_area([box, flat], parts="cells")
-    with pytest.raises(dspace.Unimplemented, match="does not measure by pictures"):
-        scene.lit_area(box, method="image")
     assert scene.lit_area(box).lit_area > 1

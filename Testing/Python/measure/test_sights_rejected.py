@@ -53,9 +53,6 @@ def test_points_that_are_the_same(scene, ground, refused):
     ({"without": [3]}, dspace.WrongType, "the object is 3; accepted: a dspace.GraphicsObject or its name"),
     ({"terrain": None}, dspace.WrongType, "terrain is None; accepted: True or False"),
     ({"method": "guess"}, dspace.InvalidArgument, "the method is 'guess'; accepted: 'exact', 'image', 'both'"),
-    ({"method": "image"}, dspace.Unimplemented, "the method is IMAGE, and this version does not measure by pictures; "
-     "accepted: EXACT"),
-    ({"method": "both"}, dspace.Unimplemented, "the method is BOTH"),
     ({"end": (1.0, 2.0)}, dspace.InvalidArgument, "the end has the shape (2,); accepted: a Site, a Frame, a path, or an "
      "array (..., 3) of points [m]"),
     ({"end": np.zeros((0, 3))}, dspace.InvalidArgument, "the number of lines is 0; accepted: 1 to 1000000"),
@@ -75,7 +72,6 @@ def test_arguments(scene, refused, change, kind, text):
     ({"azimuths": 1_000_001}, dspace.InvalidArgument, "azimuths is 1000001"),
     ({"azimuths": 3.5}, dspace.WrongType, "azimuths is 3.5"),
     ({"place": np.zeros((2, 3))}, dspace.InvalidArgument, "the place has the shape (2,); accepted: one place"),
-    ({"method": "image"}, dspace.Unimplemented, "command horizon: the method is IMAGE"),
 ])
 def test_arguments_of_horizons(scene, refused, change, kind, text):
     with refused(kind, text):
