@@ -56,13 +56,13 @@ struct PowerProfile {
 };
 
 // The Sun over a place with a horizon, from `start` to `end` (the last step may be shorter). The
-// power between two samples is linear. Irradiance: 1361 W/m^2 at 1 au, over the square of the
+// power between two samples is linear. Irradiance: `solarConstant` [W/m^2] at 1 au, over the square of the
 // distance, times the part of the disc above the horizon (of even radiance). Throws
 // Error(InvalidArgument) as FindContacts, and for values out of range.
 PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                           const HorizonLine& horizon, const std::vector<SolarPanel>& panels,
-                          const std::optional<Battery>& battery, double start, double end,
-                          double step, const std::function<void()>& check = {});
+                          const std::optional<Battery>& battery, double solarConstant, double start,
+                          double end, double step, const std::function<void()>& check = {});
 
 // One step of a battery from a charge [J], with the panels' power less the load linear in between.
 struct BatteryStep {
