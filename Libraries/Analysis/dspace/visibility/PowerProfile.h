@@ -56,9 +56,10 @@ struct PowerProfile {
 };
 
 // The Sun over a place with a horizon, from `start` to `end` (the last step may be shorter). The
-// power between two samples is linear. Irradiance: `solarConstant` [W/m^2] at 1 au, over the square of the
-// distance, times the part of the disc above the horizon (of even radiance). Throws
-// Error(InvalidArgument) as FindContacts, and for values out of range.
+// power between two samples is linear. Irradiance: `solarConstant` [W/m^2] at 1 au, over the square
+// of the distance, times the part of the disc above the horizon (of even radiance). `check` is
+// called at each step; what it throws ends the work. Throws Error(InvalidArgument) as FindContacts,
+// and for values out of range.
 PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                           const HorizonLine& horizon, const std::vector<SolarPanel>& panels,
                           const std::optional<Battery>& battery, double solarConstant, double start,
