@@ -150,7 +150,7 @@ bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
     return false;
   }
   const TileFileLayout layout = LayoutOf(ground, options, *survey);
-  TileFile file(path, layout);
+  TileFile file(path, layout, control.replace);
   HorizonOptions sweeping;
   sweeping.posts = FollowedPosts;
   sweeping.near = 1;

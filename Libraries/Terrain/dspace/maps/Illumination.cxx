@@ -210,7 +210,7 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
   layout.metadata["DSPACE_HEIGHT_M"] = NumberText(horizons.Height());
   layout.metadata["DSPACE_STEPS"] = std::to_string(options.sun_S.size());
   layout.metadata["DSPACE_STEP_S"] = NumberText(options.step_s);
-  TileFile file(path, layout);
+  TileFile file(path, layout, control.replace);
   const auto steps = double(options.sun_S.size());
   const double perAzimuth = double(horizons.Azimuths()) / (2.0 * M_PI);
   const auto make = [&](int column, int row, std::vector<float>& values,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <mutex>
 
@@ -33,6 +34,23 @@ struct JournalEntry {
   std::uint32_t tile;
   std::uint32_t check; // ~tile: what was written in part does not count
 };
+
+// Removes the file, and the partial one unless it has the inputs.
+void Discard(const std::string& path, const std::string& part, const std::string& journal,
+             std::uint64_t hash) {
+  JournalHead head = {};
+  std::ifstream file(journal, std::ios::binary);
+  const bool same = file.read(reinterpret_cast<char*>(&head), sizeof(head)) && head.hash == hash;
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  if (!error && !same) {
+    std::filesystem::remove(journal, error);
+    std::filesystem::remove(part, error);
+  }
+  if (error) {
+    throw Error(Error::Kind::Io, "file '" + path + "'", error.message());
+  }
+}
 
 std::string Bytes(double bytes) {
   return NumberText(std::round(bytes / 1e4) / 100.0) + " MB";
@@ -83,17 +101,20 @@ std::uint64_t TileFile::BytesOf(const TileFileLayout& layout) {
   return count * (Side * Side * sizeof(float) + 16) + 65536; // and its directory
 }
 
-TileFile::TileFile(const std::string& path, const TileFileLayout& layout)
+TileFile::TileFile(const std::string& path, const TileFileLayout& layout, bool replace)
     : Path_(path), Part_(path + ".part"), Columns_(layout.columns), Rows_(layout.rows),
       TileColumns_((layout.columns + Side - 1) / Side), TileRows_((layout.rows + Side - 1) / Side),
       Files_(std::make_unique<Files>()) {
   const std::string object = "file '" + path + "'";
   AtomicFile::Check(path);
-  if (std::filesystem::exists(path)) {
+  if (std::filesystem::exists(path) && !replace) {
     throw Error(Error::Kind::AlreadyExists, object,
                 "it exists; accepted: the path of a new file, or of an incomplete map");
   }
   const std::string journal = this->Part_ + ".done";
+  if (replace) {
+    Discard(path, this->Part_, journal, layout.hash);
+  }
   if (!std::filesystem::exists(journal)) {
     RequireRoom(path, BytesOf(layout));
   }

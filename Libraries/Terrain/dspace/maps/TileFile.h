@@ -43,7 +43,8 @@ public:
   // Creates the file or continues it. Throws Error: AlreadyExists if `path` exists, or if the
   // partial file belongs to other inputs; Resource, before anything is written, if the file would
   // not fit the disk; what AtomicFile::Check throws.
-  TileFile(const std::string& path, const TileFileLayout& layout);
+  // `replace`: a file, and a partial one of other inputs, are removed first.
+  TileFile(const std::string& path, const TileFileLayout& layout, bool replace = false);
   ~TileFile();
   TileFile(const TileFile&) = delete;
   TileFile& operator=(const TileFile&) = delete;

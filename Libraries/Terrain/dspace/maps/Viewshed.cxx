@@ -240,7 +240,7 @@ bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, cons
   layout.metadata["DSPACE_TARGET_HEIGHT_M"] = NumberText(options.targetHeight);
   layout.metadata["DSPACE_RADIUS_M"] = NumberText(options.radius);
   layout.metadata["DSPACE_OBSERVERS"] = std::to_string(options.observers.size());
-  TileFile file(path, layout);
+  TileFile file(path, layout, control.replace);
   const auto make = [&](int column, int row, std::vector<float>& values,
                         const std::atomic<bool>& stop) {
     for (int j = 0; j < std::min(Side, cells.rows - row * Side) && !stop; ++j) {
