@@ -247,8 +247,8 @@ def test_numbers_beyond_their_limits_are_in_colour(session):
 
 
 def test_requests_of_later_versions_say_so(session):
-    for fill in (lambda c: c.viewshed.SetInParent(), lambda c: c.illumination_map.SetInParent(),
-                 lambda c: c.horizon_map.SetInParent()):
+    for fill in (lambda c: c.simulate_image.SetInParent(), lambda c: c.project_points.SetInParent(),
+                 lambda c: c.unproject_pixels.SetInParent()):
         command = pb.Command()
         fill(command)
         with pytest.raises(dspace.Unimplemented, match=f"command {command.WhichOneof('command')}") as refused:

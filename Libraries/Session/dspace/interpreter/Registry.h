@@ -77,6 +77,7 @@ void AddCameraCommands(Registry& registry);
 void AddTerrainCommands(Registry& registry);
 void AddSightRequests(Registry& registry);
 void AddLitAreaRequest(Registry& registry);
+void AddMapRequests(Registry& registry);
 void AddExportCommands(Registry& registry);
 void AddTelemetryCommands(Registry& registry);
 void AddMessageCommands(Registry& registry);

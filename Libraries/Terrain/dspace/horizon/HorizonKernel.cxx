@@ -44,10 +44,16 @@ void MarchCells(const std::vector<CellStep>& steps, const float* heights, std::p
                 float lane, const float* z, float* tangents) {
   alignas(32) float best[HorizonLanes];
   alignas(32) float from[HorizonLanes];
-  alignas(32) float row[HorizonLanes + 8] = {};
+  const int columns = int(std::ceil(lane * float(HorizonLanes))) + 2;
+  alignas(32) float few[HorizonLanes + 8] = {};
+  std::vector<float> many;
+  float* row = few;
+  if (columns > HorizonLanes + 8) {
+    many.resize(std::size_t(columns));
+    row = many.data();
+  }
   std::copy_n(tangents, HorizonLanes, best);
   std::copy_n(z, HorizonLanes, from);
-  const int columns = int(std::ceil(lane * float(HorizonLanes))) + 2;
   for (const CellStep& step : steps) {
     const float* a = heights + step.first;
     const float* b = a + width;

@@ -1,4 +1,4 @@
-// The inner loops of the sweep: many posts of a row at once. Not for public headers.
+// The inner loops of the sweep: many posts of a row at once.
 #ifndef DSPACE_TERRAIN_HORIZONKERNEL_H
 #define DSPACE_TERRAIN_HORIZONKERNEL_H
 
@@ -38,7 +38,7 @@ struct CellStep {
 // Raise `tangents` of HorizonLanes posts of heights `z` to those of the steps. NaN is no ground.
 void MarchEdges(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
                 float* tangents);
-// `width`: of a row of heights. `lane` <= 1.
+// `width`: of a row of heights.
 void MarchCells(const std::vector<CellStep>& steps, const float* heights, std::ptrdiff_t width,
                 float lane, const float* z, float* tangents);
 

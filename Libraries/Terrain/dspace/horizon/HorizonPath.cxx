@@ -1,5 +1,6 @@
 #include <dspace/horizon/HorizonPath.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace dspace {
@@ -108,6 +109,20 @@ HorizonPath::Point HorizonPath::At(double distance) const {
   point.away = apart.dot(this->Along_);
   point.spread = vertical.dot(this->Along_);
   return point;
+}
+
+// A chord of length d departs from a great circle that is p from the pole by d^2 / 8 p on the map
+// of a degree grid, and by less on a pole's chart.
+double HorizonPath::FineStep(const Point& from, double s, double post) const {
+  constexpr double Bow = 8.0 * 2e-5;
+  double polar = this->Placement_.Radius();
+  if (this->Placement_.GetKind() == PostPlacement::Kind::Sphere) {
+    const double latitude = this->Placement_.Angles(from.post).y();
+    polar *= std::abs(std::cos(latitude)) / std::max(std::abs(std::sin(latitude)), 1e-6);
+  }
+  // The pole may come nearer on the way.
+  const double step = std::sqrt(Bow * std::max(s, 0.25 * post) * std::max(polar, 0.05 * post));
+  return std::clamp(step, 0.01 * post, 8.0 * post);
 }
 
 } // namespace dspace

@@ -42,6 +42,11 @@ public:
 
   // At a distance along the ground of height 0 [m]; of an ellipsoid along its greatest sphere.
   Point At(double distance) const;
+  // The distance [m] from the place `from`, which is `s` metres away, to the next one, such that
+  // the straight line between them in posts departs from the great circle by at most 2e-5 of the
+  // distance from the observer, or a little more within half a post of a pole; at most 8 posts of
+  // `post` metres.
+  double FineStep(const Point& from, double s, double post) const;
   // Straight in posts.
   bool Straight() const { return !this->Placement_.OnBody(); }
 

@@ -9,16 +9,19 @@
 
 #include <dspace/Error.h>
 
+#include <dspace/horizon/EdgeCrossings.h>
 #include <dspace/horizon/HorizonKernel.h>
 #include <dspace/horizon/HorizonPath.h>
 
 namespace dspace {
 namespace {
 
-constexpr int Rows = 32;                      // of posts that share what is read
-constexpr int Band = 32;                      // posts of distance that share what is read
-constexpr double PerPost = 2.0;               // places of a coarser level in a post
-constexpr double Widest = 2048;               // columns that are read at once
+constexpr int Rows = 32;              // of posts that share what is read
+constexpr int Band = 32;              // posts of distance that share what is read
+constexpr double PerPost = 2.0;       // places of a coarser level in a post
+constexpr double Widest = 2048;       // columns that are read at once
+constexpr double WidestFine = 131072; // the same about a pole, with HorizonOptions::fine
+constexpr int MostEvery = 64;
 constexpr double Polar = 87.0 * M_PI / 180.0; // latitude [rad] from which columns crowd
 constexpr double Farthest = 1.5;              // [rad] along a body
 constexpr float Infinite = std::numeric_limits<float>::infinity();
@@ -40,19 +43,41 @@ HorizonStep StepBetween(const Knot& a, const Knot& b, double t, double bend) {
           float(mix(a.ground.spread, b.ground.spread))};
 }
 
-// Posts that were read, with a row and a column to spare for every lane.
+// Posts that were read, with a row and a column to spare for every lane, or those that are held.
 struct Ground {
   PostBlock place;
   std::vector<float> heights;
+  const HeldPosts* held = nullptr;
   HeightSpan span = {Infinite, -Infinite};
+  int every = 1; // columns between lanes; those of the same remainder lie side by side
 
+  const float* Heights() const { return this->held ? this->held->Heights() : this->heights.data(); }
   std::ptrdiff_t At(std::int64_t c, std::int64_t r) const {
-    return std::ptrdiff_t(r - this->place.row) * this->place.width +
-           std::ptrdiff_t(c - this->place.column);
+    if (this->held) {
+      return this->held->At(c, r);
+    }
+    const auto row = std::ptrdiff_t(r - this->place.row) * this->place.width;
+    const auto column = std::ptrdiff_t(c - this->place.column);
+    return row + (this->every == 1 ? column
+                                   : column % this->every * (this->place.width / this->every) +
+                                         column / this->every);
+  }
+  // `width` must be a multiple of `every`.
+  void Part() {
+    std::vector<float> row(std::size_t(this->place.width));
+    for (int r = 0; r < this->place.height; ++r) {
+      float* heights = &this->heights[std::size_t(r) * this->place.width];
+      std::copy_n(heights, row.size(), row.begin());
+      const int share = this->place.width / this->every;
+      for (int c = 0; c < this->place.width; ++c) {
+        heights[c % this->every * share + c / this->every] = row[std::size_t(c)];
+      }
+    }
   }
   // Whether it has (c, r) to (c + 1 + lanes, r + 1).
   bool Has(std::int64_t c, std::int64_t r, int lanes) const {
-    return r >= this->place.row && r + 1 < this->place.row + this->place.height &&
+    const int spare = this->held ? HeldPosts::RowsToSpare : 0;
+    return r >= this->place.row + spare && r + 1 < this->place.row + this->place.height - spare &&
            c >= this->place.column && c + 1 + lanes < this->place.column + this->place.width;
   }
 };
@@ -60,21 +85,25 @@ struct Ground {
 // At most HorizonLanes x Rows posts of a level.
 class Piece {
 public:
-  Piece(const HorizonSweep& sweep, const PostBlock& block, double azimuth, double seconds,
-        HorizonReport& report)
+  // `every`: posts of the level between lanes, and between rows.
+  Piece(const HorizonSweep& sweep, const PostBlock& block, int every, double azimuth,
+        double seconds, HorizonReport& report)
       : Sweep_(sweep), Placement_(sweep.Placement()), Pyramid_(*sweep.Pyramid()),
-        Lattice_(sweep.Pyramid()->Lattice()), Block_(block), Deadline_(Clock::now()),
+        Lattice_(sweep.Pyramid()->Lattice()), Block_(block), Every_(every), Deadline_(Clock::now()),
         Seconds_(seconds), Report_(report) {
     this->Spacing_ = std::ldexp(1.0, block.level);
-    this->Lane_ = this->Placement_.GetKind() == PostPlacement::Kind::Pole ? 0.5 * block.width : 0.0;
+    this->Lane_ =
+        this->Placement_.GetKind() == PostPlacement::Kind::Pole ? 0.5 * block.width * every : 0.0;
     const Eigen::Vector2d middle(
         double(this->Lattice_.ColumnPlace(block.level, block.column)) +
-            0.5 * this->Spacing_ * block.width,
-        double(this->Lattice_.RowPlace(block.level, block.row + block.height / 2)));
+            0.5 * this->Spacing_ * block.width * every,
+        double(this->Lattice_.RowPlace(block.level,
+                                       block.row + std::int64_t(block.height / 2) * every)));
     this->Cell_ = this->Placement_.CellSize(middle);
     for (int j = 0; j < block.height; ++j) {
-      this->Starts_.emplace_back(double(this->Lattice_.ColumnPlace(block.level, block.column)),
-                                 double(this->Lattice_.RowPlace(block.level, block.row + j)));
+      this->Starts_.emplace_back(
+          double(this->Lattice_.ColumnPlace(block.level, block.column)),
+          double(this->Lattice_.RowPlace(block.level, block.row + std::int64_t(j) * every)));
       this->Paths_.emplace_back(
           this->Placement_,
           this->Starts_.back() + Eigen::Vector2d(this->Lane_ * this->Spacing_, 0.0), azimuth);
@@ -157,12 +186,17 @@ private:
   void ReadPosts() {
     Ground ground;
     ground.place = this->Block_;
+    ground.place.width = (this->Block_.width - 1) * this->Every_ + 1;
+    ground.place.height = (this->Block_.height - 1) * this->Every_ + 1;
     this->Read(ground);
+    const auto above = float(this->Sweep_.Options().above);
     this->Heights_.assign(std::size_t(Rows) * HorizonLanes, 0.0f);
     this->Valid_.assign(this->Heights_.size(), 0);
     for (int j = 0; j < this->Block_.height; ++j) {
       for (int i = 0; i < this->Block_.width; ++i) {
-        const float h = ground.heights[std::size_t(j) * this->Block_.width + i];
+        const float h = ground.heights[std::size_t(j) * this->Every_ * ground.place.width +
+                                       std::size_t(i) * this->Every_] +
+                        above;
         if (!std::isnan(h)) {
           const std::size_t at = std::size_t(j) * HorizonLanes + i;
           this->Heights_[at] = h;
@@ -228,6 +262,10 @@ private:
 
   // Places of the path of row j's first lane from s0 to s1 [m], in posts of the level.
   void Follow(int j, int level, double s0, double s1, std::vector<Knot>& knots) const {
+    if (this->Placement_.OnBody() && this->Sweep_.Options().fine) {
+      this->FollowFinely(j, level, s0, s1, knots);
+      return;
+    }
     int count = 1;
     if (this->Placement_.OnBody()) {
       const double posts = (s1 - s0) / this->MetresOf(level);
@@ -237,16 +275,30 @@ private:
                              0.02 * this->Placement_.Radius();
       count = std::max(1, int(std::ceil(posts / (steep ? 1.0 : 8.0))));
     }
-    const double scale = std::ldexp(1.0, -level);
-    const HorizonPath& path = this->Paths_[std::size_t(j)];
     knots.clear();
     for (int k = 0; k <= count; ++k) {
-      Knot knot;
-      knot.s = s0 + (s1 - s0) * k / count;
-      knot.ground = path.At(knot.s);
-      knot.x = (knot.ground.post.x() - this->Lane_ * this->Spacing_) * scale;
-      knot.y = knot.ground.post.y() * scale;
-      knots.push_back(knot);
+      knots.push_back(this->KnotAt(j, level, s0 + (s1 - s0) * k / count));
+    }
+  }
+
+  Knot KnotAt(int j, int level, double s) const {
+    const double scale = std::ldexp(1.0, -level);
+    Knot knot;
+    knot.s = s;
+    knot.ground = this->Paths_[std::size_t(j)].At(s);
+    knot.x = (knot.ground.post.x() - this->Lane_ * this->Spacing_) * scale;
+    knot.y = knot.ground.post.y() * scale;
+    return knot;
+  }
+
+  void FollowFinely(int j, int level, double s0, double s1, std::vector<Knot>& knots) const {
+    const double post = this->MetresOf(level);
+    knots.clear();
+    knots.push_back(this->KnotAt(j, level, s0));
+    for (double s = s0; s < s1;) {
+      s += this->Paths_[std::size_t(j)].FineStep(knots.back().ground, s, post);
+      s = s > s1 - 0.005 * post ? s1 : s;
+      knots.push_back(this->KnotAt(j, level, s));
     }
   }
 
@@ -267,7 +319,7 @@ private:
         }
         const Eigen::Vector2d post = this->Paths_[std::size_t(j)].At(s0 + t * (s1 - s0)).post;
         if (sphere && std::abs(this->Placement_.Angles(post).y()) > Polar) {
-          return false;
+          return this->Sweep_.Options().fine && this->FindPolarBox(level, s0, s1, box);
         }
         const double x = (post.x() - this->Lane_ * this->Spacing_) * scale;
         left = std::min(left, x);
@@ -277,15 +329,50 @@ private:
       }
     }
     if (right - left > Widest) {
+      return this->Sweep_.Options().fine && sphere && this->FindPolarBox(level, s0, s1, box);
+    }
+    this->PutBox(level, {left, top, right, bottom}, curved ? 4 : 2, box);
+    return true;
+  }
+
+  // `range`: least x and y, greatest x and y of the first lanes, in posts of the level.
+  void PutBox(int level, const std::array<double, 4>& range, int margin, PostBlock& box) const {
+    const int lanes = this->Lanes(level);
+    box.level = level;
+    box.column = std::int64_t(std::floor(range[0])) - margin;
+    box.row = std::int64_t(std::floor(range[1])) - margin;
+    box.width = int(std::int64_t(std::floor(range[2])) + margin + 3 + lanes - box.column);
+    box.height = int(std::int64_t(std::floor(range[3])) + margin + 2 - box.row);
+    if (level == this->Block_.level && this->Every_ > 1) { // Ground::Part
+      box.width += (this->Every_ - box.width % this->Every_) % this->Every_;
+    }
+  }
+
+  // Posts of the level that the lanes reach over.
+  int Lanes(int level) const { return int(std::ceil(this->LaneOf(level) * float(HorizonLanes))); }
+  float LaneOf(int level) const {
+    return std::ldexp(float(this->Every_), this->Block_.level - level);
+  }
+
+  // The longitude of a great circle goes one way: its ends are its least and greatest column.
+  bool FindPolarBox(int level, double s0, double s1, PostBlock& box) const {
+    constexpr int Places = 32;
+    const double scale = std::ldexp(1.0, -level);
+    const double infinity = std::numeric_limits<double>::infinity();
+    std::array<double, 4> range = {infinity, infinity, -infinity, -infinity};
+    for (const HorizonPath& path : this->Paths_) {
+      for (int i = 0; i <= Places; ++i) {
+        const Eigen::Vector2d post = path.At(s0 + (s1 - s0) * i / Places).post;
+        const double x = (post.x() - this->Lane_ * this->Spacing_) * scale;
+        const double y = post.y() * scale;
+        range = {std::min(range[0], x), std::min(range[1], y), std::max(range[2], x),
+                 std::max(range[3], y)};
+      }
+    }
+    if (range[2] - range[0] > WidestFine) {
       return false;
     }
-    const int margin = curved ? 4 : 2;
-    const int lanes = int(std::ceil(std::ldexp(double(HorizonLanes), this->Block_.level - level)));
-    box.level = level;
-    box.column = std::int64_t(std::floor(left)) - margin;
-    box.row = std::int64_t(std::floor(top)) - margin;
-    box.width = int(std::int64_t(std::floor(right)) + margin + 3 + lanes - box.column);
-    box.height = int(std::int64_t(std::floor(bottom)) + margin + 2 - box.row);
+    this->PutBox(level, range, 4, box);
     return true;
   }
 
@@ -299,9 +386,19 @@ private:
          (ground.place.column >= columns || ground.place.column + ground.place.width <= 0))) {
       return false;
     }
+    const HeldPosts* held = this->Sweep_.Held();
+    if (level == 0 && held && held->Every() == this->Every_) {
+      ground.span = held->SpanOf(ground.place);
+      ground.held = held;
+      ground.place = held->Place();
+      return true;
+    }
     this->Read(ground);
     if (level > this->Block_.level) {
       this->HoldEdges(ground, columns, rows);
+    } else if (this->Every_ > 1) {
+      ground.every = this->Every_;
+      ground.Part();
     }
     ground.span = SpanOf(ground.heights);
     return true;
@@ -348,7 +445,7 @@ private:
   // A place at a time, of which all lanes are read: where columns crowd.
   void MarchPlaces(int level, double s0, double s1) {
     const int count = std::max(1, int(std::lround(4.0 * (s1 - s0) / this->MetresOf(level))));
-    const float lane = std::ldexp(1.0f, this->Block_.level - level);
+    const float lane = this->LaneOf(level);
     const double scale = std::ldexp(1.0, -level);
     const double end = double(this->Lattice_.RowsAt(level) - 2);
     Ground ground;
@@ -413,12 +510,12 @@ private:
       if (level > this->Block_.level) {
         cells.clear();
         this->AddCells(ground, level, knots, cells);
-        MarchCells(cells, ground.heights.data(), ground.place.width,
-                   std::ldexp(1.0f, this->Block_.level - level), z, tangents);
+        MarchCells(cells, ground.heights.data(), ground.place.width, this->LaneOf(level), z,
+                   tangents);
         this->Report_.steps += cells.size() * HorizonLanes;
         continue;
       }
-      const std::int64_t row = this->Block_.row + j;
+      const std::int64_t row = this->Block_.row + std::int64_t(j) * this->Every_;
       const bool regular = this->Placement_.GetKind() == PostPlacement::Kind::Plane &&
                            this->Starts_[std::size_t(j)].y() == double(row) * this->Spacing_;
       if (!regular || !edgesRow) {
@@ -429,7 +526,7 @@ private:
       const std::ptrdiff_t shift =
           regular ? ground.At(ground.place.column, row) - ground.At(ground.place.column, *edgesRow)
                   : 0;
-      MarchEdges(edges, ground.heights.data() + shift, z, tangents);
+      MarchEdges(edges, ground.Heights() + shift, z, tangents);
       this->Report_.steps += edges.size() * HorizonLanes;
     }
     return true;
@@ -453,14 +550,14 @@ private:
         // The other end may lie outside the data: on a post it does not count.
         const std::ptrdiff_t first = ground.At(c, r);
         const std::ptrdiff_t second = ground.At(c + right, r + down);
-        if (ground.Has(c, r, HorizonLanes - 1)) {
+        if (ground.Has(c, r, (HorizonLanes - 1) * this->Every_)) {
           edges.push_back({StepBetween(a, b, t, this->Bend_), share > 1.0 - Snap ? second : first,
                            share < Snap ? first : second, float(share)});
         }
       };
       // Near a pole a step along a parallel crosses any number of columns.
       const double posts = (b.s - a.s) / this->MetresOf(this->Block_.level);
-      if (std::abs(dx) > 16.0 * posts + 16.0) {
+      if (!this->Sweep_.Options().fine && std::abs(dx) > 16.0 * posts + 16.0) {
         const int count = std::max(2, int(4.0 * posts));
         for (int i = 1; i <= count; ++i) {
           const double t = double(i) / count;
@@ -471,43 +568,14 @@ private:
         }
         continue;
       }
-      // Whole numbers in (from, to], or [to, from) downwards.
-      const auto whole = [](double from, double to, const auto& take) {
-        if (to > from) {
-          for (double v = std::floor(from) + 1.0; v <= to; ++v) {
-            take(v);
-          }
-        } else if (to < from) {
-          for (double v = std::ceil(from) - 1.0; v >= to; --v) {
-            take(v);
-          }
-        }
-      };
-      whole(a.x, b.x, [&](double x) {
-        const double t = (x - a.x) / dx;
-        const double y = a.y + t * dy;
-        const double r = std::floor(y);
-        add(t, std::int64_t(x), std::int64_t(r), 0, 1, y - r);
-      });
-      whole(a.y, b.y, [&](double y) {
-        const double t = (y - a.y) / dy;
-        const double x = a.x + t * dx;
-        const double c = std::floor(x);
-        add(t, std::int64_t(c), std::int64_t(y), 1, 0, x - c);
-      });
-      whole(a.x - a.y, b.x - b.y, [&](double d) {
-        const double t = (d - (a.x - a.y)) / (dx - dy);
-        const double x = a.x + t * dx;
-        const double c = std::floor(x);
-        add(t, std::int64_t(c), std::int64_t(c - d), 1, 1, x - c);
-      });
+      ForEachCrossing(a.x, a.y, b.x, b.y, add);
     }
   }
 
   // Places of a row on a coarser level.
   void AddCells(const Ground& ground, int level, const std::vector<Knot>& knots,
                 std::vector<CellStep>& cells) const {
-    const int lanes = int(std::ceil(std::ldexp(double(HorizonLanes), this->Block_.level - level)));
+    const int lanes = this->Lanes(level);
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
       const Knot& a = knots[k];
       const Knot& b = knots[k + 1];
@@ -533,6 +601,7 @@ private:
   ElevationPyramid& Pyramid_;
   const PostLattice& Lattice_;
   PostBlock Block_;
+  int Every_;
   Clock::time_point Deadline_; // counted from then
   double Seconds_;
   HorizonReport& Report_;
@@ -588,10 +657,31 @@ HorizonSweep::HorizonSweep(std::shared_ptr<ElevationPyramid> pyramid,
     throw Error(Error::Kind::InvalidArgument, name,
                 "its least height must not exceed its greatest");
   }
+  if (!(options.above >= 0.0) || !std::isfinite(options.above)) {
+    throw Error(Error::Kind::InvalidArgument, name,
+                "observers " + std::to_string(options.above) +
+                    " m above the ground are rejected; accepted is 0 or more");
+  }
 }
 
 HorizonReport HorizonSweep::Sweep(const PostBlock& block, double azimuth_deg, float* all,
                                   float* distant, double seconds) const {
+  return this->SweepParts(block, 1, azimuth_deg, all, distant, seconds);
+}
+
+HorizonReport HorizonSweep::SweepEvery(const PostBlock& block, int every, double azimuth_deg,
+                                       float* all, double seconds) const {
+  if (every < 1 || every > MostEvery || block.level != 0) {
+    throw Error(Error::Kind::InvalidArgument, this->Pyramid_->Source().GetName(),
+                "a horizon at every " + std::to_string(every) + " posts of level " +
+                    std::to_string(block.level) + " is rejected; accepted is 1 to " +
+                    std::to_string(MostEvery) + " of level 0");
+  }
+  return this->SweepParts(block, every, azimuth_deg, all, nullptr, seconds);
+}
+
+HorizonReport HorizonSweep::SweepParts(const PostBlock& block, int every, double azimuth_deg,
+                                       float* all, float* distant, double seconds) const {
   const PostLattice& lattice = this->Pyramid_->Lattice();
   Check(block, lattice, this->Pyramid_->Source().GetName(), azimuth_deg);
   HorizonReport report;
@@ -599,20 +689,21 @@ HorizonReport HorizonSweep::Sweep(const PostBlock& block, double azimuth_deg, fl
   const std::int64_t last = lattice.ColumnsAt(block.level) - 1;
   const bool even =
       lattice.periodic || lattice.ColumnPlace(block.level, last) == last << block.level;
-  for (int r = 0; r < block.height; r += Rows) {
+  const int rows = std::max(1, Rows / every);
+  for (int r = 0; r < block.height; r += rows) {
     for (int c = 0; c < block.width;) {
       PostBlock part = block;
-      part.column = block.column + c;
-      part.row = block.row + r;
+      part.column = block.column + std::int64_t(c) * every;
+      part.row = block.row + std::int64_t(r) * every;
       part.width = std::min(HorizonLanes, block.width - c);
-      part.height = std::min(Rows, block.height - r);
+      part.height = std::min(rows, block.height - r);
       if (!even && part.column < last && part.column + part.width > last) {
         part.width = int(last - part.column);
       } else if (!even && part.column == last) {
         part.width = 1;
       }
       const std::size_t at = std::size_t(r) * block.width + c;
-      Piece piece(*this, part, azimuth_deg, seconds, report);
+      Piece piece(*this, part, every, azimuth_deg, seconds, report);
       piece.Run(all + at, distant ? distant + at : nullptr, std::size_t(block.width));
       c += part.width;
     }

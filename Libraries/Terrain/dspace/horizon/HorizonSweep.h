@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include <dspace/horizon/HeldPosts.h>
 #include <dspace/posts/PostPlacement.h>
 #include <dspace/pyramid/ElevationPyramid.h>
 
@@ -18,6 +20,11 @@ struct HorizonOptions {
   int posts = 256; // of a level that are followed before the next coarser one; a power of two from
                    // 64 to 4096
   std::array<double, 2> heights = {0, 0}; // [m] that all ground lies between
+  double above = 0.0;                     // [m] of the observers over their posts, >= 0
+  // Places of ground that are found to a thousandth of a degree everywhere: of a body the line of
+  // sight is followed on a great circle between more places, and where columns crowd about a pole
+  // of a degree grid of up to 131072 columns at every edge too.
+  bool fine = false;
 };
 
 // What a sweep read, and how much it did.
@@ -54,21 +61,33 @@ public:
   HorizonSweep(std::shared_ptr<ElevationPyramid> pyramid, const PostPlacement& placement,
                const HorizonOptions& options);
 
+  // Sweeps of level 0 at every held->Every()-th post then read nothing of that level.
+  void Hold(std::shared_ptr<const HeldPosts> held) { this->Held_ = std::move(held); }
+  const HeldPosts* Held() const { return this->Held_.get(); }
+
   // Rows of the block's posts: `all` ground, and `distant` ground beyond HorizonOptions::near posts
   // alone (null: not wanted). Any azimuth [deg]. Waits for tiles; throws what
   // ElevationPyramid::Read throws, and Error(InvalidArgument) for an azimuth that is not finite or
   // a block that is empty or of a level that there is not. Any thread may call.
   HorizonReport Sweep(const PostBlock& block, double azimuth_deg, float* all, float* distant,
                       double seconds = std::numeric_limits<double>::infinity()) const;
+  // `all` alone, for every `every`-th post of every `every`-th row of level 0 from (block.column,
+  // block.row) on; the block's width and height count these. `every`: 1 to 64.
+  HorizonReport SweepEvery(const PostBlock& block, int every, double azimuth_deg, float* all,
+                           double seconds = std::numeric_limits<double>::infinity()) const;
 
   const PostPlacement& Placement() const { return this->Placement_; }
   const std::shared_ptr<ElevationPyramid>& Pyramid() const { return this->Pyramid_; }
   const HorizonOptions& Options() const { return this->Options_; }
 
 private:
+  HorizonReport SweepParts(const PostBlock& block, int every, double azimuth_deg, float* all,
+                           float* distant, double seconds) const;
+
   std::shared_ptr<ElevationPyramid> Pyramid_;
   PostPlacement Placement_;
   HorizonOptions Options_;
+  std::shared_ptr<const HeldPosts> Held_;
 };
 
 } // namespace dspace

@@ -1,44 +1,12 @@
 #include <dspace/commands/sky/SkyPlaces.h>
 
-#include <cctype>
-
 #include <dspace/Checks.h>
+#include <dspace/commands/sky/BodyOfCrs.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/orientation/BodyConstants.h>
 #include <dspace/state/TerrainObject.h>
 
 namespace dspace::session {
 namespace {
-
-// The body of a terrain's CRS, by its name or by its radius.
-int BodyOf(const KernelSet& kernels, const TerrainObject& terrain) {
-  static const std::pair<const char*, int> Bodies[] = {
-      {"moon", 301},   {"mars", 499},   {"mercury", 199},   {"venus", 299},     {"earth", 399},
-      {"phobos", 401}, {"deimos", 402}, {"ceres", 2000001}, {"vesta", 2000004}, {"titan", 606},
-      {"europa", 502}, {"io", 501},     {"ganymede", 503},  {"callisto", 504},  {"enceladus", 602}};
-  const Crs& crs = terrain.Surface().GetCrs();
-  std::string word; // words of the CRS's WKT, which names the body in its datum
-  for (const char c : crs.GetWkt() + " ") {
-    if (std::isalpha(static_cast<unsigned char>(c))) {
-      word += char(std::tolower(static_cast<unsigned char>(c)));
-      continue;
-    }
-    for (const auto& [name, body] : Bodies) {
-      if (word == name) {
-        return body;
-      }
-    }
-    word.clear();
-  }
-  for (const int body : {399, 301, 499, 199, 299}) {
-    const double radius = BodyRadii(kernels.Pool(), body).x();
-    if (std::abs(crs.GetAxes().semiMajor - radius) < 1e-4 * radius) {
-      return body;
-    }
-  }
-  Reject("terrain '" + terrain.Name() + "'",
-         "its CRS tells no body; accepted: the command with a body");
-}
 
 dspace::SkyPlace PlaceOfSite(const Context& context, const v1::SkyPlace& asked) {
   const v1::Site& site = asked.site();
@@ -67,7 +35,7 @@ dspace::SkyPlace PlaceOfSite(const Context& context, const v1::SkyPlace& asked) 
   }
   const KernelSet& kernels = *context.scene->sky.kernels;
   dspace::SkyPlace out;
-  out.body = asked.body().empty() ? BodyOf(kernels, terrain)
+  out.body = asked.body().empty() ? BodyOf(kernels, terrain.Surface().GetCrs(), label)
                                   : kernels.GetEphemeris().Names().IdOf(asked.body());
   out.frame = kernels.GetFrames().Table().BodyFixed(out.body).name;
   // Up is the normal of the CRS's ellipsoid.

@@ -4,7 +4,6 @@
 #include <dspace/commands/sky/SkyTools.h>
 #include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/orientation/BodyConstants.h>
 #include <dspace/sky/SubPoints.h>
 #include <dspace/state/TerrainObject.h>
 #include <dspace/time/UtcText.h>

@@ -1,0 +1,40 @@
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include <dspace/Checks.h>
+#include <dspace/commands/sky/SkyTools.h>
+#include <dspace/crs/Crs.h>
+#include <dspace/orientation/BodyConstants.h>
+#include <dspace/sky/KernelSet.h>
+
+namespace dspace::session {
+
+int BodyOf(const KernelSet& kernels, const Crs& crs, const std::string& label) {
+  static const std::pair<const char*, int> Bodies[] = {
+      {"moon", 301},   {"mars", 499},   {"mercury", 199},   {"venus", 299},     {"earth", 399},
+      {"phobos", 401}, {"deimos", 402}, {"ceres", 2000001}, {"vesta", 2000004}, {"titan", 606},
+      {"europa", 502}, {"io", 501},     {"ganymede", 503},  {"callisto", 504},  {"enceladus", 602}};
+  std::string word; // words of the CRS's WKT, which names the body in its datum
+  for (const char c : crs.GetWkt() + " ") {
+    if (std::isalpha(static_cast<unsigned char>(c))) {
+      word += char(std::tolower(static_cast<unsigned char>(c)));
+      continue;
+    }
+    for (const auto& [name, body] : Bodies) {
+      if (word == name) {
+        return body;
+      }
+    }
+    word.clear();
+  }
+  for (const int body : {399, 301, 499, 199, 299}) {
+    const double radius = BodyRadii(kernels.Pool(), body).x();
+    if (std::abs(crs.GetAxes().semiMajor - radius) < 1e-4 * radius) {
+      return body;
+    }
+  }
+  Reject(label, "its CRS tells no body; accepted: the command with a body");
+}
+
+} // namespace dspace::session

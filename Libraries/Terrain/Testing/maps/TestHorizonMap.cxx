@@ -1,0 +1,271 @@
+// Horizon maps against exact rays over the same triangles, and their files.
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include <dspace/Error.h>
+
+#include "FormulaPosts.h"
+#include "Grids.h"
+#include "MapTestSupport.h"
+
+namespace dspace::testing {
+namespace {
+
+HorizonMap Written(const MapGround& ground, const HorizonMapOptions& options,
+                   const std::string& path) {
+  EXPECT_TRUE(WriteHorizonMap(ground, options, path));
+  return HorizonMap(path);
+}
+
+// Median and 99.9 % of the errors.
+void ExpectExact(const std::vector<double>& errors, const std::string& about) {
+  std::printf("%s: median %.2e, 99.9 %% %.2e, most %.2e deg of %zu\n", about.c_str(),
+              Share(errors, 0.5), Share(errors, 0.999), errors.back(), errors.size());
+  EXPECT_LE(Share(errors, 0.5), 0.001) << about;
+  EXPECT_LE(Share(errors, 0.999), 0.01) << about;
+}
+
+std::shared_ptr<StreamedTerrain> OnBody(const std::string& path) {
+  StreamedTerrainOptions options;
+  options.onBody = true;
+  return StreamedTerrain::Open(path, options);
+}
+
+TEST(HorizonMap, APlaneAgreesWithRays) {
+  const TemporaryFolder folder;
+  const auto ground = Rough(90, 70, 5);
+  const MapGround map = MapGroundOf(*ground);
+  for (const auto& [height, every] : {std::pair(0.0, 1), std::pair(1.7, 3)}) {
+    HorizonMapOptions options;
+    options.cells = FindCells(map, std::nullopt, 0.7 * every);
+    EXPECT_EQ(options.cells.every, every);
+    options.height = height;
+    options.azimuths = 36;
+    const HorizonMap written =
+        Written(map, options, (folder.Path() / (std::to_string(every) + ".tif")).string());
+    ExpectExact(ErrorsOf(written, map, options.cells, *ground, 60, 3),
+                "plane, every " + std::to_string(every));
+  }
+}
+
+TEST(HorizonMap, ABodyAgreesWithRays) {
+  const TemporaryFolder folder;
+  const double metres = 1737400.0 * Degree;
+  const auto terrain = OnBody(WriteDegrees(
+      folder, "hills.tif", 1737400.0, 400, 300, 30.0, 25.0, 0.008, [&](double lon, double lat) {
+        return Hills(lon * metres * 0.93, lat * metres, 700.0, 60000.0, 0.08);
+      }));
+  const MapGround ground = MapGroundOf(*terrain);
+  for (const double height : {0.0, 2.0}) {
+    HorizonMapOptions options;
+    options.cells = FindCells(ground, std::array<double, 4>{31.0, 24.0, 31.2, 23.9}, 0.0);
+    EXPECT_EQ(options.cells.every, ground.postsAPixel);
+    options.height = height;
+    options.azimuths = 24;
+    const HorizonMap written =
+        Written(ground, options, (folder.Path() / (std::to_string(int(height)) + ".tif")).string());
+    EXPECT_TRUE(written.Placement().OnBody());
+    const Eigen::Vector2d first = ground.placement.Angles(options.cells.Post(0, 0)) / Degree;
+    EXPECT_NEAR((written.Placement().Angles(written.Cells().Post(0, 0)) / Degree - first).norm(),
+                0.0, 1e-12);
+    EXPECT_NEAR((written.CellToMap() * Eigen::Vector2d(0.5, 0.5) - first).norm(), 0.0, 1e-9);
+    ExpectExact(ErrorsOf(written, ground, options.cells, *terrain, 40, 4),
+                "body, height " + std::to_string(int(height)));
+  }
+}
+
+TEST(HorizonMap, CellsAboutAPoleAgreeWithRays) {
+  const TemporaryFolder folder;
+  const double radius = 3000.0; // posts must be so close that a chord lies within a millimetre
+  // A cap of 30 degrees about the south pole, with hills that know nothing of the pole.
+  const auto terrain = OnBody(WriteDegrees(
+      folder, "cap.tif", radius, 360, 30, -180.0, -60.0, 1.0, [&](double lon, double lat) {
+        const double away = (90.0 + lat) * Degree * radius;
+        return Hills(away * std::sin(lon * Degree), away * std::cos(lon * Degree), 200.0, 3000.0,
+                     0.08);
+      }));
+  const MapGround ground = MapGroundOf(*terrain);
+  HorizonMapOptions options;
+  options.cells = FindCells(ground, std::array<double, 4>{-30.0, -85.0, 20.0, -89.9}, 0.0);
+  options.height = 2.0;
+  options.azimuths = 24;
+  const HorizonMap written = Written(ground, options, (folder.Path() / "map.tif").string());
+  ExpectExact(ErrorsOf(written, ground, options.cells, *terrain, 40, 5), "pole");
+}
+
+// Every edge of the ground by hand, in each azimuth.
+TEST(HorizonMap, CellsBesideHolesAgreeWithEveryEdge) {
+  const TemporaryFolder folder;
+  const auto ground = Rough(40, 36, 12, 0.03);
+  const MapGround map = MapGroundOf(*ground);
+  HorizonMapOptions options;
+  options.cells = FindCells(map, std::nullopt, 0.0);
+  options.azimuths = 7;
+  options.height = 0.5;
+  const HorizonMap written = Written(map, options, (folder.Path() / "map.tif").string());
+  const HeightGrid& grid = ground->Grid();
+  int holes = 0;
+  for (int i = 0; i < 200; ++i) {
+    const int c = (i * 17) % 40;
+    const int r = (i * 23) % 36;
+    const std::vector<float> mapped = written.Read(c, r, 1, 1);
+    if (!grid.HasPost(c, r)) {
+      ++holes;
+      EXPECT_TRUE(std::isnan(mapped[0]));
+      continue;
+    }
+    for (int k = 0; k < options.azimuths; ++k) {
+      const double azimuth = 2.0 * M_PI * k / options.azimuths;
+      const Eigen::Vector2d along(std::sin(azimuth), -std::cos(azimuth)); // columns, rows
+      double best = -1e9;
+      for (int b = 0; b < 36; ++b) {
+        for (int a = 0; a < 40; ++a) {
+          for (const auto& [da, db] : {std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)}) {
+            if (a + da >= 40 || b + db >= 36 || !grid.HasPost(a, b) ||
+                !grid.HasPost(a + da, b + db)) {
+              continue;
+            }
+            // Where the line from (c, r) meets the edge.
+            const Eigen::Vector2d from(a - c, b - r);
+            Eigen::Matrix2d m;
+            m << along.x(), -da, along.y(), -db;
+            if (std::abs(m.determinant()) < 1e-9) {
+              continue;
+            }
+            const Eigen::Vector2d x = m.inverse() * from;
+            if (x.x() > 1e-6 && x.y() > -1e-9 && x.y() < 1.0 + 1e-9) {
+              const double h = grid.At(a, b) + x.y() * (grid.At(a + da, b + db) - grid.At(a, b));
+              best = std::max(best, (h - grid.At(c, r) - 0.5) / (0.7 * x.x()));
+            }
+          }
+        }
+      }
+      const double expected = best == -1e9 ? -90.0 : std::atan(best) / Degree;
+      EXPECT_NEAR(mapped[std::size_t(k)], expected, 1e-3) << c << " " << r << " " << k;
+    }
+  }
+  EXPECT_GT(holes, 2);
+}
+
+// The wall of the closed form in TestHorizonScan about the pole, as four straight walls whose
+// middles are that far from the pole.
+TEST(HorizonMap, ARingWallIsAtTheElevationOfItsGeometry) {
+  const TemporaryFolder folder;
+  const double radius = 6371000.0;
+  constexpr int Half = 250; // posts
+  for (const auto& [angle, expected] : {std::pair(std::asin(5000.04 / (radius + 1000.0)), 0.197017),
+                                        std::pair(5000.0 / radius, 0.196988)}) {
+    MapGround ground;
+    ground.name = "ring";
+    ground.pyramid = std::make_shared<ElevationPyramid>(
+        std::make_shared<FormulaPosts>(2 * Half + 41, 2 * Half + 41, false, [](double c, double r) {
+          const double away = std::max(std::abs(c - Half - 20), std::abs(r - Half - 20));
+          return away == Half ? 1000.0 : 0.0;
+        }));
+    ground.placement = PostPlacement::OnPole(false, 2.0 * radius * std::tan(0.5 * angle) / Half,
+                                             Half + 20.0, radius);
+    HorizonMapOptions options;
+    options.cells.column = options.cells.row = Half + 20;
+    options.cells.columns = options.cells.rows = 1;
+    options.azimuths = 4;
+    const std::string path = (folder.Path() / (std::to_string(expected) + ".tif")).string();
+    for (const float elevation : Written(ground, options, path).Read(0, 0, 1, 1)) {
+      EXPECT_NEAR(elevation * Degree, expected, 1e-6);
+    }
+  }
+}
+
+class MapFiles : public ::testing::Test {
+protected:
+  MapFiles() {
+    this->Options_.cells = FindCells(this->Ground_, std::nullopt, 0.0);
+    this->Options_.azimuths = 36;
+  }
+  std::string Path(const std::string& name) const { return (this->Folder_.Path() / name).string(); }
+
+  TemporaryFolder Folder_;
+  std::shared_ptr<const GridTerrain> Grid_ = Rough(250, 240, 8);
+  MapGround Ground_ = MapGroundOf(*Grid_);
+  HorizonMapOptions Options_;
+};
+
+TEST_F(MapFiles, AResumedMapEqualsAnUninterruptedOne) {
+  const std::string whole = this->Path("whole.tif");
+  MapControl one;
+  one.threads = 1;
+  ASSERT_TRUE(WriteHorizonMap(this->Ground_, this->Options_, whole, one));
+  const std::string path = this->Path("resumed.tif");
+  int runs = 0;
+  for (bool done = false; !done && runs < 50; ++runs) {
+    double begun = -1.0;
+    MapControl control;
+    control.threads = 1 + runs % 3;
+    control.progress = [&](const MapProgress& progress) { // one more tile a run
+      begun = begun < 0.0 || progress.elapsed == 0.0 ? progress.fraction : begun;
+      return progress.fraction <= begun || progress.fraction == 1.0;
+    };
+    done = WriteHorizonMap(this->Ground_, this->Options_, path, control);
+    EXPECT_EQ(std::filesystem::exists(path), done);
+  }
+  EXPECT_TRUE(BytesOf(path) == BytesOf(whole)) << runs << " runs";
+  EXPECT_GT(runs, 2);
+  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+  EXPECT_FALSE(std::filesystem::exists(path + ".part.done"));
+}
+
+TEST_F(MapFiles, APartOfOtherInputsIsRefused) {
+  const std::string path = this->Path("map.tif");
+  MapControl stop;
+  stop.progress = [&](const MapProgress& progress) { return progress.elapsed == 0.0; };
+  ASSERT_FALSE(WriteHorizonMap(this->Ground_, this->Options_, path, stop));
+  ASSERT_TRUE(std::filesystem::exists(path + ".part"));
+  HorizonMapOptions other = this->Options_;
+  other.height = 1.0;
+  const auto rejected = [&](const MapGround& ground, const HorizonMapOptions& options) {
+    try {
+      WriteHorizonMap(ground, options, path);
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("other inputs"), std::string::npos) << error.what();
+      return error.GetKind() == Error::Kind::AlreadyExists;
+    }
+    return false;
+  };
+  EXPECT_TRUE(rejected(this->Ground_, other));
+  const auto elsewhere = Rough(250, 240, 9); // one seed apart
+  EXPECT_TRUE(rejected(MapGroundOf(*elsewhere), this->Options_));
+  EXPECT_THROW(HorizonMap{path}, Error);
+  EXPECT_TRUE(WriteHorizonMap(this->Ground_, this->Options_, path));
+  EXPECT_THROW(WriteHorizonMap(this->Ground_, this->Options_, path), Error); // it exists
+}
+
+TEST_F(MapFiles, BadInputIsRejected) {
+  EXPECT_THROW(FindCells(this->Ground_, std::array<double, 4>{0.0, 1.0, 1.0, 0.0}, 0.0), Error);
+  EXPECT_THROW(FindCells(this->Ground_, std::nullopt, -1.0), Error);
+  EXPECT_THROW(FindCells(this->Ground_, std::nullopt, 0.7 * 65), Error);
+  HorizonMapOptions bad = this->Options_;
+  bad.azimuths = 0;
+  EXPECT_THROW(WriteHorizonMap(this->Ground_, bad, this->Path("bad.tif")), Error);
+  bad = this->Options_;
+  bad.height = -1.0;
+  EXPECT_THROW(WriteHorizonMap(this->Ground_, bad, this->Path("bad.tif")), Error);
+  EXPECT_THROW(WriteHorizonMap(this->Ground_, this->Options_, this->Path("none/bad.tif")), Error);
+  // What does not fit the disk is said before anything is written.
+  bad = this->Options_;
+  bad.cells.columns = 1 << 22;
+  bad.cells.rows = 1 << 22;
+  try {
+    WriteHorizonMap(this->Ground_, bad, this->Path("bad.tif"));
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.GetKind(), Error::Kind::Resource) << error.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists(this->Path("bad.tif.part")));
+  std::ofstream(this->Path("text.tif")) << "text";
+  EXPECT_THROW(HorizonMap{this->Path("text.tif")}, Error);
+}
+
+} // namespace
+} // namespace dspace::testing

@@ -1,0 +1,55 @@
+// All posts of level 0 in memory, laid out for sweeps of every n-th post.
+#ifndef DSPACE_TERRAIN_HELDPOSTS_H
+#define DSPACE_TERRAIN_HELDPOSTS_H
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include <dspace/horizon/HorizonKernel.h>
+#include <dspace/pyramid/ElevationPyramid.h>
+
+namespace dspace {
+
+// Columns of the same remainder by `every` lie side by side. A periodic lattice is held from half a
+// turn before its first column to half a turn after its last one. NaN: no data, or outside.
+class HeldPosts {
+public:
+  // Places that this many rows or more outside the lattice are in no line of sight; as many more
+  // are held above and below, for rows that are swept together with others' steps.
+  static constexpr int RowsToSpare = 36;
+
+  // The number of heights that it would hold.
+  static std::int64_t CountOf(const PostLattice& lattice);
+  // `reach`: columns that are kept to spare to the left and right, as far as lanes reach. `proceed`
+  // is called now and then; false gives null. Throws what ElevationPyramid::Read throws.
+  static std::shared_ptr<const HeldPosts> Read(ElevationPyramid& pyramid, int every, int reach,
+                                               const std::function<bool()>& proceed);
+
+  const PostBlock& Place() const { return this->Place_; }
+  int Every() const { return this->Every_; }
+  const float* Heights() const { return this->Heights_.data(); }
+  std::ptrdiff_t At(std::int64_t c, std::int64_t r) const {
+    const auto column = std::ptrdiff_t(c - this->Place_.column);
+    return std::ptrdiff_t(r - this->Place_.row) * this->Place_.width +
+           column % this->Every_ * this->Share_ + column / this->Every_;
+  }
+  // Bounds of the heights of a block.
+  HeightSpan SpanOf(const PostBlock& block) const;
+
+private:
+  static constexpr int SpanSide = 32; // posts
+
+  PostBlock Place_;
+  int Every_ = 1;
+  std::ptrdiff_t Share_ = 0; // columns of a remainder
+  std::vector<float> Heights_;
+  std::vector<HeightSpan> Spans_;
+  int SpanColumns_ = 0;
+};
+
+} // namespace dspace
+
+#endif
