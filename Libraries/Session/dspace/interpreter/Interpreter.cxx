@@ -57,6 +57,7 @@ Interpreter::Interpreter() {
   AddTerrainCommands(this->Registry_);
   AddSightRequests(this->Registry_);
   AddLitAreaRequest(this->Registry_);
+  AddLensRequests(this->Registry_);
   AddExportCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);
   AddMessageCommands(this->Registry_);

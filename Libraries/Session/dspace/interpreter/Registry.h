@@ -74,6 +74,7 @@ void AddFragmentCommands(Registry& registry);
 void AddSunCommands(Registry& registry);
 void AddSkyCommands(Registry& registry);
 void AddCameraCommands(Registry& registry);
+void AddLensRequests(Registry& registry);
 void AddTerrainCommands(Registry& registry);
 void AddSightRequests(Registry& registry);
 void AddLitAreaRequest(Registry& registry);
