@@ -12,7 +12,8 @@ import warnings
 
 from dspace.errors import Error
 
-WORDS = {"ephemeris": "print states of bodies and spacecraft",
+WORDS = {"camera": "project, check and convert camera models, and draw through them",
+         "ephemeris": "print states of bodies and spacecraft",
          "horizon": "measure the horizon around a site on terrain",
          "kernels": "describe SPICE kernels",
          "lit": "measure the sunlit area and the power of a panel on terrain",

@@ -19,7 +19,7 @@ bool IsCahv(const std::string& type) {
   throw Error(Error::Kind::Corrupt, label, what);
 }
 
-std::string TextOf(const Json::Value& from, const char* name, const std::string& label) {
+std::string JsonTextOf(const Json::Value& from, const char* name, const std::string& label) {
   const Json::Value& value = from[name];
   if (!value.isNull() && !value.isString()) {
     Damaged(label, std::string("'") + name + "' is not a text");
@@ -27,8 +27,8 @@ std::string TextOf(const Json::Value& from, const char* name, const std::string&
   return value.isNull() ? "" : value.asString();
 }
 
-std::vector<double> NumbersOf(const Json::Value& value, const std::string& name,
-                              const std::string& label) {
+std::vector<double> JsonNumbersOf(const Json::Value& value, const std::string& name,
+                                  const std::string& label) {
   std::vector<double> numbers;
   if (value.isNumeric()) {
     return {value.asDouble()};
@@ -45,7 +45,7 @@ std::vector<double> NumbersOf(const Json::Value& value, const std::string& name,
   return numbers;
 }
 
-int SideOf(const Json::Value& model, const char* name, const std::string& label) {
+int JsonSideOf(const Json::Value& model, const char* name, const std::string& label) {
   const Json::Value& value = model[name];
   if (value.isNull()) {
     return 0;
@@ -87,16 +87,16 @@ CameraModel ModelOf(const Json::Value& from, const std::string& file) {
     Damaged(file, "it holds what is not a camera model");
   }
   CameraModel model;
-  model.name = TextOf(from, "name", file);
-  model.frame = TextOf(from, "frame", file);
+  model.name = JsonTextOf(from, "name", file);
+  model.frame = JsonTextOf(from, "frame", file);
   const std::string label = model.name.empty() ? file : file + ", camera '" + model.name + "'";
   const Json::Value& lens = from.isMember("model") ? from["model"] : from;
   if (!lens.isObject() || !lens["type"].isString()) {
     Damaged(label, "it has no 'model' with a 'type'");
   }
   const std::string type = lens["type"].asString();
-  model.width = SideOf(lens, "width", label);
-  model.height = SideOf(lens, "height", label);
+  model.width = JsonSideOf(lens, "width", label);
+  model.height = JsonSideOf(lens, "height", label);
   if ((model.width == 0) != (model.height == 0)) {
     Damaged(label, "it has one of 'width' and 'height'; accepted: both or none");
   }
@@ -104,7 +104,7 @@ CameraModel ModelOf(const Json::Value& from, const std::string& file) {
   for (const std::string& name : lens.getMemberNames()) {
     const bool outer = &lens == &from && (name == "name" || name == "frame");
     if (!IsPlace(name) && !outer && !lens[name].isNull()) {
-      values[name] = NumbersOf(lens[name], name, label);
+      values[name] = JsonNumbersOf(lens[name], name, label);
     }
   }
   if (IsCahv(type)) {
@@ -113,7 +113,7 @@ CameraModel ModelOf(const Json::Value& from, const std::string& file) {
     } else {
       values.erase("linearity"); // some files give one to every model
     }
-    const std::vector<double> C = NumbersOf(lens["C"], "C", label);
+    const std::vector<double> C = JsonNumbersOf(lens["C"], "C", label);
     if (C.size() != 3) {
       Damaged(label, "'C' has " + std::to_string(C.size()) + " numbers; accepted: 3");
     }
@@ -122,7 +122,7 @@ CameraModel ModelOf(const Json::Value& from, const std::string& file) {
   }
   model.lens = MakeLens(type, values, label);
   if (lens.isMember("position")) {
-    const std::vector<double> p = NumbersOf(lens["position"], "position", label);
+    const std::vector<double> p = JsonNumbersOf(lens["position"], "position", label);
     if (p.size() != 3) {
       Damaged(label, "'position' has " + std::to_string(p.size()) + " numbers; accepted: 3");
     }
@@ -130,7 +130,7 @@ CameraModel ModelOf(const Json::Value& from, const std::string& file) {
     RequirePosition(label, "its position", model.p_MC);
   }
   if (lens.isMember("rotation")) {
-    const std::vector<double> q = NumbersOf(lens["rotation"], "rotation", label);
+    const std::vector<double> q = JsonNumbersOf(lens["rotation"], "rotation", label);
     if (q.size() != 4) {
       Damaged(label, "'rotation' has " + std::to_string(q.size()) + " numbers; accepted: 4");
     }
@@ -142,7 +142,7 @@ CameraModel ModelOf(const Json::Value& from, const std::string& file) {
   return model;
 }
 
-Json::Value ListOf(const std::vector<double>& values) {
+Json::Value JsonListOf(const std::vector<double>& values) {
   if (values.size() == 1) {
     return values[0];
   }
@@ -201,11 +201,11 @@ std::string CameraJsonOf(const CameraModel& model) {
     lens["height"] = model.height;
   }
   for (const auto& [name, values] : IsCahv(type) ? CahvoreOf(model) : model.lens->Values()) {
-    lens[name] = ListOf(values);
+    lens[name] = JsonListOf(values);
   }
   if (!IsCahv(type)) {
-    lens["position"] = ListOf({model.p_MC[0], model.p_MC[1], model.p_MC[2]});
-    lens["rotation"] = ListOf({model.q_MC.w(), model.q_MC.x(), model.q_MC.y(), model.q_MC.z()});
+    lens["position"] = JsonListOf({model.p_MC[0], model.p_MC[1], model.p_MC[2]});
+    lens["rotation"] = JsonListOf({model.q_MC.w(), model.q_MC.x(), model.q_MC.y(), model.q_MC.z()});
   }
   root["model"] = lens;
   Json::StreamWriterBuilder builder;

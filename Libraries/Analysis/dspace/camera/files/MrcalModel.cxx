@@ -10,7 +10,7 @@ namespace dspace {
 namespace {
 
 // Where the value of 'key' begins; npos: there is none. Comments are gone.
-std::size_t ValueAt(const std::string& text, const std::string& key) {
+std::size_t MrcalValueAt(const std::string& text, const std::string& key) {
   for (const char* quote : {"'", "\""}) {
     const std::size_t at = text.find(quote + key + quote);
     if (at != std::string::npos) {
@@ -33,9 +33,9 @@ std::string WithoutComments(const std::string& text) {
   return plain;
 }
 
-std::vector<double> ListOf(const std::string& text, const std::string& key,
-                           const std::string& label, std::size_t count) {
-  const std::size_t at = ValueAt(text, key);
+std::vector<double> MrcalListOf(const std::string& text, const std::string& key,
+                                const std::string& label, std::size_t count) {
+  const std::size_t at = MrcalValueAt(text, key);
   const std::size_t open = at == std::string::npos ? at : text.find('[', at);
   const std::size_t close = open == std::string::npos ? open : text.find(']', open);
   if (close == std::string::npos) {
@@ -58,13 +58,14 @@ constexpr const char* Accepted =
 } // namespace
 
 bool IsMrcalModel(const std::string& text) {
-  return ValueAt(WithoutComments(text), "lensmodel") != std::string::npos ||
-         ValueAt(WithoutComments(text), "lens_model") != std::string::npos;
+  return MrcalValueAt(WithoutComments(text), "lensmodel") != std::string::npos ||
+         MrcalValueAt(WithoutComments(text), "lens_model") != std::string::npos;
 }
 
 CameraModel ParseMrcalModel(const std::string& given, const std::string& label) {
   const std::string text = WithoutComments(given);
-  const std::size_t at = std::min(ValueAt(text, "lensmodel"), ValueAt(text, "lens_model"));
+  const std::size_t at =
+      std::min(MrcalValueAt(text, "lensmodel"), MrcalValueAt(text, "lens_model"));
   const std::size_t begin = text.find_first_of("'\"", at);
   const std::size_t end = begin == std::string::npos ? begin : text.find(text[begin], begin + 1);
   if (end == std::string::npos) {
@@ -72,7 +73,7 @@ CameraModel ParseMrcalModel(const std::string& given, const std::string& label) 
   }
   const std::string name = text.substr(begin + 1, end - begin - 1);
   CameraModel model;
-  const std::vector<double> size = ListOf(text, "imagersize", label, 2);
+  const std::vector<double> size = MrcalListOf(text, "imagersize", label, 2);
   for (const double side : size) {
     Require(side >= 1.0 && side <= 1e6 && side == std::floor(side), label, "a side of imagersize",
             side, "an integer from 1 to 1e6");
@@ -80,7 +81,7 @@ CameraModel ParseMrcalModel(const std::string& given, const std::string& label) 
   model.width = int(size[0]);
   model.height = int(size[1]);
   const auto opencv = [&](std::size_t count) {
-    std::vector<double> i = ListOf(text, "intrinsics", label, 4 + count);
+    std::vector<double> i = MrcalListOf(text, "intrinsics", label, 4 + count);
     i.resize(16, 0.0);
     LensValues values = {{"focal", {i[0], i[1]}}, {"center", {i[2], i[3]}}};
     if (count == 0) {
@@ -99,7 +100,7 @@ CameraModel ParseMrcalModel(const std::string& given, const std::string& label) 
     model.lens = opencv(std::size_t(std::stoi(name.substr(16))));
   } else if (name == "LENSMODEL_CAHVOR" || name.compare(0, cahvore.size(), cahvore) == 0) {
     const bool e = name != "LENSMODEL_CAHVOR";
-    const std::vector<double> i = ListOf(text, "intrinsics", label, e ? 12 : 9);
+    const std::vector<double> i = MrcalListOf(text, "intrinsics", label, e ? 12 : 9);
     const double ca = std::cos(i[4]), sa = std::sin(i[4]), cb = std::cos(i[5]), sb = std::sin(i[5]);
     LensValues values = {{"A", {0, 0, 1}},
                          {"H", {i[0], 0, i[2]}},
@@ -115,8 +116,9 @@ CameraModel ParseMrcalModel(const std::string& given, const std::string& label) 
     throw Error(Error::Kind::Unsupported, label,
                 "its lensmodel is '" + name.substr(0, 60) + "'; accepted: " + Accepted);
   }
-  if (ValueAt(text, "extrinsics") != std::string::npos) { // camera from reference: turn, then shift
-    const std::vector<double> rt = ListOf(text, "extrinsics", label, 6);
+  if (MrcalValueAt(text, "extrinsics") !=
+      std::string::npos) { // camera from reference: turn, then shift
+    const std::vector<double> rt = MrcalListOf(text, "extrinsics", label, 6);
     const Eigen::Vector3d r(rt.data()), t(rt.data() + 3);
     const double angle = r.norm();
     const Eigen::Quaterniond q_CM = angle > 0.0

@@ -10,7 +10,7 @@ namespace dspace {
 namespace {
 
 // Where the value of a key at the beginning of a line begins; npos: there is none.
-std::size_t ValueAt(const std::string& text, const std::string& key) {
+std::size_t YamlValueAt(const std::string& text, const std::string& key) {
   std::size_t at = 0;
   while ((at = text.find(key + ":", at)) != std::string::npos) {
     const std::size_t line = text.find_last_of('\n', at);
@@ -24,8 +24,8 @@ std::size_t ValueAt(const std::string& text, const std::string& key) {
   return std::string::npos;
 }
 
-std::string WordOf(const std::string& text, const std::string& key) {
-  const std::size_t at = ValueAt(text, key);
+std::string YamlWordOf(const std::string& text, const std::string& key) {
+  const std::size_t at = YamlValueAt(text, key);
   if (at == std::string::npos) {
     return "";
   }
@@ -36,10 +36,10 @@ std::string WordOf(const std::string& text, const std::string& key) {
 }
 
 // The list after a key: its own, or that of `data:` below it.
-std::vector<double> ListOf(const std::string& text, const std::vector<std::string>& keys,
-                           const std::string& label, bool needed) {
+std::vector<double> YamlListOf(const std::string& text, const std::vector<std::string>& keys,
+                               const std::string& label, bool needed) {
   for (const std::string& key : keys) {
-    const std::size_t at = ValueAt(text, key);
+    const std::size_t at = YamlValueAt(text, key);
     if (at == std::string::npos) {
       continue;
     }
@@ -61,8 +61,8 @@ std::vector<double> ListOf(const std::string& text, const std::vector<std::strin
   return {};
 }
 
-int SideOf(const std::string& text, const std::string& key, const std::string& label) {
-  const std::string word = WordOf(text, key);
+int YamlSideOf(const std::string& text, const std::string& key, const std::string& label) {
+  const std::string word = YamlWordOf(text, key);
   if (word.empty()) {
     return 0;
   }
@@ -92,15 +92,15 @@ LensValues FromOpencv(const std::vector<double>& given, const std::string& label
 } // namespace
 
 bool IsOpencvYaml(const std::string& text) {
-  return ValueAt(text, "camera_matrix") != std::string::npos ||
-         ValueAt(text, "cameraMatrix") != std::string::npos ||
-         ValueAt(text, "Camera_Matrix") != std::string::npos;
+  return YamlValueAt(text, "camera_matrix") != std::string::npos ||
+         YamlValueAt(text, "cameraMatrix") != std::string::npos ||
+         YamlValueAt(text, "Camera_Matrix") != std::string::npos;
 }
 
 CameraModel ParseOpencvYaml(const std::string& text, const std::string& label) {
   CameraModel model;
   const std::vector<double> matrix =
-      ListOf(text, {"camera_matrix", "cameraMatrix", "Camera_Matrix"}, label, true);
+      YamlListOf(text, {"camera_matrix", "cameraMatrix", "Camera_Matrix"}, label, true);
   if (matrix.size() != 9) {
     throw Error(Error::Kind::Corrupt, label,
                 "its camera_matrix has " + std::to_string(matrix.size()) + " numbers; accepted: 9");
@@ -109,18 +109,18 @@ CameraModel ParseOpencvYaml(const std::string& text, const std::string& label) {
       matrix[8] != 1.0) {
     Reject(label, "its camera_matrix is not [fx 0 cx; 0 fy cy; 0 0 1]; accepted: one without skew");
   }
-  model.name = WordOf(text, "camera_name");
-  model.width = SideOf(text, "image_width", label);
-  model.height = SideOf(text, "image_height", label);
+  model.name = YamlWordOf(text, "camera_name");
+  model.width = YamlSideOf(text, "image_width", label);
+  model.height = YamlSideOf(text, "image_height", label);
   if ((model.width == 0) != (model.height == 0)) {
     throw Error(Error::Kind::Corrupt, label,
                 "it has one of image_width and image_height; accepted: both or none");
   }
-  const std::vector<double> d = ListOf(text,
-                                       {"distortion_coefficients", "dist_coeffs", "distCoeffs",
-                                        "Distortion_Coefficients", "dist_coeff"},
-                                       label, false);
-  const std::string kind = WordOf(text, "distortion_model");
+  const std::vector<double> d = YamlListOf(text,
+                                           {"distortion_coefficients", "dist_coeffs", "distCoeffs",
+                                            "Distortion_Coefficients", "dist_coeff"},
+                                           label, false);
+  const std::string kind = YamlWordOf(text, "distortion_model");
   LensValues values;
   std::string type = "pinhole";
   if (kind == "equidistant" || kind == "fisheye") {
