@@ -27,7 +27,7 @@ state the meaning of a field that is not set. Each command and field has a numbe
 Numbers are never reused.
 """
 
-EFFECTS = {"CHANGE": "changes the scene", "REQUEST": "a request", "UNIMPLEMENTED": "not implemented yet"}
+EFFECTS = {"CHANGE": "changes the scene", "REQUEST": "a request"}
 
 
 def read_protos():

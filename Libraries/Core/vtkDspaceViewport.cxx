@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/render/ColorPicture.h>
@@ -45,6 +47,7 @@ struct vtkDspaceViewport::Internals {
   std::string name;
   std::string vantage;
   std::string camera;
+  std::optional<std::pair<dspace::CameraPose, dspace::Projection>> fixed; // in place of the camera
   int width = 0;
   int height = 0;
   int samples = 2;
@@ -78,11 +81,16 @@ struct vtkDspaceViewport::Internals {
   // The view of the camera, `factor` samples a pixel across and down.
   dspace::DrawView View(int factor) const {
     dspace::DrawView view;
-    view.camera = this->scene->PlaceCamera(this->vantage, this->camera);
-    view.projection =
-        (this->camera.empty() ? this->scene->Vantage(this->vantage).ActiveCamera()
-                              : this->scene->Vantage(this->vantage).GetCamera(this->camera))
-            .projection;
+    if (this->fixed) {
+      view.camera = this->fixed->first;
+      view.projection = this->fixed->second;
+    } else {
+      view.camera = this->scene->PlaceCamera(this->vantage, this->camera);
+      view.projection =
+          (this->camera.empty() ? this->scene->Vantage(this->vantage).ActiveCamera()
+                                : this->scene->Vantage(this->vantage).GetCamera(this->camera))
+              .projection;
+    }
     view.width = this->width * factor;
     view.height = this->height * factor;
     view.samples = factor;
@@ -255,6 +263,13 @@ void vtkDspaceViewport::SetCamera(const std::string& camera) {
     this->Impl->scene->Vantage(this->Impl->vantage).GetCamera(camera);
   }
   this->Impl->camera = camera;
+  this->Impl->ViewChanged();
+}
+
+void vtkDspaceViewport::SetFixedView(const dspace::CameraPose& camera,
+                                     const dspace::Projection& projection) {
+  projection.Check(this->Impl->Object());
+  this->Impl->fixed.emplace(camera, projection);
   this->Impl->ViewChanged();
 }
 

@@ -68,6 +68,8 @@ public:
   void SetVantage(const std::string& vantage);
   void SetCamera(const std::string& camera); // of the vantage; "" follows its active camera
   const std::string& GetCamera() const;
+  /// Looks from a pose with a projection of the caller's in place of the vantage's camera.
+  void SetFixedView(const dspace::CameraPose& camera, const dspace::Projection& projection);
   void Resize(int width, int height);
   void SetVisible(bool visible);
   /// sRGB, 0 to 1; with `top`, a vertical gradient.

@@ -60,6 +60,8 @@ struct vtkDspaceServer::Internals {
       this->CheckFrames(command);
       if (command.has_capture()) {
         command.mutable_capture()->set_inline_data(true); // the planes are wanted elsewhere
+      } else if (command.has_simulate_image()) {
+        command.mutable_simulate_image()->set_inline_data(true);
       }
       const dspace::FilesGuard guard([confinement = this->confinement](const std::string& path) {
         confinement->RequireWithin(path);

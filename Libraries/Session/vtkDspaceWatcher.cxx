@@ -161,6 +161,8 @@ struct vtkDspaceWatcher::Internals {
     using dspace::session::Effect;
     if (command.has_capture()) {
       command.mutable_capture()->set_inline_data(true); // the planes must be in the reply
+    } else if (command.has_simulate_image()) {
+      command.mutable_simulate_image()->set_inline_data(true);
     }
     if (command.has_follow_frames()) {
       dspace::v1::Reply reply = this->Interpreter().Execute(command);

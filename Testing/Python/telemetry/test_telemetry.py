@@ -246,16 +246,6 @@ def test_numbers_beyond_their_limits_are_in_colour(session):
     assert beyond("6 W") == red
 
 
-def test_requests_of_later_versions_say_so(session):
-    for fill in (lambda c: c.simulate_image.SetInParent(), lambda c: c.project_points.SetInParent(),
-                 lambda c: c.unproject_pixels.SetInParent()):
-        command = pb.Command()
-        fill(command)
-        with pytest.raises(dspace.Unimplemented, match=f"command {command.WhichOneof('command')}") as refused:
-            session.execute(command)
-        assert isinstance(refused.value, (dspace.Unsupported, dspace.Error, NotImplementedError))
-
-
 @pytest.mark.parametrize("bad", ("x" * 4097, "é" * 2049, "a\tb", "a\u0085b", "a\u200bb"), ids=range(5))
 def test_a_text_that_is_refused_sets_no_number(scene, bad):
     power, note = scene.telemetry.add("power", value=2.0), scene.telemetry.add("note", kind="text", value="a")

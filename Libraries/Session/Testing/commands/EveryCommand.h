@@ -342,9 +342,14 @@ inline const std::vector<CommandInstance>& EveryCommand() {
        {R"(horizon_map { terrain: "ground" area { extent: [105.4, 205.6, 105.6, 205.4] } azimuths: 8
            file { path: "FOLDER/horizons.tif" replace: true } })"},
        true},
-      {R"(simulate_image {})", {}},
-      {R"(project_points {})", {}},
-      {R"(unproject_pixels {})", {}},
+      {R"(simulate_image { camera { camera: "eye" width: 24 height: 16 } color: true range: true label: true
+           tile_width: 24 tile_height: 16 samples: 1 exposure: 2 inline_data: true })",
+       {}},
+      {R"(project_points { camera { camera: "eye" width: 24 height: 16 } frame: 10 point: [0, 0, 1] })",
+       {}},
+      {R"(unproject_pixels { camera { model: "{\"model\": {\"type\": \"pinhole\", \"focal\": [9, 9], \"center\": [5, 5], \"width\": 11, \"height\": 11}}"
+           own_pose: true frame: 10 } pixel: [5, 5] })",
+       {}},
       {R"(ephemeris { target: "moon" observer: "earth" time_s: [0, 100] correction: APPARENT })",
        {}},
       {R"(sky_state { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } }

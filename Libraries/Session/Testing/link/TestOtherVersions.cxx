@@ -176,30 +176,5 @@ TEST_F(WireCommands, UnknownCommandsAreRejectedByNumber) {
   this->Reject(v1::Command(), Kind::UNSUPPORTED, "command none");
 }
 
-TEST_F(WireCommands, UnimplementedCommandsAreRejected) {
-  int told = 0;
-  this->Interpreter_.AddListener([&told](const v1::Command&, const v1::Reply&) { ++told; });
-  const Descriptor* commands = v1::Command::descriptor();
-  int later = 0;
-  for (int i = 0; i < commands->field_count(); ++i) {
-    const FieldDescriptor* field = commands->field(i);
-    const session::CommandTraits* traits = session::CommandTraits::Find(field->number());
-    if (!traits || traits->GetEffect() != session::Effect::Unimplemented) {
-      continue;
-    }
-    v1::Command command;
-    command.GetReflection()->MutableMessage(&command, field);
-    this->Reject(command, Kind::UNIMPLEMENTED,
-                 "command " + field->name() + ": this version does not implement it");
-    command.set_scene("no such scene");
-    const v1::Reply reply = this->Interpreter_.Execute(command);
-    EXPECT_EQ(reply.error().kind(), Kind::UNIMPLEMENTED) << field->name();
-    EXPECT_EQ(reply.error().object(), "command " + field->name());
-    ++later;
-  }
-  EXPECT_EQ(later, 3);
-  EXPECT_EQ(told, 0); // nothing to record, nothing for viewers
-}
-
 } // namespace
 } // namespace dspace::testing

@@ -24,12 +24,6 @@ using google::protobuf::SourceLocation;
 
 // --- The wire ---------------------------------------------------------------------------------
 
-// A command that is typed only, or the reply to one: no other program relies on it yet.
-bool IsUnimplemented(const FieldDescriptor& field) {
-  return field.message_type() &&
-         field.message_type()->file()->name().find("measurements.proto") != std::string::npos;
-}
-
 // One for each field and each value of an enumeration: what must stay.
 void Describe(const EnumDescriptor& type, std::set<std::string>& lines) {
   for (int i = 0; i < type.value_count(); ++i) {
@@ -41,9 +35,6 @@ void Describe(const EnumDescriptor& type, std::set<std::string>& lines) {
 void Describe(const Descriptor& message, std::set<std::string>& lines) {
   for (int i = 0; i < message.field_count(); ++i) {
     const FieldDescriptor& field = *message.field(i);
-    if (IsUnimplemented(field)) {
-      continue;
-    }
     std::string type = field.message_type() ? field.message_type()->full_name()
                        : field.enum_type()  ? field.enum_type()->full_name()
                                             : field.type_name();
@@ -75,23 +66,11 @@ void Files(const FileDescriptor& file, std::map<std::string, const FileDescripto
   }
 }
 
-// What is typed only stands apart, so that it can be told from what is locked.
-TEST(Wire, UnimplementedCommandsHaveAFileOfTheirOwn) {
-  for (const session::CommandTraits& traits : session::CommandTraits::All()) {
-    const FieldDescriptor* field = v1::Command::descriptor()->FindFieldByNumber(traits.Number());
-    EXPECT_EQ(IsUnimplemented(*field), traits.GetEffect() == session::Effect::Unimplemented)
-        << traits.Name();
-  }
-}
-
 TEST(Wire, NothingHasChangedOrGone) {
   std::map<std::string, const FileDescriptor*> files;
   Files(*v1::WatchReply::descriptor()->file(), files);
   std::set<std::string> present;
   for (const auto& [name, file] : files) {
-    if (name.find("measurements.proto") != std::string::npos) {
-      continue;
-    }
     for (int i = 0; i < file->message_type_count(); ++i) {
       Describe(*file->message_type(i), present);
     }

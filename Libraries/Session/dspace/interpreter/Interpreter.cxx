@@ -58,10 +58,10 @@ Interpreter::Interpreter() {
   AddSightRequests(this->Registry_);
   AddLitAreaRequest(this->Registry_);
   AddMapRequests(this->Registry_);
+  AddLensRequests(this->Registry_);
   AddExportCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);
   AddMessageCommands(this->Registry_);
-  this->Registry_.AddUnimplemented();
 }
 
 v1::Reply Interpreter::Execute(v1::Command& command) {

@@ -45,8 +45,6 @@ public:
                               handler(context, *(command.*get)());
                             }};
   }
-  // Adds the unimplemented commands, which are rejected with Error.UNIMPLEMENTED.
-  void AddUnimplemented();
   const Entry* Find(v1::Command::CommandCase kind) const {
     const auto found = this->Entries_.find(kind);
     return found == this->Entries_.end() ? nullptr : &found->second;
@@ -74,6 +72,7 @@ void AddFragmentCommands(Registry& registry);
 void AddSunCommands(Registry& registry);
 void AddSkyCommands(Registry& registry);
 void AddCameraCommands(Registry& registry);
+void AddLensRequests(Registry& registry);
 void AddTerrainCommands(Registry& registry);
 void AddSightRequests(Registry& registry);
 void AddLitAreaRequest(Registry& registry);

@@ -51,9 +51,6 @@ private:
     case Options::REQUEST:
       traits.Effect_ = Effect::Request;
       break;
-    case Options::UNIMPLEMENTED:
-      traits.Effect_ = Effect::Unimplemented;
-      break;
     default:
       Fail(field, "the option `effect` is missing");
     }

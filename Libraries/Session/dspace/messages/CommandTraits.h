@@ -15,8 +15,7 @@ class Command;
 
 namespace dspace::session {
 
-// `Unimplemented`: rejected with Error.UNIMPLEMENTED.
-enum class Effect { Change, Request, Unimplemented };
+enum class Effect { Change, Request };
 
 // The options of one command. The options of all commands are read once, on first use.
 class CommandTraits {

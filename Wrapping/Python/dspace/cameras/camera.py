@@ -123,6 +123,12 @@ class Camera(Strict):
         p, q = reply.camera_pose.pose.position, reply.camera_pose.pose.rotation
         return Pose._computed((p.x, p.y, p.z), (q.w, q.x, q.y, q.z), 1.0)
 
+    def capture(self, model=None, size=None, **planes):
+        """The image that it takes through a lens: Scene.simulate_image with this camera.
+
+            image = camera.capture(dspace.CameraModel.read("lens.json"), range=True)"""
+        return self._scene.simulate_image(model, camera=self, size=size, **planes)
+
     # --- What it sees --------------------------------------------------------------------------
 
     def set_projection(self, fov_deg=None, height=None, tangents=None, near=None, far=None):

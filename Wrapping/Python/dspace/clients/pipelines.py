@@ -3,7 +3,7 @@ from dspace._core.traits import scene_name
 from dspace.errors import NotFound
 
 # Commands before which pipelines are updated: those that show or copy geometry, and the one that begins a new step.
-_BEFORE = {"set_time", "capture", "save_image", "render", "pick", "explain_viewport", "get_mesh", "export_scene"}
+_BEFORE = {"set_time", "capture", "simulate_image", "save_image", "render", "pick", "explain_viewport", "get_mesh", "export_scene"}
 
 
 class Pipelines:

@@ -12,7 +12,8 @@ import warnings
 
 from dspace.errors import Error
 
-WORDS = {"contacts": "find when bodies, spacecraft and stations stand above the horizon of a site",
+WORDS = {"camera": "project, check and convert camera models, and draw through them",
+         "contacts": "find when bodies, spacecraft and stations stand above the horizon of a site",
          "ephemeris": "print states of bodies and spacecraft",
          "horizon": "measure the horizon around a site on terrain",
          "kernels": "describe SPICE kernels",

@@ -7,6 +7,7 @@ from dspace._core.fields import (Named, about, array_of, flag, integers, items, 
                                  shown)
 from dspace._core.strict import Strict
 from dspace.cameras.camera import CHASE, POINT_AT, Camera, put_chase, put_point_at, put_projection
+from dspace.cameras.images import SceneImages
 from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
@@ -210,6 +211,10 @@ class Scene(Strict):
     def reference_frames(self):
         """Rotations between reference frames: see dspace.ReferenceFrames."""
         return ReferenceFrames(self)
+
+    simulate_image = delegate(SceneImages, "simulate_image")
+    project_points = delegate(SceneImages, "project_points")
+    pixel_rays = delegate(SceneImages, "pixel_rays")
 
     sky = delegate(SceneSky, "sky")
     ephemeris = delegate(SceneSky, "ephemeris")

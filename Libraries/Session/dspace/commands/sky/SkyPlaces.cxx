@@ -1,7 +1,7 @@
 #include <dspace/commands/sky/SkyPlaces.h>
 
 #include <dspace/Checks.h>
-#include <dspace/commands/sky/BodyOfCrs.h>
+#include <dspace/commands/sky/SkyTools.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/state/TerrainObject.h>
 

@@ -120,6 +120,7 @@ void ViewportCommands::Clear() {
     viewport->SetBarShown({});
   }
   this->Viewports_.clear();
+  this->LensPictures_.Clear();
   this->RenderContext_ = nullptr;
 }
 

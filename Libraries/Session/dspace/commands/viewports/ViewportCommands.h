@@ -9,6 +9,7 @@
 
 #include <vtkSmartPointer.h>
 
+#include <dspace/commands/viewports/LensPictures.h>
 #include <dspace/commands/viewports/LiveTables.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/render/Capture.h>
@@ -71,16 +72,20 @@ private:
   // ViewportRequests.cxx
   void AddRequestsTo(Registry& registry);
   void Capture(const Context& context, v1::Capture& command);
+  void PutCapture(const Context& context, bool inlineData); // of LastCapture()
   void SaveImage(const Context& context, v1::SaveImage& command);
   void Render(const Context& context, v1::Render& command);
   void Pick(const Context& context, v1::Pick& command);
   void Explain(const Context& context, v1::ExplainViewport& command);
   void Statistics(const Context& context, v1::GetStatistics& command);
 
+  void Simulate(const Context& context, v1::SimulateImage& command); // SimulateRequest.cxx
+
   vtkSmartPointer<vtkDspaceRenderContext> RenderContext_;
   std::map<std::type_index, CustomDrawers::Maker> Drawers_; // of plug-ins
   std::map<std::string, vtkSmartPointer<vtkDspaceViewport>> Viewports_;
   std::map<std::string, OrbitController> Controllers_; // of viewports that have received events
+  LensPictures LensPictures_;
   LiveTables LiveTables_;
   dspace::Capture LastCapture_;
 };

@@ -172,11 +172,14 @@ void ViewportCommands::Capture(const Context& context, v1::Capture& command) {
                   "lit_fraction, incidence, emission, phase");
   }
   this->LastCapture_ = viewport.GetCapture(request);
+  this->PutCapture(context, command.inline_data());
+}
+
+void ViewportCommands::PutCapture(const Context& context, bool data) {
   const dspace::Capture& taken = this->LastCapture_;
   v1::CaptureReply* reply = context.reply.mutable_capture();
   reply->set_width(std::uint32_t(taken.width));
   reply->set_height(std::uint32_t(taken.height));
-  const bool data = command.inline_data();
   AddPlane(reply, "color", v1::Plane::UINT8, 4, taken.color, data);
   AddPlane(reply, "depth", v1::Plane::FLOAT32, 1, taken.depth, data);
   AddPlane(reply, "range", v1::Plane::FLOAT32, 1, taken.range, data);
@@ -329,6 +332,7 @@ void ViewportCommands::AddRequestsTo(Registry& registry) {
   registry.Add(C::kRender, &C::mutable_render, bind(&V::Render), none);
   registry.Add(C::kPick, &C::mutable_pick, bind(&V::Pick), none);
   registry.Add(C::kExplainViewport, &C::mutable_explain_viewport, bind(&V::Explain), none);
+  registry.Add(C::kSimulateImage, &C::mutable_simulate_image, bind(&V::Simulate));
   registry.Add(C::kGetStatistics, &C::mutable_get_statistics, bind(&V::Statistics), none);
 }
 

@@ -1,0 +1,197 @@
+// Source views and their resampling, with drawn pixels computed apart.
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <dspace/Error.h>
+#include <dspace/camera/sampling/LensTile.h>
+
+namespace dspace {
+namespace {
+
+CameraModel Model(const std::string& type, const LensValues& values, int width, int height) {
+  CameraModel model;
+  model.width = width;
+  model.height = height;
+  model.lens = MakeLens(type, values, "lens");
+  return model;
+}
+
+const LensValues Wide = {{"focal", {60.0, 60.0}}, {"center", {99.5, 79.5}}};
+
+std::vector<CameraModel> Models() {
+  return {Model("pinhole", {{"focal", {200.0, 200.0}}, {"center", {99.5, 79.5}}}, 200, 160),
+          Model("brown",
+                {{"focal", {200.0, 190.0}}, {"center", {90.5, 79.5}}, {"radial", {-0.2, 0.05}}},
+                200, 160),
+          Model("equidistant", Wide, 200, 160),
+          Model("cahvore",
+                {{"A", {0, 0, 1}},
+                 {"H", {80, 0, 99.5}},
+                 {"V", {0, 80, 79.5}},
+                 {"O", {0, 0, 1}},
+                 {"R", {0, -0.02, 0}},
+                 {"E", {4e-3, 2e-3, 0}},
+                 {"linearity", {0.0}}},
+                200, 160)};
+}
+
+// What a scene shows in a direction from a point: radiance (red), and distance [m].
+struct Seen {
+  double light;
+  double distance;
+};
+using Scene = std::function<Seen(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction)>;
+
+// Draws a block by the scene itself, a ray through each pixel's centre.
+LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const Scene& scene) {
+  const SourceViews::View view = views.ViewOf(block);
+  const SourceViews::Face& face = views.Faces()[std::size_t(block.face)];
+  LensPlanes planes;
+  planes.width = view.width;
+  planes.height = view.height;
+  for (int j = 0; j < view.height; ++j) {
+    for (int i = 0; i < view.width; ++i) {
+      const Eigen::Vector3d F(view.left + (i + 0.5) * (view.right - view.left) / view.width,
+                              view.top + (j + 0.5) * (view.bottom - view.top) / view.height, 1.0);
+      const Seen seen = scene(views.Eye(), face.R_CF * F.normalized());
+      planes.radiance.insert(planes.radiance.end(), {float(seen.light), 0.0f, 1.0f});
+      planes.depth.push_back(float(seen.distance / F.norm()));
+      planes.label.push_back(std::uint32_t(100.0 * seen.light));
+    }
+  }
+  return planes;
+}
+
+LensPlanes Picture(const CameraModel& model, const Scene& scene, int block, int x, int y, int width,
+                   int height, double* pupil = nullptr) {
+  const SourceViews views(model, block);
+  LensWishes wishes;
+  wishes.radiance = wishes.depth = wishes.range = wishes.label = true;
+  LensTile tile(views, *model.lens, wishes, x, y, width, height);
+  for (const SourceViews::Block& each : tile.Blocks()) {
+    tile.Take(each, Draw(views, each, scene));
+  }
+  if (pupil) {
+    *pupil = tile.PupilPixels();
+  }
+  EXPECT_EQ(tile.Beyond(), 0u);
+  return tile.Planes();
+}
+
+// A smooth pattern on a sphere of 2 m around the origin.
+Seen Sphere(const Eigen::Vector3d& eye, const Eigen::Vector3d& d) {
+  const double b = eye.dot(d);
+  const double t = -b + std::sqrt(b * b + 4.0 - eye.squaredNorm());
+  const Eigen::Vector3d p = eye + t * d;
+  return {2.0 + std::sin(4.0 * p.x()) + std::cos(3.0 * p.y() + p.z()), t};
+}
+
+TEST(SourceViews, ShowWhatThePixelsOwnRayMeets) {
+  for (const CameraModel& model : Models()) {
+    double pupil = 0.0;
+    const LensPlanes planes = Picture(model, Sphere, 64, 0, 0, model.width, model.height, &pupil);
+    const std::string type = model.lens->Type();
+    EXPECT_EQ(pupil > 0.0, type == "cahvore");
+    double light = 0.0, range = 0.0, depth = 0.0;
+    for (int y = 0; y < model.height; ++y) {
+      for (int x = 0; x < model.width; ++x) {
+        LensRay ray;
+        ASSERT_TRUE(model.lens->Unproject({double(x), double(y)}, ray)) << type;
+        const Seen seen = Sphere(ray.origin, ray.direction);
+        const std::size_t at = std::size_t(y * model.width + x);
+        light = std::max(light, std::abs(double(planes.radiance[3 * at]) - seen.light));
+        range = std::max(range, std::abs(double(planes.range[at]) - seen.distance));
+        depth = std::max(depth, std::abs(double(planes.depth[at]) -
+                                         (ray.origin + seen.distance * ray.direction).z()));
+        EXPECT_EQ(planes.radiance[3 * at + 2], 1.0f); // no wedge, in any corner
+      }
+    }
+    // A pixel of the pattern changes the light by up to 0.1; a slip of a twentieth of one would
+    // show.
+    EXPECT_LT(light, 0.01) << type;
+    EXPECT_LT(range, 0.02) << type; // the nearest pixel's depth, on a curved surface
+    EXPECT_LT(depth, 0.02) << type;
+  }
+}
+
+TEST(SourceViews, TilesEqualTheWhole) {
+  for (const CameraModel& model : Models()) {
+    const LensPlanes whole = Picture(model, Sphere, 48, 0, 0, model.width, model.height);
+    for (const auto& [x, y, width, height] :
+         {std::tuple(0, 0, 70, 50), std::tuple(130, 110, 70, 50), std::tuple(61, 40, 1, 1)}) {
+      const LensPlanes tile = Picture(model, Sphere, 48, x, y, width, height);
+      for (int j = 0; j < height; ++j) {
+        for (int i = 0; i < width; ++i) {
+          const std::size_t a = std::size_t(j * width + i);
+          const std::size_t b = std::size_t((y + j) * model.width + x + i);
+          ASSERT_EQ(tile.radiance[3 * a], whole.radiance[3 * b]);
+          ASSERT_EQ(tile.range[a], whole.range[b]);
+          ASSERT_EQ(tile.label[a], whole.label[b]);
+        }
+      }
+    }
+  }
+}
+
+TEST(SourceViews, LabelsAreNeverBlended) {
+  const Scene halves = [](const Eigen::Vector3d&, const Eigen::Vector3d& d) {
+    return Seen{d.x() < 0.1 * d.y() ? 1.0 : 3.0, 5.0};
+  };
+  for (const CameraModel& model : Models()) {
+    const LensPlanes planes = Picture(model, halves, 64, 0, 0, model.width, model.height);
+    int blended = 0;
+    for (std::size_t i = 0; i < planes.label.size(); ++i) {
+      ASSERT_TRUE(planes.label[i] == 100u || planes.label[i] == 300u);
+      blended += planes.radiance[3 * i] > 1.01f && planes.radiance[3 * i] < 2.99f;
+    }
+    EXPECT_GT(blended, 0); // light is
+  }
+}
+
+TEST(SourceViews, AreAsFineAsTheLens) {
+  for (const CameraModel& model : Models()) {
+    const SourceViews views(model, 64);
+    const bool wide = views.HalfAngle_deg() > 50.0;
+    EXPECT_EQ(views.Faces().size() > 1, wide) << model.lens->Type();
+    double least = 1e9;
+    for (int y = 0; y < model.height; y += 7) {
+      for (int x = 1; x < model.width; x += 7) {
+        LensRay a, b;
+        ASSERT_TRUE(model.lens->Unproject({x - 0.5, double(y)}, a) &&
+                    model.lens->Unproject({x + 0.5, double(y)}, b));
+        const SourceViews::Place one = views.Find(a.direction), two = views.Find(b.direction);
+        ASSERT_GE(one.face, 0);
+        if (one.face == two.face) {
+          least = std::min(least, std::hypot(one.x - two.x, one.y - two.y));
+        }
+      }
+    }
+    EXPECT_GT(least, 0.98) << model.lens->Type(); // source pixels per pixel
+    EXPECT_LT(least, 2.5) << model.lens->Type();
+  }
+}
+
+TEST(SourceViews, PixelsWithoutARayAreEmpty) {
+  // Folds at 702.7 / 1000 of the focal length, well within the corners.
+  const CameraModel model = Model(
+      "brown", {{"focal", {100.0, 100.0}}, {"center", {99.5, 79.5}}, {"radial", {-0.3}}}, 200, 160);
+  const LensPlanes planes = Picture(model, Sphere, 64, 0, 0, 200, 160);
+  EXPECT_EQ(planes.radiance[2], 0.0f);
+  EXPECT_EQ(planes.label[0], 0u);
+  EXPECT_TRUE(std::isinf(planes.range[0]));
+  EXPECT_EQ(planes.radiance[3 * (80 * 200 + 100) + 2], 1.0f);
+  int seen = 0;
+  for (int i = 0; i < 200 * 160; ++i) {
+    seen += planes.radiance[std::size_t(3 * i + 2)] > 0.5f;
+  }
+  EXPECT_NEAR(seen, M_PI * 70.27 * 70.27, 60.0);
+  EXPECT_THROW(
+      SourceViews(Model("orthographic", {{"scale", {10, 10}}, {"center", {5, 5}}}, 10, 10), 64),
+      Error);
+}
+
+} // namespace
+} // namespace dspace

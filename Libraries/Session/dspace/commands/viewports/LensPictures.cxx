@@ -1,0 +1,134 @@
+#include <dspace/commands/viewports/LensPictures.h>
+
+#include <algorithm>
+
+#include "vtkDspaceRenderContext.h"
+#include "vtkDspaceViewport.h"
+
+namespace dspace::session {
+namespace {
+
+constexpr int BlockSide = 512; // source pixels: a block is drawn within half a second
+constexpr std::size_t KeptBytes = 192u << 20; // of source blocks
+
+CaptureRequest ToRequest(const LensPictures::Request& from, bool depth) {
+  CaptureRequest request;
+  request.color = false;
+  request.depth = depth;
+  request.label = from.wishes.label;
+  request.radiance = from.wishes.radiance;
+  request.litFraction = from.wishes.litFraction;
+  request.incidence = from.wishes.incidence;
+  request.emission = from.wishes.emission;
+  request.phase = from.wishes.phase;
+  request.physicalOnly = !from.ornaments;
+  request.hiddenFragments = from.hiddenFragments;
+  return request;
+}
+
+std::shared_ptr<LensPlanes> ToPlanes(dspace::Capture&& from) {
+  auto to = std::make_shared<LensPlanes>();
+  to->width = from.width;
+  to->height = from.height;
+  to->radiance = std::move(from.radiance);
+  to->depth = std::move(from.depth);
+  to->label = std::move(from.label);
+  to->litFraction = std::move(from.litFraction);
+  to->incidence = std::move(from.incidence);
+  to->emission = std::move(from.emission);
+  to->phase = std::move(from.phase);
+  return to;
+}
+
+} // namespace
+
+LensPictures::LensPictures() = default;
+LensPictures::~LensPictures() = default;
+
+void LensPictures::Clear() {
+  this->Viewport_ = nullptr;
+  this->Views_.reset();
+  this->Blocks_.clear();
+  this->Order_.clear();
+  this->Bytes_ = 0;
+  this->Request_.clear();
+}
+
+std::shared_ptr<const LensPlanes> LensPictures::Get(vtkDspaceRenderContext* context,
+                                                    const std::shared_ptr<Scene>& scene,
+                                                    const Request& request, const Key& block,
+                                                    bool depth, Result& result) {
+  const auto found = this->Blocks_.find(block);
+  if (found != this->Blocks_.end()) {
+    return found->second;
+  }
+  const SourceViews::View view = this->Views_->ViewOf(block);
+  const SourceViews::Face& face = this->Views_->Faces()[std::size_t(block.face)];
+  if (!this->Viewport_) {
+    this->Viewport_ = vtkSmartPointer<vtkDspaceViewport>::New();
+    this->Viewport_->Initialize(context, scene, "camera simulation", "main", view.width,
+                                view.height, request.samples);
+    ViewLook look = this->Viewport_->GetLook();
+    look.shadows.shown = true;
+    this->Viewport_->SetLook(look);
+  }
+  this->Viewport_->Resize(view.width, view.height);
+  CameraPose camera = request.lens.camera;
+  Pose X_CF;
+  X_CF.position = this->Views_->Eye();
+  X_CF.rotation = Eigen::Quaterniond(face.R_CF);
+  camera.X_FC = camera.X_FC * X_CF;
+  Projection projection;
+  projection.kind = Projection::Kind::Frustum;
+  projection.left = view.left;
+  projection.right = view.right;
+  projection.top = view.top;
+  projection.bottom = view.bottom;
+  this->Viewport_->SetFixedView(camera, projection);
+  std::shared_ptr<const LensPlanes> planes =
+      ToPlanes(this->Viewport_->GetCapture(ToRequest(request, depth)));
+  ++result.sourceViews;
+  result.sourcePixels += std::uint64_t(view.width) * std::uint64_t(view.height);
+  this->Blocks_[block] = planes;
+  this->Order_.push_back(block);
+  this->Bytes_ += planes->Bytes();
+  while (this->Bytes_ > KeptBytes && this->Order_.size() > 1) {
+    const auto oldest = this->Blocks_.find(this->Order_.front());
+    this->Bytes_ -= oldest->second->Bytes();
+    this->Blocks_.erase(oldest);
+    this->Order_.pop_front();
+  }
+  return planes;
+}
+
+LensPictures::Result LensPictures::Draw(vtkDspaceRenderContext* context,
+                                        const std::shared_ptr<Scene>& scene,
+                                        const Request& request) {
+  const bool sameScene = this->Scene_.lock() == scene;
+  if (!sameScene || this->Request_ != request.key || this->Revision_ != scene->Revision()) {
+    const bool keep =
+        sameScene && this->Viewport_ && this->Viewport_->GetSamples() == request.samples;
+    const vtkSmartPointer<vtkDspaceViewport> viewport = keep ? this->Viewport_ : nullptr;
+    this->Clear();
+    this->Viewport_ = viewport;
+    this->Views_ = std::make_unique<SourceViews>(request.lens.model, BlockSide);
+    this->Scene_ = scene;
+    this->Request_ = request.key;
+    this->Revision_ = scene->Revision();
+  }
+  Result result;
+  LensTile tile(*this->Views_, *request.lens.model.lens, request.wishes, request.x, request.y,
+                request.width, request.height);
+  for (const SourceViews::Block& block : tile.Blocks()) {
+    tile.Take(block, *this->Get(context, scene, request, block, tile.NeedsDepth(), result));
+  }
+  result.planes = tile.Planes();
+  result.withoutRay = tile.WithoutRay();
+  result.halfAngle_deg = this->Views_->HalfAngle_deg();
+  result.pupilShift = this->Views_->PupilShift();
+  result.pupilPixels = tile.PupilPixels();
+  result.pupilBeyond = tile.Beyond();
+  return result;
+}
+
+} // namespace dspace::session

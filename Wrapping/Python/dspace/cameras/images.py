@@ -1,0 +1,152 @@
+"""Pictures through lenses, pixels of points and rays of pixels, in a scene."""
+from typing import NamedTuple
+
+import numpy as np
+
+from dspace._core import wire
+from dspace._core.fields import array_of, integer, items, put, put_given, reject
+from dspace._core.signals import check_signals
+from dspace.cameras.model import put_model
+from dspace.errors import WrongType
+
+TILE = 512  # pixels a side, drawn between two checks for Ctrl-C
+PLANES = {"color": (np.uint8, (4,)), "radiance": (np.float32, (3,)), "depth": (np.float32, ()), "range": (np.float32, ()),
+          "label": (np.uint32, ()), "lit_fraction": (np.float32, ()), "incidence": (np.float32, ()),
+          "emission": (np.float32, ()), "phase": (np.float32, ())}
+
+
+class LensPicture(NamedTuple):
+    """How a picture through a lens was made."""
+    source_views: int  # that were drawn
+    source_pixels: int
+    without_ray: int  # pixels that see nothing: the lens has no ray for them
+    half_angle_deg: float  # the widest angle between a pixel's ray and the axis
+    pupil_shift: float  # the greatest distance of a pixel's entrance pupil from the eye of the source views [m]
+    pupil_pixels: float  # how far that moved a pixel's place in a source view, of what the picture shows
+    pupil_beyond: int  # pixels whose place left the drawn source block: they show its edge
+
+
+class SceneImages:
+    """Draws through lenses for a Scene, which delegates to it."""
+
+    def __init__(self, scene):
+        self._scene = scene
+
+    def _put_camera(self, message, model, camera, vantage, frame, size, scale, about):
+        from dspace.cameras.camera import Camera
+        put_model(message, model, size, scale, about)
+        if frame is not None:
+            if camera is not None or vantage is not None:
+                reject(about, "a frame with a camera", (frame, camera), "one of them")
+            if model is None:
+                reject(about, "a frame without a model", frame, "a model with it")
+            message.own_pose = True
+            message.frame = self._scene._frame_id(frame)
+        else:
+            if isinstance(camera, Camera):
+                vantage = camera.vantage if vantage is None else vantage
+            message.camera = self._scene._name_of(camera, Camera, "camera", about)
+            message.vantage = "" if vantage is None else self._scene._vantage_name(vantage, about)
+
+    def simulate_image(self, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, color=True,
+                       radiance=False, depth=False, range=False, label=False, lit_fraction=False, incidence=False,
+                       emission=False, phase=False, samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE,
+                       progress=None):
+        """The image that a camera with a lens takes: a dict of planes (h, w, ...), row 0 on top, and "lens", a
+        LensPicture.
+
+        model: a CameraModel; None: the camera's own projection. Its pose is that of `camera` (or the active one of
+        `vantage`), whose axes the model's axes become; or with `frame` the model's own pose in that frame, such as a
+        rover's body. size: (width, height), needed where the model has none; another size than the model's is rejected
+        unless scale=True. Planes: as Viewport.capture, of physical objects; "color" is the sRGB of the radiance times
+        `exposure`, "range" is from the pixel's own entrance pupil. ornaments=True: labels, depths and angles also of
+        ornaments. Pixels that the lens has no ray for are black, 0, +infinity or NaN. samples: n x n per pixel of the
+        source views, 1 to 8. hide: fragments left out.
+
+        The image is drawn in tiles of `tile` pixels a side (64 to 4096), with the same bytes as in one; Ctrl-C stops
+        between two. progress: called with the part that is done, 0 to 1.
+
+        Light of a lens wider than 100 degrees comes from up to six views, and is interpolated; all other planes take
+        the nearest source pixel. A CAHVORE's moving pupil is followed, with what only it would see left out."""
+        about = "simulated image"
+        tile = integer(tile, "the tile", about)
+        if not 64 <= tile <= 4096:
+            reject(about, "the tile", tile, "64 to 4096 pixels")
+        if progress is not None and not callable(progress):
+            reject(about, "progress", progress, "a function of one number", WrongType)
+        wanted = dict(color=color, radiance=radiance, depth=depth, range=range, label=label, lit_fraction=lit_fraction,
+                      incidence=incidence, emission=emission, phase=phase)
+        command = self._scene._command()
+        message = command.simulate_image
+        self._put_camera(message.camera, model, camera, vantage, frame, size, scale, about)
+        put(message, about, ornaments=ornaments, **wanted)
+        put_given(message, about, samples=samples, exposure=exposure)
+        hide = hide if isinstance(hide, (list, tuple, set, frozenset)) else [hide]
+        message.hidden_fragment.extend(self._scene._fragment_name(each, None)
+                                       for each in items(hide, "hide", about, "fragments or their names"))
+        planes, counts, first = {}, np.zeros(4, dtype=np.int64), None
+        width, height = size if size is not None else (model.size if model is not None and model.size else (0, 0))
+        x = y = 0
+        while True:
+            message.x, message.y = x, y
+            message.tile_width, message.tile_height = (min(tile, max(width - x, 0)), min(tile, max(height - y, 0)))
+            reply = self._scene._execute(command).capture
+            lens = reply.lens
+            if first is None:
+                width, height = lens.image_width, lens.image_height
+                planes = {plane.name: np.empty((height, width) + PLANES[plane.name][1], PLANES[plane.name][0])
+                          for plane in reply.plane}
+                first = lens
+                pupil = 0.0
+            for plane in reply.plane:
+                planes[plane.name][y:y + reply.height, x:x + reply.width] = self._plane(plane, reply)
+            counts += (lens.source_views, lens.source_pixels, lens.without_ray, lens.pupil_beyond)
+            pupil = max(pupil, lens.pupil_pixels)
+            x += reply.width
+            if x >= width:
+                x, y = 0, y + reply.height
+            if progress is not None:
+                progress(min((y * width + x * reply.height) / (width * height), 1.0))
+            if y >= height:
+                break
+            check_signals()
+        planes["lens"] = LensPicture(int(counts[0]), int(counts[1]), int(counts[2]), first.half_angle_deg,
+                                     first.pupil_shift, pupil, int(counts[3]))
+        return planes
+
+    def _plane(self, plane, reply):
+        kind, channels = PLANES[plane.name]
+        shape = (reply.height, reply.width) + channels
+        if plane.data:
+            return np.frombuffer(plane.data, kind).reshape(shape)
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        return vtk_to_numpy(self._scene._client.vtk.GetPlane(plane.name)).reshape(shape)
+
+    def project_points(self, points, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, points_in=None):
+        """Pixels (..., 2) of points (..., 3) [m] in the frame `points_in` (default: the root); NaN where the lens sees
+        nothing. Things in between do not count. The camera is given as for simulate_image()."""
+        about = "projected points"
+        array = array_of(points, "the points", "an array (..., 3)", about)
+        if array.ndim < 1 or array.shape[-1] != 3:
+            reject(about, "the points", points, "an array (..., 3)")
+        command = self._scene._command()
+        message = command.project_points
+        self._put_camera(message.camera, model, camera, vantage, frame, size, scale, about)
+        message.frame = self._scene._frame_id(points_in)
+        wire.put_array(message, "point", array)
+        return wire.get_array(self._scene._execute(command).project, "pixel").reshape(array.shape[:-1] + (2,))
+
+    def pixel_rays(self, pixels, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, rays_in=None):
+        """Origins (..., 3) [m] and unit directions (..., 3) in the frame `rays_in` (default: the root) of the rays of
+        pixels (..., 2); NaN where there is none. The camera is given as for simulate_image()."""
+        about = "rays of pixels"
+        array = array_of(pixels, "the pixels", "an array (..., 2)", about)
+        if array.ndim < 1 or array.shape[-1] != 2:
+            reject(about, "the pixels", pixels, "an array (..., 2)")
+        command = self._scene._command()
+        message = command.unproject_pixels
+        self._put_camera(message.camera, model, camera, vantage, frame, size, scale, about)
+        message.frame = self._scene._frame_id(rays_in)
+        wire.put_array(message, "pixel", array)
+        rays = wire.get_array(self._scene._execute(command).unproject, "ray").reshape(array.shape[:-1] + (6,))
+        return rays[..., :3].copy(), rays[..., 3:].copy()
