@@ -7,7 +7,7 @@ from dspace.command_line import terrain_cache, terrain_info, terrain_layers, ter
 
 # The type of each key of a patch.
 PATCH = {"band": int, "crs": str, "vertical_datum": str, "vertical_scale": float, "vertical_offset": float,
-         "pixel_size": float, "margin": float}
+         "pixel_size": float, "margin": float, "no_data": float}
 
 
 def add_arguments(parser):
@@ -68,6 +68,8 @@ def add_raster_options(parser):
     parser.add_argument("--vertical-offset", type=float, metavar="M", help="metres added to the heights")
     parser.add_argument("--pixel-size", type=float, metavar="P",
                         help="size of a pixel in map units, if the raster has no georeference")
+    parser.add_argument("--nodata", type=float, metavar="VALUE", help="pixels of this value, as the file stores it, have "
+                        "no data (-32768, -9999, ...)")
     parser.add_argument("--patch", type=patch, action="append", dest="patches", metavar="PATH[,KEY=VALUE...]",
                         help="a raster of higher resolution, in its own CRS, blended into FILE over a "
                         f"margin; keys: {', '.join(PATCH)}; may be given several times")
