@@ -33,7 +33,11 @@ def add_arguments(parser):
     render.add_argument("--view", choices=("map", "perspective"), default="map")
     render.add_argument("--on-body", action="store_true", help="place the terrain on its body (default: on a plane)")
     terrain_layers.add_arguments(render)
-    render.add_argument("--color-by-height", action="store_true", help="color the terrain by height")
+    render.add_argument("--color-by-height", action=argparse.BooleanOptionalAction, default=None,
+                        help="color the terrain by height (default: on maps without --image, --false-color and --shapes)")
+    render.add_argument("--exaggeration", type=exaggeration, metavar="E",
+                        help="factor on the heights by which a map is shaded; 1: true light (default: 1, or more where "
+                        "pixels are so large that true light shows no relief; the factor is printed)")
     render.add_argument("--image-crs", metavar="CRS", help="CRS of the image, if its file does not state one")
     render.add_argument("--image-extent", type=numbers(4, "LEFT,TOP,RIGHT,BOTTOM"), metavar="L,T,R,B",
                         help="extent of the image in map coordinates, if its file does not state one")
@@ -115,6 +119,13 @@ def fov(text):
     value = numbers(1, "DEG")(text)[0]
     if not 0.001 <= value <= 170:
         raise argparse.ArgumentTypeError(f"'{text}'; accepted: 0.001 to 170 degrees")
+    return value
+
+
+def exaggeration(text):
+    value = numbers(1, "E")(text)[0]
+    if not 0.1 <= value <= 1e4:
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: 0.1 to 10000")
     return value
 
 
