@@ -174,8 +174,8 @@ def test_shaded_relief_follows_lamberts_law(tmp_path):
 def test_relief_that_true_light_does_not_show_is_exaggerated(tmp_path):
     """A roof of 0.1 degrees, against Lambert's law of one that is as steep as is told."""
     east = np.arange(300)
-    roof = 0.004 * np.minimum(east, 299 - east)  # 2 m a pixel: a slope of 0.002
-    path = write_raster(tmp_path / "roof.tif", np.tile(roof, (300, 1)))
+    roof = np.minimum(east, 299 - east)  # times 4 mm, 2 m a pixel: a slope of 0.002
+    path = write_raster(tmp_path / "roof.tif", np.tile(roof, (300, 1)), scale=(0.004, 0.0))
     picture, told = render(tmp_path / "r.png", path, "--size", "120x120", "--sun", "90,45", "--no-color-by-height")
     factor = float(told.split("exaggerated ")[1].split()[0])
     assert factor == pytest.approx(np.tan(np.radians(20)) / 0.002, rel=0.05)

@@ -49,8 +49,7 @@ std::vector<std::string> NearMatches(const std::string& wanted,
     const std::size_t allowed = std::max<std::size_t>(1, part.size() / 3);
     const bool contains = shorter >= 3 && (part.find(other) != std::string::npos ||
                                            other.find(part) != std::string::npos);
-    const std::size_t distance =
-        longer - shorter > allowed ? allowed + 1 : Distance(part, other);
+    const std::size_t distance = longer - shorter > allowed ? allowed + 1 : Distance(part, other);
     if (distance <= allowed && distance < part.size()) {
       found.emplace_back(distance, name);
     } else if (contains) {
