@@ -46,7 +46,7 @@ std::vector<std::string> NearMatches(const std::string& wanted,
     if (shorter == 0) {
       continue;
     }
-    const std::size_t allowed = std::max<std::size_t>(1, part.size() / 3);
+    const std::size_t allowed = (part.size() + 2) / 3;
     const bool contains = shorter >= 3 && (part.find(other) != std::string::npos ||
                                            other.find(part) != std::string::npos);
     const std::size_t distance = longer - shorter > allowed ? allowed + 1 : Distance(part, other);

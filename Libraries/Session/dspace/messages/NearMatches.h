@@ -8,8 +8,8 @@
 namespace dspace::session {
 
 // Up to three of `names` that are close to `wanted`, the closest first: the same in other case, or
-// with at most a third of its bytes changed, added or left out (Levenshtein's distance), or one
-// that contains the other. Of paths ("rover/mast") the last parts are compared.
+// with at most a third of its bytes (rounded up) changed, added or left out (Levenshtein's
+// distance), or one that contains the other. Of paths ("rover/mast") the last parts are compared.
 std::vector<std::string> NearMatches(const std::string& wanted,
                                      const std::vector<std::string>& names);
 

@@ -218,14 +218,15 @@ TEST_F(Raster, ValuesThatLookLikeNoDataAreTold) {
   };
   EXPECT_EQ(told(with(-32768, 1)), "-32768");
   EXPECT_EQ(told(with(-9999, 30)), "-9999");
-  EXPECT_EQ(told(with(-32768, 9), -32768.0), ""); // what it asks for cures it
+  EXPECT_EQ(told(with(-32768, 9), -32768.0), "");                   // what it asks for cures it
   EXPECT_EQ(told(with(-32768, 9), {}, 0.1).substr(0, 6), "-32768"); // as the file stores it
   EXPECT_EQ(told(with(-500, 5)).substr(0, 4), "-500");              // no usual value, but far away
-  EXPECT_EQ(told(with(-500, 2)), "");                               // two pixels: a hole in the ground
-  EXPECT_EQ(told(with(30, 9)), "");                                 // near the others
+  EXPECT_EQ(told(with(-500, 2)), ""); // two pixels: a hole in the ground
+  EXPECT_EQ(told(with(30, 9)), "");   // near the others
   EXPECT_EQ(told(with(1e8, 9)).substr(0, 5), "10000");
   EXPECT_EQ(told([](int, int, int) { return -9999.0; }), ""); // level ground
-  EXPECT_EQ(told([](int c, int, int) { return -9999.0 + 100.0 * c; }), ""); // ground that begins there
+  EXPECT_EQ(told([](int c, int, int) { return -9999.0 + 100.0 * c; }),
+            ""); // ground that begins there
 }
 
 TEST_F(Raster, WindowIsItsOwnRaster) {
