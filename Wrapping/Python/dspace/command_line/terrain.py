@@ -2,8 +2,7 @@
 import argparse
 import math
 
-from dspace._core.traits import SIDE
-from dspace.command_line import terrain_cache, terrain_info, terrain_layers, terrain_render
+from dspace.command_line import later, terrain_cache, terrain_layers
 
 # The type of each key of a patch.
 PATCH = {"band": int, "crs": str, "vertical_datum": str, "vertical_scale": float, "vertical_offset": float,
@@ -21,7 +20,7 @@ def add_arguments(parser):
     info.add_argument("--field", type=field, action="append", dest="fields", metavar="NAME=FILE[:BAND]",
                       help="a raster of values that lies on FILE: what it holds, and how much of FILE it covers; may be "
                       "given several times")
-    info.set_defaults(run=terrain_info.run)
+    info.set_defaults(run=later("terrain_info"))
 
     render = commands.add_parser(
         "render", help="draw a picture: a map, or a perspective view",
@@ -51,7 +50,7 @@ def add_arguments(parser):
                         help="the point that a perspective view looks at")
     render.add_argument("--fov", type=fov, default=35.0, metavar="DEG",
                         help="vertical angle of a perspective view (default 35)")
-    render.set_defaults(run=terrain_render.run)
+    render.set_defaults(run=later("terrain_render"))
 
     terrain_cache.add_arguments(commands.add_parser(
         "cache", help="build overviews of large rasters that have none", description=terrain_cache.ABOUT))
@@ -87,6 +86,7 @@ def add_raster_options(parser):
 # --- Values ----------------------------------------------------------------------------------------
 
 def size(text):
+    from dspace._core.traits import SIDE  # slow to import
     try:
         width, height = (int(part) for part in text.lower().split("x"))
     except ValueError:
