@@ -70,6 +70,18 @@ def test_the_links_of_a_document_lead_somewhere(document):
     assert list(broken(document, document.read_text())) == []
 
 
+def test_the_words_of_importers_warnings_are_theirs():
+    page = (ROOT / "Documentation/Formats.md").read_text()
+    table = page.split("Words of warnings")[1].split("## ")[0]
+    sources = " ".join(path.read_text() for path in (ROOT / "Libraries/Core/dspace/import").rglob("*.cxx"))
+    sources = re.sub(r"\"\s*\"", "", sources)  # parts of one text
+    rows = re.findall(r"^\| `([^`]+)`", table, re.M)
+    assert len(rows) == 10
+    for words in rows:
+        for part in re.split(r"'?\b[A-Z]+\b'?", words):
+            assert part.strip(" ,;'") in sources, f"{part!r} of {words!r} is in no importer"
+
+
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_the_files_that_a_document_names_exist(document):
     assert list(missing(document, document.read_text())) == []
