@@ -15,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 # The guides in the order of the contents, by chapter; a page of Documentation that is in none goes to the last one.
 CHAPTERS = {
-    "Start": ("README.md", "Documentation/Cookbook.md", "Documentation/Conventions.md"),
+    "Start": ("README.md", "Documentation/Start.md", "Documentation/Cookbook.md", "Documentation/Conventions.md"),
     "Guides": ("Documentation/Terrain.md", "Documentation/Views.md", "Documentation/Measurements.md", "Documentation/Sky.md",
                "Documentation/Frames.md", "Documentation/Ephemeris.md", "Documentation/Formats.md", "Documentation/VTK.md",
                "Documentation/Telemetry.md", "Documentation/Movies.md", "Documentation/Recording.md",

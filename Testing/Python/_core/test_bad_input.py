@@ -287,7 +287,7 @@ def test_another_thread_is_refused(session, scene, view):
 
 
 def test_what_python_itself_refuses_is_pythons_own():
-    """As README.md has it: fixed parameters are Python's, options by name are ours."""
+    """As Start.md has it: fixed parameters are Python's, options by name are ours."""
     for call in (lambda: dspace.connect(bogus=1), lambda: dspace.connect()):
         with pytest.raises(TypeError) as found:
             call()

@@ -1,4 +1,6 @@
 """Clipmaps on a plane through Python: what they answer and draw against triangles, and refusals."""
+import warnings
+
 import numpy as np
 import pytest
 
