@@ -8,10 +8,15 @@ import sys
 
 def filtered(text):
     lines = text.split("\n")
-    out, i = [], 0
+    out, i, column = [], 0, None  # column: of the comment behind the line before
     while i < len(lines):
         alone = re.match(r"(\s*)//(?!/)(.*)", lines[i])
+        if alone and column is not None and len(alone[1]) == column:
+            out.append(lines[i].replace("//", "///<", 1))
+            i += 1
+            continue
         if alone:
+            column = None
             end = i
             while end < len(lines) and re.match(r"\s*//(?!/)", lines[end]):
                 end += 1
@@ -24,7 +29,9 @@ def filtered(text):
             out += block
             i = end
             continue
-        out.append(re.sub(r"([;,{]\s*)//(?!/)", r"\1///<", lines[i], count=1))
+        behind = re.match(r"(?!\s*#)(.*[^\s{}/]\s+)//(?!/)", lines[i])
+        column = len(behind[1]) if behind else None
+        out.append(f"{behind[1]}///<{lines[i][column + 2:]}" if behind else lines[i])
         i += 1
     return "\n".join(out)
 

@@ -120,7 +120,7 @@ def run_doxygen(folder, out):
     settings = {
         "PROJECT_NAME": "Dspace", "INPUT": " ".join(f'"{path}"' for path in inputs), "RECURSIVE": "YES",
         "FILE_PATTERNS": "*.h", "EXCLUDE_PATTERNS": "*/Testing/*", "OUTPUT_DIRECTORY": f'"{out}"', "HTML_OUTPUT": "cpp",
-        "GENERATE_LATEX": "NO", "QUIET": "YES", "WARNINGS": "NO", "EXTRACT_ALL": "YES", "SEARCHENGINE": "YES",
+        "GENERATE_LATEX": "NO", "QUIET": "YES", "WARNINGS": "NO", "WARN_IF_DOC_ERROR": "NO", "WARN_LOGFILE": "/dev/null", "EXTRACT_ALL": "YES", "SEARCHENGINE": "YES",
         "GENERATE_TREEVIEW": "YES", "HAVE_DOT": "NO", "MARKDOWN_SUPPORT": "NO", "HIDE_UNDOC_RELATIONS": "YES",
         "STRIP_FROM_PATH": " ".join(f'"{path}"' for path in inputs), "VERBATIM_HEADERS": "YES", "SHOW_USED_FILES": "NO",
         # Comments are plain: those before and behind a declaration are its description.
