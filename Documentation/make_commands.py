@@ -30,13 +30,34 @@ Numbers are never reused.
 EFFECTS = {"CHANGE": "changes the scene", "REQUEST": "a request"}
 
 
+def joined(text):
+    """A .proto file's text, in which each comment behind a declaration is on one line.
+
+    protoc takes the first line of such a comment for the declaration and the following lines for the next one. A line
+    that has only a comment, below the comment of the line before it, continues that comment."""
+    lines, column = [], None
+    for line in text.splitlines():
+        alone = re.match(r" *//", line)
+        if alone and column is not None and alone.end() - 2 == column:
+            lines[-1] += " " + line.strip().lstrip("/").strip()
+            continue
+        behind = re.match(r" *[^ /].*?[;{},] *//", line)
+        column = behind.end() - 2 if behind else None
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
 def read_protos():
     """The files' descriptors with their comments, by name, and what reads the options of options.proto."""
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "all.pb"
-        subprocess.run(["protoc", f"-I{PROTOS}", "--include_imports", "--include_source_info",
+        for proto in (PROTOS / "dspace/proto").glob("*.proto"):
+            copy = pathlib.Path(folder) / "dspace/proto" / proto.name
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_text(joined(proto.read_text(encoding="utf-8")), encoding="utf-8")
+        subprocess.run(["protoc", f"-I{folder}", "--include_imports", "--include_source_info",
                         f"--descriptor_set_out={out}", *[f"dspace/proto/{name}.proto" for name in FILES]],
-                       check=True, cwd=PROTOS)
+                       check=True, cwd=folder)
         files = descriptor_pb2.FileDescriptorSet.FromString(out.read_bytes()).file
     return {pathlib.Path(file.name).stem: file for file in files}, Options(files)
 

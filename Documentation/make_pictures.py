@@ -7,10 +7,10 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from pictures import application, light, measure, models, scenes, sky, terrain, trajectories, vtk  # noqa: E402
+from pictures import application, cookbook, light, measure, models, scenes, sky, terrain, trajectories, vtk  # noqa: E402
 from pictures.paths import DATA, IMAGES  # noqa: E402
 
-EVERYWHERE = (scenes.first_picture, scenes.views, scenes.demo_drive, scenes.movie, scenes.banner, vtk.pipeline, vtk.props,
+EVERYWHERE = (scenes.first_picture, cookbook.cookbook, scenes.views, scenes.demo_drive, scenes.movie, scenes.banner, vtk.pipeline, vtk.props,
               vtk.own_object, light.photometry, sky.stars, application.application,
               application.application_telemetry, application.application_console, application.application_dark,
               application.application_keys, application.application_map, application.application_messages)

@@ -111,15 +111,45 @@ def route(options, terrain, length):
     west, east, south, north = terrain.extent
     reach = min(0.2 * min(east - west, north - south), 6.0 * length)
     shape = reach * np.array([(-1, -0.35), (-0.5, 0.05), (0, 0), (0.5, -0.05), (1, 0.35)])
-    # Of places about the middle the nearest that a rover climbs, else the most level one.
-    steps = np.linspace(-0.25, 0.25, 11)
-    places = np.array([(0.5 * (west + east) + u * (east - west), 0.5 * (south + north) + v * (north - south))
-                       for u in steps for v in steps])
+    # Of places about the middle, then of all places, the nearest that a rover climbs, else the most level one.
+    for steps in (np.linspace(-0.25, 0.25, 11), np.linspace(-0.45, 0.45, 37)):
+        places = np.array([(0.5 * (west + east) + u * (east - west), 0.5 * (south + north) + v * (north - south))
+                           for u in steps for v in steps])
+        places = places[~holes(terrain, places, shape, length)]
+        if len(places):
+            break
+    else:
+        raise ValueError(f"{options.terrain}: no place has data under a route of {2 * reach:.3g} m; accepted: a raster "
+                         "with fewer holes (gdal_fillnodata.py fills them)")
     line = places[:, None, :] + shape[None, :, :]
     slopes = np.nan_to_num(terrain.slope_deg(line[..., 0], line[..., 1]), nan=90.0).max(axis=1)
     distance = np.hypot(*(places - 0.5 * np.array([west + east, south + north])).T)
     order = np.lexsort((distance, np.maximum(slopes, 12.0)))
     return places[order[0]] + shape
+
+
+def holes(terrain, places, shape, length):
+    """Whether ground is missing within a vehicle's length of the route at each place."""
+    way = Path(shape, speed=1.0)
+    along = np.column_stack(way.sample(np.linspace(0, way.length, 25))[:2])
+    beside = length * np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)])
+    at = places[:, None, :] + (along[:, None] + beside).reshape(-1, 2)
+    return ~np.isfinite(terrain.height(at[..., 0], at[..., 1])).all(axis=1)
+
+
+def show_coarse(options, terrain, length):
+    """On ground whose posts are farther apart than the vehicle is long: lines that show its slope, and a note."""
+    west, east, _, _ = terrain.extent
+    post = (east - west) / max(terrain.size[0] - 1, 1)
+    if options.mode != "clipmap" or post < 2.0 * length:
+        return
+    print(f"dspace demo: note: the heights of {options.terrain.name} are {post:.3g} m apart and the vehicle is "
+          f"{length:.3g} m long, so that it stands on one flat facet, whose slope contours show. For relief "
+          f"give heights less than {length:.2g} m apart"
+          + ("." if options.model.suffix.lower() == ".urdf" else f", or a model as large with --scale {post / length:.2g}."),
+          file=sys.stderr)
+    interval = 10.0 ** np.floor(np.log10(length / 4))
+    terrain.set_style(contours={"interval": float(interval), "color": "#5a4632", "width": 1.2})
 
 
 def main():
@@ -143,6 +173,7 @@ def main():
         steps = int(round(options.seconds * STEPS_PER_SECOND))
         times = np.arange(steps + 1) / STEPS_PER_SECOND
         route_line = np.column_stack(way.sample(np.linspace(0, way.length, 400))[:2])
+        show_coarse(options, terrain, length)
         terrain.focus(route_line[::8], radius=1.5 * length)
         ground = Ground(terrain)
         ruts = in_detail(options) and description.wheeled

@@ -35,11 +35,17 @@ class Described:
                 self.vehicle = load_vehicle(path)
             except ValueError:
                 # No suspension: carried by the bounds of what is drawn.
-                self.vehicle = load_vehicle(path, bounds=self._bounds(self.robot.objects))
+                self.vehicle = load_vehicle(path, bounds=self._bounds(self.robot.objects, self.robot.frame))
         elif suffix == ".json" or path.is_dir():
-            self.vehicle = load_vehicle(path)
             assembly = scene.load(path, frame=self.base)
             self.frames, self.objects = assembly.frames, assembly.objects
+            try:
+                self.vehicle = load_vehicle(path)
+            except ValueError:
+                if not self.objects:
+                    raise ValueError(f"{path}: none of its frames has a mesh; accepted: a frames.json with one") from None
+                # No suspension: carried by the bounds of what is drawn.
+                self.vehicle = load_vehicle(path, bounds=self._bounds(self.objects, assembly.frame))
         else:
             vehicle_up = up or ("y" if suffix in (".gltf", ".glb", ".wrl", ".wrz") else "z")
             # In the file's own axes: CarriedModel turns and scales.
@@ -55,11 +61,11 @@ class Described:
         self.length = (1.7 * float(self.vehicle.wheel_base) if self.wheeled
                        else float(max(self.vehicle.size)))
 
-    def _bounds(self, objects):
-        """Of a robot at rest, in its base frame."""
+    def _bounds(self, objects, base):
+        """Of a robot or an assembly at rest, in its base frame."""
         corners = []
         for thing in objects:
-            X_BO = thing.frame.pose_in(self.robot.frame).matrix @ thing.offset
+            X_BO = thing.frame.pose_in(base).matrix @ thing.offset
             low, high = thing.box
             for mask in np.ndindex(2, 2, 2):
                 corners.append((X_BO @ [*np.where(mask, high, low), 1.0])[:3])

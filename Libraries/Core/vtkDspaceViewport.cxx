@@ -127,6 +127,10 @@ struct vtkDspaceViewport::Internals {
         return bar.terrain.empty() || (this->explains && this->explains(bar, drawn));
       });
     };
+    request.covered = [&] {
+      return this->bars.Covered(request.view.width / this->samples,
+                                request.view.height / this->samples);
+    };
     this->picture.Draw(this->Object(), *this->scene, request);
   }
 

@@ -50,7 +50,27 @@ struct vtkDspaceServer::Internals {
               reply.set_sequence(this->published);
               return reply;
             },
-            [this] { return this->session->GetLedger().Commands(); }};
+            [this] { return this->session->GetLedger().Commands(); }, [this] { this->Reset(); }};
+  }
+
+  // Removes all viewports and scenes, by commands that viewers and recordings get.
+  void Reset() {
+    dspace::v1::Command command;
+    command.mutable_list_viewports();
+    dspace::v1::Reply listed = this->Execute(command);
+    for (const std::string& name : listed.viewports().name()) {
+      dspace::v1::Command remove;
+      remove.mutable_remove_viewport()->set_viewport(name);
+      this->Execute(remove);
+    }
+    command.mutable_list_scenes();
+    listed = this->Execute(command);
+    for (const std::string& name : listed.scenes().name()) {
+      dspace::v1::Command remove;
+      remove.set_scene(name);
+      remove.mutable_remove_scene();
+      this->Execute(remove);
+    }
   }
 
   dspace::v1::Reply Execute(dspace::v1::Command& command) {
@@ -143,6 +163,10 @@ void vtkDspaceServer::SetMaximumRate(double commands) {
 
 void vtkDspaceServer::SetMaximumFrames(long long frames) {
   this->Impl->maximumFrames = frames;
+}
+
+void vtkDspaceServer::SetFreshOnConnect(bool fresh) {
+  this->Impl->options.freshOnConnect = fresh;
 }
 
 std::string vtkDspaceServer::Start() {

@@ -37,6 +37,10 @@ public:
   void SetMaximumRate(double commands);        // a second, > 0; default 100,000
   void SetMaximumFrames(long long frames);     // of one scene, >= 1; default 1,000,000
 
+  /// Whether the viewports and scenes of earlier writers are removed before the first command of
+  /// another one; default false. A writer that resumes its connection keeps them.
+  void SetFreshOnConnect(bool fresh);
+
   /// Starts to listen. Returns the error, or an empty string.
   std::string Start();
   /// The address, with the port that the system chose.

@@ -28,7 +28,7 @@ OPTIONAL = {"DSPACE_CCACHE"}  # used where it is installed
 PROGRAMS = {"ffmpeg": "ffmpeg", "ffprobe": "ffmpeg", "openssl": "openssl", "ruby": "ruby-grpc",
             "protoc": "protobuf-compiler", "clang-format": "clang-format", "clang-tidy": "clang-tidy", "git": "git",
             "Xvfb": "xvfb", "xauth": "xauth", "openbox": "openbox", "glslangValidator": "glslang-tools",
-            "xdotool": "xdotool"}
+            "xdotool": "xdotool", "doxygen": "doxygen"}
 
 
 def listed(*kinds):
@@ -98,7 +98,7 @@ def test_programs_that_scripts_call():
     names = {name for folder in FOLDERS for path in scripts(folder) if path.parent != HERE
              and path.name != "test_needs.py" for name in programs(path)}
     assert {"openssl", "protoc", "ruby"} <= names <= set(PROGRAMS)
-    assert set(PROGRAMS.values()) <= listed("run", "extra", "build", "test", "lint")
+    assert set(PROGRAMS.values()) <= listed("run", "extra", "build", "test", "lint", "docs")
 
 
 def test_packages_whose_lack_tests_report():
@@ -114,5 +114,5 @@ def test_packages_whose_lack_tests_report():
 
 def test_lists_hold_existing_kinds_only():
     done = subprocess.run([ROOT / "dspace", "setup", "--list", "demo"], capture_output=True, text=True)
-    assert done.returncode == 2 and "there are no packages for 'demo'; accepted: build run extra app test bench lint" in (
+    assert done.returncode == 2 and "there are no packages for 'demo'; accepted: build run extra app test bench lint docs" in (
         done.stderr)

@@ -142,6 +142,12 @@ void main()
 #ifdef DSPACE_EMISSIVE
   color.rgb += emissive;
 #endif
+  float exposed = 1.0;
+#if defined(DSPACE_UNSHADED) && defined(DSPACE_MIXED) && !defined(DSPACE_ANGLES)
+  vec4 styled = unshadedColor(color.rgb);
+  color.rgb = styled.rgb;
+  exposed = step(1e-6, styled.a);
+#endif
 
 #ifdef DSPACE_PEEL
   if (color.a <= 0.0)
@@ -154,6 +160,6 @@ void main()
 #elif defined(DSPACE_DISPLAY_COLOR)
   fragColor = vec4(color.rgb, 0.0); // not exposed
 #else
-  fragColor = vec4(color.rgb, 1.0);
+  fragColor = vec4(color.rgb, exposed);
 #endif
 }

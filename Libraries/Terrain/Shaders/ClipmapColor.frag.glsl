@@ -1,4 +1,36 @@
 // What lies over a terrain's own colour, from the ground up: the parts before this one say how.
+// False colour and what lies over it.
+vec3 withStyle(vec3 color)
+{
+#ifdef DSPACE_RAMP
+  color = withRamp(color);
+#endif
+#ifdef DSPACE_LEVELS
+  color = withLevels(color);
+#endif
+#ifdef DSPACE_CONTOURS
+  color = withContours(color);
+#endif
+#ifdef DSPACE_GRID
+  color = withGrid(color);
+#endif
+#ifdef DSPACE_MARKS
+  color = layered(color, DSPACE_MARKS);
+#endif
+  return color;
+}
+
+#ifdef DSPACE_UNSHADED
+// The style over a shaded colour, and how much of that is seen: each part mixes the colour below
+// with its own.
+vec4 unshadedColor(vec3 color)
+{
+  vec3 over = withStyle(vec3(0.0));
+  float through = withStyle(vec3(1.0)).x - over.x;
+  return vec4(color * through + over, through);
+}
+#endif
+
 vec4 mixedColor(vec4 color)
 {
 #ifdef DSPACE_POLE_TEXTURE
@@ -13,20 +45,8 @@ vec4 mixedColor(vec4 color)
 #ifdef DSPACE_TRACKS
   color.rgb = mix(color.rgb, trackColor.rgb, trackColor.a * clamp(trackAt, 0.0, 1.0));
 #endif
-#ifdef DSPACE_RAMP
-  color.rgb = withRamp(color.rgb);
-#endif
-#ifdef DSPACE_LEVELS
-  color.rgb = withLevels(color.rgb);
-#endif
-#ifdef DSPACE_CONTOURS
-  color.rgb = withContours(color.rgb);
-#endif
-#ifdef DSPACE_GRID
-  color.rgb = withGrid(color.rgb);
-#endif
-#ifdef DSPACE_MARKS
-  color.rgb = layered(color.rgb, DSPACE_MARKS);
+#ifndef DSPACE_UNSHADED
+  color.rgb = withStyle(color.rgb);
 #endif
   return color;
 }

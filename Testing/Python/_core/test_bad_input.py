@@ -287,7 +287,7 @@ def test_another_thread_is_refused(session, scene, view):
 
 
 def test_what_python_itself_refuses_is_pythons_own():
-    """As README.md has it: fixed parameters are Python's, options by name are ours."""
+    """As Start.md has it: fixed parameters are Python's, options by name are ours."""
     for call in (lambda: dspace.connect(bogus=1), lambda: dspace.connect()):
         with pytest.raises(TypeError) as found:
             call()
@@ -299,3 +299,20 @@ def test_what_python_itself_refuses_is_pythons_own():
         assert not isinstance(found.value, dspace.Error)
         with pytest.raises(dspace.WrongType, match="unknown keyword 'bogus'"):
             scene.add_box((1, 1, 1), bogus=1)
+
+
+def test_messages_say_what_to_do(scene, tmp_path):
+    with pytest.raises(dspace.NotFound, match=r"it has no frames.json; accepted: the folder of a frames.json, or a model"):
+        scene.load(tmp_path)
+    (tmp_path / "hull.OBJ").write_text("")
+    with pytest.raises(dspace.NotFound, match="such as 'hull.OBJ' there"):
+        scene.load(tmp_path)
+    with pytest.raises(dspace.NotFound, match="there is no such file"):
+        scene.load(tmp_path / "none" / "frames.json")
+    with pytest.raises(dspace.NotFound, match=r"it has no camera; add one first \(Scene.add_camera"):
+        scene.add_viewport((64, 48)).image()
+    scene.add_frame("rover").add_frame("mast")
+    with pytest.raises(dspace.NotFound, match="near matches: 'rover'"):
+        scene.frame("rovre")
+    with pytest.raises(dspace.NotFound, match="near matches: 'rover/mast'"):
+        scene.frame("rover/mats")

@@ -1,4 +1,5 @@
 """Documentation/Commands.md is what the .proto files say, and what commands answer."""
+import importlib.util
 import pathlib
 import subprocess
 import sys
@@ -23,6 +24,19 @@ def test_the_page_is_up_to_date():
     for field in commands_pb2.Command.DESCRIPTOR.oneofs_by_name["command"].fields:
         assert f"| [{field.name}](#{field.message_type.name.lower()}) | {field.number} | " in page
         assert f"\n`{field.name}`, {field.number} in Command; " in page
+
+
+def test_a_comment_of_several_lines_belongs_to_its_own_field():
+    page = (SOURCE / "Documentation" / "Commands.md").read_text(encoding="utf-8")
+    for row in ("| `level_size` | 20 | uint32 | cells per side of a clipmap's levels, a multiple of 4 from 12 to 252; 0: 124 |",
+                "| `byte_budget` | 21 | uint64 | of its tiles in memory; 0: 256 MiB |",
+                "| `normal` | 2 | repeated double | x y z per point, unit, in the terrain's frame |"):
+        assert f"\n{row}\n" in page
+    specification = importlib.util.spec_from_file_location("make_commands", SCRIPT)
+    maker = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(maker)
+    assert maker.joined("  int32 a = 1; // one,\n               // two\n  // of b\n  int32 b = 2;\n") == (
+        "  int32 a = 1; // one, two\n  // of b\n  int32 b = 2;\n")
 
 
 def test_results_are_those_that_commands_answer(monkeypatch, field):

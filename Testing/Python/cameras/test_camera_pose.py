@@ -34,6 +34,51 @@ def axes(forward, up=(0.0, 0.0, 1.0)):
     return np.column_stack((right, np.cross(forward, right), forward))
 
 
+def test_looking_straight_down_needs_no_up(anywhere):
+    scene = anywhere
+    camera = scene.add_camera("down", eye=(1, 2, 9), target=(1, 2, 0))
+    check(camera.pose_in(), (1, 2, 9), axes((0, 0, -1), (0, 1, 0)))
+    camera.look_at((0, 0, 0), (0, 0, 5))
+    check(camera.pose_in(), (0, 0, 0), axes((0, 0, 1), (0, 1, 0)))
+    camera.look_at((0, 0, 9), (0.1, 0, 0))
+    check(camera.pose_in(), (0, 0, 9), axes((0.1, 0, -9)))
+    frame = scene.add_frame("flyer", position=(0, 0, 2))
+    camera.chase(frame, offset=(0, 0, 5))
+    check(camera.pose_in(), (0, 0, 7), axes((0, 0, -1), (0, 1, 0)))
+    with pytest.raises(dspace.InvalidArgument, match="up .* is along the line of sight"):
+        camera.look_at((0, 0, 9), (0, 0, 0), up=(0, 0, 1))
+
+
+def test_a_chase_camera_keeps_the_local_vertical(anywhere):
+    """Over a body's equator at longitude 90, heading north: up is Y."""
+    scene = anywhere
+    moon = scene.add_frame("moon", position=(5e8, 0, 0))
+    rover = moon.add_frame("rover", position=(0, 1737400, 0), quaternion=dspace.Pose(
+        matrix=np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1.0]])).quaternion)
+    camera = scene.add_camera("chase", frame=rover, chase={"offset": (-5, 0, 2), "target": (0, 0, 2), "vertical": moon})
+    check(camera.pose_in(moon), (0, 1737402, -5), axes((0, 0, 1), (0, 1, 0)))
+    camera.chase(rover, offset=(-5, 0, 2), target=(0, 0, 2), vertical="moon")
+    check(camera.pose_in(moon), (0, 1737402, -5), axes((0, 0, 1), (0, 1, 0)))
+    with pytest.raises(dspace.Error, match="vertical"):
+        moon.remove()
+    with pytest.raises(dspace.InvalidArgument, match="up is .*None where a vertical"):
+        camera.chase(rover, up=(0, 1, 0), vertical=moon)
+    with pytest.raises(dspace.WrongType, match="a Terrain, or the Frame of a body"):
+        camera.chase(rover, vertical=3.0)
+
+
+def test_a_chase_camera_takes_the_vertical_of_a_terrain(scene):
+    leaning = scene.add_frame("leaning", quaternion=quaternion_of_axis("y", 30))
+    from terrain_support import FIELD
+    ground = scene.add_terrain(FIELD, frame=leaning, mode="clipmap")
+    rover = scene.add_frame("rover", position=(1, 2, 3))
+    camera = scene.add_camera("chase", frame=rover, chase={"offset": (-5, 0, 2), "target": (0, 0, 2), "vertical": ground})
+    z = turn("y", 30) @ (0, 0, 1)
+    x = np.array((1, 0, 0)) - z[0] * z
+    x /= np.linalg.norm(x)
+    check(camera.pose_in(), (1, 2, 3) - 5 * x + 2 * z, axes(x, z))
+
+
 def test_an_attached_camera_is_where_its_frame_takes_it(anywhere):
     scene = anywhere
     rover = scene.add_frame("rover", position=(5, 2, 1), quaternion=quaternion_of_axis("z", 90))

@@ -110,6 +110,39 @@ def test_fields_that_are_not_known(differ):
     assert differ([later], [later])[0] == 0
 
 
+def channel(name, id, scene="scene"):
+    command = pb.Command(scene=scene)
+    command.create_telemetry.name, command.create_telemetry.id = name, id
+    return command
+
+
+def values(ids, scene="scene"):
+    command = pb.Command(scene=scene)
+    command.set_telemetry.id.extend(ids)
+    command.set_telemetry.value.extend([1.0] * len(ids))
+    return command
+
+
+def test_channels_are_compared_by_name(differ):
+    one = [channel("power", 1), channel("charge", 2), values([1, 2])]
+    assert differ(one, [channel("power", 7), channel("charge", 9), values([7, 9])])[0] == 0
+    assert differ(one, [channel("power", 7), channel("charge", 9), values([9, 7])])[0] == 1
+    code, said = differ(one, [channel("power", 7), channel("load", 9), values([7, 9])])
+    assert code == 1 and "create_telemetry" in said
+    # The same bytes that mean other channels: those before were added in another order.
+    both = [channel("charge", 1), channel("power", 2)], [channel("charge", 2), channel("power", 1)]
+    assert differ([values([1])], [values([1])], starts=(both[0], both[0]))[0] == 0
+    code, said = differ([values([1])], [values([1])], starts=both)
+    assert code == 1 and "set_telemetry.id" in said
+    # Ids are of a scene, and unknown ones stand for themselves.
+    assert differ([channel("power", 1), values([1], "other")], [channel("power", 2), values([1], "other")])[0] == 0
+    assert differ([values([1])], [values([2])], 10.0)[0] == 1
+    removed = pb.Command(scene="scene")
+    removed.remove_scene.SetInParent()
+    assert differ([channel("power", 1), removed, channel("load", 2), values([2])],
+                  [channel("power", 4), removed, channel("load", 1), values([1])])[0] == 0
+
+
 def test_beginnings(differ):
     assert differ([], [], starts=([time(1)], [time(1)]))[0] == 0
     code, said = differ([], [], starts=([camera()], [camera(fov=45.001)]))

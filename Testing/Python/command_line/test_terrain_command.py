@@ -163,11 +163,45 @@ def test_shaded_relief_follows_lamberts_law(tmp_path):
     path = write_raster(tmp_path / "ramp.tif", np.tile(np.arange(300), (300, 1)))  # rises 1 in 2 m
     shades = {}
     for azimuth in (90, 270):
-        picture, _ = render(tmp_path / "r.png", path, "--size", "120x120", "--sun", f"{azimuth},45")
+        picture, _ = render(tmp_path / "r.png", path, "--size", "120x120", "--sun", f"{azimuth},45",
+                            "--no-color-by-height")
         picture = picture[4:-4, 4:-4]  # boxes of coarser posts are cut at the raster's edge
         assert np.ptp(picture.reshape(-1, 3).astype(int), axis=0).max() <= 1
         shades[azimuth] = picture.mean()
     assert shades[270] > 1.5 * shades[90]
+
+
+def test_relief_that_true_light_does_not_show_is_exaggerated(tmp_path):
+    """A roof of 0.1 degrees, against Lambert's law of one that is as steep as is told."""
+    east = np.arange(300)
+    roof = np.minimum(east, 299 - east)  # times 4 mm, 2 m a pixel: a slope of 0.002
+    path = write_raster(tmp_path / "roof.tif", np.tile(roof, (300, 1)), scale=(0.004, 0.0))
+    picture, told = render(tmp_path / "r.png", path, "--size", "120x120", "--sun", "90,45", "--no-color-by-height")
+    factor = float(told.split("exaggerated ")[1].split()[0])
+    assert factor == pytest.approx(np.tan(np.radians(20)) / 0.002, rel=0.05)
+    linear = (np.array([0.72, 0.69, 0.65]) + 0.055) / 1.055
+    for columns, rise in ((slice(10, 50), 0.002), (slice(70, 110), -0.002)):
+        normal = np.array([-factor * rise, 0, 1])
+        light = 1.3 * (0.046 + normal @ (np.sqrt(0.5), 0, np.sqrt(0.5)) / np.linalg.norm(normal))
+        expected = 255 * (1.055 * np.clip(linear ** 2.4 * light, 0, 1) ** (1 / 2.4) - 0.055)
+        shade = picture[10:110, columns].reshape(-1, 3)
+        np.testing.assert_allclose(np.median(shade, axis=0), expected, atol=2)
+        assert np.abs(shade - expected).max() < 6  # posts are float32
+    flat, told = render(tmp_path / "t.png", path, "--size", "120x120", "--sun", "90,45", "--exaggeration", "1",
+                        "--no-color-by-height")
+    assert "exaggerated" not in told and abs(flat[60, 20].astype(int) - flat[60, 100]).max() <= 1
+    colored, _ = render(tmp_path / "c.png", path, "--size", "120x120")  # a map is coloured by height
+    assert np.ptp(colored[60, 5:60].astype(int), axis=1).max() > 40
+    _, told = render(tmp_path / "steep.png", FIELD, "--size", "200x200")
+    assert "exaggerated" not in told
+
+
+def test_a_whole_body_shows_its_relief(tmp_path):
+    path = real("mars_mola_megt90n000cb_4ppd_m.tif")
+    for more in ((), ("--on-body",)):
+        picture, told = render(tmp_path / "mars.png", path, "--size", "400x200", "--no-color-by-height", *more)
+        assert "relief exaggerated" in told
+        assert picture[40:160, 150:250].std() > 15  # one grey before
 
 
 def test_a_picture_of_another_shape_has_background_beside(tmp_path):
@@ -334,6 +368,8 @@ def test_shadows_darken_what_the_sun_does_not_reach(tmp_path, view):
     (["terrain", "render", FIELD, "--out", "a.png", "--size", "0x9"], 2, "0x9"),
     (["terrain", "render", FIELD, "--out", "a.png", "--sun", "1"], 2, "AZ,EL"),
     (["terrain", "render", FIELD, "--out", "a.png", "--sun", "1,nan"], 2, "nan"),
+    (["terrain", "render", FIELD, "--out", "a.png", "--exaggeration", "0"], 2, "0.1 to 10000"),
+    (["terrain", "render", FIELD, "--out", "a.png", "--exaggeration", "2", "--shadows"], 1, "without --shadows"),
     (["terrain", "render", FIELD, "--out", "a.png", "--eye", "1,2"], 2, "LON,LAT,HEIGHT"),
     (["terrain", "render", FIELD, "--out", "a.png", "--eye", "0,0,3"], 1, "perspective"),
     (["terrain", "render", FIELD, "--out", "a.png", "--image", "/no/such.png"], 1, "/no/such.png"),

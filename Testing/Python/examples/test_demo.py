@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 import dspace
+from needs import needs_module
 from dspace.rover import Path
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 DEMO = ROOT / "Examples" / "rover_drive"
+DATA_SHIPPED = ROOT / "Data"
 DATA = pathlib.Path(os.environ.get("DSPACE_DATA") or "/nonexistent")
 sys.path.insert(0, str(DEMO))
 
@@ -90,6 +92,51 @@ def test_bad_arguments_are_named(arguments, message, tmp_path):
     done = run(tmp_path, *arguments)
     assert done.returncode != 0 and message in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def raster(path, heights, pixel):
+    gdal = needs_module("osgeo.gdal", "python3-gdal")
+    data = gdal.GetDriverByName("GTiff").Create(str(path), heights.shape[1], heights.shape[0], 1, gdal.GDT_Float32)
+    data.SetGeoTransform((0, pixel, 0, 0, 0, -pixel))
+    data.SetProjection('LOCAL_CS["site",UNIT["metre",1]]')
+    data.GetRasterBand(1).SetNoDataValue(-1)
+    data.GetRasterBand(1).WriteArray(heights)
+    return path
+
+
+def test_a_frames_json_without_a_suspension_is_carried(tmp_path):
+    import shutil
+    shutil.copy(DATA_SHIPPED / "rover" / "wheel.glb", tmp_path)
+    (tmp_path / "frames.json").write_text(json.dumps({"vehicle": "probe", "frames": [
+        {"name": "body", "parent": None, "translation_m": [0, 0, 0.3], "mesh": "wheel.glb"},
+        {"name": "head", "parent": "body", "translation_m": [0.2, 0, 0.5], "mesh": "wheel.glb"}]}))
+    with dspace.Session() as session:
+        scene = session.scene()
+        described = Described(scene, tmp_path, 1.0, None)
+        assert not described.wheeled
+        low, high = described.objects[0].box
+        assert described.vehicle.size[2] == pytest.approx(high[2] - low[2] + 0.5, abs=1e-6)  # the two, one above the other
+    done = run(tmp_path / "out", "--model", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "on the ground under its footprint" in (tmp_path / "out" / "report.txt").read_text()
+
+
+def test_a_drive_begins_where_there_is_ground(tmp_path):
+    heights = np.full((120, 120), 5.0)
+    heights[:, 30:90] = -1  # the middle has no data
+    done = run(tmp_path, "--terrain", raster(tmp_path / "holed.tif", heights, 1.0))
+    assert done.returncode == 0, done.stderr
+    heights[:] = -1
+    heights[::12] = 5.0
+    done = run(tmp_path, "--terrain", raster(tmp_path / "stripes.tif", heights, 1.0))
+    assert done.returncode == 1 and "no place has data under a route" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_coarse_ground_is_told_and_shown(tmp_path):
+    heights = np.add.outer(np.linspace(0, 300, 60), np.linspace(0, 200, 60))
+    done = run(tmp_path, "--terrain", raster(tmp_path / "coarse.tif", heights, 100.0))
+    assert done.returncode == 0, done.stderr
+    assert "100 m apart" in done.stderr and "contours show" in done.stderr
 
 
 @pytest.fixture(scope="module")

@@ -59,6 +59,61 @@ def test_the_same_script_gives_the_same_bytes(tmp_path, field):
     assert len(set(local[0])) > 10  # a picture of something
 
 
+def again(session):
+    """A script that a server with its scenes rejects: its names are taken."""
+    scene = session.scene()
+    scene.load(DATA / "rover" / "rover.urdf", name="rover")
+    scene.telemetry.add("rover/power", unit="W").value = 3.0
+    scene.add_camera("main", eye=(9.0, -9.0, 7.0), target=(0.0, 0.0, 1.0))
+    scene.add_viewport((64, 48), name="view")
+    return sorted(session.scenes), sorted(session.viewports), sorted(scene.frames), sorted(scene.telemetry)
+
+
+def test_a_script_runs_again_in_the_same_session():
+    with dspace.Session() as session:
+        session.scene("other").add_frame("left over")
+        first = again(session)
+        with pytest.raises(dspace.AlreadyExists):
+            again(session)
+        session.reset()
+        assert not session.scenes and not session.viewports
+        session.scene("other")
+        assert again(session) == first
+        session.reset()
+        session.reset()  # of nothing
+
+
+def test_a_script_runs_again_on_the_same_server(tmp_path):
+    with Served(tmp_path, "--allow-root", str(DATA)) as server:
+        with dspace.connect(server.address) as session:
+            first = again(session)
+        with dspace.connect(server.address) as session, pytest.raises(dspace.AlreadyExists):
+            again(session)
+        with dspace.watch(server.address) as watcher:
+            with dspace.connect(server.address, fresh=True) as session:
+                assert not session.scenes and not session.viewports
+                assert again(session) == first
+                sequence = session._client.sequence
+            while watcher.sequence < sequence:
+                assert watcher.update(20.0), watcher.error
+            assert sorted(watcher.scenes) == first[0]
+        with pytest.raises(dspace.Error, match="fresh"):
+            dspace.connect(server.address, fresh="yes")
+
+
+def test_a_server_can_begin_anew_with_each_driver(tmp_path):
+    run = tmp_path / "run.dspace"
+    with Served(tmp_path, "--allow-root", str(DATA), "--fresh-on-connect", "--record", str(run)) as server:
+        with dspace.connect(server.address) as session:
+            first = again(session)
+        with dspace.connect(server.address) as session:
+            assert again(session) == first
+            with pytest.raises(dspace.AlreadyExists):  # its own scenes stay while it drives
+                again(session)
+    with dspace.Playback(str(run)) as playback:  # the recording has the removal
+        assert sorted(playback.scenes) == ["scene"]
+
+
 def test_a_viewer_draws_the_same_picture(tmp_path):
     with Served(tmp_path) as server, dspace.connect(server.address, name="drive") as session:
         scene = session.scene()

@@ -82,3 +82,28 @@ def test_sizes_that_cannot_be_drawn_are_refused_when_asked_for(scene, view, refu
             view.samples = samples
     assert view.samples == 1 and view.image().shape[:2] == (8, 16384)
     scene.add_viewport((16384, 8), view.camera, name="large", samples=1)  # the name is still free
+
+
+@pytest.mark.parametrize("height", (None, 9.0), ids=("perspective", "orthographic"))
+def test_a_label_is_not_cut_by_the_object_that_it_names(scene, height):
+    craft = scene.add_frame("craft", position=(0, 0, 1))
+    arm = craft.add_frame("arm", position=(0.5, 0, 0))
+    hull = scene.add_box((2, 2, 2), frame=craft, color="black", lit=False)
+    tip = scene.add_sphere(0.7, frame=arm, color="black", lit=False)
+    label = scene.add_label("CRAFT", frame=craft, font_size=40, background_opacity=0)
+    camera = scene.add_camera(eye=(6, -9, 4), target=(0, 0, 1), height=height)
+    view = scene.add_viewport((300, 200), camera, samples=1)
+    view.set_background((0, 0, 0))
+    cut = ink(view)
+    hull.visible = tip.visible = False
+    free = ink(view)
+    assert free.sum() > 300
+    np.testing.assert_array_equal(cut, free)
+    # What is in front of both hides it, and so does what is on no frame of its own.
+    wall = scene.add_box((0.1, 6, 6), position=(5, -6, 3), color="black", lit=False)
+    assert ink(view).sum() == 0
+    wall.visible = False
+    hull.visible = True
+    label.frame = scene.root
+    label.set_offset(position=(0, 0, 1))
+    assert ink(view).sum() == 0

@@ -38,7 +38,7 @@ def test_a_legend_has_the_colours_and_values_of_a_terrains_ramp(view, field):
     field.set_style(color_by="height", range=(-2, 6), colors=SHADES)
     without = view.image()
     assert field.style == {"color_by": "height", "range": (-2, 6), "colors": SHADES, "opacity": 1.0,
-                           "fragment": "ornamental", "ornamental": True}
+                           "fragment": "ornamental", "ornamental": True, "shaded": False}
     name = view.legend_of(field, background=(0, 0, 0), background_opacity=1, length=160)
     assert name == field.name
     image = view.image()

@@ -1,4 +1,6 @@
 """Clipmaps on a plane through Python: what they answer and draw against triangles, and refusals."""
+import warnings
+
 import numpy as np
 import pytest
 
@@ -268,3 +270,26 @@ def test_wheels_stand_on_the_clipmap_that_is_drawn(scene):
             view.remove()
             compared += 1
     assert compared == 4 * len(states[0].contacts)
+
+
+@pytest.mark.parametrize("mode", ("triangles", "clipmap"))
+def test_values_that_mark_no_data_are_told_and_can_be_stated(scene, tmp_path, mode):
+    rng = np.random.default_rng(3)
+    z = rng.uniform(0, 50, (80, 80)).astype(np.float32)
+    z[30:40, 30:40] = -32768
+    path = write_raster(tmp_path / "island.tif", z)
+    with pytest.warns(dspace.DspaceWarning, match=r"100 of the 6400 values looked at are -32768, .*state nodata=-32768"):
+        pits = scene.add_terrain(path, mode=mode)
+    assert pits.height(-5, 5) < -1000
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ground = scene.add_terrain(path, mode=mode, nodata=-32768)
+    assert np.isnan(ground.height(-5, 5)) and 0 <= ground.height(20, 20) <= 50
+    assert ground.height_range[0] >= 0
+    with pytest.raises(dspace.WrongType, match="no_data"):
+        scene.add_terrain(path, nodata="none")
+    with pytest.raises(dspace.InvalidArgument, match="finite"):
+        scene.add_terrain(path, nodata=float("inf"))
+    z[0, 0] = -3e38
+    with pytest.raises(dspace.InvalidArgument, match=r"state it \(nodata\)"):
+        scene.add_terrain(write_raster(tmp_path / "huge.tif", z), mode=mode)

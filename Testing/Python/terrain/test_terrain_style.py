@@ -33,6 +33,41 @@ def test_a_ramp_shows_heights(slope):
     np.testing.assert_allclose(view.image()[..., 0], expected, atol=2)
 
 
+def test_false_colour_has_the_colours_of_its_legend_whatever_the_light(scene, tmp_path):
+    z = np.tile(np.arange(256.0) * 2 * RISE, (256, 1)).astype(np.float32)
+    ground = scene.add_terrain(write_raster(tmp_path / "slope.tif", z, pixel=2.0), mode="clipmap", color="#808080")
+    scene.add_camera(eye=(0, 0, 500), target=(0, 0, 0), height=200)
+    view = scene.add_viewport(size=(100, 100), samples=1)
+    x = 2 * (np.arange(100) + 0.5) - 100
+    heights = ground.height(x, 0 * x)
+    low, high = heights[0] - 2, heights[-1] + 2
+    expected = 255 * (heights - low) / (high - low)
+    look = dict(color_by="height", range=(low, high), colors=["black", "white"])
+    for elevation in (80, 5):
+        scene.sun.set(azimuth_deg=90, elevation_deg=elevation, terrain=ground)
+        ground.set_style(**look)
+        np.testing.assert_allclose(view.image()[50, :, 0], expected, atol=3)
+        view.set(exposure=3.0)
+        np.testing.assert_allclose(view.image()[50, :, 0], expected, atol=3)  # no light, no exposure
+        view.set(exposure=1.0)
+        ground.set_style(**look, contours={"interval": 4, "color": "red"})
+        red = view.image()[50]
+        assert red[red[:, 0] > red[:, 1] + 60].max() == 255  # lines over it keep their colour, too
+    ground.set_style(**look, shaded=True)
+    assert ground.style["shaded"] and (view.image()[50, 20:, 0] < 0.7 * expected[20:]).all()
+    ground.change_style(shaded=False)
+    np.testing.assert_allclose(view.image()[50, :, 0], expected, atol=3)
+    # Half of it: the ground below is shaded, the ramp is not.
+    ground.set_style(**{**look, "opacity": 0.5})
+    half = view.image()[50, :, 0].astype(float)
+    ground.set_style()
+    ground_alone = view.image()[50, :, 0].astype(float)
+    linear = lambda c: np.where(c / 255 <= 0.04045, c / 255 / 12.92, ((c / 255 + 0.055) / 1.055) ** 2.4)
+    np.testing.assert_allclose(linear(half), 0.5 * linear(expected) + 0.5 * linear(ground_alone), atol=0.02)
+    with pytest.raises(dspace.Error, match="shaded"):
+        ground.set_style(**look, shaded=2)
+
+
 def test_contours_lie_at_their_heights(slope):
     ground, view, x = slope
     plain = view.image()

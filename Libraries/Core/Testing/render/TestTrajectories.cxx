@@ -213,5 +213,25 @@ TEST(Captions, ThoseThatYieldLeaveRoom) {
   EXPECT_EQ(captions[2].at[0], 0.2 * width); // what does not yield stays
 }
 
+TEST(Captions, LegendsLeaveNoneBelowThem) {
+  Caption caption;
+  caption.text = "12E";
+  const auto [x, y] = HalfSize(caption);
+  std::vector<Caption> captions;
+  const PictureBox legend{100, 200, 150, 300};
+  for (const auto& at : {std::array<double, 2>{100 - x - 1, 250},
+                         {100 - x + 1, 250},
+                         {125, 300 + y + 1},
+                         {125, 300 + y - 1},
+                         {125, 250}}) {
+    caption.at = at;
+    captions.push_back(caption);
+  }
+  LeaveOutCovered(captions, {legend});
+  ASSERT_EQ(captions.size(), 2u);
+  EXPECT_EQ(captions[0].at[0], 100 - x - 1);
+  EXPECT_EQ(captions[1].at[1], 300 + y + 1);
+}
+
 } // namespace
 } // namespace dspace

@@ -383,6 +383,58 @@ TEST(Chase, SightAlongUpFallsBackOnTheFollowedFrame) {
   EXPECT_LT((pose.X_FC.rotation * Vector3d::UnitY() - Vector3d(0, -1, 0)).norm(), 1e-15);
 }
 
+// On the equator of a body at longitude 90: up is Y of the body, east is -X, north is Z.
+TEST(Chase, TheLocalVerticalIsUpright) {
+  ChaseScene s;
+  Pose X;
+  X.position = {0, 1000, 0};
+  Eigen::Matrix3d R; // X north, Y west, Z up
+  R.col(0) = Vector3d(0, 0, 1);
+  R.col(1) = Vector3d(1, 0, 0);
+  R.col(2) = Vector3d(0, 1, 0);
+  // Nose up by 20 degrees: the heading stays north.
+  X.rotation = Eigen::Quaterniond(R) * Eigen::AngleAxisd(-20 * Degree, Vector3d::UnitY());
+  s.tree.SetLocalPose(s.frame, X);
+  s.camera.mount.aim = s.parent;
+  s.camera.mount.vertical = CameraMount::Vertical::Away;
+  const CameraPose heading = s.Place(CameraMount::ChaseAxes::Heading);
+  EXPECT_EQ(heading.frame, s.parent);
+  EXPECT_LT((heading.X_FC.position - Vector3d(0, 1002, -5)).norm(), 1e-12);
+  EXPECT_LT((Forward(heading) - Vector3d(0, 0, 1)).norm(), 1e-14);
+  EXPECT_LT((heading.X_FC.rotation * -Vector3d::UnitY() - Vector3d(0, 1, 0)).norm(), 1e-14);
+  // The parent's axes stay; only the picture is upright.
+  s.camera.mount.offset = {7, 3, 0};
+  s.camera.mount.target = {0, 0, 0};
+  const CameraPose parent = s.Place(CameraMount::ChaseAxes::Parent);
+  EXPECT_LT((parent.X_FC.position - Vector3d(7, 1003, 0)).norm(), 1e-12);
+  const Vector3d up = parent.X_FC.rotation * -Vector3d::UnitY();
+  EXPECT_NEAR(up.z(), 0.0, 1e-14);
+  EXPECT_GT(up.y(), 0.9);
+  // The Z axis of a plane that leans by 30 degrees.
+  Pose leaning;
+  leaning.rotation = Eigen::AngleAxisd(30 * Degree, Vector3d::UnitX());
+  s.camera.mount.aim = s.tree.Create(s.parent, "slope", leaning);
+  s.camera.mount.vertical = CameraMount::Vertical::Axis;
+  const CameraPose slope = s.Place(CameraMount::ChaseAxes::Parent);
+  const Vector3d normal(0, -0.5, std::cos(30 * Degree));
+  const Vector3d across = Forward(slope).cross(normal).normalized();
+  EXPECT_LT((slope.X_FC.rotation * Vector3d::UnitX() - across).norm(), 1e-14);
+  // Where there is no direction away from the centre, the parent's Z is up.
+  X.position = Vector3d::Zero();
+  s.tree.SetLocalPose(s.frame, X);
+  s.camera.mount.aim = s.parent;
+  s.camera.mount.vertical = CameraMount::Vertical::Away;
+  EXPECT_LT((s.Place(CameraMount::ChaseAxes::Heading).X_FC.position.z()), 1e-12);
+  s.camera.mount.aim = 999;
+  EXPECT_THROW(s.Place(CameraMount::ChaseAxes::Heading), dspace::Error);
+}
+
+TEST(LookAt, LookingAlongZHasYAtTheTop) {
+  EXPECT_EQ(dspace::UpFor({0, 0, -3}), Vector3d(0, 1, 0));
+  EXPECT_EQ(dspace::UpFor({0, 0, 3}), Vector3d(0, 1, 0));
+  EXPECT_EQ(dspace::UpFor({1e-3, 0, -3}), Vector3d(0, 0, 1));
+}
+
 TEST(Chase, LagIsTheExactExponentialOfSimulationTime) {
   ChaseScene s;
   s.camera.mount.axes = CameraMount::ChaseAxes::Parent;

@@ -59,6 +59,17 @@ void LeaveOutOverlaps(std::vector<Caption>& captions) {
   captions = std::move(kept);
 }
 
+void LeaveOutCovered(std::vector<Caption>& captions, const std::vector<PictureBox>& boxes) {
+  const auto covered = [&boxes](const Caption& caption) {
+    const std::array<double, 2> half = HalfSize(caption);
+    return std::any_of(boxes.begin(), boxes.end(), [&](const PictureBox& box) {
+      return caption.at[0] + half[0] > box.left && caption.at[0] - half[0] < box.right &&
+             caption.at[1] + half[1] > box.top && caption.at[1] - half[1] < box.bottom;
+    });
+  };
+  captions.erase(std::remove_if(captions.begin(), captions.end(), covered), captions.end());
+}
+
 void CaptionActors::Show(const std::vector<Caption>& captions, vtkRenderer* overlay, int height) {
   auto before = std::move(this->Shown_);
   this->Shown_.clear();

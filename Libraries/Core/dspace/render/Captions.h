@@ -9,6 +9,8 @@
 
 #include "vtkSmartPointer.h"
 
+#include <dspace/overlay/PictureBox.h>
+
 class vtkRenderer;
 class vtkTextActor;
 
@@ -28,6 +30,9 @@ std::array<double, 2> HalfSize(const Caption& caption);
 
 // Leaves out captions that yield and lie over one before them, of whichever object.
 void LeaveOutOverlaps(std::vector<Caption>& captions);
+
+// Leaves out captions that would lie on one of the boxes, of tables and colour bars.
+void LeaveOutCovered(std::vector<Caption>& captions, const std::vector<PictureBox>& boxes);
 
 // The captions of one viewport's picture, on its overlay renderer.
 class CaptionActors {

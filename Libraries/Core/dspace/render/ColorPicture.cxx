@@ -177,6 +177,9 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
     if (request.overlays && request.beforeOverlays) {
       request.beforeOverlays(this->List_.Filter());
     }
+    if (request.overlays && request.covered && !captions.empty()) {
+      LeaveOutCovered(captions, request.covered());
+    }
     if (request.overlays) {
       this->Captions_.Show(captions, this->Overlay_, view.height / samples);
     }

@@ -47,6 +47,8 @@ public:
     CornerAxes* axes = nullptr; // none: not drawn
     // With the filter that the scene was drawn with (DrawList::Filter), where overlays are drawn.
     std::function<void(const DrawFilter&)> beforeOverlays = {};
+    // After that: what tables and colour bars cover, where no caption is put.
+    std::function<std::vector<PictureBox>()> covered = {};
   };
   // Errors, OpenGL's and VTK's among them, become dspace::Error about `object`.
   void Draw(const std::string& object, const Scene& scene, const Request& request);

@@ -394,6 +394,27 @@ void DrawList::SetDepths(DrawView& view) const {
   projection = projection.Seeing(nearest, farthest);
 }
 
+double DrawList::OwnReach(const FrameTree& frames, const SeenObject& label) const {
+  const FrameId own = label.flat->object->frame;
+  double reach = 0.0;
+  for (const SeenObject& seen : this->Seen_) {
+    const GraphicsObject& object = *seen.flat->object;
+    if (own == RootFrame || object.billboard || (object.custom && !seen.flat->body)) {
+      continue;
+    }
+    const double distance = (seen.center - label.center).norm();
+    if (distance > 3.0 * seen.radius || distance + seen.radius <= reach) {
+      continue;
+    }
+    FrameId at = object.frame;
+    while (at != own && at != RootFrame) {
+      at = frames.Parent(at);
+    }
+    reach = at == own ? distance + seen.radius : reach;
+  }
+  return reach;
+}
+
 void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filter) {
   if (this->Scene_ != &scene || this->ContentRevision_ != scene.ContentRevision()) {
     this->Flatten(scene);
@@ -460,7 +481,18 @@ void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filte
       if (part.range && !IsInRange(*part.range, seen.X_VF)) {
         continue;
       }
-      const Eigen::Matrix<double, 3, 4> m = (seen.X_VF * part.X_FP).matrix().topRows<3>();
+      Eigen::Matrix<double, 3, 4> m = (seen.X_VF * part.X_FP).matrix().topRows<3>();
+      if (object.billboard && -m(2, 3) > near) { // before what it names, at the same pixels
+        const double depth = -m(2, 3);
+        const double ahead = std::max(depth - this->OwnReach(frames, seen), 1.02 * near);
+        if (ahead >= depth) {
+          // It stays.
+        } else if (view.projection.kind == Projection::Kind::Orthographic) {
+          m(2, 3) = -ahead;
+        } else {
+          m.col(3) *= ahead / depth;
+        }
+      }
       DrawInstance instance = part.instance;
       if (filter.partsOf != 0) {
         instance.label = object.id == filter.partsOf ? part.number : 0;

@@ -200,6 +200,9 @@ private:
   void PlaceBodies(const Scene& scene, const Pose& X_CA);
   void FindDepths();
   void SetDepths(DrawView& view) const;
+  // How far from a label, which is a billboard, what it names reaches [m]: the objects on its frame
+  // and below it that are around the label, or not farther from it than three times their radius.
+  double OwnReach(const FrameTree& frames, const SeenObject& label) const;
   std::uint32_t BatchOf(const GraphicsObject& object, const Part& part, const Material& material,
                         const DrawInstance& look, bool near);
   // `fill`: ViewLook::fill.

@@ -34,6 +34,30 @@ Eigen::Matrix3d HeadingOf(const Eigen::Matrix3d& R_PF) {
   return Eigen::AngleAxisd(std::atan2(x.y(), x.x()), Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
+// The same about a unit vector v of P: its Z is v, and its X is across v.
+Eigen::Matrix3d HeadingAbout(const Eigen::Vector3d& v, const Eigen::Matrix3d& R_PF) {
+  const auto across = [&v](const Eigen::Vector3d& x) { return Eigen::Vector3d(x - x.dot(v) * v); };
+  Eigen::Vector3d x = across(R_PF.col(0));
+  if (x.norm() < Parallel) {
+    x = R_PF.col(0).dot(v) > 0.0 ? across(-R_PF.col(2)) : across(R_PF.col(2));
+  }
+  Eigen::Matrix3d axes;
+  axes.col(0) = x.normalized();
+  axes.col(1) = v.cross(axes.col(0));
+  axes.col(2) = v;
+  return axes;
+}
+
+// The local vertical at the followed frame's origin, in its parent; unit.
+Eigen::Vector3d VerticalOf(const CameraMount& mount, const FrameTree& frames) {
+  const Pose X_PA = frames.RelativePose(frames.Parent(mount.frame), mount.aim);
+  if (mount.vertical == CameraMount::Vertical::Axis) {
+    return X_PA.rotation * Eigen::Vector3d::UnitZ();
+  }
+  const Eigen::Vector3d away = frames.LocalPose(mount.frame).position - X_PA.position;
+  return away.isZero(0.0) ? Eigen::Vector3d::UnitZ() : away.stableNormalized();
+}
+
 Eigen::Matrix3d OffsetAxes(CameraMount::ChaseAxes axes, const Eigen::Matrix3d& R_PF) {
   switch (axes) {
   case CameraMount::ChaseAxes::Followed:
@@ -147,7 +171,7 @@ void CameraMount::Check(const std::string& camera) const {
   if (this->up.isZero(0.0)) {
     Reject(object, "up is (0, 0, 0); accepted: a direction");
   }
-  if (pointing) {
+  if (pointing || this->vertical != Vertical::Parent) {
     return; // the direction changes with the frames
   }
   // Followed axes turn against `up`, and headings against any that is not upright.
@@ -160,6 +184,12 @@ void CameraMount::Check(const std::string& camera) const {
                        VectorText(this->offset) + " to " + VectorText(this->target) +
                        "; accepted: any other direction");
   }
+}
+
+Eigen::Vector3d UpFor(const Eigen::Vector3d& sight) {
+  Eigen::Matrix3d unused;
+  return AxesLookingAlong(sight, Eigen::Vector3d::UnitZ(), unused) ? Eigen::Vector3d::UnitZ()
+                                                                  : Eigen::Vector3d::UnitY();
 }
 
 Pose LookAt(const std::string& camera, const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
@@ -206,7 +236,15 @@ CameraPose PlaceCamera(const Camera& camera, const FrameTree& frames, double tim
   const Pose& X_PF = frames.LocalPose(mount.frame);
   const FrameId parent = frames.Parent(mount.frame);
   const Eigen::Matrix3d R_PF = X_PF.rotation.toRotationMatrix();
-  const Eigen::Matrix3d R_PA = OffsetAxes(mount.axes, R_PF);
+  const bool local = mount.vertical != CameraMount::Vertical::Parent;
+  if (local && !frames.Contains(mount.aim)) {
+    throw Error(Error::Kind::NotFound, "camera '" + camera.name + "'",
+                "frame " + std::to_string(mount.aim) + " is not in the tree");
+  }
+  const Eigen::Vector3d up = local ? VerticalOf(mount, frames) : mount.up;
+  const Eigen::Matrix3d R_PA = local && mount.axes == CameraMount::ChaseAxes::Heading
+                                   ? HeadingAbout(up, R_PF)
+                                   : OffsetAxes(mount.axes, R_PF);
   const Eigen::Vector3d wanted = X_PF.position + R_PA * mount.offset;
   const Eigen::Vector3d target = X_PF.position + R_PA * mount.target;
   Advance(state, time_s, mount.smoothing_s, mount.frame, parent, wanted);
@@ -217,7 +255,7 @@ CameraPose PlaceCamera(const Camera& camera, const FrameTree& frames, double tim
     sight = R_PA * (mount.target - mount.offset);
   }
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  if (!AxesLookingAlong(sight, mount.up, axes) && !AxesLookingAlong(sight, R_PF.col(0), axes)) {
+  if (!AxesLookingAlong(sight, up, axes) && !AxesLookingAlong(sight, R_PF.col(0), axes)) {
     AxesLookingAlong(sight, R_PF.col(1), axes);
   }
   Pose X_PC;

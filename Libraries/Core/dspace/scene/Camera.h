@@ -26,8 +26,17 @@ struct CameraMount {
   };
   Kind kind = Kind::Fixed;
   FrameId frame = 1;     // root
+  // Chase: what is upright. Axis and Away are the local vertical: the offset's Z is along it, a
+  // heading is about it, and it is towards the image's top in place of `up`.
+  enum class Vertical {
+    Parent, // the followed frame's parent: its Z, and `up`
+    Axis,   // the Z axis of the frame `aim`: of a plane
+    Away    // away from the origin of the frame `aim`: of a body about its centre
+  };
   Pose X_FC;             // Fixed, scale 1; Pointing: only its position, the eye
-  FrameId aim = NoFrame; // Pointing: the frame that it points at; `target` is in its axes
+  FrameId aim = NoFrame; // Pointing: the frame that it points at; `target` is in its axes.
+                         // Chase: of `vertical`, else NoFrame
+  Vertical vertical = Vertical::Parent;
   // Chase: the camera's offset from the followed frame's origin, and the point looked at, both in
   // the axes chosen [m]; `up` in the parent's axes. Pointing: `up` in the axes of `frame`.
   ChaseAxes axes = ChaseAxes::Heading;
@@ -48,6 +57,10 @@ struct Camera {
   Projection projection;
   CameraMount mount;
 };
+
+// What is towards the image's top of a camera that looks along `sight` where nobody says: Z, or Y
+// where the camera looks along Z.
+Eigen::Vector3d UpFor(const Eigen::Vector3d& sight);
 
 // X_FC of a camera at `eye` looking at `target` (both in F) with `up` towards the image's top.
 // Throws Error(InvalidArgument) naming `camera` when eye and target coincide, up is zero or within
@@ -79,7 +92,9 @@ struct ChaseState {
 // d(t + dt) = d(t) exp(-dt / smoothing_s), exact for any dt while that position is constant.
 //
 // The heading is the direction of the followed frame's X axis in the parent's XY plane; where X
-// stands upright, that of the axis which pitching brought there. Where `up` falls on the line of
+// stands upright, that of the axis which pitching brought there. With a local vertical v, Z of the
+// parent is replaced by v at the followed frame's origin (by the parent's Z, where that is at the
+// origin of `aim`), and the axes of ChaseAxes::Parent stay the parent's. Where `up` falls on the line of
 // sight, the followed frame's X (else Y) axis takes its place; where the lag brings the camera onto
 // its target, it keeps the direction of the offset.
 //

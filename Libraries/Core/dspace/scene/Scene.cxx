@@ -398,7 +398,8 @@ const SceneVantage& Scene::Vantage(const std::string& name) const {
 void Scene::SetCamera(const std::string& vantage, const Camera& camera) {
   this->Views_.Get(vantage);
   this->RequireFrame("camera '" + camera.name + "'", camera.mount.frame);
-  if (camera.mount.kind == CameraMount::Kind::Pointing) {
+  if (camera.mount.kind == CameraMount::Kind::Pointing ||
+      camera.mount.vertical != CameraMount::Vertical::Parent) {
     this->RequireFrame("camera '" + camera.name + "'", camera.mount.aim);
   }
   this->Views_.SetCamera(vantage, camera);

@@ -10,7 +10,7 @@ namespace {
 // Whether a changed camera goes on where its lag has brought it.
 bool FollowsTheSame(const CameraMount& a, const CameraMount& b) {
   return a.kind != CameraMount::Kind::Fixed && b.kind == a.kind && b.frame == a.frame &&
-         b.aim == a.aim;
+         b.aim == a.aim && b.vertical == a.vertical;
 }
 
 bool IsLagged(const CameraMount& mount) {
@@ -29,10 +29,13 @@ void SceneViews::RejectWhileCamerasOn(FrameId removed, const std::vector<FrameId
       const auto isIn = [&subtree](FrameId frame) {
         return std::find(subtree.begin(), subtree.end(), frame) != subtree.end();
       };
-      if (mount.kind == CameraMount::Kind::Pointing && isIn(mount.aim)) {
+      if (mount.aim != NoFrame && isIn(mount.aim)) {
         Reject("frame '" + this->Frames_.Path(removed) + "'",
-               "camera '" + name + "' of vantage '" + vantage.Name() + "' points at frame '" +
-                   this->Frames_.Path(mount.aim) + "'; accepted: a subtree without cameras");
+               "camera '" + name + "' of vantage '" + vantage.Name() +
+                   (mount.kind == CameraMount::Kind::Pointing ? "' points at"
+                                                              : "' has its vertical from") +
+                   " frame '" + this->Frames_.Path(mount.aim) +
+                   "'; accepted: a subtree without cameras");
       }
       if (isIn(mount.frame)) {
         Reject("frame '" + this->Frames_.Path(removed) + "'",

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <limits>
 
+#include <dspace/messages/NearMatches.h>
+
 #include "CommandTestSupport.h"
 
 namespace dspace::testing {
@@ -29,6 +31,35 @@ TEST_F(FrameCommands, CreateFindAndListFrames) {
   EXPECT_EQ(frames.frame(2).path(), "rover/mast");
   EXPECT_EQ(frames.frame(2).parent(), rover);
   EXPECT_EQ(frames.frame(1).child(0), mast);
+}
+
+TEST(NearMatches, AreTheNamesThatMayBeMeant) {
+  using session::NearMatches;
+  const std::vector<std::string> names = {"rover", "rover/mast", "rover/mast_pan", "lander",
+                                          "rover/wheel_fl"};
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(NearMatches("rovr", names), Names{"rover"});
+  EXPECT_EQ(NearMatches("ROVER", names), Names{"rover"});
+  EXPECT_EQ(NearMatches("mast", names), (Names{"rover/mast", "rover/mast_pan"}));
+  EXPECT_EQ(NearMatches("other/mast", names), (Names{"rover/mast", "rover/mast_pan"}));
+  EXPECT_EQ(NearMatches("wheel_fr", names), Names{"rover/wheel_fl"});
+  EXPECT_EQ(NearMatches("antenna", names), Names());
+  EXPECT_EQ(NearMatches("x", {"y", "z"}), Names()); // another name altogether
+  EXPECT_EQ(NearMatches("", names), Names());
+  EXPECT_EQ(NearMatches("a1", {"a2", "a3", "a4", "a5"}), (Names{"a2", "a3", "a4"}));
+}
+
+TEST_F(FrameCommands, AMissingFrameIsToldWithNearMatches) {
+  const FrameId rover = this->AddFrame("rover");
+  this->AddFrame("mast", rover);
+  v1::Command find;
+  find.mutable_find_frame()->set_path("rover/mats");
+  this->Reject(find, v1::Error::NOT_FOUND, "near matches: 'rover/mast'");
+  find.mutable_find_frame()->set_base(rover);
+  find.mutable_find_frame()->set_path("mat");
+  this->Reject(find, v1::Error::NOT_FOUND, "near matches: 'mast'");
+  find.mutable_find_frame()->set_path("antenna");
+  EXPECT_EQ(this->Interpreter_.Execute(find).error().message().find("near"), std::string::npos);
 }
 
 TEST_F(FrameCommands, PosesOfManyFramesInOneCommand) {

@@ -223,6 +223,10 @@ void Put(const CameraMount& from, v1::Mount* to) {
   Put(from.offset, chase->mutable_offset());
   Put(from.target, chase->mutable_target());
   Put(from.up, chase->mutable_up());
+  if (from.vertical != CameraMount::Vertical::Parent) {
+    chase->mutable_vertical()->set_frame(from.aim);
+    chase->mutable_vertical()->set_axis(from.vertical == CameraMount::Vertical::Axis);
+  }
   chase->set_smoothing_s(from.smoothing_s);
 }
 

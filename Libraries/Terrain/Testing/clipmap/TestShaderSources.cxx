@@ -234,6 +234,8 @@ std::vector<Named> ClipmapLooks(const PostPlacement& placement) {
     style.ramp.emplace();
     style.ramp->by = by;
     styled("ramp " + std::to_string(int(by)), style);
+    style.ramp->shaded = true;
+    styled("shaded ramp " + std::to_string(int(by)), style);
   }
   ClipmapStyle levels;
   levels.levels = 0.5;

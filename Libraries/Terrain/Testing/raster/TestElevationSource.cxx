@@ -147,6 +147,88 @@ TEST_F(Raster, NoDataAndNaNAreHoles) {
         EXPECT_EQ(h[r * 8 + c], c);
 }
 
+TEST_F(Raster, NoDataGivenByHandAreHolesToo) {
+  RasterFile file = this->File();
+  file.noData = -1.0;
+  file.value = [](int c, int r, int) { return c == 2 ? -9999.0 : r == 3 ? -1.0 : 1.0 * c; };
+  ElevationOptions options;
+  options.noData = -9999.0;
+  const std::string path = file.Write(this->Folder / "a.tif");
+  const std::vector<double> h = ElevationSource(path, options).Read();
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 8; ++c)
+      if (c == 2 || r == 3)
+        EXPECT_TRUE(std::isnan(h[r * 8 + c]));
+      else
+        EXPECT_EQ(h[r * 8 + c], c);
+  EXPECT_NE(ElevationSource(path, options).Identity(), ElevationSource(path).Identity());
+  options.noData = NaN;
+  EXPECT_THROW(ElevationSource(path, options), Error);
+  // A value that float32 does not hold exactly.
+  file.type = GDT_Float32;
+  file.noData.reset();
+  file.value = [](int c, int, int) { return c == 2 ? -3.4e38 : 1.0 * c; };
+  options.noData = -3.4e38;
+  EXPECT_TRUE(std::isnan(ElevationSource(file.Write(this->Folder / "b.tif"), options).Read()[2]));
+}
+
+TEST_F(Raster, NoDataGivenByHandIsNotMixedIntoReducedHeights) {
+  RasterFile file = this->File(64, 32);
+  file.value = [](int c, int r, int) { return (c + r) % 3 == 0 ? -9999.0 : 100.0 + c; };
+  const std::string path = file.Write(this->Folder / "a.tif");
+  auto* dataset = static_cast<GDALDataset*>(GDALOpen(path.c_str(), GA_Update));
+  int factors[] = {2, 4};
+  ASSERT_EQ(dataset->BuildOverviews("AVERAGE", 2, factors, 0, nullptr, nullptr, nullptr), CE_None);
+  GDALClose(dataset);
+  ElevationOptions options;
+  const auto least = [&](int width, int height) {
+    const ElevationSource source(path, options);
+    double found = 1e9;
+    for (const double h : source.ReadReduced({0, 0, width, height}, 4))
+      found = std::isnan(h) ? found : std::min(found, h);
+    return found;
+  };
+  EXPECT_LT(least(64, 32), 0.0); // the means of the file's overviews
+  options.noData = -9999.0;
+  EXPECT_EQ(ElevationSource(path, options).Info().overviews, 0);
+  for (const int width : {64, 63, 61})
+    for (const int height : {32, 29}) {
+      EXPECT_GE(least(width, height), 100.0);
+      EXPECT_LE(least(width, height), 103.0); // of the first columns
+    }
+}
+
+TEST_F(Raster, ValuesThatLookLikeNoDataAreTold) {
+  const auto told = [&](const std::function<double(int, int, int)>& value,
+                        std::optional<double> noData = {}, std::optional<double> scale = {}) {
+    RasterFile file = this->File(40, 30);
+    file.value = value;
+    GridTerrainOptions options;
+    options.elevation.noData = noData;
+    options.elevation.verticalScale = scale;
+    std::string all;
+    for (const std::string& warning :
+         GridTerrain::Load(file.Write(this->Folder / "a.tif"), options)->GetWarnings())
+      all += warning;
+    const std::size_t at = all.find("state nodata=");
+    return at == std::string::npos ? std::string() : all.substr(at + 13);
+  };
+  const auto with = [](double fill, int pixels) {
+    return [=](int c, int r, int) { return r == 5 && c < pixels ? fill : 10.0 * std::sin(c + r); };
+  };
+  EXPECT_EQ(told(with(-32768, 1)), "-32768");
+  EXPECT_EQ(told(with(-9999, 30)), "-9999");
+  EXPECT_EQ(told(with(-32768, 9), -32768.0), "");                   // what it asks for cures it
+  EXPECT_EQ(told(with(-32768, 9), {}, 0.1).substr(0, 6), "-32768"); // as the file stores it
+  EXPECT_EQ(told(with(-500, 5)).substr(0, 4), "-500");              // no usual value, but far away
+  EXPECT_EQ(told(with(-500, 2)), ""); // two pixels: a hole in the ground
+  EXPECT_EQ(told(with(30, 9)), "");   // near the others
+  EXPECT_EQ(told(with(1e8, 9)).substr(0, 5), "10000");
+  EXPECT_EQ(told([](int, int, int) { return -9999.0; }), ""); // level ground
+  EXPECT_EQ(told([](int c, int, int) { return -9999.0 + 100.0 * c; }),
+            ""); // ground that begins there
+}
+
 TEST_F(Raster, WindowIsItsOwnRaster) {
   const std::string path = this->File().Write(this->Folder / "a.tif");
   ElevationOptions options;

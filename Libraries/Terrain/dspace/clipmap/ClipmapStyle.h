@@ -52,6 +52,8 @@ struct ClipmapStyle {
     std::vector<std::array<double, 3>> colors; // that the image shows, evenly spaced: for legends
     double opacity = 1.0;
     Membership member = {};
+    // Whether lights shade it and what lies over it; false: its colours are those of its legend.
+    bool shaded = false;
   };
   struct Lines {
     double interval = 1.0; // contours: [m]; grid: [map units] (degrees of a degree grid)

@@ -38,6 +38,7 @@ std::string Hash(const std::string& text) {
 ElevationOptions Plain(const ElevationOptions& given) {
   ElevationOptions options;
   options.band = given.band;
+  options.noData = given.noData;
   options.crs = given.crs;
   options.pixelSize = given.pixelSize;
   options.network = given.network;

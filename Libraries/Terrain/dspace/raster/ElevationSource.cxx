@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <sstream>
 
 #include <gdal_priv.h>
 
@@ -34,6 +35,8 @@ struct ElevationSource::Implementation {
   FilesGuard::Check look; // of the guard under which it was opened
   bool remote = false;    // itself, or what it is a mosaic of
   bool suspect = false;   // a read failed
+  std::optional<double> noData; // of the options, as the band's type holds it
+  bool ownOverviews = false;    // overviews of the file may be used
   bool gaps = false;      // there may be some, see GivesZerosForGaps
   FileState file;
   std::unique_ptr<DeflateCheck> checksums; // of a file on a disk
@@ -96,7 +99,15 @@ ElevationSource::ElevationSource(const std::string& path, const ElevationOptions
   if (!this->Impl_->remote)
     this->Impl_->checksums = std::make_unique<DeflateCheck>(dataset, band);
   this->Impl_->gaps = GivesZerosForGaps(band);
-  this->Info_.overviews = band.GetOverviewCount();
+  if (options.noData && !std::isfinite(*options.noData))
+    throw Error(Error::Kind::InvalidArgument, object,
+                "its value without data is " + std::to_string(*options.noData) +
+                    "; accepted: a finite number (NaN and infinities never are data)");
+  this->Impl_->noData = options.noData;
+  if (options.noData && band.GetRasterDataType() == GDT_Float32)
+    this->Impl_->noData = double(float(*options.noData));
+  this->Impl_->ownOverviews = !options.noData;
+  this->Info_.overviews = this->Impl_->ownOverviews ? band.GetOverviewCount() : 0;
   ReadGeoreference(dataset, options, this->Info_);
   ReadVertical(band, options, this->Info_);
   const RasterWindow& all = this->Info_.window;
@@ -245,7 +256,11 @@ std::string ElevationSource::Identity() const {
   const NetworkScope scope(impl.network, this->Info_.path);
   const FilesGuard guard(impl.look);
   const GdalErrors quiet;
-  return "band " + std::to_string(impl.bandNumber) + " of " +
+  std::ostringstream without;
+  without.precision(17);
+  if (impl.noData)
+    without << " without " << *impl.noData;
+  return "band " + std::to_string(impl.bandNumber) + without.str() + " of " +
          std::to_string(impl.dataset->GetRasterXSize()) + " x " +
          std::to_string(impl.dataset->GetRasterYSize()) + " " + this->Info_.dataType +
          FilesOf(*impl.dataset);
@@ -263,6 +278,36 @@ void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, 
   const FilesGuard guard(impl.look);
   if (impl.suspect)
     impl.OpenAnew(this->Info_.path);
+  const bool reduced = columns != part.width || rows != part.height;
+  if (reduced && !impl.ownOverviews && impl.band->GetOverviewCount() > 0) {
+    this->ReadSparse(part, columns, rows, stride, values, mask);
+    return;
+  }
+  this->ReadPixels(part, columns, rows, stride, values, mask);
+}
+
+// As ReadPart, with the pixels in the middle, past the file's overviews. With the mutex held.
+void ElevationSource::ReadSparse(const RasterWindow& part, int columns, int rows, int stride,
+                                 double* values, std::uint8_t* mask) const {
+  std::vector<double> line(part.width);
+  std::vector<std::uint8_t> there(part.width);
+  const int across = part.width / columns, down = part.height / rows;
+  for (int r = 0; r < rows; ++r) {
+    const RasterWindow row{part.column, part.row + r * down + down / 2, part.width, 1};
+    this->ReadPixels(row, part.width, 1, part.width, line.data(), there.data());
+    for (int c = 0; c < columns; ++c) {
+      const std::size_t to = std::size_t(r) * stride + c;
+      values[to] = line[c * across + across / 2];
+      mask[to] = there[c * across + across / 2];
+    }
+  }
+}
+
+// With the mutex held.
+void ElevationSource::ReadPixels(const RasterWindow& part, int columns, int rows, int stride,
+                                 double* values, std::uint8_t* mask) const {
+  Implementation& impl = *this->Impl_;
+  const std::string object = "raster '" + this->Info_.path + "'";
   GdalErrors errors;
   GDALRasterBand& band = *impl.band;
   const auto line = static_cast<GSpacing>(stride);
@@ -278,6 +323,13 @@ void ElevationSource::ReadPart(const RasterWindow& part, int columns, int rows, 
   if (!impl.suspect && impl.gaps) {
     MaskGaps(band, part, columns, rows, stride, mask);
     impl.suspect = errors.Failed();
+  }
+  if (!impl.suspect && impl.noData) {
+    for (int r = 0; r < rows; ++r)
+      for (int c = 0; c < columns; ++c) {
+        const std::size_t i = std::size_t(r) * stride + c;
+        mask[i] = values[i] == *impl.noData ? std::uint8_t(0) : mask[i];
+      }
   }
   if (impl.file.ChangedInPlace(this->Info_.path))
     throw Error(Error::Kind::Io, object, Changed);

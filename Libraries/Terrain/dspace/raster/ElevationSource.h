@@ -47,6 +47,9 @@ struct ElevationOptions {
   std::optional<double> verticalScale;
   std::optional<double> verticalOffset; // [m]
   std::optional<VerticalDatum> verticalDatum;
+  // Pixels of this value, as the file stores it, have no data, besides those that the file states
+  // itself. Finite. The file's overviews are not used: they may be means of such pixels and others.
+  std::optional<double> noData;
   std::optional<std::string> crs;     // replaces the file's; see Crs::FromText
   std::optional<double> pixelSize;    // [map units], for a raster without georeference; default 1
   std::optional<RasterWindow> window; // only these pixels; must lie within the raster
@@ -120,6 +123,10 @@ private:
   struct Implementation;
   void ReadPart(const RasterWindow& part, int columns, int rows, int stride, double* values,
                 std::uint8_t* mask) const;
+  void ReadSparse(const RasterWindow& part, int columns, int rows, int stride, double* values,
+                  std::uint8_t* mask) const;
+  void ReadPixels(const RasterWindow& part, int columns, int rows, int stride, double* values,
+                  std::uint8_t* mask) const;
   bool ReadCached(const RasterWindow& window, int factor, double* values) const;
   std::unique_ptr<Implementation> Impl_;
   ElevationInfo Info_;

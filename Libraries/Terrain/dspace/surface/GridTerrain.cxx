@@ -78,6 +78,8 @@ std::shared_ptr<GridTerrain> GridTerrain::Load(const std::string& path,
                 std::to_string(info.window.width) + " x " + std::to_string(info.window.height) +
                     " posts span no surface; at least 2 x 2 are needed");
   std::vector<double> heights = source.Read();
+  for (std::string& warning : WarningsOfFill(heights, info))
+    warnings.push_back(std::move(warning));
   Eigen::Affine2d pixelToMap = info.pixelToMap;
   if (parts > 1) {
     heights = Refined(heights, info.window.width, info.window.height, parts);

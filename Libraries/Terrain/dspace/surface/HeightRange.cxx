@@ -52,6 +52,7 @@ HeightRange FindHeightRange(const std::string& name, const ElevationSource& sour
     }
   }
   postToScene.linear() = postToScene.linear() * pixelToPost.linear() * double(factor);
+  range.warnings = WarningsOfFill(heights, source.Info());
   const HeightGrid grid(name, columns, rows, std::move(heights), postToScene);
   range.heights = {grid.GetMinimum(), grid.GetMaximum()};
   Eigen::AlignedBox3d box;

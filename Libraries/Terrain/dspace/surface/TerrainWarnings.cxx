@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <sstream>
+#include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/crs/CrsTransform.h>
@@ -93,7 +96,74 @@ void WarnOfSteepness(const HeightGrid& grid, const Eigen::AlignedBox3d& box,
   warnings.push_back(out.str());
 }
 
+// The values at one end of the range of heights.
+struct End {
+  double value = 0.0;    // [m] of the end itself
+  double next = 0.0;     // the nearest other one
+  std::size_t count = 0; // of heights with the value
+};
+
+// `sign` is 1 for the lowest and -1 for the highest.
+End FindEnd(const std::vector<double>& heights, double sign) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  End end{infinity, infinity, 0};
+  for (const double height : heights) {
+    const double h = sign * height;
+    if (h < end.value) {
+      end.next = end.value;
+      end.value = h;
+      end.count = 1;
+    } else if (h == end.value) {
+      ++end.count;
+    } else if (h < end.next) {
+      end.next = h;
+    }
+  }
+  end.value *= sign;
+  end.next *= sign;
+  return end;
+}
+
+bool IsUsualFill(double value) {
+  const double usual[] = {-32768, -32767, 32767, 65535, -999, -9999, -99999, -2147483648.0};
+  return std::any_of(std::begin(usual), std::end(usual), [&](double u) { return u == value; });
+}
+
 } // namespace
+
+std::vector<std::string> WarningsOfFill(const std::vector<double>& heights,
+                                        const ElevationInfo& info) {
+  std::vector<std::string> warnings;
+  const End low = FindEnd(heights, 1.0), high = FindEnd(heights, -1.0);
+  const auto count = std::size_t(std::count_if(heights.begin(), heights.end(),
+                                               [](double h) { return !std::isnan(h); }));
+  const double datum =
+      info.verticalDatum.kind == VerticalDatum::Kind::Radius ? info.verticalDatum.radius : 0.0;
+  for (const auto& [end, other] : {std::pair(low, high), std::pair(high, low)}) {
+    const double gap = std::abs(end.value - end.next), rest = std::abs(other.value - end.next);
+    if (!std::isfinite(gap) || !(gap > 0.0)) {
+      continue; // level, or without heights
+    }
+    // As the file stores it: a whole number is not to become 32767.999999999996.
+    double value = (end.value + datum - info.verticalOffset) / info.verticalScale;
+    if (std::abs(value - std::round(value)) < 1e-9 * std::abs(value)) {
+      value = std::round(value);
+    }
+    const bool many = end.count >= 3 && end.count * 2000 >= count;
+    if (IsUsualFill(value) ? gap <= 0.25 * rest : !many || gap <= 2.0 * rest) {
+      continue;
+    }
+    std::ostringstream out;
+    out.precision(9);
+    out << end.count << " of the " << count << " values looked at are " << value << ", ";
+    out.precision(4);
+    out << gap << " m from all others: if this value marks pixels without data, state nodata=";
+    out.precision(9);
+    out << value;
+    warnings.push_back(out.str());
+  }
+  return warnings;
+}
 
 std::vector<std::string> WarningsOfPlace(const ElevationInfo& info, bool onPlane) {
   std::vector<std::string> warnings = info.warnings;

@@ -1,11 +1,12 @@
 """Cameras: their mounts, chases and projections."""
 from dspace._core.fields import about, number, numbers, put, put_given, put_vector, reject, word
 from dspace._core.strict import Strict
-from dspace.frames.frame import put_pose
+from dspace.errors import WrongType
+from dspace.frames.frame import Frame, put_pose
 from dspace.frames.poses import Pose, to_pose
 
 AXES = {"heading": 0, "followed": 1, "parent": 2}
-CHASE = ("offset", "target", "axes", "up", "smoothing_s")
+CHASE = ("offset", "target", "axes", "up", "smoothing_s", "vertical")
 POINT_AT = ("aim", "eye", "target", "up", "smoothing_s")
 
 
@@ -40,14 +41,17 @@ class Camera(Strict):
 
     # --- Where it stands -----------------------------------------------------------------------
 
-    def look_at(self, eye, target, up=(0, 0, 1), frame=None):
-        """Places the camera at `eye`, looking at `target`, both in `frame` (default: root) [m]."""
+    def look_at(self, eye, target, up=None, frame=None):
+        """Places the camera at `eye`, looking at `target`, both in `frame` (default: root) [m].
+
+        up: the direction of the picture's top; None: Z, or Y where the camera looks straight up or down."""
         command = self._command()
         mount = command.set_camera.mount
         mount.frame = self._scene._frame_id(frame)
         put_vector(mount.look_at.eye, eye, "the eye", self._label)
         put_vector(mount.look_at.target, target, "the target", self._label)
-        put_vector(mount.look_at.up, up, "up", self._label)
+        if up is not None:
+            put_vector(mount.look_at.up, up, "up", self._label)
         self._scene._execute(command)
 
     def attach(self, frame, pose=None, position=None, quaternion=None):
@@ -58,16 +62,18 @@ class Camera(Strict):
             put_pose(command.set_camera.mount.pose, to_pose(position, quaternion, None, pose))
         self._scene._execute(command)
 
-    def chase(self, frame, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=(0, 0, 1),
-              smoothing_s=0.0):
+    def chase(self, frame, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=None,
+              smoothing_s=0.0, vertical=None):
         """Follows `frame` from `offset` and looks at `target` [m].
 
         Both are in axes that turn with the frame's "heading" only, with the "followed" frame, or
-        not at all ("parent"). smoothing_s: time constant of the lag, in simulation time; when that
+        not at all ("parent"). up: the direction of the picture's top, in the parent's axes (default: Z, or Y where
+        offset and target are above each other). vertical: what is upright in place of the parent's Z and of `up`: a
+        Terrain (its vertical where `frame` is), or the Frame of a body (away from its origin, the centre). smoothing_s: time constant of the lag, in simulation time; when that
         goes back (a playback that jumps), the camera is in place at once."""
         command = self._command()
         command.set_camera.mount.frame = self._scene._frame_id(frame)
-        put_chase(command.set_camera.mount.chase, offset, target, axes, up, smoothing_s, self._label)
+        put_chase(command.set_camera.mount.chase, offset, target, axes, up, smoothing_s, self._label, vertical, self._scene)
         self._scene._execute(command)
 
     def point_at(self, aim, frame=None, eye=(0, 0, 0), target=(0, 0, 0), up=(0, 0, 1), smoothing_s=0.0):
@@ -216,14 +222,23 @@ class Camera(Strict):
             return f"<dspace.Camera {self._name!r}, not in the scene any more>"
 
 
-def put_chase(message, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=(0, 0, 1),
-              smoothing_s=0.0, about=None):
+def put_chase(message, offset=(-5, 0, 2), target=(0, 0, 0), axes="heading", up=None,
+              smoothing_s=0.0, about=None, vertical=None, scene=None):
     """Writes what Camera.chase takes into a Chase message."""
     message.axes = word(axes, AXES, "axes", about)
     put_vector(message.offset, offset, "the offset", about)
     put_vector(message.target, target, "the target", about)
-    put_vector(message.up, up, "up", about)
+    if up is not None:
+        put_vector(message.up, up, "up", about)
     put(message, about, smoothing_s=smoothing_s)
+    if vertical is not None:
+        if up is not None:
+            reject(about, "up", up, "None where a vertical is given")
+        frame = vertical if isinstance(vertical, (Frame, str)) else getattr(vertical, "frame", None)
+        if not isinstance(frame, (Frame, str)):
+            reject(about, "vertical", vertical, "a Terrain, or the Frame of a body", WrongType)
+        message.vertical.frame = scene._frame_id(frame)
+        message.vertical.axis = getattr(vertical, "on_body", True) is False
 
 
 def put_point_at(message, scene, aim, eye=(0, 0, 0), target=(0, 0, 0), up=(0, 0, 1), smoothing_s=0.0, about=None):

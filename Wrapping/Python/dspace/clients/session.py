@@ -45,6 +45,19 @@ class Session:
         """Releases all scenes, viewports and the graphics context. A second call does nothing."""
         self._client.close()
 
+    def reset(self):
+        """Removes all viewports and scenes, so that a script can run again in the same session or server.
+
+        Scenes, Frames, objects and viewports of before can no longer be used. A recording in progress goes on."""
+        for name in self.viewports:
+            command = pb.Command()
+            command.remove_viewport.viewport = name
+            self._client.execute(command)
+        for name in self.scenes:
+            command = pb.Command(scene=name)
+            command.remove_scene.SetInParent()
+            self._client.execute(command)
+
     def execute(self, command):
         """Executes a dspace.proto.commands_pb2.Command and returns its Reply."""
         if not isinstance(command, pb.Command):

@@ -5,6 +5,7 @@ line itself is wrong.
 """
 import argparse
 import importlib
+import importlib.util
 import os
 import re
 import sys
@@ -31,6 +32,24 @@ WORDS = {"camera": "project, check and convert camera models, and draw through t
 
 class Failed(Exception):
     """A failure that the command reports in one line."""
+
+
+def later(module, function="run"):
+    """The function of a module that is imported when the command runs, so that help does not wait for it."""
+    def run(options):
+        return getattr(importlib.import_module(f"{__name__}.{module}"), function)(options)
+    return run
+
+
+def lazy(name):
+    """A module that is loaded when something of it is used."""
+    if name in sys.modules:
+        return sys.modules[name]
+    found = importlib.util.find_spec(name)
+    found.loader = importlib.util.LazyLoader(found.loader)
+    module = sys.modules[name] = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    return module
 
 
 class Parser(argparse.ArgumentParser):

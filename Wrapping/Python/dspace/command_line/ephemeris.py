@@ -3,9 +3,9 @@ import csv
 import json
 import sys
 
-import numpy as np
+from dspace.command_line import Failed, lazy
 
-from dspace.command_line import Failed
+np = lazy("numpy")
 
 MOST_TIMES = 10_000_000
 

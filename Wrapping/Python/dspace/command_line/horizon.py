@@ -1,10 +1,10 @@
 """`dspace horizon`: the horizon around a site on terrain."""
 import sys
 
-import numpy as np
-
-from dspace.command_line import Failed
+from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, unit_of, write
+
+np = lazy("numpy")
 
 
 def add_arguments(parser):

@@ -2,12 +2,12 @@
 import pathlib
 import sys
 
-import numpy as np
-
-from dspace.command_line import Failed
+from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, write
 from dspace.command_line.sky import check
 from dspace.command_line.terrain_rasters import gdal_modules
+
+np = lazy("numpy")
 
 AU = 149597870700.0
 SUN_RADIUS_DEG = 0.2666  # at 1 au

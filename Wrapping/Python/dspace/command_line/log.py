@@ -1,128 +1,58 @@
 """`dspace log`: shows, compares, cuts, packs and salvages recordings."""
-import datetime
-import math
-import os
-
-from dspace._core.wire import command_of
-from dspace.command_line import Failed
-from dspace.command_line.log_diff import compare, name_of
-from dspace.command_line.log_pack import pack
-from dspace.command_line.log_salvage import salvage
-from dspace.command_line.log_telemetry import add_arguments as add_telemetry
-from dspace.playback.steps import StepTimes
-from dspace.recording.file import RecordingFile, carry_out, path_of
+from dspace.command_line import later
 
 
 def add_arguments(parser):
     what = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
     info = what.add_parser("info", help="its duration and contents; reads and checks the complete file")
     info.add_argument("file", metavar="FILE")
-    info.set_defaults(run=show)
+    info.set_defaults(run=later("log_show", "show"))
     cat = what.add_parser("cat", help="print its commands as text")
     cat.add_argument("file", metavar="FILE")
     cat.add_argument("--first", type=int, default=None, metavar="N", help="the number of the first command to print")
     cat.add_argument("--last", type=int, default=None, metavar="N")
-    cat.set_defaults(run=write_out)
+    cat.set_defaults(run=later("log_show", "write_out"))
     diff = what.add_parser("diff", help="find where two runs differ; exit code 1 if they do")
     diff.add_argument("file", metavar="FILE")
     diff.add_argument("other", metavar="OTHER")
     diff.add_argument("--tolerance", type=float, default=0.0, metavar="E",
                       help="largest difference allowed in any floating-point number, in its own unit (poses: m, "
                            "and quaternion components); absent: 0")
-    diff.set_defaults(run=compare)
+    diff.set_defaults(run=later("log_diff", "compare"))
     cut = what.add_parser("cut", help="copy a part of it into a new recording")
     cut.add_argument("file", metavar="FILE")
     cut.add_argument("--from", dest="begin", type=float, metavar="T", help="simulation time [s]")
     cut.add_argument("--to", dest="end", type=float, metavar="T")
     cut.add_argument("--out", required=True, metavar="FILE")
-    cut.set_defaults(run=cut_out)
+    cut.set_defaults(run=later("log_show", "cut_out"))
     packing = what.add_parser("pack", help="copy the files that it needs into it, so that it replays anywhere; "
                                            "missing or changed files are rejected; files that could not be read when "
                                            "it was recorded are listed, exit code 1")
     packing.add_argument("file", metavar="FILE")
     packing.add_argument("--out", metavar="FILE", help="the packed recording; absent: FILE itself, which no other "
                                                        "process may write or read")
-    packing.set_defaults(run=pack)
+    packing.set_defaults(run=later("log_pack", "pack"))
     rescue = what.add_parser("salvage", help="recover every command of a damaged recording whose checksum matches; "
                                              "exit code 1 if some are lost")
     rescue.add_argument("file", metavar="FILE")
     rescue.add_argument("--out", required=True, metavar="FILE", help="the new recording")
-    rescue.set_defaults(run=salvage)
+    rescue.set_defaults(run=later("log_salvage", "salvage"))
     add_telemetry(what)
 
 
-def show(options):
-    with RecordingFile(options.file) as file:
-        file.check()
-        last, first = file.last, file.first
-        summary = file.summary
-        print(f"{options.file}: format 1, commands {first} to {last}, {summary.snapshots} snapshots; "
-              "every checksum holds")
-        if summary.kind:
-            when = datetime.datetime.fromtimestamp(summary.first_wall_s, datetime.timezone.utc)
-            print(f"simulation time {summary.first_time_s:g} to {summary.last_time_s:g} s; recorded in "
-                  f"{summary.last_wall_s - summary.first_wall_s:.1f} s from {when:%Y-%m-%d %H:%M:%S} UTC")
-        for each in summary.kind:
-            print(f"{each.count:10} {name_of(each.kind):24} {each.bytes:12} bytes")
-        for asset in file.assets:
-            state = f"{asset.size} bytes, SHA-256 {asset.sha256.hex()}" if asset.state == "read" else asset.state
-            print(f"file {asset.path}: {state}{', packed' if asset.packed else ''}")
-        arrays = file.arrays
-        if arrays:
-            print(f"arrays of {len(arrays)} meshes: {sum(each.size for each in arrays)} bytes")
-        for first, last in file.lost:
-            print(f"lost: commands {first} to {last}")
-    return 0
-
-
-def write_out(options):
-    with RecordingFile(options.file) as file:
-        first = max(file.first, options.first or 1)
-        last = file.last if options.last is None else min(file.last, options.last)
-        for row in there(file, first, last):
-            command = command_of(row.payload)
-            text = str(command).replace("\n", " ") if row.kind != 24 else poses_text(command.set_poses)
-            print(f"{row.seq} {row.time!r} {name_of(row.kind)}: {text.strip()}")
-    return 0
-
-
-def there(file, first, last):
-    """Yields the rows of a range. Prints the ranges of lost commands and skips them."""
-    for lost, end in file.lost:
-        if first <= end and lost <= last:
-            yield from file.rows(first, lost - 1) if lost > first else ()
-            print(f"lost: commands {lost} to {end}")
-            first = end + 1
-    yield from file.rows(first, last) if last >= first else ()
-
-
-def poses_text(command):
-    return "; ".join(f"{frame}: " + " ".join(f"{value:.9g}" for value in command.pose[8 * i:8 * i + 8])
-                     for i, frame in enumerate(command.frame))
-
-
-def cut_out(options):
-    """Writes a part of a recording, from the last snapshot before --from."""
-    for name, at in (("--from", options.begin), ("--to", options.end)):
-        if at is not None and math.isnan(at):
-            raise Failed(f"{name} {at!r}; accepted: a time in s")
-    if None not in (options.begin, options.end) and options.end < options.begin:
-        raise Failed(f"--to {options.end!r}; accepted: {options.begin!r} and later, --from")
-    with RecordingFile(options.file) as file:
-        first, last = file.first, file.last
-        steps = [step for step in file.step_begins() if step[0] <= last]  # the recording may still be growing
-        times = StepTimes(at for _, at in steps)
-        for name, at, end, side in (("--from", options.begin, max, 1), ("--to", options.end, min, -1)):
-            if at is None or not steps or (at - end(times.times)) * side <= 0:
-                continue
-            if not times.is_at(times.times.index(end(times.times)), at):
-                raise Failed(f"{name} {at!r}; accepted: within {file.label}, {min(times.times)!r} to "
-                             f"{max(times.times)!r} s")
-        after = lambda at: [seq for index, (seq, _) in enumerate(steps) if times.is_after(index, at)]
-        if options.begin is not None:
-            first = max({seq for seq, _ in steps}.difference(after(options.begin)), default=first)
-        if options.end is not None:
-            last = min([seq - 1 for seq in after(options.end) if seq > first], default=last)
-        begin = carry_out("Cut", os.fsencode(file.path), os.fsencode(path_of(options.out)), first, last).number
-        print(f"{options.out}: commands {begin + 1} to {last}")
-    return 0
+def add_telemetry(what):
+    telemetry = what.add_parser("telemetry", help="named values over time; without --csv: a list of the names")
+    telemetry.add_argument("file", metavar="FILE")
+    telemetry.add_argument("--name", action="append", metavar="NAME",
+                           help="a channel, or all channels below it (rover: rover/...); may be given several times; "
+                                "absent: all")
+    telemetry.add_argument("--scene", metavar="NAME")
+    telemetry.add_argument("--csv", metavar="OUT", help="write a table of time, name, value and unit, in the order in "
+                                                        "which values were set; '-': to the standard output")
+    telemetry.set_defaults(run=later("log_telemetry", "list_telemetry"))
+    events = what.add_parser("events", help="the events that the simulation logged")
+    events.add_argument("file", metavar="FILE")
+    events.add_argument("--kind", action="append", metavar="KIND", help="a kind of events; may be given several times")
+    events.add_argument("--scene", metavar="NAME")
+    events.add_argument("--csv", metavar="OUT", help="write them as a table; '-': to the standard output")
+    events.set_defaults(run=later("log_telemetry", "list_events"))

@@ -8,6 +8,39 @@ from dspace.proto import commands_pb2 as pb
 from dspace.recording.file import RecordingFile, commands_of
 
 NAMES = pb.Command.DESCRIPTOR.fields_by_number
+# Commands that name channels of telemetry by ids, and those after which ids name others.
+OF_CHANNELS = ("create_telemetry", "set_telemetry", "set_telemetry_texts", "set_telemetry_limits", "remove_telemetry")
+NAMING = {pb.Command.DESCRIPTOR.fields_by_name[name].number for name in ("create_telemetry", "remove_scene")}
+UNNAMED = 1 << 62  # above this: ids that no command of the recording created
+
+
+class Channels:
+    """The names behind the ids of telemetry in one recording. Ids of two runs differ where other scenes had channels
+    before them; names do not."""
+
+    def __init__(self, numbers):
+        self._numbers = numbers  # {(scene, name): number}, shared by the recordings that are compared
+        self.ids = {}  # {(scene, id): number}
+
+    def note(self, command):
+        """Follows a command that gives or ends the meaning of ids."""
+        if command.HasField("create_telemetry"):
+            key = command.scene, command.create_telemetry.name
+            self.ids[command.scene, command.create_telemetry.id] = self._numbers.setdefault(key, len(self._numbers) + 1)
+        elif command.HasField("remove_scene"):
+            self.ids = {key: number for key, number in self.ids.items() if key[0] != command.scene}
+
+    def put(self, command):
+        """Writes the numbers of the channels' names in place of ids."""
+        kind = command.WhichOneof("command")
+        if kind in OF_CHANNELS:
+            message = getattr(command, kind)
+            number = lambda id: self.ids.get((command.scene, id), id | UNNAMED)
+            if kind in ("create_telemetry", "set_telemetry_limits"):
+                message.id = number(message.id)
+            else:
+                message.id[:] = [number(id) for id in message.id]
+        return command
 
 
 def name_of(kind):
@@ -17,7 +50,7 @@ def name_of(kind):
 
 def compare(options):
     """Compares both command streams: the same commands in the same order, with numbers and times that differ by no
-    more than the tolerance."""
+    more than the tolerance. Channels of telemetry are compared by name, not by id."""
     if not options.tolerance >= 0:
         raise Failed(f"--tolerance {options.tolerance!r}; accepted: 0 and more")
     greatest = 0.0
@@ -27,11 +60,15 @@ def compare(options):
         if {one.first, two.first} != {1}:
             raise Failed("a part of a recording cannot be compared; accepted: whole ones")
         starts = [commands_of(file.snapshot(0)) for file in (one, two)]
+        numbers = {}
+        channels = Channels(numbers), Channels(numbers)
         if len(starts[0]) != len(starts[1]):
             print(f"they begin with different states, of {len(starts[0])} and {len(starts[1])} commands")
             return 1
         for a, b in zip(*starts):
-            gap, where = difference(a, b)
+            for payload, names in ((a, channels[0]), (b, channels[1])):
+                names.note(command_of(payload))
+            gap, where = difference(a, b, channels)
             if not gap <= options.tolerance:
                 print(f"they begin with different states: {where}")
                 return 1
@@ -42,7 +79,10 @@ def compare(options):
                 print(f"the same up to command {row.seq - 1}; {longer} goes on with {name_of(row.kind)} "
                       f"at {row.time!r} s")
                 return 1
-            gap, where = difference(a.payload, b.payload)
+            for row, names in ((a, channels[0]), (b, channels[1])):
+                if row.kind in NAMING:
+                    names.note(command_of(row.payload))
+            gap, where = difference(a.payload, b.payload, channels)
             if abs(a.time - b.time) > gap:
                 gap, where = abs(a.time - b.time), "the time"
             if not gap <= options.tolerance:
@@ -71,12 +111,12 @@ def other_file(one, two):
     return ""
 
 
-def difference(a, b):
+def difference(a, b, channels):
     """Returns the greatest difference of any number in two serialized commands and the name of its field. The
-    difference is infinite if they differ in anything else."""
-    if a == b:
+    difference is infinite if they differ in anything else. channels: the Channels of both recordings."""
+    if a == b and channels[0].ids == channels[1].ids:
         return 0.0, ""
-    found = of_messages(command_of(a), command_of(b), "")
+    found = of_messages(*(each.put(command_of(payload)) for each, payload in zip(channels, (a, b))), "")
     # Different bytes may hold the same values, or fields that this version does not know.
     return found if found[0] or unknown(a) == unknown(b) else (math.inf, "a field that is not known here")
 

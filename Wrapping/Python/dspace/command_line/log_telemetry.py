@@ -10,24 +10,6 @@ from dspace.playback.telemetry import History
 from dspace.recording.file import RecordingFile
 
 
-def add_arguments(what):
-    telemetry = what.add_parser("telemetry", help="named values over time; without --csv: a list of the names")
-    telemetry.add_argument("file", metavar="FILE")
-    telemetry.add_argument("--name", action="append", metavar="NAME",
-                           help="a channel, or all channels below it (rover: rover/...); may be given several times; "
-                                "absent: all")
-    telemetry.add_argument("--scene", metavar="NAME")
-    telemetry.add_argument("--csv", metavar="OUT", help="write a table of time, name, value and unit, in the order in "
-                                                        "which values were set; '-': to the standard output")
-    telemetry.set_defaults(run=list_telemetry)
-    events = what.add_parser("events", help="the events that the simulation logged")
-    events.add_argument("file", metavar="FILE")
-    events.add_argument("--kind", action="append", metavar="KIND", help="a kind of events; may be given several times")
-    events.add_argument("--scene", metavar="NAME")
-    events.add_argument("--csv", metavar="OUT", help="write them as a table; '-': to the standard output")
-    events.set_defaults(run=list_events)
-
-
 def chosen(series, names):
     """Returns the series with the given names, and those below them."""
     if names is None:

@@ -1,10 +1,10 @@
 """`dspace los`: lines of sight over terrain."""
 import sys
 
-import numpy as np
-
-from dspace.command_line import Failed
+from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, unit_of, write
+
+np = lazy("numpy")
 
 SAMPLES = 1001  # of the profiles in plots
 MOST_PROFILES = 6

@@ -6,12 +6,12 @@ import pathlib
 import shlex
 import sys
 
-import numpy as np
-
 from dspace._core.files import atomic_write
-from dspace.command_line import Failed
+from dspace.command_line import Failed, lazy
 from dspace.command_line.terrain import add_raster_options
 from dspace.command_line.terrain_rasters import add, degrees, gdal_modules
+
+np = lazy("numpy")
 
 ENDINGS = (".json", ".csv", ".png", ".html")
 

@@ -1,11 +1,11 @@
 """`dspace power`: the power of solar panels at a site over a span of time."""
 import sys
 
-import numpy as np
-
-from dspace.command_line import Failed
+from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import out_of, place_of, text_of, write
 from dspace.command_line.spans import Span, add_span
+
+np = lazy("numpy")
 
 STEP = 3600.0  # [s]
 

@@ -36,6 +36,9 @@ def add_arguments(parser):
     parser.add_argument("--max-rate", type=float, default=100000.0, metavar="N",
                         help="largest number of commands a second; a faster simulation is slowed down "
                         "(default 100,000)")
+    parser.add_argument("--fresh-on-connect", action="store_true",
+                        help="remove the scenes and viewports of earlier simulations when another one connects "
+                        "(one that comes back after a broken connection goes on with its own)")
     parser.add_argument("--record", metavar="FILE", help="record the session into a new file, for `dspace play`")
     parser.add_argument("--pack", action="store_true", help="with --record: include the files that commands need")
     parser.add_argument("--end-with-input", action="store_true",
@@ -73,6 +76,7 @@ def run(options):
     server.SetMaximumConnections(options.max_connections)
     server.SetMaximumFrames(min(options.max_frames, 1 << 62))
     server.SetMaximumRate(options.max_rate)
+    server.SetFreshOnConnect(options.fresh_on_connect)
     stop = []
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.append(True))

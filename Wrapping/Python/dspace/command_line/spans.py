@@ -3,10 +3,10 @@ import csv
 import json
 import pathlib
 
-import numpy as np
-
-from dspace.command_line import Failed
+from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import MeasuredGround, add_ground, place_of
+
+np = lazy("numpy")
 
 AZIMUTHS = 1440  # of a horizon that is measured
 

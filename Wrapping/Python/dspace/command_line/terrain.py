@@ -2,12 +2,11 @@
 import argparse
 import math
 
-from dspace._core.traits import SIDE
-from dspace.command_line import terrain_cache, terrain_info, terrain_layers, terrain_render
+from dspace.command_line import later, terrain_cache, terrain_layers
 
 # The type of each key of a patch.
 PATCH = {"band": int, "crs": str, "vertical_datum": str, "vertical_scale": float, "vertical_offset": float,
-         "pixel_size": float, "margin": float}
+         "pixel_size": float, "margin": float, "no_data": float}
 
 
 def add_arguments(parser):
@@ -21,7 +20,7 @@ def add_arguments(parser):
     info.add_argument("--field", type=field, action="append", dest="fields", metavar="NAME=FILE[:BAND]",
                       help="a raster of values that lies on FILE: what it holds, and how much of FILE it covers; may be "
                       "given several times")
-    info.set_defaults(run=terrain_info.run)
+    info.set_defaults(run=later("terrain_info"))
 
     render = commands.add_parser(
         "render", help="draw a picture: a map, or a perspective view",
@@ -33,7 +32,11 @@ def add_arguments(parser):
     render.add_argument("--view", choices=("map", "perspective"), default="map")
     render.add_argument("--on-body", action="store_true", help="place the terrain on its body (default: on a plane)")
     terrain_layers.add_arguments(render)
-    render.add_argument("--color-by-height", action="store_true", help="color the terrain by height")
+    render.add_argument("--color-by-height", action=argparse.BooleanOptionalAction, default=None,
+                        help="color the terrain by height (default: on maps without --image, --false-color and --shapes)")
+    render.add_argument("--exaggeration", type=exaggeration, metavar="E",
+                        help="factor on the heights by which a map is shaded; 1: true light (default: 1, or more where "
+                        "pixels are so large that true light shows no relief; the factor is printed)")
     render.add_argument("--image-crs", metavar="CRS", help="CRS of the image, if its file does not state one")
     render.add_argument("--image-extent", type=numbers(4, "LEFT,TOP,RIGHT,BOTTOM"), metavar="L,T,R,B",
                         help="extent of the image in map coordinates, if its file does not state one")
@@ -47,7 +50,7 @@ def add_arguments(parser):
                         help="the point that a perspective view looks at")
     render.add_argument("--fov", type=fov, default=35.0, metavar="DEG",
                         help="vertical angle of a perspective view (default 35)")
-    render.set_defaults(run=terrain_render.run)
+    render.set_defaults(run=later("terrain_render"))
 
     terrain_cache.add_arguments(commands.add_parser(
         "cache", help="build overviews of large rasters that have none", description=terrain_cache.ABOUT))
@@ -68,6 +71,8 @@ def add_raster_options(parser):
     parser.add_argument("--vertical-offset", type=float, metavar="M", help="metres added to the heights")
     parser.add_argument("--pixel-size", type=float, metavar="P",
                         help="size of a pixel in map units, if the raster has no georeference")
+    parser.add_argument("--nodata", type=float, metavar="VALUE", help="pixels of this value, as the file stores it, have "
+                        "no data (-32768, -9999, ...)")
     parser.add_argument("--patch", type=patch, action="append", dest="patches", metavar="PATH[,KEY=VALUE...]",
                         help="a raster of higher resolution, in its own CRS, blended into FILE over a "
                         f"margin; keys: {', '.join(PATCH)}; may be given several times")
@@ -81,6 +86,7 @@ def add_raster_options(parser):
 # --- Values ----------------------------------------------------------------------------------------
 
 def size(text):
+    from dspace._core.traits import SIDE  # slow to import
     try:
         width, height = (int(part) for part in text.lower().split("x"))
     except ValueError:
@@ -113,6 +119,13 @@ def fov(text):
     value = numbers(1, "DEG")(text)[0]
     if not 0.001 <= value <= 170:
         raise argparse.ArgumentTypeError(f"'{text}'; accepted: 0.001 to 170 degrees")
+    return value
+
+
+def exaggeration(text):
+    value = numbers(1, "E")(text)[0]
+    if not 0.1 <= value <= 1e4:
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: 0.1 to 10000")
     return value
 
 

@@ -7,9 +7,13 @@ import math
 
 import numpy as np
 
+from dspace.command_line import terrain_relief
+
 BESIDE = (1.0, 1.0, 1.0)
 SKY = (0.0, 0.0, 0.0)
 FILL = 0.046  # of the sun
+BRIGHTNESS = 1.3  # of the sun, so that level ground at the default angles has about its own color
+LIGHT = (FILL * BRIGHTNESS, BRIGHTNESS)  # of a surface that faces the sun: fill, sun
 # In posts of a level of 252 cells. Within 90 posts of the camera a level is drawn without blending; below 60 posts a
 # finer level is drawn as well.
 REACH = 80
@@ -39,9 +43,19 @@ def light_view(view, options):
     view.set(fill=FILL, shadows=options.shadows)
 
 
-def draw_tiles(session, scene, ground, options, size, pixel, background, camera_at):
+def factor_of(ground, options, pixel):
+    """Returns the factor on the heights by which the picture is shaded; 1: the renderer shades it."""
+    if options.exaggeration is not None:
+        return options.exaggeration
+    return 1.0 if options.shadows else terrain_relief.automatic(ground, pixel)
+
+
+def draw_tiles(session, scene, ground, options, size, pixel, background, camera_at, away=None):
     """Draws a picture tile by tile. camera_at(x, y, width, height, above) returns the eye, the direction of the
-    picture's top, and the viewing direction of a tile's camera."""
+    picture's top, and the viewing direction of a tile's camera. away: an array of the picture's size, which gets how far
+    the ground is from the frame's origin towards the camera [m], NaN beside it; the ground is then not shaded."""
+    for terrain in ground.terrains:
+        terrain.object.lit = away is None
     level = level_of(ground, pixel)
     reach, above = (posts * ground.post * 2**level for posts in (REACH, ABOVE))
     side = max(16, min(1024, math.floor(2 * reach / pixel)))
@@ -57,7 +71,13 @@ def draw_tiles(session, scene, ground, options, size, pixel, background, camera_
             light_view(view, options)
         elif view.size != (width, height):
             view.size = (width, height)
-        picture[y:y + height, x:x + width] = view.image()
+        if away is None:
+            picture[y:y + height, x:x + width] = view.image()
+        else:
+            planes = view.capture(color=True, depth=True)
+            picture[y:y + height, x:x + width] = planes["color"][..., :3]
+            depth = planes["depth"].astype(float)
+            away[y:y + height, x:x + width] = np.where(np.isfinite(depth), -np.dot(eye, down) - depth, np.nan)
         triangles += session.statistics["triangles_drawn"]
     return picture, f"posts of level {level} every {ground.post * 2**level:.6g} m; {triangles} triangles"
 
@@ -86,11 +106,16 @@ def draw_map(session, scene, ground, options, longer):
         z = max(highest + 0.01 * above, lowest + above)
         return np.array([*middle, z]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, -1.0])
 
-    picture, told = draw_tiles(session, scene, ground, options, size, pixel, BESIDE, camera_at)
+    factor = factor_of(ground, options, pixel)
+    away = np.empty(size[::-1]) if factor != 1 else None
+    picture, told = draw_tiles(session, scene, ground, options, size, pixel, BESIDE, camera_at, away)
+    if away is not None:
+        up = np.broadcast_to((0.0, 0.0, 1.0), picture.shape)
+        picture = terrain_relief.shade(picture, away, up, pixel, factor, ground.sun, LIGHT)
     edges = ground.terrains[0].to_map(np.array([[left, top, 0.0], [left + size[0] * pixel,
                                                                     top - size[1] * pixel, 0.0]]))
     return picture, (f"map x {edges[0, 0]:.9g} to {edges[1, 0]:.9g}, y {edges[1, 1]:.9g} to {edges[0, 1]:.9g}; "
-                     f"a pixel is {pixel:.6g} m; {told}")
+                     f"a pixel is {pixel:.6g} m; {told}{terrain_relief.told(factor)}")
 
 
 def draw_disc(session, scene, ground, options, longer):
@@ -116,5 +141,14 @@ def draw_disc(session, scene, ground, options, longer):
         here = math.sqrt(max(ground.radius**2 - u**2 - v**2, 0.0)) + above
         return np.array([u, v, max(up, here)]) @ axes, axes[1], -axes[2]
 
-    picture, told = draw_tiles(session, scene, ground, options, size, pixel, SKY, camera_at)
-    return picture, f"the body from above its middle; a pixel is {pixel:.6g} m; {told}"
+    factor = factor_of(ground, options, pixel)
+    away = np.empty(size[::-1]) if factor != 1 else None
+    picture, told = draw_tiles(session, scene, ground, options, size, pixel, SKY, camera_at, away)
+    if away is not None:
+        u = left + (np.arange(size[0]) + 0.5) * pixel
+        v = top - (np.arange(size[1]) + 0.5) * pixel
+        points = np.stack([*np.broadcast_arrays(u[None, :], v[:, None]), away], axis=-1)
+        heights, normals = ground.above_body(points @ axes)
+        picture = terrain_relief.shade(picture, heights, normals @ axes.T, pixel, factor, axes @ ground.sun, LIGHT)
+    return picture, (f"the body from above its middle; a pixel is {pixel:.6g} m; {told}"
+                     f"{terrain_relief.told(factor)}")

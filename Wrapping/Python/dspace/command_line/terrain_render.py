@@ -7,13 +7,12 @@ import numpy as np
 
 from dspace._core.files import atomic_write
 from dspace.command_line import Failed, terrain_layers
-from dspace.command_line.terrain_map import draw_disc, draw_map, light_view
+from dspace.command_line.terrain_map import BRIGHTNESS, draw_disc, draw_map, light_view
 from dspace.command_line.terrain_rasters import add, check, degrees, gdal_modules, open_raster
 
 LONGER_SIDE = 1024
 GROUND = (0.72, 0.69, 0.65)
 SKY = (0.0, 0.0, 0.0)
-BRIGHTNESS = 1.3  # of the sun, so that level ground at the default angles has about its own color
 
 
 def run(options):
@@ -27,6 +26,10 @@ def run(options):
         raise Failed(f"'{out}': there is no folder {out.resolve().parent}")
     if options.view == "map" and (options.eye or options.target):
         raise Failed("--eye and --target apply to perspective views; accepted: --view perspective with them")
+    if options.exaggeration not in (None, 1.0) and (options.view == "perspective" or options.shadows):
+        raise Failed(f"--exaggeration {options.exaggeration:g}; accepted on maps without --shadows")
+    if options.color_by_height is None:
+        options.color_by_height = options.view == "map" and not options.layers
     options.level_size = options.level_size or 252
     with dspace.Session() as session:
         scene = session.scene()
@@ -94,11 +97,14 @@ class Ground:
                         max(terrain.height_range[1] for terrain in self.terrains))
         info = self.terrains[0]._info()
         self.levels = info.levels
+        x0, x1, _, _ = self.maps[0]
         if self.on_body:
             self.radius = float(np.linalg.norm(self.place((*self.middle, 0.0))))
-            pixel = info.pixel_width * (math.radians(self.radius) if self.crs[0].IsGeographic() else 1.0)
+            self.metres_per_unit = math.radians(self.radius) if self.crs[0].IsGeographic() else 1.0
+            pixel = info.pixel_width * self.metres_per_unit
         else:
             west, east, _, _ = self.terrains[0].extent
+            self.metres_per_unit = (east - west) / (x1 - x0) if x1 > x0 else 1.0
             pixel = (east - west) / max(info.columns - 1, 1)
         self.post = pixel / 2 ** info.subdivisions  # [m]
 
@@ -140,6 +146,18 @@ class Ground:
             points.append(terrain.from_map(np.column_stack((x, y, heights))))
         return np.concatenate(points)
 
+    def above_body(self, points):
+        """Returns the heights of points of the frame (..., 3) above the body's own surface, and the normals there."""
+        equator, pole = (float(np.linalg.norm(self.terrains[0].from_map(np.array([[*place, 0.0]]))))
+                         if self.crs[0].IsGeographic() else self.radius for place in ((0.0, 0.0), (0.0, 90.0)))
+        distance = np.linalg.norm(points, axis=-1)
+        scaled = points / (equator, equator, pole)
+        surface = distance / np.linalg.norm(scaled, axis=-1)
+        normals = points / (equator**2, equator**2, pole**2)
+        normals = np.nan_to_num(normals / np.linalg.norm(normals, axis=-1, keepdims=True), nan=0.0)
+        normals[~np.isfinite(distance)] = (0.0, 0.0, 1.0)
+        return distance - surface, normals
+
     def axes(self, place):
         """Returns the directions east, north and up at a position of the frame, as rows."""
         if not self.on_body:
@@ -167,6 +185,7 @@ def set_sun(scene, ground, options):
     toward = np.array([np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation),
                        np.sin(elevation)]) @ ground.axes(place)
     scene.sun.set(direction=toward, irradiance=BRIGHTNESS * 1361)
+    ground.sun = toward
 
 
 def draw_perspective(session, scene, ground, options):

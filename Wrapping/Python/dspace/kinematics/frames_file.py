@@ -17,6 +17,7 @@ import numpy as np
 from dspace.errors import Corrupt, NotFound
 
 FILE_NAME = "frames.json"
+MODELS = (".urdf", ".gltf", ".glb", ".wrl", ".wrz", ".obj", ".stl", ".ply")  # suffixes of other model files
 _NOTHING = object()
 
 
@@ -46,6 +47,11 @@ def read_frames_file(path):
     label = f"file '{file}'"
     try:
         document = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError as e:
+        if file.parent.is_dir():
+            raise NotFound(f"folder '{file.parent}': it has no {FILE_NAME}; accepted: the folder of a {FILE_NAME}, or a "
+                           f"model file{_models_in(file.parent)}", label) from e
+        raise NotFound(f"{label}: there is no such file", label) from e
     except OSError as e:
         raise NotFound(f"{label}: cannot be read ({e.strerror or e})", label) from e
     except (ValueError, RecursionError) as e:
@@ -61,6 +67,12 @@ def read_frames_file(path):
         frames[frame.name] = frame
     name = document.get("vehicle")
     return name if isinstance(name, str) and name else file.parent.name, _ordered(frames, label)
+
+
+def _models_in(folder):
+    """What a message says of the model files of a folder."""
+    found = sorted(each.name for each in folder.iterdir() if each.suffix.lower() in MODELS)[:5]
+    return f", such as {', '.join(map(repr, found))} there" if found else f" ({', '.join(MODELS)})"
 
 
 def _frame(entry, i, file, label):

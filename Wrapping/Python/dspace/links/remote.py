@@ -214,14 +214,15 @@ class RemoteSession(Session):
 
 
 def connect(address, certificate=None, key=None, authority=None, insecure=False, timeout=30.0,
-            name="simulation", take_over=False, only_changes=True):
+            name="simulation", take_over=False, only_changes=True, fresh=False):
     """Drives the session of a `dspace serve` process at "host:port" or "unix:PATH".
 
     certificate, key, authority: PEM files for mutual TLS, all three together. Without them only an address of this
     machine is accepted, unless `insecure` is True. timeout: limit of each wait, above 0 to 1e6 s. name: the client's
     name, shown to viewers. take_over: replaces the client that drives the server; without it a second driver is
-    rejected. only_changes: does not send poses that the server already has. Returns a RemoteSession. Raises
-    dspace.Error.
+    rejected. only_changes: does not send poses that the server already has. fresh: begins with reset(), which removes
+    the viewports and scenes of earlier drivers; without it the session goes on with them. Returns a RemoteSession.
+    Raises dspace.Error.
     """
     label = f"server {address!r}"
     link = _vtk.vtkDspaceRemoteSession()
@@ -229,5 +230,13 @@ def connect(address, certificate=None, key=None, authority=None, insecure=False,
     text(name, "the name", label)
     link.SetTakeOver(flag(take_over, "take_over", label))
     link.SetOnlyChanges(flag(only_changes, "only_changes", label))
+    flag(fresh, "fresh", label)
     make_connection(link, address, name)
-    return RemoteSession(RemoteClient(link, address, name, float(timeout), prepared))
+    session = RemoteSession(RemoteClient(link, address, name, float(timeout), prepared))
+    if fresh:
+        try:
+            session.reset()
+        except BaseException:
+            session.close()
+            raise
+    return session

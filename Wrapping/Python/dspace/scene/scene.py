@@ -347,12 +347,13 @@ class Scene(Strict):
         infos = self._ask("list_vantages").vantages.vantage
         return Named("vantage", {info.name: Vantage(self, info.name) for info in infos})
 
-    def add_camera(self, name="camera", frame=None, eye=None, target=None, up=(0, 0, 1), pose=None,
+    def add_camera(self, name="camera", frame=None, eye=None, target=None, up=None, pose=None,
                    chase=None, fov_deg=None, height=None, tangents=None, near=None, far=None,
                    vantage=MAIN, point_at=None):
         """A camera, or a new setting of the one of that name.
 
-        It stands on `frame` (default: root) at `eye` looking at `target`, or at `pose`; or it chases
+        It stands on `frame` (default: root) at `eye` looking at `target` with `up` at the picture's top (default: Z, or Y
+        where it looks straight up or down), or at `pose`; or it chases
         `frame`, with chase a dict of what Camera.chase takes; or it points at a frame, with point_at a dict of what
         Camera.point_at takes (aim, eye, target, up, smoothing_s). The projection is as in
         Camera.set_projection; the default is perspective, 45 degrees. All is one command."""
@@ -377,12 +378,13 @@ class Scene(Strict):
             look = mount.look_at
             put_vector(look.eye, eye, "the eye", label)
             put_vector(look.target, target, "the target", label)
-            put_vector(look.up, up, "up", label)
+            if up is not None:
+                put_vector(look.up, up, "up", label)
         elif chase is not None:
             if not isinstance(chase, dict):
                 reject(label, "chase", chase, f"a dict of {', '.join(CHASE)}", WrongType)
             keywords(chase, CHASE, f"{label}, chase")
-            put_chase(mount.chase, **chase, about=label)
+            put_chase(mount.chase, **chase, about=label, scene=self)
         elif point_at is not None:
             if not isinstance(point_at, dict) or "aim" not in point_at:
                 reject(label, "point_at", point_at, f"a dict of {', '.join(POINT_AT)}, with aim", WrongType)

@@ -15,14 +15,16 @@ class TerrainStyle:
 
     def set_style(self, color_by=None, range=None, colors=None, opacity=1.0, levels=None,
                   contours=None, grid=None, details=(), tracks=None, noise=None, grid_labels=False,
-                  fragment=None, ornamental=None, viewport=None):
+                  fragment=None, ornamental=None, viewport=None, shaded=False):
         """Sets what is drawn over a clipmap's own color. Each call replaces the previous style; set_style() removes it.
 
         color_by: "height", "slope" (degrees from level), "aspect" (azimuth of steepest descent in degrees clockwise
         from north; level ground keeps its color), or "normal" (the color is 0.5 + 0.5 n, where n is the normal in
         local east, north, up). range: (low, high) of the ramp (default: the terrain's heights, 0 to 45, 0 to 360).
         colors: of the ramp, evenly spaced (default: green through ochre to white; a ramp for the aspect is circular and
-        should end with its first color). opacity: of the ramp, 0 to 1. levels: opacity of a color for each clipmap
+        should end with its first color). opacity: of the ramp, 0 to 1. shaded: False
+        shows the colors of the legend, whatever the lights; with True the lights shade the ramp, and what lies over it
+        (levels, contours, grid). levels: opacity of a color for each clipmap
         level, or a dict of opacity.
 
         contours: metres of height between lines, or a dict of interval, width (pixels), color, opacity. grid: the same
@@ -59,12 +61,12 @@ class TerrainStyle:
             style = message.style
             style.SetInParent()
         common = {"fragment": fragment, "ornamental": ornamental}
-        _put_ramp(style, self._scene, common, label, color_by, range, colors, opacity)
+        _put_ramp(style, self._scene, common, label, color_by, range, colors, opacity, shaded)
         self._fill(style, label, common, levels, contours, grid, details, tracks, noise, grid_labels)
         self._scene._execute(command)
 
     def change_style(self, color_by=KEEP, range=KEEP, colors=KEEP, opacity=KEEP, levels=KEEP, contours=KEEP, grid=KEEP,
-                     details=KEEP, tracks=KEEP, noise=KEEP, grid_labels=KEEP):
+                     details=KEEP, tracks=KEEP, noise=KEEP, grid_labels=KEEP, shaded=KEEP):
         """Changes parts of the terrain's own style, and keeps all that is not given.
 
         The arguments are those of set_style(). range, colors and opacity alone change the false color that is there;
@@ -99,12 +101,12 @@ class TerrainStyle:
         for field in ("contours", "grid"):
             if isinstance(given[field], dict) and not any(word in given[field] for word in MEMBER):
                 getattr(style, field).member.CopyFrom(getattr(kept, field).member)
-        self._change_ramp(style, label, color_by, range, colors, opacity)
+        self._change_ramp(style, label, color_by, range, colors, opacity, shaded)
         self._scene._execute(command)
 
-    def _change_ramp(self, style, label, color_by, range, colors, opacity):
+    def _change_ramp(self, style, label, color_by, range, colors, opacity, shaded):
         """The false color of change_style()."""
-        if all(value is KEEP for value in (color_by, range, colors, opacity)):
+        if all(value is KEEP for value in (color_by, range, colors, opacity, shaded)):
             return
         old = type(style.ramp)()
         old.CopyFrom(style.ramp)
@@ -112,12 +114,13 @@ class TerrainStyle:
         same = there and (color_by is KEEP or color_by is not None and word(color_by, COLOR_BY, "color_by", label) == old.by)
         if color_by is KEEP:
             color_by = list(COLOR_BY)[old.by] if there else None
-        if color_by is None and opacity is not KEEP:
-            raise InvalidArgument(f"{label}: an opacity needs color_by, which is not given; "
+        if color_by is None and not (opacity is KEEP and shaded is KEEP):
+            raise InvalidArgument(f"{label}: an opacity or shading needs color_by, which is not given; "
                                   f"accepted: color_by {', '.join(map(repr, COLOR_BY))}", label)
         style.ClearField("ramp")
         _put_ramp(style, self._scene, {}, label, color_by, None if range is KEEP else range,
-                  None if colors is KEEP else colors, (old.opacity if same else 1.0) if opacity is KEEP else opacity)
+                  None if colors is KEEP else colors, (old.opacity if same else 1.0) if opacity is KEEP else opacity,
+                  old.shaded if shaded is KEEP else bool(shaded))
         if color_by is None or not there:
             return
         style.ramp.member.CopyFrom(old.member)
@@ -159,7 +162,7 @@ class TerrainStyle:
     @property
     def style(self):
         """The false color of a clipmap as it is drawn: a dict of color_by, range (None for "normal"), colors (r, g, b),
-        opacity, fragment (a name) and ornamental; {} without false color."""
+        opacity, fragment (a name), ornamental and shaded; {} without false color."""
         return self.style_in(None)
 
     def style_in(self, viewport):
@@ -172,14 +175,14 @@ class TerrainStyle:
         return {"color_by": list(COLOR_BY)[ramp.by],
                 "range": (ramp.low, ramp.high) if ramp.HasField("low") else None,
                 "colors": [(color.r, color.g, color.b) for color in ramp.color], "opacity": ramp.opacity,
-                "fragment": ramp.member.fragment, "ornamental": ramp.member.nature == 1}
+                "fragment": ramp.member.fragment, "ornamental": ramp.member.nature == 1, "shaded": ramp.shaded}
 
 
-def _put_ramp(style, scene, common, label, color_by, range, colors, opacity):
+def _put_ramp(style, scene, common, label, color_by, range, colors, opacity, shaded):
     """Writes the false color into a StyleTerrain. Does nothing for None."""
     if color_by is not None:
         style.ramp.by = word(color_by, COLOR_BY, "color_by", label)
-        put(style.ramp, label, opacity=opacity)
+        put(style.ramp, label, opacity=opacity, shaded=flag(shaded, "shaded", label))
         put_member(style.ramp.member, scene, {}, common, f"{label}, color_by")
         if range is not None:
             low, high = numbers(range, 2, "the range", label, "low, high")

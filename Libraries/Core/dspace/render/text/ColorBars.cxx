@@ -90,13 +90,19 @@ vtkSmartPointer<vtkProp> TextOf(const ColorBar& bar, const ColorBarLayout::Text&
   return actor;
 }
 
-std::vector<vtkSmartPointer<vtkProp>> PropsOf(const ColorBar& bar, int width, int height) {
+// The lower left corner, y up.
+std::array<int, 2> CornerOf(const ColorBar& bar, const ColorBarLayout& layout, int width,
+                            int height) {
   using Anchor = TextTable::Anchor;
-  const ColorBarLayout layout = LayOut(bar);
   const bool left = bar.anchor == Anchor::TopLeft || bar.anchor == Anchor::BottomLeft;
   const bool top = bar.anchor == Anchor::TopLeft || bar.anchor == Anchor::TopRight;
-  const int x = left ? bar.margin : width - bar.margin - layout.width;
-  const int y = top ? height - bar.margin - layout.height : bar.margin;
+  return {left ? bar.margin : width - bar.margin - layout.width,
+          top ? height - bar.margin - layout.height : bar.margin};
+}
+
+std::vector<vtkSmartPointer<vtkProp>> PropsOf(const ColorBar& bar, int width, int height) {
+  const ColorBarLayout layout = LayOut(bar);
+  const auto [x, y] = CornerOf(bar, layout, width, height);
   std::vector<vtkSmartPointer<vtkProp>> props = {BoxesOf(bar, layout, x, y)};
   for (const ColorBarLayout::Text& text : layout.texts) {
     props.push_back(TextOf(bar, text, x, y));
@@ -154,6 +160,19 @@ void ColorBars::ShowIf(const std::function<bool(const ColorBar&)>& shown) const 
       prop->SetVisibility(visible);
     }
   }
+}
+
+std::vector<PictureBox> ColorBars::Covered(int width, int height) const {
+  std::vector<PictureBox> boxes;
+  for (const auto& entry : this->Placed_) {
+    if (entry.second.props.front()->GetVisibility()) {
+      const ColorBarLayout layout = LayOut(entry.second.bar);
+      const auto [x, y] = CornerOf(entry.second.bar, layout, width, height);
+      boxes.push_back({double(x), double(height - y - layout.height), double(x + layout.width),
+                       double(height - y)});
+    }
+  }
+  return boxes;
 }
 
 void ColorBars::Raise(vtkRenderer* overlay) const {

@@ -10,6 +10,7 @@
 #include "vtkSmartPointer.h"
 
 #include <dspace/overlay/ColorBar.h>
+#include <dspace/overlay/PictureBox.h>
 
 class vtkProp;
 class vtkRenderer;
@@ -27,6 +28,8 @@ public:
   void Resize(vtkRenderer* overlay, int width, int height);
   // Shows those that `shown` is true for, and hides the others.
   void ShowIf(const std::function<bool(const ColorBar&)>& shown) const;
+  // What those that are shown cover of a picture of this size.
+  std::vector<PictureBox> Covered(int width, int height) const;
   // Draws all of them over everything else in the overlay, in the order of their names, so that a
   // picture does not depend on the order in which they were set.
   void Raise(vtkRenderer* overlay) const;

@@ -59,8 +59,9 @@ CameraMount::ChaseAxes ToAxes(v1::Mount::Chase::Axes axes, const std::string& ca
   }
 }
 
-Eigen::Vector3d UpOr(bool given, const v1::Vector3& up) {
-  return given ? ToVector(up) : Eigen::Vector3d::UnitZ();
+// `sight`: along which a camera looks that is given no `up`.
+Eigen::Vector3d UpOr(bool given, const v1::Vector3& up, const Eigen::Vector3d& sight) {
+  return given ? ToVector(up) : UpFor(sight);
 }
 
 CameraMount ToMount(const v1::Mount& from, const std::string& name) {
@@ -73,8 +74,8 @@ CameraMount ToMount(const v1::Mount& from, const std::string& name) {
     break;
   case v1::Mount::kLookAt: {
     const v1::LookAt& look = from.look_at();
-    to.X_FC =
-        LookAt(name, ToVector(look.eye()), ToVector(look.target()), UpOr(look.has_up(), look.up()));
+    const Eigen::Vector3d eye = ToVector(look.eye()), target = ToVector(look.target());
+    to.X_FC = LookAt(name, eye, target, UpOr(look.has_up(), look.up(), target - eye));
     break;
   }
   case v1::Mount::kChase: {
@@ -83,7 +84,12 @@ CameraMount ToMount(const v1::Mount& from, const std::string& name) {
     to.axes = ToAxes(chase.axes(), label);
     to.offset = ToVector(chase.offset());
     to.target = ToVector(chase.target());
-    to.up = UpOr(chase.has_up(), chase.up());
+    to.up = UpOr(chase.has_up(), chase.up(), to.target - to.offset);
+    if (chase.has_vertical()) {
+      to.aim = ToFrame(chase.vertical().frame());
+      to.vertical =
+          chase.vertical().axis() ? CameraMount::Vertical::Axis : CameraMount::Vertical::Away;
+    }
     to.smoothing_s = chase.smoothing_s();
     break;
   }
@@ -93,7 +99,7 @@ CameraMount ToMount(const v1::Mount& from, const std::string& name) {
     to.X_FC.position = ToVector(pointing.eye());
     to.aim = ToFrame(pointing.aim());
     to.target = ToVector(pointing.target());
-    to.up = UpOr(pointing.has_up(), pointing.up());
+    to.up = pointing.has_up() ? ToVector(pointing.up()) : Eigen::Vector3d::UnitZ();
     to.smoothing_s = pointing.smoothing_s();
     break;
   }

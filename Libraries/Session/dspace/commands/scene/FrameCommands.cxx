@@ -4,6 +4,7 @@
 #include <dspace/Checks.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/messages/NearMatches.h>
 
 namespace dspace::session {
 namespace {
@@ -109,12 +110,31 @@ void SetPoses(const Context& context, v1::SetPoses& command) {
   context.Frames().SetLocalPoses(command.frame().data(), command.pose().data(), n);
 }
 
+// Paths of frames below `base` that may have been meant by a path that does not exist.
+std::string NearFrames(const FrameTree& frames, FrameId base, const std::string& path) {
+  constexpr std::size_t Most = 100000; // frames that are compared
+  const std::size_t above = base == RootFrame ? 0 : frames.Path(base).size() + 1;
+  std::vector<std::string> names;
+  std::vector<FrameId> open = {base};
+  while (!open.empty() && names.size() < Most) {
+    const FrameId frame = open.back();
+    open.pop_back();
+    if (frame != base) {
+      names.push_back(frames.Path(frame).substr(above));
+    }
+    const std::vector<FrameId>& children = frames.Children(frame);
+    open.insert(open.end(), children.rbegin(), children.rend());
+  }
+  return NearMatchesText(path, names);
+}
+
 void FindFrame(const Context& context, v1::FindFrame& command) {
   const FrameId base = ToFrame(command.base());
   const FrameId found = context.Frames().Find(command.path(), base);
   if (found == NoFrame) {
     throw Error(Error::Kind::NotFound, "frame '" + command.path() + "'",
-                "there is no such frame below '" + context.Frames().Path(base) + "'");
+                "there is no such frame below '" + context.Frames().Path(base) + "'" +
+                    NearFrames(context.Frames(), base, command.path()));
   }
   context.reply.mutable_frame()->set_frame(found);
 }

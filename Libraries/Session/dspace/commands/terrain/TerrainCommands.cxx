@@ -40,6 +40,9 @@ template<typename Message> ElevationOptions ToElevation(const Message& command) 
   if (!command.vertical_datum().empty()) {
     elevation.verticalDatum = VerticalDatum::FromText(command.vertical_datum());
   }
+  if (command.has_no_data()) {
+    elevation.noData = command.no_data();
+  }
   if (command.has_vertical_scale()) {
     elevation.verticalScale = command.vertical_scale();
   }
@@ -245,6 +248,7 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   if (command.relief().color_by_height()) {
     ClipmapStyle style;
     style.ramp = ClipmapStyle::Ramp(); // clang 14 emplaces none of a nested class
+    style.ramp->shaded = true; // it is the ground's own look here
     style.ramp->range = surface->HeightRange();
     style.ramp->colors = TerrainRamp();
     style.ramp->image = RampImage(style.ramp->colors);

@@ -73,6 +73,7 @@ ClipmapStyle::Ramp ToRamp(const Scene& scene, const v1::StyleTerrain::Ramp& ramp
   }
   result.by = static_cast<ClipmapStyle::Ramp::By>(ramp.by());
   result.opacity = ramp.opacity();
+  result.shaded = ramp.shaded();
   if (ramp.by() == Ramp::NORMAL) {
     if (ramp.has_low() || ramp.has_high() || ramp.color_size() > 0) {
       Reject(label, "normals have colours of their own; accepted: no range and no colours");
@@ -174,6 +175,7 @@ void DescribeTerrainStyle(const Context& context, v1::DescribeTerrainStyle& comm
       to->set_b(color[2]);
     }
     ramp->set_opacity(style.ramp->opacity);
+    ramp->set_shaded(style.ramp->shaded);
     ramp->mutable_member()->set_nature(FromNature(style.ramp->member.nature));
     ramp->mutable_member()->set_fragment(style.ramp->member.fragment);
   }

@@ -217,7 +217,12 @@ bool Server::Run(const SessionWork& work, double seconds) {
     if (task.generation != hub.writer.generation) {
       continue; // another client has taken over
     }
+    const bool fresh = hub.options.freshOnConnect && task.generation != hub.freshGeneration;
+    hub.freshGeneration = task.generation;
     lock.unlock();
+    if (fresh) {
+      work.reset();
+    }
     v1::Reply reply = work.execute(task.command);
     lock.lock();
     ++hub.counts.commands;

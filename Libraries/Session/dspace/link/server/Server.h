@@ -32,6 +32,8 @@ struct ServerOptions {
   // client needs `take_over` to drive earlier. A writer that has closed its side has this time plus
   // 1 s to receive its last replies. 0 to 1e6.
   double reservation_s = 30;
+  // Whether `reset` is called before the first command of a writer that does not resume.
+  bool freshOnConnect = false;
   double keepalive_s = 20; // a connection that is silent for this time is pinged; > 0, to 1e6
 };
 
@@ -43,7 +45,8 @@ public:
   struct SessionWork {
     std::function<v1::Reply(v1::Command&)> execute; // never throws because of a command's content
     std::function<std::vector<v1::Command>()>
-        snapshot; // the commands that create the present state
+        snapshot;                     // the commands that create the present state
+    std::function<void()> reset = {}; // removes the state; only with ServerOptions::freshOnConnect
   };
 
   // Starts to listen; clients are served while Run is called. Throws Error for a rejected address

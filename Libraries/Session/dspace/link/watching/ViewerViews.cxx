@@ -335,7 +335,9 @@ void ViewerViews::BeforeSnapshot(Interpreter& interpreter) {
     }
     const std::shared_ptr<Scene> at = interpreter.FindScene(scene);
     const FrameId frame = ToFrame(set->mount().frame());
-    const FrameId aim = ToFrame(set->mount().pointing().aim());
+    const v1::Mount& mount = set->mount();
+    const FrameId aim = ToFrame(mount.has_pointing() ? mount.pointing().aim()
+                                                     : mount.chase().vertical().frame());
     const auto path = [&at](FrameId of) {
       return of == RootFrame ? std::string() : at->Frames().Path(of);
     };
@@ -494,6 +496,9 @@ void ViewerViews::Restore(Interpreter& interpreter, v1::Command& command) {
         set.mutable_mount()->set_frame(frame);
         if (set.mount().has_pointing()) {
           set.mutable_mount()->mutable_pointing()->set_aim(aim);
+        }
+        if (set.mount().chase().has_vertical()) {
+          set.mutable_mount()->mutable_chase()->mutable_vertical()->set_frame(aim);
         }
       }
     }

@@ -78,6 +78,7 @@ std::string ClipmapUniforms::Defines(const PostPlacement& placement, const Clipm
       const char* const by[] = {"", "", "#define DSPACE_FACING\n#define DSPACE_BY_ASPECT\n",
                                 "#define DSPACE_FACING\n#define DSPACE_BY_NORMAL\n"};
       defines += std::string("#define DSPACE_RAMP\n") + by[int(style->ramp->by)];
+      defines += style->ramp->shaded ? "" : "#define DSPACE_UNSHADED\n";
     }
     defines += style->levels ? "#define DSPACE_LEVELS\n" : "";
     defines += style->contours ? "#define DSPACE_CONTOURS\n" : "";
