@@ -128,12 +128,28 @@ def main():
                         "time [%]": 100.0 * sum(c.duration for c in contacts if c.target is station) / (month[1] - month[0])}
                        for name, station in STATIONS.items()])
 
+        section = report.section("Light around the site")
+        section.text("A lunation by steps of two hours, two metres above the ground; obstacles are the generated terrain.")
+        section.figure(figure(lambda f: draw_maps(f, maps(scene, terrain, options.out, start, spacing), (x, y)), (9.0, 3.4)),
+                       "Mean part of the Sun's disc, longest night, and time with the Earth over the horizon. The cross is the site.")
+
         found = ridge(scene, report, start, end)
         if found:
             print(f"Connecting Ridge: lit {100.0 * found.lit_share:.2f} %, longest night {found.longest_night / 86400.0:.2f} d")
     report.inputs(terrain=ground_file, panel=str(PANEL), battery=str(BATTERY))
     report.write(options.out / "polar_site.html")
     print(f"{options.out / 'polar_site.html'}: {time.monotonic() - begun:.1f} s")
+
+
+def maps(scene, terrain, out, start, spacing):
+    """The light over a lunation in the middle 20 km: bands of the map, and its edges in map coordinates."""
+    from osgeo import gdal
+    half = 10_000.0
+    horizons = scene.horizon_map(terrain, out / "horizons.tif", height=MAST, azimuths=180, extent=(-half, half, half, -half),
+                                 cell_size=max(5.0 * spacing, 100.0), replace=True)
+    light = scene.illumination_map(horizons, out / "light.tif", start=start, end=start + 29.53 * 86400.0, step=7200.0,
+                                   quantities=("lit_fraction", "longest_night", "earth_fraction"), terrain=terrain, replace=True)
+    return gdal.Open(str(light.path)).ReadAsArray(), (-half, half, -half, half)
 
 
 def lit_area(scene, terrain, site, horizon, tdb):
@@ -174,6 +190,16 @@ def draw_power(figure, profile):
     above.set(ylabel="disc [%]", ylim=(0.0, 102.0))
     below.plot(days, 100.0 * profile.charge, color="#2c7a3f", linewidth=0.7)
     below.set(ylabel="charge [%]", xlabel="days", ylim=(-3.0, 103.0), xlim=(0.0, days[-1]))
+
+
+def draw_maps(figure, made, site):
+    bands, edges = made
+    for axes, values, name, colors in zip(figure.subplots(1, 3), (100.0 * bands[0], bands[1] / 3600.0, 100.0 * bands[2]),
+                                          ("lit [%]", "longest night [h]", "Earth in view [%]"), ("inferno", "viridis_r", "cividis")):
+        shown = axes.imshow(values, extent=[0.001 * edge for edge in edges], cmap=colors)
+        axes.plot(0.001 * site[0], 0.001 * site[1], "+", color="#30d0ff", markersize=10)
+        axes.set(xlabel="map x [km]", title=name)
+        figure.colorbar(shown, ax=axes, shrink=0.8)
 
 
 def draw_contacts(figure, contacts, names, span):
