@@ -14,6 +14,7 @@ from dspace.errors import Error
 
 WORDS = {"ephemeris": "print states of bodies and spacecraft",
          "horizon": "measure the horizon around a site on terrain",
+         "illumination": "map the time that ground is lit by the Sun",
          "kernels": "describe SPICE kernels",
          "lit": "measure the sunlit area and the power of a panel on terrain",
          "log": "show, compare, cut, pack and salvage recordings",
@@ -23,6 +24,7 @@ WORDS = {"ephemeris": "print states of bodies and spacecraft",
          "serve": "serve a session to simulations and viewers in other processes",
          "sky": "draw the sky over a site, and print the direction of a body",
          "terrain": "describe and draw rasters of heights",
+         "viewshed": "map the ground that is seen from sites on terrain",
          "watch": "draw pictures of a running simulation through its server"}
 
 

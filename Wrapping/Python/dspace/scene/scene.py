@@ -12,6 +12,7 @@ from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
 from dspace.measure.lit import Lit
+from dspace.measure.maps import Maps
 from dspace.measure.sights import Sights
 from dspace.objects.fragments import Fragment, Light, put_light
 from dspace.objects.assemblies import Assembly
@@ -283,6 +284,9 @@ class Scene(Strict):
     line_of_sight = delegate(Sights, "line_of_sight")
     horizon = delegate(Sights, "horizon")
     lit_area = delegate(Lit, "lit_area")
+    horizon_map = delegate(Maps, "horizon_map")
+    viewshed = delegate(Maps, "viewshed")
+    illumination_map = delegate(Maps, "illumination_map")
 
     # --- Fragments and lights ------------------------------------------------------------------
 
