@@ -11,7 +11,7 @@ namespace {
 using namespace dspace;
 
 constexpr int Size = 1000;
-constexpr double Degree = M_PI / 180.0;
+constexpr double PerDegree = M_PI / 180.0;
 
 // What a level camera of 90 degrees sees of a horizon of one elevation in all azimuths.
 std::vector<float> Ring(double elevation_deg) {
@@ -20,7 +20,7 @@ std::vector<float> Ring(double elevation_deg) {
     for (int column = 0; column < Size; ++column) {
       const double x = (column + 0.5 - Size / 2) / (Size / 2.0);
       const double y = (Size / 2 - row - 0.5) / (Size / 2.0);
-      if (std::atan2(y, std::hypot(1.0, x)) <= elevation_deg * Degree) {
+      if (std::atan2(y, std::hypot(1.0, x)) <= elevation_deg * PerDegree) {
         range[std::size_t(row * Size + column)] = float(row);
       }
     }

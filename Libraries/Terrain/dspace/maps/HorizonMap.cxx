@@ -20,12 +20,11 @@ namespace dspace {
 namespace {
 
 // Of the numbers in the file; a change of the method changes it, so that no map is a mix of two.
-constexpr int Version = 1;
+constexpr int HorizonMapVersion = 1;
 constexpr int FollowedPosts = 4096;
 constexpr int MostAzimuths = 3600;
 constexpr std::int64_t MostHeld = std::int64_t(1) << 27; // posts, 512 MB
 constexpr double MostHeight = 1e6;                       // [m]
-constexpr int Side = TileFile::Side;
 
 std::string Exactly(double value) {
   char text[40];
@@ -108,7 +107,7 @@ TileFileLayout LayoutOf(const MapGround& ground, const HorizonMapOptions& option
   }
   std::map<std::string, std::string>& m = layout.metadata;
   m["DSPACE_KIND"] = "horizon map";
-  m["DSPACE_VERSION"] = std::to_string(Version);
+  m["DSPACE_VERSION"] = std::to_string(HorizonMapVersion);
   m["DSPACE_TERRAIN"] = ground.name;
   m["DSPACE_TERRAIN_HASH"] = Hex(survey.hash);
   m["DSPACE_HEIGHT_M"] = Exactly(options.height);
@@ -121,9 +120,10 @@ TileFileLayout LayoutOf(const MapGround& ground, const HorizonMapOptions& option
                           ? "true north"
                           : "the direction against the rows of cells";
   InputHash hash;
-  for (const std::int64_t value : {std::int64_t(Version), std::int64_t(FollowedPosts), cells.column,
-                                   cells.row, std::int64_t(cells.columns), std::int64_t(cells.rows),
-                                   std::int64_t(cells.every), std::int64_t(options.azimuths)}) {
+  for (const std::int64_t value :
+       {std::int64_t(HorizonMapVersion), std::int64_t(FollowedPosts), cells.column, cells.row,
+        std::int64_t(cells.columns), std::int64_t(cells.rows), std::int64_t(cells.every),
+        std::int64_t(options.azimuths)}) {
     hash.Add(std::uint64_t(value));
   }
   hash.Add(options.height);
@@ -170,17 +170,17 @@ bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
   const auto make = [&](int column, int row, std::vector<float>& elevations,
                         const std::atomic<bool>& stop) {
     PostBlock block;
-    block.column = cells.column + std::int64_t(column) * Side * cells.every;
-    block.row = cells.row + std::int64_t(row) * Side * cells.every;
-    block.width = std::min(Side, cells.columns - column * Side);
-    block.height = std::min(Side, cells.rows - row * Side);
+    block.column = cells.column + std::int64_t(column) * TileFile::Side * cells.every;
+    block.row = cells.row + std::int64_t(row) * TileFile::Side * cells.every;
+    block.width = std::min(TileFile::Side, cells.columns - column * TileFile::Side);
+    block.height = std::min(TileFile::Side, cells.rows - row * TileFile::Side);
     std::vector<float> tangents(std::size_t(block.width) * block.height);
     for (int k = 0; k < options.azimuths && !stop; ++k) {
       sweep.SweepEvery(block, cells.every, 360.0 * k / options.azimuths, tangents.data());
       for (int r = 0; r < block.height; ++r) {
         for (int c = 0; c < block.width; ++c) {
           const float t = tangents[std::size_t(r) * block.width + c];
-          elevations[(std::size_t(k) * Side + r) * Side + c] =
+          elevations[(std::size_t(k) * TileFile::Side + r) * TileFile::Side + c] =
               t == HorizonSweep::None ? -90.0f : float(std::atan(double(t)) * 180.0 / M_PI);
         }
       }
@@ -218,10 +218,10 @@ HorizonMap::HorizonMap(const std::string& path) : Path_(path), File_(std::make_u
   if (m["DSPACE_KIND"] != "horizon map") {
     throw Error(Error::Kind::Corrupt, object, "it is no horizon map" + accepted);
   }
-  if (m["DSPACE_VERSION"] != std::to_string(Version)) {
+  if (m["DSPACE_VERSION"] != std::to_string(HorizonMapVersion)) {
     throw Error(Error::Kind::Corrupt, object,
                 "it has version '" + m["DSPACE_VERSION"] +
-                    "' of horizon maps; accepted: " + std::to_string(Version));
+                    "' of horizon maps; accepted: " + std::to_string(HorizonMapVersion));
   }
   const auto number = [&](const char* key) { return std::strtod(m[key].c_str(), nullptr); };
   this->Azimuths_ = int(number("DSPACE_AZIMUTHS"));

@@ -11,8 +11,8 @@
 namespace dspace {
 namespace {
 
-constexpr int Version = 1;
-constexpr int Side = TileFile::Side;
+constexpr int IlluminationVersion = 1;
+
 constexpr std::size_t MostSteps = 10000000;
 constexpr double Straight = 0.01; // [rad] of turn between two nodes
 constexpr double Degree = M_PI / 180.0;
@@ -37,8 +37,8 @@ const char* NameOf(Quantity quantity) {
 class Tile {
 public:
   Tile(const HorizonMap& map, int column, int row)
-      : Map_(map), Width_(std::min(Side, map.Columns() - column)),
-        Height_(std::min(Side, map.Rows() - row)), Azimuths_(map.Azimuths()),
+      : Map_(map), Width_(std::min(TileFile::Side, map.Columns() - column)),
+        Height_(std::min(TileFile::Side, map.Rows() - row)), Azimuths_(map.Azimuths()),
         Horizons_(map.Read(column, row, Width_, Height_)) {
     const PostPlacement& placement = map.Placement();
     const bool plane = !placement.OnBody();
@@ -48,7 +48,7 @@ public:
     }
     if (plane) {
       this->Nodes_.push_back(this->NodeAt(placement, Eigen::Vector2d::Zero()));
-      this->Step_ = Side;
+      this->Step_ = TileFile::Side;
       return;
     }
     const auto post = [&](int i, int j) { return map.Cells().Post(column + i, row + j); };
@@ -57,10 +57,10 @@ public:
                                       .east.dot(ChartAxesAt(placement, post(i + 8, j + 8)).east),
                                   -1.0, 1.0));
     };
-    this->Step_ = std::max(turn(0, 0), turn(0, Side - 8)) < Straight ? 8 : 1;
-    this->Across_ = Side / this->Step_ + 1;
-    for (int j = 0; j <= Side; j += this->Step_) {
-      for (int i = 0; i <= Side; i += this->Step_) {
+    this->Step_ = std::max(turn(0, 0), turn(0, TileFile::Side - 8)) < Straight ? 8 : 1;
+    this->Across_ = TileFile::Side / this->Step_ + 1;
+    for (int j = 0; j <= TileFile::Side; j += this->Step_) {
+      for (int i = 0; i <= TileFile::Side; i += this->Step_) {
         this->Nodes_.push_back(this->NodeAt(placement, post(i, j)));
       }
     }
@@ -186,7 +186,7 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
   layout.cellToMap = horizons.CellToMap();
   layout.crs = horizons.GetCrs();
   InputHash hash;
-  hash.Add(std::uint64_t(Version));
+  hash.Add(std::uint64_t(IlluminationVersion));
   hash.Add(horizons.InputHash());
   bool sees = false; // the Earth
   for (const Quantity quantity : options.quantities) {
@@ -205,7 +205,7 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
   hash.Add(options.sunRadius);
   layout.hash = hash.Get();
   layout.metadata["DSPACE_KIND"] = "illumination map";
-  layout.metadata["DSPACE_VERSION"] = std::to_string(Version);
+  layout.metadata["DSPACE_VERSION"] = std::to_string(IlluminationVersion);
   layout.metadata["DSPACE_TERRAIN"] = horizons.Terrain();
   layout.metadata["DSPACE_HEIGHT_M"] = NumberText(horizons.Height());
   layout.metadata["DSPACE_STEPS"] = std::to_string(options.sun_S.size());
@@ -215,7 +215,7 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
   const double perAzimuth = double(horizons.Azimuths()) / (2.0 * M_PI);
   const auto make = [&](int column, int row, std::vector<float>& values,
                         const std::atomic<bool>& stop) {
-    Tile tile(horizons, column * Side, row * Side);
+    Tile tile(horizons, column * TileFile::Side, row * TileFile::Side);
     const auto count = std::size_t(tile.Width()) * std::size_t(tile.Height());
     std::vector<double> lit(count, 0.0);
     std::vector<std::uint32_t> night(count, 0);
@@ -253,7 +253,8 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
                     : quantity == Quantity::PermanentShadow ? double(lit[at] == 0.0)
                                                             : earth[at] / steps;
           }
-          values[(b * Side + std::size_t(j)) * Side + std::size_t(i)] = float(value);
+          values[(b * TileFile::Side + std::size_t(j)) * TileFile::Side + std::size_t(i)] =
+              float(value);
         }
       }
     }

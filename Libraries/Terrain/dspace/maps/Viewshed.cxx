@@ -12,13 +12,13 @@
 namespace dspace {
 namespace {
 
-constexpr int Version = 1;
-constexpr std::int64_t MostHeld = std::int64_t(1) << 28; // posts, 1 GB
+constexpr int ViewshedVersion = 1;
+constexpr std::int64_t MostViewedPosts = std::int64_t(1) << 28; // posts, 1 GB
 constexpr std::size_t MostObservers = 10000;
-constexpr double MostHeight = 1e6; // [m]
-constexpr double Snap = 1e-9;      // of an edge: a place on a post needs no other one
-constexpr double Touch = 1e-6;     // posts: ground so near an end is no obstacle
-constexpr int Side = TileFile::Side;
+constexpr double MostViewHeight = 1e6; // [m]
+constexpr double Snap = 1e-9;          // of an edge: a place on a post needs no other one
+constexpr double Touch = 1e-6;         // posts: ground so near an end is no obstacle
+
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 
 // A level place at an observer, from which heights of the ground are seen.
@@ -166,12 +166,12 @@ void Check(const ViewshedOptions& options) {
   const std::string about = "viewshed";
   Require(!options.observers.empty() && options.observers.size() <= MostObservers, about,
           "the number of observers", double(options.observers.size()), "1 to 10,000");
-  Require(options.targetHeight >= 0.0 && options.targetHeight <= MostHeight, about,
+  Require(options.targetHeight >= 0.0 && options.targetHeight <= MostViewHeight, about,
           "the height of the targets", options.targetHeight, "0 to 1e6 m");
   Require(options.radius > 0.0, about, "the radius", options.radius, "more than 0 m");
   Require(!options.quantities.empty(), about, "the number of quantities", 0.0, "one or more");
   for (const ViewshedObserver& observer : options.observers) {
-    Require(observer.height >= 0.0 && observer.height <= MostHeight, about,
+    Require(observer.height >= 0.0 && observer.height <= MostViewHeight, about,
             "the height of an observer", observer.height, "0 to 1e6 m");
   }
 }
@@ -186,7 +186,7 @@ double LeastSeenHeight(const MapGround& ground, const HeldPosts& held,
 bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, const std::string& path,
                    const MapControl& control) {
   Check(options);
-  if (HeldPosts::CountOf(ground.pyramid->Lattice()) > MostHeld) {
+  if (HeldPosts::CountOf(ground.pyramid->Lattice()) > MostViewedPosts) {
     throw Error(Error::Kind::Resource, ground.name,
                 "a viewshed holds all of its posts, which are more than 268435456; accepted: a "
                 "smaller part of the terrain, or fewer subdivisions");
@@ -217,7 +217,7 @@ bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, cons
   InputHash hash;
   hash.Add(survey->hash);
   for (const std::int64_t value :
-       {std::int64_t(Version), cells.column, cells.row, std::int64_t(cells.columns),
+       {std::int64_t(ViewshedVersion), cells.column, cells.row, std::int64_t(cells.columns),
         std::int64_t(cells.rows), std::int64_t(cells.every)}) {
     hash.Add(std::uint64_t(value));
   }
@@ -235,7 +235,7 @@ bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, cons
   hash.Add(ground.name);
   layout.hash = hash.Get();
   layout.metadata["DSPACE_KIND"] = "viewshed";
-  layout.metadata["DSPACE_VERSION"] = std::to_string(Version);
+  layout.metadata["DSPACE_VERSION"] = std::to_string(ViewshedVersion);
   layout.metadata["DSPACE_TERRAIN"] = ground.name;
   layout.metadata["DSPACE_TARGET_HEIGHT_M"] = NumberText(options.targetHeight);
   layout.metadata["DSPACE_RADIUS_M"] = NumberText(options.radius);
@@ -243,9 +243,10 @@ bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, cons
   TileFile file(path, layout, control.replace);
   const auto make = [&](int column, int row, std::vector<float>& values,
                         const std::atomic<bool>& stop) {
-    for (int j = 0; j < std::min(Side, cells.rows - row * Side) && !stop; ++j) {
-      for (int i = 0; i < std::min(Side, cells.columns - column * Side); ++i) {
-        const Eigen::Vector2d to = cells.Post(column * Side + i, row * Side + j);
+    for (int j = 0; j < std::min(TileFile::Side, cells.rows - row * TileFile::Side) && !stop; ++j) {
+      for (int i = 0; i < std::min(TileFile::Side, cells.columns - column * TileFile::Side); ++i) {
+        const Eigen::Vector2d to =
+            cells.Post(column * TileFile::Side + i, row * TileFile::Side + j);
         double least = std::numeric_limits<double>::infinity();
         int seen = 0;
         bool near = false;
@@ -262,7 +263,8 @@ bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, cons
                                : quantity == Q::Visible     ? double(seen > 0)
                                : quantity == Q::LeastHeight ? least
                                                             : double(seen);
-          values[(b * Side + std::size_t(j)) * Side + std::size_t(i)] = float(value);
+          values[(b * TileFile::Side + std::size_t(j)) * TileFile::Side + std::size_t(i)] =
+              float(value);
         }
       }
     }

@@ -17,6 +17,7 @@ WORDS = {"camera": "project, check and convert camera models, and draw through t
          "contacts": "find when bodies, spacecraft and stations stand above the horizon of a site",
          "ephemeris": "print states of bodies and spacecraft",
          "horizon": "measure the horizon around a site on terrain",
+         "illumination": "map the time that ground is lit by the Sun",
          "kernels": "describe SPICE kernels",
          "lit": "measure the sunlit area and the power of a panel on terrain",
          "log": "show, compare, cut, pack and salvage recordings",
@@ -27,6 +28,7 @@ WORDS = {"camera": "project, check and convert camera models, and draw through t
          "serve": "serve a session to simulations and viewers in other processes",
          "sky": "draw the sky over a site, and print the direction of a body",
          "terrain": "describe and draw rasters of heights",
+         "viewshed": "map the ground that is seen from sites on terrain",
          "watch": "draw pictures of a running simulation through its server"}
 
 

@@ -1,24 +1,34 @@
-"""`dspace horizon`: the horizon around a site on terrain."""
+"""`dspace horizon`: the horizon around a site on terrain, or of every cell of a map."""
 import sys
 
 from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, unit_of, write
+from dspace.command_line.measure_map import add_map, common, extent_of, map_out, told
 
 np = lazy("numpy")
 
 
 def add_arguments(parser):
-    add_ground(parser, "a file of the horizon: .json, .csv, .html (a report), or .png (a plot)")
-    parser.add_argument("--site", required=True, metavar="LON,LAT",
+    add_ground(parser, "a file of the horizon: .json, .csv, .html (a report), or .png (a plot); of --map: .tif")
+    parser.add_argument("--site", metavar="LON,LAT",
                         help="longitude (east) and latitude [deg]; map x and y without a CRS")
+    parser.add_argument("--map", action="store_true",
+                        help="in place of --site: of every cell of the terrain, to a GeoTIFF with a band per azimuth. The same "
+                        "command continues a map that was interrupted")
     parser.add_argument("--height", type=float, default=2.0, metavar="H", help="above the ground [m], 0 or more (default: 2)")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N",
                         help="evenly spaced, clockwise from north, 1 to 1000000 (default: 360)")
+    add_map(parser)
     parser.set_defaults(run=run)
 
 
 def run(options):
     import dspace
+    if options.map == (options.site is not None):
+        raise Failed("--site, --map: accepted: one of them")
+    if options.map:
+        run_map(options)
+        return
     out = out_of(options)
     site = place_of(options.site, "LON,LAT", (2,), "--site")
     if not 1 <= options.azimuths <= 1_000_000:
@@ -44,6 +54,22 @@ def run(options):
           f"{horizon.elevation_deg[high]:.5f} deg (azimuth {horizon.azimuth_deg[high]:g}, {horizon.distance[high]:.1f} m away)")
     if out is not None:
         print(f"{out}: {len(rows)} azimuths")
+
+
+def run_map(options):
+    import dspace
+    out = map_out(options, (".tif",))
+    with dspace.Session() as session:
+        ground = MeasuredGround(session.scene(), options)
+        made = ground.scene.horizon_map(ground.terrain, out, height=options.height, azimuths=options.azimuths,
+                                        extent=extent_of(options), cell_size=options.cell_size, replace=options.replace,
+                                        **common(options))
+    if options.json:
+        sys.stdout.write(text_of({"terrain": str(options.terrain), "on_body": ground.on_body, "height_m": options.height,
+                                  "path": made.path, "columns": made.columns, "rows": made.rows, "azimuths": len(made.bands),
+                                  "cell_size": made.cell_size}))
+        return
+    print(told(out, made))
 
 
 def draw(figure, horizon, title):

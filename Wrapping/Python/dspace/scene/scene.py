@@ -13,6 +13,7 @@ from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
 from dspace.measure.lit import Lit
+from dspace.measure.maps import Maps
 from dspace.measure.sights import Sights
 from dspace.measure.visibility import Visibility
 from dspace.objects.fragments import Fragment, Light, put_light
@@ -292,6 +293,9 @@ class Scene(Strict):
     sky_track = delegate(Visibility, "sky_track")
     contacts = delegate(Visibility, "contacts")
     power_profile = delegate(Visibility, "power_profile")
+    horizon_map = delegate(Maps, "horizon_map")
+    viewshed = delegate(Maps, "viewshed")
+    illumination_map = delegate(Maps, "illumination_map")
 
     # --- Fragments and lights ------------------------------------------------------------------
 

@@ -1,0 +1,214 @@
+"""Maps of horizons, viewsheds and illumination: against single measurements and against the sky, and what is rejected."""
+import pathlib
+
+import numpy as np
+import pytest
+
+import dspace
+from terrain_support import gdal, write_raster
+
+R = 1737400.0
+SUN_RADIUS = 695700e3
+
+
+def hills(rows=120, columns=130):
+    y, x = np.mgrid[0:rows, 0:columns]
+    return (6 * np.sin(0.13 * x) * np.cos(0.09 * y) + 2 * np.sin(0.5 * x + 0.4 * y) + 0.2 * ((7 * x + 3 * y) % 5)).astype(np.float32)
+
+
+@pytest.fixture
+def ground(scene, tmp_path):
+    return scene.add_terrain(write_raster(tmp_path / "ground.tif", hills()), name="ground", pixel_size=1.0)
+
+
+def write_georeferenced(path, z, geotransform, projection):
+    data = gdal.GetDriverByName("GTiff").Create(str(path), z.shape[1], z.shape[0], 1, gdal.GDT_Float32)
+    data.SetGeoTransform(geotransform)
+    data.SetProjection(projection)
+    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
+    data.GetRasterBand(1).WriteArray(z)
+    return path
+
+
+def test_horizons_of_cells(scene, ground, tmp_path):
+    seen = []
+    made = scene.horizon_map(ground, tmp_path / "map.tif", height=1.5, azimuths=16, extent=(20, 80, 60.5, 30), cell_size=2.0,
+                             progress=lambda fraction, left: seen.append(fraction))
+    assert (made.cell_size, len(made.bands), made.bands[1]) == (2.0, 16, "azimuth 22.5 deg") and seen[-1] == 1.0
+    x0, dx, _, y0, _, dy = made.geotransform
+    for column, row in ((0, 0), (3, 7), (made.columns - 1, made.rows - 1)):
+        x, y = x0 + dx * (column + 0.5), y0 + dy * (row + 0.5)
+        exact = scene.horizon(ground.site(x, y, 1.5), 16).elevation_deg
+        assert made.horizon(column, row) == pytest.approx(exact, abs=1e-3)
+        assert made.read(5)[row, column] == pytest.approx(exact[5], abs=1e-3)
+    assert made.metadata["DSPACE_HEIGHT_M"] == "1.5" and made.metadata["DSPACE_TERRAIN_HASH"]
+
+
+def test_interrupted_maps_continue(scene, ground, tmp_path):
+    whole = scene.horizon_map(ground, tmp_path / "whole.tif", azimuths=240, threads=1)
+
+    class Stop(Exception):
+        pass
+
+    def stop(fraction, left):
+        raise Stop
+
+    path = tmp_path / "map.tif"
+    with pytest.raises(Stop):
+        scene.horizon_map(ground, path, azimuths=240, threads=1, progress=stop)
+    assert not path.exists()
+    with pytest.raises(dspace.DeadlineExceeded, match="the same call continues it"):
+        scene.horizon_map(ground, path, azimuths=240, threads=1, deadline=0.01)
+    if pathlib.Path(f"{path}.part").exists():
+        with pytest.raises(dspace.AlreadyExists, match="other inputs"):
+            scene.horizon_map(ground, path, azimuths=240, height=1.0)
+    made = scene.horizon_map(ground, path, azimuths=240)
+    assert pathlib.Path(made.path).read_bytes() == pathlib.Path(whole.path).read_bytes()
+    with pytest.raises(dspace.AlreadyExists, match="it exists"):
+        scene.horizon_map(ground, path, azimuths=240)
+    assert len(scene.horizon_map(ground, path, azimuths=3, replace=True).bands) == 3
+    assert sorted(file.name for file in tmp_path.iterdir() if ".part" in file.name) == []
+
+
+def test_viewsheds_and_lines(scene, ground, tmp_path):
+    sites = ground.site([31.2, 100.5], [40.7, 90.5], [2.0, 5.0])
+    made = scene.viewshed(sites, tmp_path / "view.tif", target_height=0.5, quantities=("count", "least_height"))
+    count, least = made.read("count"), made.read("least_height")
+    rows, columns = np.mgrid[0:120:5, 0:130:5]
+    x, y = columns + 0.5, 120 - rows - 0.5
+    clear = sum(scene.line_of_sight(ground.site(*site), ground.site(x, y, 0.5), clearance=False).clear.astype(int)
+                for site in ((31.2, 40.7, 2.0), (100.5, 90.5, 5.0)))
+    sure = np.abs(least[rows, columns] - 0.5) > 1e-3
+    # Where the lowest of two targets is far from the height, so is the other where none or one sees it.
+    differ = (count[rows, columns] != clear) & sure
+    assert differ.sum() <= 1 and (clear == 0).sum() > 20 and (clear > 0).sum() > 20
+    near = scene.viewshed(ground.site(60.5, 60.5, 2.0), tmp_path / "near.tif", radius=10.0).read()
+    assert np.isfinite(near).sum() == sum(1 for i in range(-10, 11) for j in range(-10, 11) if i * i + j * j <= 100)
+    layer = ground.layers.add_false_color(tmp_path / "near.tif", colors=[(0, 0, 0), (0, 1, 0)], low=0.0, high=1.0)
+    assert layer.name
+
+
+def seen_part(above, radius):
+    x = np.clip(above / radius, -1.0, 1.0)
+    return 1.0 - (np.arccos(x) - x * np.sqrt(1.0 - x * x)) / np.pi
+
+
+def lit_by_hand(terrain, x, y, horizon, start, steps, step, turn=0.0):
+    """Lit fraction, longest night and Earth's fraction of a cell, from Terrain.sky at every time."""
+    parts, earth = [], []
+    azimuths = np.arange(len(horizon)) * 360.0 / len(horizon)
+    for k in range(steps):
+        sky = terrain.sky(x, y, ["sun", "earth"], time=start + k * step)
+        for name in ("sun", "earth"):
+            azimuth = (sky[name].azimuth_deg + turn) % 360.0
+            low, high = (np.interp((azimuth + d) % 360.0, azimuths, np.maximum(horizon, -90), period=360.0) for d in (-0.5, 0.5))
+            floor = np.interp(azimuth, azimuths, horizon, period=360.0)
+            slope = (high - low) / np.cos(np.radians(sky[name].elevation_deg))
+            above = np.radians(sky[name].elevation_deg - floor) / np.hypot(1.0, slope)
+            (parts.append(seen_part(above, np.radians(sky[name].radius_deg))) if name == "sun" else earth.append(above >= 0.0))
+    night = longest = 0
+    for part in parts:
+        night = 0 if part > 0.0 else night + 1
+        longest = max(longest, night)
+    return np.mean(parts), longest * step, np.mean(earth)
+
+
+def test_illumination_on_the_moon(scene, tmp_path):
+    lat, lon = np.mgrid[-84.975:-86.0:-0.05, 10.025:12.0:0.05]
+    z = (900 * np.sin(9 * np.radians(lon) * 12) * np.cos(11 * np.radians(lat) * 20)).astype(np.float32)
+    moon = f'GEOGCS["Moon",DATUM["Moon",SPHEROID["Moon",{R},0]],PRIMEM["Reference",0],UNIT["degree",0.0174532925199433]]'
+    path = write_georeferenced(tmp_path / "moon.tif", z, (10, 0.05, 0, -84.95, 0, -0.05), moon)
+    terrain = scene.add_terrain(path, name="moon", on_body=True)
+    horizons = scene.horizon_map(terrain, tmp_path / "horizons.tif", height=2.0, azimuths=120,
+                                 extent=(10.5, -85.2, 10.9, -85.5))
+    start, step, steps = scene.tdb("2026-01-03T00:00"), 6 * 3600.0, 110
+    made = scene.illumination_map(horizons, tmp_path / "lit.tif", start=start, end=start + steps * step - 1.0, step=step,
+                                  quantities=("lit_fraction", "longest_night", "earth_fraction", "permanent_shadow"),
+                                  terrain=terrain)
+    lit, night, earth, dark = (made.read(name) for name in made.bands)
+    x0, dx, _, y0, _, dy = made.geotransform
+    for column, row in ((0, 0), (4, 3), (made.columns - 1, made.rows - 1)):
+        horizon = horizons.horizon(column, row).astype(float)
+        mean, longest, seen = lit_by_hand(terrain, x0 + dx * (column + 0.5), y0 + dy * (row + 0.5), horizon, start, steps, step)
+        assert 0.02 < mean < 0.98
+        # The slope of a horizon between two azimuths, and its corner at one, are what differs.
+        assert lit[row, column] == pytest.approx(mean, abs=2.0 / steps * 0.2)
+        assert night[row, column] == pytest.approx(longest, abs=step)
+        assert earth[row, column] == pytest.approx(seen, abs=1.1 / steps)
+        assert dark[row, column] == 0.0
+    assert lit.max() > lit.min() + 0.05
+    with pytest.raises(dspace.InvalidArgument, match="other ground"):
+        other = scene.add_terrain(write_georeferenced(tmp_path / "other.tif", z + 1, (10, 0.05, 0, -84.95, 0, -0.05), moon),
+                                  name="other", on_body=True)
+        scene.illumination_map(horizons, tmp_path / "no.tif", start=start, end=start + step, step=step, terrain=other)
+
+
+def test_illumination_on_a_polar_map(scene, tmp_path):
+    """A south polar stereographic map, whose Y axis is not north: the wall in the west of the map hides the Sun in time."""
+    z = np.zeros((60, 60), np.float32)
+    z[:, :5] = 3000.0
+    polar = (f'PROJCS["p",GEOGCS["Moon",DATUM["Moon",SPHEROID["Moon",{R},0]],PRIMEM["Reference",0],UNIT["degree",'
+             '0.0174532925199433]],PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],'
+             'PARAMETER["central_meridian",0],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]]')
+    path = write_georeferenced(tmp_path / "polar.tif", z, (90000, 500, 0, 75000, 0, -500), polar)
+    terrain = scene.add_terrain(path, name="polar")
+    horizons = scene.horizon_map(terrain, tmp_path / "horizons.tif", height=2.0, azimuths=360)
+    start, step, steps = scene.tdb("2026-01-03T00:00"), 6 * 3600.0, 110
+    made = scene.illumination_map(horizons, tmp_path / "lit.tif", start=start, end=start + (steps - 0.5) * step, step=step,
+                                  quantities=("lit_fraction", "earth_fraction"))
+    x, y = 90000 + 500 * 30.0, 75000 - 500 * 30.0  # the middle, between cells 29 and 30
+    turn = np.degrees(np.arctan2(x, y))  # north leads away from the pole
+    horizon = np.maximum(horizons.horizon(30, 30).astype(float), 0.0)
+    mean, _, seen = lit_by_hand(terrain, x, y, horizon, start, steps, step, turn)
+    assert 0.1 < mean < 0.9
+    assert made.read(0)[30, 30] == pytest.approx(mean, abs=0.01)
+    assert made.read(1)[30, 30] == pytest.approx(seen, abs=0.01)
+    wrong, _, _ = lit_by_hand(terrain, x, y, horizon, start, steps, step, turn + 60.0)
+    assert abs(wrong - mean) > 0.02  # the direction of the wall matters
+
+
+@pytest.mark.parametrize("change, kind, text", [
+    ({"height": -1.0}, dspace.InvalidArgument, "height is -1"),
+    ({"azimuths": 0}, dspace.InvalidArgument, "azimuths is 0; accepted: 1 to 3600"),
+    ({"azimuths": 4000}, dspace.InvalidArgument, "azimuths is 4000"),
+    ({"extent": (1.0, 2.0)}, dspace.InvalidArgument, "left, top, right, bottom"),
+    ({"extent": (500.0, 600.0, 510.0, 590.0)}, dspace.InvalidArgument, "no cell of the map lies on its data"),
+    ({"cell_size": 100.0}, dspace.InvalidArgument, "accepted: up to 64"),
+    ({"terrain": "none"}, dspace.NotFound, "terrain 'none'"),
+    ({"terrain": 3}, dspace.WrongType, "the terrain is 3"),
+    ({"progress": 3}, dspace.WrongType, "progress is 3"),
+    ({"deadline": 0.0}, dspace.InvalidArgument, "deadline is 0"),
+    ({"threads": 257}, dspace.InvalidArgument, "threads is 257"),
+    ({"replace": None}, dspace.WrongType, "replace is None"),
+])
+def test_rejected_horizon_maps(scene, ground, tmp_path, refused, change, kind, text):
+    good = {"terrain": ground, "path": tmp_path / "map.tif", "azimuths": 4}
+    with refused(kind, text):
+        scene.horizon_map(**{**good, **change})
+    assert not list(tmp_path.glob("map*"))
+
+
+def test_other_rejected_maps(scene, ground, tmp_path, refused):
+    with refused(dspace.WrongType, "sites is 'here'"):
+        scene.viewshed("here", tmp_path / "view.tif")
+    with refused(dspace.InvalidArgument, "the terrain has no data there"):
+        scene.viewshed(ground.site(500.0, 20.0), tmp_path / "view.tif")
+    with refused(dspace.InvalidArgument, "a quantity is 'seen'; accepted: visible, least_height, count"):
+        scene.viewshed(ground.site(20.0, 20.0), tmp_path / "view.tif", quantities="seen")
+    with refused(dspace.InvalidArgument, "radius is 0"):
+        scene.viewshed(ground.site(20.0, 20.0), tmp_path / "view.tif", radius=0.0)
+    with refused(dspace.NotFound, "there is no such file"):
+        scene.illumination_map(tmp_path / "none.tif", tmp_path / "lit.tif", start=0.0, end=1.0)
+    horizons = scene.horizon_map(ground, tmp_path / "map.tif", azimuths=4)
+    with refused(dspace.InvalidArgument, "accepted: start and end, or sun"):
+        scene.illumination_map(horizons, tmp_path / "lit.tif")
+    with refused(dspace.InvalidArgument, "the span from the start to the end is 0"):
+        scene.illumination_map(horizons, tmp_path / "lit.tif", start=1.0, end=1.0)
+    with refused(dspace.Unsupported, "no longitudes and latitudes"):
+        scene.illumination_map(horizons, tmp_path / "lit.tif", start=0.0, end=3600.0, body="moon")
+    with refused(dspace.InvalidArgument, "the Earth has 0 places"):
+        scene.illumination_map(horizons, tmp_path / "lit.tif", sun=[(1e11, 0, 0)], quantities="earth_fraction")
+    with refused(dspace.Corrupt, "no horizon map"):
+        scene.illumination_map(tmp_path / "ground.tif", tmp_path / "lit.tif", sun=[(1e11, 0, 0)])
+    lit = scene.illumination_map(horizons, tmp_path / "lit.tif", sun=[(1e11, 0, 9e10), (0, 1e11, -1e9)])
+    assert lit.read("lit_fraction") == pytest.approx(np.full((120, 130), 0.5), abs=0.5)

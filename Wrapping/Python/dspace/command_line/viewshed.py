@@ -1,0 +1,55 @@
+"""`dspace viewshed`: the ground that is seen from sites on terrain."""
+import sys
+
+from dspace.command_line import Failed
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, place_of, text_of
+from dspace.command_line.measure_map import (add_map, common, extent_of, map_out, require_gdal, told, write_map,
+                                             written_to)
+
+LOOKS = {"visible": ("seen", "viridis", 0.0, 1.0), "least_height": ("least height that is seen [m]", "magma_r", 0.0, None),
+         "count": ("sites that see it", "viridis", 0.0, None)}
+
+
+def add_arguments(parser):
+    add_ground(parser, "the map: .tif (GeoTIFF), .png (the first quantity), .csv (a row a cell) or .json (a summary)")
+    parser.add_argument("--site", required=True, action="append", metavar="LON,LAT",
+                        help="longitude (east) and latitude [deg]; map x and y without a CRS; may be given several times")
+    parser.add_argument("--height", type=float, default=2.0, metavar="H",
+                        help="of the sites above the ground [m], 0 to 1e6 (default: 2)")
+    parser.add_argument("--target-height", type=float, default=0.0, metavar="H",
+                        help="of what is seen above the ground of each cell [m], 0 to 1e6 (default: 0)")
+    parser.add_argument("--radius", type=float, metavar="R", help="greatest distance along the ground [m] (default: no limit)")
+    parser.add_argument("--quantity", action="append", choices=tuple(LOOKS),
+                        help="visible, least_height (of a target that would be seen) or count (of the sites that see the "
+                        "target); may be given several times (default: visible)")
+    add_map(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    import dspace
+    out = map_out(options)
+    places = [place_of(site, "LON,LAT", (2,), "--site") for site in options.site]
+    if options.radius is not None and not options.radius > 0.0:
+        raise Failed(f"--radius {options.radius}: accepted: more than 0 m")
+    if out.suffix.lower() != ".tif":
+        require_gdal()
+    quantities = tuple(options.quantity or ("visible",))
+    with dspace.Session() as session:
+        ground = MeasuredGround(session.scene(), options)
+        sites = [ground.site((*place, options.height)) for place in places]
+        sites = ground.terrain.site([float(site.x) for site in sites], [float(site.y) for site in sites], options.height)
+        with written_to(out) as path:
+            made = ground.scene.viewshed(sites, path, target_height=options.target_height, radius=options.radius,
+                                         quantities=quantities, extent=extent_of(options), cell_size=options.cell_size,
+                                         replace=options.replace, **common(options))
+            found = {"terrain": str(options.terrain), "on_body": ground.on_body,
+                     "sites": [{"lon_deg": place[0], "lat_deg": place[1]} for place in places], "height_m": options.height,
+                     "target_height_m": options.target_height, "radius_m": options.radius, "columns": made.columns,
+                     "rows": made.rows, "cell_size": made.cell_size}
+            where = ", ".join(f"{place[0]:g}, {place[1]:g}" for place in places[:3])
+            write_map(out, made, found, f"Seen from {where}, {options.height:g} m above the ground", LOOKS[quantities[0]])
+    if options.json:
+        sys.stdout.write(text_of(found))
+        return
+    print(told(out, made))
