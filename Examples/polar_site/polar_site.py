@@ -39,8 +39,8 @@ def parse():
     return options
 
 
-def best_site(terrain, z, spacing):
-    """The highest post of the inner half: map x, y."""
+def best_site(z, spacing):
+    """The highest post of the inner half: map x, y [m]."""
     side = z.shape[0]
     inner = slice(side // 4, 3 * side // 4)
     row, column = np.unravel_index(np.argmax(z[inner, inner]), z[inner, inner].shape)
@@ -88,8 +88,9 @@ def main():
         scene = session.scene()
         start, end = scene.tdb([options.start, options.end])
         terrain = scene.add_terrain(ground_file, name="ground", on_body=True)
-        x, y = best_site(terrain, z, spacing)
-        site = terrain.site(x, y, MAST)
+        x, y = best_site(z, spacing)
+        longitude, latitude = polar_ground.to_degrees(x, y)
+        site = terrain.site(longitude % 360.0, latitude, MAST)
         horizon = scene.horizon(site, 1440)
         where = terrain.locate(horizon.place[None])
         print(f"site {float(where.latitude[0]):.4f} N, {float(where.longitude[0]):.4f} E")
@@ -142,19 +143,30 @@ def main():
 
 
 def maps(scene, terrain, out, start, spacing):
-    """The light over a lunation in the middle 20 km: bands of the map, and its edges in map coordinates."""
+    """The light over a lunation within 10 km of the pole: bands on a map about the pole, and its edges [m]."""
     from osgeo import gdal
-    half = 10_000.0
-    horizons = scene.horizon_map(terrain, out / "horizons.tif", height=MAST, azimuths=180, extent=(-half, half, half, -half),
-                                 cell_size=max(5.0 * spacing, 100.0), replace=True)
+    reach = 10_000.0
+    left, _, right, bottom = terrain.map_extent
+    columns = gdal.Open(str(out / "ground.tif")).RasterXSize
+    horizons = scene.horizon_map(terrain, out / "horizons.tif", height=MAST, azimuths=180, cell_size=5.0 * 360.0 / columns,
+                                 extent=(left, np.degrees(reach / polar_ground.RADIUS) - 90.0, right, bottom), replace=True)
     light = scene.illumination_map(horizons, out / "light.tif", start=start, end=start + 29.53 * 86400.0, step=7200.0,
                                    quantities=("lit_fraction", "longest_night", "earth_fraction"), terrain=terrain, replace=True)
-    return gdal.Open(str(light.path)).ReadAsArray(), (-half, half, -half, half)
+    data = gdal.Open(str(light.path))
+    x0, dx, _, y0, _, dy = data.GetGeoTransform()
+    axis = np.arange(-reach + 50.0, reach, 100.0)
+    x, y = np.meshgrid(axis, axis[::-1])
+    longitude, latitude = polar_ground.to_degrees(x, y)
+    column = np.clip(((longitude - x0) % 360.0 / dx).astype(int), 0, data.RasterXSize - 1)
+    row = ((latitude - y0) / dy).astype(int)
+    bands = data.ReadAsArray()[:, np.clip(row, 0, data.RasterYSize - 1), column]
+    bands[:, (row < 0) | (row >= data.RasterYSize)] = np.nan
+    return bands, (-reach, reach, -reach, reach)
 
 
 def lit_area(scene, terrain, site, horizon, tdb):
     """The lit area of the panel at a time, by rays: it stands on the mast and faces the Sun's azimuth."""
-    at = (float(site.x), float(site.y))
+    at = (float(site.x), float(site.y))  # longitude, latitude
     sun = terrain.sky(*at, "sun", float(site.height), time=tdb)["sun"]
     azimuth = sun.azimuth_deg - horizon.first_deg  # from the terrain's north
     axes = []

@@ -12,7 +12,7 @@ EXAMPLE = pathlib.Path(__file__).resolve().parents[3] / "Examples" / "polar_site
 def test_the_study_makes_a_report(tmp_path):
     needs_module("jinja2", "python3-jinja2")
     needs_module("matplotlib", "python3-matplotlib")
-    done = subprocess.run([sys.executable, str(EXAMPLE), "--out", str(tmp_path), "--side", "250", "--start", "2024-01-01",
+    done = subprocess.run([sys.executable, str(EXAMPLE), "--out", str(tmp_path), "--side", "260", "--start", "2024-01-01",
                            "--end", "2024-03-01"], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "polar_site.html").read_text()

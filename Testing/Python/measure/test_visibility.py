@@ -175,18 +175,23 @@ def test_the_horizon_of_terrain_is_the_mask(session, scene, tmp_path):
                        'PARAMETER["central_meridian",0],PARAMETER["scale_factor",1],UNIT["metre",1]]')
     data.GetRasterBand(1).WriteArray(z)
     del data
-    for on_body in (False, True):
-        terrain = scene.add_terrain(path, name=f"pole{on_body}", on_body=on_body, vertical_datum="sphere:1737400")
-        site = terrain.site(30_000.0, 40_000.0, height=2.0)
-        horizon = scene.horizon(site, 720)
-        # At the south pole the map's Y axis points along longitude 0, away from the pole: x is sin(longitude). The wall is in
-        # the map's east, and north is away from the pole: at longitude atan2(30, 40) the meridian's north.
-        longitude = np.degrees(np.arctan2(30.0, 40.0))
-        peak = (horizon.azimuth_deg[np.argmax(horizon.elevation_deg)] + horizon.first_deg) % 360.0
-        # A unit vector to the map's east, in axes whose north points from the pole through the site.
-        assert peak == pytest.approx(90.0 - longitude, abs=12.0), on_body  # the wall is far longer than it is near
-        assert horizon.first_deg == pytest.approx(0.0 if on_body else -longitude, abs=1e-3)
-        scene.remove(terrain)
+    terrain = scene.add_terrain(path, name="pole", vertical_datum="sphere:1737400")
+    site = terrain.site(30_000.0, 40_000.0, height=2.0)
+    horizon = scene.horizon(site, 720)
+    # At the south pole the map's Y axis points along longitude 0, away from the pole: x is sin(longitude). North is away from
+    # the pole, at the site's longitude atan2(30, 40). The wall is in the map's east, 90 degrees from the Y axis.
+    longitude = np.degrees(np.arctan2(30.0, 40.0))
+    assert horizon.first_deg == pytest.approx(-longitude, abs=1e-3)
+    wall = (horizon.azimuth_deg[np.argmax(horizon.elevation_deg)] + horizon.first_deg) % 360.0
+    assert wall == pytest.approx(90.0 - longitude, abs=1.0)
+    # The Sun along the map's Y axis is the Sun in azimuth -longitude: `sky` says so too.
+    sky = terrain.sky(30_000.0, 40_000.0, "sun", time=START, body="moon")["sun"]
+    scene.sun.set(azimuth_deg=(sky.azimuth_deg - horizon.first_deg) % 360.0, elevation_deg=sky.elevation_deg, terrain=terrain,
+                  at=(30_000.0, 40_000.0))
+    at_pole = terrain.sky(1.0, 1.0, "sun", time=START, body="moon")["sun"]  # longitude 45
+    east, north = np.array(scene.sun.direction)[:2]
+    # From the pole, the Sun at azimuth a (from the meridian of longitude 45) stands over longitude 45 + a.
+    assert np.degrees(np.arctan2(east, north)) % 360.0 == pytest.approx((45.0 + at_pole.azimuth_deg) % 360.0, abs=0.02)
     assert scene.horizon(scene.add_frame("free"), 4).first_deg is None
 
 
