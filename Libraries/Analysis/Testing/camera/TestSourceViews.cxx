@@ -39,14 +39,14 @@ std::vector<CameraModel> Models() {
 }
 
 // What a scene shows in a direction from a point: radiance (red), and distance [m].
-struct Seen {
+struct Hit {
   double light;
   double distance;
 };
-using Scene = std::function<Seen(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction)>;
+using Shown = std::function<Hit(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction)>;
 
 // Draws a block by the scene itself, a ray through each pixel's centre.
-LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const Scene& scene) {
+LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const Shown& scene) {
   const SourceViews::View view = views.ViewOf(block);
   const SourceViews::Face& face = views.Faces()[std::size_t(block.face)];
   LensPlanes planes;
@@ -56,7 +56,7 @@ LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const
     for (int i = 0; i < view.width; ++i) {
       const Eigen::Vector3d F(view.left + (i + 0.5) * (view.right - view.left) / view.width,
                               view.top + (j + 0.5) * (view.bottom - view.top) / view.height, 1.0);
-      const Seen seen = scene(views.Eye(), face.R_CF * F.normalized());
+      const Hit seen = scene(views.Eye(), face.R_CF * F.normalized());
       planes.radiance.insert(planes.radiance.end(), {float(seen.light), 0.0f, 1.0f});
       planes.depth.push_back(float(seen.distance / F.norm()));
       planes.label.push_back(std::uint32_t(100.0 * seen.light));
@@ -65,7 +65,7 @@ LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const
   return planes;
 }
 
-LensPlanes Picture(const CameraModel& model, const Scene& scene, int block, int x, int y, int width,
+LensPlanes Picture(const CameraModel& model, const Shown& scene, int block, int x, int y, int width,
                    int height, double* pupil = nullptr) {
   const SourceViews views(model, block);
   LensWishes wishes;
@@ -82,7 +82,7 @@ LensPlanes Picture(const CameraModel& model, const Scene& scene, int block, int 
 }
 
 // A smooth pattern on a sphere of 2 m around the origin.
-Seen Sphere(const Eigen::Vector3d& eye, const Eigen::Vector3d& d) {
+Hit Sphere(const Eigen::Vector3d& eye, const Eigen::Vector3d& d) {
   const double b = eye.dot(d);
   const double t = -b + std::sqrt(b * b + 4.0 - eye.squaredNorm());
   const Eigen::Vector3d p = eye + t * d;
@@ -100,7 +100,7 @@ TEST(SourceViews, ShowWhatThePixelsOwnRayMeets) {
       for (int x = 0; x < model.width; ++x) {
         LensRay ray;
         ASSERT_TRUE(model.lens->Unproject({double(x), double(y)}, ray)) << type;
-        const Seen seen = Sphere(ray.origin, ray.direction);
+        const Hit seen = Sphere(ray.origin, ray.direction);
         const std::size_t at = std::size_t(y * model.width + x);
         light = std::max(light, std::abs(double(planes.radiance[3 * at]) - seen.light));
         range = std::max(range, std::abs(double(planes.range[at]) - seen.distance));
@@ -137,8 +137,8 @@ TEST(SourceViews, TilesEqualTheWhole) {
 }
 
 TEST(SourceViews, LabelsAreNeverBlended) {
-  const Scene halves = [](const Eigen::Vector3d&, const Eigen::Vector3d& d) {
-    return Seen{d.x() < 0.1 * d.y() ? 1.0 : 3.0, 5.0};
+  const Shown halves = [](const Eigen::Vector3d&, const Eigen::Vector3d& d) {
+    return Hit{d.x() < 0.1 * d.y() ? 1.0 : 3.0, 5.0};
   };
   for (const CameraModel& model : Models()) {
     const LensPlanes planes = Picture(model, halves, 64, 0, 0, model.width, model.height);
