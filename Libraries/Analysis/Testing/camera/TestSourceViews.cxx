@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -39,14 +40,14 @@ std::vector<CameraModel> Models() {
 }
 
 // What a scene shows in a direction from a point: radiance (red), and distance [m].
-struct Seen {
+struct Hit {
   double light;
   double distance;
 };
-using Scene = std::function<Seen(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction)>;
+using Shown = std::function<Hit(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction)>;
 
 // Draws a block by the scene itself, a ray through each pixel's centre.
-LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const Scene& scene) {
+LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const Shown& scene) {
   const SourceViews::View view = views.ViewOf(block);
   const SourceViews::Face& face = views.Faces()[std::size_t(block.face)];
   LensPlanes planes;
@@ -56,7 +57,7 @@ LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const
     for (int i = 0; i < view.width; ++i) {
       const Eigen::Vector3d F(view.left + (i + 0.5) * (view.right - view.left) / view.width,
                               view.top + (j + 0.5) * (view.bottom - view.top) / view.height, 1.0);
-      const Seen seen = scene(views.Eye(), face.R_CF * F.normalized());
+      const Hit seen = scene(views.Eye(), face.R_CF * F.normalized());
       planes.radiance.insert(planes.radiance.end(), {float(seen.light), 0.0f, 1.0f});
       planes.depth.push_back(float(seen.distance / F.norm()));
       planes.label.push_back(std::uint32_t(100.0 * seen.light));
@@ -65,13 +66,14 @@ LensPlanes Draw(const SourceViews& views, const SourceViews::Block& block, const
   return planes;
 }
 
-LensPlanes Picture(const CameraModel& model, const Scene& scene, int block, int x, int y, int width,
+LensPlanes Picture(const CameraModel& model, const Shown& scene, int block, int x, int y, int width,
                    int height, double* pupil = nullptr) {
   const SourceViews views(model, block);
   LensWishes wishes;
   wishes.radiance = wishes.depth = wishes.range = wishes.label = true;
-  LensTile tile(views, *model.lens, wishes, x, y, width, height);
-  for (const SourceViews::Block& each : tile.Blocks()) {
+  const auto map = std::make_shared<LensMap>(views, *model.lens, x, y, width, height);
+  LensTile tile(views, map, wishes);
+  for (const auto& [each, pixels] : map->Blocks()) {
     tile.Take(each, Draw(views, each, scene));
   }
   if (pupil) {
@@ -82,7 +84,7 @@ LensPlanes Picture(const CameraModel& model, const Scene& scene, int block, int 
 }
 
 // A smooth pattern on a sphere of 2 m around the origin.
-Seen Sphere(const Eigen::Vector3d& eye, const Eigen::Vector3d& d) {
+Hit Sphere(const Eigen::Vector3d& eye, const Eigen::Vector3d& d) {
   const double b = eye.dot(d);
   const double t = -b + std::sqrt(b * b + 4.0 - eye.squaredNorm());
   const Eigen::Vector3d p = eye + t * d;
@@ -100,7 +102,7 @@ TEST(SourceViews, ShowWhatThePixelsOwnRayMeets) {
       for (int x = 0; x < model.width; ++x) {
         LensRay ray;
         ASSERT_TRUE(model.lens->Unproject({double(x), double(y)}, ray)) << type;
-        const Seen seen = Sphere(ray.origin, ray.direction);
+        const Hit seen = Sphere(ray.origin, ray.direction);
         const std::size_t at = std::size_t(y * model.width + x);
         light = std::max(light, std::abs(double(planes.radiance[3 * at]) - seen.light));
         range = std::max(range, std::abs(double(planes.range[at]) - seen.distance));
@@ -137,8 +139,8 @@ TEST(SourceViews, TilesEqualTheWhole) {
 }
 
 TEST(SourceViews, LabelsAreNeverBlended) {
-  const Scene halves = [](const Eigen::Vector3d&, const Eigen::Vector3d& d) {
-    return Seen{d.x() < 0.1 * d.y() ? 1.0 : 3.0, 5.0};
+  const Shown halves = [](const Eigen::Vector3d&, const Eigen::Vector3d& d) {
+    return Hit{d.x() < 0.1 * d.y() ? 1.0 : 3.0, 5.0};
   };
   for (const CameraModel& model : Models()) {
     const LensPlanes planes = Picture(model, halves, 64, 0, 0, model.width, model.height);
@@ -170,8 +172,42 @@ TEST(SourceViews, AreAsFineAsTheLens) {
       }
     }
     EXPECT_GT(least, 0.98) << model.lens->Type(); // source pixels per pixel
-    EXPECT_LT(least, 2.5) << model.lens->Type();
+    EXPECT_LT(least, 1.5) << model.lens->Type();
+    // The footprint is the root of the area between neighbours.
+    const LensMap map(views, *model.lens, 0, 0, model.width, model.height);
+    for (int y = 5; y < model.height - 1; y += 31) {
+      for (int x = 5; x < model.width - 1; x += 31) {
+        const auto at = [&](int u, int v) -> const LensMap::Pixel& {
+          return map.Pixels()[std::size_t(v * model.width + u)];
+        };
+        const SourceViews::Place &left = at(x - 1, y).place, &right = at(x + 1, y).place,
+                                 &up = at(x, y - 1).place, &down = at(x, y + 1).place;
+        if (left.face == right.face && up.face == down.face && left.face == up.face) {
+          const double area = std::abs((right.x - left.x) * (down.y - up.y) -
+                                       (right.y - left.y) * (down.x - up.x)) /
+                              4.0;
+          EXPECT_NEAR(double(at(x, y).footprint) / std::sqrt(area), 1.0, 0.01)
+              << model.lens->Type() << " " << x << " " << y;
+        }
+      }
+    }
   }
+}
+
+TEST(SourceViews, AnAllRoundLensNeedsFewPixels) {
+  // The image's corners are beyond 180 degrees, where the lens draws one point out into a circle.
+  const CameraModel model =
+      Model("equidistant", {{"focal", {30.0, 30.0}}, {"center", {99.5, 99.5}}}, 200, 200);
+  const SourceViews views(model, 64);
+  EXPECT_EQ(views.Faces().size(), 6u);
+  double pixels = 0.0;
+  for (const SourceViews::Face& face : views.Faces()) {
+    pixels += double(face.width) * face.height;
+  }
+  EXPECT_LT(pixels, 16.0 * 200 * 200);
+  const LensMap map(views, *model.lens, 0, 0, 200, 200);
+  // No ray beyond the circle of 180 degrees.
+  EXPECT_NEAR(double(map.WithoutRay()), 200.0 * 200.0 - M_PI * std::pow(30.0 * M_PI, 2), 60.0);
 }
 
 TEST(SourceViews, PixelsWithoutARayAreEmpty) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace dspace {
 namespace {
@@ -20,14 +21,13 @@ std::size_t LensPlanes::Bytes() const {
                           this->emission.size() + this->phase.size());
 }
 
-LensTile::LensTile(const SourceViews& views, const LensModel& lens, const LensWishes& wishes, int x,
-                   int y, int width, int height)
-    : Views_(views), Wishes_(wishes), Moves_(lens.MovesPupil()) {
-  const std::size_t count = std::size_t(width) * std::size_t(height);
-  this->Pixels_.resize(count);
+LensTile::LensTile(const SourceViews& views, std::shared_ptr<const LensMap> map,
+                   const LensWishes& wishes)
+    : Views_(views), Map_(std::move(map)), Wishes_(wishes) {
+  const std::size_t count = this->Map_->Pixels().size();
   LensPlanes& planes = this->Planes_;
-  planes.width = width;
-  planes.height = height;
+  planes.width = this->Map_->Width();
+  planes.height = this->Map_->Height();
   const auto make = [count](bool wanted, auto& plane, std::size_t channels, auto value) {
     if (wanted) {
       plane.assign(channels * count, value);
@@ -41,44 +41,15 @@ LensTile::LensTile(const SourceViews& views, const LensModel& lens, const LensWi
   make(wishes.incidence, planes.incidence, 1, Unknown);
   make(wishes.emission, planes.emission, 1, Unknown);
   make(wishes.phase, planes.phase, 1, Unknown);
-  for (int j = 0; j < height; ++j) {
-    for (int i = 0; i < width; ++i) {
-      Pixel& pixel = this->Pixels_[std::size_t(j) * std::size_t(width) + std::size_t(i)];
-      const Eigen::Vector2d at(x + i, y + j);
-      if (!lens.Unproject(at, pixel.ray)) {
-        ++this->WithoutRay_;
-        continue;
-      }
-      pixel.place = views.Find(pixel.ray.direction);
-      if (pixel.place.face < 0) {
-        ++this->WithoutRay_;
-        continue;
-      }
-      this->Blocks_.insert(views.BlockOf(pixel.place));
-      if (!wishes.radiance) {
-        continue;
-      }
-      // Source pixels a picture's pixel, from the lens' scale on this face.
-      const SourceViews::Face& face = views.Faces()[std::size_t(pixel.place.face)];
-      const Eigen::Vector3d d = face.R_CF.transpose() * pixel.ray.direction;
-      Eigen::Vector2d back;
-      LensModel::Jacobian jacobian;
-      constexpr double Far = 1e3;
-      if (lens.Project(pixel.ray.origin + Far * pixel.ray.direction, back, &jacobian)) {
-        const Eigen::Matrix2d across = jacobian * face.R_CF.leftCols<2>() * (Far / d.z());
-        const double area = std::abs(across.determinant());
-        pixel.footprint = float(face.scale / std::sqrt(std::max(area, 1e-12)));
-      }
-    }
-  }
 }
 
 bool LensTile::NeedsDepth() const {
-  return this->Moves_ || this->Wishes_.depth || this->Wishes_.range;
+  return this->Map_->MovesPupil() || this->Wishes_.depth || this->Wishes_.range;
 }
 
 // Moves the place to where the views show what the pixel's ray meets.
-void LensTile::Follow(Pixel& pixel, const SourceViews::View& view, const LensPlanes& from) {
+void LensTile::Follow(LensMap::Pixel& pixel, const SourceViews::View& view,
+                      const LensPlanes& from) {
   const SourceViews::Face& face = this->Views_.Faces()[std::size_t(pixel.place.face)];
   const SourceViews::Place first = pixel.place;
   const Eigen::Matrix3d R_FC = face.R_CF.transpose();
@@ -116,8 +87,8 @@ void LensTile::Follow(Pixel& pixel, const SourceViews::View& view, const LensPla
       std::max(this->PupilPixels_, std::hypot(pixel.place.x - first.x, pixel.place.y - first.y));
 }
 
-void LensTile::PutRadiance(std::size_t at, const Pixel& pixel, const SourceViews::View& view,
-                           const LensPlanes& from) {
+void LensTile::PutRadiance(std::size_t at, const LensMap::Pixel& pixel,
+                           const SourceViews::View& view, const LensPlanes& from) {
   const int taps = std::clamp(int(std::lround(double(pixel.footprint))), 1, MostTaps);
   double sum[3] = {0, 0, 0};
   for (int n = 0; n < taps * taps; ++n) {
@@ -144,17 +115,13 @@ void LensTile::Take(const SourceViews::Block& block, const LensPlanes& from) {
   const SourceViews::View view = this->Views_.ViewOf(block);
   const Eigen::Matrix3d& R_CF = this->Views_.Faces()[std::size_t(block.face)].R_CF;
   LensPlanes& to = this->Planes_;
-  for (std::size_t at = 0; at < this->Pixels_.size(); ++at) {
-    const Pixel& original = this->Pixels_[at];
-    if (original.place.face != block.face) {
-      continue;
-    }
-    const SourceViews::Block own = this->Views_.BlockOf(original.place);
-    if (own < block || block < own) {
-      continue;
-    }
-    Pixel pixel = original;
-    if (this->Moves_) {
+  const auto found = this->Map_->Blocks().find(block);
+  if (found == this->Map_->Blocks().end()) {
+    return;
+  }
+  for (const std::uint32_t at : found->second) {
+    LensMap::Pixel pixel = this->Map_->Pixels()[at];
+    if (this->Map_->MovesPupil()) {
       this->Follow(pixel, view, from);
     }
     const std::size_t source =

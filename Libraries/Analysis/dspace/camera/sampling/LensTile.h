@@ -3,10 +3,10 @@
 #define DSPACE_CAMERA_SAMPLING_LENS_TILE_H
 
 #include <cstdint>
-#include <set>
+#include <memory>
 #include <vector>
 
-#include <dspace/camera/sampling/SourceViews.h>
+#include <dspace/camera/sampling/LensMap.h>
 
 namespace dspace {
 
@@ -38,40 +38,28 @@ struct LensWishes {
 // own ray meets, found from the source's depth; what the pupil's own place uncovers is not.
 class LensTile {
 public:
-  // Pixels x to x + width - 1, y to y + height - 1 of the picture.
-  LensTile(const SourceViews& views, const LensModel& lens, const LensWishes& wishes, int x, int y,
-           int width, int height);
+  LensTile(const SourceViews& views, std::shared_ptr<const LensMap> map, const LensWishes& wishes);
 
-  // The blocks that it needs. They need depth for depth, range and a moving pupil.
-  const std::set<SourceViews::Block>& Blocks() const { return this->Blocks_; }
+  // Whether it needs depth of its blocks: for depth, range and a moving pupil.
   bool NeedsDepth() const;
-  // Each needed block once, in any order.
+  // Each block of the map once, in any order.
   void Take(const SourceViews::Block& block, const LensPlanes& from);
 
   const LensPlanes& Planes() const { return this->Planes_; }
-  std::uint64_t WithoutRay() const { return this->WithoutRay_; } // pixels
   // The farthest that a moving pupil moved a pixel's place in a source view [source pixels], and
   // pixels whose place left the block that was drawn for it and stayed at its edge.
   double PupilPixels() const { return this->PupilPixels_; }
   std::uint64_t Beyond() const { return this->Beyond_; }
 
 private:
-  struct Pixel {
-    SourceViews::Place place;
-    LensRay ray;
-    float footprint = 1.0f; // source pixels
-  };
-  void Follow(Pixel& pixel, const SourceViews::View& view, const LensPlanes& from);
-  void PutRadiance(std::size_t at, const Pixel& pixel, const SourceViews::View& view,
+  void Follow(LensMap::Pixel& pixel, const SourceViews::View& view, const LensPlanes& from);
+  void PutRadiance(std::size_t at, const LensMap::Pixel& pixel, const SourceViews::View& view,
                    const LensPlanes& from);
 
   const SourceViews& Views_;
+  std::shared_ptr<const LensMap> Map_;
   LensWishes Wishes_;
-  bool Moves_;
-  std::set<SourceViews::Block> Blocks_;
-  std::vector<Pixel> Pixels_;
   LensPlanes Planes_;
-  std::uint64_t WithoutRay_ = 0;
   std::uint64_t Beyond_ = 0;
   double PupilPixels_ = 0.0;
 };

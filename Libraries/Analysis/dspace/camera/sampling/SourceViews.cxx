@@ -13,6 +13,7 @@ namespace {
 constexpr int GridSide = 129;
 constexpr double Far =
     1e3; // where the lens' scale is taken; pupils move by less than a millionth of it
+constexpr double MostStretch = 4.0;
 constexpr double Largest = 1e6; // pixels of a face's side
 
 // A ray of the grid, with the derivative of the pixel by the direction's point at Z = 1 of a face.
@@ -54,13 +55,18 @@ Eigen::Matrix3d CubeFace(int face) {
   return R;
 }
 
-// Pixels of the image per tangent of the face, along the finest direction.
+// Pixels of the image per tangent of the face, along the finest direction. Where a lens draws a
+// point out into a circle, as behind an all-round lens, that is without limit: it counts as far as
+// it exceeds the coarsest direction by MostStretch.
 double ScaleOf(const Sample& sample, const Eigen::Matrix3d& R_CF) {
   const double z = R_CF.col(2).dot(sample.direction);
-  const Eigen::Matrix2d across = sample.jacobian * R_CF.leftCols<2>() / z;
+  // The direction at Z = 1 of the face is 1 / z long.
+  const Eigen::Matrix2d across = sample.jacobian * R_CF.leftCols<2>() * z;
   const Eigen::Matrix2d square = across.transpose() * across;
   const double half = 0.5 * square.trace();
-  return std::sqrt(half + std::sqrt(std::max(half * half - square.determinant(), 0.0)));
+  const double root = std::sqrt(std::max(half * half - square.determinant(), 0.0));
+  const double finest = std::sqrt(half + root), coarsest = std::sqrt(std::max(half - root, 0.0));
+  return std::min(finest, MostStretch * coarsest);
 }
 
 } // namespace

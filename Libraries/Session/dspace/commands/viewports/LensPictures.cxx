@@ -9,7 +9,8 @@ namespace dspace::session {
 namespace {
 
 constexpr int BlockSide = 512; // source pixels: a block is drawn within half a second
-constexpr std::size_t KeptBytes = 192u << 20; // of source blocks
+constexpr std::size_t KeptBytes = 192u << 20;    // of source blocks
+constexpr std::size_t KeptMapBytes = 256u << 20; // of maps
 
 CaptureRequest ToRequest(const LensPictures::Request& from, bool depth) {
   CaptureRequest request;
@@ -45,13 +46,37 @@ std::shared_ptr<LensPlanes> ToPlanes(dspace::Capture&& from) {
 LensPictures::LensPictures() = default;
 LensPictures::~LensPictures() = default;
 
-void LensPictures::Clear() {
-  this->Viewport_ = nullptr;
-  this->Views_.reset();
+void LensPictures::ClearBlocks() {
   this->Blocks_.clear();
   this->Order_.clear();
   this->Bytes_ = 0;
   this->Request_.clear();
+}
+
+void LensPictures::Clear() {
+  this->ClearBlocks();
+  this->Viewport_ = nullptr;
+  this->Views_.reset();
+  this->Maps_.clear();
+  this->MapBytes_ = 0;
+  this->Lens_.clear();
+}
+
+std::shared_ptr<const LensMap> LensPictures::MapOf(const Request& request) {
+  std::shared_ptr<const LensMap>& map =
+      this->Maps_[{request.x, request.y, request.width, request.height}];
+  if (!map) {
+    const auto made = std::make_shared<LensMap>(*this->Views_, *request.lens.model.lens, request.x,
+                                                request.y, request.width, request.height);
+    if (this->MapBytes_ + made->Bytes() > KeptMapBytes) { // a large picture: keeps none of its maps
+      this->Maps_.clear();
+      this->MapBytes_ = 0;
+      return made;
+    }
+    this->MapBytes_ += made->Bytes();
+    map = made;
+  }
+  return map;
 }
 
 std::shared_ptr<const LensPlanes> LensPictures::Get(vtkDspaceRenderContext* context,
@@ -105,25 +130,32 @@ LensPictures::Result LensPictures::Draw(vtkDspaceRenderContext* context,
                                         const std::shared_ptr<Scene>& scene,
                                         const Request& request) {
   const bool sameScene = this->Scene_.lock() == scene;
-  if (!sameScene || this->Request_ != request.key || this->Revision_ != scene->Revision()) {
-    const bool keep =
-        sameScene && this->Viewport_ && this->Viewport_->GetSamples() == request.samples;
-    const vtkSmartPointer<vtkDspaceViewport> viewport = keep ? this->Viewport_ : nullptr;
-    this->Clear();
-    this->Viewport_ = viewport;
+  if (!sameScene || !this->Viewport_ || this->Viewport_->GetSamples() != request.samples) {
+    this->ClearBlocks();
+    this->Viewport_ = nullptr;
+  }
+  if (this->Lens_ != request.lensKey) {
+    this->ClearBlocks();
+    this->Maps_.clear();
+    this->MapBytes_ = 0;
+    this->Lens_.clear();
     this->Views_ = std::make_unique<SourceViews>(request.lens.model, BlockSide);
+    this->Lens_ = request.lensKey;
+  }
+  if (this->Request_ != request.key || this->Revision_ != scene->Revision()) {
+    this->ClearBlocks();
     this->Scene_ = scene;
     this->Request_ = request.key;
     this->Revision_ = scene->Revision();
   }
   Result result;
-  LensTile tile(*this->Views_, *request.lens.model.lens, request.wishes, request.x, request.y,
-                request.width, request.height);
-  for (const SourceViews::Block& block : tile.Blocks()) {
+  const std::shared_ptr<const LensMap> map = this->MapOf(request);
+  LensTile tile(*this->Views_, map, request.wishes);
+  for (const auto& [block, pixels] : map->Blocks()) {
     tile.Take(block, *this->Get(context, scene, request, block, tile.NeedsDepth(), result));
   }
   result.planes = tile.Planes();
-  result.withoutRay = tile.WithoutRay();
+  result.withoutRay = map->WithoutRay();
   result.halfAngle_deg = this->Views_->HalfAngle_deg();
   result.pupilShift = this->Views_->PupilShift();
   result.pupilPixels = tile.PupilPixels();

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include <vtkSmartPointer.h>
 
@@ -28,7 +29,9 @@ public:
     std::set<std::string> hiddenFragments;
     int samples = 2;
     int x = 0, y = 0, width = 0, height = 0; // the tile
-    // Two requests with the same key see the same lens from the same camera with the same settings.
+    // Requests with the same keys have the same lens, and see the same picture of an unchanged
+    // scene.
+    std::string lensKey;
     std::string key;
   };
   struct Result {
@@ -57,9 +60,15 @@ private:
 
   vtkSmartPointer<vtkDspaceViewport> Viewport_;
   std::weak_ptr<Scene> Scene_;
+  std::shared_ptr<const LensMap> MapOf(const Request& request);
+  void ClearBlocks();
+
+  std::string Lens_; // what the views and maps are of
+  std::unique_ptr<SourceViews> Views_;
+  std::map<std::tuple<int, int, int, int>, std::shared_ptr<const LensMap>> Maps_; // by their tile
+  std::size_t MapBytes_ = 0;
   std::string Request_; // what the blocks below are of
   std::uint64_t Revision_ = 0;
-  std::unique_ptr<SourceViews> Views_;
   std::map<Key, std::shared_ptr<const LensPlanes>> Blocks_;
   std::list<Key> Order_; // the oldest first
   std::size_t Bytes_ = 0;

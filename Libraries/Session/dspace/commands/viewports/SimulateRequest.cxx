@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <dspace/Checks.h>
+#include <dspace/camera/files/CameraJson.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/scene/Light.h>
@@ -96,6 +97,9 @@ void ViewportCommands::Simulate(const Context& context, v1::SimulateImage& comma
   alike.clear_inline_data();
   alike.clear_exposure();
   request.key = alike.SerializeAsString();
+  // A model is the same lens from every camera; a projection of the scene's may change.
+  const dspace::CameraModel& model = request.lens.model;
+  request.lensKey = CameraJsonOf({"", "", model.width, model.height, model.lens});
   LensPictures::Result result =
       this->LensPictures_.Draw(this->GetRenderContext(), context.scene->scene, request);
   dspace::Capture& taken = this->LastCapture_;

@@ -1,0 +1,63 @@
+"""A target board through lenses."""
+import numpy as np
+
+import dspace
+from dspace._core.files import atomic_write
+from dspace._core.png import png
+from pictures.paths import IMAGES
+
+SIZE = (480, 360)
+CENTER = (239.5, 179.5)
+SQUARE, COLUMNS, ROWS = 0.1, 12, 9  # [m]
+
+
+def lenses():
+    """A checker board 0.45 m ahead of four lenses; red crosses are the corners by the models."""
+    models = (
+        dspace.CameraModel("pinhole", size=SIZE, focal=(260, 260), center=CENTER),
+        dspace.CameraModel("brown", size=SIZE, focal=(260, 260), center=CENTER, radial=(-0.22, 0.06, -0.006)),
+        dspace.CameraModel("cahvore", size=SIZE, C=(0, 0, 0), A=(0, 0, 1), H=(170, 0, CENTER[0]), V=(0, 170, CENTER[1]),
+                           O=(0, 0, 1), R=(0, -0.03, 0), E=(0.006, 0.002, 0), linearity=0),
+        dspace.CameraModel("equidistant", size=SIZE, focal=(110, 110), center=CENTER))
+    with dspace.Session() as session:
+        scene = session.scene()
+        camera = scene.add_camera("eye")
+        camera.attach(scene.root)
+        add_board(scene)
+        add_room(scene)
+        x, y = np.meshgrid(SQUARE * (np.arange(COLUMNS + 1) - COLUMNS / 2), SQUARE * (np.arange(ROWS + 1) - ROWS / 2))
+        corners = np.column_stack((x.ravel(), y.ravel(), np.full(x.size, 0.45)))
+        pictures = [crossed(camera.capture(model, exposure=1.0)["color"][..., :3], model.project(corners)) for model in models]
+    rows = [np.hstack((left, np.full((SIZE[1], 6, 3), 255, np.uint8), right)) for left, right in (pictures[:2], pictures[2:])]
+    atomic_write(IMAGES / "lenses.png", png(np.vstack((rows[0], np.full((6, rows[0].shape[1], 3), 255, np.uint8), rows[1]))))
+
+
+def add_board(scene):
+    """In the camera's axes: squares face its eye."""
+    scene.sun.set(direction=(0.4, -0.7, -1.0))
+    turn = (0.0, 1.0, 0.0, 0.0)  # the plane's normal towards the camera
+    scene.add_plane(SQUARE * COLUMNS + 0.04, SQUARE * ROWS + 0.04, position=(0, 0, 0.4502), quaternion=turn, color="white")
+    for row in range(ROWS):
+        for column in range(row % 2, COLUMNS, 2):
+            scene.add_plane(SQUARE, SQUARE, quaternion=turn, color="#202020",
+                            position=(SQUARE * (column - (COLUMNS - 1) / 2), SQUARE * (row - (ROWS - 1) / 2), 0.45))
+
+
+def add_room(scene):
+    """Ground below the camera and posts around it, so that the field of the lenses is seen."""
+    down = (np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0)  # the plane's normal to -Y: up
+    scene.add_plane(60, 60, position=(0, 1.2, 0), quaternion=down, color="#b08b66")
+    for azimuth in range(0, 360, 20):
+        a = np.radians(azimuth)
+        scene.add_box(0.15, 1.6, 0.15, position=(4 * np.sin(a), 0.4, 4 * np.cos(a)),
+                      color=("#3a6ea5", "#c8553d", "#588157")[azimuth // 20 % 3])
+
+
+def crossed(picture, pixels):
+    """The picture with a cross of one pixel's width at each of the pixels that lie in it."""
+    picture = picture.copy()
+    for x, y in pixels[np.isfinite(pixels).all(axis=1)]:
+        u, v = int(round(x)), int(round(y))
+        if 3 <= u < SIZE[0] - 3 and 3 <= v < SIZE[1] - 3:
+            picture[v, u - 3:u + 4] = picture[v - 3:v + 4, u] = (255, 40, 40)
+    return picture
