@@ -193,7 +193,7 @@ def test_the_horizon_of_terrain_is_the_mask(session, scene, tmp_path):
     # The verticals differ by 1.65 degrees, and the Sun is 1.5 degrees high at most: azimuths differ by 0.05 degrees.
     # From the pole, the Sun at azimuth a (from the meridian of longitude 45) stands over longitude 45 + a.
     assert np.degrees(np.arctan2(east, north)) % 360.0 == pytest.approx((45.0 + at_pole.azimuth_deg) % 360.0, abs=0.06)
-    assert scene.horizon(scene.add_frame("free"), 4).first_deg is None
+    assert scene.horizon(scene.add_frame("free", position=(9e6, 0.0, 0.0)), 4).first_deg is None
 
 
 def test_bad_input(scene):

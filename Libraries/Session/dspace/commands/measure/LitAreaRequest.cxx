@@ -88,6 +88,11 @@ double AreaOf(const std::vector<Face>& faces) {
 void FindLitArea(const Context& context, v1::LitArea& command) {
   const std::string name = "command lit_area";
   const Methods methods = MethodsOf(command.measuring(), name);
+  if (methods.image && command.part_size() > 0) {
+    Reject(name,
+           "parts of objects are asked for by pictures; accepted: whole objects, or the method "
+           "EXACT");
+  }
   if (command.object_size() < 1 || command.object_size() > MostObjects) {
     Reject(name, std::to_string(command.object_size()) + " objects; accepted: 1 to 10,000");
   }
@@ -110,11 +115,8 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
   v1::LitAreaReply reply;
   std::optional<MeasuredPictures> pictures;
   if (methods.image) {
-    if (command.part_size() > 0) {
-      Reject(name, "parts of objects are asked for by pictures; accepted: whole objects, or the "
-                   "method EXACT");
-    }
-    pictures.emplace(context, command.measuring(), measured, name);
+    pictures.emplace(context, command.measuring(), measured, name,
+                     std::set<ObjectId>(command.object().begin(), command.object().end()));
   }
   for (int i = 0; i < command.object_size(); ++i) {
     v1::LitAreaReply::Surface* surface = reply.add_surface();

@@ -35,7 +35,8 @@ Pose CameraAt(const Eigen::Vector3d& p_R, const Eigen::Vector3d& forward,
 } // namespace
 
 MeasuredPictures::MeasuredPictures(const Context& context, const v1::Measuring& measuring,
-                                   const MeasuredScene& scene, const std::string& command)
+                                   const MeasuredScene& scene, const std::string& command,
+                                   const std::set<ObjectId>& measured)
     : Context_(context),
       Resolution_(measuring.has_resolution() ? int(measuring.resolution()) : StandardResolution),
       HiddenFragments_(measuring.hidden_fragment().begin(), measuring.hidden_fragment().end()) {
@@ -50,7 +51,7 @@ MeasuredPictures::MeasuredPictures(const Context& context, const v1::Measuring& 
   }
   Scene& shown = context.GetScene();
   for (const auto& [id, object] : shown.Objects()) {
-    if (object.visible && !scene.IsObstacle(id)) {
+    if (object.visible && !scene.IsObstacle(id) && measured.count(id) == 0) {
       this->Hidden_.push_back(id);
     }
   }

@@ -14,14 +14,15 @@
 
 namespace dspace::session {
 
-// Pictures of exactly the obstacles of a MeasuredScene: objects that are none are hidden as long as
-// this exists, and are then as they were.
+// Pictures of exactly the obstacles of a MeasuredScene, and of `measured` objects: all others are
+// hidden as long as this exists, and are then as they were.
 class MeasuredPictures {
 public:
   // Throws Error(InvalidArgument) for a resolution out of range, Error(Unsupported) where this
   // process draws no pictures.
   MeasuredPictures(const Context& context, const v1::Measuring& measuring,
-                   const MeasuredScene& scene, const std::string& command);
+                   const MeasuredScene& scene, const std::string& command,
+                   const std::set<ObjectId>& measured = {});
   ~MeasuredPictures();
   MeasuredPictures(const MeasuredPictures&) = delete;
   MeasuredPictures& operator=(const MeasuredPictures&) = delete;
