@@ -49,8 +49,8 @@ def test_horizons_over_gale(scene, gale):
         horizon = scene.horizon(gale.site(*site), 2880, method="both", resolution=1024)
         around = np.stack([np.roll(horizon.elevation_deg, i) for i in (-1, 0, 1)])
         pixel = horizon.image_pixel_deg
-        assert (horizon.image_elevation_deg > around.min(axis=0) - pixel).all()
-        assert (horizon.image_elevation_deg < around.max(axis=0) + 1.5 * pixel).all()  # the upper edge of a pixel
+        assert (horizon.image_elevation_deg > around.min(axis=0) - 1.5 * pixel).all()
+        assert (horizon.image_elevation_deg < around.max(axis=0) + 1.5 * pixel).all()  # and coarser distant ground
         alone = scene.horizon(gale.site(*site), 2880, method="image", resolution=1024)
         assert np.array_equal(alone.elevation_deg, horizon.image_elevation_deg) and np.isnan(alone.distance).all()
 
