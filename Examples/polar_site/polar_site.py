@@ -147,8 +147,7 @@ def maps(scene, terrain, out, start, spacing):
     from osgeo import gdal
     reach = 10_000.0
     left, _, right, bottom = terrain.map_extent
-    columns = gdal.Open(str(out / "ground.tif")).RasterXSize
-    horizons = scene.horizon_map(terrain, out / "horizons.tif", height=MAST, azimuths=180, cell_size=5.0 * 360.0 / columns,
+    horizons = scene.horizon_map(terrain, out / "horizons.tif", height=MAST, azimuths=180, cell_size=np.degrees(max(5.0 * spacing, 100.0) / polar_ground.RADIUS),
                                  extent=(left, np.degrees(reach / polar_ground.RADIUS) - 90.0, right, bottom), replace=True)
     light = scene.illumination_map(horizons, out / "light.tif", start=start, end=start + 29.53 * 86400.0, step=7200.0,
                                    quantities=("lit_fraction", "longest_night", "earth_fraction"), terrain=terrain, replace=True)
