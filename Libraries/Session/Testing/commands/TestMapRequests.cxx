@@ -91,7 +91,7 @@ TEST_F(MapRequests, AHorizonMapAgreesWithHorizons) {
   horizon->mutable_site()->set_map_y(2400 - 2 * 60 - 1);
   horizon->mutable_site()->set_height(1.5);
   v1::Command remove; // the other terrain is no obstacle of the map
-  remove.mutable_remove_terrain()->set_name("other");
+  remove.mutable_remove_terrain()->set_terrain("other");
   this->Accept(remove);
   const v1::HorizonReply exact = this->Accept(one).horizon();
   for (int k = 0; k < 24; ++k) {
@@ -158,7 +158,7 @@ TEST_F(MapRequests, ViewshedsAgreeWithLines) {
     }
   }
   v1::Command remove;
-  remove.mutable_remove_terrain()->set_name("other");
+  remove.mutable_remove_terrain()->set_terrain("other");
   this->Accept(remove);
   const v1::LineOfSightReply sights = this->Accept(lines).line_of_sight();
   int visible = 0;
