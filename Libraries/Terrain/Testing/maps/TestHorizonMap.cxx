@@ -222,6 +222,7 @@ TEST_F(MapFiles, AResumedMapEqualsAnUninterruptedOne) {
 TEST_F(MapFiles, APartOfOtherInputsIsRefused) {
   const std::string path = this->Path("map.tif");
   MapControl stop;
+  stop.threads = 1; // so that it takes longer than the first look at it
   stop.progress = [&](const MapProgress& progress) { return progress.elapsed == 0.0; };
   ASSERT_FALSE(WriteHorizonMap(this->Ground_, this->Options_, path, stop));
   ASSERT_TRUE(std::filesystem::exists(path + ".part"));
