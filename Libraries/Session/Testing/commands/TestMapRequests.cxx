@@ -91,7 +91,7 @@ TEST_F(MapRequests, AHorizonMapAgreesWithHorizons) {
   horizon->mutable_site()->set_map_y(2400 - 2 * 60 - 1);
   horizon->mutable_site()->set_height(1.5);
   v1::Command remove; // the other terrain is no obstacle of the map
-  remove.mutable_remove_terrain()->set_name("other");
+  remove.mutable_remove_terrain()->set_terrain("other");
   this->Accept(remove);
   const v1::HorizonReply exact = this->Accept(one).horizon();
   for (int k = 0; k < 24; ++k) {
@@ -102,7 +102,7 @@ TEST_F(MapRequests, AHorizonMapAgreesWithHorizons) {
 
 TEST_F(MapRequests, WorkGoesOnBetweenRequests) {
   v1::Command command = this->Horizons("horizon.tif");
-  command.mutable_horizon_map()->set_azimuths(720);
+  command.mutable_horizon_map()->set_azimuths(120);
   v1::MapFile* file = command.mutable_horizon_map()->mutable_file();
   file->set_wait_s(0.0);
   file->set_threads(1);
@@ -115,7 +115,8 @@ TEST_F(MapRequests, WorkGoesOnBetweenRequests) {
   stop.mutable_horizon_map()->mutable_file()->set_cancel(true);
   EXPECT_FALSE(this->Accept(stop).map().complete());
   EXPECT_FALSE(std::filesystem::exists(this->Path("horizon.tif")));
-  if (std::filesystem::exists(this->Path("horizon.tif.part"))) {
+  if (std::filesystem::exists(this->Path("horizon.tif.part.done"))) {
+    other.mutable_horizon_map()->mutable_file()->clear_wait_s();
     this->Reject(other, Kind::ALREADY_EXISTS, "other inputs");
   }
   file->set_wait_s(0.5);
@@ -158,7 +159,7 @@ TEST_F(MapRequests, ViewshedsAgreeWithLines) {
     }
   }
   v1::Command remove;
-  remove.mutable_remove_terrain()->set_name("other");
+  remove.mutable_remove_terrain()->set_terrain("other");
   this->Accept(remove);
   const v1::LineOfSightReply sights = this->Accept(lines).line_of_sight();
   int visible = 0;

@@ -182,7 +182,7 @@ class MapFiles : public ::testing::Test {
 protected:
   MapFiles() {
     this->Options_.cells = FindCells(this->Ground_, std::nullopt, 0.0);
-    this->Options_.azimuths = 36;
+    this->Options_.azimuths = 48;
   }
   std::string Path(const std::string& name) const { return (this->Folder_.Path() / name).string(); }
 
@@ -203,15 +203,18 @@ TEST_F(MapFiles, AResumedMapEqualsAnUninterruptedOne) {
     double begun = -1.0;
     MapControl control;
     control.threads = 1 + runs % 3;
-    control.progress = [&](const MapProgress& progress) { // one more tile a run
-      begun = begun < 0.0 || progress.elapsed == 0.0 ? progress.fraction : begun;
+    control.progress = [&](const MapProgress& progress) { // at least one more tile a run
+      if (progress.elapsed == 0.0) {
+        return true; // before the tiles
+      }
+      begun = begun < 0.0 ? progress.fraction : begun;
       return progress.fraction <= begun || progress.fraction == 1.0;
     };
     done = WriteHorizonMap(this->Ground_, this->Options_, path, control);
     EXPECT_EQ(std::filesystem::exists(path), done);
   }
   EXPECT_TRUE(BytesOf(path) == BytesOf(whole)) << runs << " runs";
-  EXPECT_GT(runs, 2);
+  EXPECT_GT(runs, 1);
   EXPECT_FALSE(std::filesystem::exists(path + ".part"));
   EXPECT_FALSE(std::filesystem::exists(path + ".part.done"));
 }
@@ -219,6 +222,7 @@ TEST_F(MapFiles, AResumedMapEqualsAnUninterruptedOne) {
 TEST_F(MapFiles, APartOfOtherInputsIsRefused) {
   const std::string path = this->Path("map.tif");
   MapControl stop;
+  stop.threads = 1; // so that it takes longer than the first look at it
   stop.progress = [&](const MapProgress& progress) { return progress.elapsed == 0.0; };
   ASSERT_FALSE(WriteHorizonMap(this->Ground_, this->Options_, path, stop));
   ASSERT_TRUE(std::filesystem::exists(path + ".part"));

@@ -19,7 +19,7 @@ struct MapProgress {
 };
 
 struct MapControl {
-  int threads = 0; // 0: as many as the processor runs at once; 1 to 256
+  int threads = 0;      // 0: as many as the processor runs at once; 1 to 256
   bool replace = false; // TileFile
   // Called by the calling thread ten times a second and at the end. False ends the work: what is
   // done stays in the partial file.

@@ -17,6 +17,7 @@ constexpr std::int64_t MostViewedPosts = std::int64_t(1) << 28; // posts, 1 GB
 constexpr std::size_t MostObservers = 10000;
 constexpr double MostViewHeight = 1e6; // [m]
 constexpr double Snap = 1e-9;          // of an edge: a place on a post needs no other one
+constexpr double Stretch = 32.0;       // posts that are looked over at once
 constexpr double Touch = 1e-6;         // posts: ground so near an end is no obstacle
 
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
@@ -74,6 +75,46 @@ private:
     return first + share * (second - first);
   }
 
+  // Bounds of the heights of the ground about a line between two places.
+  HeightSpan SpanOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    constexpr int Margin = 4; // posts
+    const Eigen::Vector2d low = a.cwiseMin(b);
+    const Eigen::Vector2d high = a.cwiseMax(b);
+    PostBlock box;
+    box.column = std::int64_t(std::floor(low.x())) - Margin;
+    box.row = std::int64_t(std::floor(low.y())) - Margin;
+    box.width = int(std::int64_t(std::floor(high.x())) + Margin + 2 - box.column);
+    box.height = int(std::int64_t(std::floor(high.y())) + Margin + 2 - box.row);
+    return this->Held_.SpanOf(box);
+  }
+
+  // Whether no ground between two places of a great circle over a body rises above a tangent. About
+  // a pole of a degree grid the places between may lie farther from a straight line than a box
+  // tells.
+  bool IsBelow(const HorizonPath::Point& a, const HorizonPath::Point& b, double tangent) const {
+    const PostPlacement& placement = this->Ground_.placement;
+    constexpr double Polar = 80.0 * M_PI / 180.0;
+    if (placement.GetKind() == PostPlacement::Kind::Sphere &&
+        std::max(std::abs(placement.Angles(a.post).y()), std::abs(placement.Angles(b.post).y())) >
+            Polar) {
+      return false;
+    }
+    const PostLattice& lattice = this->Ground_.pyramid->Lattice();
+    if (lattice.periodic && (std::min(a.post.x(), b.post.x()) < -0.4 * double(lattice.columns) ||
+                             std::max(a.post.x(), b.post.x()) > 1.4 * double(lattice.columns))) {
+      return false;
+    }
+    const HeightSpan span = this->SpanOf(a.post, b.post);
+    if (!(span.least <= span.greatest)) {
+      return true; // no data
+    }
+    const double high = span.greatest;
+    const double top = a.fall + std::max(a.rise * high, b.rise * high) - this->Height_;
+    const double least = a.away + std::min({a.spread * span.least, b.spread * span.least, 0.0});
+    const double most = b.away + std::max(b.spread * high, 0.0);
+    return least > 0.0 && (top > 0.0 ? top / least : top / most) <= tangent - 1e-12;
+  }
+
   double LeastOnPlane(const Eigen::Vector2d& to, double height, double radius) const {
     const Eigen::Vector2d way = to - this->Post_;
     const double length = (this->Ground_.placement.PostToScene().linear() * way).norm();
@@ -83,14 +124,24 @@ private:
     }
     double steepest = -std::numeric_limits<double>::infinity(); // times the length
     const double first = Touch / std::max(posts, Touch);
-    ForEachCrossing(
-        this->Post_.x(), this->Post_.y(), to.x(), to.y(),
-        [&](double t, std::int64_t c, std::int64_t r, int right, int down, double share) {
-          if (t > first && t < 1.0 - first) {
-            const double rise = (this->HeightOn(c, r, right, down, share) - this->Height_) / t;
-            steepest = rise > steepest ? rise : steepest;
-          }
-        });
+    for (double from = 0.0; from < 1.0;) {
+      const double till = posts > Stretch ? std::min(from + Stretch / posts, 1.0) : 1.0;
+      const Eigen::Vector2d a = this->Post_ + from * way;
+      const Eigen::Vector2d b = till < 1.0 ? Eigen::Vector2d(this->Post_ + till * way) : to;
+      const double highest = from > 0.0 ? this->SpanOf(a, b).greatest - this->Height_ : 0.0;
+      if (from == 0.0 || (highest > 0.0 ? highest / from : highest / till) > steepest) {
+        ForEachCrossing(
+            a.x(), a.y(), b.x(), b.y(),
+            [&](double t, std::int64_t c, std::int64_t r, int right, int down, double share) {
+              const double at = from + t * (till - from);
+              if (at > first && at < 1.0 - first) {
+                const double rise = (this->HeightOn(c, r, right, down, share) - this->Height_) / at;
+                steepest = rise > steepest ? rise : steepest;
+              }
+            });
+      }
+      from = till;
+    }
     return std::max(0.0, this->Height_ + steepest - height);
   }
 
@@ -115,26 +166,38 @@ private:
     const double first = Touch * post;
     HorizonPath::Point a = path.At(0.0);
     for (double s = 0.0; s < length;) {
-      double next = s + path.FineStep(a, s, post);
-      next = next > length - 0.005 * post ? length : next;
-      const HorizonPath::Point b = path.At(next);
-      // Linear between them but for the fall, which bends as the sphere does.
-      const double bend = 0.5 * (next - s) * (next - s) / placement.Radius();
-      const auto mix = [](double from, double till, double t) { return from + t * (till - from); };
-      ForEachCrossing(
-          a.post.x(), a.post.y(), b.post.x(), b.post.y(),
-          [&](double t, std::int64_t c, std::int64_t r, int right, int down, double share) {
-            const double at = s + t * (next - s);
-            if (at > first && at < length - first) {
-              const double h = this->HeightOn(c, r, right, down, share);
-              const double tangent = (mix(a.fall, b.fall, t) + bend * t * (1.0 - t) +
-                                      mix(a.rise, b.rise, t) * h - this->Height_) /
-                                     (mix(a.away, b.away, t) + mix(a.spread, b.spread, t) * h);
-              steepest = tangent > steepest ? tangent : steepest;
-            }
-          });
-      s = next;
-      a = b;
+      // Ground that cannot be higher than what is found is not followed.
+      const double far = std::min(s + Stretch * post, length);
+      const HorizonPath::Point end = path.At(far);
+      if (s > 0.0 && this->IsBelow(a, end, steepest)) {
+        s = far;
+        a = end;
+        continue;
+      }
+      while (s < far) {
+        double next = s + path.FineStep(a, s, post);
+        next = next > far - 0.005 * post ? far : next;
+        const HorizonPath::Point b = next == far ? end : path.At(next);
+        // Linear between them but for the fall, which bends as the sphere does.
+        const double bend = 0.5 * (next - s) * (next - s) / placement.Radius();
+        const auto mix = [](double from, double till, double t) {
+          return from + t * (till - from);
+        };
+        ForEachCrossing(
+            a.post.x(), a.post.y(), b.post.x(), b.post.y(),
+            [&](double t, std::int64_t c, std::int64_t r, int right, int down, double share) {
+              const double at = s + t * (next - s);
+              if (at > first && at < length - first) {
+                const double h = this->HeightOn(c, r, right, down, share);
+                const double tangent = (mix(a.fall, b.fall, t) + bend * t * (1.0 - t) +
+                                        mix(a.rise, b.rise, t) * h - this->Height_) /
+                                       (mix(a.away, b.away, t) + mix(a.spread, b.spread, t) * h);
+                steepest = tangent > steepest ? tangent : steepest;
+              }
+            });
+        s = next;
+        a = b;
+      }
     }
     if (!std::isfinite(steepest)) {
       return 0.0; // nothing is between them
