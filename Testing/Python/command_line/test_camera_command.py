@@ -73,7 +73,7 @@ def test_render_a_recording(capsys, model, tmp_path):
         ball = scene.add_sphere(0.1, frame=mast, position=(6, 2, 3), lit=False)
         with session.record(tmp_path / "run.dspace"):
             scene.time = 1.0
-            mast.set_pose(position=(100, 0, 0)) if hasattr(mast, "set_pose") else None
+            mast.position = (100, 0, 0)
             scene.time = 2.0
         identity = ball.id
     code, out, err = run(capsys, "render", model, "--recording", tmp_path / "run.dspace", "--frame", "mast",
@@ -82,7 +82,8 @@ def test_render_a_recording(capsys, model, tmp_path):
     assert "640 x 480 pixels from" in out and "0 pixels see nothing" in out
     planes = np.load(tmp_path / "a.npz")
     v, u = np.nonzero(planes["label"] == identity)
-    np.testing.assert_allclose((u.mean(), v.mean()), (320, 240), atol=0.3)
+    # Labels are the nearest source pixel's, which may lie half a pixel to one side over the whole ball.
+    np.testing.assert_allclose((u.mean(), v.mean()), (320, 240), atol=0.55)
     assert planes["range"][240, 320] == pytest.approx(4.9, abs=0.01)
     code, out, err = run(capsys, "render", model, "--recording", tmp_path / "run.dspace", "--frame", "mast", "--scaled",
                          "320x240", "--out", tmp_path / "a.png")
