@@ -49,7 +49,7 @@ def add_room(scene):
     scene.add_plane(60, 60, position=(0, 1.2, 0), quaternion=down, color="#b08b66")
     for azimuth in range(0, 360, 20):
         a = np.radians(azimuth)
-        scene.add_box(0.15, 1.6, 0.15, position=(4 * np.sin(a), 0.4, 4 * np.cos(a)),
+        scene.add_box((0.15, 1.6, 0.15), position=(4 * np.sin(a), 0.4, 4 * np.cos(a)),
                       color=("#3a6ea5", "#c8553d", "#588157")[azimuth // 20 % 3])
 
 

@@ -264,6 +264,7 @@ CXX_WRITES = re.compile(r"\bofstream\b|\bfopen\(|\brename\(|\bO_CREAT\b|\bcopy_f
 OTHERS = {"Wrapping/Python/dspace/_core/files.py": 3, "Libraries/Core/dspace/AtomicFile.cxx": 2,
           "Wrapping/Python/dspace/movies/folder.py": 1,  # a lock, without content
           "TileFile.cxx": 2,  # a partial map that stays for the next run, and gets its name once it is complete
+          "Wrapping/Python/dspace/command_line/camera.py": 1,  # numpy's format in memory, which atomic_write() saves
           "SettingsFile.cxx": 1,  # renames damaged settings, which AtomicFile then writes again
           "RecordedFiles.cxx": 1}  # unpacks into a folder of its own, which is removed at the end
 

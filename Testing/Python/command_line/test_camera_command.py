@@ -82,7 +82,8 @@ def test_render_a_recording(capsys, model, tmp_path):
     assert "640 x 480 pixels from" in out and "0 pixels see nothing" in out
     planes = np.load(tmp_path / "a.npz")
     v, u = np.nonzero(planes["label"] == identity)
-    np.testing.assert_allclose((u.mean(), v.mean()), (320, 240), atol=0.3)
+    # Labels are the nearest source pixel's, which may lie half a pixel to one side over the whole ball.
+    np.testing.assert_allclose((u.mean(), v.mean()), (320, 240), atol=0.55)
     assert planes["range"][240, 320] == pytest.approx(4.9, abs=0.01)
     code, out, err = run(capsys, "render", model, "--recording", tmp_path / "run.dspace", "--frame", "mast", "--scaled",
                          "320x240", "--out", tmp_path / "a.png")

@@ -153,6 +153,48 @@ TEST(SourceViews, LabelsAreNeverBlended) {
   }
 }
 
+TEST(SourceViews, AMovingPupilSeesThingsBeforeTheSky) {
+  const CameraModel model = Model("cahvore", // its pupil moves by 2 cm
+                                  {{"A", {0, 0, 1}},
+                                   {"H", {80, 0, 99.5}},
+                                   {"V", {0, 80, 79.5}},
+                                   {"O", {0, 0, 1}},
+                                   {"R", {0, 0, 0}},
+                                   {"E", {0.04, 0.02, 0}},
+                                   {"linearity", {0.0}}},
+                                  200, 160);
+  const auto meets = [](const Eigen::Vector3d& eye, const Eigen::Vector3d& d) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 12; ++k) { // balls of 10 cm all around
+      const double t = 0.14 * k, a = 2.4 * k;
+      const Eigen::Vector3d c(std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t));
+      const double b = (c - eye).dot(d);
+      const double root = 0.01 - (c - eye).squaredNorm() + b * b;
+      if (root > 0.0 && b > 0.0) {
+        nearest = std::min(nearest, b - std::sqrt(root));
+      }
+    }
+    return Hit{std::isfinite(nearest) ? 1.0 : 0.0, nearest};
+  };
+  double pupil = 0.0;
+  const LensPlanes planes = Picture(model, meets, 64, 0, 0, model.width, model.height, &pupil);
+  EXPECT_GT(pupil, 1.0);
+  int wrong = 0, shown = 0, still = 0;
+  for (int y = 0; y < model.height; ++y) {
+    for (int x = 0; x < model.width; ++x) {
+      LensRay ray;
+      ASSERT_TRUE(model.lens->Unproject({double(x), double(y)}, ray));
+      const bool hit = meets(ray.origin, ray.direction).light > 0.0;
+      shown += hit;
+      wrong += (planes.label[std::size_t(y * model.width + x)] != 0) != hit;
+      still += (meets(Eigen::Vector3d(0, 0, 0), ray.direction).light > 0.0) != hit;
+    }
+  }
+  EXPECT_GT(shown, 1000);
+  EXPECT_LT(wrong, shown / 10); // borders, to the nearest source pixel
+  EXPECT_GT(still, wrong);      // a pupil that stood still would be wrong more often
+}
+
 TEST(SourceViews, AreAsFineAsTheLens) {
   for (const CameraModel& model : Models()) {
     const SourceViews views(model, 64);

@@ -58,7 +58,7 @@ def add_arguments(parser):
     add_model(render)
     render.add_argument("--recording", required=True, metavar="FILE", help="a recording (.dspace)")
     render.add_argument("--at", type=float, metavar="T", help="simulation time [s] (default: the end)")
-    render.add_argument("--scene", default="main", metavar="NAME", help="(default: main)")
+    render.add_argument("--scene", metavar="NAME", help="the scene (default: the recording's only one)")
     pose = render.add_mutually_exclusive_group(required=True)
     pose.add_argument("--frame", metavar="PATH", help="the scene's frame in which the model's own pose is")
     pose.add_argument("--through", metavar="CAMERA", help="the scene's camera whose pose the lens takes")
@@ -202,7 +202,11 @@ def run_render(options):
     model = model_of(options)
     with Playback(options.recording) as playback:
         playback.seek(playback.times[-1] if options.at is None else options.at)
-        scene = playback.session.scene(options.scene)
+        scenes = playback.session.scenes
+        if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:
+            raise Failed(f"{options.recording}: the scene is {options.scene!r}; accepted: --scene with one of "
+                         f"{', '.join(map(repr, scenes)) or 'none'}")
+        scene = next(iter(scenes.values())) if options.scene is None else scenes[options.scene]
         picture = scene.simulate_image(
             model, camera=options.through, frame=options.frame, size=options.scaled, scale=options.scaled is not None,
             samples=options.samples, exposure=options.exposure, **{"color": False, **{plane: True for plane in planes}})

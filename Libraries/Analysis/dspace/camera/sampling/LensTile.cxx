@@ -8,7 +8,8 @@
 namespace dspace {
 namespace {
 
-constexpr int FollowSteps = 4;
+constexpr int FollowSteps = 3;
+constexpr int MostSteps = 64;
 constexpr int MostTaps = 5; // a side of a footprint
 constexpr float Nothing = std::numeric_limits<float>::infinity();
 constexpr float Unknown = std::numeric_limits<float>::quiet_NaN();
@@ -47,44 +48,66 @@ bool LensTile::NeedsDepth() const {
   return this->Map_->MovesPupil() || this->Wishes_.depth || this->Wishes_.range;
 }
 
-// Moves the place to where the views show what the pixel's ray meets.
-void LensTile::Follow(LensMap::Pixel& pixel, const SourceViews::View& view,
-                      const LensPlanes& from) {
+// Moves the place to where the views show what the pixel's own ray meets: from the nearest depth of
+// the block on, in steps of at most half a source pixel, to the first depth at which the ray lies
+// behind what the views show. A step at which the views change to something nearer is no such: the
+// ray passes behind that.
+void LensTile::Follow(LensMap::Pixel& pixel, const SourceViews::View& view, const LensPlanes& from,
+                      double nearest) {
   const SourceViews::Face& face = this->Views_.Faces()[std::size_t(pixel.place.face)];
   const SourceViews::Place first = pixel.place;
   const Eigen::Matrix3d R_FC = face.R_CF.transpose();
   const Eigen::Vector3d origin = R_FC * (pixel.ray.origin - this->Views_.Eye());
   const Eigen::Vector3d direction = R_FC * pixel.ray.direction;
   bool beyond = false;
-  for (int step = 0; step < FollowSteps; ++step) {
-    const int i = std::clamp(int(std::lround(pixel.place.x)) - view.x, 0, view.width - 1);
-    const int j = std::clamp(int(std::lround(pixel.place.y)) - view.y, 0, view.height - 1);
-    const double depth =
-        double(from.depth[std::size_t(j) * std::size_t(view.width) + std::size_t(i)]);
-    Eigen::Vector3d seen = direction; // infinitely far
-    if (std::isfinite(depth)) {
-      seen = origin + (depth - origin.z()) / direction.z() * direction;
-    }
-    SourceViews::Place next = pixel.place;
-    next.x = (seen.x() / seen.z() - face.left) * face.scale - 0.5;
-    next.y = (seen.y() / seen.z() - face.top) * face.scale - 0.5;
-    if (!std::isfinite(next.x) || !std::isfinite(next.y)) {
-      break;
-    }
-    const double left = view.x + 1.0, right = view.x + view.width - 2.0;
-    const double top = view.y + 1.0, bottom = view.y + view.height - 2.0;
-    beyond = next.x < left || next.x > right || next.y < top || next.y > bottom;
-    next.x = std::clamp(next.x, left, right);
-    next.y = std::clamp(next.y, top, bottom);
-    const double moved = std::hypot(next.x - pixel.place.x, next.y - pixel.place.y);
-    pixel.place = next;
-    if (moved < 1e-3) {
-      break;
+  const double left = view.x + 1.0, right = view.x + view.width - 2.0;
+  const double top = view.y + 1.0, bottom = view.y + view.height - 2.0;
+  // Where the views show the ray's point at an inverse depth; kept within the block.
+  const auto placeOf = [&](double inverse) {
+    const Eigen::Vector3d p =
+        direction + inverse * (direction.z() * origin - origin.z() * direction);
+    SourceViews::Place place = first;
+    place.x = (p.x() / p.z() - face.left) * face.scale - 0.5;
+    place.y = (p.y() / p.z() - face.top) * face.scale - 0.5;
+    beyond = !(place.x >= left && place.x <= right && place.y >= top && place.y <= bottom);
+    place.x = std::clamp(std::isfinite(place.x) ? place.x : first.x, left, right);
+    place.y = std::clamp(std::isfinite(place.y) ? place.y : first.y, top, bottom);
+    return place;
+  };
+  const auto inverseAt = [&](const SourceViews::Place& place) {
+    const int i = std::clamp(int(std::lround(place.x)) - view.x, 0, view.width - 1);
+    const int j = std::clamp(int(std::lround(place.y)) - view.y, 0, view.height - 1);
+    return 1.0 / double(from.depth[std::size_t(j) * std::size_t(view.width) + std::size_t(i)]);
+  };
+  SourceViews::Place place = placeOf(0.0); // of what is infinitely far
+  if (nearest > 0.0) {
+    const double begin = std::min(1.02 * nearest, 0.5 / std::max(origin.norm(), 1e-12));
+    const SourceViews::Place near = placeOf(begin);
+    const double length = std::hypot(near.x - place.x, near.y - place.y);
+    const int steps = std::clamp(int(std::ceil(2.0 * length)), 1, MostSteps);
+    double before = inverseAt(near);
+    for (int k = 1; k <= steps; ++k) {
+      const double inverse = begin * (steps - k) / steps;
+      const SourceViews::Place next = placeOf(inverse);
+      const double shown = inverseAt(next);
+      if (inverse <= shown && (shown <= before || shown - before <= begin / steps)) {
+        place = placeOf(shown);
+        for (int turn = 0; turn < FollowSteps; ++turn) { // to the depth where both agree
+          const double again = inverseAt(place);
+          if (std::abs(again - shown) > 2.0 * begin / steps) {
+            break; // another thing
+          }
+          place = placeOf(again);
+        }
+        break;
+      }
+      before = shown;
     }
   }
+  pixel.place = place;
   this->Beyond_ += beyond;
   this->PupilPixels_ =
-      std::max(this->PupilPixels_, std::hypot(pixel.place.x - first.x, pixel.place.y - first.y));
+      std::max(this->PupilPixels_, std::hypot(place.x - first.x, place.y - first.y));
 }
 
 void LensTile::PutRadiance(std::size_t at, const LensMap::Pixel& pixel,
@@ -119,10 +142,16 @@ void LensTile::Take(const SourceViews::Block& block, const LensPlanes& from) {
   if (found == this->Map_->Blocks().end()) {
     return;
   }
+  double nearest = 0.0; // the greatest inverse depth
+  if (this->Map_->MovesPupil()) {
+    for (const float depth : from.depth) {
+      nearest = depth > 0.0f ? std::max(nearest, 1.0 / double(depth)) : nearest;
+    }
+  }
   for (const std::uint32_t at : found->second) {
     LensMap::Pixel pixel = this->Map_->Pixels()[at];
     if (this->Map_->MovesPupil()) {
-      this->Follow(pixel, view, from);
+      this->Follow(pixel, view, from, nearest);
     }
     const std::size_t source =
         std::size_t(std::clamp(int(std::lround(pixel.place.y)) - view.y, 0, view.height - 1)) *

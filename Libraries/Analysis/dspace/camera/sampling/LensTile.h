@@ -52,7 +52,8 @@ public:
   std::uint64_t Beyond() const { return this->Beyond_; }
 
 private:
-  void Follow(LensMap::Pixel& pixel, const SourceViews::View& view, const LensPlanes& from);
+  void Follow(LensMap::Pixel& pixel, const SourceViews::View& view, const LensPlanes& from,
+              double nearest);
   void PutRadiance(std::size_t at, const LensMap::Pixel& pixel, const SourceViews::View& view,
                    const LensPlanes& from);
 

@@ -11,8 +11,8 @@ namespace dspace {
 
 // Up to 50 degrees from the axis one view covers the image; beyond, up to six views of a cube's
 // faces do. Every face is a grid of square pixels as fine as the lens' image at its finest place
-// (but see ScaleOf), cut into blocks. Blocks are the same for every part of the picture, so that a picture in tiles
-// equals one that is drawn whole.
+// (but see ScaleOf), cut into blocks. Blocks are the same for every part of the picture, so that a
+// picture in tiles equals one that is drawn whole.
 class SourceViews {
 public:
   // A view along Z of the axes F: X right, Y down. The centre of its pixel (i, j) is at the
