@@ -201,7 +201,7 @@ def test_a_whole_body_shows_its_relief(tmp_path):
     plain = ("--size", "400x200", "--no-color-by-height")
     picture, told = render(tmp_path / "map.png", path, *plain)
     true, _ = render(tmp_path / "true.png", path, *plain, "--exaggeration", "1")  # one grey
-    assert "relief exaggerated" in told and picture[40:160, 150:250].std() > 4 * true[40:160, 150:250].std()
+    assert "relief exaggerated" in told and picture[40:160, 150:250, 1].std() > 4 * true[40:160, 150:250, 1].std()
     _, told = render(tmp_path / "disc.png", path, *plain, "--on-body")
     assert "relief exaggerated" in told
 
