@@ -111,15 +111,19 @@ def route(options, terrain, length):
     west, east, south, north = terrain.extent
     reach = min(0.2 * min(east - west, north - south), 6.0 * length)
     shape = reach * np.array([(-1, -0.35), (-0.5, 0.05), (0, 0), (0.5, -0.05), (1, 0.35)])
-    # Of places about the middle, then of all places, the nearest that a rover climbs, else the most level one.
-    for steps in (np.linspace(-0.25, 0.25, 11), np.linspace(-0.45, 0.45, 37)):
+    # Of places about the middle, then of all places, the nearest that a rover climbs, else the most level one; where
+    # holes leave no room, a shorter route.
+    whole = shape
+    for shrink, steps in ((1, np.linspace(-0.25, 0.25, 11)), (1, np.linspace(-0.45, 0.45, 37)),
+                          (0.5, np.linspace(-0.45, 0.45, 37)), (0.25, np.linspace(-0.45, 0.45, 37))):
+        shape = shrink * whole
         places = np.array([(0.5 * (west + east) + u * (east - west), 0.5 * (south + north) + v * (north - south))
                            for u in steps for v in steps])
         places = places[~holes(terrain, places, shape, length)]
         if len(places):
             break
     else:
-        raise ValueError(f"{options.terrain}: no place has data under a route of {2 * reach:.3g} m; accepted: a raster "
+        raise ValueError(f"{options.terrain}: no place has data under a route of {0.5 * reach:.3g} m; accepted: a raster "
                          "with fewer holes (gdal_fillnodata.py fills them)")
     line = places[:, None, :] + shape[None, :, :]
     slopes = np.nan_to_num(terrain.slope_deg(line[..., 0], line[..., 1]), nan=90.0).max(axis=1)

@@ -198,10 +198,12 @@ def test_relief_that_true_light_does_not_show_is_exaggerated(tmp_path):
 
 def test_a_whole_body_shows_its_relief(tmp_path):
     path = real("mars_mola_megt90n000cb_4ppd_m.tif")
-    for more in ((), ("--on-body",)):
-        picture, told = render(tmp_path / "mars.png", path, "--size", "400x200", "--no-color-by-height", *more)
-        assert "relief exaggerated" in told
-        assert picture[40:160, 150:250].std() > 15  # one grey before
+    plain = ("--size", "400x200", "--no-color-by-height")
+    picture, told = render(tmp_path / "map.png", path, *plain)
+    true, _ = render(tmp_path / "true.png", path, *plain, "--exaggeration", "1")  # one grey
+    assert "relief exaggerated" in told and picture[40:160, 150:250, 1].std() > 4 * true[40:160, 150:250, 1].std()
+    _, told = render(tmp_path / "disc.png", path, *plain, "--on-body")
+    assert "relief exaggerated" in told
 
 
 def test_a_picture_of_another_shape_has_background_beside(tmp_path):
@@ -325,7 +327,7 @@ def test_shadows_darken_what_the_sun_does_not_reach(tmp_path, view):
     path = write_raster(tmp_path / "pit.tif", np.clip((away - 60) * 3, -12, 0).astype(np.int16))
     arguments = (path, "--view", view, "--sun", "270,20")
     if view == "map":
-        arguments += ("--size", "256x256")  # pixels of a metre
+        arguments += ("--size", "256x256", "--no-color-by-height")  # pixels of a metre
     else:
         arguments += ("--size", "160x120")
     plain, _ = render(tmp_path / "plain.png", *arguments)

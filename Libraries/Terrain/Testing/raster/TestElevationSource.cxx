@@ -206,12 +206,13 @@ TEST_F(Raster, ValuesThatLookLikeNoDataAreTold) {
     GridTerrainOptions options;
     options.elevation.noData = noData;
     options.elevation.verticalScale = scale;
-    std::string all;
-    for (const std::string& warning :
-         GridTerrain::Load(file.Write(this->Folder / "a.tif"), options)->GetWarnings())
-      all += warning;
-    const std::size_t at = all.find("state nodata=");
-    return at == std::string::npos ? std::string() : all.substr(at + 13);
+    const auto terrain = GridTerrain::Load(file.Write(this->Folder / "a.tif"), options);
+    for (const std::string& warning : terrain->GetWarnings()) {
+      const std::size_t at = warning.find("state nodata=");
+      if (at != std::string::npos)
+        return warning.substr(at + 13);
+    }
+    return std::string();
   };
   const auto with = [](double fill, int pixels) {
     return [=](int c, int r, int) { return r == 5 && c < pixels ? fill : 10.0 * std::sin(c + r); };
