@@ -2,8 +2,9 @@
 import numpy as np
 
 RADIUS = 1737400.0  # [m] of the Moon's sphere
-DEGREES = ('GEOGCS["Moon 2000",DATUM["Moon 2000",SPHEROID["Moon 2000",1737400,0]],PRIMEM["Reference meridian",0],'
-           'UNIT["degree",0.0174532925199433]]')
+POLAR = ('PROJCS["Moon south pole",GEOGCS["Moon 2000",DATUM["Moon 2000",SPHEROID["Moon 2000",1737400,0]],PRIMEM["Reference meridian",0],'
+         'UNIT["degree",0.0174532925199433]],PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],'
+         'PARAMETER["central_meridian",0],PARAMETER["scale_factor",1],UNIT["metre",1]]')
 
 
 def heights(side, spacing, seed=7):
@@ -47,36 +48,20 @@ def crater(z, spacing, centre, diameter, age):
     z[rows, columns] += (age * np.where(r < 1.0, bowl, rim * np.maximum(r, 1e-6) ** -3 * (r < 2.5))).astype(np.float32)
 
 
-def to_degrees(x, y):
-    """Longitude and latitude [deg] of places [m] on a map about the pole: distances from it are true (azimuthal equidistant), and
-    longitude 0 is along y."""
-    return np.degrees(np.arctan2(x, y)), np.degrees(np.hypot(x, y) / RADIUS) - 90.0
-
-
 def write(path, side=2000, spacing=20.0, seed=7):
-    """Writes the terrain as a GeoTIFF of degrees around the pole, out to half a side: terrain on its body is made of a degree
-    grid. Returns the heights on the map (side, side), row 0 at the greatest y."""
+    """Writes the terrain as a GeoTIFF in a polar projection. Returns its heights (side, side).
+
+    Terrain in a projection lies on a plane: here it is the plane that touches the sphere at the pole. The heights are those over
+    it: they fall by d^2 / 2R with the distance d from the pole (1e-5 of itself at 20 km), so that what is far away hides behind the
+    Moon's curvature. What is vertical is so at the pole: d / R elsewhere, 0.03 degrees a kilometre."""
     from osgeo import gdal
     gdal.UseExceptions()
     z = heights(side, spacing, seed)
-    rows = side // 2 - 2
-    columns = int(np.ceil(2.0 * np.pi * rows))  # as far apart as the rows at the rim
-    step = np.degrees(spacing / RADIUS)
-    longitude = np.radians((np.arange(columns) + 0.5) * (360.0 / columns))
-    grid = np.empty((rows, columns), np.float32)
-    for row in range(rows):  # row 0 is the northernmost, farthest from the pole
-        reach = (rows - row - 0.5) * spacing
-        grid[row] = bilinear(z, (reach * np.sin(longitude)) / spacing + 0.5 * side - 0.5,
-                             0.5 * side - 0.5 - (reach * np.cos(longitude)) / spacing)
-    data = gdal.GetDriverByName("GTiff").Create(str(path), columns, rows, 1, gdal.GDT_Float32, ["COMPRESS=DEFLATE", "PREDICTOR=3"])
-    data.SetGeoTransform((0.0, 360.0 / columns, 0.0, -90.0 + rows * step, 0.0, -step))
-    data.SetProjection(DEGREES)
-    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
-    data.GetRasterBand(1).WriteArray(grid)
+    axis = (np.arange(side) + 0.5 - 0.5 * side) * spacing
+    z -= ((axis[:, None] ** 2 + axis[None, :] ** 2) / (2.0 * RADIUS)).astype(np.float32)
+    data = gdal.GetDriverByName("GTiff").Create(str(path), side, side, 1, gdal.GDT_Float32, ["COMPRESS=DEFLATE", "PREDICTOR=3"])
+    data.SetGeoTransform((-0.5 * side * spacing, spacing, 0, 0.5 * side * spacing, 0, -spacing))
+    data.SetProjection(POLAR)
+    data.SetMetadataItem("VERTICAL_DATUM", "relative")
+    data.GetRasterBand(1).WriteArray(z)
     return z
-
-
-def bilinear(z, column, row):
-    c, r = (np.clip(np.floor(v).astype(int), 0, z.shape[0] - 2) for v in (column, row))
-    u, v = column - c, row - r
-    return (1 - v) * ((1 - u) * z[r, c] + u * z[r, c + 1]) + v * ((1 - u) * z[r + 1, c] + u * z[r + 1, c + 1])

@@ -40,11 +40,11 @@ def parse():
 
 
 def best_site(z, spacing):
-    """The highest post of the inner half: map x, y [m]."""
-    side = z.shape[0]
-    inner = slice(side // 4, 3 * side // 4)
-    row, column = np.unravel_index(np.argmax(z[inner, inner]), z[inner, inner].shape)
-    return ((column + inner.start + 0.5) * spacing - 0.5 * side * spacing, 0.5 * side * spacing - (row + inner.start + 0.5) * spacing)
+    """The highest post within 1.5 km of the pole, where the plane's vertical is the Moon's within 0.05 degrees: map x, y [m]."""
+    middle, reach = z.shape[0] // 2, int(1500.0 / spacing)
+    inner = z[middle - reach:middle + reach, middle - reach:middle + reach]
+    row, column = np.unravel_index(np.argmax(inner), inner.shape)
+    return (column - reach + 0.5) * spacing, (reach - row - 0.5) * spacing
 
 
 def figure(draw, size=(9.0, 3.6)):
@@ -87,15 +87,16 @@ def main():
     with dspace.Session() as session:
         scene = session.scene()
         start, end = scene.tdb([options.start, options.end])
-        terrain = scene.add_terrain(ground_file, name="ground", on_body=True)
+        terrain = scene.add_terrain(ground_file, name="ground")
         x, y = best_site(z, spacing)
-        longitude, latitude = polar_ground.to_degrees(x, y)
-        site = terrain.site(longitude % 360.0, latitude, MAST)
+        site = terrain.site(x, y, MAST)
         horizon = scene.horizon(site, 1440)
         where = terrain.locate(horizon.place[None])
         print(f"site {float(where.latitude[0]):.4f} N, {float(where.longitude[0]):.4f} E")
 
         section = report.section("Site and horizon")
+        section.text("The ground is generated, over the plane that touches the Moon at the pole: its heights have the fall of the sphere. "
+                     "The site's own vertical departs from the plane's by up to 0.05 degrees.")
         section.values({"latitude [deg]": float(where.latitude[0]), "longitude [deg]": float(where.longitude[0]), "mast [m]": MAST,
                         "least elevation of the horizon [deg]": horizon.elevation_deg.min(),
                         "greatest elevation [deg]": horizon.elevation_deg.max()})
@@ -143,29 +144,19 @@ def main():
 
 
 def maps(scene, terrain, out, start, spacing):
-    """The light over a lunation within 10 km of the pole: bands on a map about the pole, and its edges [m]."""
+    """The light over a lunation within 10 km of the pole: bands of the map, and its edges [m]."""
     from osgeo import gdal
     reach = 10_000.0
-    left, _, right, bottom = terrain.map_extent
-    horizons = scene.horizon_map(terrain, out / "horizons.tif", height=MAST, azimuths=180, cell_size=np.degrees(max(5.0 * spacing, 100.0) / polar_ground.RADIUS),
-                                 extent=(left, np.degrees(reach / polar_ground.RADIUS) - 90.0, right, bottom), replace=True)
+    horizons = scene.horizon_map(terrain, out / "horizons.tif", height=MAST, azimuths=180, cell_size=max(5.0 * spacing, 100.0),
+                                 extent=(-reach, reach, reach, -reach), replace=True)
     light = scene.illumination_map(horizons, out / "light.tif", start=start, end=start + 29.53 * 86400.0, step=7200.0,
                                    quantities=("lit_fraction", "longest_night", "earth_fraction"), terrain=terrain, replace=True)
-    data = gdal.Open(str(light.path))
-    x0, dx, _, y0, _, dy = data.GetGeoTransform()
-    axis = np.arange(-reach + 50.0, reach, 100.0)
-    x, y = np.meshgrid(axis, axis[::-1])
-    longitude, latitude = polar_ground.to_degrees(x, y)
-    column = np.clip(((longitude - x0) % 360.0 / dx).astype(int), 0, data.RasterXSize - 1)
-    row = ((latitude - y0) / dy).astype(int)
-    bands = data.ReadAsArray()[:, np.clip(row, 0, data.RasterYSize - 1), column]
-    bands[:, (row < 0) | (row >= data.RasterYSize)] = np.nan
-    return bands, (-reach, reach, -reach, reach)
+    return gdal.Open(str(light.path)).ReadAsArray(), (-reach, reach, -reach, reach)
 
 
 def lit_area(scene, terrain, site, horizon, tdb):
     """The lit area of the panel at a time, by rays: it stands on the mast and faces the Sun's azimuth."""
-    at = (float(site.x), float(site.y))  # longitude, latitude
+    at = (float(site.x), float(site.y))
     sun = terrain.sky(*at, "sun", float(site.height), time=tdb)["sun"]
     azimuth = sun.azimuth_deg - horizon.first_deg  # from the terrain's north
     axes = []

@@ -35,7 +35,8 @@ class Sights:
 
         method: "exact", by rays; "image", by telephoto pictures from the start towards the end: clear where the middle pixel's ray
         reaches to 1e-4 of the distance before the end; "both": image_clear beside the exact results. They may differ where the
-        margin (clearance_deg) is less than an angle of a pixel (image_pixel_deg): pictures draw terrain more coarsely beyond half of its level_size posts.
+        margin (clearance_deg) is less than an angle of a pixel (image_pixel_deg). Pictures draw terrain more coarsely beyond half
+        of its level_size posts.
         resolution: pixels of a picture of 90 degrees, 16 to 16384 (default 2048).
 
         Raises dspace.InvalidArgument for a start that is its end, for a place below the ground of a terrain that is an
