@@ -189,7 +189,7 @@ void CameraMount::Check(const std::string& camera) const {
 Eigen::Vector3d UpFor(const Eigen::Vector3d& sight) {
   Eigen::Matrix3d unused;
   return AxesLookingAlong(sight, Eigen::Vector3d::UnitZ(), unused) ? Eigen::Vector3d::UnitZ()
-                                                                  : Eigen::Vector3d::UnitY();
+                                                                   : Eigen::Vector3d::UnitY();
 }
 
 Pose LookAt(const std::string& camera, const Eigen::Vector3d& eye, const Eigen::Vector3d& target,

@@ -25,7 +25,7 @@ struct CameraMount {
     Parent    // the offset keeps its direction in the followed frame's parent
   };
   Kind kind = Kind::Fixed;
-  FrameId frame = 1;     // root
+  FrameId frame = 1; // root
   // Chase: what is upright. Axis and Away are the local vertical: the offset's Z is along it, a
   // heading is about it, and it is towards the image's top in place of `up`.
   enum class Vertical {
@@ -94,9 +94,9 @@ struct ChaseState {
 // The heading is the direction of the followed frame's X axis in the parent's XY plane; where X
 // stands upright, that of the axis which pitching brought there. With a local vertical v, Z of the
 // parent is replaced by v at the followed frame's origin (by the parent's Z, where that is at the
-// origin of `aim`), and the axes of ChaseAxes::Parent stay the parent's. Where `up` falls on the line of
-// sight, the followed frame's X (else Y) axis takes its place; where the lag brings the camera onto
-// its target, it keeps the direction of the offset.
+// origin of `aim`), and the axes of ChaseAxes::Parent stay the parent's. Where `up` falls on the
+// line of sight, the followed frame's X (else Y) axis takes its place; where the lag brings the
+// camera onto its target, it keeps the direction of the offset.
 //
 // The pose of a pointing camera is in its own frame F. With a the angle between the direction of
 // sight and the direction to the target in F, a(t + dt) = a(t) exp(-dt / smoothing_s), exact for

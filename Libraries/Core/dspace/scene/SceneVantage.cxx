@@ -64,7 +64,8 @@ const Camera& SceneVantage::GetCamera(const std::string& name) const {
 
 const Camera& SceneVantage::ActiveCamera() const {
   if (this->Cameras_.empty()) {
-    throw Error(Error::Kind::NotFound, "vantage '" + this->Name_ + "'", "it has no camera; add one first (Scene.add_camera, set_camera)");
+    throw Error(Error::Kind::NotFound, "vantage '" + this->Name_ + "'",
+                "it has no camera; add one first (Scene.add_camera, set_camera)");
   }
   return this->GetCamera(this->Active_);
 }

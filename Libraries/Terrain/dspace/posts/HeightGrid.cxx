@@ -43,11 +43,12 @@ HeightGrid::HeightGrid(const std::string& name, int columns, int rows, std::vect
       throw Error(Error::Kind::InvalidArgument, name,
                   "a height is infinite; accepted are finite ones, and NaN for no data");
     if (std::abs(h) > MaximumHeight)
-      throw Error(Error::Kind::InvalidArgument, name,
-                  "the post of column " + std::to_string(i % columns) + ", row " +
-                      std::to_string(i / columns) + " has the height " + Number(h) +
-                      " m; accepted are -1e9 to 1e9 m; if the value marks posts without data, state "
-                      "it (nodata)");
+      throw Error(
+          Error::Kind::InvalidArgument, name,
+          "the post of column " + std::to_string(i % columns) + ", row " +
+              std::to_string(i / columns) + " has the height " + Number(h) +
+              " m; accepted are -1e9 to 1e9 m; if the value marks posts without data, state "
+              "it (nodata)");
     if (std::isnan(h)) {
       ++this->Holes_;
     } else {

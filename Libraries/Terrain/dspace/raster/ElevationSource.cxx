@@ -32,12 +32,12 @@ struct ElevationSource::Implementation {
   GDALRasterBand* band = nullptr;
   int bandNumber = 1;
   NetworkLimits network;
-  FilesGuard::Check look; // of the guard under which it was opened
-  bool remote = false;    // itself, or what it is a mosaic of
-  bool suspect = false;   // a read failed
+  FilesGuard::Check look;       // of the guard under which it was opened
+  bool remote = false;          // itself, or what it is a mosaic of
+  bool suspect = false;         // a read failed
   std::optional<double> noData; // of the options, as the band's type holds it
   bool ownOverviews = false;    // overviews of the file may be used
-  bool gaps = false;      // there may be some, see GivesZerosForGaps
+  bool gaps = false;            // there may be some, see GivesZerosForGaps
   FileState file;
   std::unique_ptr<DeflateCheck> checksums; // of a file on a disk
   std::shared_ptr<const OverviewFile> overviews;

@@ -135,8 +135,8 @@ std::vector<std::string> WarningsOfFill(const std::vector<double>& heights,
                                         const ElevationInfo& info) {
   std::vector<std::string> warnings;
   const End low = FindEnd(heights, 1.0), high = FindEnd(heights, -1.0);
-  const auto count = std::size_t(std::count_if(heights.begin(), heights.end(),
-                                               [](double h) { return !std::isnan(h); }));
+  const auto count = std::size_t(
+      std::count_if(heights.begin(), heights.end(), [](double h) { return !std::isnan(h); }));
   const double datum =
       info.verticalDatum.kind == VerticalDatum::Kind::Radius ? info.verticalDatum.radius : 0.0;
   for (const auto& [end, other] : {std::pair(low, high), std::pair(high, low)}) {

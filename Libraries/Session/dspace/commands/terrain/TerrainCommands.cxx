@@ -248,7 +248,7 @@ std::unique_ptr<TerrainObject> OpenClipmap(const Context& context, const std::st
   if (command.relief().color_by_height()) {
     ClipmapStyle style;
     style.ramp = ClipmapStyle::Ramp(); // clang 14 emplaces none of a nested class
-    style.ramp->shaded = true; // it is the ground's own look here
+    style.ramp->shaded = true;         // it is the ground's own look here
     style.ramp->range = surface->HeightRange();
     style.ramp->colors = TerrainRamp();
     style.ramp->image = RampImage(style.ramp->colors);

@@ -336,8 +336,8 @@ void ViewerViews::BeforeSnapshot(Interpreter& interpreter) {
     const std::shared_ptr<Scene> at = interpreter.FindScene(scene);
     const FrameId frame = ToFrame(set->mount().frame());
     const v1::Mount& mount = set->mount();
-    const FrameId aim = ToFrame(mount.has_pointing() ? mount.pointing().aim()
-                                                     : mount.chase().vertical().frame());
+    const FrameId aim =
+        ToFrame(mount.has_pointing() ? mount.pointing().aim() : mount.chase().vertical().frame());
     const auto path = [&at](FrameId of) {
       return of == RootFrame ? std::string() : at->Frames().Path(of);
     };

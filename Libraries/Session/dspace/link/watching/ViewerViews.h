@@ -52,7 +52,8 @@ private:
     v1::Projection projection;
     v1::Mount mount;  // pose in the root
     std::string path; // of its frame; empty: the root
-    std::string aim;  // path of the frame that it points at or has its vertical from; empty: none, or the root
+    std::string aim;  // path of the frame that it points at or has its vertical from; empty: none,
+                      // or the root
   };
   struct Suspended {
     std::vector<v1::Command> commands;
