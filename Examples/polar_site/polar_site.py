@@ -68,7 +68,7 @@ def ridge(scene, report, start, end):
                  f"{known['latitude_deg']} N, {known['longitude_deg']} E, every {known['azimuth_step_deg']} degrees, as somebody else computed it. "
                  "The Sun's disc and the ephemeris are ours.")
     section.table([
-        {"what": "lit, part of the disc [%]", "here": 100.0 * found.lit_share, "published": "88.12 (5 m terrain, worst percentile), 92.27 (2 m, 19 years)"},
+        {"what": "lit, part of the disc [%]", "here": 100.0 * found.lit_share, "published": "69.61 (1 m terrain), 88.12 (5 m terrain, worst percentile), 92.27 (2 m mast, 19 years)"},
         {"what": "longest night [d]", "here": found.longest_night / 86400.0, "published": "4.00 (5 m terrain, worst percentile)"}])
     section.text("The published figures (Barker et al. 2021; Glaeser et al. 2014) are those of better terrain, at other points of the "
                  "ridge that were chosen for their light, and over other spans. This horizon is of one point, of 20 m terrain.")
@@ -108,7 +108,7 @@ def main():
         profile = scene.power_profile(site, PANEL, start, end, mask=horizon, battery=BATTERY)
         section = report.section("Light and power")
         section.values({"span": f"{options.start} to {options.end}, hourly", "lit, part of the disc [%]": 100.0 * profile.lit_share,
-                        "longest night [h]": profile.longest_night / 3600.0, "it begins": scene.utc(profile.night_start),
+                        "longest night [h]": profile.longest_night / 3600.0, "it begins": scene.utc(profile.night_start) if np.isfinite(profile.night_start) else "there is none",
                         "energy [kW h]": profile.energy_wh / 1000.0, "least charge [%]": 100.0 * profile.least_charge,
                         "battery empty [h]": profile.empty / 3600.0, "missing [W h]": profile.missing_wh})
         section.figure(figure(lambda f: draw_power(f, profile), (9.0, 5.0)), "Part of the disc over the horizon, and charge of the battery.")

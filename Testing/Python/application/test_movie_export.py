@@ -131,7 +131,7 @@ def test_the_process_ends_with_the_one_that_asked(run, tmp_path):  # noqa: F811
     while making.poll() and making.done < 0.01:
         assert time.monotonic() - began < PATIENCE
         time.sleep(0.02)
-    making._asking.join()
+    assert not making._words  # all was asked
     making._process.stdin.close()  # as the end of this process closes it
     assert making._process.wait(PATIENCE) == 130
     making.poll()

@@ -53,8 +53,8 @@ def test_a_chase_camera_keeps_the_local_vertical(anywhere):
     """Over a body's equator at longitude 90, heading north: up is Y."""
     scene = anywhere
     moon = scene.add_frame("moon", position=(5e8, 0, 0))
-    rover = moon.add_frame("rover", position=(0, 1737400, 0), quaternion=dspace.Pose(
-        matrix=np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1.0]])).quaternion)
+    rover = moon.add_frame("rover", position=(0, 1737400, 0),
+                            quaternion=(0.5, -0.5, -0.5, -0.5))  # X north, Y west, Z up
     camera = scene.add_camera("chase", frame=rover, chase={"offset": (-5, 0, 2), "target": (0, 0, 2), "vertical": moon})
     check(camera.pose_in(moon), (0, 1737402, -5), axes((0, 0, 1), (0, 1, 0)))
     camera.chase(rover, offset=(-5, 0, 2), target=(0, 0, 2), vertical="moon")

@@ -97,8 +97,6 @@ def test_illumination(capsys, moon, tmp_path):
 
 
 @pytest.mark.parametrize("arguments, text", [
-    (("horizon", "--out", "a.tif"), "--site, --map: accepted: one of them"),
-    (("horizon", "--map", "--site", "1,2", "--out", "a.tif"), "--site, --map: accepted: one of them"),
     (("horizon", "--map"), "--out: accepted: a name with .tif"),
     (("horizon", "--map", "--out", "a.png"), "accepted: a name with .tif"),
     (("horizon", "--map", "--out", "none/a.tif"), "there is no folder"),
@@ -117,3 +115,9 @@ def test_rejected(capsys, monkeypatch, wall, tmp_path, arguments, text):
     code, _, err = run(capsys, arguments[0], "--terrain", wall, *arguments[1:])
     assert code == 1 and text in err, err
     assert not (tmp_path / "a.tif").exists()
+
+
+def test_a_horizon_is_of_a_site_or_a_map(capsys, tmp_path):
+    for words in (("--out", "a.tif"), ("--map", "--site", "1,2", "--out", "a.tif")):
+        code, out, err = run(capsys, "horizon", "--terrain", tmp_path / "none.tif", *words)
+        assert code == 2 and "--site" in err and "--map" in err and out == ""

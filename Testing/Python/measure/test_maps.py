@@ -84,7 +84,7 @@ def test_viewsheds_and_lines(scene, ground, tmp_path):
     assert differ.sum() <= 1 and (clear == 0).sum() > 20 and (clear > 0).sum() > 20
     near = scene.viewshed(ground.site(60.5, 60.5, 2.0), tmp_path / "near.tif", radius=10.0).read()
     assert np.isfinite(near).sum() == sum(1 for i in range(-10, 11) for j in range(-10, 11) if i * i + j * j <= 100)
-    layer = ground.layers.add_false_color(tmp_path / "near.tif", colors=[(0, 0, 0), (0, 1, 0)], low=0.0, high=1.0)
+    layer = ground.add_false_color(tmp_path / "near.tif", colors=[(0, 0, 0), (0, 1, 0)], low=0.0, high=1.0)
     assert layer.name
 
 
@@ -161,10 +161,10 @@ def test_illumination_on_a_polar_map(scene, tmp_path):
     horizon = np.maximum(horizons.horizon(30, 30).astype(float), 0.0)
     mean, _, seen = lit_by_hand(terrain, x, y, horizon, start, steps, step, turn)
     assert 0.1 < mean < 0.9
-    assert made.read(0)[30, 30] == pytest.approx(mean, abs=0.01)
+    assert made.read(0)[30, 30] == pytest.approx(mean, abs=0.004)
     assert made.read(1)[30, 30] == pytest.approx(seen, abs=0.01)
     wrong, _, _ = lit_by_hand(terrain, x, y, horizon, start, steps, step, turn + 60.0)
-    assert abs(wrong - mean) > 0.02  # the direction of the wall matters
+    assert abs(wrong - mean) > 0.008  # the direction of the wall matters
 
 
 @pytest.mark.parametrize("change, kind, text", [

@@ -327,19 +327,19 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(profile_power { place { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } }
            panel { area: 1 tracking: VERTICAL efficiency: 0.3 } battery { capacity_wh: 10 load: 1 } end_s: 1e5 })",
        {}},
-      {R"(horizon_map { terrain: "ground" area { extent: [105.4, 205.6, 105.6, 205.4] } height: 2 azimuths: 8
+      {R"(horizon_map { terrain: "ground" area { extent: [102, 208, 108, 202] } height: 2 azimuths: 8
            file { path: "FOLDER/horizon.tif" replace: true threads: 1 } })",
        {},
        true},
       {R"(viewshed { site { terrain: "ground" map_x: 105.5 map_y: 205.25 height: 2 } target_height: 1 radius: 100
-           quantity: [VISIBLE, LEAST_HEIGHT, COUNT] area { extent: [105.4, 205.6, 105.6, 205.4] }
+           quantity: [VISIBLE, LEAST_HEIGHT, COUNT] area { extent: [102, 208, 108, 202] }
            file { path: "FOLDER/view.tif" replace: true threads: 1 } })",
        {},
        true},
       {R"(illumination_map { horizon_path: "FOLDER/horizons.tif" terrain: "ground" step_s: 60
            quantity: [LIT_FRACTION, EARTH_FRACTION] sun_position: [1.5e11, 0, 1e10] earth_position: [4e8, 0, 0]
            file { path: "FOLDER/lit.tif" replace: true threads: 1 } })",
-       {R"(horizon_map { terrain: "ground" area { extent: [105.4, 205.6, 105.6, 205.4] } azimuths: 8
+       {R"(horizon_map { terrain: "ground" area { extent: [102, 208, 108, 202] } azimuths: 8
            file { path: "FOLDER/horizons.tif" replace: true } })"},
        true},
       {R"(simulate_image { camera { camera: "eye" width: 24 height: 16 } color: true range: true label: true

@@ -10,9 +10,10 @@ np = lazy("numpy")
 
 def add_arguments(parser):
     add_ground(parser, "a file of the horizon: .json, .csv, .html (a report), or .png (a plot); of --map: .tif")
-    parser.add_argument("--site", metavar="LON,LAT",
+    place = parser.add_mutually_exclusive_group(required=True)
+    place.add_argument("--site", metavar="LON,LAT",
                         help="longitude (east) and latitude [deg]; map x and y without a CRS")
-    parser.add_argument("--map", action="store_true",
+    place.add_argument("--map", action="store_true",
                         help="in place of --site: of every cell of the terrain, to a GeoTIFF with a band per azimuth. The same "
                         "command continues a map that was interrupted")
     parser.add_argument("--height", type=float, default=2.0, metavar="H", help="above the ground [m], 0 or more (default: 2)")
@@ -24,8 +25,6 @@ def add_arguments(parser):
 
 def run(options):
     import dspace
-    if options.map == (options.site is not None):
-        raise Failed("--site, --map: accepted: one of them")
     if options.map:
         run_map(options)
         return

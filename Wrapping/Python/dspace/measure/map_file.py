@@ -27,7 +27,8 @@ class MapFile:
             band = self.bands.index(band)
         if not -len(self.bands) <= band < len(self.bands):
             raise InvalidArgument(f"map {self.path!r}: the band is {band}; accepted: 0 to {len(self.bands) - 1}", self.path)
-        return self._dataset().GetRasterBand(band % len(self.bands) + 1).ReadAsArray()
+        data = self._dataset()  # a band does not keep it alive
+        return data.GetRasterBand(band % len(self.bands) + 1).ReadAsArray()
 
     def horizon(self, column, row):
         """Returns the values of all bands at a cell, an array (bands,): of a horizon map the horizon of the cell [deg]."""

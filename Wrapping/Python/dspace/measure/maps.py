@@ -59,7 +59,7 @@ class Maps:
         "visible" (1: a site sees the target; 0: none does), "least_height" [m] (of the lowest target above the ground that
         a site would see) and "count" (of the sites that see the target); a band each. NaN without ground and beyond the
         radius. The lines of sight are exact in double precision over the terrain's triangles; its ground is the only
-        obstacle. Paint it on the terrain with terrain.layers.add_false_color(path).
+        obstacle. Paint it on the terrain with terrain.add_false_color(path).
 
         The other arguments and errors are those of horizon_map()."""
         about = "viewshed"

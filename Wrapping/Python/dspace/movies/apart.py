@@ -33,16 +33,20 @@ class Making:
         self._errors = b""
         asked = {"movie": movie.text, "label": movie.label, "run": os.fspath(run), "out": self.out, "jobs": jobs,
                  "keep": keep, "redraw": redraw}
-        # A thread: a pipe takes 64 KiB, and a movie may have more keys.
-        self._asking = threading.Thread(target=self._ask, args=(json.dumps(asked).encode() + b"\n",), daemon=True)
-        self._asking.start()
+        # A pipe takes 64 KiB, and a movie may have more keys: poll() writes what is left. No thread does: Python's collector of
+        # garbage could run in it and destroy a window's session there.
+        os.set_blocking(self._process.stdin.fileno(), False)
+        self._words = json.dumps(asked).encode() + b"\n"
+        self._ask()
 
-    def _ask(self, words):
+    def _ask(self):
         try:
-            self._process.stdin.write(words)
-            self._process.stdin.flush()
-        except (BrokenPipeError, ValueError):  # it has ended; poll() says why
+            while self._words:
+                self._words = self._words[os.write(self._process.stdin.fileno(), self._words):]
+        except BlockingIOError:
             pass
+        except (BrokenPipeError, ValueError):  # it has ended; poll() says why
+            self._words = b""
 
     @property
     def pid(self):
@@ -55,6 +59,7 @@ class Making:
         pictures were drawn."""
         if self._process is None:
             return False
+        self._ask()
         ended = self._process.poll() is not None  # before what it wrote is read, so that nothing is missed
         self._data += self._process.stdout.read() or b""
         self._errors += self._process.stderr.read() or b""
@@ -110,7 +115,6 @@ class Making:
             raise Io(self.failure, self.out)
 
     def _close(self):
-        self._asking.join()
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             try:
                 pipe.close()
