@@ -111,7 +111,8 @@ def test_a_server_can_begin_anew_with_each_driver(tmp_path):
             with pytest.raises(dspace.AlreadyExists):  # its own scenes stay while it drives
                 again(session)
     with dspace.Playback(str(run)) as playback:  # the recording has the removal
-        assert sorted(playback.scenes) == ["scene"]
+        playback.seek(playback.duration)
+        assert sorted(playback.session.scenes) == ["scene"]
 
 
 def test_a_viewer_draws_the_same_picture(tmp_path):

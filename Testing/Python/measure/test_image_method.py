@@ -16,8 +16,8 @@ LONG = bool(os.environ.get("DSPACE_LONG"))
 def gale(scene):
     if not GALE.exists():
         pytest.skip(f"real data absent: set DSPACE_DATA to the folder that has terrain/{GALE.name}")
-    # Pictures draw ground beyond half a level's posts more coarsely than rays see it: with 508 posts that is 117 km away.
-    return scene.add_terrain(GALE, name="gale", on_body=True, level_size=508)
+    # Pictures draw ground beyond half a level's posts more coarsely than rays see it: with 252 posts that is 58 km away.
+    return scene.add_terrain(GALE, name="gale", on_body=True, level_size=252)
 
 
 def random_sites(terrain, count, seed, height):
@@ -50,8 +50,11 @@ def test_horizons_over_gale(scene, gale):
         horizon = scene.horizon(gale.site(*site), 2880, method="both", resolution=1024)
         around = np.stack([np.roll(horizon.elevation_deg, i) for i in (-1, 0, 1)])
         pixel = horizon.image_pixel_deg
-        assert (horizon.image_elevation_deg > around.min(axis=0) - 1.5 * pixel).all()
-        assert (horizon.image_elevation_deg < around.max(axis=0) + 1.5 * pixel).all()  # and coarser distant ground
+        low, high = around.min(axis=0) - horizon.image_elevation_deg, horizon.image_elevation_deg - around.max(axis=0)
+        near = np.stack([np.roll(horizon.distance, i) for i in (-1, 0, 1)]).max(axis=0) < 50_000.0  # at the finest level
+        assert near.mean() > 0.5
+        assert low[near].max() < 0.75 * pixel and high[near].max() < 0.75 * pixel
+        assert low.max() < 0.3 and high.max() < 0.3  # coarser levels
         alone = scene.horizon(gale.site(*site), 2880, method="image", resolution=1024)
         assert np.array_equal(alone.elevation_deg, horizon.image_elevation_deg) and np.isnan(alone.distance).all()
 

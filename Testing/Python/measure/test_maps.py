@@ -84,7 +84,8 @@ def test_viewsheds_and_lines(scene, ground, tmp_path):
     assert differ.sum() <= 1 and (clear == 0).sum() > 20 and (clear > 0).sum() > 20
     near = scene.viewshed(ground.site(60.5, 60.5, 2.0), tmp_path / "near.tif", radius=10.0).read()
     assert np.isfinite(near).sum() == sum(1 for i in range(-10, 11) for j in range(-10, 11) if i * i + j * j <= 100)
-    layer = ground.add_false_color(tmp_path / "near.tif", colors=[(0, 0, 0), (0, 1, 0)], low=0.0, high=1.0)
+    painted = scene.add_terrain(tmp_path / "ground.tif", name="painted", mode="clipmap")
+    layer = painted.add_false_color(tmp_path / "near.tif", colors=[(0, 0, 0), (0, 1, 0)], low=0.0, high=1.0)
     assert layer.name
 
 

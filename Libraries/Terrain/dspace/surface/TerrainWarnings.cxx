@@ -149,7 +149,9 @@ std::vector<std::string> WarningsOfFill(const std::vector<double>& heights,
     if (std::abs(value - std::round(value)) < 1e-9 * std::abs(value)) {
       value = std::round(value);
     }
-    const bool many = end.count >= 3 && end.count * 2000 >= count;
+    // Ground of two heights only, and what most of the ground is, are no marks.
+    const bool many =
+        end.count >= 3 && end.count * 2000 >= count && end.count * 2 < count && rest > 0.0;
     if (IsUsualFill(value) ? gap <= 0.25 * rest : !many || gap <= 2.0 * rest) {
       continue;
     }
