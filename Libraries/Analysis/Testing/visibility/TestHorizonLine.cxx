@@ -62,8 +62,8 @@ TEST(HorizonLine, WallHidesWhatIsBesideIt) {
   // At an elevation of 30 degrees the disc is 0.25 / cos(30) degrees of azimuth wide on each side.
   const double width = 1.0 / std::cos(30.0 * M_PI / 180.0);
   const double edge = 180.0 - 0.05 * 10.0 / 45.0; // where it is 30 degrees high
-  EXPECT_NEAR(line.LitFraction({edge, 30.0}, 0.25), 0.5, 5e-3);
-  EXPECT_NEAR(line.LitFraction({edge - 0.1 * width, 30.0}, 0.25), Segment(0.1, 0.25), 5e-3);
+  EXPECT_NEAR(line.LitFraction({edge, 30.0}, 0.25), 0.5, 8e-3);
+  EXPECT_NEAR(line.LitFraction({edge - 0.1 * width, 30.0}, 0.25), Segment(0.1, 0.25), 8e-3);
   EXPECT_EQ(line.LitFraction({200.0, 30.0}, 0.25), 0.0);
   EXPECT_EQ(line.LitFraction({100.0, 30.0}, 0.25), 1.0);
   EXPECT_EQ(line.LitFraction({100.0, -6.0}, 0.0), 0.0);

@@ -26,9 +26,10 @@ public:
   // as flat.
   double TopOver(const AzimuthElevation& center, double radius_deg) const;
   // The part of the disc's area above the horizon, 0 to 1; of a radius of 0: 0 or 1. The disc is
-  // cut into columns, so that the horizon may have any shape across it. The error is below 1e-3: of
-  // 129 columns, and of the flat sky, whose columns depart from verticals by tan(elevation)
-  // radius^2 / 2 (for the Sun at 60 degrees: 0.002 degrees).
+  // cut into columns, so that the horizon may have any shape across it. The error
+  // is below 1e-3 for horizons that rise by less than their width across the disc, and up to 8e-3
+  // at a vertical edge (129 columns); and that of the flat sky, whose columns depart from verticals
+  // by tan(elevation) radius^2 / 2 (for the Sun at 60 degrees: 0.002 degrees).
   double LitFraction(const AzimuthElevation& center, double radius_deg) const;
 
 private:

@@ -10,6 +10,7 @@ namespace dspace::session {
 namespace {
 
 constexpr int MostSide = 1000000;
+constexpr std::size_t MostModelBytes = 65536; // as lenses.proto states it
 
 // The lens that a projection of the scene's is.
 LensPtr LensOf(const Projection& from, int width, int height, const std::string& label) {
@@ -69,6 +70,10 @@ PlacedLens PlaceLens(const Context& context, const v1::CameraModel& from) {
   const std::string vantage = from.vantage().empty() ? DefaultVantage : from.vantage();
   const int width = ToInt(from.width()), height = ToInt(from.height());
   if (!from.model().empty()) {
+    if (from.model().size() > MostModelBytes) {
+      Reject("camera model", "the model has " + std::to_string(from.model().size()) +
+                                 " bytes; accepted: up to 65,536");
+    }
     const std::vector<dspace::CameraModel> models = ParseCameraJson(from.model(), "camera model");
     if (models.size() != 1) {
       Reject("camera model",
