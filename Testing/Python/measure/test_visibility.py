@@ -51,7 +51,7 @@ def seconds(t):
 
 def events(timescale, api, up, start, end, step):
     """Skyfield's changes of a condition: seconds past J2000 TDB, and what holds then."""
-    from skyfield.searchlib import find_discrete
+    find_discrete = needs.needs_module("skyfield.searchlib", "python3-skyfield").find_discrete
     up.step_days = step / 86400.0
     times, values = find_discrete(julian(timescale, start), julian(timescale, end), up)
     return np.array([seconds(t) for t in times]), np.asarray(values)

@@ -100,7 +100,7 @@ def test_a_label_is_not_cut_by_the_object_that_it_names(scene, height):
     assert free.sum() > 300
     np.testing.assert_array_equal(cut, free)
     # What is in front of both hides it, and so does what is on no frame of its own.
-    wall = scene.add_box((0.1, 6, 6), position=(5, -6, 3), color="black", lit=False)
+    wall = scene.add_box((0.1, 30, 30), position=(5, -6, 3), color="black", lit=False)
     assert ink(view).sum() == 0
     wall.visible = False
     hull.visible = True

@@ -337,6 +337,9 @@ TEST_F(EveryCommandTest, NumbersBeyondTheirLimitsAreRejectedAndTheLimitsAccepted
         std::string text(limits.most_bytes(), 'x');
         if (!field.is_repeated()) { // JSON stays what it is
           const std::string present = message.GetReflection()->GetString(message, &field);
+          if (message.GetDescriptor()->name() == "CameraModel" && present.empty()) {
+            return false; // a model that the instance does without
+          }
           if (present.substr(0, 1) == "{") {
             text = present + std::string(limits.most_bytes() - present.size(), ' ');
           }

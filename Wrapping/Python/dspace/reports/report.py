@@ -7,6 +7,7 @@ import os
 import pathlib
 import platform
 import re
+import sys
 
 from dspace._core.fields import file_path, items, reject, text
 from dspace._core.files import atomic_write
@@ -184,9 +185,8 @@ def described(value):
 def versions():
     """Versions of the programs that numbers depend on."""
     import numpy
-    import dspace
     from vtkmodules.vtkCommonCore import vtkVersion
-    found = {"Dspace": dspace.__version__, "VTK": vtkVersion.GetVTKVersion(), "numpy": numpy.__version__,
+    found = {"Dspace": sys.modules["dspace"].__version__, "VTK": vtkVersion.GetVTKVersion(), "numpy": numpy.__version__,
              "Python": platform.python_version(), "system": platform.platform()}
     try:
         from osgeo import gdal
