@@ -42,7 +42,7 @@ figure { margin: 0.8rem 0; } figure svg, figure img { max-width: 100%; height: a
 {% elif part.kind == "table" %}<div class="wide"><table><tr>{% for name in part.head %}<th>{{ name }}</th>{% endfor %}</tr>
 {% for row in part.rows %}<tr>{% for value in row %}<td>{{ value }}</td>{% endfor %}</tr>
 {% endfor %}</table></div>{% if part.more %}<p class="note">{{ part.more }} more rows.</p>{% endif %}
-{% else %}<figure>{{ part.picture }}{% if part.caption %}<figcaption>{{ part.caption }}</figcaption>{% endif %}</figure>
+{% else %}<figure>{{ part.picture|safe }}{% if part.caption %}<figcaption>{{ part.caption }}</figcaption>{% endif %}</figure>
 {% endif %}{% endfor %}{% endfor %}
 </body>
 </html>
@@ -82,7 +82,6 @@ class Report(Strict):
         path = file_path(path, "the path", "report")
         try:
             import jinja2
-            import markupsafe
         except ImportError:
             raise Unsupported("report: jinja2 is not installed; accepted: with it (Debian: python3-jinja2)", "report") from None
         sections = [*self._sections]
@@ -94,7 +93,7 @@ class Report(Strict):
         environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
         made = datetime.datetime.now(datetime.timezone.utc).strftime("Written %Y-%m-%d %H:%M UTC by Dspace.")
         page = environment.from_string(PAGE).render(
-            title=self._title, made=made, sections=[{"title": s._title, "parts": s._parts_with(markupsafe.Markup)}
+            title=self._title, made=made, sections=[{"title": s._title, "parts": s._parts}
                                                     for s in sections])
         atomic_write(pathlib.Path(path), page.encode())
 
@@ -136,9 +135,6 @@ class Section(Strict):
             data = base64.b64encode(path.read_bytes()).decode()
             picture = f'<img alt="" src="data:image/png;base64,{data}">'
         self._parts.append({"kind": "figure", "picture": picture, "caption": text(caption, "the caption", "report")})
-
-    def _parts_with(self, markup):
-        return [{**part, "picture": markup(part["picture"])} if part["kind"] == "figure" else part for part in self._parts]
 
 
 def svg_of(figure):
