@@ -122,7 +122,7 @@ def main():
 
         section = report.section("Direct to Earth")
         month = (start, start + 30 * 86400.0)
-        contacts = scene.contacts(site, list(STATIONS.values()), *month, mask=horizon, station_mask=10.0)
+        contacts = scene.contacts(site, list(STATIONS.values()), *month, step=600.0, mask=horizon, station_mask=10.0)
         names = {station: name for name, station in STATIONS.items()}
         section.text("Contacts of the first thirty days: the station over the site's horizon, and the site 10 degrees over the station's.")
         section.figure(figure(lambda f: draw_contacts(f, contacts, names, month)), "")
