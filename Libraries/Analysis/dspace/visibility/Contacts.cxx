@@ -179,14 +179,18 @@ Sighted LookAtStation(const Ephemeris& ephemeris, const Frames& frames, const Sk
 
 } // namespace
 
-std::vector<Contact> FindContacts(const std::function<Sighted(double)>& look, double start,
-                                  double end, double step) {
+void RequireSpan(double start, double end, double step) {
   if (!(std::isfinite(start) && std::isfinite(end) && start < end)) {
     Reject("contacts", "the span runs from " + NumberText(start) + " to " + NumberText(end) +
                            " s; accepted: an end after the start");
   }
   Require(step > 0.0 && (end - start) / step <= double(MostSteps), "contacts", "the step", step,
           "more than 0 s, and at most 2,000,000 steps in the span");
+}
+
+std::vector<Contact> FindContacts(const std::function<Sighted(double)>& look, double start,
+                                  double end, double step) {
+  RequireSpan(start, end, step);
   return Finder(look, start, end, step).Find();
 }
 
@@ -204,7 +208,8 @@ Sighted LookOver(const Ephemeris& ephemeris, const Frames& frames, const SkyPlac
   }
   const SkyBody body = Look(ephemeris, frames, place, target.body, tdb);
   return {body.direction, body.range,
-          horizon.TopOver(body.direction, upper ? std::min(body.radius_deg, 10.0) : 0.0)};
+          horizon.TopOver(body.direction,
+                          upper ? std::min(body.radius_deg, HorizonLine::MostRadius) : 0.0)};
 }
 
 } // namespace dspace

@@ -28,11 +28,15 @@ struct Contact {
   Sighted atRise, atSet, atPeak;
 };
 
+// Throws Error(InvalidArgument) unless `start` < `end`, and `step` > 0 cuts them into MostSteps at
+// most.
+constexpr int MostSteps = 2000000;
+void RequireSpan(double start, double end, double step);
+
 // Finds contacts in a span by samples `step` apart and by bisection, to 1e-3 s. Where three samples
 // turn without a change of sign, the extremum between them is found first: contacts and gaps
-// shorter than a step are found too, unless two of them lie within two steps. `start` < `end`, 0 <
-// `step`, at most MostSteps of them: else Error(InvalidArgument). Throws what `look` throws.
-constexpr int MostSteps = 2000000;
+// shorter than a step are found too, unless two of them lie within two steps. Throws what
+// RequireSpan and `look` throw.
 std::vector<Contact> FindContacts(const std::function<Sighted(double)>& look, double start,
                                   double end, double step);
 

@@ -12,13 +12,12 @@ namespace {
 
 constexpr double Degree = M_PI / 180.0;
 constexpr int Columns = 129;
-constexpr double MostRadius = 10.0; // [deg]
-constexpr double LeastCosine =
-    1.0e-3; // of the elevation of a disc: at the zenith azimuths have no width
+// Of the elevation of a disc: at the zenith azimuths have no width.
+constexpr double LeastCosine = 1e-3;
 
 void RequireRadius(double radius_deg) {
-  Require(radius_deg >= 0.0 && radius_deg <= MostRadius, "horizon", "the radius of a disc",
-          radius_deg, "0 to 10 degrees");
+  Require(radius_deg >= 0.0 && radius_deg <= HorizonLine::MostRadius, "horizon",
+          "the radius of a disc", radius_deg, "0 to 10 degrees");
 }
 
 // Calls `visit(half, over)` for columns of equal steps of angle around the disc: half the height of

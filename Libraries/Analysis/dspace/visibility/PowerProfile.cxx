@@ -103,18 +103,26 @@ PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, cons
   Check(panels, battery);
   Require(solarConstant >= 0.0 && solarConstant <= 1e9, "power profile", "the irradiance at 1 au",
           solarConstant, "0 to 1e9 W/m^2");
+  RequireSpan(start, end, step);
   PowerProfile profile;
   const double none = std::numeric_limits<double>::quiet_NaN();
-  const auto sample = [&](double tdb) {
+  const auto look = [&](double tdb) {
     if (check) {
       check();
     }
     FallbackScope::Begin(tdb);
-    const SkyBody sun = Look(ephemeris, frames, place, BodySun, tdb);
+    return Look(ephemeris, frames, place, BodySun, tdb);
+  };
+  const auto sighted = [&](const SkyBody& sun) {
+    return Sighted{
+        sun.direction, sun.range,
+        horizon.TopOver(sun.direction, std::min(sun.radius_deg, HorizonLine::MostRadius))};
+  };
+  const auto sample = [&](double tdb, const SkyBody& sun) {
     PowerSample out;
     out.time = tdb;
     out.sun = sun.direction;
-    out.lit = horizon.LitFraction(sun.direction, std::min(sun.radius_deg, 10.0));
+    out.lit = horizon.LitFraction(sun.direction, std::min(sun.radius_deg, HorizonLine::MostRadius));
     const double distance = sun.range / AstronomicalUnit;
     const double irradiance = out.lit * solarConstant / (distance * distance);
     for (const SolarPanel& panel : panels) {
@@ -123,14 +131,21 @@ PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, cons
     out.charge = none;
     return out;
   };
-  // The nights by their own search; what it looks at first are the samples.
-  const ContactTarget sun{BodySun, {}, 0.0};
+  const auto count =
+      std::max<std::int64_t>(1, std::int64_t(std::ceil((end - start) / step - 1e-9)));
+  profile.samples.reserve(std::size_t(count) + 1);
+  std::vector<Sighted> seen;
+  for (std::int64_t i = 0; i <= count; ++i) {
+    const double tdb = i == count ? end : start + double(i) * step;
+    const SkyBody sun = look(tdb);
+    profile.samples.push_back(sample(tdb, sun));
+    seen.push_back(sighted(sun));
+  }
+  // The search for nights begins with the same times.
   const std::vector<Contact> days = FindContacts(
       [&](double tdb) {
-        if (check) {
-          check();
-        }
-        return LookOver(ephemeris, frames, place, horizon, sun, tdb, true);
+        const auto i = std::size_t(std::llround((tdb - start) / step));
+        return i < seen.size() && profile.samples[i].time == tdb ? seen[i] : sighted(look(tdb));
       },
       start, end, step);
   profile.nightStart = none;
@@ -147,12 +162,6 @@ PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, cons
   }
   if (days.empty() || !days.back().untilAfter) {
     night(end);
-  }
-  const auto count =
-      std::max<std::int64_t>(1, std::int64_t(std::ceil((end - start) / step - 1e-9)));
-  profile.samples.reserve(std::size_t(count) + 1);
-  for (std::int64_t i = 0; i <= count; ++i) {
-    profile.samples.push_back(sample(i == count ? end : start + double(i) * step));
   }
   double charge = battery ? battery->initial * battery->capacity * JoulesPerWattHour : none;
   double least = charge;

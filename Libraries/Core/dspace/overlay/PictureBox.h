@@ -1,6 +1,6 @@
 // A part of a viewport's picture.
-#ifndef DSPACE_SCENE_PICTURE_BOX_H
-#define DSPACE_SCENE_PICTURE_BOX_H
+#ifndef DSPACE_OVERLAY_PICTURE_BOX_H
+#define DSPACE_OVERLAY_PICTURE_BOX_H
 
 namespace dspace {
 

@@ -394,23 +394,39 @@ void DrawList::SetDepths(DrawView& view) const {
   projection = projection.Seeing(nearest, farthest);
 }
 
-double DrawList::OwnReach(const FrameTree& frames, const SeenObject& label) const {
-  const FrameId own = label.flat->object->frame;
-  double reach = 0.0;
+void DrawList::FindNamed(const FrameTree& frames) {
+  this->Named_.clear();
   for (const SeenObject& seen : this->Seen_) {
     const GraphicsObject& object = *seen.flat->object;
-    if (own == RootFrame || object.billboard || (object.custom && !seen.flat->body)) {
+    if (object.billboard && object.frame != RootFrame) {
+      this->Named_[object.frame];
+    }
+  }
+  if (this->Named_.empty()) {
+    return;
+  }
+  for (const SeenObject& seen : this->Seen_) {
+    const GraphicsObject& object = *seen.flat->object;
+    if (object.billboard || (object.custom && !seen.flat->body)) {
       continue;
     }
-    const double distance = (seen.center - label.center).norm();
-    if (distance > 3.0 * seen.radius || distance + seen.radius <= reach) {
-      continue;
+    for (FrameId at = object.frame; at != RootFrame; at = frames.Parent(at)) {
+      const auto named = this->Named_.find(at);
+      if (named != this->Named_.end()) {
+        named->second.push_back(&seen);
+      }
     }
-    FrameId at = object.frame;
-    while (at != own && at != RootFrame) {
-      at = frames.Parent(at);
+  }
+}
+
+double DrawList::OwnReach(const SeenObject& label) const {
+  double reach = 0.0;
+  const auto named = this->Named_.find(label.flat->object->frame);
+  if (named != this->Named_.end()) {
+    for (const SeenObject* seen : named->second) {
+      const double distance = (seen->center - label.center).norm();
+      reach = distance > 3.0 * seen->radius ? reach : std::max(reach, distance + seen->radius);
     }
-    reach = at == own ? distance + seen.radius : reach;
   }
   return reach;
 }
@@ -443,6 +459,7 @@ void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filte
   this->Customs_.clear();
   this->Backdrops_.clear();
   this->FindSeen(scene, view, filter);
+  this->FindNamed(frames);
   this->FindDepths();
   this->SetDepths(view);
   const double near = view.projection.Near();
@@ -484,7 +501,7 @@ void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filte
       Eigen::Matrix<double, 3, 4> m = (seen.X_VF * part.X_FP).matrix().topRows<3>();
       if (object.billboard && -m(2, 3) > near) { // before what it names, at the same pixels
         const double depth = -m(2, 3);
-        const double ahead = std::max(depth - this->OwnReach(frames, seen), 1.02 * near);
+        const double ahead = std::max(depth - this->OwnReach(seen), 1.02 * near);
         if (ahead >= depth) {
           // It stays.
         } else if (view.projection.kind == Projection::Kind::Orthographic) {

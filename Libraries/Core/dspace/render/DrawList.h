@@ -200,9 +200,12 @@ private:
   void PlaceBodies(const Scene& scene, const Pose& X_CA);
   void FindDepths();
   void SetDepths(DrawView& view) const;
-  // How far from a label, which is a billboard, what it names reaches [m]: the objects on its frame
-  // and below it that are around the label, or not farther from it than three times their radius.
-  double OwnReach(const FrameTree& frames, const SeenObject& label) const;
+  // Finds what labels name: of each frame with a billboard, but the root, the seen objects on it
+  // and on the frames below it.
+  void FindNamed(const FrameTree& frames);
+  // How far what a label names reaches from it [m]. Objects farther from the label than three times
+  // their radius do not count.
+  double OwnReach(const SeenObject& label) const;
   std::uint32_t BatchOf(const GraphicsObject& object, const Part& part, const Material& material,
                         const DrawInstance& look, bool near);
   // `fill`: ViewLook::fill.
@@ -220,6 +223,7 @@ private:
 
   std::vector<Pose> X_AF_;
   std::vector<SeenObject> Seen_;
+  std::unordered_map<FrameId, std::vector<const SeenObject*>> Named_; // into Seen_
   std::vector<DrawInstance> Instances_;
   std::vector<DrawBatch> Batches_;
   std::vector<DrawCustom> Customs_;

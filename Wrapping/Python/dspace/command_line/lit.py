@@ -5,7 +5,6 @@ import sys
 from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, write
 from dspace.command_line.sky import check
-from dspace.command_line.terrain_rasters import gdal_modules
 
 np = lazy("numpy")
 
@@ -61,7 +60,7 @@ def run(options):
         ground = MeasuredGround(session.scene(), options)
         site = ground.site((*place, options.height))
         panel = add_panel(ground.scene, site, size, facing)
-        sun = sun_of(ground, site, place, options)
+        sun = sun_of(ground, site, options)
         put_sun(ground.scene, site, sun.pop("angles"), **sun)
         lit = ground.scene.lit_area(panel, efficiency=options.efficiency, samples=options.samples)
         azimuth, elevation = ground.scene.sun.angles(site.terrain, (float(site.x), float(site.y)))
@@ -129,7 +128,7 @@ def add_panel(scene, site, size, facing):
     return scene.add_plane(*size, name="panel", frame=scene.add_frame("panel", pose=pose))
 
 
-def sun_of(ground, site, place, options):
+def sun_of(ground, site, options):
     """The angles at the site, the radius, and the irradiance or the distance of the Sun: arguments of put_sun()."""
     distance, radius = options.distance_au, options.radius_deg
     if options.time is None:
@@ -142,25 +141,14 @@ def sun_of(ground, site, place, options):
                          "latitudes on a known body, or --sun AZ,EL")
         time = ground.scene.tdb(options.time)
         sky = ground.terrain.sky(float(site.x), float(site.y), "sun", float(site.height), body=options.body, time=time)["sun"]
-        angles = ((sky.azimuth_deg + north_of(ground, place)) % 360.0, sky.elevation_deg)
+        # The sky counts azimuths from the meridian's north, and the Sun of the scene from the terrain's.
+        north = ground.scene.horizon(site, 1).first_deg
+        angles = ((sky.azimuth_deg - north) % 360.0, sky.elevation_deg)
         distance = distance or sky.range / AU
         radius = sky.radius_deg if radius is None else radius
     if options.irradiance is not None:
         return {"angles": angles, "radius_deg": radius, "irradiance": options.irradiance}
     return {"angles": angles, "radius_deg": radius, "distance_au": distance or 1.0}
-
-
-def north_of(ground, place):
-    """The azimuth of the meridian's north from the terrain's north [deg]: on a projected map that is the map's Y axis."""
-    crs, geographic = ground.crs
-    if crs.IsGeographic():
-        return 0.0
-    _, osr = gdal_modules()
-    step = -1e-4 if place[1] > 0.0 else 1e-4  # away from the nearer pole
-    turn = osr.CoordinateTransformation(geographic, crs)
-    here, there = (np.array(turn.TransformPoint(place[0], latitude)[:2]) for latitude in (place[1], place[1] + step))
-    x, y = (there - here) / step
-    return float(np.degrees(np.arctan2(x, y)))
 
 
 def told(row):

@@ -1,11 +1,11 @@
 #include <dspace/commands/measure/MeasuredScene.h>
 
-#include <chrono>
 #include <cmath>
 #include <set>
 
 #include <dspace/Checks.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/messages/Deadline.h>
 
 namespace dspace::session {
 namespace {
@@ -42,15 +42,8 @@ MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measur
     left.insert(scene.Object(id).id);
   }
   if (measuring.has_deadline_s()) {
-    using Clock = std::chrono::steady_clock;
-    const double seconds = measuring.deadline_s();
-    this->Obstacles_.SetCheck([start = Clock::now(), seconds, command] {
-      if (std::chrono::duration<double>(Clock::now() - start).count() > seconds) {
-        throw Error(Error::Kind::DeadlineExceeded, command,
-                    "it takes longer than its deadline of " + NumberText(seconds) +
-                        " s; accepted: a later deadline, fewer lines or azimuths, or none");
-      }
-    });
+    const Deadline deadline(measuring.deadline_s(), command, "fewer lines or azimuths");
+    this->Obstacles_.SetCheck([deadline] { deadline.Check(); });
   }
   for (const auto& [id, object] : scene.Objects()) {
     const bool counts = object.nature == Nature::Physical && object.visible &&

@@ -1,12 +1,12 @@
 // Contacts and power over a span of time.
-#include <chrono>
-#include <utility>
+#include <optional>
 
 #include <dspace/Checks.h>
 #include <dspace/commands/sky/SkyPlaces.h>
 #include <dspace/commands/sky/SkyTools.h>
 #include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/messages/Deadline.h>
 #include <dspace/scene/Light.h>
 #include <dspace/visibility/Contacts.h>
 #include <dspace/visibility/PowerProfile.h>
@@ -38,31 +38,10 @@ dspace::ContactTarget TargetOf(const Context& context, const v1::ContactTarget& 
   return target;
 }
 
-// Ends work after a time.
-class Deadline {
-public:
-  Deadline(bool has, double seconds, std::string command)
-      : Has_(has), Seconds_(seconds), Command_(std::move(command)) {}
-  void Check() {
-    if (!this->Has_ || ++this->Count_ % 256 != 0) {
-      return;
-    }
-    const std::chrono::duration<double> past = Clock::now() - this->Start_;
-    if (past.count() > this->Seconds_) {
-      throw Error(Error::Kind::DeadlineExceeded, this->Command_,
-                  "it takes longer than its deadline of " + NumberText(this->Seconds_) +
-                      " s; accepted: a later deadline, fewer steps, or none");
-    }
-  }
-
-private:
-  using Clock = std::chrono::steady_clock;
-  bool Has_;
-  double Seconds_;
-  std::string Command_;
-  Clock::time_point Start_ = Clock::now();
-  int Count_ = 0;
-};
+template<class Message> Deadline DeadlineOf(const Message& command, const std::string& name) {
+  return {command.has_deadline_s() ? std::optional<double>(command.deadline_s()) : std::nullopt,
+          name, "fewer steps"};
+}
 
 void TrackSky(const Context& context, v1::TrackSky& command) {
   const std::string name = "command track_sky";
@@ -75,11 +54,12 @@ void TrackSky(const Context& context, v1::TrackSky& command) {
   if (command.time_s().empty()) {
     command.add_time_s(context.GetScene().Time());
   }
+  const HorizonLine level;
   v1::SkyTrackReply reply;
   for (const double tdb : command.time_s()) {
     FallbackScope::Begin(tdb);
     const Sighted seen =
-        LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place, HorizonLine(), target, tdb);
+        LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place, level, target, tdb);
     reply.add_azimuth_deg(seen.direction.azimuth_deg);
     reply.add_elevation_deg(seen.direction.elevation_deg);
     reply.add_range(seen.range);
@@ -105,7 +85,7 @@ void SearchContacts(const Context& context, v1::FindContacts& command) {
   constexpr double Standard = 60.0; // [s]
   const double step = command.step_s() == 0.0 ? Standard : command.step_s();
   const HorizonLine horizon = LineOf(command.mask());
-  Deadline deadline(command.has_deadline_s(), command.deadline_s(), name);
+  const Deadline deadline = DeadlineOf(command, name);
   v1::ContactsReply reply;
   for (int i = 0; i < command.target_size(); ++i) {
     const dspace::ContactTarget target = TargetOf(context, command.target(i));
@@ -173,7 +153,7 @@ void ProfilePowerOf(const Context& context, v1::ProfilePower& command) {
     battery->charging = asked.has_charging() ? asked.charging() : 1.0;
   }
   constexpr double Standard = 3600.0; // [s]
-  Deadline deadline(command.has_deadline_s(), command.deadline_s(), name);
+  const Deadline deadline = DeadlineOf(command, name);
   const PowerProfile profile = ProfilePower(
       kernels.GetEphemeris(), kernels.GetFrames(), place, LineOf(command.mask()), panels, battery,
       SolarConstant, command.start_s(), command.end_s(),
