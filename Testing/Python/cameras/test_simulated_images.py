@@ -204,7 +204,7 @@ def test_a_server_draws_the_same(anywhere):
     planes = scene.simulate_image(model, label=True, range=True)
     assert set(np.unique(planes["label"])) == {sphere.id for sphere in spheres} | {0}
     np.testing.assert_allclose(scene.project_points(centers, model), model.project(centers), atol=1e-9)
-    planes["color"][:] = 7  # the caller owns the arrays and may write to them
+    planes["color"][:] = 7  # arrays are of one's own
 
 
 @pytest.mark.parametrize("wrong, kind, message", [
