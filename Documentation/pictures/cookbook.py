@@ -39,7 +39,7 @@ def run(prelude, name, code, folder):
             with contextlib.suppress(Exception):
                 names["session"].close()
     picture = pathlib.Path(folder) / f"{name}.png"
-    return picture if picture.exists() else next(iter(sorted(pathlib.Path(folder).glob("flight/*.png"))))
+    return picture if picture.exists() else min(pathlib.Path(folder).glob("flight/*.png"))
 
 
 def cookbook():

@@ -1,7 +1,7 @@
 """Builds the site of documents: python3 Documentation/site/make_site.py BUILD_FOLDER
 
-The result is BUILD_FOLDER/html/index.html. It needs the built Python package (`./dspace docs` sees to that), Sphinx with
-its Markdown parser, and Doxygen.
+The result is BUILD_FOLDER/html/index.html. It needs the built Python package (`./dspace docs` builds it), Sphinx with its
+Markdown parser, and Doxygen.
 """
 import importlib
 import os
@@ -16,16 +16,17 @@ ROOT = HERE.parents[1]
 # The guides in the order of the contents, by chapter; a page of Documentation that is in none goes to the last one.
 CHAPTERS = {
     "Start": ("README.md", "Documentation/Start.md", "Documentation/Cookbook.md", "Documentation/Conventions.md"),
-    "Guides": ("Documentation/Terrain.md", "Documentation/Views.md", "Documentation/Measurements.md", "Documentation/Sky.md",
-               "Documentation/Frames.md", "Documentation/Ephemeris.md", "Documentation/Formats.md", "Documentation/VTK.md",
-               "Documentation/Telemetry.md", "Documentation/Movies.md", "Documentation/Recording.md",
-               "Documentation/Server.md", "Documentation/Application.md", "Documentation/CppLocal.md"),
+    "Guides": ("Documentation/Terrain.md", "Documentation/Views.md", "Documentation/Cameras.md", "Documentation/Measurements.md",
+               "Documentation/Sky.md", "Documentation/Frames.md", "Documentation/Ephemeris.md", "Documentation/Formats.md",
+               "Documentation/VTK.md", "Documentation/OwnObjects.md", "Documentation/Telemetry.md", "Documentation/Movies.md",
+               "Documentation/Recording.md", "Documentation/Server.md", "Documentation/Application.md",
+               "Documentation/CppLocal.md"),
     "Reference": ("reference/python.rst", "reference/cpp.md", "Documentation/Wire.md", "Documentation/Commands.md"),
     "Inside Dspace": ("Documentation/Architecture.md", "CONTRIBUTING.md", "CHANGELOG.md")}
 IMAGES = (".png", ".jpg", ".svg")
 # Rooms of the package by chapter of the reference.
 ROOMS = {"Sessions": ("clients", "links"), "Scenes": ("scene", "objects", "frames", "cameras"),
-         "Terrain and measurements": ("terrain", "measure"), "Sky": ("sky", "stars"), "Telemetry": ("telemetry",),
+         "Terrain and measurements": ("terrain", "measure", "reports"), "Sky": ("sky", "stars"), "Telemetry": ("telemetry",),
          "Recordings and movies": ("recording", "playback", "movies"), "Errors": ("errors",)}
 # Modules that are documented as a whole.
 MODULES = ("dspace.rover", "dspace.stars", "dspace.trajectories")
@@ -73,7 +74,7 @@ def write_python(folder):
         title = f"dspace.{name}"
         (folder / f"{name}.rst").write_text(
             f"{title}\n{'=' * len(title)}\n\n.. {kind}:: {module}.{name}{options}\n", encoding="utf-8")
-    lines = ["Python reference", "================", "", "``import dspace`` gives these names. Guides show how they go together.",
+    lines = ["Python reference", "================", "", "``import dspace`` provides these names. The guides show how to use them.",
              ""]
     for chapter, names in chapters.items():
         lines += [chapter, "-" * len(chapter), "", ".. toctree::", "   :maxdepth: 1", "", *(f"   {name}" for name in names), ""]
@@ -89,7 +90,7 @@ def write_python(folder):
 
 def write_gallery(path):
     """A page of the pictures of all guides, each with a link to where it stands."""
-    lines = ["# Gallery", "", "The pictures of the guides. A picture leads to the text that explains it.", ""]
+    lines = ["# Gallery", "", "The pictures of the guides. A click on a picture opens the text that explains it.", ""]
     seen = set()
     for name in documents():
         for words, link in re.findall(r"!\[([^\]]*)\]\(([^)\s]+)\)", (ROOT / name).read_text(encoding="utf-8")):
@@ -120,7 +121,8 @@ def run_doxygen(folder, out):
     settings = {
         "PROJECT_NAME": "Dspace", "INPUT": " ".join(f'"{path}"' for path in inputs), "RECURSIVE": "YES",
         "FILE_PATTERNS": "*.h", "EXCLUDE_PATTERNS": "*/Testing/*", "OUTPUT_DIRECTORY": f'"{out}"', "HTML_OUTPUT": "cpp",
-        "GENERATE_LATEX": "NO", "QUIET": "YES", "WARNINGS": "NO", "WARN_IF_DOC_ERROR": "NO", "WARN_LOGFILE": "/dev/null", "EXTRACT_ALL": "YES", "SEARCHENGINE": "YES",
+        "GENERATE_LATEX": "NO", "QUIET": "YES", "WARNINGS": "NO", "WARN_IF_DOC_ERROR": "NO", "WARN_LOGFILE": "/dev/null",
+        "EXTRACT_ALL": "YES", "SEARCHENGINE": "YES",
         "GENERATE_TREEVIEW": "YES", "HAVE_DOT": "NO", "MARKDOWN_SUPPORT": "NO", "HIDE_UNDOC_RELATIONS": "YES",
         "STRIP_FROM_PATH": " ".join(f'"{path}"' for path in inputs), "VERBATIM_HEADERS": "YES", "SHOW_USED_FILES": "NO",
         # Comments are plain: those before and behind a declaration are its description.

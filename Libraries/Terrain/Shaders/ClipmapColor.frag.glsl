@@ -1,5 +1,6 @@
 // What lies over a terrain's own colour, from the ground up: the parts before this one say how.
-// False colour and what lies over it.
+
+// A colour under the false colour and what lies over that.
 vec3 withStyle(vec3 color)
 {
 #ifdef DSPACE_RAMP

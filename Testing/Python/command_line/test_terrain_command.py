@@ -172,7 +172,7 @@ def test_shaded_relief_follows_lamberts_law(tmp_path):
 
 
 def test_relief_that_true_light_does_not_show_is_exaggerated(tmp_path):
-    """A roof of 0.1 degrees, against Lambert's law of one that is as steep as is told."""
+    """Shades of a roof of 0.1 degrees against Lambert's law for a roof exaggerated by the printed factor."""
     east = np.arange(300)
     roof = np.minimum(east, 299 - east)  # times 4 mm, 2 m a pixel: a slope of 0.002
     path = write_raster(tmp_path / "roof.tif", np.tile(roof, (300, 1)), scale=(0.004, 0.0))

@@ -132,7 +132,7 @@ def test_a_drive_begins_where_there_is_ground(tmp_path):
     assert done.returncode == 1 and "no place has data under a route" in done.stderr and "Traceback" not in done.stderr
 
 
-def test_coarse_ground_is_told_and_shown(tmp_path):
+def test_coarse_ground_is_reported_and_shown(tmp_path):
     heights = np.add.outer(np.linspace(0, 300, 60), np.linspace(0, 200, 60))
     done = run(tmp_path, "--terrain", raster(tmp_path / "coarse.tif", heights, 100.0))
     assert done.returncode == 0, done.stderr

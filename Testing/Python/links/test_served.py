@@ -60,7 +60,7 @@ def test_the_same_script_gives_the_same_bytes(tmp_path, field):
 
 
 def again(session):
-    """A script that a server with its scenes rejects: its names are taken."""
+    """A script that fails on a server that still has its scenes: its names are taken."""
     scene = session.scene()
     scene.load(DATA / "rover" / "rover.urdf", name="rover")
     scene.telemetry.add("rover/power", unit="W").value = 3.0

@@ -273,7 +273,7 @@ def test_wheels_stand_on_the_clipmap_that_is_drawn(scene):
 
 
 @pytest.mark.parametrize("mode", ("triangles", "clipmap"))
-def test_values_that_mark_no_data_are_told_and_can_be_stated(scene, tmp_path, mode):
+def test_values_that_mark_no_data_are_reported_and_can_be_stated(scene, tmp_path, mode):
     rng = np.random.default_rng(3)
     z = rng.uniform(0, 50, (80, 80)).astype(np.float32)
     z[30:40, 30:40] = -32768

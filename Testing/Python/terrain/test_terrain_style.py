@@ -66,6 +66,8 @@ def test_false_colour_has_the_colours_of_its_legend_whatever_the_light(scene, tm
     np.testing.assert_allclose(linear(half), 0.5 * linear(expected) + 0.5 * linear(ground_alone), atol=0.02)
     with pytest.raises(dspace.Error, match="shaded"):
         ground.set_style(**look, shaded=2)
+    with pytest.raises(dspace.Error, match="shaded"):
+        ground.change_style(color_by="height", shaded=2)
 
 
 def test_contours_lie_at_their_heights(slope):
@@ -194,6 +196,9 @@ def test_a_change_keeps_the_false_color_that_a_terrain_has_from_the_start(scene)
     assert before["color_by"] == "height"
     ground.change_style(grid=20.0)
     assert ground.style == before and given(ground).grid.interval == 20.0
+    assert before["shaded"]
+    ground.change_style(color_by="slope")  # has the defaults of its own: the colours of its legend
+    assert not ground.style["shaded"]
 
 
 def test_what_a_change_refuses_changes_nothing(scene, slope):

@@ -49,7 +49,7 @@ TEST(NearMatches, AreTheNamesThatMayBeMeant) {
   EXPECT_EQ(NearMatches("a1", {"a2", "a3", "a4", "a5"}), (Names{"a2", "a3", "a4"}));
 }
 
-TEST_F(FrameCommands, AMissingFrameIsToldWithNearMatches) {
+TEST_F(FrameCommands, AMissingFrameIsReportedWithNearMatches) {
   const FrameId rover = this->AddFrame("rover");
   this->AddFrame("mast", rover);
   v1::Command find;

@@ -198,7 +198,7 @@ TEST_F(Raster, NoDataGivenByHandIsNotMixedIntoReducedHeights) {
     }
 }
 
-TEST_F(Raster, ValuesThatLookLikeNoDataAreTold) {
+TEST_F(Raster, ValuesThatLookLikeNoDataAreReported) {
   const auto told = [&](const std::function<double(int, int, int)>& value,
                         std::optional<double> noData = {}, std::optional<double> scale = {}) {
     RasterFile file = this->File(40, 30);

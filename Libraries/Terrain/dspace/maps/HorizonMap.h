@@ -30,8 +30,8 @@ struct HorizonMapOptions {
 //
 // The result depends on the inputs alone, to the byte: neither on the threads nor on interruptions.
 // Returns false if control.progress ended it. Throws what TileFile, FillTiles and Survey throw,
-// Error(InvalidArgument) for an option out of range, and Error(Io) if the terrain changed
-// meanwhile.
+// Error(InvalidArgument) for an option out of range, and Error(Io) if the terrain changed while the
+// map was written.
 bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
                      const std::string& path, const MapControl& control = {});
 

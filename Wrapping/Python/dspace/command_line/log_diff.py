@@ -10,7 +10,8 @@ from dspace.recording.file import RecordingFile, commands_of
 NAMES = pb.Command.DESCRIPTOR.fields_by_number
 # Commands that name channels of telemetry by ids, and those after which ids name others.
 OF_CHANNELS = ("create_telemetry", "set_telemetry", "set_telemetry_texts", "set_telemetry_limits", "remove_telemetry")
-NAMING = {pb.Command.DESCRIPTOR.fields_by_name[name].number for name in ("create_telemetry", "remove_scene")}
+CHANNEL_KINDS, NAMING = ({pb.Command.DESCRIPTOR.fields_by_name[name].number for name in names}
+                         for names in (OF_CHANNELS, ("create_telemetry", "remove_scene")))
 UNNAMED = 1 << 62  # above this: ids that no command of the recording created
 
 
@@ -68,11 +69,12 @@ def compare(options):
         for a, b in zip(*starts):
             for payload, names in ((a, channels[0]), (b, channels[1])):
                 names.note(command_of(payload))
-            gap, where = difference(a, b, channels)
+            gap, where = difference(a, b, channels, channels[0].ids == channels[1].ids)
             if not gap <= options.tolerance:
                 print(f"they begin with different states: {where}")
                 return 1
             greatest = max(greatest, gap)
+        alike = channels[0].ids == channels[1].ids
         for a, b in itertools.zip_longest(one.rows(), two.rows()):
             if a is None or b is None:
                 longer, row = (options.file, a) if b is None else (options.other, b)
@@ -82,7 +84,8 @@ def compare(options):
             for row, names in ((a, channels[0]), (b, channels[1])):
                 if row.kind in NAMING:
                     names.note(command_of(row.payload))
-            gap, where = difference(a.payload, b.payload, channels)
+                    alike = channels[0].ids == channels[1].ids
+            gap, where = difference(a.payload, b.payload, channels, alike or a.kind not in CHANNEL_KINDS)
             if abs(a.time - b.time) > gap:
                 gap, where = abs(a.time - b.time), "the time"
             if not gap <= options.tolerance:
@@ -111,10 +114,11 @@ def other_file(one, two):
     return ""
 
 
-def difference(a, b, channels):
+def difference(a, b, channels, alike):
     """Returns the greatest difference of any number in two serialized commands and the name of its field. The
-    difference is infinite if they differ in anything else. channels: the Channels of both recordings."""
-    if a == b and channels[0].ids == channels[1].ids:
+    difference is infinite if they differ in anything else. channels: the Channels of both recordings. alike: whether
+    equal bytes mean the same channels."""
+    if a == b and alike:
         return 0.0, ""
     found = of_messages(*(each.put(command_of(payload)) for each, payload in zip(channels, (a, b))), "")
     # Different bytes may hold the same values, or fields that this version does not know.

@@ -49,7 +49,7 @@ def read_frames_file(path):
         document = json.loads(file.read_text(encoding="utf-8"))
     except FileNotFoundError as e:
         if file.parent.is_dir():
-            raise NotFound(f"folder '{file.parent}': it has no {FILE_NAME}; accepted: the folder of a {FILE_NAME}, or a "
+            raise NotFound(f"folder '{file.parent}': it has no {file.name}; accepted: the folder of a {FILE_NAME}, or a "
                            f"model file{_models_in(file.parent)}", label) from e
         raise NotFound(f"{label}: there is no such file", label) from e
     except OSError as e:

@@ -22,10 +22,9 @@ class TerrainStyle:
         from north; level ground keeps its color), or "normal" (the color is 0.5 + 0.5 n, where n is the normal in
         local east, north, up). range: (low, high) of the ramp (default: the terrain's heights, 0 to 45, 0 to 360).
         colors: of the ramp, evenly spaced (default: green through ochre to white; a ramp for the aspect is circular and
-        should end with its first color). opacity: of the ramp, 0 to 1. shaded: False
-        shows the colors of the legend, whatever the lights; with True the lights shade the ramp, and what lies over it
-        (levels, contours, grid). levels: opacity of a color for each clipmap
-        level, or a dict of opacity.
+        should end with its first color). opacity: of the ramp, 0 to 1. shaded: False shows the colors of the legend,
+        whatever the lights; with True the lights shade the ramp, and what lies over it (levels, contours, grid). levels:
+        opacity of a color for each clipmap level, or a dict of opacity.
 
         contours: metres of height between lines, or a dict of interval, width (pixels), color, opacity. grid: the same
         for lines along the map's axes, in map units; on a body meridians and parallels, in degrees. grid_labels: their
@@ -69,8 +68,8 @@ class TerrainStyle:
                      details=KEEP, tracks=KEEP, noise=KEEP, grid_labels=KEEP, shaded=KEEP):
         """Changes parts of the terrain's own style, and keeps all that is not given.
 
-        The arguments are those of set_style(). range, colors and opacity alone change the false color that is there;
-        None is their default. Another color_by has the defaults of its own. A dict of contours or grid changes what it
+        The arguments are those of set_style(). range, colors, opacity and shaded alone change the false color that is
+        there; None is the default of range and colors. Another color_by has the defaults of its own. A dict of contours or grid changes what it
         names. None removes a part (details: (), grid_labels: False); the labels go with their grid."""
         label = self._terrain._label()
         command = self._scene._command()
@@ -120,7 +119,7 @@ class TerrainStyle:
         style.ClearField("ramp")
         _put_ramp(style, self._scene, {}, label, color_by, None if range is KEEP else range,
                   None if colors is KEEP else colors, (old.opacity if same else 1.0) if opacity is KEEP else opacity,
-                  old.shaded if shaded is KEEP else bool(shaded))
+                  (old.shaded if same else False) if shaded is KEEP else shaded)
         if color_by is None or not there:
             return
         style.ramp.member.CopyFrom(old.member)

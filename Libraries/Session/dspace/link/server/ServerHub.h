@@ -127,7 +127,7 @@ struct Server::Hub {
   std::size_t taskBytes = 0;
   std::vector<v1::Command> recycled; // executed commands, whose memory is reused
   Writer writer;
-  std::uint64_t freshGeneration = 0; // for whose commands the state was removed last
+  std::uint64_t freshGeneration = 0; // of the writer that executed a command last
   std::set<ViewerStream*> viewers;
   std::uint64_t sequence = 0; // of published commands
   // The last snapshot, while it is up to date, and the earliest time of the next one.
