@@ -251,3 +251,17 @@ def test_as_a_process(wall):
     done = subprocess.run([sys.executable, "-m", "dspace", "los", "--terrain", str(wall), "--from", "50.5,20.5,2", "--to",
                            "150.5,20.5,60"], capture_output=True, text=True, env=os.environ)
     assert done.returncode == 0 and ": clear; range" in done.stdout, done.stderr
+
+
+def test_help_of_no_command_loads_numpy():
+    """`--help` answers at once: modules that take time are loaded when a command works."""
+    script = """
+import argparse, importlib, sys
+from dspace.command_line import WORDS
+for word in WORDS:
+    importlib.import_module(f"dspace.command_line.{word}").add_arguments(argparse.ArgumentParser())
+    slow = sorted({"numpy.core", "osgeo", "matplotlib", "vtkmodules"} & set(sys.modules))
+    assert not slow, (word, slow)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

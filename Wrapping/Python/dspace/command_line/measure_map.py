@@ -8,12 +8,12 @@ import sys
 import tempfile
 import time
 
-import numpy as np
-
 from dspace._core.files import atomic_write
-from dspace.command_line import Failed
+from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import figures, place_of, text_of
 from dspace.command_line.terrain_rasters import gdal_modules
+
+np = lazy("numpy")
 
 ENDINGS = (".tif", ".png", ".json", ".csv")
 MOST_CELLS = 1_000_000  # of a CSV file
