@@ -24,7 +24,7 @@ def measure_horizon():
 
 def measure_viewshed():
     """What a camera 2 m above Curiosity's landing site sees of Gale crater, over shaded relief."""
-    file = DATA / "terrain" / "mars_gale_mola_128ppd_m.tif"
+    file = pathlib.Path(DATA) / "terrain" / "mars_gale_mola_128ppd_m.tif"
     site = (137.4417, -4.5895)
     with dspace.Session() as session, tempfile.TemporaryDirectory() as folder:
         scene = session.scene()
