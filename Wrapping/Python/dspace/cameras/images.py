@@ -59,9 +59,9 @@ class SceneImages:
         `vantage`), whose axes the model's axes become; or with `frame` the model's own pose in that frame, such as a
         rover's body. size: (width, height), needed where the model has none; another size than the model's is rejected
         unless scale=True. Planes: as Viewport.capture, of physical objects; "color" is the sRGB of the radiance times
-        `exposure`, "range" is from the pixel's own entrance pupil. ornaments=True: labels, depths and angles also of
-        ornaments. Pixels that the lens has no ray for are black, 0, +infinity or NaN. samples: n x n per pixel of the
-        source views, 1 to 8. hide: fragments left out.
+        `exposure`, 1 at 1361 / pi W/m^2/sr (white in full Sun); "range" is from the pixel's own entrance pupil.
+        ornaments=True: labels, depths and angles also of ornaments. Pixels that the lens has no ray for are black, 0,
+        +infinity or NaN. samples: n x n per pixel of the source views, 1 to 8. hide: fragments left out.
 
         The image is drawn in tiles of `tile` pixels a side (64 to 4096), with the same bytes as in one; Ctrl-C stops
         between two. progress: called with the fraction that is done, 0 to 1.

@@ -27,7 +27,7 @@ class Conversion(NamedTuple):
     model: object  # CameraModel
     rms: float  # distance between the pixels of the two models [pixels]
     greatest: float  # the same, the greatest
-    covered: float  # the fraction of the image whose directions the new model sees
+    covered: float  # the fraction of the image that was fitted: of a type that distorts a plane, 80 degrees about the axis
     pupil_shift: float  # of the source, which the new model lacks [m]
 
 
