@@ -7,10 +7,12 @@
 #include <dspace/camera/ConvertModel.h>
 #include <dspace/camera/files/CameraFiles.h>
 #include <dspace/camera/files/CameraJson.h>
-#include <dspace/messages/ErrorReply.h>
 
+#include "ErrorAnswer.h"
 #include "vtkDoubleArray.h"
 #include "vtkObjectFactory.h"
+
+using dspace::session::ErrorAnswer;
 
 vtkStandardNewMacro(vtkDspaceCameraModel);
 
@@ -23,14 +25,6 @@ struct vtkDspaceCameraModel::Internals {
       throw dspace::Error(dspace::Error::Kind::Internal, "camera model", "none was read");
     }
     return this->models[this->selected];
-  }
-  // The error that `work` throws, serialized.
-  template<class Work> static std::string Answer(Work work) {
-    const dspace::v1::Reply failed = dspace::session::Catch([&] {
-      work();
-      return dspace::v1::Reply();
-    });
-    return failed.has_error() ? failed.SerializeAsString() : std::string();
   }
 };
 
@@ -61,14 +55,14 @@ void vtkDspaceCameraModel::PrintSelf(ostream& os, vtkIndent indent) {
 }
 
 std::string vtkDspaceCameraModel::Read(const std::string& path) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     this->Impl->models = dspace::ReadCameraModels(path);
     this->Impl->selected = 0;
   });
 }
 
 std::string vtkDspaceCameraModel::Parse(const std::string& json) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     this->Impl->models = dspace::ParseCameraJson(json, "camera model");
     this->Impl->selected = 0;
   });
@@ -85,7 +79,7 @@ void vtkDspaceCameraModel::Select(int index) {
 }
 
 std::string vtkDspaceCameraModel::Write(const std::string& path) {
-  return Internals::Answer([&] { dspace::WriteCameraModel(path, this->Impl->Get()); });
+  return ErrorAnswer([&] { dspace::WriteCameraModel(path, this->Impl->Get()); });
 }
 
 std::string vtkDspaceCameraModel::GetJson() {
@@ -93,14 +87,14 @@ std::string vtkDspaceCameraModel::GetJson() {
 }
 
 std::string vtkDspaceCameraModel::Scale(int width, int height) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     dspace::CameraModel& model = this->Impl->Get();
     model = model.Scaled(width, height);
   });
 }
 
 std::string vtkDspaceCameraModel::Convert(const std::string& type, vtkDoubleArray* values) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     const dspace::ConvertedModel to = dspace::ConvertModel(this->Impl->Get(), type);
     this->Impl->Get() = to.model;
     Put({to.rms, to.greatest, to.covered, to.pupilShift}, values);
@@ -108,7 +102,7 @@ std::string vtkDspaceCameraModel::Convert(const std::string& type, vtkDoubleArra
 }
 
 std::string vtkDspaceCameraModel::Check(vtkDoubleArray* values) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     const dspace::LensCheck check = dspace::CheckLens(this->Impl->Get());
     Put({check.field.limit_deg, check.withoutRay, check.halfAngle_deg, check.density[0],
          check.density[1], check.pupilShift, check.roundTrip},
@@ -122,7 +116,7 @@ std::string vtkDspaceCameraModel::GetFieldEnd() {
 
 std::string vtkDspaceCameraModel::Project(vtkDoubleArray* points, bool inCamera,
                                           vtkDoubleArray* pixels, vtkDoubleArray* derivatives) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     const dspace::CameraModel& model = this->Impl->Get();
     RequireComponents(points, 3);
     const vtkIdType count = points->GetNumberOfTuples();
@@ -148,7 +142,9 @@ std::string vtkDspaceCameraModel::Project(vtkDoubleArray* points, bool inCamera,
       to[0] = seen ? pixel.x() : nan;
       to[1] = seen ? pixel.y() : nan;
       if (slope) {
-        jacobian *= R_CM;
+        if (seen) {
+          jacobian *= R_CM;
+        }
         for (int k = 0; k < 6; ++k) {
           slope[k] = seen ? jacobian(k / 3, k % 3) : nan;
         }
@@ -160,7 +156,7 @@ std::string vtkDspaceCameraModel::Project(vtkDoubleArray* points, bool inCamera,
 
 std::string vtkDspaceCameraModel::Unproject(vtkDoubleArray* pixels, bool inCamera,
                                             vtkDoubleArray* rays) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     const dspace::CameraModel& model = this->Impl->Get();
     RequireComponents(pixels, 2);
     const vtkIdType count = pixels->GetNumberOfTuples();

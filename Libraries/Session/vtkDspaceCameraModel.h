@@ -3,9 +3,9 @@
  * @brief A camera model with its lens, for Python. It needs no session.
  *
  * Wraps <dspace/camera/CameraModel.h>, ConvertModel.h and files/CameraFiles.h, which document
- * units, frames and errors. Methods that return a string give a serialized Reply with the error, or
- * an empty string. No method throws a C++ exception. Immutable after a successful call, other calls
- * may come from several threads.
+ * units, frames and errors. Unless stated otherwise, methods that return a string return a
+ * serialized Reply with the error, or an empty string. No method throws a C++ exception. Several
+ * threads may call Write, Check, Project and Unproject while none calls the other methods.
  */
 #ifndef vtkDspaceCameraModel_h
 #define vtkDspaceCameraModel_h

@@ -6,11 +6,13 @@
 
 #include <dspace/Error.h>
 #include <dspace/camera/sensor/Sensor.h>
-#include <dspace/messages/ErrorReply.h>
 
+#include "ErrorAnswer.h"
 #include "vtkFloatArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkUnsignedShortArray.h"
+
+using dspace::session::ErrorAnswer;
 
 vtkStandardNewMacro(vtkDspaceSensor);
 
@@ -22,14 +24,6 @@ struct vtkDspaceSensor::Internals {
       throw dspace::Error(dspace::Error::Kind::Internal, "sensor", "it has no settings");
     }
     return *this->sensor;
-  }
-  // The error that `work` throws, serialized.
-  template<class Work> static std::string Answer(Work work) {
-    const dspace::v1::Reply failed = dspace::session::Catch([&] {
-      work();
-      return dspace::v1::Reply();
-    });
-    return failed.has_error() ? failed.SerializeAsString() : std::string();
   }
   static std::vector<float> List(vtkFloatArray* from) {
     if (!from) {
@@ -55,7 +49,7 @@ void vtkDspaceSensor::PrintSelf(ostream& os, vtkIndent indent) {
 }
 
 std::string vtkDspaceSensor::Set(const std::string& json) {
-  return Internals::Answer([&] { this->Impl->sensor.emplace(dspace::ParseSensorJson(json)); });
+  return ErrorAnswer([&] { this->Impl->sensor.emplace(dspace::ParseSensorJson(json)); });
 }
 
 int vtkDspaceSensor::GetChannels() {
@@ -73,7 +67,7 @@ double vtkDspaceSensor::GetResponse(int channel) {
 
 std::string vtkDspaceSensor::Electrons(vtkFloatArray* radiance, int width, int height,
                                        vtkFloatArray* falloff, vtkFloatArray* electrons) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     Internals::Put(this->Impl->Get().Electrons(Internals::List(radiance), width, height,
                                                Internals::List(falloff)),
                    electrons);
@@ -82,7 +76,7 @@ std::string vtkDspaceSensor::Electrons(vtkFloatArray* radiance, int width, int h
 
 std::string vtkDspaceSensor::Counts(vtkFloatArray* electrons, int width, int height, int x, int y,
                                     unsigned int frame, vtkUnsignedShortArray* counts) {
-  return Internals::Answer([&] {
+  return ErrorAnswer([&] {
     Internals::Put(this->Impl->Get().Counts(Internals::List(electrons), width, height, x, y, frame),
                    counts);
   });

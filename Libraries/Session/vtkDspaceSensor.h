@@ -3,7 +3,7 @@
  * @brief A detector, for Python: radiance to electrons and counts. It needs no session.
  *
  * Wraps <dspace/camera/sensor/Sensor.h>, which documents units and errors. Methods that return a
- * string give a serialized Reply with the error, or an empty string. No method throws.
+ * string return a serialized Reply with the error, or an empty string. No method throws.
  */
 #ifndef vtkDspaceSensor_h
 #define vtkDspaceSensor_h

@@ -126,6 +126,10 @@ def test_conversion_states_its_residual():
     (lambda: dspace.CameraModel("pinhole", focal=(0, 1), center=(0, 0)), dspace.InvalidArgument, "focal length is 0"),
     (lambda: dspace.CameraModel("brown", focal=(1, 1), center=(0, 0), radial=(1,) * 7), dspace.InvalidArgument, "1 to 6"),
     (lambda: dspace.CameraModel("ucm", focal=(1, 1), center=(0, 0), alpha=2), dspace.InvalidArgument, "alpha is 2"),
+    (lambda: dspace.CameraModel("cahv", C=(0, 0, 0), A=(0, 0, 1), H=(9, 0, 0), V=(0, 9, 0), position=(1, 2, 3)),
+     dspace.InvalidArgument, "'position' is unknown"),
+    (lambda: dspace.CameraModel("pinhole", focal=(1, 1), center=(0, 0), C=(1, 2, 3)), dspace.InvalidArgument, "'C' is unknown"),
+    (lambda: dspace.CameraModel("pinhole", size=(0, 5), focal=(1, 1), center=(0, 0)), dspace.InvalidArgument, "1 to 1000000"),
     (lambda: dspace.CameraModel(3), dspace.WrongType, "the type is 3"),
 ])
 def test_no_lens(make, kind, message):

@@ -130,12 +130,12 @@ def test_tiles_make_the_same_bytes(session, camera, name):
     scene.add_plane(50, 50, position=(0, 0, 6), color="gray")
     wanted = dict(radiance=True, range=True, label=True, incidence=True, lit_fraction=True)
     whole = scene.simulate_image(model, camera, **wanted)
-    told = []
-    tiled = scene.simulate_image(model, camera, tile=100, progress=told.append, **wanted)
+    done = []
+    tiled = scene.simulate_image(model, camera, tile=100, progress=done.append, **wanted)
     for plane in whole:
         if plane != "lens":
             np.testing.assert_array_equal(whole[plane], tiled[plane])
-    assert told == sorted(told) and told[-1] == 1.0 and len(told) == 12
+    assert done == sorted(done) and done[-1] == 1.0 and len(done) == 12
 
 
 def test_ranges_are_those_of_the_rays(session, camera):
@@ -203,13 +203,16 @@ def test_a_server_draws_the_same(anywhere):
     centers, spheres = add_targets(scene, model)
     planes = scene.simulate_image(model, label=True, range=True)
     assert set(np.unique(planes["label"])) == {sphere.id for sphere in spheres} | {0}
-    np.testing.assert_allclose(scene.project_points(centers, model), model.project(centers), atol=1e-9)
-    planes["color"][:] = 7  # arrays are of one's own
+    pixels = scene.project_points(centers, model)
+    np.testing.assert_allclose(pixels, model.project(centers), atol=1e-9)
+    pixels[:] = planes["color"][:] = 7  # arrays are the caller's own
 
 
 @pytest.mark.parametrize("wrong, kind, message", [
     (dict(size=(640, 480)), dspace.InvalidArgument, "accepted: its own, 320 x 240"),
     (dict(size=(640, 640), scale=True), dspace.InvalidArgument, "same shape"),
+    (dict(size=(0, 0)), dspace.InvalidArgument, r"the size is \(0, 0\); accepted: 1 to 1000000 pixels"),
+    (dict(size=(-320, 240)), dspace.InvalidArgument, r"the size is \(-320, 240\)"),
     (dict(camera="none"), dspace.NotFound, "none"),
     (dict(color=False), dspace.InvalidArgument, "requests no plane"),
     (dict(samples=0), dspace.InvalidArgument, "samples"),

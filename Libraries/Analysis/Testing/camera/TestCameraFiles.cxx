@@ -9,6 +9,7 @@
 #include <dspace/Error.h>
 #include <dspace/camera/ConvertModel.h>
 #include <dspace/camera/files/CameraFiles.h>
+#include <dspace/camera/files/ModelText.h>
 
 #include "TemporaryFolder.h"
 #include "TestData.h"
@@ -190,6 +191,115 @@ TEST(CameraFiles, ReadOpencvAndRos) {
   Rejected(Write(folder, "f.yml",
                  "camera_matrix: [500, 0, 320, 0, 500, 240, 0, 0, 1]\ndistortion_model: odd\n"),
            Error::Kind::Unsupported);
+  // Cut before the coefficients: not a pinhole.
+  const std::string cut = Rejected(
+      Write(folder, "g.yml",
+            "camera_matrix: [500, 0, 320, 0, 500, 240, 0, 0, 1]\ndistortion_model: plumb_bob\n"),
+      Error::Kind::Corrupt);
+  EXPECT_NE(cut.find("it has no 'distortion_coefficients'"), std::string::npos) << cut;
+}
+
+TEST(CameraFiles, ReadTheTypeOfACahvoreFromALabel) {
+  const TemporaryFolder folder;
+  const std::string head =
+      "PDS_VERSION_ID = PDS3\nOBJECT = IMAGE\n LINES = 480\n LINE_SAMPLES = 640\n"
+      "END_OBJECT = IMAGE\nGROUP = GEOMETRIC_CAMERA_MODEL\n MODEL_TYPE = CAHVORE\n"
+      " MODEL_COMPONENT_1 = (0,0,0)\n MODEL_COMPONENT_2 = (0,0,1)\n"
+      " MODEL_COMPONENT_3 = (500,0,320)\n MODEL_COMPONENT_4 = (0,500,240)\n"
+      " MODEL_COMPONENT_5 = (0,0,1)\n MODEL_COMPONENT_6 = (0,-0.02,0)\n"
+      " MODEL_COMPONENT_7 = (0,0,0)\n MODEL_COMPONENT_8 = ";
+  const std::string tail = "\n MODEL_COMPONENT_9 = 0.37\nEND_GROUP = GEOMETRIC_CAMERA_MODEL\nEND\n";
+  const double t = 0.4; // [rad] from the axis
+  for (const auto& [kind, chi] : {std::pair("1.0", std::tan(t)), std::pair("2.0", t),
+                                  std::pair("3", std::tan(0.37 * t) / 0.37)}) {
+    const CameraModel model = ReadCameraModel(Write(folder, "a.lbl", head + kind + tail));
+    Eigen::Vector2d pixel;
+    ASSERT_TRUE(model.Project({2.0 * std::sin(t), 0.0, 2.0 * std::cos(t)}, pixel)) << kind;
+    EXPECT_NEAR(pixel.x(), 320.0 + 500.0 * chi * (1.0 - 0.02 * chi * chi), 1e-9) << kind;
+    EXPECT_NEAR(pixel.y(), 240.0, 1e-9) << kind;
+  }
+  Rejected(Write(folder, "b.lbl", head + "4.0" + tail), Error::Kind::Unsupported);
+}
+
+TEST(CameraFiles, ReadMrcalsCahvorAndCahvore) {
+  const TemporaryFolder folder;
+  const double a = 0.02, b = -0.01; // the direction of O
+  const Eigen::Vector3d O(std::sin(a) * std::cos(b), std::sin(b), std::cos(a) * std::cos(b));
+  for (const auto& [name, more] :
+       {std::pair("CAHVOR", ""), std::pair("CAHVORE_linearity=0.37", ", 0.001, 0.002, 0.003")}) {
+    const CameraModel model = ReadCameraModel(Write(
+        folder, "a.cameramodel",
+        std::string("{ 'lensmodel': 'LENSMODEL_") + name +
+            "', # 'imagersize': [ 1, 1 ]\n 'intrinsics': [ 500, 510, 320, 240, 0.02, -0.01, 0, "
+            "-0.05, 0.01" +
+            more + " ],\n 'extrinsics': [ 0, 0, 0, 1, 2, 3 ],\n 'imagersize': [ 640, 480 ] }\n"));
+    EXPECT_EQ(model.width, 640);
+    // A point on O is not distorted: p_C = p_M + (1, 2, 3).
+    Eigen::Vector2d pixel;
+    ASSERT_TRUE(model.Project(2.0 * O - Eigen::Vector3d(1, 2, 3), pixel)) << name;
+    EXPECT_NEAR(pixel.x(), 320.0 + 500.0 * std::tan(a), 1e-9) << name;
+    EXPECT_NEAR(pixel.y(), 240.0 + 510.0 * std::tan(b) / std::cos(a), 1e-9) << name;
+    const LensValues values = model.lens->Values();
+    EXPECT_EQ(values.at("R"), (std::vector<double>{0, -0.05, 0.01}));
+    if (values.count("E")) {
+      EXPECT_EQ(values.at("E"), (std::vector<double>{0.001, 0.002, 0.003}));
+      EXPECT_EQ(values.at("linearity")[0], 0.37);
+    }
+    WriteCameraModel(folder / "b.cameramodel", model);
+    ExpectEqual(model, ReadCameraModel(folder / "b.cameramodel"), 1e-9);
+  }
+}
+
+TEST(CameraFiles, ReadJson) {
+  const TemporaryFolder folder;
+  const CameraModel mast = ReadCameraModel(
+      Write(folder, "a.json",
+            "{\"name\": \"mast\", \"frame\": \"body\", \"model\": {\"type\": \"pinhole\", "
+            "\"width\": 640, \"height\": 480, \"focal\": [500, 400], \"center\": [320, 240], "
+            "\"position\": [1, 2, 3], \"rotation\": [0.5, -0.5, 0.5, -0.5]}}"));
+  EXPECT_EQ(mast.name, "mast");
+  EXPECT_EQ(mast.frame, "body");
+  EXPECT_EQ(mast.height, 480);
+  Eigen::Vector2d pixel; // it looks along X; Y is to its left, Z up
+  ASSERT_TRUE(mast.Project({11.0, 1.0, 2.5}, pixel));
+  EXPECT_NEAR(pixel.x(), 320.0 + 500.0 * 0.1, 1e-9);
+  EXPECT_NEAR(pixel.y(), 240.0 + 400.0 * 0.05, 1e-9);
+
+  const std::string vectors = "{\"model\": {\"type\": \"cahvore\", \"C\": [0, 0, 0], "
+                              "\"A\": [0, 0, 1], \"H\": [500, 0, 320], \"V\": [0, 500, 240], "
+                              "\"O\": [0, 0, 1], \"R\": [0, 0, 0], \"E\": [0, 0, 0]";
+  for (const auto& [kind, linearity] : {std::pair(", \"pupilType\": 1", 1.0),
+                                        std::pair(", \"pupilType\": 2, \"linearity\": 0.7", 0.0),
+                                        std::pair(", \"pupilType\": 3, \"linearity\": 0.37", 0.37),
+                                        std::pair(", \"linearity\": -0.2", -0.2)}) {
+    const CameraModel model = ReadCameraModel(Write(folder, "b.json", vectors + kind + "}}"));
+    EXPECT_EQ(model.lens->Values().at("linearity")[0], linearity) << kind;
+  }
+  Rejected(Write(folder, "c.json", vectors + "}}"), Error::Kind::Corrupt);
+  Rejected(Write(folder, "d.json", vectors + ", \"pupilType\": 4}}"), Error::Kind::Corrupt);
+  // C is its position: another would be lost.
+  const std::string twice =
+      Rejected(Write(folder, "e.json", vectors + ", \"pupilType\": 1, \"position\": [1, 2, 3]}}"),
+               Error::Kind::InvalidArgument);
+  EXPECT_NE(twice.find("'position' is unknown"), std::string::npos) << twice;
+}
+
+TEST(CameraFiles, NumbersOfTextsAreExact) {
+  EXPECT_EQ(ExactText(0.1), "0.1");
+  EXPECT_EQ(ExactText(-2.5e-7), "-2.5e-07");
+  EXPECT_EQ(ExactTexts({1.0, 0.25}, ", "), "1, 0.25");
+  EXPECT_EQ(NumberIn(ExactText(1.0 / 3.0), "text"), 1.0 / 3.0);
+  EXPECT_EQ(NumbersIn(" (1, -2.5e1)[+3]\r\n{ 4 }", "text"), (std::vector<double>{1, -25, 3, 4}));
+  for (const char* word : {"", "1x", "0x10", "inf", "nan", "1e999", "--1"}) {
+    EXPECT_THROW(NumberIn(word, "text"), Error) << word;
+  }
+  EXPECT_EQ(TrimmedText(" \t a b \r\n"), "a b");
+  EXPECT_EQ(TrimmedText(" \n"), "");
+  EXPECT_EQ(UpperText("Cahvore3_a"), "CAHVORE3_A");
+  EXPECT_EQ(ImageSide(1e6, "the width", "text"), 1000000);
+  for (const double side : {0.0, 1.5, 1e6 + 1.0, std::nan("")}) {
+    EXPECT_THROW(ImageSide(side, "the width", "text"), Error) << side;
+  }
 }
 
 TEST(CameraFiles, WriteWhatTheyRead) {

@@ -9,6 +9,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/camera/CameraModel.h>
+#include <dspace/camera/MonotoneRange.h>
 #include <dspace/camera/files/CameraFiles.h>
 
 #include "TestData.h"
@@ -133,6 +134,130 @@ TEST(LensModels, RaysArePixelsBackwards) {
 Eigen::Vector2d Seen(const LensValues& v, const Eigen::Vector3d& q) {
   const Eigen::Vector3d A(v.at("A").data()), H(v.at("H").data()), V(v.at("V").data());
   return Eigen::Vector2d(q.dot(H), q.dot(V)) / q.dot(A);
+}
+
+// The pixel of a point by the published formula of its lens. Its direction is also given by the
+// angle from the axis and the azimuth [rad].
+Eigen::Vector2d PublishedPixel(const Case& lens, const Eigen::Vector3d& p, double angle,
+                               double azimuth) {
+  const LensValues& v = lens.values;
+  const auto two = [&v](const char* name) { return Eigen::Vector2d(v.at(name).data()); };
+  const double x = p.x() / p.z(), y = p.y() / p.z();
+  if (lens.type == "cahv") {
+    return Seen(v, p);
+  }
+  if (lens.type == "cahvor") {
+    const Eigen::Vector3d O(v.at("O").data());
+    const std::vector<double>& R = v.at("R");
+    const Eigen::Vector3d across = p - p.dot(O) * O;
+    const double tau = across.squaredNorm() / (p.dot(O) * p.dot(O));
+    return Seen(v, p + (R[0] + R[1] * tau + R[2] * tau * tau) * across);
+  }
+  if (lens.type == "orthographic") {
+    return two("scale").cwiseProduct(p.head<2>()) + two("center");
+  }
+  if (lens.type == "owen") { // AAS 11-215: millimetres, then the matrix
+    const double f = v.at("focal_length")[0];
+    const std::vector<double>&K = v.at("radial"), &T = v.at("tangential"), &W = v.at("pinwheel"),
+          &M = v.at("matrix");
+    const double X = f * x, Y = f * y, R = std::hypot(X, Y);
+    const double along = K[0] * R * R + K[1] * std::pow(R, 4) + T[0] * Y + T[1] * X;
+    const double around = W[0] * R + W[1] * std::pow(R, 3);
+    const double u = X + along * X - around * Y, w = Y + along * Y + around * X;
+    return two("center") + Eigen::Vector2d(M[0] * u + M[1] * w, M[2] * u + M[3] * w);
+  }
+  Eigen::Vector2d d(x, y);
+  if (lens.type == "brown") { // OpenCV's documentation of calib3d
+    const std::vector<double>&k = v.at("radial"), &t = v.at("tangential"), &s = v.at("prism"),
+          &tilt = v.at("tilt_deg");
+    const double r = std::hypot(x, y), r2 = std::pow(r, 2), r4 = std::pow(r, 4),
+                 r6 = std::pow(r, 6);
+    const double g =
+        (1.0 + k[0] * r2 + k[1] * r4 + k[2] * r6) / (1.0 + k[3] * r2 + k[4] * r4 + k[5] * r6);
+    const double u = x * g + 2.0 * t[0] * x * y + t[1] * (r2 + 2.0 * x * x) + s[0] * r2 + s[1] * r4;
+    const double w = y * g + t[0] * (r2 + 2.0 * y * y) + 2.0 * t[1] * x * y + s[2] * r2 + s[3] * r4;
+    const Eigen::Matrix3d R = (Eigen::AngleAxisd(-tilt[1] * Degree, Eigen::Vector3d::UnitY()) *
+                               Eigen::AngleAxisd(-tilt[0] * Degree, Eigen::Vector3d::UnitX()))
+                                  .toRotationMatrix();
+    const Eigen::Vector3d q = R * Eigen::Vector3d(u, w, 1.0);
+    d << R(2, 2) * q.x() / q.z() - R(0, 2), R(2, 2) * q.y() / q.z() - R(1, 2);
+  } else if (lens.type == "equidistant" || lens.type == "kannala_brandt") {
+    double radius = angle;
+    if (v.count("radial")) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        radius += v.at("radial")[i] * std::pow(angle, 3.0 + 2.0 * double(i));
+      }
+    }
+    d << radius * std::cos(azimuth), radius * std::sin(azimuth);
+  } else if (lens.type == "ucm") { // Mei's mirror
+    const double xi = v.at("alpha")[0] / (1.0 - v.at("alpha")[0]);
+    const Eigen::Vector3d s = p.normalized();
+    d = (1.0 + xi) / (s.z() + xi) * s.head<2>();
+  } else if (lens.type == "eucm") {
+    const double alpha = v.at("alpha")[0], beta = v.at("beta")[0];
+    const double root = std::sqrt(beta * (p.x() * p.x() + p.y() * p.y()) + p.z() * p.z());
+    d = p.head<2>() / (alpha * root + (1.0 - alpha) * p.z());
+  } else if (lens.type == "double_sphere") { // from one unit sphere to the next, then to the plane
+    const double alpha = v.at("alpha")[0];
+    Eigen::Vector3d s = p.normalized();
+    s.z() += v.at("xi")[0];
+    s.normalize();
+    d = s.head<2>() / (alpha + (1.0 - alpha) * s.z());
+  }
+  return two("focal").cwiseProduct(d) + two("center");
+}
+
+TEST(LensModels, PixelsAreThoseOfThePublishedFormulas) {
+  std::vector<Case> cases = Cases();
+  cases.push_back({"orthographic", {{"scale", {50.0, 60.0}}, {"center", {10.0, 20.0}}}, 80});
+  int compared = 0;
+  for (const Case& each : cases) {
+    if (each.type == "cahvore") {
+      continue; // CahvoreIsGenneryFromTheRaysSide
+    }
+    const LensPtr lens = Make(each.type, each.values);
+    const LensPtr large = lens->Scaled(2.0, 3.0);
+    for (int i = 1; i <= 8; ++i) {
+      const double angle = each.widest_deg * i / 8.0;
+      for (double azimuth = 10.0; azimuth < 360.0; azimuth += 50.0) {
+        const Eigen::Vector3d p = 2.5 * Direction(angle, azimuth);
+        const Eigen::Vector2d expected = PublishedPixel(each, p, angle * Degree, azimuth * Degree);
+        Eigen::Vector2d pixel, scaled;
+        ASSERT_TRUE(lens->Project(p, pixel) && large->Project(p, scaled))
+            << each.type << " at " << angle << " deg, " << azimuth;
+        EXPECT_LT((pixel - expected).norm(), 1e-9)
+            << each.type << " at " << angle << " deg, " << azimuth;
+        // Pixel centres are at integers: (e + 0.5) s - 0.5.
+        EXPECT_NEAR(scaled.x(), 2.0 * expected.x() + 0.5, 1e-8) << each.type;
+        EXPECT_NEAR(scaled.y(), 3.0 * expected.y() + 1.0, 1e-8) << each.type;
+        ++compared;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 11 * 8 * 7);
+}
+
+TEST(LensModels, MonotoneRangesAndTheirRootsAreClosedForms) {
+  const auto slopeOf = [](double t) { return 1.0 - t * t; }; // of t - t³ / 3
+  EXPECT_NEAR(MonotoneRange(3.0, slopeOf), 1.0, 1e-12);
+  EXPECT_EQ(MonotoneRange(0.5, slopeOf), 0.5);
+  EXPECT_EQ(MonotoneRange(3.0, [](double) { return -1.0; }), 0.0);
+  const auto cubic = [](double t, double& slope) {
+    slope = 1.0 - t * t;
+    return t - t * t * t / 3.0;
+  };
+  for (const double value : {1e-9, 0.2, 0.5, 0.66}) { // with t = 2 sin a: 2 / 3 sin 3 a
+    EXPECT_NEAR(SolveMonotone(value, 1.0, cubic), 2.0 * std::sin(std::asin(1.5 * value) / 3.0),
+                1e-13);
+  }
+  int calls = 0;
+  const auto straight = [&calls](double t, double& slope) {
+    ++calls;
+    slope = 1.0;
+    return t;
+  };
+  EXPECT_EQ(SolveMonotone(0.7, M_PI, straight), 0.7);
+  EXPECT_EQ(calls, 1); // every pixel of an equidistant lens is looked up so
 }
 
 // A point of the ray that leaves the pupil under an angle from O, and its pixel: Gennery's model
@@ -364,12 +489,15 @@ TEST(LensModels, RejectWhatIsNoLens) {
   has(Rejected("cahv", changed("H", {1000, std::nan(""), 0})), "finite");
   has(Rejected("pinhole", {{"focal", {0.0, 990.0}}, {"center", {1, 1}}}), "focal length is 0");
   has(Rejected("brown", With(Plain, {{"radial", {1, 2, 3, 4, 5, 6, 7}}})), "1 to 6");
+  has(Rejected("brown", With(Plain, {{"tangential", {1}}})), "'tangential' has 1 numbers");
+  EXPECT_EQ(Make("brown", With(Plain, {{"radial", {-0.1}}}))->Values().at("radial"),
+            (std::vector<double>{-0.1, 0, 0, 0, 0, 0})); // the others are zero
   has(Rejected("ucm", With(Plain, {{"alpha", {1.5}}})), "alpha is 1.5");
   has(Rejected("ucm", Plain), "'alpha' has 0 numbers");
   has(Rejected("lens9", Plain, Error::Kind::Unsupported), "accepted: brown, cahv");
 }
 
-TEST(LensModels, ACheckTellsTheImageThatFolds) {
+TEST(LensModels, ACheckFindsTheImageThatFolds) {
   CameraModel model;
   model.name = "wide";
   model.width = 3000;

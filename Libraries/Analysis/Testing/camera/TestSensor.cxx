@@ -226,6 +226,9 @@ TEST(Sensor, RejectsWhatIsNoDetector) {
               s.bands_nm = {{600, 500}};
             }).find("600 to 500 nm"),
             std::string::npos);
+  for (const float electrons : {std::nanf(""), HUGE_VALF}) {
+    EXPECT_THROW(Sensor(Gray()).Counts({electrons}, 1, 1, 0, 0, 0), Error);
+  }
   EXPECT_THROW(ParseSensorJson("{\"exposure\": 1}"), Error);
   EXPECT_THROW(ParseSensorJson("{\"bits\": 1.5}"), Error);
   EXPECT_EQ(ParseSensorJson("{\"gain\": 3, \"seed\": 18446744073709551615}").seed,

@@ -115,11 +115,7 @@ LensValues BrownLens::Values() const {
 }
 
 LensPtr BrownLens::Scaled(double x, double y) const {
-  LensValues values = this->Values();
-  values["focal"][0] *= x;
-  values["focal"][1] *= y;
-  values["center"] = {ScaledPosition(this->Center().x(), x), ScaledPosition(this->Center().y(), y)};
-  return MakeLens(this->Type(), values, "scaled lens");
+  return ScaledByFocal(*this, x, y);
 }
 
 } // namespace dspace

@@ -27,7 +27,7 @@ struct LensField {
   // more on some sides.
   double limit_deg = 180.0;
   // What ends the field: "" (nothing: all directions), "the plane of the lens", "a fold" (farther
-  // out the image would turn back), "the end of the model".
+  // out the image would turn back), "the end of the model", "parallel rays".
   std::string end;
 };
 
@@ -71,8 +71,7 @@ using LensPtr = std::shared_ptr<const LensModel>;
 // - kannala_brandt: focal, center, [radial (1 to 4)]; equidistant: focal, center
 // - ucm: focal, center, alpha; eucm: also beta; double_sphere: focal, center, xi, alpha
 // - owen: focal_length (1, millimetres), matrix (4: kx, kxy, kyx, ky, pixels per millimetre),
-// center,
-//   [radial (2)], [tangential (2: y, x)], [pinwheel (2)]
+//   center, [radial (1 to 2)], [tangential (2: y, x)], [pinwheel (1 to 2)]
 // - orthographic: scale (2, pixels per metre), center
 // - cahv: A, H, V (3 each); cahvor: also O, R; cahvore: also E, linearity (1)
 LensPtr MakeLens(const std::string& type, const LensValues& values, const std::string& label);

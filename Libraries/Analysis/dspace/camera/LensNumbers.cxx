@@ -76,4 +76,13 @@ Eigen::Vector2d TakeFocal(LensNumbers& numbers) {
   return focal;
 }
 
+LensPtr ScaledByFocal(const LensModel& lens, double x, double y) {
+  LensValues values = lens.Values();
+  values["focal"][0] *= x;
+  values["focal"][1] *= y;
+  std::vector<double>& center = values["center"];
+  center = {ScaledPosition(center[0], x), ScaledPosition(center[1], y)};
+  return MakeLens(lens.Type(), values, "scaled lens");
+}
+
 } // namespace dspace

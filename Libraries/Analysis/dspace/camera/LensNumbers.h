@@ -36,6 +36,9 @@ private:
 // Focal lengths in pixels: positive.
 Eigen::Vector2d TakeFocal(LensNumbers& numbers);
 
+// What Scaled() returns for a lens whose size in pixels is in its numbers `focal` and `center`.
+LensPtr ScaledByFocal(const LensModel& lens, double x, double y);
+
 } // namespace dspace
 
 #endif

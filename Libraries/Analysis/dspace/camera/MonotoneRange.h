@@ -7,8 +7,8 @@
 
 namespace dspace {
 
-// The first place in [0, end] where the slope is not positive, or `end`. Looked for at 2,000
-// places, then by bisection.
+// The first place in [0, end] where the slope is not positive, or `end`. The search looks at 2,000
+// places, then bisects.
 template<class Slope> double MonotoneRange(double end, Slope slope) {
   constexpr int Places = 2000;
   double inside = 0.0;
@@ -26,13 +26,17 @@ template<class Slope> double MonotoneRange(double end, Slope slope) {
   return end;
 }
 
-// Where f(t, slope), which grows from 0 in [0, end], is `value`: Newton's steps within a bracket.
+// Where f(t, slope), which grows from 0 in [0, end] and sets its slope, is `value`: Newton's steps
+// within a bracket.
 template<class Function> double SolveMonotone(double value, double end, Function f) {
   double low = 0.0, high = end;
   double t = std::min(value, end);
   for (int i = 0; i < 100; ++i) {
     double slope = 1.0;
     const double error = f(t, slope) - value;
+    if (error == 0.0) {
+      return t;
+    }
     (error > 0.0 ? high : low) = t;
     double next = t - error / slope;
     if (!(next > low && next < high)) {

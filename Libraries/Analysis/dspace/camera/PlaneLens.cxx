@@ -60,6 +60,11 @@ void PlaneLens::FindFold(bool round, const std::string& label) {
     Reject(label, "its distortion folds the image at the axis; accepted: coefficients that keep it "
                   "one to one there");
   }
+  // The radius of d grows up to the fold of a round lens: a pixel beyond needs no search.
+  Eigen::Vector2d edge;
+  if (round && this->Distort(Eigen::Vector2d(this->Nearest_, 0.0), edge, nullptr)) {
+    this->Edge_ = edge.norm();
+  }
 }
 
 LensField PlaneLens::Field() const {
@@ -144,11 +149,14 @@ bool PlaneLens::Refine(const Eigen::Vector2d& sought, Eigen::Vector2d& n) const 
 }
 
 bool PlaneLens::Undistort(const Eigen::Vector2d& sought, Eigen::Vector2d& n) const {
+  const double length = sought.norm();
+  if (!(length < this->Edge_)) {
+    return false;
+  }
   n = sought;
   if (this->Refine(sought, n)) {
     return true;
   }
-  const double length = sought.norm();
   if (length == 0.0) {
     n.setZero();
     return this->Refine(sought, n);

@@ -2,6 +2,7 @@
 #ifndef DSPACE_CAMERA_PLANE_LENS_H
 #define DSPACE_CAMERA_PLANE_LENS_H
 
+#include <cmath>
 #include <vector>
 
 #include <dspace/camera/LensModel.h>
@@ -43,6 +44,7 @@ private:
   std::vector<double> Fold_; // radius by azimuth; one: for all
   double Nearest_ = 0.0;     // of Fold_
   double Farthest_ = 0.0;
+  double Edge_ = HUGE_VAL; // of a round lens: the radius of d at the fold
   bool Folds_ = false;
 };
 

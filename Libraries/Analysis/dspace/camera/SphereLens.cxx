@@ -127,11 +127,7 @@ LensValues SphereLens::Values() const {
 }
 
 LensPtr SphereLens::Scaled(double x, double y) const {
-  LensValues values = this->Values();
-  values["focal"][0] *= x;
-  values["focal"][1] *= y;
-  values["center"] = {ScaledPosition(this->Center_.x(), x), ScaledPosition(this->Center_.y(), y)};
-  return MakeLens(this->Type(), values, "scaled lens");
+  return ScaledByFocal(*this, x, y);
 }
 
 } // namespace dspace

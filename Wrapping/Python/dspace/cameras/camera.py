@@ -69,8 +69,9 @@ class Camera(Strict):
         Both are in axes that turn with the frame's "heading" only, with the "followed" frame, or
         not at all ("parent"). up: the direction of the picture's top, in the parent's axes (default: Z, or Y where
         offset and target are above each other). vertical: what is upright in place of the parent's Z and of `up`: a
-        Terrain (its vertical where `frame` is), or the Frame of a body (away from its origin, the centre). smoothing_s: time constant of the lag, in simulation time; when that
-        goes back (a playback that jumps), the camera is in place at once."""
+        Terrain (its vertical where `frame` is), or the Frame of a body (away from its origin, the centre). smoothing_s:
+        time constant of the lag, in simulation time; when that goes back (a playback that jumps), the camera is in place
+        at once."""
         command = self._command()
         command.set_camera.mount.frame = self._scene._frame_id(frame)
         put_chase(command.set_camera.mount.chase, offset, target, axes, up, smoothing_s, self._label, vertical, self._scene)
@@ -89,10 +90,10 @@ class Camera(Strict):
     def fit(self, things=None, margin=0.1, aspect=16 / 9):
         """Moves the camera, without turning it, so that `things` are whole in its picture and fill it.
 
-        things: a GraphicsObject, Frame, Robot, Model or Assembly, or several; a frame means the visible objects on it and below. None: all
-        visible objects. margin: free space on each side, as a fraction of their size, 0 to 10. aspect: width / height
-        of the picture. An orthographic camera gets another height. A camera that chased or pointed stands still after
-        this, in the frame that it was in."""
+        things: a GraphicsObject, Frame, Robot, Model or Assembly, or several; a frame means the visible objects on it
+        and below. None: all visible objects. margin: free space on each side, as a fraction of their size, 0 to 10.
+        aspect: width / height of the picture. An orthographic camera gets another height. A camera that chased or
+        pointed stands still after this, in the frame that it was in."""
         command = self._scene._command()
         message = command.fit_camera
         put(message, self._label, vantage=self._vantage, name=self._name, margin=margin, aspect=aspect)

@@ -22,7 +22,7 @@ class LensPicture(NamedTuple):
     without_ray: int  # pixels that see nothing: the lens has no ray for them
     half_angle_deg: float  # the widest angle between a pixel's ray and the axis
     pupil_shift: float  # the greatest distance of a pixel's entrance pupil from the eye of the source views [m]
-    pupil_pixels: float  # how far that moved a pixel's place in a source view, of what the picture shows
+    pupil_pixels: float  # the greatest distance by which that moved a pixel's place in a source view [source pixels]
     pupil_beyond: int  # pixels whose place left the drawn source block: they show its edge
 
 
@@ -59,12 +59,12 @@ class SceneImages:
         `vantage`), whose axes the model's axes become; or with `frame` the model's own pose in that frame, such as a
         rover's body. size: (width, height), needed where the model has none; another size than the model's is rejected
         unless scale=True. Planes: as Viewport.capture, of physical objects; "color" is the sRGB of the radiance times
-        `exposure`, "range" is from the pixel's own entrance pupil. ornaments=True: labels, depths and angles also of
-        ornaments. Pixels that the lens has no ray for are black, 0, +infinity or NaN. samples: n x n per pixel of the
-        source views, 1 to 8. hide: fragments left out.
+        `exposure`, 1 at 1361 / pi W/m^2/sr (white in full Sun); "range" is from the pixel's own entrance pupil.
+        ornaments=True: labels, depths and angles also of ornaments. Pixels that the lens has no ray for are black, 0,
+        +infinity or NaN. samples: n x n per pixel of the source views, 1 to 8. hide: fragments left out.
 
         The image is drawn in tiles of `tile` pixels a side (64 to 4096), with the same bytes as in one; Ctrl-C stops
-        between two. progress: called with the part that is done, 0 to 1.
+        between two. progress: called with the fraction that is done, 0 to 1.
 
         Light of a lens wider than 100 degrees comes from up to six views, and is interpolated; all other planes take
         the nearest source pixel. A CAHVORE's moving pupil is followed, with what only it would see left out."""
@@ -125,28 +125,28 @@ class SceneImages:
     def project_points(self, points, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, points_in=None):
         """Pixels (..., 2) of points (..., 3) [m] in the frame `points_in` (default: the root); NaN where the lens sees
         nothing. Things in between do not count. The camera is given as for simulate_image()."""
-        about = "projected points"
-        array = array_of(points, "the points", "an array (..., 3)", about)
-        if array.ndim < 1 or array.shape[-1] != 3:
-            reject(about, "the points", points, "an array (..., 3)")
-        command = self._scene._command()
-        message = command.project_points
-        self._put_camera(message.camera, model, camera, vantage, frame, size, scale, about)
-        message.frame = self._scene._frame_id(points_in)
-        wire.put_array(message, "point", array)
-        return wire.get_array(self._scene._execute(command).project, "pixel").reshape(array.shape[:-1] + (2,))
+        reply, shape = self._ask("project_points", "point", points, 3, (model, camera, vantage, frame, size, scale), points_in,
+                                 "projected points")
+        return wire.get_array(reply.project, "pixel").reshape(shape + (2,)).copy()
 
     def pixel_rays(self, pixels, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, rays_in=None):
         """Origins (..., 3) [m] and unit directions (..., 3) in the frame `rays_in` (default: the root) of the rays of
         pixels (..., 2); NaN where there is none. The camera is given as for simulate_image()."""
-        about = "rays of pixels"
-        array = array_of(pixels, "the pixels", "an array (..., 2)", about)
-        if array.ndim < 1 or array.shape[-1] != 2:
-            reject(about, "the pixels", pixels, "an array (..., 2)")
-        command = self._scene._command()
-        message = command.unproject_pixels
-        self._put_camera(message.camera, model, camera, vantage, frame, size, scale, about)
-        message.frame = self._scene._frame_id(rays_in)
-        wire.put_array(message, "pixel", array)
-        rays = wire.get_array(self._scene._execute(command).unproject, "ray").reshape(array.shape[:-1] + (6,))
+        reply, shape = self._ask("unproject_pixels", "pixel", pixels, 2, (model, camera, vantage, frame, size, scale), rays_in,
+                                 "rays of pixels")
+        rays = wire.get_array(reply.unproject, "ray").reshape(shape + (6,))
         return rays[..., :3].copy(), rays[..., 3:].copy()
+
+    def _ask(self, request, field, values, columns, camera, frame, about):
+        """The reply to a request on `values` (..., columns) in `frame`, and their shape without the columns. camera: what
+        _put_camera() takes."""
+        what, accepted = f"the {field}s", f"an array (..., {columns})"
+        array = array_of(values, what, accepted, about)
+        if array.ndim < 1 or array.shape[-1] != columns:
+            reject(about, what, values, accepted)
+        command = self._scene._command()
+        message = getattr(command, request)
+        self._put_camera(message.camera, *camera, about)
+        message.frame = self._scene._frame_id(frame)
+        wire.put_array(message, field, array)
+        return self._scene._execute(command), array.shape[:-1]

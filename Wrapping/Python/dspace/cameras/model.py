@@ -13,7 +13,7 @@ from dspace.errors import NotFound, WrongType
 class LensCheck(NamedTuple):
     """What a lens does to its image."""
     limit_deg: float  # every direction within this angle of the axis has a pixel of its own
-    end: str  # what ends the field: "a fold", "the plane of the lens", "the end of the model", "" (nothing)
+    end: str  # what ends the field: "a fold", "the plane of the lens", "the end of the model", "parallel rays", "" (nothing)
     without_ray: float  # the fraction of the image's pixels that see nothing
     half_angle_deg: float  # the widest angle between a pixel's ray and the axis
     least_density: float  # pixels per degree, of all directions in the image
@@ -27,7 +27,7 @@ class Conversion(NamedTuple):
     model: object  # CameraModel
     rms: float  # distance between the pixels of the two models [pixels]
     greatest: float  # the same, the greatest
-    covered: float  # the fraction of the image whose directions the new model sees
+    covered: float  # the fraction of the image that was fitted: of a type that distorts a plane, 80 degrees about the axis
     pupil_shift: float  # of the source, which the new model lacks [m]
 
 
@@ -48,8 +48,16 @@ def _check(answer):
         raise make_error(to_reply(data).error)
 
 
+def _size(size, label):
+    """(width, height) of an image, checked."""
+    width, height = integers(size, 2, "the size", label, "(width, height) in pixels")
+    if not (1 <= width <= 10**6 and 1 <= height <= 10**6):
+        reject(label, "the size", size, "1 to 1000000 pixels a side")
+    return width, height
+
+
 def _array(values, columns, what, label):
-    """Values as an array (n, columns) of doubles, and whether one was given."""
+    """Values (..., columns) as an array (n, columns) of finite doubles, and their shape without the columns."""
     accepted = f"an array (n, {columns}) or (..., {columns}) of finite numbers"
     array = array_of(values, what, accepted, label)
     if array.ndim < 1 or array.shape[-1] != columns or not np.isfinite(array).all():
@@ -79,14 +87,14 @@ class CameraModel(Strict):
 
     CameraModel("pinhole", focal=(fx, fy), center=(cx, cy), size=(w, h)) makes one from numbers; Documentation/Cameras.md
     lists the types and their numbers. position [m] and quaternion (w, x, y, z): of C in M; of types cahv, cahvor and
-    cahvore C, A, H, V, O, R, E in M tell the pose. Raises dspace.InvalidArgument and dspace.Unsupported, which name
+    cahvore C, A, H, V, O, R, E in M give the pose. Raises dspace.InvalidArgument and dspace.Unsupported, which name
     the number and what is accepted."""
 
     def __init__(self, type, size=None, name="", frame="", position=None, quaternion=None, **values):
         label = "camera model"
         lens = {"type": text(type, "the type", label)}
         if size is not None:
-            lens["width"], lens["height"] = integers(size, 2, "the size", label, "(width, height) in pixels")
+            lens["width"], lens["height"] = _size(size, label)
         for key, value in values.items():
             array = array_of(value, key, "numbers", label)
             if not np.isfinite(array).all():
@@ -117,7 +125,7 @@ class CameraModel(Strict):
 
     @classmethod
     def from_json(cls, data):
-        """A model from JSON text, as `json` gives it."""
+        """A model from JSON text, such as `json`."""
         model = cls.__new__(cls)
         model._from_json(text(data, "the JSON", "camera model"))
         return model
@@ -199,16 +207,13 @@ class CameraModel(Strict):
         if self.size is not None:
             reject(self._label, "the size", size, f"its own, {self.size}, or scaled()")
         content = json.loads(self._json)
-        content["model"]["width"], content["model"]["height"] = integers(size, 2, "the size", self._label)
+        content["model"]["width"], content["model"]["height"] = _size(size, self._label)
         return CameraModel.from_json(json.dumps(content))
 
     def scaled(self, size):
         """The model for an image of another size (width, height) and the same shape and field of view."""
         model = CameraModel.from_json(self._json)
-        width, height = integers(size, 2, "the size", self._label, "(width, height) in pixels")
-        if not (1 <= width <= 10**6 and 1 <= height <= 10**6):
-            reject(self._label, "the size", size, "1 to 1000000 pixels a side")
-        _check(model._vtk.Scale(width, height))
+        _check(model._vtk.Scale(*_size(size, self._label)))
         model._describe()
         return model
 
@@ -267,5 +272,5 @@ def put_model(message, model, size=None, scale=False, about=None):
             reject(about, "the model", model, "a dspace.CameraModel", WrongType)
         message.model = model.json
     if size is not None:
-        message.width, message.height = integers(size, 2, "the size", about, "(width, height) in pixels")
+        message.width, message.height = _size(size, about)
     message.scale = flag(scale, "scale", about)

@@ -5,15 +5,10 @@ import numpy as np
 
 from dspace._core.fields import array_of, flag, integer, number, reject
 from dspace._core.strict import Strict
-from dspace.cameras.model import CameraModel, _check, _vtk
+from dspace.cameras.model import CameraModel, _check, _vtk, _wrapped
 from dspace.errors import WrongType
 
 ROWS = 64  # of rays at a time, for the falloff
-
-
-def _wrapped(array):
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-    return numpy_to_vtk(array)
 
 
 class Sensor(Strict):

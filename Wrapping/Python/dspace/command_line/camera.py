@@ -120,7 +120,7 @@ def run_info(options):
             parts += [f"{model.size[0]} x {model.size[1]}", f"up to {check.half_angle_deg:.2f} deg from the axis",
                       f"{check.least_density:.2f} to {check.greatest_density:.2f} pixels/deg"]
             if check.without_ray:
-                parts.append(f"{100 * check.without_ray:.2f} % of the image see nothing")
+                parts.append(f"{100 * check.without_ray:.2f} % of the image sees nothing")
         if model.frame:
             parts.append(f"in {model.frame} at ({', '.join(f'{each:.6g}' for each in model.position)}) m")
         print(f"{model.name or options.model}: {', '.join(parts)}")
@@ -136,7 +136,7 @@ def run_check(options):
         end = f", up to {check.end}" if check.end else ""
         print(f"{model.name or options.model}: {model.type}, {model.size[0]} x {model.size[1]} pixels")
         print(f"one to one within {check.limit_deg:.4f} deg of the axis{end}")
-        print(f"the image reaches {check.half_angle_deg:.4f} deg from the axis; {100 * check.without_ray:.3f} % of it see "
+        print(f"the image reaches {check.half_angle_deg:.4f} deg from the axis; {100 * check.without_ray:.3f} % of it sees "
               "nothing")
         print(f"{check.least_density:.4f} to {check.greatest_density:.4f} pixels/deg; the pupil moves by up to "
               f"{check.pupil_shift:.6g} m")
@@ -176,14 +176,14 @@ def run_convert(options):
     model = model_of(options)
     if options.scaled is not None:
         model = model.scaled(options.scaled)
-    told = ""
+    residual = ""
     if options.type is not None:
         model, rms, greatest, covered, shift = model.convert(options.type)
-        told = f", residual {rms:.6g} pixels rms, {greatest:.6g} at most, over {100 * covered:.2f} % of the image"
+        residual = f", residual {rms:.6g} pixels rms, {greatest:.6g} at most, over {100 * covered:.2f} % of the image"
         if shift:
-            told += f"; a pupil that moves by up to {shift:.6g} m is lost"
+            residual += f"; a pupil that moves by up to {shift:.6g} m is lost"
     model.save(options.out)
-    print(f"{options.out}: {model.type}{told}")
+    print(f"{options.out}: {model.type}{residual}")
 
 
 def run_render(options):

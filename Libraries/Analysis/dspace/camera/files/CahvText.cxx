@@ -1,9 +1,8 @@
 #include <dspace/camera/files/CahvText.h>
 
-#include <cmath>
 #include <sstream>
 
-#include <dspace/Checks.h>
+#include <dspace/Error.h>
 #include <dspace/camera/files/ModelText.h>
 
 namespace dspace {
@@ -84,12 +83,8 @@ CameraModel ParseCahvText(const std::string& text, const std::string& label) {
                       " numbers; accepted: " + std::to_string(count));
     }
     if (name == "Dimensions") {
-      for (const double side : numbers) {
-        Require(side >= 1.0 && side <= 1e6 && side == std::floor(side), place, "a dimension", side,
-                "an integer from 1 to 1e6");
-      }
-      model.width = int(numbers[0]);
-      model.height = int(numbers[1]);
+      model.width = ImageSide(numbers[0], "a dimension", place);
+      model.height = ImageSide(numbers[1], "a dimension", place);
     } else if (!values.emplace(name, numbers).second) {
       throw Error(Error::Kind::Corrupt, place, name + " is there twice");
     }

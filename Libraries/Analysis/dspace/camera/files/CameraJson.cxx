@@ -57,10 +57,12 @@ int JsonSideOf(const Json::Value& model, const char* name, const std::string& la
   return value.asInt();
 }
 
-// What is not a number of the lens.
-bool IsPlace(const std::string& name) {
-  return name == "type" || name == "width" || name == "height" || name == "position" ||
-         name == "rotation" || name == "pupilType" || name == "C";
+// What is not a number of the lens. A pose in the form of another type counts as one: MakeLens
+// rejects it.
+bool IsPlace(const std::string& name, bool cahv) {
+  const bool pose = cahv ? name == "C" || name == "pupilType" // some files give a type to every one
+                         : name == "position" || name == "rotation";
+  return pose || name == "type" || name == "width" || name == "height";
 }
 
 void PutLinearity(const Json::Value& from, LensValues& values, const std::string& label) {
@@ -103,7 +105,7 @@ CameraModel ModelOf(const Json::Value& from, const std::string& file) {
   LensValues values;
   for (const std::string& name : lens.getMemberNames()) {
     const bool outer = &lens == &from && (name == "name" || name == "frame");
-    if (!IsPlace(name) && !outer && !lens[name].isNull()) {
+    if (!IsPlace(name, IsCahv(type)) && !outer && !lens[name].isNull()) {
       values[name] = JsonNumbersOf(lens[name], name, label);
     }
   }

@@ -1,7 +1,6 @@
 #include <dspace/camera/files/LabelModel.h>
 
 #include <cctype>
-#include <cmath>
 #include <map>
 
 #include <dspace/Checks.h>
@@ -109,10 +108,7 @@ Values ModelOf(const std::string& text, const std::string& label, int size[2]) {
   Values values;
   bool inside = false, found = false, whole = false, image = false;
   const auto side = [&](int at) {
-    const double number = NumberIn(value, label);
-    Require(number >= 1.0 && number <= 1e6 && number == std::floor(number), label,
-            "a side of its image", number, "an integer from 1 to 1e6");
-    size[at] = int(number);
+    size[at] = ImageSide(NumberIn(value, label), "a side of its image", label);
   };
   while (pairs.Next(keyword, value)) {
     if (keyword == opens || keyword == "END_GROUP" || (vicar && keyword == "TASK")) {

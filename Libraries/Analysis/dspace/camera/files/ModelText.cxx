@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <dspace/Error.h>
+#include <dspace/Checks.h>
 #include <dspace/FilesRead.h>
 
 namespace dspace {
@@ -64,6 +64,12 @@ double NumberIn(const std::string& word, const std::string& label) {
                 "it has '" + word.substr(0, 40) + "'; accepted: a finite number");
   }
   return value;
+}
+
+int ImageSide(double side, const char* what, const std::string& label) {
+  Require(side >= 1.0 && side <= 1e6 && side == std::floor(side), label, what, side,
+          "an integer from 1 to 1e6");
+  return int(side);
 }
 
 std::vector<double> NumbersIn(const std::string& text, const std::string& label) {

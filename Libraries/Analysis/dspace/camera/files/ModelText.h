@@ -22,6 +22,9 @@ std::string ExactTexts(const std::vector<double>& values, const char* between);
 std::vector<double> NumbersIn(const std::string& text, const std::string& label);
 // One finite number.
 double NumberIn(const std::string& word, const std::string& label);
+// A side of an image in pixels, which `what` names: an integer from 1 to 1e6. Throws
+// Error(InvalidArgument).
+int ImageSide(double side, const char* what, const std::string& label);
 
 std::string TrimmedText(const std::string& text);
 std::string UpperText(std::string text);

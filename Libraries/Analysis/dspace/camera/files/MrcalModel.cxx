@@ -74,12 +74,8 @@ CameraModel ParseMrcalModel(const std::string& given, const std::string& label) 
   const std::string name = text.substr(begin + 1, end - begin - 1);
   CameraModel model;
   const std::vector<double> size = MrcalListOf(text, "imagersize", label, 2);
-  for (const double side : size) {
-    Require(side >= 1.0 && side <= 1e6 && side == std::floor(side), label, "a side of imagersize",
-            side, "an integer from 1 to 1e6");
-  }
-  model.width = int(size[0]);
-  model.height = int(size[1]);
+  model.width = ImageSide(size[0], "a side of imagersize", label);
+  model.height = ImageSide(size[1], "a side of imagersize", label);
   const auto opencv = [&](std::size_t count) {
     std::vector<double> i = MrcalListOf(text, "intrinsics", label, 4 + count);
     i.resize(16, 0.0);

@@ -63,13 +63,7 @@ std::vector<double> YamlListOf(const std::string& text, const std::vector<std::s
 
 int YamlSideOf(const std::string& text, const std::string& key, const std::string& label) {
   const std::string word = YamlWordOf(text, key);
-  if (word.empty()) {
-    return 0;
-  }
-  const double side = NumberIn(word, label + ", " + key);
-  Require(side >= 1.0 && side <= 1e6 && side == std::floor(side), label, key.c_str(), side,
-          "an integer from 1 to 1e6");
-  return int(side);
+  return word.empty() ? 0 : ImageSide(NumberIn(word, label + ", " + key), key.c_str(), label);
 }
 
 // OpenCV's order: k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tau_x tau_y [rad].
@@ -116,14 +110,21 @@ CameraModel ParseOpencvYaml(const std::string& text, const std::string& label) {
     throw Error(Error::Kind::Corrupt, label,
                 "it has one of image_width and image_height; accepted: both or none");
   }
+  const std::string kind = YamlWordOf(text, "distortion_model");
+  const bool fisheye = kind == "equidistant" || kind == "fisheye";
+  if (!fisheye && !kind.empty() && kind != "plumb_bob" && kind != "rational_polynomial") {
+    throw Error(Error::Kind::Unsupported, label,
+                "its distortion_model is '" + kind +
+                    "'; accepted: plumb_bob, rational_polynomial, equidistant, fisheye");
+  }
+  // A model without its coefficients is a file that was cut short, not a pinhole.
   const std::vector<double> d = YamlListOf(text,
                                            {"distortion_coefficients", "dist_coeffs", "distCoeffs",
                                             "Distortion_Coefficients", "dist_coeff"},
-                                           label, false);
-  const std::string kind = YamlWordOf(text, "distortion_model");
+                                           label, !kind.empty());
   LensValues values;
   std::string type = "pinhole";
-  if (kind == "equidistant" || kind == "fisheye") {
+  if (fisheye) {
     if (d.size() != 4) {
       throw Error(Error::Kind::Corrupt, label,
                   "it has " + std::to_string(d.size()) +
@@ -131,16 +132,9 @@ CameraModel ParseOpencvYaml(const std::string& text, const std::string& label) {
     }
     type = "kannala_brandt";
     values["radial"] = d;
-  } else if (kind.empty() || kind == "plumb_bob" || kind == "rational_polynomial") {
-    const bool none = std::all_of(d.begin(), d.end(), [](double v) { return v == 0.0; });
-    if (!none) {
-      type = "brown";
-      values = FromOpencv(d, label);
-    }
-  } else {
-    throw Error(Error::Kind::Unsupported, label,
-                "its distortion_model is '" + kind +
-                    "'; accepted: plumb_bob, rational_polynomial, equidistant, fisheye");
+  } else if (!std::all_of(d.begin(), d.end(), [](double v) { return v == 0.0; })) {
+    type = "brown";
+    values = FromOpencv(d, label);
   }
   values["focal"] = {matrix[0], matrix[4]};
   values["center"] = {matrix[2], matrix[5]};

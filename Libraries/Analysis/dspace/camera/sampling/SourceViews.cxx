@@ -204,11 +204,6 @@ SourceViews::Place SourceViews::Find(const Eigen::Vector3d& direction) const {
   return place;
 }
 
-Eigen::Vector3d SourceViews::DirectionOf(const Place& place) const {
-  const Face& face = this->Faces_[std::size_t(place.face)];
-  return {face.left + (place.x + 0.5) / face.scale, face.top + (place.y + 0.5) / face.scale, 1.0};
-}
-
 SourceViews::Block SourceViews::BlockOf(const Place& place) const {
   return {place.face, int(place.x) / this->Block_, int(place.y) / this->Block_};
 }

@@ -66,8 +66,6 @@ public:
 
   // Of a direction from Eye() in the camera's axes.
   Place Find(const Eigen::Vector3d& direction) const;
-  // The direction in F of a place on its face, Z = 1.
-  Eigen::Vector3d DirectionOf(const Place& place) const;
   Block BlockOf(const Place& place) const;
   View ViewOf(const Block& block) const;
 

@@ -284,6 +284,7 @@ std::vector<std::uint16_t> Sensor::Counts(const std::vector<float>& electrons, i
     for (std::size_t c = 0; c < out; ++c) {
       const std::size_t source = s.bayer.empty() ? c : std::size_t(FilterOf(s.bayer, u, v));
       const double mean = double(electrons[channels * i + source]) + dark;
+      RequireFinite(Label, "the number of electrons of a pixel", mean);
       Draws draws(s.seed, std::uint32_t(u), std::uint32_t(v), frame, std::uint32_t(c));
       double value = s.photonNoise ? draws.Poisson(mean) : mean;
       value = std::min(value, s.fullWell);

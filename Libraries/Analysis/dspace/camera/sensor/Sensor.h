@@ -54,6 +54,7 @@ public:
   // Counts of a part of an image whose first pixel is (x, y): noise depends on the seed, the
   // pixel's own place and `frame`, and on nothing else. Photon noise is Poisson's; above a
   // million electrons its normal limit. Clipped at the full well, rounded, clipped at the bits.
+  // Throws Error(InvalidArgument) for electrons that are not finite.
   std::vector<std::uint16_t> Counts(const std::vector<float>& electrons, int width, int height,
                                     int x, int y, std::uint32_t frame) const;
 

@@ -68,7 +68,7 @@ std::shared_ptr<const LensMap> LensPictures::MapOf(const Request& request) {
   if (!map) {
     const auto made = std::make_shared<LensMap>(*this->Views_, *request.lens.model.lens, request.x,
                                                 request.y, request.width, request.height);
-    if (this->MapBytes_ + made->Bytes() > KeptMapBytes) { // a large picture: keeps none of its maps
+    if (this->MapBytes_ + made->Bytes() > KeptMapBytes) { // no room: begins anew with the next tile
       this->Maps_.clear();
       this->MapBytes_ = 0;
       return made;

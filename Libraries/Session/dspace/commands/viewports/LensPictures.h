@@ -47,7 +47,7 @@ public:
 
   LensPictures();
   ~LensPictures();
-  // Errors become dspace::Error about the camera.
+  // Throws Error as SourceViews and vtkDspaceViewport::GetCapture do.
   Result Draw(vtkDspaceRenderContext* context, const std::shared_ptr<Scene>& scene,
               const Request& request);
   void Clear(); // the viewport and what is kept
@@ -58,11 +58,11 @@ private:
                                         const std::shared_ptr<Scene>& scene, const Request& request,
                                         const Key& block, bool depth, Result& result);
 
-  vtkSmartPointer<vtkDspaceViewport> Viewport_;
-  std::weak_ptr<Scene> Scene_;
   std::shared_ptr<const LensMap> MapOf(const Request& request);
   void ClearBlocks();
 
+  vtkSmartPointer<vtkDspaceViewport> Viewport_;
+  std::weak_ptr<Scene> Scene_;
   std::string Lens_; // what the views and maps are of
   std::unique_ptr<SourceViews> Views_;
   std::map<std::tuple<int, int, int, int>, std::shared_ptr<const LensMap>> Maps_; // by their tile

@@ -75,11 +75,9 @@ void ViewportCommands::Simulate(const Context& context, v1::SimulateImage& comma
   wishes.incidence = command.incidence();
   wishes.emission = command.emission();
   wishes.phase = command.phase();
-  if (!wishes.radiance && !wishes.depth && !wishes.range && !wishes.label && !wishes.litFraction &&
-      !wishes.incidence && !wishes.emission && !wishes.phase) {
-    Reject(label, "it requests no plane; accepted: color, depth, range, label, radiance, "
-                  "lit_fraction, incidence, emission, phase");
-  }
+  RequirePlane(wishes.radiance || wishes.depth || wishes.range || wishes.label ||
+                   wishes.litFraction || wishes.incidence || wishes.emission || wishes.phase,
+               label);
   for (const std::string& fragment : command.hidden_fragment()) {
     context.GetScene().Fragments().Get(fragment); // throws where there is none
     request.hiddenFragments.insert(fragment);

@@ -73,6 +73,8 @@ private:
   void AddRequestsTo(Registry& registry);
   void Capture(const Context& context, v1::Capture& command);
   void PutCapture(const Context& context, bool inlineData); // of LastCapture()
+  // Throws Error(InvalidArgument) unless a request for `label` has `any` plane.
+  static void RequirePlane(bool any, const std::string& label);
   void SaveImage(const Context& context, v1::SaveImage& command);
   void Render(const Context& context, v1::Render& command);
   void Pick(const Context& context, v1::Pick& command);

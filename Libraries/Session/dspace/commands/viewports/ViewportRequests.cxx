@@ -163,16 +163,19 @@ void ViewportCommands::Capture(const Context& context, v1::Capture& command) {
   request.incidence = command.incidence();
   request.emission = command.emission();
   request.phase = command.phase();
-  const std::string label = "capture of viewport '" + command.viewport() + "'";
   const bool any = request.color || request.depth || request.range || request.label ||
                    request.radiance || request.litFraction || request.incidence ||
                    request.emission || request.phase;
+  RequirePlane(any, "capture of viewport '" + command.viewport() + "'");
+  this->LastCapture_ = viewport.GetCapture(request);
+  this->PutCapture(context, command.inline_data());
+}
+
+void ViewportCommands::RequirePlane(bool any, const std::string& label) {
   if (!any) {
     Reject(label, "it requests no plane; accepted: color, depth, range, label, radiance, "
                   "lit_fraction, incidence, emission, phase");
   }
-  this->LastCapture_ = viewport.GetCapture(request);
-  this->PutCapture(context, command.inline_data());
 }
 
 void ViewportCommands::PutCapture(const Context& context, bool data) {
