@@ -123,6 +123,9 @@ TEST_F(MapWork, AnInterruptedFileGetsTheTilesThatItLacks) {
 TEST_F(MapWork, AnErrorOfOneTileEndsTheWork) {
   const std::string path = this->Path("map.tif");
   TileFile file(path, this->Layout_);
+  for (const bool replace : {false, true}) { // one at a time writes to it
+    EXPECT_THROW(TileFile(path, this->Layout_, replace), Error);
+  }
   MapControl control;
   control.threads = 2;
   const MakeTile make = [](int column, int row, std::vector<float>&,
