@@ -37,8 +37,8 @@ class Maps:
         deadline [s] ends the work, "PATH.part" and "PATH.part.done" stay, and the same call continues them: the result is
         the same to the byte. replace=True: an existing file, and a partial one of other inputs, are removed first.
 
-        Raises dspace.AlreadyExists for an existing file and for a partial one of other inputs; dspace.Resource for a map
-        that does not fit the disk; dspace.InvalidArgument; dspace.DeadlineExceeded."""
+        Raises dspace.AlreadyExists for an existing file, for a partial one of other inputs and for one that another
+        process writes; dspace.Resource for a map that does not fit the disk; dspace.InvalidArgument; dspace.DeadlineExceeded."""
         about = "horizon map"
         command = self._scene._command()
         message = command.horizon_map
