@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <random>
 
-#include <gdal_priv.h>
 #include <unistd.h>
 
 #include <dspace/clipmap/ClipmapHorizon.h>
@@ -13,6 +12,7 @@
 #include <dspace/surface/StreamedTerrain.h>
 
 #include "Alternate.h"
+#include "BenchHills.h"
 
 using namespace dspace;
 
@@ -21,33 +21,6 @@ namespace {
 constexpr int Side = 2048;    // pixels
 constexpr double Pixel = 2.0; // [m]
 constexpr int Window = 128;   // posts a side that are swept
-
-// Hills of wavelengths from 6 m to 4 km, 10 degrees steep in the mean.
-std::string Write(const std::string& path) {
-  GDALAllRegister();
-  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      path.c_str(), Side, Side, 1, GDT_Float32, nullptr);
-  double geo[6] = {0.0, Pixel, 0.0, 0.0, 0.0, -Pixel};
-  dataset->SetGeoTransform(geo);
-  std::vector<float> row(Side);
-  for (int r = 0; r < Side; ++r) {
-    for (int c = 0; c < Side; ++c) {
-      double h = 0.0;
-      for (double length = 3.0; length < Side; length *= 1.7) {
-        const double k = 2.0 * M_PI / length;
-        h += 0.008 * Pixel * length *
-             (std::sin(k * (c + 0.4 * r) + length) + std::cos(k * (0.3 * c - r)));
-      }
-      row[std::size_t(c)] = float(h);
-    }
-    if (dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, r, Side, 1, row.data(), Side, 1,
-                                            GDT_Float32, 0, 0, nullptr) != CE_None) {
-      std::abort();
-    }
-  }
-  GDALClose(dataset);
-  return path;
-}
 
 double Seconds(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -165,7 +138,8 @@ int main() {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                        ("dspace-bench-horizon-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
-  const auto terrain = StreamedTerrain::Open(Write((folder / "hills.tif").string()));
+  const auto terrain =
+      StreamedTerrain::Open(bench::WriteHills((folder / "hills.tif").string(), Side, Pixel));
   HorizonOptions options;
   options.heights = terrain->HeightRange();
   const HorizonSweep sweep(terrain->Pyramid(), terrain->Placement(), options);

@@ -14,6 +14,7 @@
 #include <dspace/surface/StreamedTerrain.h>
 
 #include "Alternate.h"
+#include "BenchHills.h"
 
 using namespace dspace;
 
@@ -21,33 +22,6 @@ namespace {
 
 constexpr int Side = 1024;    // pixels
 constexpr double Pixel = 5.0; // [m]
-
-// Hills of wavelengths from 15 m to 5 km, 10 degrees steep in the mean.
-std::string Write(const std::string& path) {
-  GDALAllRegister();
-  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      path.c_str(), Side, Side, 1, GDT_Float32, nullptr);
-  double geo[6] = {0.0, Pixel, 0.0, 0.0, 0.0, -Pixel};
-  dataset->SetGeoTransform(geo);
-  std::vector<float> row(Side);
-  for (int r = 0; r < Side; ++r) {
-    for (int c = 0; c < Side; ++c) {
-      double h = 0.0;
-      for (double length = 3.0; length < Side; length *= 1.7) {
-        const double k = 2.0 * M_PI / length;
-        h += 0.008 * Pixel * length *
-             (std::sin(k * (c + 0.4 * r) + length) + std::cos(k * (0.3 * c - r)));
-      }
-      row[std::size_t(c)] = float(h);
-    }
-    if (dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, r, Side, 1, row.data(), Side, 1,
-                                            GDT_Float32, 0, 0, nullptr) != CE_None) {
-      std::abort();
-    }
-  }
-  GDALClose(dataset);
-  return path;
-}
 
 MapControl OneThread() {
   MapControl control;
@@ -139,7 +113,7 @@ int main() {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                        ("dspace-bench-horizon-map-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
-  const std::string raster = Write((folder / "hills.tif").string());
+  const std::string raster = bench::WriteHills((folder / "hills.tif").string(), Side, Pixel);
   const auto terrain = StreamedTerrain::Open(raster);
   const MapGround ground = MapGroundOf(*terrain);
   const std::string horizons = (folder / "horizons.tif").string();

@@ -5,42 +5,23 @@ import numpy as np
 import pytest
 
 import dspace.vtk  # noqa: F401  (VTK's modules)
-from dspace.command_line import main
+from command_support import run, write_moon, write_wall
 from needs import needs_module
-from terrain_support import gdal, write_raster
-
-R = 1737400.0
-
-
-def run(capsys, *arguments):
-    try:
-        code = main([*map(str, arguments)])
-    except SystemExit as end:
-        code = end.code
-    out = capsys.readouterr()
-    return code, out.out, out.err
+from terrain_support import gdal
 
 
 @pytest.fixture
 def wall(tmp_path):
     """A plane without CRS, with a wall of 20 m along x = 40.5."""
-    z = np.zeros((41, 81), np.float32)
-    z[:, 40] = 20.0
-    return write_raster(tmp_path / "wall.tif", z)
+    return write_wall(tmp_path / "wall.tif", 81)
 
 
 @pytest.fixture
 def moon(tmp_path):
     """Degrees of the Moon's south, with a ridge."""
-    path = tmp_path / "moon.tif"
     z = np.zeros((20, 30), np.float32)
     z[3] = 2500.0
-    data = gdal.GetDriverByName("GTiff").Create(str(path), 30, 20, 1, gdal.GDT_Float32)
-    data.SetGeoTransform((10, 0.05, 0, -84, 0, -0.05))
-    data.SetProjection(f'GEOGCS["Moon",DATUM["Moon",SPHEROID["Moon",{R},0]],PRIMEM["G",0],UNIT["degree",0.0174532925199433]]')
-    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
-    data.GetRasterBand(1).WriteArray(z)
-    return path
+    return write_moon(tmp_path / "moon.tif", z, 10, -84, 0.05)
 
 
 def test_a_horizon_map(capsys, wall, tmp_path):

@@ -9,40 +9,21 @@ import numpy as np
 import pytest
 
 import dspace.vtk  # noqa: F401  (VTK's modules)
-from dspace.command_line import main
+from command_support import R, run, write_moon, write_wall
 from needs import needs_module
-from terrain_support import gdal, write_raster
-
-R = 1737400.0
-
-
-def run(capsys, *arguments):
-    try:
-        code = main([*map(str, arguments)])
-    except SystemExit as end:
-        code = end.code
-    out = capsys.readouterr()
-    return code, out.out, out.err
+from terrain_support import gdal
 
 
 @pytest.fixture
 def wall(tmp_path):
     """A plane without CRS, with a wall of 20 m along x = 100.5."""
-    z = np.zeros((41, 201), np.float32)
-    z[:, 100] = 20.0
-    return write_raster(tmp_path / "wall.tif", z)
+    return write_wall(tmp_path / "wall.tif", 201)
 
 
 @pytest.fixture
 def moon(tmp_path):
     """Degrees of a smooth sphere about longitude 350, from 340 to 360, and latitude 0."""
-    path = tmp_path / "moon.tif"
-    data = gdal.GetDriverByName("GTiff").Create(str(path), 200, 200, 1, gdal.GDT_Float32)
-    data.SetGeoTransform((340, 0.1, 0, 10, 0, -0.1))
-    data.SetProjection(f'GEOGCS["m",DATUM["m",SPHEROID["m",{R},0]],PRIMEM["G",0],UNIT["degree",0.0174532925199433]]')
-    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
-    data.GetRasterBand(1).WriteArray(np.zeros((200, 200), np.float32))
-    return path
+    return write_moon(tmp_path / "moon.tif", np.zeros((200, 200), np.float32), 340, 10, 0.1)
 
 
 def test_lines_over_a_wall(capsys, wall, tmp_path):

@@ -209,6 +209,8 @@ def test_other_rejected_maps(scene, ground, tmp_path, refused):
         scene.illumination_map(horizons, tmp_path / "lit.tif", start=0.0, end=3600.0, body="moon")
     with refused(dspace.InvalidArgument, "the Earth has 0 places"):
         scene.illumination_map(horizons, tmp_path / "lit.tif", sun=[(1e11, 0, 0)], quantities="earth_fraction")
+    with refused(dspace.InvalidArgument, "positions of the Earth without those of the Sun"):
+        scene.illumination_map(horizons, tmp_path / "lit.tif", start=0.0, end=3600.0, earth=[(4e8, 0, 0)])
     with refused(dspace.Corrupt, "no horizon map"):
         scene.illumination_map(tmp_path / "ground.tif", tmp_path / "lit.tif", sun=[(1e11, 0, 0)])
     lit = scene.illumination_map(horizons, tmp_path / "lit.tif", sun=[(1e11, 0, 9e10), (0, 1e11, -1e9)])

@@ -480,6 +480,43 @@ TEST(HorizonSweep, OnABodyItIsThatOfExactRays) {
   EXPECT_LT(polar.At(1.0), 0.13);
 }
 
+// Every third post has the horizon that it has among its neighbours, whether the ground is read or
+// held in memory.
+TEST(HorizonSweep, PostsApartAreSweptAsNeighboursAre) {
+  constexpr int Every = 3;
+  constexpr int Width = 37;
+  constexpr int Height = 5;
+  HorizonSweep sweep = SweepOf(301, 2.0,
+                               [](double c, double r) {
+                                 return 12.0 * std::sin(0.31 * c) * std::cos(0.23 * r) +
+                                        3.0 * std::sin(1.7 * c + 0.9 * r);
+                               },
+                               {-15.0, 15.0});
+  const std::vector<double> azimuths = {0.0, 37.0, 90.0, 200.5, 285.0};
+  std::vector<std::vector<float>> read;
+  for (const double azimuth : azimuths) {
+    std::vector<float> neighbours(std::size_t(Width * Every) * (Height * Every));
+    sweep.Sweep({0, 100, 140, Width * Every, Height * Every}, azimuth, neighbours.data(), nullptr);
+    read.emplace_back(std::size_t(Width) * Height);
+    sweep.SweepEvery({0, 100, 140, Width, Height}, Every, azimuth, read.back().data());
+    for (int j = 0; j < Height; ++j) {
+      for (int i = 0; i < Width; ++i) {
+        EXPECT_NEAR(read.back()[std::size_t(j * Width + i)],
+                    neighbours[std::size_t((j * Width * Every + i) * Every)], 1e-5)
+            << azimuth << " at " << i << ", " << j;
+      }
+    }
+  }
+  sweep.Hold(HeldPosts::Read(*sweep.Pyramid(), Every, HorizonLanes * Every, {}));
+  for (std::size_t k = 0; k < azimuths.size(); ++k) {
+    std::vector<float> held(read[k].size());
+    sweep.SweepEvery({0, 100, 140, Width, Height}, Every, azimuths[k], held.data());
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      EXPECT_NEAR(held[i], read[k][i], 1e-6) << azimuths[k] << " at " << i;
+    }
+  }
+}
+
 TEST(HorizonSweep, RejectsWhatIsNotAccepted) {
   const auto flat = [](double, double) { return 0.0; };
   const auto make = [&](int near, int posts, double low) {
@@ -502,6 +539,9 @@ TEST(HorizonSweep, RejectsWhatIsNotAccepted) {
   EXPECT_THROW(sweep.Sweep({0, 0, 0, 1, 1}, std::nan(""), &out, nullptr), Error);
   EXPECT_THROW(sweep.Sweep({0, 0, 0, 0, 1}, 0.0, &out, nullptr), Error);
   EXPECT_THROW(sweep.Sweep({99, 0, 0, 1, 1}, 0.0, &out, nullptr), Error);
+  EXPECT_THROW(sweep.SweepEvery({0, 0, 0, 1, 1}, 0, 0.0, &out), Error);
+  EXPECT_THROW(sweep.SweepEvery({0, 0, 0, 1, 1}, 65, 0.0, &out), Error);
+  EXPECT_THROW(sweep.SweepEvery({1, 0, 0, 1, 1}, 2, 0.0, &out), Error);
   EXPECT_EQ(out, 7.0f);
 }
 

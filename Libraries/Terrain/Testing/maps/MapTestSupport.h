@@ -3,13 +3,18 @@
 #define DSPACE_TEST_MAP_TEST_SUPPORT_H
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
+
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
 
 #include <dspace/maps/HorizonMap.h>
 #include <dspace/measure/HorizonScan.h>
@@ -53,6 +58,29 @@ inline std::string WriteDegrees(const TemporaryFolder& folder, const std::string
     return double(float(height(west + (c + 0.5) * step, north - (r + 0.5) * step)));
   };
   return file.Write((folder.Path() / name).string());
+}
+
+inline std::shared_ptr<StreamedTerrain> OnBody(const std::string& path) {
+  StreamedTerrainOptions options;
+  options.onBody = true;
+  return StreamedTerrain::Open(path, options);
+}
+
+// The bands of a GeoTIFF, row by row.
+inline std::vector<std::vector<float>> BandsOf(const std::string& path) {
+  GDALAllRegister();
+  auto* dataset = static_cast<GDALDataset*>(GDALOpen(path.c_str(), GA_ReadOnly));
+  const int width = dataset->GetRasterXSize();
+  const int height = dataset->GetRasterYSize();
+  std::vector<std::vector<float>> bands;
+  for (int b = 1; b <= dataset->GetRasterCount(); ++b) {
+    bands.emplace_back(std::size_t(width) * std::size_t(height));
+    EXPECT_EQ(dataset->GetRasterBand(b)->RasterIO(GF_Read, 0, 0, width, height, bands.back().data(),
+                                                  width, height, GDT_Float32, 0, 0, nullptr),
+              CE_None);
+  }
+  GDALClose(dataset);
+  return bands;
 }
 
 // Errors [deg] of random cells and azimuths of a map against ScanHorizon, sorted; cells without

@@ -28,12 +28,6 @@ void ExpectExact(const std::vector<double>& errors, const std::string& about) {
   EXPECT_LE(Share(errors, 0.999), 0.01) << about;
 }
 
-std::shared_ptr<StreamedTerrain> OnBody(const std::string& path) {
-  StreamedTerrainOptions options;
-  options.onBody = true;
-  return StreamedTerrain::Open(path, options);
-}
-
 TEST(HorizonMap, APlaneAgreesWithRays) {
   const TemporaryFolder folder;
   const auto ground = Rough(90, 70, 5);
@@ -107,6 +101,12 @@ TEST(HorizonMap, CellsBesideHolesAgreeWithEveryEdge) {
   options.height = 0.5;
   const HorizonMap written = Written(map, options, (folder.Path() / "map.tif").string());
   const HeightGrid& grid = ground->Grid();
+  std::vector<char> has;
+  for (int r = 0; r < 36; ++r) {
+    for (int c = 0; c < 40; ++c) {
+      has.push_back(grid.HasPost(c, r) ? 1 : 0);
+    }
+  }
   int holes = 0;
   for (int i = 0; i < 200; ++i) {
     const int c = (i * 17) % 40;
@@ -119,26 +119,26 @@ TEST(HorizonMap, CellsBesideHolesAgreeWithEveryEdge) {
     }
     for (int k = 0; k < options.azimuths; ++k) {
       const double azimuth = 2.0 * M_PI * k / options.azimuths;
-      const Eigen::Vector2d along(std::sin(azimuth), -std::cos(azimuth)); // columns, rows
+      const double right = std::sin(azimuth); // columns
+      const double down = -std::cos(azimuth); // rows
       double best = -1e9;
       for (int b = 0; b < 36; ++b) {
         for (int a = 0; a < 40; ++a) {
           for (const auto& [da, db] : {std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)}) {
-            if (a + da >= 40 || b + db >= 36 || !grid.HasPost(a, b) ||
-                !grid.HasPost(a + da, b + db)) {
+            if (a + da >= 40 || b + db >= 36 || !has[std::size_t(b * 40 + a)] ||
+                !has[std::size_t((b + db) * 40 + a + da)]) {
               continue;
             }
-            // Where the line from (c, r) meets the edge.
-            const Eigen::Vector2d from(a - c, b - r);
-            Eigen::Matrix2d m;
-            m << along.x(), -da, along.y(), -db;
-            if (std::abs(m.determinant()) < 1e-9) {
+            // Where the line from (c, r) meets the edge: t along - s (da, db) = (a - c, b - r).
+            const double determinant = right * -db + da * down;
+            if (std::abs(determinant) < 1e-9) {
               continue;
             }
-            const Eigen::Vector2d x = m.inverse() * from;
-            if (x.x() > 1e-6 && x.y() > -1e-9 && x.y() < 1.0 + 1e-9) {
-              const double h = grid.At(a, b) + x.y() * (grid.At(a + da, b + db) - grid.At(a, b));
-              best = std::max(best, (h - grid.At(c, r) - 0.5) / (0.7 * x.x()));
+            const double t = ((a - c) * -db + da * (b - r)) / determinant;
+            const double s = (right * (b - r) - down * (a - c)) / determinant;
+            if (t > 1e-6 && s > -1e-9 && s < 1.0 + 1e-9) {
+              const double h = grid.At(a, b) + s * (grid.At(a + da, b + db) - grid.At(a, b));
+              best = std::max(best, (h - grid.At(c, r) - 0.5) / (0.7 * t));
             }
           }
         }
@@ -185,9 +185,13 @@ protected:
     this->Options_.azimuths = 48;
   }
   std::string Path(const std::string& name) const { return (this->Folder_.Path() / name).string(); }
+  // Ends the work before its first tile, on a machine of any speed.
+  static std::function<bool(const MapProgress&)> Begun(const std::string& path) {
+    return [path](const MapProgress&) { return !std::filesystem::exists(path + ".part.done"); };
+  }
 
   TemporaryFolder Folder_;
-  std::shared_ptr<const GridTerrain> Grid_ = Rough(250, 240, 8);
+  std::shared_ptr<const GridTerrain> Grid_ = Rough(150, 140, 8); // 3 x 3 tiles
   MapGround Ground_ = MapGroundOf(*Grid_);
   HorizonMapOptions Options_;
 };
@@ -198,7 +202,11 @@ TEST_F(MapFiles, AResumedMapEqualsAnUninterruptedOne) {
   one.threads = 1;
   ASSERT_TRUE(WriteHorizonMap(this->Ground_, this->Options_, whole, one));
   const std::string path = this->Path("resumed.tif");
-  int runs = 0;
+  MapControl stop;
+  stop.progress = Begun(path);
+  ASSERT_FALSE(WriteHorizonMap(this->Ground_, this->Options_, path, stop));
+  ASSERT_TRUE(std::filesystem::exists(path + ".part"));
+  int runs = 1;
   for (bool done = false; !done && runs < 50; ++runs) {
     double begun = -1.0;
     MapControl control;
@@ -214,7 +222,6 @@ TEST_F(MapFiles, AResumedMapEqualsAnUninterruptedOne) {
     EXPECT_EQ(std::filesystem::exists(path), done);
   }
   EXPECT_TRUE(BytesOf(path) == BytesOf(whole)) << runs << " runs";
-  EXPECT_GT(runs, 1);
   EXPECT_FALSE(std::filesystem::exists(path + ".part"));
   EXPECT_FALSE(std::filesystem::exists(path + ".part.done"));
 }
@@ -222,8 +229,7 @@ TEST_F(MapFiles, AResumedMapEqualsAnUninterruptedOne) {
 TEST_F(MapFiles, APartOfOtherInputsIsRefused) {
   const std::string path = this->Path("map.tif");
   MapControl stop;
-  stop.threads = 1; // so that it takes longer than the first look at it
-  stop.progress = [&](const MapProgress& progress) { return progress.elapsed == 0.0; };
+  stop.progress = Begun(path);
   ASSERT_FALSE(WriteHorizonMap(this->Ground_, this->Options_, path, stop));
   ASSERT_TRUE(std::filesystem::exists(path + ".part"));
   HorizonMapOptions other = this->Options_;
@@ -238,7 +244,7 @@ TEST_F(MapFiles, APartOfOtherInputsIsRefused) {
     return false;
   };
   EXPECT_TRUE(rejected(this->Ground_, other));
-  const auto elsewhere = Rough(250, 240, 9); // one seed apart
+  const auto elsewhere = Rough(150, 140, 9); // one seed apart
   EXPECT_TRUE(rejected(MapGroundOf(*elsewhere), this->Options_));
   EXPECT_THROW(HorizonMap{path}, Error);
   EXPECT_TRUE(WriteHorizonMap(this->Ground_, this->Options_, path));

@@ -1,7 +1,6 @@
 // Illumination maps against closed forms.
 #include <cmath>
 
-#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
@@ -20,22 +19,6 @@ constexpr double Astronomical = 149597870700.0; // [m]
 V Towards(double azimuth, double elevation, double distance) {
   return distance * V(std::cos(elevation) * std::sin(azimuth),
                       std::cos(elevation) * std::cos(azimuth), std::sin(elevation));
-}
-
-std::vector<std::vector<float>> BandsOf(const std::string& path) {
-  GDALAllRegister();
-  auto* dataset = static_cast<GDALDataset*>(GDALOpen(path.c_str(), GA_ReadOnly));
-  const int width = dataset->GetRasterXSize();
-  const int height = dataset->GetRasterYSize();
-  std::vector<std::vector<float>> bands;
-  for (int b = 1; b <= dataset->GetRasterCount(); ++b) {
-    bands.emplace_back(std::size_t(width) * std::size_t(height));
-    EXPECT_EQ(dataset->GetRasterBand(b)->RasterIO(GF_Read, 0, 0, width, height, bands.back().data(),
-                                                  width, height, GDT_Float32, 0, 0, nullptr),
-              CE_None);
-  }
-  GDALClose(dataset);
-  return bands;
 }
 
 // Level ground west of a long wall of 10 m.
@@ -115,13 +98,8 @@ TEST_F(Walled, ADiscAtTheHorizonIsLitInPart) {
 // plane, and a near Earth is seen from the cell, not from the body's centre.
 TEST(Illumination, CellsOfABodyHaveTheirOwnHorizontal) {
   const TemporaryFolder folder;
-  const double radius = 1737400.0;
-  StreamedTerrainOptions onBody;
-  onBody.onBody = true;
-  const auto terrain =
-      StreamedTerrain::Open(WriteDegrees(folder, "level.tif", radius, 240, 200, 30.0, 85.0, 0.05,
-                                         [](double, double) { return 0.0; }),
-                            onBody);
+  const auto terrain = OnBody(WriteDegrees(folder, "level.tif", 1737400.0, 240, 200, 30.0, 85.0,
+                                           0.05, [](double, double) { return 0.0; }));
   const MapGround ground = MapGroundOf(*terrain);
   HorizonMapOptions options;
   options.cells = FindCells(ground, std::nullopt, 0.0);

@@ -1,7 +1,6 @@
 // Viewsheds cell by cell against exact rays.
 #include <cmath>
 
-#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
@@ -9,6 +8,7 @@
 #include <dspace/maps/Viewshed.h>
 #include <dspace/measure/SightLine.h>
 
+#include "FormulaPosts.h"
 #include "Grids.h"
 #include "MapTestSupport.h"
 
@@ -16,19 +16,6 @@ namespace dspace::testing {
 namespace {
 
 using V = Eigen::Vector3d;
-
-std::vector<float> BandOf(const std::string& path, int band) {
-  GDALAllRegister();
-  auto* dataset = static_cast<GDALDataset*>(GDALOpen(path.c_str(), GA_ReadOnly));
-  std::vector<float> values(std::size_t(dataset->GetRasterXSize()) *
-                            std::size_t(dataset->GetRasterYSize()));
-  EXPECT_EQ(dataset->GetRasterBand(band)->RasterIO(
-                GF_Read, 0, 0, dataset->GetRasterXSize(), dataset->GetRasterYSize(), values.data(),
-                dataset->GetRasterXSize(), dataset->GetRasterYSize(), GDT_Float32, 0, 0, nullptr),
-            CE_None);
-  GDALClose(dataset);
-  return values;
-}
 
 // Every cell: a ray to a target that is a margin higher than the least seen height is clear, and to
 // one that is a margin lower is blocked.
@@ -79,14 +66,10 @@ TEST(Viewshed, APlaneAgreesWithRaysInEveryCell) {
 TEST(Viewshed, ABodyAgreesWithRaysInEveryCell) {
   const TemporaryFolder folder;
   const double metres = 1737400.0 * Degree;
-  StreamedTerrainOptions onBody;
-  onBody.onBody = true;
-  const auto terrain = StreamedTerrain::Open(
-      WriteDegrees(folder, "hills.tif", 1737400.0, 200, 160, 30.0, 62.0, 0.008,
-                   [&](double lon, double lat) {
-                     return Hills(lon * metres * 0.5, lat * metres, 900.0, 60000.0, 0.05);
-                   }),
-      onBody);
+  const auto terrain = OnBody(WriteDegrees(
+      folder, "hills.tif", 1737400.0, 200, 160, 30.0, 62.0, 0.008, [&](double lon, double lat) {
+        return Hills(lon * metres * 0.5, lat * metres, 900.0, 60000.0, 0.05);
+      }));
   const MapGround ground = MapGroundOf(*terrain);
   MapCells cells = FindCells(ground, std::nullopt, 0.0);
   cells.every *= 8; // to 48 km
@@ -99,12 +82,8 @@ TEST(Viewshed, ABodyAgreesWithRaysInEveryCell) {
 TEST(Viewshed, ASmoothSphereHidesByItsCurvature) {
   const TemporaryFolder folder;
   const double radius = 1737400.0;
-  StreamedTerrainOptions onBody;
-  onBody.onBody = true;
-  const auto terrain =
-      StreamedTerrain::Open(WriteDegrees(folder, "level.tif", radius, 120, 100, 30.0, 20.0, 0.01,
-                                         [](double, double) { return 0.0; }),
-                            onBody);
+  const auto terrain = OnBody(WriteDegrees(folder, "level.tif", radius, 120, 100, 30.0, 20.0, 0.01,
+                                           [](double, double) { return 0.0; }));
   const MapGround ground = MapGroundOf(*terrain);
   const auto held = HeldPosts::Read(*ground.pyramid, 1, 1, {});
   const ViewshedObserver observer{{100.0, 200.0}, 10.0};
@@ -138,9 +117,10 @@ TEST(Viewshed, ObserversAreCumulative) {
   options.quantities = {Q::Visible, Q::LeastHeight, Q::Count};
   const std::string path = (folder.Path() / "view.tif").string();
   ASSERT_TRUE(WriteViewshed(map, options, path));
-  const auto visible = BandOf(path, 1);
-  const auto least = BandOf(path, 2);
-  const auto count = BandOf(path, 3);
+  const auto bands = BandsOf(path);
+  const std::vector<float>& visible = bands[0];
+  const std::vector<float>& least = bands[1];
+  const std::vector<float>& count = bands[2];
   const auto held = HeldPosts::Read(*map.pyramid, 1, 1, {});
   int two = 0;
   int far = 0;
@@ -169,6 +149,39 @@ TEST(Viewshed, ObserversAreCumulative) {
   }
   EXPECT_GT(two, 10);
   EXPECT_GT(far, 100);
+}
+
+// Also beyond a quarter turn of the body, where nothing is seen.
+TEST(Viewshed, CellsBeyondTheRadiusAreEmptyAllAroundABody) {
+  const TemporaryFolder folder;
+  const double radius = 1000.0;
+  MapGround ground;
+  ground.name = "globe";
+  ground.pyramid = std::make_shared<ElevationPyramid>(
+      std::make_shared<FormulaPosts>(72, 35, true, [](double, double) { return 0.0; }));
+  ground.placement = PostPlacement::OnSphere({0.0, 85.0}, {5.0, -5.0}, radius);
+  ViewshedOptions options;
+  options.cells.columns = 72;
+  options.cells.rows = 35;
+  options.observers = {{{10.0, 17.0}, 5.0}};
+  const V from = ground.placement.ToScene(options.observers[0].post, 0.0).normalized();
+  for (const double within : {800.0, 1e6}) {
+    options.radius = within;
+    const std::string path = (folder.Path() / (std::to_string(int(within)) + ".tif")).string();
+    ASSERT_TRUE(WriteViewshed(ground, options, path));
+    const std::vector<float> visible = BandsOf(path)[0];
+    int behind = 0;
+    for (int i = 0; i < 72 * 35; ++i) {
+      const V to = ground.placement.ToScene(options.cells.Post(i % 72, i / 72), 0.0).normalized();
+      const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+      ASSERT_EQ(std::isnan(visible[std::size_t(i)]), angle * radius > within) << i;
+      if (angle > 0.51 * M_PI && within == 1e6) {
+        EXPECT_EQ(visible[std::size_t(i)], 0.0f) << i;
+      }
+      behind += angle > 0.51 * M_PI;
+    }
+    EXPECT_GT(behind, 1000);
+  }
 }
 
 TEST(Viewshed, BadInputIsRejected) {

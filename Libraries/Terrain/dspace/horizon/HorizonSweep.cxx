@@ -12,6 +12,7 @@
 #include <dspace/horizon/EdgeCrossings.h>
 #include <dspace/horizon/HorizonKernel.h>
 #include <dspace/horizon/HorizonPath.h>
+#include <dspace/horizon/SweptPosts.h>
 
 namespace dspace {
 namespace {
@@ -42,45 +43,6 @@ HorizonStep StepBetween(const Knot& a, const Knot& b, double t, double bend) {
           float(mix(a.ground.rise, b.ground.rise)), float(mix(a.ground.away, b.ground.away)),
           float(mix(a.ground.spread, b.ground.spread))};
 }
-
-// Posts that were read, with a row and a column to spare for every lane, or those that are held.
-struct Ground {
-  PostBlock place;
-  std::vector<float> heights;
-  const HeldPosts* held = nullptr;
-  HeightSpan span = {Infinite, -Infinite};
-  int every = 1; // columns between lanes; those of the same remainder lie side by side
-
-  const float* Heights() const { return this->held ? this->held->Heights() : this->heights.data(); }
-  std::ptrdiff_t At(std::int64_t c, std::int64_t r) const {
-    if (this->held) {
-      return this->held->At(c, r);
-    }
-    const auto row = std::ptrdiff_t(r - this->place.row) * this->place.width;
-    const auto column = std::ptrdiff_t(c - this->place.column);
-    return row + (this->every == 1 ? column
-                                   : column % this->every * (this->place.width / this->every) +
-                                         column / this->every);
-  }
-  // `width` must be a multiple of `every`.
-  void Part() {
-    std::vector<float> row(std::size_t(this->place.width));
-    for (int r = 0; r < this->place.height; ++r) {
-      float* heights = &this->heights[std::size_t(r) * this->place.width];
-      std::copy_n(heights, row.size(), row.begin());
-      const int share = this->place.width / this->every;
-      for (int c = 0; c < this->place.width; ++c) {
-        heights[c % this->every * share + c / this->every] = row[std::size_t(c)];
-      }
-    }
-  }
-  // Whether it has (c, r) to (c + 1 + lanes, r + 1).
-  bool Has(std::int64_t c, std::int64_t r, int lanes) const {
-    const int spare = this->held ? HeldPosts::RowsToSpare : 0;
-    return r >= this->place.row + spare && r + 1 < this->place.row + this->place.height - spare &&
-           c >= this->place.column && c + 1 + lanes < this->place.column + this->place.width;
-  }
-};
 
 // At most HorizonLanes x Rows posts of a level.
 class Piece {
@@ -172,19 +134,19 @@ private:
                              std::chrono::duration<double>(Clock::now() - this->Deadline_).count());
   }
 
-  void ReadQuietly(Ground& ground) {
+  void ReadQuietly(SweptPosts& ground) {
     const PostBlock& place = ground.place;
     ground.heights.resize(std::size_t(place.width) * place.height);
     this->Pyramid_.Read(place, ground.heights.data(), this->Left());
   }
 
-  void Read(Ground& ground) {
+  void Read(SweptPosts& ground) {
     this->ReadQuietly(ground);
     this->Report_.read.push_back(ground.place);
   }
 
   void ReadPosts() {
-    Ground ground;
+    SweptPosts ground;
     ground.place = this->Block_;
     ground.place.width = (this->Block_.width - 1) * this->Every_ + 1;
     ground.place.height = (this->Block_.height - 1) * this->Every_ + 1;
@@ -343,7 +305,7 @@ private:
     box.row = std::int64_t(std::floor(range[1])) - margin;
     box.width = int(std::int64_t(std::floor(range[2])) + margin + 3 + lanes - box.column);
     box.height = int(std::int64_t(std::floor(range[3])) + margin + 2 - box.row);
-    if (level == this->Block_.level && this->Every_ > 1) { // Ground::Part
+    if (level == this->Block_.level && this->Every_ > 1) { // SweptPosts::Part
       box.width += (this->Every_ - box.width % this->Every_) % this->Every_;
     }
   }
@@ -377,7 +339,7 @@ private:
   }
 
   // Its posts; false where it is outside the lattice.
-  bool ReadBox(Ground& ground) {
+  bool ReadBox(SweptPosts& ground) {
     const int level = ground.place.level;
     const std::int64_t columns = this->Lattice_.ColumnsAt(level);
     const std::int64_t rows = this->Lattice_.RowsAt(level);
@@ -405,7 +367,7 @@ private:
   }
 
   // Places on a coarse level's last column and row have a cell to lie in.
-  void HoldEdges(Ground& ground, std::int64_t columns, std::int64_t rows) const {
+  void HoldEdges(SweptPosts& ground, std::int64_t columns, std::int64_t rows) const {
     const PostBlock& place = ground.place;
     if (!this->Lattice_.periodic && columns > place.column &&
         columns < place.column + place.width) {
@@ -448,7 +410,7 @@ private:
     const float lane = this->LaneOf(level);
     const double scale = std::ldexp(1.0, -level);
     const double end = double(this->Lattice_.RowsAt(level) - 2);
-    Ground ground;
+    SweptPosts ground;
     ground.place.level = level;
     ground.place.width = int(std::ceil(lane * float(HorizonLanes))) + 3;
     ground.place.height = 2;
@@ -481,7 +443,7 @@ private:
 
   // False where the paths have left the data for good.
   bool March(int level, double s0, double s1) {
-    Ground ground;
+    SweptPosts ground;
     if (!this->FindBox(level, s0, s1, ground.place)) {
       this->MarchPlaces(level, s0, s1);
       return true;
@@ -533,7 +495,7 @@ private:
   }
 
   // The edges of the level's triangles that a row crosses between its knots.
-  void AddEdges(const Ground& ground, const std::vector<Knot>& knots,
+  void AddEdges(const SweptPosts& ground, const std::vector<Knot>& knots,
                 std::vector<EdgeStep>& edges) const {
     constexpr double Snap = 1e-6; // posts
     const double least = 1e-6 * this->MetresOf(this->Block_.level);
@@ -573,7 +535,7 @@ private:
   }
 
   // Places of a row on a coarser level.
-  void AddCells(const Ground& ground, int level, const std::vector<Knot>& knots,
+  void AddCells(const SweptPosts& ground, int level, const std::vector<Knot>& knots,
                 std::vector<CellStep>& cells) const {
     const int lanes = this->Lanes(level);
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {

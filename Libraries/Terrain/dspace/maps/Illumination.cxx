@@ -13,7 +13,6 @@ namespace {
 
 constexpr int IlluminationVersion = 1;
 
-constexpr std::size_t MostSteps = 10000000;
 constexpr double Straight = 0.01; // [rad] of turn between two nodes
 constexpr double Degree = M_PI / 180.0;
 constexpr float NothingInSight = -90.0f;
@@ -155,8 +154,8 @@ private:
 
 void Check(const IlluminationOptions& options) {
   const std::string about = "illumination map";
-  Require(!options.sun_S.empty() && options.sun_S.size() <= MostSteps, about, "the number of steps",
-          double(options.sun_S.size()), "1 to 10,000,000");
+  Require(!options.sun_S.empty() && options.sun_S.size() <= IlluminationOptions::MostSteps, about,
+          "the number of steps", double(options.sun_S.size()), "1 to 10,000,000");
   Require(options.step_s > 0.0 && std::isfinite(options.step_s), about, "the step", options.step_s,
           "more than 0 s");
   Require(options.sunRadius >= 0.0 && std::isfinite(options.sunRadius), about, "the Sun's radius",

@@ -2,6 +2,7 @@
 #ifndef DSPACE_MAPS_ILLUMINATION_H
 #define DSPACE_MAPS_ILLUMINATION_H
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,11 @@ struct IlluminationOptions {
     PermanentShadow, // 1: the disc is hidden at every step; 0: else
     EarthFraction    // of the steps at which the Earth's centre is above the horizon, 0 to 1
   };
+  static constexpr std::size_t MostSteps = 10000000;
+
   // Of the Sun's and the Earth's centres at every step, in the terrain's frame S [m]: the
-  // body-fixed frame, or X east, Y north, Z up of a plane. 1 to 10,000,000 steps; the Earth's may
-  // be absent.
+  // body-fixed frame, or X east, Y north, Z up of a plane. 1 to MostSteps; the Earth's may be
+  // absent.
   std::vector<Eigen::Vector3d> sun_S;
   std::vector<Eigen::Vector3d> earth_S;
   double step_s = 3600.0;      // > 0
@@ -31,8 +34,8 @@ struct IlluminationOptions {
 
 // Writes the map: a band a quantity, NaN where the horizon map has no data. Elevations are those
 // over the local horizontal at the cell, at height 0. The horizon is linear between the map's
-// azimuths, and the part of the disc above it is that above a straight line (LitFraction). On a
-// plane, and where nothing is in sight, the horizon is level. Refraction does not count.
+// azimuths, and the part of the disc above it is that above a straight line (LitFraction). Where
+// nothing is in sight, and on a plane below 0, the horizon is level. Refraction does not count.
 //
 // Continues, finishes and ends as WriteHorizonMap does. Throws what it throws, and
 // Error(InvalidArgument) for an option out of range.

@@ -32,8 +32,8 @@ struct MapCells {
 };
 
 // `extent`: left, top, right, bottom in map coordinates; absent: all of the terrain. `spacing`: of
-// the cells in map units, brought to the next whole number of posts; 0: the terrain's pixels, or,
-// where these are more than MostEvery posts apart, as many. Throws Error(InvalidArgument) for an
+// the cells in map units, rounded to a whole number of posts; 0: the terrain's pixels, or, where
+// these are more than MostEvery posts apart, MostEvery posts. Throws Error(InvalidArgument) for an
 // extent without a cell on the terrain, more than 2^31 - 1 cells a side, and a spacing that is
 // negative, not finite or too wide.
 MapCells FindCells(const MapGround& ground, const std::optional<std::array<double, 4>>& extent,

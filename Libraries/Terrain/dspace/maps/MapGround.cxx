@@ -87,7 +87,7 @@ std::optional<GroundSurvey> Survey(const MapGround& ground, const std::function<
   for (const std::int64_t count : {lattice.columns, lattice.rows, std::int64_t(lattice.periodic)}) {
     hash.Add(std::uint64_t(count));
   }
-  // Three posts and a height tell where all posts are.
+  // Three posts determine where all posts are.
   for (const Eigen::Vector2d& post :
        {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.0, 1.0)}) {
     const Eigen::Vector3d p_S = ground.placement.ToScene(post, 0.0);

@@ -48,30 +48,33 @@ bool FillTiles(TileFile& file, std::size_t bands, const MapControl& control, con
                                    : std::numeric_limits<double>::infinity();
     return !control.progress || control.progress(progress);
   };
-  const auto work = [&] {
+  const auto fill = [&] {
     std::vector<float> cells(bands * TileFile::Side * TileFile::Side);
     for (;;) {
       std::pair<int, int> tile;
       {
         const std::lock_guard<std::mutex> lock(mutex);
         if (stop || next == todo.size()) {
-          break;
+          return;
         }
         tile = todo[next++];
       }
-      try {
-        make(tile.first, tile.second, cells, stop);
-        if (stop) {
-          break;
-        }
-        file.Write(tile.first, tile.second, cells);
-        const std::lock_guard<std::mutex> lock(mutex);
-        ++done;
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        error = error ? error : std::current_exception();
-        stop = true;
+      make(tile.first, tile.second, cells, stop);
+      if (stop) {
+        return;
       }
+      file.Write(tile.first, tile.second, cells);
+      const std::lock_guard<std::mutex> lock(mutex);
+      ++done;
+    }
+  };
+  const auto work = [&] {
+    try {
+      fill();
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      error = error ? error : std::current_exception();
+      stop = true;
     }
     const std::lock_guard<std::mutex> lock(mutex);
     --running;
@@ -81,9 +84,18 @@ bool FillTiles(TileFile& file, std::size_t bands, const MapControl& control, con
                                          : int(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = int(std::min<std::size_t>(std::size_t(wanted), todo.size()));
   std::vector<std::thread> workers;
-  running = threads;
-  for (int i = 0; i < threads; ++i) {
-    workers.emplace_back(work);
+  workers.reserve(std::size_t(threads));
+  {
+    const std::lock_guard<std::mutex> lock(mutex); // they begin together
+    try {
+      for (; running < threads; ++running) {
+        workers.emplace_back(work);
+      }
+    } catch (const std::exception&) { // the system has no more threads
+      if (running == 0) {
+        throw;
+      }
+    }
   }
   std::exception_ptr own;
   {

@@ -11,6 +11,7 @@
 #include <mutex>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -79,6 +80,9 @@ using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
 struct TileFile::Files {
   ~Files() {
+    if (this->journal >= 0) {
+      ::flock(this->journal, LOCK_UN); // also for processes that were forked
+    }
     for (const int file : {this->data, this->journal}) {
       if (file >= 0) {
         ::close(file);
@@ -86,9 +90,21 @@ struct TileFile::Files {
     }
   }
   int data = -1;
-  int journal = -1;
+  int journal = -1; // locked: one process writes
   std::mutex mutex; // of the journal
 };
+
+bool TileFile::OpenJournal(const std::string& journal, int flags) {
+  this->Files_->journal = ::open(journal.c_str(), O_RDWR | O_CLOEXEC | flags, 0666);
+  if (this->Files_->journal < 0) {
+    return false;
+  }
+  if (::flock(this->Files_->journal, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw Error(Error::Kind::AlreadyExists, "file '" + this->Part_ + "'",
+                "another map is being written to it; accepted: another path, or wait for its end");
+  }
+  return true;
+}
 
 void TileFile::Fail(const std::string& path, int reason) const {
   throw Error(Error::Kind::Io, "file '" + path + "'", std::strerror(reason));
@@ -112,14 +128,15 @@ TileFile::TileFile(const std::string& path, const TileFileLayout& layout, bool r
                 "it exists; accepted: the path of a new file, or of an incomplete map");
   }
   const std::string journal = this->Part_ + ".done";
+  this->OpenJournal(journal, 0);
   if (replace) {
     Discard(path, this->Part_, journal, layout.hash);
+    if (this->Files_->journal >= 0 && !std::filesystem::exists(journal)) {
+      ::close(this->Files_->journal);
+      this->Files_->journal = -1;
+    }
   }
-  if (!std::filesystem::exists(journal)) {
-    RequireRoom(path, BytesOf(layout));
-  }
-  this->Done_.assign(std::size_t(this->TileColumns_) * std::size_t(this->TileRows_), 0);
-  this->Files_->journal = ::open(journal.c_str(), O_RDWR | O_CLOEXEC);
+  const std::size_t tiles = std::size_t(this->TileColumns_) * std::size_t(this->TileRows_);
   JournalHead head = {};
   if (this->Files_->journal >= 0 &&
       ::read(this->Files_->journal, &head, sizeof(head)) == ssize_t(sizeof(head)) &&
@@ -129,6 +146,7 @@ TileFile::TileFile(const std::string& path, const TileFileLayout& layout, bool r
                   "it is an incomplete map of other inputs (terrain, place, height, azimuths or "
                   "version); accepted: the same inputs, another path, or remove it");
     }
+    this->Done_.assign(tiles, 0);
     off_t end = sizeof(head);
     JournalEntry entry = {};
     while (::read(this->Files_->journal, &entry, sizeof(entry)) == ssize_t(sizeof(entry))) {
@@ -143,13 +161,14 @@ TileFile::TileFile(const std::string& path, const TileFileLayout& layout, bool r
       this->Fail(journal, errno);
     }
   } else {
-    if (this->Files_->journal >= 0) {
-      ::close(this->Files_->journal);
-      this->Files_->journal = -1;
+    RequireRoom(path, BytesOf(layout));
+    this->Done_.assign(tiles, 0);
+    if (this->Files_->journal < 0 && !this->OpenJournal(journal, O_CREAT)) {
+      this->Fail(journal, errno);
     }
-    this->Create(layout);
-    this->Files_->journal = ::open(journal.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (this->Files_->journal < 0) {
+    this->Create(layout); // while the journal has no head, nothing of it counts
+    if (::ftruncate(this->Files_->journal, 0) != 0 ||
+        ::lseek(this->Files_->journal, 0, SEEK_SET) < 0) {
       this->Fail(journal, errno);
     }
     std::memcpy(head.magic, Magic, sizeof(Magic));

@@ -40,9 +40,9 @@ public:
   // The bytes of the file.
   static std::uint64_t BytesOf(const TileFileLayout& layout);
 
-  // Creates the file or continues it. Throws Error: AlreadyExists if `path` exists, or if the
-  // partial file belongs to other inputs; Resource, before anything is written, if the file would
-  // not fit the disk; what AtomicFile::Check throws.
+  // Creates the file or continues it. Throws Error: AlreadyExists if `path` exists, if the partial
+  // file belongs to other inputs, or if another TileFile of any process writes it; Resource, before
+  // anything is written, if the file would not fit the disk; what AtomicFile::Check throws.
   // `replace`: a file, and a partial one of other inputs, are removed first.
   TileFile(const std::string& path, const TileFileLayout& layout, bool replace = false);
   ~TileFile();
@@ -62,6 +62,8 @@ public:
   static std::map<std::string, std::string> MetadataOf(const std::string& path);
 
 private:
+  // Opens and locks the journal; false where it cannot be opened.
+  bool OpenJournal(const std::string& journal, int flags);
   void Create(const TileFileLayout& layout);
   void FindOffsets(std::size_t bands);
   [[noreturn]] void Fail(const std::string& path, int reason) const;

@@ -14,11 +14,10 @@ namespace {
 
 constexpr int ViewshedVersion = 1;
 constexpr std::int64_t MostViewedPosts = std::int64_t(1) << 28; // posts, 1 GB
-constexpr std::size_t MostObservers = 10000;
-constexpr double MostViewHeight = 1e6; // [m]
-constexpr double Snap = 1e-9;          // of an edge: a place on a post needs no other one
-constexpr double Stretch = 32.0;       // posts that are looked over at once
-constexpr double Touch = 1e-6;         // posts: ground so near an end is no obstacle
+constexpr double MostViewHeight = 1e6;                          // [m]
+constexpr double Snap = 1e-9;    // of an edge: a place on a post needs no other one
+constexpr double Stretch = 32.0; // posts that are looked over at once
+constexpr double Touch = 1e-6;   // posts: ground so near an end is no obstacle
 
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -89,8 +88,7 @@ private:
   }
 
   // Whether no ground between two places of a great circle over a body rises above a tangent. About
-  // a pole of a degree grid the places between may lie farther from a straight line than a box
-  // tells.
+  // a pole of a degree grid the places between may lie outside the box of a straight line.
   bool IsBelow(const HorizonPath::Point& a, const HorizonPath::Point& b, double tangent) const {
     const PostPlacement& placement = this->Ground_.placement;
     constexpr double Polar = 80.0 * M_PI / 180.0;
@@ -153,8 +151,11 @@ private:
     const Eigen::Vector3d other = placement.Up(to_S);
     const double angle = std::atan2(up.cross(other).norm(), up.dot(other));
     const double length = angle * placement.Radius();
-    if (length > radius || angle > 0.5 * M_PI) {
-      return angle > 0.5 * M_PI ? std::numeric_limits<double>::infinity() : NaN;
+    if (length > radius) {
+      return NaN;
+    }
+    if (angle > 0.5 * M_PI) {
+      return std::numeric_limits<double>::infinity();
     }
     const double post = placement.CellSize(this->Post_);
     if (length < Touch * post) {
@@ -227,8 +228,8 @@ const char* NameOf(ViewshedOptions::Quantity quantity) {
 
 void Check(const ViewshedOptions& options) {
   const std::string about = "viewshed";
-  Require(!options.observers.empty() && options.observers.size() <= MostObservers, about,
-          "the number of observers", double(options.observers.size()), "1 to 10,000");
+  Require(!options.observers.empty() && options.observers.size() <= ViewshedOptions::MostObservers,
+          about, "the number of observers", double(options.observers.size()), "1 to 10,000");
   Require(options.targetHeight >= 0.0 && options.targetHeight <= MostViewHeight, about,
           "the height of the targets", options.targetHeight, "0 to 1e6 m");
   Require(options.radius > 0.0, about, "the radius", options.radius, "more than 0 m");
@@ -251,8 +252,11 @@ bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, cons
   Check(options);
   if (HeldPosts::CountOf(ground.pyramid->Lattice()) > MostViewedPosts) {
     throw Error(Error::Kind::Resource, ground.name,
-                "a viewshed holds all of its posts, which are more than 268435456; accepted: a "
-                "smaller part of the terrain, or fewer subdivisions");
+                "a viewshed holds its " +
+                    std::to_string(HeldPosts::CountOf(ground.pyramid->Lattice())) +
+                    " posts (those of a full circle twice); accepted: up to " +
+                    std::to_string(MostViewedPosts) +
+                    ": a smaller part of the terrain, or fewer subdivisions");
   }
   const auto proceed = [&] { return !control.progress || control.progress({}); };
   const std::uint64_t before = ground.pyramid->LatestChange();
@@ -314,6 +318,9 @@ bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, cons
         int seen = 0;
         bool near = false;
         for (const Eye& eye : eyes) {
+          if (stop) {
+            return;
+          }
           const double height = eye.Least(to, options.radius);
           near |= !std::isnan(height);
           least = height < least ? height : least;

@@ -2,6 +2,7 @@
 #ifndef DSPACE_MAPS_VIEWSHED_H
 #define DSPACE_MAPS_VIEWSHED_H
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@
 #include <dspace/maps/MapWork.h>
 
 namespace dspace {
+
+class HeldPosts;
 
 struct ViewshedObserver {
   Eigen::Vector2d post =
@@ -26,8 +29,10 @@ struct ViewshedOptions {
     LeastHeight, // [m] above the ground of the lowest target that at least one observer would see
     Count        // how many observers see the target
   };
+  static constexpr std::size_t MostObservers = 10000;
+
   MapCells cells;
-  std::vector<ViewshedObserver> observers; // 1 to 10,000
+  std::vector<ViewshedObserver> observers; // 1 to MostObservers
   double targetHeight = 0.0;               // [m] above the ground of the cell, 0 to 1e6
   double radius = std::numeric_limits<double>::infinity(); // [m] along the ground, > 0
   std::vector<Quantity> quantities = {Quantity::Visible};  // a band each
@@ -40,13 +45,12 @@ struct ViewshedOptions {
 //
 // Continues, finishes and ends as WriteHorizonMap does. Throws what TileFile, FillTiles and Survey
 // throw; Error(InvalidArgument) for an option out of range and an observer off the data; and
-// Error(Resource) for ground of more than 2^28 posts.
+// Error(Resource) for ground of more than 2^28 posts, or 2^27 if it is periodic.
 bool WriteViewshed(const MapGround& ground, const ViewshedOptions& options, const std::string& path,
                    const MapControl& control = {});
 
 // The height [m] above the ground at the post `to` of the lowest target that the observer sees
 // there, 0 or more; NaN where either has no data.
-class HeldPosts;
 double LeastSeenHeight(const MapGround& ground, const HeldPosts& held,
                        const ViewshedObserver& observer, const Eigen::Vector2d& to);
 

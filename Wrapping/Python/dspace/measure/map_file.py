@@ -39,7 +39,7 @@ class MapFile:
 
     @property
     def metadata(self):
-        """What the file tells of its making: terrain, height, version, hash of the inputs. A dict."""
+        """What the file records of its inputs, by the kind of map: terrain, version, heights, hashes (horizon map). A dict."""
         return {key: value for key, value in self._dataset().GetMetadata().items() if key.startswith("DSPACE_")}
 
     @property

@@ -37,8 +37,8 @@ class Maps:
         deadline [s] ends the work, "PATH.part" and "PATH.part.done" stay, and the same call continues them: the result is
         the same to the byte. replace=True: an existing file, and a partial one of other inputs, are removed first.
 
-        Raises dspace.AlreadyExists for an existing file and for a partial one of other inputs; dspace.Resource for a map
-        that does not fit the disk; dspace.InvalidArgument; dspace.DeadlineExceeded."""
+        Raises dspace.AlreadyExists for an existing file, for a partial one of other inputs and for one that another
+        process writes; dspace.Resource for a map that does not fit the disk; dspace.InvalidArgument; dspace.DeadlineExceeded."""
         about = "horizon map"
         command = self._scene._command()
         message = command.horizon_map
@@ -93,8 +93,8 @@ class Maps:
         horizon) and "permanent_shadow" (1: the disc is hidden at every step).
 
         terrain: a Terrain or its name; a map of another ground is then rejected. body: that the map lies on; default: the
-        one that its CRS tells. sun, earth: arrays (n, 3) of the centres [m] at every step in the terrain's frame, in place
-        of start, end and the ephemeris.
+        one that its CRS names. sun, earth: arrays (n, 3) of the centres [m] at every step in the terrain's frame, in place
+        of start, end and the ephemeris; earth only with sun.
 
         On a plane the Sun's direction is that at the middle of the map. Where nothing is in sight, and on a plane below
         0, the horizon is level. The other arguments and errors are those of horizon_map()."""
@@ -116,8 +116,8 @@ class Maps:
             message.start_s, message.end_s = self._time(start, "start", about), self._time(end, "end", about)
         else:
             message.sun_position.extend(_places(sun, "sun", about))
-            if earth is not None:
-                message.earth_position.extend(_places(earth, "earth", about))
+        if earth is not None:
+            message.earth_position.extend(_places(earth, "earth", about))
         quantities = _put_quantities(message, quantities, LIT, about)
         return self._make(command, message, about, path, quantities, replace, threads, progress, deadline)
 

@@ -37,9 +37,9 @@ public:
   MapJobs& operator=(const MapJobs&) = delete;
   ~MapJobs();
 
-  // Waits for the job on a path; begins it with `begin()` if there is none. `key` tells jobs of
-  // different inputs apart. `seconds`: then returns how far it is; absent: waits to its end. Throws
-  // what the work threw, and Error(AlreadyExists) if a job of another key works on the path.
+  // Waits for the job on a path; begins it with `begin()` if there is none. `key` distinguishes
+  // jobs of different inputs. `seconds`: returns the status after that; absent: waits to its end.
+  // Throws what the work threw, and Error(AlreadyExists) if a job of another key works on the path.
   Status Run(const std::string& path, const std::string& key, const MapControl& control,
              const std::function<Job()>& begin, const std::optional<double>& seconds);
   // Ends the job on a path and waits for that; without a job does nothing.

@@ -19,9 +19,6 @@
 namespace dspace::session {
 namespace {
 
-constexpr std::size_t MostSteps = 10000000;
-constexpr int MostSites = 10000;
-
 const TerrainObject& TerrainNamed(const Context& context, const std::string& name) {
   const auto found = context.scene->terrains.find(name);
   if (found == context.scene->terrains.end()) {
@@ -84,11 +81,12 @@ void MapHorizons(const Context& context, MapJobs& jobs, const v1::HorizonMap& co
   RunJob(context, jobs, command, [&](const std::string& path) {
     const auto ground = std::make_shared<const MapGround>(
         MapGroundOf(TerrainNamed(context, command.terrain()).Surface()));
-    constexpr int Standard = 360;
     HorizonMapOptions options;
     options.cells = CellsOf(*ground, command.area());
     options.height = command.height();
-    options.azimuths = command.azimuths() == 0 ? Standard : int(command.azimuths());
+    if (command.azimuths() != 0) {
+      options.azimuths = int(command.azimuths());
+    }
     return MapJobs::Job{[ground, options, path](const MapControl& control) {
                           return WriteHorizonMap(*ground, options, path, control);
                         },
@@ -114,7 +112,8 @@ ViewshedOptions::Quantity QuantityOf(int quantity) {
 void MapViewshed(const Context& context, MapJobs& jobs, const v1::Viewshed& command) {
   RunJob(context, jobs, command, [&](const std::string& path) {
     const std::string name = "command viewshed";
-    if (command.site_size() < 1 || command.site_size() > MostSites) {
+    if (command.site_size() < 1 ||
+        std::size_t(command.site_size()) > ViewshedOptions::MostObservers) {
       Reject(name, std::to_string(command.site_size()) + " sites; accepted: 1 to 10,000");
     }
     const TerrainObject& terrain = TerrainNamed(context, command.site(0).terrain());
@@ -225,8 +224,8 @@ void FindBodies(const Context& context, const v1::IlluminationMap& command,
   RequireFinite(name, "the start", command.start_s());
   Require(span > 0.0 && std::isfinite(span), name, "the span from the start to the end", span,
           "more than 0 s");
-  Require(span / command.step_s() < double(MostSteps), name, "the number of steps",
-          span / command.step_s(), "up to 10,000,000");
+  Require(span / command.step_s() < double(IlluminationOptions::MostSteps), name,
+          "the number of steps", span / command.step_s(), "up to 10,000,000");
   const KernelSet& kernels = *context.scene->sky.kernels;
   const Ephemeris& ephemeris = kernels.GetEphemeris();
   const int body = command.body().empty()
@@ -278,7 +277,11 @@ void MapIllumination(const Context& context, MapJobs& jobs, const v1::Illuminati
     options->sun_S = PointsOf(command.sun_position(), "sun_position");
     options->earth_S = PointsOf(command.earth_position(), "earth_position");
     if (options->sun_S.empty()) {
-      options->earth_S.clear();
+      if (!options->earth_S.empty()) {
+        Reject(name,
+               "it has positions of the Earth without those of the Sun; accepted: both, those "
+               "of the Sun, or none");
+      }
       FindBodies(context, command, *horizons, earth, *options);
     }
     return MapJobs::Job{
