@@ -94,6 +94,35 @@ TEST_F(Walled, ADiscAtTheHorizonIsLitInPart) {
   }
 }
 
+// A high Sun at the wall's sloping outline: the disc is points on the sphere, each behind the wall
+// or over it.
+TEST_F(Walled, AHighDiscIsCutAtTheOutlinesSlopeInTheSky) {
+  const HorizonMap horizons(this->Path("horizon.tif"));
+  const double radius = std::asin(695700e3 / Astronomical);
+  constexpr int Column = 54;
+  constexpr double Away = Columns - 1.0 - Column;
+  for (const double part : {-0.6, 0.0, 0.5, 0.9}) {
+    // The wall is 45 degrees high at the azimuth of 30 degrees.
+    const V center = Towards(M_PI / 6.0, 0.25 * M_PI + part * radius, 1.0);
+    const V right = center.cross(V::UnitZ()).normalized();
+    const V up = right.cross(center);
+    int lit = 0, all = 0;
+    for (int ring = 0; ring < 100; ++ring) {
+      for (int k = 0; k < 200; ++k, ++all) {
+        const double r = std::tan(radius) * std::sqrt((ring + 0.5) / 100.0);
+        const double angle = 2.0 * M_PI * (k + 0.5 * (ring % 2)) / 200.0;
+        const V d = center + r * (std::cos(angle) * right + std::sin(angle) * up);
+        lit += d.z() * Away > d.x() * Wall;
+      }
+    }
+    IlluminationOptions options;
+    options.sun_S = {Astronomical * center};
+    const std::string path = this->Path("high" + std::to_string(part) + ".tif");
+    ASSERT_TRUE(WriteIllumination(horizons, options, path));
+    EXPECT_NEAR(BandsOf(path)[0][Column], double(lit) / all, 5e-3) << part;
+  }
+}
+
 // On a smooth body each cell has its own vertical: the Sun is up where it is above the cell's
 // plane, and a near Earth is seen from the cell, not from the body's centre.
 TEST(Illumination, CellsOfABodyHaveTheirOwnHorizontal) {

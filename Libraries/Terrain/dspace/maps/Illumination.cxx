@@ -11,11 +11,14 @@
 namespace dspace {
 namespace {
 
-constexpr int IlluminationVersion = 1;
+constexpr int IlluminationVersion = 2;
 
 constexpr double Straight = 0.01; // [rad] of turn between two nodes
 constexpr double Degree = M_PI / 180.0;
 constexpr float NothingInSight = -90.0f;
+// Of the elevation of a disc whose slope across the sky counts: towards the zenith azimuths have no
+// width.
+constexpr double MostSecant = 4.0;
 
 using Quantity = IlluminationOptions::Quantity;
 
@@ -71,7 +74,8 @@ public:
   int Height() const { return this->Height_; }
   bool HasData(int cell) const { return !std::isnan(this->Horizons_[std::size_t(cell)]); }
 
-  // Calls visit(cell, how far above the horizon [rad], slope of the horizon) for each cell.
+  // Calls visit(cell, how far above the horizon [rad], rise of the horizon to the next azimuth
+  // [rad], elevation [rad]) for each cell.
   template<typename Visit> void See(const Eigen::Vector3d& p_S, const Visit& visit) {
     const double perStep = double(this->Azimuths_) / (2.0 * M_PI);
     if (this->Nodes_.size() == 1) {
@@ -137,7 +141,7 @@ private:
     const auto cells = std::size_t(this->Width_) * std::size_t(this->Height_);
     const double a = this->Horizons_[std::size_t(first) * cells + std::size_t(cell)];
     const double b = this->Horizons_[std::size_t(second) * cells + std::size_t(cell)];
-    visit(cell, elevation - (a + (x - first) * (b - a)), b - a);
+    visit(cell, elevation - (a + (x - first) * (b - a)), b - a, elevation);
   }
 
   const HorizonMap& Map_;
@@ -223,12 +227,12 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
     for (std::size_t k = 0; k < options.sun_S.size() && !stop; ++k) {
       const Eigen::Vector3d& sun_S = options.sun_S[k];
       const double radius = std::asin(std::min(1.0, options.sunRadius / sun_S.norm()));
-      tile.See(sun_S, [&](int cell, double above, double rise) {
+      tile.See(sun_S, [&](int cell, double above, double rise, double elevation) {
         double part = above >= 0.0 ? 1.0 : 0.0;
-        // The disc's half width across a line of any slope.
-        const double slope = rise * perAzimuth;
-        if (std::abs(above) < radius * std::sqrt(1.0 + slope * slope)) {
-          part = LitFraction(above, slope, radius);
+        const double rising = rise * perAzimuth; // over azimuth, which is narrower in the sky
+        if (std::abs(above) < radius * (1.0 + MostSecant * std::abs(rising))) {
+          const double secant = std::min(1.0 / std::cos(elevation), MostSecant);
+          part = LitFraction(above, rising * secant, radius);
         }
         const auto at = std::size_t(cell);
         lit[at] += part;
@@ -236,8 +240,9 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
         longest[at] = std::max(longest[at], night[at]);
       });
       if (sees) {
-        tile.See(options.earth_S[k],
-                 [&](int cell, double above, double) { earth[std::size_t(cell)] += above >= 0.0; });
+        tile.See(options.earth_S[k], [&](int cell, double above, double, double) {
+          earth[std::size_t(cell)] += above >= 0.0;
+        });
       }
     }
     for (int j = 0; j < tile.Height(); ++j) {
