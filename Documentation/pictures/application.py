@@ -71,6 +71,22 @@ def application_terrain_dock():
         _screenshot("application_terrain_dock", "--after", "8", "--empty", script.name)
 
 
+# A traverse over Gale's floor and up Mount Sharp.
+MEASURE = TERRAIN + """
+app.measure("line", [ground.locate([place], map=True).root[0] for place in
+                     [(137.44, -4.59, -4500), (137.38, -4.73, -4400), (137.48, -5.0, -2000), (137.8, -5.08, 0)]], terrain="Gale")
+app.show_dock("measure")
+"""
+
+
+def application_measure():
+    """Distances, slopes and the profile of a traverse."""
+    with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
+        script.write(MEASURE.format(data=os.fspath(DATA)))
+        script.flush()
+        _screenshot("application_measure", "--after", "8", "--empty", script.name)
+
+
 # --- A tour: each stop is a script, a name, and seconds; at both sizes ---------------------------------
 
 TOUR = {

@@ -304,6 +304,8 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(measure_geodesics { ellipsoid { axes { equatorial_radius: 1737400 } } start: [1, 2] end: [3, 4] })",
        {}},
       {R"(follow_geodesics { start: [1, 2] azimuth_deg: 30 distance: 1000 })", {}},
+      {R"(measure_polygon { ellipsoid { axes { equatorial_radius: 1737400 } } place: [1, 2, 3, 4, 5, 1] })",
+       {}},
       {R"(get_grid_references { place: [177, 83.8] mgrs_precision: 4 })", {}},
       {R"(find_grid_references { mgrs: "38SMB4488" })", {}},
       {R"(get_geoid_heights { place: [1, 2] geoid: "egm96_15.gtx" })", {}},

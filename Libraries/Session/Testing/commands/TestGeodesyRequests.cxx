@@ -108,6 +108,23 @@ TEST_F(GeodesyRequests, ReferToGridsOfWgs84Only) {
   this->Reject(find, Kind::INVALID_ARGUMENT, "0 values of north are given for 1 places");
 }
 
+// An octant of a sphere.
+TEST_F(GeodesyRequests, MeasurePolygonsOnTheEllipsoidThatIsMeant) {
+  this->Open("moon", "+proj=longlat +R=1737400 +no_defs");
+  v1::Command command;
+  v1::MeasurePolygon* polygon = command.mutable_measure_polygon();
+  polygon->mutable_ellipsoid()->set_terrain("moon");
+  for (const double value : {0.0, 90.0, 0.0, 0.0, 90.0, 0.0}) {
+    polygon->add_place(value);
+  }
+  const v1::PolygonReply reply = this->Accept(command).polygon();
+  EXPECT_NEAR(reply.area(), 0.5 * M_PI * 1737400.0 * 1737400.0, 1e-3);
+  EXPECT_NEAR(reply.perimeter(), 1.5 * M_PI * 1737400.0, 1e-6);
+  command.mutable_measure_polygon()->mutable_place()->Truncate(4);
+  this->Reject(command, Kind::INVALID_ARGUMENT,
+               "2 corners of a polygon are given; accepted: 3 or more");
+}
+
 TEST_F(GeodesyRequests, RejectWhatHasNoPlaceOrNoEllipsoid) {
   this->Open("plain", "");
   this->Reject(Measure("plain", {0, 0}, {1, 1}), Kind::UNSUPPORTED, "terrain 'plain'");

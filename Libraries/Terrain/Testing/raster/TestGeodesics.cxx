@@ -99,6 +99,31 @@ TEST(Geodesics, OfAnyEllipsoidHaveTheirClosedForms) {
   EXPECT_EQ(moon.Between({3.0, 4.0}, {3.0, 4.0}).distance, 0.0);
 }
 
+// Expected values: test "Planimeter0" of GeographicLib (C. F. F. Karney, geodtest.c), latitudes
+// first there.
+TEST(Geodesics, PolygonsHaveThePublishedAreas) {
+  const Geodesics earth(BodyEllipsoid(Equatorial, Polar));
+  const GeodesicPolygon pole = earth.Around({{0, 89}, {90, 89}, {180, 89}, {270, 89}});
+  EXPECT_NEAR(pole.perimeter, 631819.8745, 1e-4);
+  EXPECT_NEAR(pole.area, 24952305678.0, 1.0);
+  EXPECT_NEAR(earth.Around({{0, -89}, {90, -89}, {180, -89}, {270, -89}}).area, 24952305678.0, 1.0);
+  const GeodesicPolygon crossing = earth.Around({{-1, 0}, {0, -1}, {1, 0}, {0, 1}});
+  EXPECT_NEAR(crossing.perimeter, 627598.2731, 1e-4);
+  EXPECT_NEAR(crossing.area, 24619419146.0, 1.0);
+  EXPECT_NEAR(earth.Around({{0, 1}, {1, 0}, {0, -1}, {-1, 0}}).area, 24619419146.0, 1.0);
+  const GeodesicPolygon octant = earth.Around({{0, 90}, {0, 0}, {90, 0}});
+  EXPECT_NEAR(octant.perimeter, 30022685.0, 1.0);
+  EXPECT_NEAR(octant.area, 63758202715511.0, 1.0);
+  // Of a sphere: Girard's theorem; a strong flattening: the elliptic integrals' halves add up.
+  const double radius = 1737400.0;
+  EXPECT_NEAR(Geodesics(BodyEllipsoid(radius, radius)).Around({{0, 90}, {0, 0}, {90, 0}}).area,
+              0.5 * M_PI * radius * radius, 1e-3);
+  const double flat = 0.75 * radius, e = std::sqrt(1.0 - 0.75 * 0.75);
+  const double surface = 2.0 * M_PI * (radius * radius + flat * flat * std::atanh(e) / e);
+  EXPECT_NEAR(Geodesics(BodyEllipsoid(radius, flat)).Around({{0, 90}, {0, 0}, {90, 0}}).area,
+              surface / 8.0, 1e-6 * surface);
+}
+
 TEST(Geodesics, RejectsWhatIsNoPlace) {
   const Geodesics earth(BodyEllipsoid(Equatorial, Polar));
   EXPECT_THROW(earth.Between({0.0, 90.001}, {0.0, 0.0}), Error);
@@ -106,6 +131,8 @@ TEST(Geodesics, RejectsWhatIsNoPlace) {
   EXPECT_THROW(earth.Between({NAN, 0.0}, {0.0, 0.0}), Error);
   EXPECT_THROW(earth.EndOf({0.0, 0.0}, INFINITY, 1.0), Error);
   EXPECT_THROW(earth.EndOf({0.0, 0.0}, 1.0, NAN), Error);
+  EXPECT_THROW(earth.Around({{0, 0}, {1, 0}}), Error);
+  EXPECT_THROW(earth.Around({{0, 0}, {1, 0}, {0, 91}}), Error);
   try {
     earth.Between({0.0, 0.0}, {12.0, 91.0});
     ADD_FAILURE();

@@ -1,10 +1,12 @@
 #include <dspace/crs/Geodesics.h>
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
 #include <GeographicLib/Geodesic.hpp>
 #include <GeographicLib/GeodesicExact.hpp>
+#include <GeographicLib/PolygonArea.hpp>
 
 #include <dspace/Checks.h>
 
@@ -78,6 +80,27 @@ GeodesicEnd Geodesics::EndOf(const Eigen::Vector2d& from, double azimuth_deg,
       this->Solver_->of);
   end.azimuth_deg = FromNorth(end.azimuth_deg);
   return end;
+}
+
+GeodesicPolygon Geodesics::Around(const std::vector<Eigen::Vector2d>& corners) const {
+  if (corners.size() < 3) {
+    Reject("polygon", std::to_string(corners.size()) + " corners are given; accepted: 3 or more");
+  }
+  for (const Eigen::Vector2d& corner : corners) {
+    RequirePlace(corner);
+  }
+  GeodesicPolygon polygon;
+  std::visit(
+      [&](const auto& solver) {
+        GeographicLib::PolygonAreaT<std::decay_t<decltype(solver)>> sum(solver);
+        for (const Eigen::Vector2d& corner : corners) {
+          sum.AddPoint(corner.y(), corner.x());
+        }
+        sum.Compute(false, false, polygon.perimeter, polygon.area);
+        polygon.area = std::min(polygon.area, solver.EllipsoidArea() - polygon.area);
+      },
+      this->Solver_->of);
+  return polygon;
 }
 
 } // namespace dspace

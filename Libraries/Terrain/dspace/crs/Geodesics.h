@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <dspace/crs/BodyEllipsoid.h>
 
@@ -29,6 +30,12 @@ struct GeodesicEnd {
   double azimuth_deg = 0.0;                        // 0 to 360
 };
 
+// A polygon whose edges are geodesics.
+struct GeodesicPolygon {
+  double area = 0.0;      // [m^2], at height 0; of the side that is no larger than half of the body
+  double perimeter = 0.0; // [m]
+};
+
 // The geodesic problems of one ellipsoid, to some nanometres. Source: C. F. F. Karney, "Algorithms
 // for geodesics", J. Geodesy 87, 43-55 (2013): GeographicLib's series for flattenings up to 1/100,
 // its elliptic integrals beyond.
@@ -45,6 +52,10 @@ public:
   // The direct problem. A negative distance goes backwards. Throws also for an azimuth and a
   // distance that are not finite.
   GeodesicEnd EndOf(const Eigen::Vector2d& from, double azimuth_deg, double distance) const;
+  // The polygon with these corners, in either order; edges must not cross (the caller's duty). It
+  // may hold a pole. Throws as RequirePlace does, and Error(InvalidArgument) for fewer than 3
+  // corners. On the Earth the area is within 0.1 m^2 an edge (Karney 2013, section 6).
+  GeodesicPolygon Around(const std::vector<Eigen::Vector2d>& corners) const;
 
 private:
   struct Solver;

@@ -6,7 +6,7 @@ import pathlib
 from dspace import errors
 from dspace._core.fields import integer, real, reject, text, word
 from dspace._core.replies import to_reply
-from dspace.application import layouts, views
+from dspace.application import layouts, measuring, views
 from dspace.application.export import begin
 from dspace.application.files import around
 from dspace.application.key_frames import KeyFrames
@@ -28,7 +28,7 @@ class App:
 
     session, scene: where files are opened. views: the viewports of its windows, by name; view: the latest one. runs:
     the recordings that were opened, as dspace.application.run.Run. plots: the plots that were made, by number. links: the
-    servers, as dspace.application.link.Link."""
+    servers, as dspace.application.link.Link. measured: what measure() returned last; None before."""
 
     def __init__(self, host):
         self._host = host
@@ -43,6 +43,7 @@ class App:
         self.plots = {}
         self.exports = []
         self.map_links = []
+        self.measured = None
         self._watched = {}  # by view: what is called after its pictures
         self.plugins = PlugIns(host)
         self.layouts = Layouts(host)
@@ -113,7 +114,7 @@ class App:
         layouts.show_dialog(self._host, name)
 
     def show_dock(self, name):
-        """Shows a dock and brings it to the front: "scene", "terrain", "time", "telemetry", "messages", "console", "view
+        """Shows a dock and brings it to the front: "scene", "terrain", "measure", "time", "telemetry", "messages", "console", "view
         NAME" of a viewport, "plot N". Raises dspace.NotFound for another name."""
         layouts.show_dock(self._host, name)
 
@@ -236,6 +237,17 @@ class App:
             if run._player is shown:
                 return run
         return Shown(shown, scene)
+
+    # --- Measurements --------------------------------------------------------------------------
+
+    def measure(self, kind, points, terrain=None):
+        """Measures in the scene in the docks, and shows the results in the Measure dock and the points in the views: a "line"
+        (Scene.measure_line), an "area" (Scene.measure_area), or the "angle" at the second of three points.
+
+        points: (n, 3) in the scene's root [m]; terrain: the name of the terrain on whose ground is measured. Returns the
+        dspace.MeasuredLine, MeasuredArea, or degrees; `measured` keeps it."""
+        self.measured = measuring.measure(self, kind, points, terrain)
+        return self.measured
 
     # --- The operator --------------------------------------------------------------------------
 

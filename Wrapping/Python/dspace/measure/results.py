@@ -4,6 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dspace._core.fields import array_of
+from dspace._core.files import atomic_write
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,107 @@ class Horizon:
     def __repr__(self):
         return (f"<dspace.Horizon {len(self.azimuth_deg)} azimuths, elevation {self.elevation_deg.min():.6g} to "
                 f"{self.elevation_deg.max():.6g} deg>")
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The ground below a line, at n places. distance (n,): from the start along the line on the ellipsoid, or in the map [m].
+    height (n,): above the terrain's vertical datum [m]. slope_deg (n,): of the ground, in its steepest direction. map (n, 3):
+    map x, y and height. point (n, 3): in the scene's root [m]. NaN where there are no data."""
+    distance: np.ndarray
+    height: np.ndarray
+    slope_deg: np.ndarray
+    map: np.ndarray
+    point: np.ndarray
+
+    def save(self, path):
+        """Writes a table as CSV: distance_m, height_m, slope_deg, map_x, map_y; empty where there are no data."""
+        rows = ["distance_m,height_m,slope_deg,map_x,map_y"]
+        for row in zip(self.distance, self.height, self.slope_deg, self.map[:, 0], self.map[:, 1]):
+            rows.append(",".join("" if value != value else f"{value:.12g}" for value in row))
+        atomic_write(path, ("\n".join(rows) + "\n").encode())
+
+    def __repr__(self):
+        return (f"<dspace.Profile {len(self.distance)} places, {self.distance[-1]:.6g} m, height {np.nanmin(self.height):.6g} to "
+                f"{np.nanmax(self.height):.6g} m>" if np.isfinite(self.height).any() else
+                f"<dspace.Profile {len(self.distance)} places without data>")
+
+
+@dataclass(frozen=True)
+class MeasuredLine:
+    """A line through n points; arrays (n - 1,) have a value for each leg.
+
+    points (n, 3): in the scene's root [m]. lengths: straight through space [m]. With a terrain (its name): distances: along the
+    ellipsoid, or in the map where its CRS has none [m]; azimuth_deg: at the start of a leg, clockwise from north; rises: of the
+    ground [m]; profile: the Profile of the ground. Else None."""
+    points: np.ndarray
+    lengths: np.ndarray
+    terrain: object = None
+    distances: object = None
+    azimuth_deg: object = None
+    rises: object = None
+    profile: object = None
+
+    @property
+    def length(self):
+        """The sum of the lengths [m]."""
+        return float(self.lengths.sum())
+
+    @property
+    def distance(self):
+        """The sum of the distances [m]; None without a terrain."""
+        return None if self.terrain is None else float(self.distances.sum())
+
+    @property
+    def slope_deg(self):
+        """The slope of each leg from its start to its end on the ground; None without a terrain."""
+        return None if self.terrain is None else np.degrees(np.arctan2(self.rises, self.distances))
+
+    @property
+    def ground_length(self):
+        """The length of the profile over the ground [m], which grows with the number of samples; NaN where data are missing;
+        None without a terrain."""
+        if self.terrain is None:
+            return None
+        return float(np.linalg.norm(np.diff(self.profile.point, axis=0), axis=1).sum())
+
+    @property
+    def climb(self):
+        """The sum of all ascents of the profile [m]; NaN where data are missing; None without a terrain."""
+        return None if self.terrain is None else float(np.maximum(np.diff(self.profile.height), 0).sum())
+
+    @property
+    def descent(self):
+        """The sum of all descents of the profile [m], positive; NaN where data are missing; None without a terrain."""
+        return None if self.terrain is None else float(np.maximum(-np.diff(self.profile.height), 0).sum())
+
+    def __repr__(self):
+        on = "" if self.terrain is None else f", {self.distance:.6g} m on terrain {self.terrain!r}"
+        return f"<dspace.MeasuredLine {len(self.points)} points, {self.length:.6g} m{on}>"
+
+
+@dataclass(frozen=True)
+class MeasuredArea:
+    """A polygon. points (n, 3): its corners in the scene's root [m]. area [m^2], perimeter [m]: in its plane; with a terrain
+    (its name) on the ellipsoid, or in the map where its CRS has none.
+
+    With a terrain, of a grid of places within it: covered: the share of the area that has data; surface_area [m^2]: of the
+    sloping ground (the area times the mean of 1 / cos slope); least_height, mean_height, greatest_height [m]; mean_slope_deg. Else
+    None."""
+    points: np.ndarray
+    area: float
+    perimeter: float
+    terrain: object = None
+    covered: object = None
+    surface_area: object = None
+    least_height: object = None
+    mean_height: object = None
+    greatest_height: object = None
+    mean_slope_deg: object = None
+
+    def __repr__(self):
+        on = "" if self.terrain is None else f" on terrain {self.terrain!r}"
+        return f"<dspace.MeasuredArea {len(self.points)} corners, {self.area:.6g} m^2{on}>"
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
+from dspace.measure.lines import Lines
 from dspace.measure.lit import Lit
 from dspace.measure.maps import Maps
 from dspace.measure.sights import Sights
@@ -289,6 +290,9 @@ class Scene(Strict):
 
     line_of_sight = delegate(Sights, "line_of_sight")
     horizon = delegate(Sights, "horizon")
+    measure_line = delegate(Lines, "measure_line")
+    measure_area = delegate(Lines, "measure_area")
+    measure_angle = delegate(Lines, "measure_angle")
     lit_area = delegate(Lit, "lit_area")
     sky_track = delegate(Visibility, "sky_track")
     contacts = delegate(Visibility, "contacts")

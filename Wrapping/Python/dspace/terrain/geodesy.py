@@ -27,6 +27,13 @@ class GeodesicEnd:
 
 
 @dataclass(frozen=True)
+class GeodesicPolygon:
+    """A polygon of geodesics on the ellipsoid. area [m^2]: of the side that is no larger than half of it. perimeter [m]."""
+    area: float
+    perimeter: float
+
+
+@dataclass(frozen=True)
 class Utm:
     """UTM coordinates of one place (numbers), or of several (arrays)."""
     zone: object  # 1 to 60; 0: UPS, beyond latitudes -80 and 84
@@ -116,6 +123,18 @@ class Geodesy(Strict):
         reply = self._scene._execute(command).geodesics
         return GeodesicEnd(np.array(reply.end).reshape(azimuth.shape + (2,)),
                            _shaped(reply.end_azimuth_deg, azimuth.shape))
+
+    def polygon(self, places):
+        """Returns the GeodesicPolygon with corners at places (n, 2), n of 3 or more, in either order, whose edges are
+        geodesics; it may hold a pole. Edges that cross are not detected."""
+        command, message = self._begin("measure_polygon")
+        corners = self._places(places, "the corners")
+        if corners.ndim != 2:
+            raise InvalidArgument(f"{self._label()}: the corners have the shape {corners.shape}; accepted: (n, 2)",
+                                  self._label())
+        wire.put_array(message, "place", corners)
+        reply = self._scene._execute(command).polygon
+        return GeodesicPolygon(reply.area, reply.perimeter)
 
     def utm(self, places, zone=None):
         """Returns the Utm coordinates of places (..., 2): in their standard zones, with the exceptions of Norway and

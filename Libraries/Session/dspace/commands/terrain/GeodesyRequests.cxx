@@ -111,6 +111,20 @@ void FollowGeodesics(const Context& context, v1::FollowGeodesics& command) {
   context.reply.mutable_geodesics()->Swap(&reply);
 }
 
+void MeasurePolygon(const Context& context, v1::MeasurePolygon& command) {
+  const Geodesics body(EllipsoidOf(context, command.ellipsoid()));
+  const std::string label = LabelOf(command.ellipsoid());
+  const std::vector<Eigen::Vector2d> corners = PlacesOf(command.place(), label, "corner");
+  if (corners.size() < 3) {
+    Reject(label,
+           std::to_string(corners.size()) + " corners of a polygon are given; accepted: 3 or more");
+  }
+  const GeodesicPolygon polygon = body.Around(corners);
+  v1::PolygonReply* reply = context.reply.mutable_polygon();
+  reply->set_area(polygon.area);
+  reply->set_perimeter(polygon.perimeter);
+}
+
 void GetGridReferences(const Context& context, v1::GetGridReferences& command) {
   RequireWgs84(context, command.ellipsoid(), "grid references");
   const std::string label = LabelOf(command.ellipsoid());
@@ -179,6 +193,7 @@ void AddGeodesyRequests(Registry& registry) {
   using C = v1::Command;
   registry.Add(C::kMeasureGeodesics, &C::mutable_measure_geodesics, MeasureGeodesics);
   registry.Add(C::kFollowGeodesics, &C::mutable_follow_geodesics, FollowGeodesics);
+  registry.Add(C::kMeasurePolygon, &C::mutable_measure_polygon, MeasurePolygon);
   registry.Add(C::kGetGridReferences, &C::mutable_get_grid_references, GetGridReferences);
   registry.Add(C::kFindGridReferences, &C::mutable_find_grid_references, FindGridReferences);
   registry.Add(C::kGetGeoidHeights, &C::mutable_get_geoid_heights, GetGeoidHeights);

@@ -26,7 +26,7 @@ constexpr Entry Entries[] = {
     {"Space", "plays and pauses"},
     {"K", "a camera key of the movie, where the camera is"},
     {"M", "on the timeline: a mark"},
-    {"Escape", "cancels a drag, ends a preview, clears the selection"},
+    {"Escape", "cancels a drag, ends a preview or a measurement, clears the selection"},
     {"H", "shows and hides these keys"},
 };
 

@@ -36,6 +36,7 @@
 #include <dspace/widgets/desktop/MenuKeys.h>
 #include <dspace/widgets/desktop/NoticeBar.h>
 #include <dspace/widgets/desktop/RecentFiles.h>
+#include <dspace/widgets/measure/MeasureWidget.h>
 #include <dspace/widgets/operator/MessageWidget.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/script/PythonText.h>
@@ -47,6 +48,7 @@
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/FileCommands.h>
 #include <dspace/widgets/window/KeyTable.h>
+#include <dspace/widgets/window/MeasureMarks.h>
 #include <dspace/widgets/window/MovieTrack.h>
 #include <dspace/widgets/window/PlugIns.h>
 #include <dspace/widgets/window/PointerReadout.h>
@@ -124,6 +126,13 @@ MainWindow::MainWindow(const QString& packages)
       }
       return std::string("{}");
     }
+    if (MeasureMarks::Handles(given)) {
+      if (this->Marks_) {
+        const auto [of, scene] = this->Scenes_->ActiveScene();
+        this->Marks_->Handle(given, of, scene);
+      }
+      return std::string("{}");
+    }
     return QJsonDocument(Shell::Takes(given) ? this->Shell_->Handle(given)
                                              : this->PlugIns_->Handle(given))
         .toJson()
@@ -189,6 +198,7 @@ MainWindow::MainWindow(const QString& packages)
   this->AddTelemetry(timeline);
   this->AddMessages();
   this->AddTerrain();
+  this->AddMeasure();
   this->AddViewParts(tree, timeline);
   this->MakeMenus();
   this->statusBar()->showMessage(
@@ -212,6 +222,10 @@ MainWindow::~MainWindow() {
   this->Panes_ = nullptr;
   delete this->MessageDock_;
   this->MessageDock_ = nullptr;
+  delete this->Marks_;
+  this->Marks_ = nullptr;
+  delete this->MeasureDock_;
+  this->MeasureDock_ = nullptr;
   delete this->TerrainDock_;
   this->TerrainDock_ = nullptr;
   delete this->Telemetry_;
@@ -296,6 +310,22 @@ void MainWindow::AddTerrain() {
   this->SceneDock_->raise();
 }
 
+void MainWindow::AddMeasure() {
+  this->Measure_ = new MeasureWidget(this);
+  this->MeasureDock_ = new QDockWidget(tr("Measure"), this);
+  this->MeasureDock_->setObjectName(QStringLiteral("measure"));
+  this->MeasureDock_->setWidget(this->Measure_);
+  connect(this->Measure_, &MeasureWidget::measureWanted, this,
+          [this](const QString& line) { this->Run(line); });
+  connect(this->Measure_, &MeasureWidget::saveWanted, this, [this](const QString& path) {
+    this->Run(QStringLiteral("app.measured.profile.save(%1)").arg(Quoted(path)));
+  });
+  this->Marks_ = new MeasureMarks(this->Measure_, this);
+  this->addDockWidget(Qt::LeftDockWidgetArea, this->MeasureDock_);
+  this->tabifyDockWidget(this->TerrainDock_, this->MeasureDock_);
+  this->SceneDock_->raise();
+}
+
 void MainWindow::MakeMenus() {
   QMenu* file = this->menuBar()->addMenu(tr("&File"));
   file->addAction(tr("&Open..."), QKeySequence::Open, this, [this] { this->ChooseFiles(); });
@@ -349,6 +379,7 @@ void MainWindow::MakeMenus() {
   view->addSeparator();
   view->addAction(this->SceneDock_->toggleViewAction());
   view->addAction(this->TerrainDock_->toggleViewAction());
+  view->addAction(this->MeasureDock_->toggleViewAction());
   view->addAction(this->TimeDock_->toggleViewAction());
   view->addAction(this->Telemetry_->TableDock()->toggleViewAction());
   view->addAction(this->MessageDock_->toggleViewAction());
@@ -487,7 +518,9 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   ConnectToExecutor(
       *widget, [session](const std::string& command) { return session.Execute(command); }, viewport,
       [this, widget, session, viewport](const std::string& event, const std::string& reply) {
-        this->Selection_->Take(event, reply);
+        if (!this->Marks_->Take(session.Of(), viewport, event, reply)) {
+          this->Selection_->Take(event, reply);
+        }
         OpenViewMenu(widget, session, event, reply,
                      [this](const QString& line) { return this->Run(line); });
         this->Interpreter_->Tell(viewport, event, reply);
@@ -504,6 +537,7 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   this->Selection_->Add(widget, of, viewport);
   this->ViewKeys_->Add(widget, viewport);
   this->Pointer_->Add(widget, of, viewport);
+  this->Marks_->Add(widget, of, viewport);
   this->Libraries_->AddView(widget);
   if (this->Shell_->GetLayouts()->Place(dock)) { // a layout has it
     return;
@@ -590,7 +624,8 @@ void MainWindow::AddViewParts(SceneTreeWidget* tree, TimelineWidget* timeline) {
                      {run, [this](const QString& line) { this->Interpreter_->Run(line); },
                       [this] { return this->CurrentView(); },
                       [this](const QString& message) { this->Report(message); }});
-  this->ViewKeys_ = new ViewKeys(timeline, this->Selection_, this->Movies_, run, this);
+  this->ViewKeys_ =
+      new ViewKeys(timeline, this->Selection_, this->Movies_, this->Marks_, run, this);
 }
 
 QString MainWindow::CurrentView(bool any) const {

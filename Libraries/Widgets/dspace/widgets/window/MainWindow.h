@@ -23,6 +23,8 @@ namespace dspace::widgets {
 
 class ConsoleWidget;
 class FileCommands;
+class MeasureMarks;
+class MeasureWidget;
 class MovieTrack;
 class ViewKeys;
 class ViewPanes;
@@ -80,6 +82,7 @@ public:
   ViewSelection* Selection() const { return this->Selection_; }
   MovieTrack* Movies() const { return this->Movies_; }
   TerrainWidget* Terrain() const { return this->Terrain_; }
+  MeasureWidget* Measure() const { return this->Measure_; }
 
 protected:
   void closeEvent(QCloseEvent* event) override;
@@ -95,6 +98,7 @@ private:
   void AddMessages();
   void AddTelemetry(TimelineWidget* timeline);
   void AddTerrain();
+  void AddMeasure();
   void MakeMenus();
   void ShowView(vtkObject* of, const std::string& viewport, const std::string& title);
   void CloseView(vtkObject* of, const std::string& viewport);
@@ -119,6 +123,8 @@ private:
   PlugIns* PlugIns_ = nullptr;
   TelemetryDocks* Telemetry_ = nullptr;
   TerrainWidget* Terrain_ = nullptr;
+  MeasureWidget* Measure_ = nullptr;
+  MeasureMarks* Marks_ = nullptr;
   MovieTrack* Movies_ = nullptr;
   ViewPanes* Panes_ = nullptr;
   ViewSelection* Selection_ = nullptr;
@@ -128,6 +134,7 @@ private:
   QDockWidget* MessageDock_ = nullptr;
   QDockWidget* SceneDock_ = nullptr;
   QDockWidget* TerrainDock_ = nullptr;
+  QDockWidget* MeasureDock_ = nullptr;
   QDockWidget* TimeDock_ = nullptr;
   QDockWidget* ConsoleDock_ = nullptr;
   Shell* Shell_ = nullptr;

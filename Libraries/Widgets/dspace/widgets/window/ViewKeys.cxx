@@ -9,14 +9,15 @@
 #include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/KeyTable.h>
+#include <dspace/widgets/window/MeasureMarks.h>
 #include <dspace/widgets/window/MovieTrack.h>
 #include <dspace/widgets/window/ViewSelection.h>
 
 namespace dspace::widgets {
 
 ViewKeys::ViewKeys(TimelineWidget* timeline, ViewSelection* selection, MovieTrack* movies,
-                   std::function<bool(const QString&)> run, QObject* parent)
-    : QObject(parent), Timeline_(timeline), Selection_(selection), Movies_(movies),
+                   MeasureMarks* marks, std::function<bool(const QString&)> run, QObject* parent)
+    : QObject(parent), Timeline_(timeline), Selection_(selection), Movies_(movies), Marks_(marks),
       Run_(std::move(run)) {}
 
 void ViewKeys::Add(ViewportWidget* widget, const std::string& viewport) {
@@ -62,7 +63,7 @@ bool ViewKeys::Take(ViewportWidget* widget, const QString& view, int key) {
     SwitchKeyOverlay(widget);
     return true;
   case Qt::Key_Escape:
-    if (RemoveKeyOverlay(widget) || this->Movies_->Stop()) {
+    if (RemoveKeyOverlay(widget) || this->Movies_->Stop() || this->Marks_->End()) {
       return true;
     }
     if (!this->Selection_->Python().isEmpty()) {

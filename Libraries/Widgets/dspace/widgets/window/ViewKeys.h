@@ -10,6 +10,7 @@
 
 namespace dspace::widgets {
 
+class MeasureMarks;
 class MovieTrack;
 class TimelineWidget;
 class ViewPanes;
@@ -17,15 +18,16 @@ class ViewSelection;
 class ViewportWidget;
 
 // Space plays and pauses where the time can be played, K adds a camera key of a recording, F shows
-// the selection, H shows the keys, Escape ends a preview, the table of keys or the selection, in
-// this order, and then goes on to the view, which cancels a drag. All other keys are the view's.
+// the selection, H shows the keys, Escape ends the table of keys, a preview, a measurement or the
+// selection, in this order, and then goes on to the view, which cancels a drag. All other keys are
+// the view's.
 class ViewKeys : public QObject {
   Q_OBJECT
 
 public:
   // All must outlive it. `run`: runs a line of Python.
   ViewKeys(TimelineWidget* timeline, ViewSelection* selection, MovieTrack* movies,
-           std::function<bool(const QString& python)> run, QObject* parent);
+           MeasureMarks* marks, std::function<bool(const QString& python)> run, QObject* parent);
 
   void Add(ViewportWidget* widget, const std::string& viewport);
 
@@ -38,6 +40,7 @@ private:
   TimelineWidget* Timeline_;
   ViewSelection* Selection_;
   MovieTrack* Movies_;
+  MeasureMarks* Marks_;
   std::function<bool(const QString&)> Run_;
   std::map<QObject*, QString> Views_; // as Python
 };

@@ -2,7 +2,6 @@
 
 #include <QAction>
 #include <QDockWidget>
-#include <QEvent>
 #include <QFileInfo>
 #include <QKeySequence>
 #include <QLabel>
@@ -17,43 +16,12 @@
 #include <dspace/Error.h>
 #include <dspace/widgets/desktop/MenuKeys.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
+#include <dspace/widgets/window/OverlayPane.h>
 
 namespace dspace::widgets {
 namespace {
 
 constexpr int ReadOutEvery_ms = 100;
-
-// Lies over a view and lets input through.
-class OverlayPane : public QWidget {
-public:
-  OverlayPane(ViewportWidget* view, std::function<void(QPainter&)> draw)
-      : QWidget(view), Draw_(std::move(draw)) {
-    this->setAttribute(Qt::WA_TransparentForMouseEvents);
-    this->setAttribute(Qt::WA_NoSystemBackground);
-    this->setFocusPolicy(Qt::NoFocus);
-    this->setObjectName(QStringLiteral("overlay"));
-    this->resize(view->size());
-    view->installEventFilter(this);
-    connect(view, &ViewportWidget::shown, this, qOverload<>(&QWidget::update));
-    this->show();
-  }
-
-protected:
-  bool eventFilter(QObject* object, QEvent* event) override {
-    if (event->type() == QEvent::Resize) {
-      this->resize(this->parentWidget()->size());
-    }
-    return QWidget::eventFilter(object, event);
-  }
-  void paintEvent(QPaintEvent*) override {
-    QPainter painter(this);
-    painter.setRenderHint(QPainter::Antialiasing);
-    this->Draw_(painter);
-  }
-
-private:
-  std::function<void(QPainter&)> Draw_;
-};
 
 } // namespace
 
