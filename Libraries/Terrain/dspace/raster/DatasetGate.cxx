@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <cpl_error.h>
@@ -12,8 +13,10 @@
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
+#include <dspace/raster/MosaicCount.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/RasterLimits.h>
 #include <dspace/raster/SelfContainedDrivers.h>
 #include <dspace/raster/UnderlyingFile.h>
 
@@ -103,12 +106,6 @@ std::string RequireName(const std::string& name) {
   return archive ? name : whole.string();
 }
 
-bool IsMosaic(const std::string& path) {
-  GDALDriver* vrt = GetGDALDriverManager()->GetDriverByName("VRT");
-  GDALOpenInfo info(path.c_str(), GDAL_OF_RASTER);
-  return vrt && vrt->pfnIdentify && vrt->pfnIdentify(&info) == TRUE;
-}
-
 DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* const* drivers,
                            const char* const* options);
 
@@ -120,8 +117,13 @@ void CheckSources(const std::string& mosaic, Opening& opening) {
   if (!isNew) {
     return;
   }
+  if (opening.Depth() == 0) {
+    CheckMosaicSize(mosaic);
+  }
+  std::set<std::string> seen;
   for (const std::string& source : MosaicSources(mosaic)) {
-    if (!IsRemote(source) && !OpenGuarded(source, GDAL_OF_RASTER, nullptr, nullptr)) {
+    if (seen.insert(source).second && !IsRemote(source) &&
+        !OpenGuarded(source, GDAL_OF_RASTER, nullptr, nullptr)) {
       throw Error(Error::Kind::Corrupt, "file '" + source + "'",
                   std::string("as a source of '") + mosaic +
                       "' it cannot be read: " + CPLGetLastErrorMsg());
@@ -153,10 +155,26 @@ std::string AcceptedNames(unsigned flags) {
       text += *name + std::string(", ");
     }
   }
-  return text + ((flags & GDAL_OF_RASTER) ? "and mosaics (VRT) of these" : "and no others");
+  return text + ((flags & GDAL_OF_RASTER) && AreMosaicsAccepted() ? "and mosaics (VRT) of these"
+                                                                  : "and no others");
+}
+
+// Of a raster whose blocks and levels could not be counted in time.
+void CheckPixels(GDALDataset& dataset, const std::string& path) {
+  const std::uint64_t limit = PixelLimit.Value();
+  const int columns = dataset.GetRasterXSize();
+  const int rows = dataset.GetRasterYSize();
+  if (columns > 0 && rows > 0 && std::uint64_t(columns) * std::uint64_t(rows) > limit) {
+    throw Error(Error::Kind::Resource, "file '" + path.substr(0, 1000) + "'",
+                "it has " + std::to_string(columns) + " x " + std::to_string(rows) +
+                    " pixels; accepted: up to " + std::to_string(limit) +
+                    " in all, or with a higher limit in the environment variable " +
+                    PixelLimit.variable);
+  }
 }
 
 void CheckOpened(GDALDataset& dataset, const std::string& path, const Opening& opening) {
+  CheckPixels(dataset, path);
   const char* overviews = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
   if (overviews) {
     Reject(path,
@@ -185,7 +203,7 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
   const std::string path = RequireName(name);
   const char* const mosaic[] = {"VRT", nullptr};
   const char* const* allowed = drivers ? drivers : SelfContainedDrivers();
-  if (!drivers && (flags & GDAL_OF_RASTER) && IsMosaic(path)) {
+  if (!drivers && (flags & GDAL_OF_RASTER) && AreMosaicsAccepted() && IsMosaic(path)) {
     CheckSources(path, opening);
     allowed = mosaic;
     flags &= ~unsigned(GDAL_OF_VECTOR);
@@ -277,8 +295,12 @@ DatasetPointer OpenDataset(const std::string& path, DatasetKind kind, const char
   if (FilesGuard::IsActive()) {
     return OpenGuarded(path, FlagsOf(kind), drivers, nullptr);
   }
-  return DatasetPointer(
+  DatasetPointer dataset(
       GDALDataset::Open(path.c_str(), FlagsOf(kind) | GDAL_OF_VERBOSE_ERROR, drivers));
+  if (dataset) {
+    CheckPixels(*dataset, path);
+  }
+  return dataset;
 }
 
 DatasetPointer OpenOwnTiff(const std::string& path) {
