@@ -215,3 +215,49 @@ def test_a_playback_ends_with_a_signal(tmp_path):
         process.send_signal(signal.SIGINT)
     process.stdout.close()
     wait(lambda: process.poll() is not None)
+
+
+# --- Movies -----------------------------------------------------------------------------------------
+
+def movie_file(path):
+    movie = dspace.Movie(size=(64, 48), rate=2, samples=1)
+    movie.add_view("main")
+    movie.add_key(time=0.0, position=(0, -20, 20), target=(0, 0, 8), run=0.0)
+    movie.add_key(time=1.0, position=(5, -20, 20), target=(0, 0, 8), run=2.0)
+    movie.save(str(path))
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_confined_movie_of_a_recording_is_the_same(tmp_path, jobs):
+    """Its processes that draw, and ffmpeg, have its rights."""
+    record(tmp_path / "run.dspace", tmp_path / "data")
+    movie_file(tmp_path / "movie.toml")
+    for words, out in (((), "confined"), (("--no-confinement",), "free")):
+        for name in (f"{out}/pictures", f"{out}/movie.mp4"):
+            done = dspace_command("movie", tmp_path / "movie.toml", "--run", tmp_path / "run.dspace", "--out",
+                                  tmp_path / name, "--jobs", jobs, *words)
+            assert done.returncode == 0, done.stderr
+            assert ("--no-confinement: a file" in done.stderr) == bool(words)
+        assert sorted(os.listdir(tmp_path / out)) == ["movie.mp4", "pictures"]
+    for name in ("frame_000000.png", "frame_000001.png"):
+        first, second = ((tmp_path / out / "pictures" / name).read_bytes() for out in ("confined", "free"))
+        assert first == second
+    assert (tmp_path / "confined" / "movie.mp4").stat().st_size > 0
+
+
+def test_a_movie_without_landlock_says_so(tmp_path):
+    movie_file(tmp_path / "movie.toml")
+    done = dspace_command("movie", tmp_path / "movie.toml", "--run", tmp_path / "none.dspace", "--out", tmp_path / "a",
+                          DSPACE_LANDLOCK_ABI="0")
+    assert done.returncode == 1 and "has no Landlock" in done.stderr and "none.dspace" in done.stderr
+
+
+def test_a_movie_of_a_function_is_not_confined(tmp_path):
+    """It is the user's own code, which may need any file."""
+    (tmp_path / "needed").write_text("1")
+    (tmp_path / "run.py").write_text(
+        "import pathlib\nimport dspace\n\ndef run():\n    session = dspace.Session()\n    scene = session.scene()\n"
+        "    assert (pathlib.Path(__file__).parent / 'needed').read_text() == '1'\n    return session, lambda time: None\n")
+    movie_file(tmp_path / "movie.toml")
+    done = dspace_command("movie", tmp_path / "movie.toml", "--run", f"{tmp_path}/run.py:run", "--out", tmp_path / "out" / "a")
+    assert done.returncode == 0, done.stderr

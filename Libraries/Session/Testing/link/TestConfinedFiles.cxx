@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <unistd.h>
 
@@ -271,6 +272,15 @@ TEST_F(ConfinedFiles, SideFilesDoNotLeadOut) {
     const std::string link = this->Folder + "/root/other.asc" + side;
     std::filesystem::create_symlink(this->Folder + "/secret.asc", link);
     ExpectRejected(this->OpenTerrain("other.asc"));
+    std::filesystem::remove(link);
+  }
+  // Files that a driver looks for by their ending; also another one's, whose name goes on.
+  for (const auto& [side, accepted] :
+       {std::pair("other.prj", false), std::pair("OTHER_rpc.txt", false),
+        std::pair("others.asc", true)}) {
+    const std::string link = this->Folder + "/root/" + side;
+    std::filesystem::create_symlink(this->Folder + "/secret.asc", link);
+    EXPECT_EQ(!this->OpenTerrain("other.asc").has_error(), accepted) << side;
     std::filesystem::remove(link);
   }
   // Overviews that are a mosaic of a file out there.

@@ -1,5 +1,6 @@
 #include <dspace/raster/DatasetGate.h>
 
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -52,17 +53,38 @@ public:
   std::map<std::string, bool>& Mosaics() {
     return this->Outer_ ? this->Outer_->Mosaics() : this->Mosaics_;
   }
+  // The names of the links in a folder, read once for the outermost opening.
+  const std::vector<std::string>& LinksIn(const fs::path& folder);
 
 private:
   Opening* Outer_;
   std::optional<Error> Failure_;
   std::map<std::string, bool> Mosaics_;
+  std::map<std::string, std::vector<std::string>> Links_; // by folder
 };
 
 thread_local Opening* Innermost = nullptr;
 
 Opening::Opening() : Outer_(Innermost) {
   Innermost = this;
+}
+
+const std::vector<std::string>& Opening::LinksIn(const fs::path& folder) {
+  if (this->Outer_) {
+    return this->Outer_->LinksIn(folder);
+  }
+  const auto [known, isNew] = this->Links_.try_emplace(folder.string());
+  std::error_code error;
+  if (isNew) {
+    for (fs::directory_iterator at(folder, error); !error && at != fs::directory_iterator();
+         at.increment(error)) {
+      std::error_code unknown;
+      if (at->is_symlink(unknown)) {
+        known->second.push_back(at->path().filename().string());
+      }
+    }
+  }
+  return known->second;
 }
 
 Opening::~Opening() {
@@ -130,6 +152,22 @@ void CheckSources(const std::string& mosaic, Opening& opening) {
     }
   }
   opening.Mosaics()[mosaic] = true;
+}
+
+// Links that lead out, among the files that GDAL reads by a rule of endings: it opens them before
+// it lists them. Of a folder, all.
+void CheckLinksBeside(const std::string& path, Opening& opening) {
+  std::error_code error;
+  const bool isFolder = fs::is_directory(path, error);
+  const fs::path folder = isFolder ? fs::path(path) : fs::path(path).parent_path();
+  const std::string stem = isFolder ? "" : fs::path(path).stem().string();
+  for (const std::string& name : opening.LinksIn(folder)) {
+    const bool begins = EQUALN(name.c_str(), stem.c_str(), stem.size());
+    const bool goesOn = begins && std::isalnum(static_cast<unsigned char>(name[stem.size()])) != 0;
+    if (begins && (isFolder || !goesOn)) { // "a.prj", "a_MTL.txt", "a.tif.ovr" of "a.tif"
+      FilesGuard::CheckFile((folder / name).string());
+    }
+  }
 }
 
 // "format 'MRF'" of a file that no accepted driver opens; the drivers only look at its beginning.
@@ -201,6 +239,7 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
            "another file requests write access to it; accepted here: files that are only read");
   }
   const std::string path = RequireName(name);
+  CheckLinksBeside(path, opening);
   const char* const mosaic[] = {"VRT", nullptr};
   const char* const* allowed = drivers ? drivers : SelfContainedDrivers();
   if (!drivers && (flags & GDAL_OF_RASTER) && AreMosaicsAccepted() && IsMosaic(path)) {

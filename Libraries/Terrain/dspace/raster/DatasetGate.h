@@ -38,7 +38,8 @@ enum class DatasetKind : std::uint8_t { Raster, Shapes, Any };
 //   in all (MosaicFileLimit).
 // - A dataset that names its overviews itself (OVERVIEW_FILE in the domain OVERVIEWS of its
 //   metadata) is rejected.
-// - The guard checks every file that belongs to the dataset, with links resolved.
+// - The guard checks every file that belongs to the dataset, with links resolved. Links beside the
+//   file whose names begin as its own are checked before it is opened.
 // - Datasets that GDAL opens by itself during the call, or later in a thread with a guard
 //   (overviews, masks, sources), pass the same checks. One that fails them makes the whole opening
 //   fail.
