@@ -165,13 +165,14 @@ def number(call, *arguments):
     return 0 if result >= 0 else ctypes.get_errno()
 rejected = {101: "ptrace", 310: "process_vm_readv", 165: "mount", 272: "unshare", 308: "setns", 161: "chroot", 304:
             "open_by_handle_at", 250: "keyctl", 321: "bpf", 323: "userfaultfd", 175: "init_module", 169: "reboot", 298:
-            "perf_event_open", 90: "chmod", 452: "fchmodat2", 227: "clock_settime"}
+            "perf_event_open", 90: "chmod", 452: "fchmodat2", 227: "clock_settime", 29: "shmget", 68: "msgget", 240: "mq_open"}
 for call, name in rejected.items():
     assert number(call, 0, 0, 0, 0, 0) == errno.EPERM, name
 for call in (425, 426, 427, 435):  # io_uring, clone3
     assert number(call, 0, 0) == errno.ENOSYS, call
 assert number(56, 0x10000000 | signal.SIGCHLD, 0, 0, 0, 0) == errno.EPERM  # clone with a user namespace
 assert number(16, 0, 0x5412, ctypes.create_string_buffer(b"x")) == errno.EPERM  # ioctl TIOCSTI
+assert number(302, 1, 7, None, None) == errno.EPERM and number(302, 0, 7, None, None) == 0  # prlimit64
 child = os.fork()
 if not child:
     os._exit(7)

@@ -79,13 +79,27 @@ void RejectReachingAround(Filter& filter) {
                          SCMP_SYS(pivot_root),
                          SCMP_SYS(chroot),
                          SCMP_SYS(unshare),
-                         SCMP_SYS(setns)}) {
+                         SCMP_SYS(setns),
+                         SCMP_SYS(shmget),
+                         SCMP_SYS(shmat),
+                         SCMP_SYS(shmctl),
+                         SCMP_SYS(msgget),
+                         SCMP_SYS(msgsnd),
+                         SCMP_SYS(msgrcv),
+                         SCMP_SYS(msgctl),
+                         SCMP_SYS(semget),
+                         SCMP_SYS(semop),
+                         SCMP_SYS(semtimedop),
+                         SCMP_SYS(semctl),
+                         SCMP_SYS(mq_open),
+                         SCMP_SYS(mq_unlink)}) {
     filter.Reject(call);
   }
   for (const int call : {SCMP_SYS(io_uring_setup), SCMP_SYS(io_uring_enter),
                          SCMP_SYS(io_uring_register), SCMP_SYS(clone3)}) {
     filter.Reject(call, {}, ENOSYS); // clone3 has its flags in memory: glibc then calls clone
   }
+  filter.Reject(SCMP_SYS(prlimit64), {SCMP_A0(SCMP_CMP_NE, 0)}); // 0: the own limits
   for (const std::uint64_t flag : {CLONE_NEWUSER, CLONE_NEWNS, CLONE_NEWPID, CLONE_NEWNET,
                                    CLONE_NEWIPC, CLONE_NEWUTS, CLONE_NEWCGROUP}) {
     filter.Reject(SCMP_SYS(clone), {SCMP_A0(SCMP_CMP_MASKED_EQ, flag, flag)});

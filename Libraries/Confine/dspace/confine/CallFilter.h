@@ -15,8 +15,9 @@ struct CallRules {
 // - Sockets of other kinds than `rules` need, and messages to addresses through other sockets.
 // - Changes of rights, owners and times by a file's name, which Landlock does not restrict. By an
 //   open descriptor they are possible.
-// - What reaches around Landlock or other processes: io_uring, ptrace, memory of other processes,
-//   handles of files, namespaces, mounts, keys, BPF, faked input of a terminal.
+// - What reaches around Landlock or other processes: io_uring, ptrace, memory and limits of other
+//   processes, memory and messages of System V and POSIX, handles of files, namespaces, mounts,
+//   keys, BPF, faked input of a terminal.
 // - Administration of the machine: modules, reboot, clocks, swap and the like.
 //
 // The process has one thread; no-new-privileges is set. Throws std::runtime_error.
