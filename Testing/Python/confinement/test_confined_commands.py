@@ -204,6 +204,53 @@ def test_playback_may_read_only_what_the_recording_read(tmp_path):
         assert done.returncode == 1 and name in done.stderr, done.stderr
 
 
+# A server of one file, by ranges; a process of its own, since this one waits for it without Python's lock being free.
+RANGES = """
+import http.server, re, sys
+DATA = open(sys.argv[1], "rb").read()
+class Handler(http.server.BaseHTTPRequestHandler):
+    protocol_version = "HTTP/1.1"
+    def do_GET(self):
+        if not self.path.endswith("/ground.tif"):
+            return self.send_error(404)
+        part = re.fullmatch(r"bytes=([0-9]+)-([0-9]+)", self.headers.get("Range", ""))
+        first, last = (int(part[1]), min(int(part[2]), len(DATA) - 1)) if part else (0, len(DATA) - 1)
+        self.send_response(206 if part else 200)
+        self.send_header("Content-Length", str(last + 1 - first))
+        self.send_header("Accept-Ranges", "bytes")
+        if part:
+            self.send_header("Content-Range", f"bytes {first}-{last}/{len(DATA)}")
+        self.end_headers()
+        if self.command == "GET":
+            self.wfile.write(DATA[first:last + 1])
+    do_HEAD = do_GET
+    def log_message(self, *_):
+        pass
+server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+print(server.server_port, flush=True)
+server.serve_forever()
+"""
+
+
+def test_a_raster_on_a_server_needs_the_network(tmp_path):
+    record(tmp_path / "unused.dspace", tmp_path / "data")
+    server = subprocess.Popen([sys.executable, "-c", RANGES, str(tmp_path / "data" / "ground.tif")], stdout=subprocess.PIPE,
+                              text=True)
+    try:
+        url = f"http://127.0.0.1:{int(server.stdout.readline())}/ground.tif"
+        with dspace.Session() as session, session.record(tmp_path / "run.dspace"):
+            session.scene().add_terrain(url, name="ground", mode="clipmap", crs=FLAT)
+            session.scene().time = 1.0
+        allowed = dspace_command("play", tmp_path / "run.dspace", "--allow-network")
+        done = dspace_command("play", tmp_path / "run.dspace")
+    finally:
+        server.kill()
+        server.communicate()
+    assert allowed.returncode == 0, allowed.stderr
+    assert done.returncode == 1 and url in done.stderr
+    assert "connections are not allowed; accepted: --allow-network" in done.stderr
+
+
 def test_a_playback_ends_with_a_signal(tmp_path):
     """The process that was started is the one that plays."""
     record(tmp_path / "run.dspace", tmp_path / "data")

@@ -3,13 +3,16 @@ rights that the command does not need, and executes the same command line again.
 
 The rules must be there before the threads of gRPC, Mesa and GDAL begin; so this module imports nothing compiled.
 """
+import contextlib
 import glob
 import os
+import re
 import subprocess
 import sys
 import tempfile
 
 from dspace.command_line import Failed
+from dspace.errors import Error
 
 # "landlock N" or "no landlock" where `dspace-confine` executed this process; else None. No child takes it for its own.
 STATE = os.environ.pop("DSPACE_CONFINED", None)
@@ -105,7 +108,9 @@ def _package():
 
 def program():
     """The path of `dspace-confine`. Raises Failed."""
-    path = os.path.normpath(os.path.join(os.path.realpath(_package()), "..", "..", "..", "..", "bin", "dspace-confine"))
+    places = [os.path.normpath(os.path.join(os.path.realpath(_package()), *[".."] * up, "bin", "dspace-confine"))
+              for up in (4, 5)]  # the libraries' folder may have two names, such as lib/x86_64-linux-gnu
+    path = next(filter(os.path.exists, places), places[0])
     if not os.access(path, os.X_OK):
         raise Failed(f"{path!r}, which confines this command, is missing; accepted: a complete installation, or "
                      "--no-confinement")
@@ -132,6 +137,17 @@ def confine(options, rules, otherwise=""):
     if STATE == "no landlock":
         note("this system has no Landlock (Linux 5.13 or later) and does not restrict files" + otherwise)
     return STATE != "no landlock"
+
+
+@contextlib.contextmanager
+def explaining(options):
+    """In a `with` statement: an error that names a file on a server is followed by the option that allows connections."""
+    try:
+        yield
+    except Error as error:
+        if STATE is not None and not options.allow_network and re.search(r"https?://|/vsi", str(error)):
+            note("connections are not allowed; accepted: --allow-network")
+        raise
 
 
 def note(text):

@@ -63,9 +63,10 @@ def run(options):
     movie = Movie.load(options.file, **given)
     bar = Bar(sys.stderr)
     try:
-        drawn = movie.make(options.source, options.out, jobs=options.jobs, scheduler=options.scheduler,
-                           work=options.work, keep=options.keep, progress=bar.show, encoding=bar.encoding,
-                           redraw=options.redraw)
+        with confinement.explaining(options):
+            drawn = movie.make(options.source, options.out, jobs=options.jobs, scheduler=options.scheduler,
+                               work=options.work, keep=options.keep, progress=bar.show, encoding=bar.encoding,
+                               redraw=options.redraw)
     except KeyboardInterrupt:
         bar.end()
         print("dspace: interrupted; run the same command again to continue", file=sys.stderr)

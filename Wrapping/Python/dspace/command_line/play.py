@@ -61,7 +61,7 @@ def run(options):
 
     confine = vtk.vtkDspaceSession().ConfineProcess  # it may open only the recording's files
     confine() if files_are_restricted else confine(True)
-    with Playback(options.file) as playback:
+    with confinement.explaining(options), Playback(options.file) as playback:
         if options.at is not None:
             playback.seek(options.at)
         if options.out is None:
