@@ -99,7 +99,7 @@ void RejectReachingAround(Filter& filter) {
                          SCMP_SYS(io_uring_register), SCMP_SYS(clone3)}) {
     filter.Reject(call, {}, ENOSYS); // clone3 has its flags in memory: glibc then calls clone
   }
-  filter.Reject(SCMP_SYS(prlimit64), {SCMP_A0(SCMP_CMP_NE, 0)}); // 0: the own limits
+  filter.Reject(SCMP_SYS(prlimit64), {SCMP_A0(SCMP_CMP_NE, 0, 0)}); // 0: the own limits
   for (const std::uint64_t flag : {CLONE_NEWUSER, CLONE_NEWNS, CLONE_NEWPID, CLONE_NEWNET,
                                    CLONE_NEWIPC, CLONE_NEWUTS, CLONE_NEWCGROUP}) {
     filter.Reject(SCMP_SYS(clone), {SCMP_A0(SCMP_CMP_MASKED_EQ, flag, flag)});
@@ -142,7 +142,7 @@ void RejectChangesByName(Filter& filter, bool truncate) {
         SCMP_SYS(utimes), SCMP_SYS(futimesat)}) {
     filter.Reject(call);
   }
-  filter.Reject(SCMP_SYS(utimensat), {SCMP_A1(SCMP_CMP_NE, 0)}); // 0: of a descriptor
+  filter.Reject(SCMP_SYS(utimensat), {SCMP_A1(SCMP_CMP_NE, 0, 0)}); // 0: of a descriptor
   if (!truncate) {
     filter.Reject(SCMP_SYS(truncate));
   }

@@ -78,7 +78,7 @@ int FileRules::KernelAbi() {
   return abi > 0 ? int(abi) : 0;
 }
 
-FileRules::FileRules(int abi, bool listen, bool connect) : Abi_(abi), Handled_(AllOf(abi)) {
+FileRules::FileRules(int abi, bool listen, bool connect) : Handled_(AllOf(abi)) {
   if (abi < 1) {
     return;
   }

@@ -44,7 +44,6 @@ public:
   void Enforce() const;
 
 private:
-  const int Abi_;
   std::uint64_t Handled_ = 0;
   int Ruleset_ = -1;
 };
