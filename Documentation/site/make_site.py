@@ -19,7 +19,7 @@ CHAPTERS = {
     "Guides": ("Documentation/Terrain.md", "Documentation/Views.md", "Documentation/Cameras.md", "Documentation/Measurements.md",
                "Documentation/Sky.md", "Documentation/Frames.md", "Documentation/Ephemeris.md", "Documentation/Formats.md",
                "Documentation/VTK.md", "Documentation/OwnObjects.md", "Documentation/Telemetry.md", "Documentation/Movies.md",
-               "Documentation/Recording.md", "Documentation/Server.md", "Documentation/Application.md",
+               "Documentation/Recording.md", "Documentation/Server.md", "SECURITY.md", "Documentation/Application.md",
                "Documentation/CppLocal.md"),
     "Reference": ("reference/python.rst", "reference/cpp.md", "Documentation/Wire.md", "Documentation/Commands.md"),
     "Inside Dspace": ("Documentation/Architecture.md", "CONTRIBUTING.md", "CHANGELOG.md")}
@@ -34,7 +34,7 @@ MODULES = ("dspace.rover", "dspace.stars", "dspace.trajectories")
 
 def documents():
     """The documents of the site, relative to the root."""
-    pages = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+    pages = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")]
     pages += sorted((ROOT / "Documentation").glob("*.md")) + sorted((ROOT / "Data").glob("*/README.md"))
     return [str(page.relative_to(ROOT)) for page in pages]
 

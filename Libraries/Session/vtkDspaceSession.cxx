@@ -442,8 +442,8 @@ std::string vtkDspaceSession::Replay(const std::string& bytes, vtkDspaceRecorded
   return this->Execute(bytes);
 }
 
-void vtkDspaceSession::ConfineProcess() {
-  const dspace::ConfinedDrivers confined;
+void vtkDspaceSession::ConfineProcess(bool withoutNamesOnly) {
+  const dspace::ConfinedDrivers confined(withoutNamesOnly);
 }
 
 std::string vtkDspaceSession::AddFailed(const dspace::v1::Command& accepted,

@@ -110,7 +110,7 @@ public:
   std::string Replay(const std::string& command, vtkDspaceRecordedFiles* files);
   /// For a program that only plays recordings: restricts the formats of rasters and shapes in the
   /// whole process for the rest of its life, see <dspace/raster/ConfinedDrivers.h>.
-  void ConfineProcess();
+  void ConfineProcess(bool withoutNamesOnly = false);
 
 #ifndef __VTK_WRAP__
   dspace::session::Interpreter& GetInterpreter();

@@ -19,7 +19,7 @@ FOUND = {"assimp": "libassimp-dev", "Coin": "libcoin-dev", "console_bridge": "li
          "PROJ": "libproj-dev", "Protobuf": "libprotobuf-dev", "Python3": "libpython3-dev", "SQLite3": "libsqlite3-dev",
          "Threads": "g++", "tinyobjloader": "libtinyobjloader-dev", "urdfdom": "liburdfdom-dev", "VTK": "libvtk9-dev",
          "ZLIB": "zlib1g-dev", "PNG": "libpng-dev", "CAIRO": "libcairo2-dev",
-         "ERFA": "liberfa-dev",
+         "ERFA": "liberfa-dev", "SECCOMP": "libseccomp-dev",
          "GEOGRAPHICLIB": "libgeographiclib-dev", "DSPACE_OIIO_INCLUDE": "libopenimageio-dev",
          "DSPACE_OIIO_LIBRARY": "libopenimageio-dev", "DSPACE_OIIO_UTIL_LIBRARY": "libopenimageio-dev",
          "DSPACE_IMATH_INCLUDE": "libimath-dev", "TinyGLTF": "libtinygltf-dev",
@@ -28,7 +28,7 @@ OPTIONAL = {"DSPACE_CCACHE"}  # used where it is installed
 PROGRAMS = {"ffmpeg": "ffmpeg", "ffprobe": "ffmpeg", "openssl": "openssl", "ruby": "ruby-grpc",
             "protoc": "protobuf-compiler", "clang-format": "clang-format", "clang-tidy": "clang-tidy", "git": "git",
             "Xvfb": "xvfb", "xauth": "xauth", "openbox": "openbox", "glslangValidator": "glslang-tools",
-            "xdotool": "xdotool", "doxygen": "doxygen"}
+            "xdotool": "xdotool", "strace": "strace", "doxygen": "doxygen"}
 
 
 def listed(*kinds):

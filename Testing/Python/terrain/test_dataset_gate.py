@@ -293,3 +293,26 @@ def test_a_program_that_plays_keeps_its_own_rasters(tmp_path):
         assert gdal.Open(str(path)).ReadAsArray().sum() == 120.0
         with dspace.Session() as session:
             session.scene().add_terrain(str(path), mode="clipmap", crs=FLAT, pixel_size=1.0)
+
+
+def test_a_server_rejects_what_would_take_too_long(tmp_path):
+    """Mosaics of mosaics, ten-fold and five deep, and a raster of the largest size that GDAL knows. It goes on at once."""
+    (tmp_path / "m0.asc").write_text(GRID)
+    for level in range(1, 6):
+        inner = "m0.asc" if level == 1 else f"m{level - 1}.vrt"
+        path = mosaic(tmp_path, inner)
+        text = path.read_text()
+        begin, end = text.index("<SimpleSource>"), text.index("</VRTRasterBand>")
+        (tmp_path / f"m{level}.vrt").write_text(text[:begin] + text[begin:end] * 10 + text[end:])
+    large = mosaic(tmp_path, "m0.asc")
+    large.write_text(large.read_text().replace('Size="4"', 'Size="2147483647"'))
+    with ServerProcess([str(tmp_path)]) as server, dspace.connect(server.address) as session:
+        scene = session.scene()
+        with pytest.raises(dspace.Resource, match="makes more than 20000 files be opened.*DSPACE_MAX_MOSAIC_FILES"):
+            scene.add_terrain(str(tmp_path / "m5.vrt"), mode="clipmap", crs=FLAT)
+        with pytest.raises(dspace.Resource, match="2147483647 x 2147483647 pixels.*DSPACE_MAX_RASTER_PIXELS"):
+            scene.add_terrain(str(large), mode="clipmap", crs=FLAT)
+        ground = scene.add_terrain(str(tmp_path / "m2.vrt"), mode="clipmap", crs=FLAT, build_overviews=False)
+        assert numpy.isfinite(ground.height(1.0, 0.5))
+    with dspace.Session() as session, pytest.raises(dspace.Resource, match="DSPACE_MAX_RASTER_PIXELS"):
+        session.scene().add_terrain(str(large), mode="clipmap", crs=FLAT)

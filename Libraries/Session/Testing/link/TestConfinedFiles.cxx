@@ -1,6 +1,8 @@
 // Files that allowed files lead to: what lies outside of the roots is not read.
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <unistd.h>
 
@@ -125,6 +127,85 @@ TEST_F(ConfinedFiles, AMosaicOfOtherFilesIsNot) {
   ExpectRejected(this->OpenTerrain());
 }
 
+// Each names the same `count` times the one before, the first one a plain file: count + count^2 +
+// ... files in all.
+TEST_F(ConfinedFiles, MosaicsOfMosaicsAreCountedBeforeOneIsOpened) {
+  const auto write = [&](int depth, int count) {
+    for (int level = 1; level <= depth; ++level) {
+      const std::string source =
+          level == 1 ? "inside.asc" : "m" + std::to_string(level - 1) + ".vrt";
+      std::string sources;
+      for (int i = 0; i < count; ++i) {
+        sources += "<SimpleSource><SourceFilename relativeToVRT=\"1\">" + source +
+                   "</SourceFilename><SourceBand>1</SourceBand></SimpleSource>";
+      }
+      this->WriteMosaic("<VRTRasterBand dataType=\"Float32\" band=\"1\">" + sources +
+                            "</VRTRasterBand>",
+                        "m" + std::to_string(level) + ".vrt");
+    }
+  };
+  write(5, 10); // 111,110
+  const v1::Reply deep = this->OpenTerrain("m5.vrt");
+  EXPECT_EQ(deep.error().kind(), v1::Error::RESOURCE) << deep.ShortDebugString();
+  EXPECT_NE(deep.error().message().find("makes more than 20000 files be opened"), std::string::npos)
+      << deep.error().message();
+  EXPECT_NE(deep.error().message().find("DSPACE_MAX_MOSAIC_FILES"), std::string::npos);
+  write(12, 10);
+  EXPECT_EQ(this->OpenTerrain("m12.vrt").error().kind(), v1::Error::RESOURCE);
+  write(20, 1); // longer than a chain may be
+  EXPECT_EQ(this->OpenTerrain("m20.vrt").error().kind(), v1::Error::INVALID_ARGUMENT);
+  write(3, 3); // 3 + 9 + 27
+  setenv("DSPACE_MAX_MOSAIC_FILES", "39", 1);
+  EXPECT_FALSE(this->OpenTerrain("m3.vrt").has_error());
+  setenv("DSPACE_MAX_MOSAIC_FILES", "38", 1);
+  EXPECT_EQ(this->OpenTerrain("m3.vrt").error().kind(), v1::Error::RESOURCE);
+  for (const char* ignored : {"", "0", "-1", "1e3", "x"}) {
+    setenv("DSPACE_MAX_MOSAIC_FILES", ignored, 1);
+    EXPECT_FALSE(this->OpenTerrain("m3.vrt").has_error()) << ignored;
+  }
+  unsetenv("DSPACE_MAX_MOSAIC_FILES");
+  setenv("DSPACE_MAX_MOSAIC_BYTES", "100", 1);
+  EXPECT_EQ(this->OpenTerrain("m3.vrt").error().kind(), v1::Error::RESOURCE);
+  unsetenv("DSPACE_MAX_MOSAIC_BYTES");
+}
+
+TEST_F(ConfinedFiles, ARasterOfTooManyPixelsIsRejected) {
+  const auto write = [&](const std::string& columns, const std::string& rows) {
+    this->Write(
+        "/root/large.vrt",
+        "<VRTDataset rasterXSize=\"" + columns + "\" rasterYSize=\"" + rows +
+            "\"><SRS>LOCAL_CS[\"grid\"]</SRS><GeoTransform>0, 1, 0, 2, 0, -1</GeoTransform>" +
+            Band("inside.asc") + "</VRTDataset>");
+  };
+  write("2147483647", "2147483647");
+  const v1::Reply large = this->OpenTerrain("large.vrt");
+  EXPECT_EQ(large.error().kind(), v1::Error::RESOURCE) << large.ShortDebugString();
+  EXPECT_NE(large.error().message().find("2147483647 x 2147483647 pixels; accepted: up to "
+                                         "1125899906842624 in all"),
+            std::string::npos)
+      << large.error().message();
+  write("2", "2");
+  setenv("DSPACE_MAX_RASTER_PIXELS", "4", 1);
+  EXPECT_FALSE(this->OpenTerrain("large.vrt").has_error());
+  setenv("DSPACE_MAX_RASTER_PIXELS", "3", 1);
+  EXPECT_EQ(this->OpenTerrain("large.vrt").error().kind(), v1::Error::RESOURCE);
+  unsetenv("DSPACE_MAX_RASTER_PIXELS");
+}
+
+TEST_F(ConfinedFiles, AMosaicHasKnownElementsOnly) {
+  const std::string band = Band("inside.asc");
+  this->WriteMosaic(
+      "<Metadata domain=\"xml:XMP\" format=\"xml\"><x:any xmlns:x=\"x\"/></Metadata>" + band);
+  EXPECT_FALSE(this->OpenTerrain().has_error());
+  for (const char* element : {"ProcessingSteps", "Input", "Argument", "SourceDataset", "Group"}) {
+    this->WriteMosaic("<" + std::string(element) + "/>" + band);
+    const v1::Reply reply = this->OpenTerrain();
+    ExpectRejected(reply);
+    EXPECT_NE(reply.error().message().find("has the element '" + std::string(element) + "'"),
+              std::string::npos);
+  }
+}
+
 TEST_F(ConfinedFiles, FormatsThatReferToOtherFilesAreRejected) {
   const std::string size = "<Size x=\"2\" y=\"2\" c=\"1\"/><PageSize x=\"2\" y=\"2\" c=\"1\"/>";
   this->Write("/victim", "untouched");
@@ -191,6 +272,15 @@ TEST_F(ConfinedFiles, SideFilesDoNotLeadOut) {
     const std::string link = this->Folder + "/root/other.asc" + side;
     std::filesystem::create_symlink(this->Folder + "/secret.asc", link);
     ExpectRejected(this->OpenTerrain("other.asc"));
+    std::filesystem::remove(link);
+  }
+  // Files that a driver looks for by their ending; also another one's, whose name goes on.
+  for (const auto& [side, accepted] :
+       {std::pair("other.prj", false), std::pair("OTHER_rpc.txt", false),
+        std::pair("others.asc", true)}) {
+    const std::string link = this->Folder + "/root/" + side;
+    std::filesystem::create_symlink(this->Folder + "/secret.asc", link);
+    EXPECT_EQ(!this->OpenTerrain("other.asc").has_error(), accepted) << side;
     std::filesystem::remove(link);
   }
   // Overviews that are a mosaic of a file out there.

@@ -1,6 +1,7 @@
 #include <dspace/recording/RecordingDatabase.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 
 #include <fcntl.h>
@@ -36,6 +37,19 @@ bool IsOfTheSystem(int result) {
   }
 }
 
+// Not only by its rights: the system may confine this process further.
+bool MayMakeFiles(const std::string& folder) {
+  if (faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0) {
+    return false;
+  }
+  const int file = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600); // without a name
+  const bool rejected = file < 0 && (errno == EACCES || errno == EPERM);
+  if (file >= 0) {
+    close(file);
+  }
+  return !rejected;
+}
+
 } // namespace
 
 std::string RecordingName(const std::string& path) {
@@ -53,9 +67,7 @@ std::string RecordingDatabase::UriOf(const std::string& path) {
   const auto log = std::filesystem::file_size(path + "-wal", none);
   const bool finished = none || log == 0;
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  return uri + (finished && faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0
-                    ? "?immutable=1"
-                    : "?mode=ro");
+  return uri + (finished && !MayMakeFiles(folder) ? "?immutable=1" : "?mode=ro");
 }
 
 RecordingDatabase::RecordingDatabase(const std::string& path)

@@ -10,13 +10,17 @@
 
 namespace dspace {
 
-ConfinedDrivers::ConfinedDrivers() {
+ConfinedDrivers::ConfinedDrivers(bool withoutNamesOnly) {
+  if (withoutNamesOnly) {
+    AcceptFilesWithoutNamesOnly();
+  }
   RegisterGdal();
   GDALDriverManager& manager = *GetGDALDriverManager();
   for (int i = 0; i < manager.GetDriverCount(); ++i) {
     GDALDriver* driver = manager.GetDriver(i);
     const std::string name = driver ? driver->GetDescription() : "";
-    if (driver && name != DatasetGateName && name != "VRT" && !IsSelfContained(name)) {
+    if (driver && name != DatasetGateName && (name != "VRT" || !AreMosaicsAccepted()) &&
+        !IsSelfContained(name)) {
       driver->pfnOpen = nullptr;
       driver->pfnOpenWithDriverArg = nullptr;
     }

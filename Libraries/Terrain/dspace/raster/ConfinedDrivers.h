@@ -17,7 +17,9 @@ namespace dspace {
 // the program are unaffected.
 class ConfinedDrivers {
 public:
-  ConfinedDrivers();
+  // withoutNamesOnly: also without those that take the name of another file from a file (mosaics,
+  // labels apart from their data), where the system does not restrict the files of the process.
+  explicit ConfinedDrivers(bool withoutNamesOnly = false);
   ConfinedDrivers(const ConfinedDrivers&) = delete;
   ConfinedDrivers& operator=(const ConfinedDrivers&) = delete;
 };

@@ -1,9 +1,11 @@
 #include <dspace/raster/DatasetGate.h>
 
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <cpl_error.h>
@@ -12,8 +14,10 @@
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
+#include <dspace/raster/MosaicCount.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/RasterLimits.h>
 #include <dspace/raster/SelfContainedDrivers.h>
 #include <dspace/raster/UnderlyingFile.h>
 
@@ -49,17 +53,38 @@ public:
   std::map<std::string, bool>& Mosaics() {
     return this->Outer_ ? this->Outer_->Mosaics() : this->Mosaics_;
   }
+  // The names of the links in a folder, read once for the outermost opening.
+  const std::vector<std::string>& LinksIn(const fs::path& folder);
 
 private:
   Opening* Outer_;
   std::optional<Error> Failure_;
   std::map<std::string, bool> Mosaics_;
+  std::map<std::string, std::vector<std::string>> Links_; // by folder
 };
 
 thread_local Opening* Innermost = nullptr;
 
 Opening::Opening() : Outer_(Innermost) {
   Innermost = this;
+}
+
+const std::vector<std::string>& Opening::LinksIn(const fs::path& folder) {
+  if (this->Outer_) {
+    return this->Outer_->LinksIn(folder);
+  }
+  const auto [known, isNew] = this->Links_.try_emplace(folder.string());
+  std::error_code error;
+  if (isNew) {
+    for (fs::directory_iterator at(folder, error); !error && at != fs::directory_iterator();
+         at.increment(error)) {
+      std::error_code unknown;
+      if (at->is_symlink(unknown)) {
+        known->second.push_back(at->path().filename().string());
+      }
+    }
+  }
+  return known->second;
 }
 
 Opening::~Opening() {
@@ -103,12 +128,6 @@ std::string RequireName(const std::string& name) {
   return archive ? name : whole.string();
 }
 
-bool IsMosaic(const std::string& path) {
-  GDALDriver* vrt = GetGDALDriverManager()->GetDriverByName("VRT");
-  GDALOpenInfo info(path.c_str(), GDAL_OF_RASTER);
-  return vrt && vrt->pfnIdentify && vrt->pfnIdentify(&info) == TRUE;
-}
-
 DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* const* drivers,
                            const char* const* options);
 
@@ -120,14 +139,35 @@ void CheckSources(const std::string& mosaic, Opening& opening) {
   if (!isNew) {
     return;
   }
+  if (opening.Depth() == 0) {
+    CheckMosaicSize(mosaic);
+  }
+  std::set<std::string> seen;
   for (const std::string& source : MosaicSources(mosaic)) {
-    if (!IsRemote(source) && !OpenGuarded(source, GDAL_OF_RASTER, nullptr, nullptr)) {
+    if (seen.insert(source).second && !IsRemote(source) &&
+        !OpenGuarded(source, GDAL_OF_RASTER, nullptr, nullptr)) {
       throw Error(Error::Kind::Corrupt, "file '" + source + "'",
                   std::string("as a source of '") + mosaic +
                       "' it cannot be read: " + CPLGetLastErrorMsg());
     }
   }
   opening.Mosaics()[mosaic] = true;
+}
+
+// Links that lead out, among the files that GDAL reads by a rule of endings: it opens them before
+// it lists them. Of a folder, all.
+void CheckLinksBeside(const std::string& path, Opening& opening) {
+  std::error_code error;
+  const bool isFolder = fs::is_directory(path, error);
+  const fs::path folder = isFolder ? fs::path(path) : fs::path(path).parent_path();
+  const std::string stem = isFolder ? "" : fs::path(path).stem().string();
+  for (const std::string& name : opening.LinksIn(folder)) {
+    const bool begins = EQUALN(name.c_str(), stem.c_str(), stem.size());
+    const bool goesOn = begins && std::isalnum(static_cast<unsigned char>(name[stem.size()])) != 0;
+    if (begins && (isFolder || !goesOn)) { // "a.prj", "a_MTL.txt", "a.tif.ovr" of "a.tif"
+      FilesGuard::CheckFile((folder / name).string());
+    }
+  }
 }
 
 // "format 'MRF'" of a file that no accepted driver opens; the drivers only look at its beginning.
@@ -153,10 +193,26 @@ std::string AcceptedNames(unsigned flags) {
       text += *name + std::string(", ");
     }
   }
-  return text + ((flags & GDAL_OF_RASTER) ? "and mosaics (VRT) of these" : "and no others");
+  return text + ((flags & GDAL_OF_RASTER) && AreMosaicsAccepted() ? "and mosaics (VRT) of these"
+                                                                  : "and no others");
+}
+
+// Of a raster whose blocks and levels could not be counted in time.
+void CheckPixels(GDALDataset& dataset, const std::string& path) {
+  const std::uint64_t limit = PixelLimit.Value();
+  const int columns = dataset.GetRasterXSize();
+  const int rows = dataset.GetRasterYSize();
+  if (columns > 0 && rows > 0 && std::uint64_t(columns) * std::uint64_t(rows) > limit) {
+    throw Error(Error::Kind::Resource, "file '" + path.substr(0, 1000) + "'",
+                "it has " + std::to_string(columns) + " x " + std::to_string(rows) +
+                    " pixels; accepted: up to " + std::to_string(limit) +
+                    " in all, or with a higher limit in the environment variable " +
+                    PixelLimit.variable);
+  }
 }
 
 void CheckOpened(GDALDataset& dataset, const std::string& path, const Opening& opening) {
+  CheckPixels(dataset, path);
   const char* overviews = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
   if (overviews) {
     Reject(path,
@@ -183,9 +239,10 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
            "another file requests write access to it; accepted here: files that are only read");
   }
   const std::string path = RequireName(name);
+  CheckLinksBeside(path, opening);
   const char* const mosaic[] = {"VRT", nullptr};
   const char* const* allowed = drivers ? drivers : SelfContainedDrivers();
-  if (!drivers && (flags & GDAL_OF_RASTER) && IsMosaic(path)) {
+  if (!drivers && (flags & GDAL_OF_RASTER) && AreMosaicsAccepted() && IsMosaic(path)) {
     CheckSources(path, opening);
     allowed = mosaic;
     flags &= ~unsigned(GDAL_OF_VECTOR);
@@ -277,8 +334,12 @@ DatasetPointer OpenDataset(const std::string& path, DatasetKind kind, const char
   if (FilesGuard::IsActive()) {
     return OpenGuarded(path, FlagsOf(kind), drivers, nullptr);
   }
-  return DatasetPointer(
+  DatasetPointer dataset(
       GDALDataset::Open(path.c_str(), FlagsOf(kind) | GDAL_OF_VERBOSE_ERROR, drivers));
+  if (dataset) {
+    CheckPixels(*dataset, path);
+  }
+  return dataset;
 }
 
 DatasetPointer OpenOwnTiff(const std::string& path) {

@@ -1,26 +1,61 @@
 #include <dspace/raster/MosaicSources.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <set>
 
 #include <cpl_conv.h>
 #include <cpl_minixml.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
 
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
 #include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/RasterLimits.h>
 
 namespace dspace {
 namespace {
 
 namespace fs = std::filesystem;
 
+// Elements that describe pixels and where they lie, and name no data; and those that only hold such
+// elements and SourceFilename. Unknown ones are rejected.
+constexpr const char* HarmlessElements =
+    "?xml VRTDataset SRS GeoTransform GCPList GCP BlockXSize BlockYSize OverviewList "
+    "VRTRasterBand Description UnitType Offset Scale NoDataValue NoDataValueInt64 "
+    "NoDataValueUInt64 HideNoDataValue ColorInterp ColorTable Entry CategoryNames Category "
+    "Histograms HistItem HistMin HistMax BucketCount IncludeOutOfRange Approximate HistCounts "
+    "GDALRasterAttributeTable FieldDefn Name Type Usage Row F Overview MaskBand SimpleSource "
+    "ComplexSource AveragedSource NoDataFromMaskSource KernelFilteredSource SourceBand "
+    "SourceProperties SrcRect DstRect NODATA UseMaskBand MaskValueThreshold RemappedValue "
+    "ScaleOffset ScaleRatio LUT ColorTableComponent Exponent SrcMin SrcMax DstMin DstMax "
+    "Clamp Resampling Kernel Size Coefs";
+
+// GDAL takes names in upper and lower case for the same.
+bool IsHarmless(const std::string& element) {
+  static const CPLStringList names(CSLTokenizeString2(HarmlessElements, " ", 0));
+  return names.FindString(element.c_str()) >= 0;
+}
+
+void RequireShortDocument(const std::string& path) {
+  const std::uint64_t limit = MosaicByteLimit.Value();
+  VSIStatBufL info = {};
+  if (VSIStatL(path.c_str(), &info) == 0 && std::uint64_t(info.st_size) > limit) {
+    throw Error(Error::Kind::Resource, "file '" + path + "'",
+                "this mosaic (VRT) has " + std::to_string(info.st_size) +
+                    " bytes; accepted: up to " + std::to_string(limit) +
+                    ", or with a higher limit in the environment variable " +
+                    MosaicByteLimit.variable);
+  }
+}
+
 class Document {
 public:
   explicit Document(const std::string& path) : Path_(path), Folder_(FolderOf(path)) {
+    RequireShortDocument(path);
     const std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)> root(
         CPLParseXMLFile(path.c_str()), CPLDestroyXMLNode);
     this->Read(root.get());
@@ -51,12 +86,11 @@ private:
         this->AddSource(*node);
         continue;
       }
-      for (const char* other :
-           {"SourceDataset", "SrcDataSource", "GDALWarpOptions", "OpenOptions",
-            "PansharpeningOptions", "PixelFunctionCode", "Group", "ArraySource"}) {
-        if (node->eType == CXT_Element && EQUAL(name.c_str(), other)) {
-          this->Reject("has the element '" + name + "'");
-        }
+      if (node->eType == CXT_Element && EQUAL(name.c_str(), "Metadata")) {
+        continue; // may hold any XML, which GDAL gives as text
+      }
+      if (node->eType == CXT_Element && !IsHarmless(name)) {
+        this->Reject("has the element '" + name.substr(0, 100) + "'");
       }
       if (node->eType == CXT_Attribute && EQUAL(name.c_str(), "subClass") && node->psChild &&
           !EQUAL(node->psChild->pszValue, "VRTSourcedRasterBand")) {
@@ -77,14 +111,11 @@ private:
         (!IsRemote(source) && !fs::is_regular_file(source, error))) {
       this->Reject("names '" + name.substr(0, 200) + "', which is not a plain file");
     }
-    if (this->Known_.insert(source).second) {
-      this->Sources.push_back(source);
-    }
+    this->Sources.push_back(source);
   }
 
   const std::string& Path_;
   const std::string Folder_;
-  std::set<std::string> Known_;
 };
 
 } // namespace

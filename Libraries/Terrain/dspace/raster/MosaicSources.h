@@ -7,13 +7,14 @@
 
 namespace dspace {
 
-// The sources of a mosaic, in the document's order, each once; a relative name starts at the folder
-// of the document, with links resolved. Nothing is opened but the document. FilesGuard checks each
-// source before this function tests whether it exists.
+// The sources of a mosaic, in the document's order, each as often as it is named; a relative name
+// starts at the folder of the document, with links resolved. Nothing is opened but the document.
+// FilesGuard checks each source before this function tests whether it exists.
 //
-// Throws what the guard throws, and Error(InvalidArgument) for a document that names data in
-// another way than as plain files or files on a server: warped, raw or computed bands, open
-// options, formats with a prefix, documents within documents.
+// Throws what the guard throws; Error(InvalidArgument) for a document that names data in another
+// way than as plain files or files on a server (warped, raw or computed bands, open options,
+// formats with a prefix, documents within documents), or has an element that this function does not
+// know; Error(Resource) for one of more bytes than MosaicByteLimit.
 std::vector<std::string> MosaicSources(const std::string& path);
 
 } // namespace dspace

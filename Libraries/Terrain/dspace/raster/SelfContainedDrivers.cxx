@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <vector>
 
 namespace dspace {
 namespace {
@@ -9,6 +11,7 @@ namespace {
 struct Driver {
   const char* name;
   const char* reason;
+  bool takesNames = false; // of other files, from a file
 };
 
 constexpr const char* OneFile = "reads one file";
@@ -31,15 +34,16 @@ constexpr std::array Drivers = {
     Driver{"GSAG", OneFile},
     Driver{"GSBG", OneFile},
     Driver{"GTX", OneFile},
-    Driver{"HFA", "its header may name .ige and .rrd files of its own folder, which are listed"},
+    Driver{"HFA", "its header may name .ige and .rrd files of its own folder, which are listed",
+           true},
     Driver{"ISG", OneFile},
-    Driver{"ISIS2", Listed},
-    Driver{"ISIS3", Listed},
+    Driver{"ISIS2", Listed, true},
+    Driver{"ISIS3", Listed, true},
     Driver{"JP2OpenJPEG", "reads one file; links within its GML box are not followed"},
     Driver{"JPEG", OneFile},
     Driver{"LCP", ByRule},
     Driver{"NTv2", OneFile},
-    Driver{"PDS", Listed},
+    Driver{"PDS", Listed, true},
     Driver{"PNG", OneFile},
     Driver{"PNM", OneFile},
     Driver{"SIGDEM", OneFile},
@@ -49,7 +53,7 @@ constexpr std::array Drivers = {
     Driver{"VICAR", OneFile},
     Driver{"WEBP", OneFile},
     Driver{"XYZ", OneFile},
-    Driver{"GPKG", "one database; what its SQL functions open passes the driver manager"},
+    Driver{"GPKG", "one database; what its SQL functions open passes the driver manager", true},
     Driver{"CSV", ByRule},
     Driver{"DXF", OneFile},
     Driver{"ESRI Shapefile", ByRule},
@@ -62,21 +66,44 @@ constexpr std::array Drivers = {
     Driver{"TopoJSON", OneFile},
 };
 
+std::atomic<bool> WithoutNamesOnly = false;
+
+bool TakesNoName(const Driver& driver) {
+  return !driver.takesNames;
+}
+
+// Ending with a null pointer.
+template<class Choice> std::vector<const char*> Names(Choice&& choice) {
+  std::vector<const char*> names;
+  for (const Driver& driver : Drivers) {
+    if (choice(driver)) {
+      names.push_back(driver.name);
+    }
+  }
+  names.push_back(nullptr);
+  return names;
+}
+
 } // namespace
 
 const char* const* SelfContainedDrivers() {
-  static const auto names = [] {
-    std::array<const char*, Drivers.size() + 1> list = {};
-    std::transform(Drivers.begin(), Drivers.end(), list.begin(),
-                   [](const Driver& driver) { return driver.name; });
-    return list;
-  }();
-  return names.data();
+  static const auto all = Names([](const Driver&) { return true; });
+  static const auto withoutNames = Names(TakesNoName);
+  return (WithoutNamesOnly ? withoutNames : all).data();
 }
 
 bool IsSelfContained(const std::string& driver) {
-  return std::any_of(Drivers.begin(), Drivers.end(),
-                     [&](const Driver& each) { return driver == each.name; });
+  return std::any_of(Drivers.begin(), Drivers.end(), [&](const Driver& each) {
+    return driver == each.name && (!WithoutNamesOnly || TakesNoName(each));
+  });
+}
+
+bool AreMosaicsAccepted() {
+  return !WithoutNamesOnly;
+}
+
+void AcceptFilesWithoutNamesOnly() {
+  WithoutNamesOnly = true;
 }
 
 } // namespace dspace

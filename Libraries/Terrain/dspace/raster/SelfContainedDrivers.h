@@ -14,6 +14,13 @@ const char* const* SelfContainedDrivers();
 
 bool IsSelfContained(const std::string& driver);
 
+// Whether mosaics (VRT) may be opened, after their sources have been checked.
+bool AreMosaicsAccepted();
+
+// From now on the functions above know only the drivers that take no name of another file from a
+// file, for a process whose files the system does not restrict.
+void AcceptFilesWithoutNamesOnly();
+
 } // namespace dspace
 
 #endif

@@ -151,7 +151,9 @@ class ServerApart:
 
     def __init__(self, address, settings, roots=None):
         certificate, key, authority, insecure = settings
-        command = [sys.executable, "-m", "dspace", "serve", "--end-with-input", "--name", "DspaceQt", "--listen", address]
+        # -P: no module is imported from the working folder, whose files may be a client's.
+        command = [sys.executable, "-P", "-m", "dspace", "serve", "--end-with-input", "--name", "DspaceQt",
+                   "--listen", address]
         for word, value in (("--cert", certificate), ("--key", key), ("--ca", authority)):
             command += [] if value is None else [word, os.fspath(value)]
         command += ["--insecure"] if insecure else []

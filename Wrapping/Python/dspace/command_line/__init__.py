@@ -66,7 +66,8 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(arguments=None):
-    """Executes a command line and returns the exit code."""
+    """Executes a command line and returns the exit code. Without arguments, that of this process."""
+    is_process = arguments is None
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     parser = Parser(prog="dspace", description="Measures and draws what simulations do.")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -76,6 +77,7 @@ def main(arguments=None):
         if word == asked:  # the modules of other commands are not imported
             importlib.import_module(f"{__name__}.{word}").add_arguments(command)
     options = parser.parse_args(arguments)
+    options.is_process = is_process
     warnings.showwarning = lambda message, *_: print(f"dspace: note: {message}", file=sys.stderr)
     try:
         done = options.run(options) or 0

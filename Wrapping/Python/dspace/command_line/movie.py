@@ -4,7 +4,7 @@ import os
 import sys
 
 from dspace._core.traits import SAMPLES
-from dspace.command_line import terrain as values
+from dspace.command_line import confinement, terrain as values
 from dspace.movies.progress import left_words
 
 
@@ -25,6 +25,9 @@ def add_arguments(parser):
     parser.add_argument("--keep", action="store_true", help="keep the work folder after the movie is complete")
     parser.add_argument("--redraw", action="store_true",
                         help="draw all pictures, also those that an interrupted command left")
+    parser.add_argument("--allow-network", action="store_true",
+                        help="allow connections, for a recording whose rasters are on servers")
+    confinement.add_argument(parser, "the recording")
     parser.set_defaults(run=run)
 
 
@@ -34,15 +37,36 @@ def jobs(text):
     return int(text)
 
 
+def rules_of(options):
+    """What drawing and encoding may do: read the movie's file, the recording and the files that it names, write where the
+    movie and its pictures are made."""
+    rules = confinement.Rules(connect=options.allow_network)
+    rules.add("read", options.file)
+    rules.add_played(options.source)
+    for place in filter(None, (options.out, options.work)):
+        folder = place if os.path.isdir(place) else os.path.dirname(os.path.abspath(place))
+        try:
+            os.makedirs(folder, exist_ok=True)
+        except OSError:
+            continue  # making the movie says so
+        rules.add("write", folder)
+    return rules
+
+
 def run(options):
+    from dspace.movies.folder import file_of
+    _, function = file_of(options.source)
+    if not function and not options.scheduler:  # a function is the user's own code, and a scheduler draws elsewhere
+        confinement.confine(options, lambda: rules_of(options))
     from dspace.movies.movie import Movie
     given = {name: getattr(options, name) for name in ("size", "rate", "samples") if getattr(options, name) is not None}
     movie = Movie.load(options.file, **given)
     bar = Bar(sys.stderr)
     try:
-        drawn = movie.make(options.source, options.out, jobs=options.jobs, scheduler=options.scheduler,
-                           work=options.work, keep=options.keep, progress=bar.show, encoding=bar.encoding,
-                           redraw=options.redraw)
+        with confinement.explaining(options):
+            drawn = movie.make(options.source, options.out, jobs=options.jobs, scheduler=options.scheduler,
+                               work=options.work, keep=options.keep, progress=bar.show, encoding=bar.encoding,
+                               redraw=options.redraw)
     except KeyboardInterrupt:
         bar.end()
         print("dspace: interrupted; run the same command again to continue", file=sys.stderr)

@@ -4,7 +4,7 @@ import os
 import re
 import sys
 
-from dspace.command_line import Failed
+from dspace.command_line import Failed, confinement
 
 PICTURE = re.compile(r"\d{6,}\.png")
 ABOUT = (
@@ -23,6 +23,9 @@ def add_arguments(parser):
     parser.add_argument("--every", type=float, metavar="DT", help="seconds of simulation time between pictures; not "
                                                                     "with --at")
     parser.add_argument("--reverse", action="store_true", help="draw from the last step to the first; not with --at")
+    parser.add_argument("--allow-network", action="store_true",
+                        help="allow connections, for a recording whose rasters are on servers")
+    confinement.add_argument(parser, "the recording")
     parser.set_defaults(run=run)
 
 
@@ -39,13 +42,26 @@ def check(options):
         raise Failed(f"--{given[0]} applies to pictures; accepted: with --out")
 
 
+def rules_of(options):
+    """What playback may do: read the recording and the files that it names, write the pictures."""
+    rules = confinement.Rules(connect=options.allow_network)
+    rules.add_played(options.file)
+    if options.out is not None and os.path.isfile(options.file):
+        make_folder(options.out)
+        rules.add("write", options.out)
+    return rules
+
+
 def run(options):
+    check(options)
+    files_are_restricted = confinement.confine(options, lambda: rules_of(options),
+                                                 confinement.SAFEST_FORMATS)
     from dspace import vtk  # needs the compiled part
     from dspace.playback.playback import Playback
 
-    check(options)
-    vtk.vtkDspaceSession().ConfineProcess()  # it may open only the recording's files
-    with Playback(options.file) as playback:
+    confine = vtk.vtkDspaceSession().ConfineProcess  # it may open only the recording's files
+    confine() if files_are_restricted else confine(True)
+    with confinement.explaining(options), Playback(options.file) as playback:
         if options.at is not None:
             playback.seek(options.at)
         if options.out is None:

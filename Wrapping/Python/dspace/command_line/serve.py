@@ -5,10 +5,12 @@ import math
 import os
 import select
 import signal
+import socket
+import stat
 import sys
 import time
 
-from dspace.command_line import Failed
+from dspace.command_line import Failed, confinement
 from dspace.command_line.certificates import make_test_certificates
 
 TO_END = 60.0  # time limit [s] for closing connections after the session has ended
@@ -41,6 +43,9 @@ def add_arguments(parser):
                         "(one that comes back after a broken connection goes on with its own)")
     parser.add_argument("--record", metavar="FILE", help="record the session into a new file, for `dspace play`")
     parser.add_argument("--pack", action="store_true", help="with --record: include the files that commands need")
+    confinement.add_argument(parser, "the server")
+    parser.add_argument("--allow-network", action="store_true",
+                        help="allow connections to other machines, for a host name of --listen that DNS resolves")
     parser.add_argument("--end-with-input", action="store_true",
                         help="end when the standard input does, that is with the program that started the server")
     parser.add_argument("--make-test-certificates", metavar="DIR",
@@ -51,6 +56,35 @@ def add_arguments(parser):
 
 def input_ended():
     return bool(select.select([0], [], [], 0)[0]) and not os.read(0, 4096)
+
+
+def remove_left(path):
+    """Removes the socket of a server that has died: a confined server cannot ask whether it lives."""
+    with contextlib.suppress(OSError), socket.socket(socket.AF_UNIX) as probe:
+        probe.setblocking(False)
+        try:
+            probe.connect(path)
+        except ConnectionRefusedError:
+            if stat.S_ISSOCK(os.lstat(path).st_mode):
+                os.unlink(path)
+
+
+def rules_of(options):
+    """What the server may do: read and write in the roots, and what its options name."""
+    is_unix = options.listen.startswith("unix:")
+    rules = confinement.Rules(listen="listen-unix" if is_unix else "listen", connect=options.allow_network)
+    for root in options.allow_root or [os.getcwd()]:
+        rules.add("write", root)
+    for path in (options.cert, options.key, options.ca):
+        rules.add("read", path)
+    if options.record:
+        rules.add("write", os.path.dirname(os.path.abspath(options.record)))
+    if is_unix:
+        path = os.path.abspath(options.listen[len("unix:"):])
+        remove_left(path)
+        rules.add("socket", os.path.dirname(path))
+    rules.add_cache()
+    return rules
 
 
 def run(options):
@@ -64,8 +98,12 @@ def run(options):
             ("--max-rate", options.max_rate, (sys.float_info.min, math.inf, "any number above 0"))):
         if not accepted[0] <= value <= accepted[1]:
             raise Failed(f"{name} {value:{'g' if isinstance(value, float) else ''}}; accepted: {accepted[2]}")
+    files_are_restricted = confinement.confine(options, lambda: rules_of(options),
+                                                 confinement.SAFEST_FORMATS)
     from dspace import vtk
     server = vtk.vtkDspaceServer()
+    if not files_are_restricted:
+        server.GetSession().ConfineProcess(True)
     server.SetListen(options.listen)
     server.SetName(options.name)
     server.SetCertificates(options.cert, options.key, options.ca)

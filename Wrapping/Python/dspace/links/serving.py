@@ -46,7 +46,8 @@ class ServerProcess:
 
     def __enter__(self):
         self._folder = tempfile.TemporaryDirectory(prefix="dspace-serve-", dir=_above())
-        command = [sys.executable, "-m", "dspace", "serve", "--end-with-input",
+        # -P: no module is imported from the working folder, whose files may be a client's.
+        command = [sys.executable, "-P", "-m", "dspace", "serve", "--end-with-input",
                    "--listen", f"unix:{self._folder.name}/socket"]
         for root in self._roots:
             command += ["--allow-root", root]
