@@ -4,7 +4,7 @@ import numpy as np
 import dspace
 from dspace._core.files import atomic_write
 from dspace._core.png import png
-from pictures.paths import IMAGES
+from pictures.paths import IMAGES, ROOT
 
 SIZE = (480, 360)
 CENTER = (239.5, 179.5)
@@ -61,3 +61,23 @@ def crossed(picture, pixels):
         if 3 <= u < SIZE[0] - 3 and 3 <= v < SIZE[1] - 3:
             picture[v, u - 3:u + 4] = picture[v - 3:v + 4, u] = (255, 40, 40)
     return picture
+
+
+def closed_loop():
+    """The sheet of Examples/closed_loop on Gale's ground."""
+    import subprocess
+    import sys
+    import tempfile
+
+    from osgeo import gdal
+    gdal.UseExceptions()
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, ROOT / "Examples" / "closed_loop" / "closed_loop.py", "--out", folder], check=True)
+        write_sheet(f"{folder}/closed_loop.png")
+
+
+def write_sheet(path):
+    from osgeo import gdal
+    gdal.SetConfigOption("GDAL_PAM_ENABLED", "NO")
+    small = gdal.Translate("", str(path), format="MEM", width=768, resampleAlg="average")
+    gdal.GetDriverByName("JPEG").CreateCopy(str(IMAGES / "closed_loop.jpg"), small, options=["QUALITY=85"])

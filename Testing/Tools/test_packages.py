@@ -10,7 +10,7 @@ ROOT = HERE.parents[1]
 FOLDERS = ("Data", "Documentation", "Examples", "Testing", "Wrapping")
 # Python modules of others, and what find_package() and the like look for: the Debian packages that bring them.
 MODULES = {"distributed": "python3-distributed", "google": "python3-protobuf", "grpc": "python3-grpcio",
-           "cv2": "python3-opencv", "jinja2": "python3-jinja2", "jplephem": "python3-jplephem", "matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "osgeo": "python3-gdal", "pytest": "python3-pytest",
+           "cv2": "python3-opencv", "jinja2": "python3-jinja2", "jplephem": "python3-jplephem", "matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "OpenImageIO": "python3-openimageio", "osgeo": "python3-gdal", "pytest": "python3-pytest",
            "vtkmodules": "python3-vtk9"}
 FOUND = {"assimp": "libassimp-dev", "Coin": "libcoin-dev", "console_bridge": "libconsole-bridge-dev",
          "Eigen3": "libeigen3-dev", "Freetype": "libfreetype-dev", "GDAL": "libgdal-dev", "gRPC": "libgrpc++-dev",

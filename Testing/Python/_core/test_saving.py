@@ -262,7 +262,7 @@ PYTHON_WRITES = re.compile(r"\bopen\(.*[\"'][wxa]b?\+?[\"']|\.write_text\(|\.wri
 CXX_WRITES = re.compile(r"\bofstream\b|\bfopen\(|\brename\(|\bO_CREAT\b|\bcopy_file\(|VSIFOpenL\([^)]*\"[wa]")
 # The writers themselves, and what writes no file that a user keeps.
 OTHERS = {"Wrapping/Python/dspace/_core/files.py": 3, "Libraries/Core/dspace/AtomicFile.cxx": 2,
-          "Wrapping/Python/dspace/movies/folder.py": 1,  # a lock, without content
+          "Wrapping/Python/dspace/batches/folder.py": 1,  # a lock, without content
           "TileFile.cxx": 2,  # a partial map that stays for the next run, and gets its name once it is complete
           "Wrapping/Python/dspace/command_line/camera.py": 1,  # numpy's format in memory, which atomic_write() saves
           "SettingsFile.cxx": 1,  # renames damaged settings, which AtomicFile then writes again

@@ -98,7 +98,8 @@ def test_render_a_recording(capsys, model, tmp_path):
     (("check", "MODEL", "--size", "1x1"), 1, "the size is (1, 1)"),
     (("convert", "MODEL", "--type", "spiral", "--out", "x.json"), 1, "'spiral' cannot be fitted"),
     (("render", "MODEL", "--recording", "r", "--frame", "mast", "--plane", "range", "--out", "x.png"), 1, "accepted: .png for"),
-    (("render", "MODEL", "--recording", "r", "--out", "x.png"), 2, "--frame --through"),
+    (("render", "MODEL", "--recording", "r", "--out", "x.png"), 1, "one of --frame PATH and --through"),
+    (("render", "MODEL", "--recording", "r", "--frame", "mast", "--jobs", "2", "--out", "x.png"), 1, "--jobs is given without a JOB.toml"),
 ])
 def test_rejected(capsys, model, arguments, code, message):
     found, out, err = run(capsys, *(model if each == "MODEL" else each for each in arguments))

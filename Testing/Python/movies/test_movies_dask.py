@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import dspace
-from dspace.movies import dask_workers
+from dspace.batches import dask_workers
 from dspace._core.png import png
+from dspace.movies.folder import FRAME
 from movies_support import SIZE, files, flight, run  # noqa: F401  (run: a fixture)
 from needs import needs_module
 
@@ -35,19 +36,19 @@ def cluster_of(workers, folder):
         yield cluster
 
 
-def shades(words, run, numbers, expected):
+def shades(words, run, numbers, expected, module):
     """In the place of dask_workers.pictures: at once, and without OpenGL."""
     ASKED.append((run, numbers))
-    return [(number, png(np.full((*SIZE[::-1], 3), number, np.uint8))) for number in numbers]
+    return [(number, [(FRAME % number, png(np.full((*SIZE[::-1], 3), number, np.uint8)))]) for number in numbers]
 
 
-def waits(words, run, numbers, expected):
+def waits(words, run, numbers, expected, module):
     ASKED.append((run, numbers))
     GATE.wait(60)
     return []
 
 
-def failing(words, run, numbers, expected):
+def failing(words, run, numbers, expected, module):
     raise RuntimeError("the card is gone")
 
 

@@ -124,12 +124,12 @@ def test_dask_workers_make_the_same(run, tmp_path):
         assert movie.make(run, tmp_path / "dask", scheduler=cluster.scheduler_address) == 12
     movie.make(run, tmp_path / "one")
     assert files(tmp_path / "dask", 12) == files(tmp_path / "one", 12)
-    from dspace.movies.dask_workers import fingerprint, pictures
+    from dspace.batches.dask_workers import fingerprint, pictures
     before = fingerprint(run)
     with open(run[:-4], "a") as file:
         file.write("# another\n")
     with pytest.raises(dspace.InvalidArgument, match="another file"):
-        pictures(movie.text, run, [0], before)
+        pictures(movie.text, run, [0], before, "dspace.movies.make")
 
 
 def test_what_cannot_be_made_is_refused(run, tmp_path, session):

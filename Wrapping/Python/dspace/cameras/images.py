@@ -1,10 +1,12 @@
 """Pictures through lenses, pixels of points and rays of pixels, in a scene."""
+import json
 from typing import NamedTuple
 
 import numpy as np
 
 from dspace._core import wire
 from dspace._core.fields import array_of, integer, items, put, put_given, reject
+from dspace._core.files import AtomicFile
 from dspace._core.signals import check_signals
 from dspace.cameras.model import put_model
 from dspace.errors import WrongType
@@ -13,6 +15,8 @@ TILE = 512  # pixels a side, drawn between two checks for Ctrl-C
 PLANES = {"color": (np.uint8, (4,)), "radiance": (np.float32, (3,)), "depth": (np.float32, ()), "range": (np.float32, ()),
           "label": (np.uint32, ()), "lit_fraction": (np.float32, ()), "incidence": (np.float32, ()),
           "emission": (np.float32, ()), "phase": (np.float32, ())}
+UNITS = {"color": "sRGB", "radiance": "W/m^2/sr", "depth": "m", "range": "m", "incidence": "deg", "emission": "deg",
+         "phase": "deg", "lit_fraction": "1", "label": "", "counts": "counts"}
 
 
 class LensPicture(NamedTuple):
@@ -68,14 +72,92 @@ class SceneImages:
 
         Light of a lens wider than 100 degrees comes from up to six views, and is interpolated; all other planes take
         the nearest source pixel. A CAHVORE's moving pupil is followed, with what only it would see left out."""
-        about = "simulated image"
-        tile = integer(tile, "the tile", about)
-        if not 64 <= tile <= 4096:
-            reject(about, "the tile", tile, "64 to 4096 pixels")
-        if progress is not None and not callable(progress):
-            reject(about, "progress", progress, "a function of one number", WrongType)
         wanted = dict(color=color, radiance=radiance, depth=depth, range=range, label=label, lit_fraction=lit_fraction,
                       incidence=incidence, emission=emission, phase=phase)
+        planes = {}
+
+        def take(x, y, width, height, part):
+            for name, values in part.items():
+                if name not in planes:
+                    planes[name] = np.empty((height, width) + values.shape[2:], values.dtype)
+                planes[name][y:y + values.shape[0], x:x + values.shape[1]] = values
+
+        command = self._command(wanted, model, camera, vantage, frame, size, scale, samples, exposure, ornaments, hide)
+        lens = self._draw(command, take, tile, progress, size, model)
+        return {**planes, "lens": lens}
+
+    def save_image(self, path, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, plane="color",
+                   samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE, progress=None):
+        """Writes one plane of the image that simulate_image() makes, tile by tile: the memory that it takes grows with the
+        width of the image, not with its height. Returns a LensPicture.
+
+        path: .png (color), .tif (every plane) or .exr (every plane but color); planes of floats are 32 bits, labels 32 bit
+        integers. The file is there when it is complete; an interrupted call leaves an earlier one. It holds the camera's
+        model, its pose in the scene's root and the time: `dspace camera info FILE`, or image_file.read_metadata(). Other
+        arguments: as for simulate_image(). Needs Debian's python3-openimageio."""
+        from dspace.cameras.image_file import ImageFile, format_of
+        about = "simulated image"
+        if plane not in PLANES:
+            reject(about, "the plane", plane, ", ".join(map(repr, PLANES)))
+        format_of(path, PLANES[plane][0])
+        AtomicFile(path, f"image {str(path)!r}").close()  # a place that cannot be written is told before drawing
+        metadata = self.metadata(plane, model, camera, vantage, frame, exposure)
+        command = self._command({plane: True}, model, camera, vantage, frame, size, scale, samples, exposure, ornaments, hide)
+        band, file = None, None
+        try:
+            def take(x, y, width, height, part):
+                nonlocal band, file
+                values, = part.values()
+                values = values[..., :3] if plane == "color" else values
+                if file is None:
+                    file = ImageFile(path, (width, height), values.shape[2] if values.ndim == 3 else 1, values.dtype, metadata)
+                if x == 0:
+                    band = np.empty((values.shape[0], width) + values.shape[2:], values.dtype)
+                band[:, x:x + values.shape[1]] = values
+                if x + values.shape[1] >= width:
+                    file.write_rows(band)
+
+            lens = self._draw(command, take, tile, progress, size, model)
+            file.commit()
+        finally:
+            if file is not None:
+                file.close()
+        return lens
+
+    def metadata(self, plane, model=None, camera=None, vantage=None, frame=None, exposure=1.0, sensor=None):
+        """What files of images tell about one: a dict for JSON, with the plane and its unit, the scene and its time [s], the
+        model and its pose in the root."""
+        scene = self._scene
+        if frame is not None:
+            pose = (scene.frame(frame) if isinstance(frame, str) else frame).world_pose @ model.pose
+        else:
+            pose = self._camera_pose(camera, vantage)
+        found = {"plane": plane, "unit": UNITS.get(plane, ""), "scene": scene.name, "time_s": scene.time,
+                 "pose": {"position": pose.position.tolist(), "quaternion": pose.quaternion.tolist()}}
+        if plane == "color":
+            found["exposure"] = float(exposure)
+        if model is not None:
+            found["camera"] = json.loads(model.json)
+        if sensor is not None:
+            found["sensor"] = sensor.settings
+        return found
+
+    def _camera_pose(self, camera, vantage):
+        from dspace.cameras.camera import Camera
+        if isinstance(camera, Camera):
+            return camera.pose_in()
+        about = "simulated image"
+        vantages = self._scene.vantages
+        name = "main" if vantage is None else self._scene._vantage_name(vantage, about)
+        chosen = vantages[name]
+        found = chosen.active if camera is None else chosen.cameras[camera]
+        if found is None:
+            reject(about, "the active camera", None, "a camera, or a vantage that has one")
+        return found.pose_in()
+
+    def _command(self, wanted, model, camera, vantage, frame, size, scale, samples, exposure, ornaments, hide):
+        """The command of a picture, without its tile."""
+        about = "simulated image"
         command = self._scene._command()
         message = command.simulate_image
         self._put_camera(message.camera, model, camera, vantage, frame, size, scale, about)
@@ -84,7 +166,19 @@ class SceneImages:
         hide = hide if isinstance(hide, (list, tuple, set, frozenset)) else [hide]
         message.hidden_fragment.extend(self._scene._fragment_name(each, None)
                                        for each in items(hide, "hide", about, "fragments or their names"))
-        planes, counts, first = {}, np.zeros(4, dtype=np.int64), None
+        return command
+
+    def _draw(self, command, take, tile, progress, size, model):
+        """Draws all tiles, row by row. take: called with (x, y, width and height of the image, {plane: array}) for each; the
+        arrays are good until it returns. Returns a LensPicture."""
+        about = "simulated image"
+        tile = integer(tile, "the tile", about)
+        if not 64 <= tile <= 4096:
+            reject(about, "the tile", tile, "64 to 4096 pixels")
+        if progress is not None and not callable(progress):
+            reject(about, "progress", progress, "a function of one number", WrongType)
+        message = command.simulate_image
+        counts, first, pupil = np.zeros(4, dtype=np.int64), None, 0.0
         width, height = size if size is not None else (model.size if model is not None and model.size else (0, 0))
         x = y = 0
         while True:
@@ -94,12 +188,8 @@ class SceneImages:
             lens = reply.lens
             if first is None:
                 width, height = lens.image_width, lens.image_height
-                planes = {plane.name: np.empty((height, width) + PLANES[plane.name][1], PLANES[plane.name][0])
-                          for plane in reply.plane}
                 first = lens
-                pupil = 0.0
-            for plane in reply.plane:
-                planes[plane.name][y:y + reply.height, x:x + reply.width] = self._plane(plane, reply)
+            take(x, y, width, height, {plane.name: self._plane(plane, reply) for plane in reply.plane})
             counts += (lens.source_views, lens.source_pixels, lens.without_ray, lens.pupil_beyond)
             pupil = max(pupil, lens.pupil_pixels)
             x += reply.width
@@ -110,9 +200,8 @@ class SceneImages:
             if y >= height:
                 break
             check_signals()
-        planes["lens"] = LensPicture(int(counts[0]), int(counts[1]), int(counts[2]), first.half_angle_deg,
-                                     first.pupil_shift, pupil, int(counts[3]))
-        return planes
+        return LensPicture(int(counts[0]), int(counts[1]), int(counts[2]), first.half_angle_deg, first.pupil_shift, pupil,
+                           int(counts[3]))
 
     def _plane(self, plane, reply):
         kind, channels = PLANES[plane.name]

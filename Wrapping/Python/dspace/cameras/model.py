@@ -8,6 +8,7 @@ from dspace._core.fields import array_of, file_path, flag, integers, numbers, re
 from dspace._core.replies import make_error, to_bytes, to_reply
 from dspace._core.strict import Strict
 from dspace.errors import NotFound, WrongType
+from dspace.frames.poses import Pose, matrix_of_quaternion, quaternion_of_matrix
 
 
 class LensCheck(NamedTuple):
@@ -195,7 +196,25 @@ class CameraModel(Strict):
     @property
     def position(self):
         """Of the camera in M [m]."""
-        return np.array(self._content["model"].get("position", self._content["model"].get("C")), dtype=float)
+        lens = self._content["model"]
+        return np.array(lens.get("position", lens.get("C", (0, 0, 0))), dtype=float)
+
+    @property
+    def rotation(self):
+        """A 3 x 3 matrix whose columns are the camera's axes C in M."""
+        lens = self._content["model"]
+        if "A" not in lens:
+            return matrix_of_quaternion(lens.get("rotation", (1, 0, 0, 0)))
+        z = np.array(lens["A"], float) / np.linalg.norm(lens["A"])
+        x = np.array(lens["H"], float)
+        x -= (x @ z) * z
+        x /= np.linalg.norm(x)
+        return np.column_stack((x, np.cross(z, x), z))
+
+    @property
+    def pose(self):
+        """X_MC, the pose of the camera's axes in M."""
+        return Pose(self.position, quaternion_of_matrix(self.rotation))
 
     @property
     def json(self):
@@ -216,6 +235,25 @@ class CameraModel(Strict):
         _check(model._vtk.Scale(*_size(size, self._label)))
         model._describe()
         return model
+
+    def moved(self, pose, frame=""):
+        """The model with its pose in another frame N. pose: X_NM, a dspace.Pose of scale 1. frame: the name of N."""
+        if not isinstance(pose, Pose):
+            reject(self._label, "the pose", pose, "a dspace.Pose", WrongType)
+        if pose.scale != 1.0:
+            reject(self._label, "the pose's scale", pose.scale, "1")
+        content = json.loads(self._json)
+        lens, turn = content["model"], pose.rotation
+        content["frame"] = text(frame, "the frame", self._label)
+        if "A" in lens:
+            lens["C"] = (pose.position + turn @ lens["C"]).tolist()
+            for name in ("A", "H", "V", "O"):
+                if name in lens:
+                    lens[name] = (turn @ lens[name]).tolist()
+        else:
+            lens["position"] = (pose.position + turn @ self.position).tolist()
+            lens["rotation"] = quaternion_of_matrix(turn @ self.rotation).tolist()
+        return CameraModel.from_json(json.dumps(content))
 
     # --- What it does --------------------------------------------------------------------------
 

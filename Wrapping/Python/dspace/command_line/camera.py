@@ -1,4 +1,4 @@
-"""`dspace camera`: info, check, project, convert, render."""
+"""`dspace camera`: info, check, project, convert, render (one image or a data set)."""
 import argparse
 import json
 import math
@@ -12,9 +12,10 @@ PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incid
 def add_arguments(parser):
     commands = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
 
-    info = commands.add_parser("info", help="print the camera models of a file",
-                               description="Prints the camera models of a file: name, type, size, frame, field of view.")
-    info.add_argument("model", metavar="MODEL", help="a file of camera models")
+    info = commands.add_parser("info", help="print the camera models of a file, or what an image says about its camera",
+                               description="Prints the camera models of a file: name, type, size, frame, field of view. Of an "
+                               "image that Dspace wrote (.png, .tif, .exr): plane, time, camera, pose and sensor.")
+    info.add_argument("model", metavar="MODEL", help="a file of camera models, or an image")
     info.add_argument("--json", action="store_true", help="print JSON: a list of models")
     info.set_defaults(run=run_info)
 
@@ -52,21 +53,28 @@ def add_arguments(parser):
     convert.set_defaults(run=run_convert)
 
     render = commands.add_parser(
-        "render", help="draw what the camera sees of a recorded scene",
-        description="Draws the image that a camera with a lens takes of a recorded scene. --out: .png (color), or .npz "
-        "(numpy; every plane of --plane).")
+        "render", help="draw what the camera sees of a recorded scene, or a data set of many images",
+        description="Draws the image that a camera with a lens takes of a recorded scene. --out: .png (color), .tif or .exr (one "
+        "plane), with the camera's model, pose and time in the file, or .npz (numpy; every plane of --plane). With a JOB.toml in "
+        "place of MODEL: draws the images of a data set into the folder --out, with a manifest and labels; the same command "
+        "continues one that was interrupted.")
     add_model(render)
-    render.add_argument("--recording", required=True, metavar="FILE", help="a recording (.dspace)")
+    render.add_argument("--recording", metavar="FILE", help="a recording (.dspace)")
     render.add_argument("--at", type=float, metavar="T", help="simulation time [s] (default: the end)")
     render.add_argument("--scene", metavar="NAME", help="the scene (default: the recording's only one)")
-    pose = render.add_mutually_exclusive_group(required=True)
+    pose = render.add_mutually_exclusive_group()
     pose.add_argument("--frame", metavar="PATH", help="the scene's frame in which the model's own pose is")
     pose.add_argument("--through", metavar="CAMERA", help="the scene's camera whose pose the lens takes")
     render.add_argument("--plane", action="append", choices=PLANES, default=[], metavar="PLANE",
                         help=f"one of {', '.join(PLANES)}; may be given several times (default: color)")
-    render.add_argument("--samples", type=int, default=2, metavar="N", help="N x N per source pixel, 1 to 8 (default: 2)")
-    render.add_argument("--exposure", type=float, default=1.0, metavar="X", help="factor on linear light of color")
+    render.add_argument("--samples", type=int, metavar="N", help="N x N per source pixel, 1 to 8 (default: 2)")
+    render.add_argument("--exposure", type=float, metavar="X", help="factor on linear light of color (default: 1)")
     render.add_argument("--scaled", type=size, metavar="WxH", help="the size of the image, of the model's shape")
+    render.add_argument("--jobs", type=jobs, metavar="N", help="of a data set: number of processes that draw, 1 to 64 (1)")
+    render.add_argument("--scheduler", metavar="ADDRESS",
+                        help="of a data set: a Dask scheduler whose workers draw: tcp://HOST:PORT or tls://...")
+    render.add_argument("--redraw", action="store_true",
+                        help="of a data set: draw all images, also those that an interrupted command left")
     render.add_argument("--out", required=True, metavar="FILE")
     render.set_defaults(run=run_render)
 
@@ -90,6 +98,12 @@ def numbers(count, names):
     return read
 
 
+def jobs(text):
+    if not text.isdigit() or not 1 <= int(text) <= 64:
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: 1 to 64")
+    return int(text)
+
+
 def size(text):
     try:
         width, height = (int(part) for part in text.lower().split("x"))
@@ -107,23 +121,54 @@ def model_of(options):
 
 
 def run_info(options):
+    import pathlib
+
     import dspace
+    if pathlib.Path(options.model).suffix.lower() in (".png", ".tif", ".tiff", ".exr"):
+        return run_image_info(options)
     models = dspace.CameraModel.read_all(options.model)
     if options.json:
         json.dump([json.loads(model.json) for model in models], sys.stdout, indent=2)
         print()
         return
     for model in models:
-        parts = [model.type]
-        if model.size:
-            check = model.check()
-            parts += [f"{model.size[0]} x {model.size[1]}", f"up to {check.half_angle_deg:.2f} deg from the axis",
-                      f"{check.least_density:.2f} to {check.greatest_density:.2f} pixels/deg"]
-            if check.without_ray:
-                parts.append(f"{100 * check.without_ray:.2f} % of the image sees nothing")
-        if model.frame:
-            parts.append(f"in {model.frame} at ({', '.join(f'{each:.6g}' for each in model.position)}) m")
-        print(f"{model.name or options.model}: {', '.join(parts)}")
+        print(described(model, options.model))
+
+
+def run_image_info(options):
+    """An image in place of a model: what was written about it."""
+    import dspace
+    from dspace.cameras.image_file import read_metadata
+    told = read_metadata(options.model)
+    if told is None:
+        raise Failed(f"{options.model}: the image does not say how it was made; accepted: one that Dspace wrote with a camera")
+    if options.json:
+        json.dump(told, sys.stdout, indent=2, sort_keys=True)
+        print()
+        return
+    unit = f" [{told['unit']}]" if told.get("unit") else ""
+    print(f"{options.model}: {told.get('plane', 'image')}{unit} of scene {told.get('scene', '')!r} at {told.get('time_s', 0):g} s")
+    if "camera" in told:
+        print(described(dspace.CameraModel.from_json(json.dumps(told["camera"])), "camera"))
+    if "pose" in told:
+        place, turn = ((f"{each:.9g}" for each in told["pose"][key]) for key in ("position", "quaternion"))
+        print(f"pose of the camera's axes in the root: position ({', '.join(place)}) m, quaternion w, x, y, z ({', '.join(turn)})")
+    if "sensor" in told:
+        print("sensor: " + ", ".join(f"{key} {value}" for key, value in told["sensor"].items()))
+
+
+def described(model, file):
+    """A model in one line."""
+    parts = [model.type]
+    if model.size:
+        check = model.check()
+        parts += [f"{model.size[0]} x {model.size[1]}", f"up to {check.half_angle_deg:.2f} deg from the axis",
+                  f"{check.least_density:.2f} to {check.greatest_density:.2f} pixels/deg"]
+        if check.without_ray:
+            parts.append(f"{100 * check.without_ray:.2f} % of the image sees nothing")
+    if model.frame:
+        parts.append(f"in {model.frame} at ({', '.join(f'{each:.6g}' for each in model.position)}) m")
+    return f"{model.name or file}: {', '.join(parts)}"
 
 
 def run_check(options):
@@ -187,19 +232,56 @@ def run_convert(options):
 
 
 def run_render(options):
+    import pathlib
+    if pathlib.Path(options.model).suffix.lower() == ".toml":
+        return run_dataset(options)
+    given = [f"--{name}" for name in ("jobs", "scheduler", "redraw") if getattr(options, name)]
+    if given:
+        raise Failed(f"{given[0]} is given without a JOB.toml; accepted: for data sets")
+    if options.recording is None or (options.frame is None) == (options.through is None):
+        raise Failed("accepted: --recording FILE, and one of --frame PATH and --through CAMERA; or a JOB.toml")
+    return render_one(options)
+
+
+def run_dataset(options):
+    """A job in place of a model."""
+    from dspace.command_line.movie import Bar
+    from dspace.datasets.job import Job
+    from dspace.datasets.make import make
+    for name in ("camera", "size", "recording", "at", "scene", "frame", "through", "plane", "samples", "exposure", "scaled"):
+        if getattr(options, name) not in (None, []):
+            raise Failed(f"--{name} is given with a job; accepted: in the job, {options.model}")
+    job = Job.load(options.model)
+    bar = Bar(sys.stderr)
+    try:
+        drawn = make(job, options.out, jobs=options.jobs or 1, scheduler=options.scheduler, progress=bar.show, redraw=options.redraw)
+    except KeyboardInterrupt:
+        bar.end()
+        print("dspace: interrupted; run the same command again to continue", file=sys.stderr)
+        return 130
+    bar.end()
+    before = job.total - drawn
+    print(f"{options.out}: {job.total} images of {len(job.cameras)} cameras, each of {', '.join(job.content['planes'])}"
+          + (f"; {before} were there" if before else ""))
+
+
+def render_one(options):
     import io
     import pathlib
 
     import numpy as np
 
     from dspace._core.files import atomic_write
-    from dspace._core.png import png
     from dspace.playback.playback import Playback
     planes = options.plane or ["color"]
     ending = pathlib.Path(options.out).suffix.lower()
-    if ending not in (".png", ".npz") or ending == ".png" and planes != ["color"]:
-        raise Failed(f"--out '{options.out}': accepted: .png for color, .npz for any planes")
+    if ending not in (".png", ".npz", ".tif", ".tiff", ".exr") or ending == ".png" and planes != ["color"] \
+            or ending == ".exr" and planes == ["color"] or ending != ".npz" and len(planes) > 1:
+        raise Failed(f"--out '{options.out}': accepted: .png for color, .tif for one plane, .exr for one plane but color, .npz for any "
+                     "planes")
     model = model_of(options)
+    settings = {"samples": 2 if options.samples is None else options.samples,
+                "exposure": 1.0 if options.exposure is None else options.exposure}
     with Playback(options.recording) as playback:
         playback.seek(playback.times[-1] if options.at is None else options.at)
         scenes = playback.session.scenes
@@ -207,17 +289,17 @@ def run_render(options):
             raise Failed(f"{options.recording}: the scene is {options.scene!r}; accepted: --scene with one of "
                          f"{', '.join(map(repr, scenes)) or 'none'}")
         scene = next(iter(scenes.values())) if options.scene is None else scenes[options.scene]
-        picture = scene.simulate_image(
-            model, camera=options.through, frame=options.frame, size=options.scaled, scale=options.scaled is not None,
-            samples=options.samples, exposure=options.exposure, **{"color": False, **{plane: True for plane in planes}})
-    lens = picture.pop("lens")
-    if ending == ".png":
-        atomic_write(options.out, png(picture["color"]))
-    else:
-        data = io.BytesIO()
-        np.savez_compressed(data, model=np.array(model.json), **picture)
-        atomic_write(options.out, data.getvalue())
-    height, width = next(iter(picture.values())).shape[:2]
+        settings.update(camera=options.through, frame=options.frame, size=options.scaled, scale=options.scaled is not None)
+        if ending != ".npz":
+            lens = scene.save_image(options.out, model, plane=planes[0], **settings)
+            width, height = model.size if options.scaled is None else options.scaled
+        else:
+            picture = scene.simulate_image(model, **settings, **{"color": False, **{plane: True for plane in planes}})
+            lens = picture.pop("lens")
+            data = io.BytesIO()
+            np.savez_compressed(data, model=np.array(model.json), **picture)
+            atomic_write(options.out, data.getvalue())
+            height, width = next(iter(picture.values())).shape[:2]
     shift = f"; the pupil moves by up to {lens.pupil_shift:.3g} m, {lens.pupil_pixels:.2f} pixels" if lens.pupil_shift else ""
     print(f"{options.out}: {width} x {height} pixels from {lens.source_views} source views of {lens.source_pixels} pixels; "
           f"{lens.without_ray} pixels see nothing{shift}")

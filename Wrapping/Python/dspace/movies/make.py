@@ -5,22 +5,20 @@ continues without drawing a picture twice. A hash in the folder identifies the m
 sharing the work give the same pictures.
 """
 import contextlib
-import json
 import os
 import re
-import signal
-import subprocess
-import sys
-import tempfile
 import time as clock
 
-from dspace._core.fields import integer, path as path_of, reject, text
+from dspace._core.fields import integer, path as path_of, reject
 from dspace._core.files import AtomicFile, atomic_write
 from dspace._core.png import png
+from dspace.batches.folder import Folder
+from dspace.batches.processes import share
+from dspace.batches.runs import absolute
 from dspace.errors import Error, Io
 from dspace.movies.draw import Stage, open_run, require_run
 from dspace.movies.encode import codec_of, encode, programs
-from dspace.movies.folder import FRAME, SCRIPT, Folder, absolute
+from dspace.movies.folder import FRAME, KIND, batch_of  # noqa: F401  (KIND: see dspace.batches.kinds)
 
 
 def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progress=None, encoding=None, redraw=False):
@@ -42,7 +40,8 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
         reject("movie", "jobs", jobs, "an integer from 1 to 64")
     require_run(run)
     if scheduler is not None:
-        require_address(scheduler)
+        from dspace.batches import dask_workers
+        dask_workers.require_address(scheduler, "movie")
     out = os.fspath(out)
     work = path_of(work, "the work folder", "movie") if work is not None else (out if codec is None else out + ".work")
     if isinstance(run, (str, os.PathLike)):
@@ -53,11 +52,12 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
     if codec is not None:  # report a missing program or an unwritable folder before any drawing
         programs()
         _check_place(out)
+    batch = batch_of(movie)
     with contextlib.ExitStack() as stack:
-        folder = stack.enter_context(Folder(work, movie, run, redraw))
+        folder = stack.enter_context(Folder(work, batch, run, redraw))
         shown = folder
         if codec is None and os.path.realpath(work) != os.path.realpath(out):
-            shown = stack.enter_context(Folder(out, movie, run, redraw))
+            shown = stack.enter_context(Folder(out, batch, run, redraw))
         missing = folder.missing(total)
         began = clock.monotonic()
 
@@ -68,10 +68,9 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
         tell(len(missing))
         with _in_file(movie.label):
             if missing and scheduler:
-                from dspace.movies.dask_workers import share
-                share(scheduler, movie.text, run, missing, folder, tell)
+                dask_workers.share(scheduler, run, missing, folder, tell)
             elif missing and jobs > 1:
-                _share(run, missing, min(jobs, len(missing)), folder, tell)
+                share(run, missing, min(jobs, len(missing)), folder, tell)
             elif missing:
                 draw(movie, run, missing, folder.path, tell)
         if codec is not None:
@@ -85,14 +84,6 @@ def make(movie, run, out, jobs=1, scheduler=None, work=None, keep=False, progres
     if codec is not None and not keep:
         folder.remove()
     return len(missing)
-
-
-def require_address(scheduler):
-    """Raises dspace.InvalidArgument for a malformed address; Dask would wait for such a scheduler until its timeout."""
-    address = re.fullmatch(r"(tcp|tls)://(\[[0-9A-Fa-f:.]+\]|[^\s:/\[\]]+):([0-9]{1,5})",
-                           text(scheduler, "the scheduler", "movie"))
-    if not address or not 1 <= int(address[3]) <= 65535:
-        reject("movie", "the scheduler", scheduler, "tcp://HOST:PORT or tls://HOST:PORT, of a Dask scheduler")
 
 
 @contextlib.contextmanager
@@ -131,73 +122,7 @@ def draw(movie, run, numbers, path, tell=lambda left: None):
             source.close()
 
 
-# --- Processes -------------------------------------------------------------------------------------
-
-def worker(script, run, folder, numbers):
-    """Starts a process that draws pictures of a movie's file into a folder; see main()."""
-    output = tempfile.TemporaryFile()  # a file: the process would block on a pipe that is not read
-    process = subprocess.Popen(
-        [sys.executable, "-c", "from dspace.movies.make import main; main()", script, run, folder,
-         str(os.getpid())],
-        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=output,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
-    process.output = output
-    try:  # through a pipe: the list may be too long for an argument
-        process.stdin.write(json.dumps(numbers).encode())
-        process.stdin.close()
-    except BrokenPipeError:  # it has ended; finish() reports why
-        pass
-    return process
-
-
-def main():
-    """Entry point of a worker process: python -c "..." SCRIPT RUN FOLDER PARENT. It reads the numbers of the pictures
-    from the standard input as JSON."""
+def draw_pieces(words, run, numbers, folder, tell):
+    """Draws pictures of a movie's text into a folder; see dspace.batches.kinds.Kind."""
     from dspace.movies.movie import Movie
-    script, run, folder, parent = sys.argv[1:]
-    numbers = json.load(sys.stdin)
-
-    def tell(left):
-        if os.getppid() != int(parent):  # the parent has ended
-            os.kill(os.getpid(), signal.SIGTERM)
-
-    try:
-        draw(Movie.load(script), run, numbers, lambda name: os.path.join(folder, name),
-             tell)
-    except (Error, OSError) as error:
-        sys.exit(f"{error}")
-
-
-def finish(process):
-    """Waits for a worker. Raises dspace.Io with its last line of output if it failed."""
-    process.wait()
-    process.output.seek(0)
-    message = process.output.read().decode(errors="replace").strip()
-    process.output.close()
-    if process.returncode != 0:
-        words = message.splitlines()[-1] if message else "no message"
-        raise Io(f"a process that drew pictures ended with {process.returncode}: {words}")
-
-
-def _share(run, missing, jobs, folder, tell):
-    """Shares the pictures among processes. Each draws consecutive pictures, because a run only moves forward."""
-    edges = [len(missing) * k // jobs for k in range(jobs + 1)]
-    processes = []
-    try:
-        for a, b in zip(edges, edges[1:]):
-            processes.append(worker(folder.path(SCRIPT), run, folder.folder, missing[a:b]))
-        left = set(missing)
-        while any(process.poll() is None for process in processes):
-            if any(process.poll() for process in processes):
-                break  # one has failed
-            left = {number for number in left if not os.path.exists(folder.path(FRAME % number))}
-            tell(len(left))
-            clock.sleep(0.2)
-        for process in sorted(processes, key=lambda each: not each.poll()):  # those that failed first
-            finish(process)
-    finally:
-        for process in processes:
-            if process.poll() is None:
-                process.kill()
-                process.wait()
-    tell(0)
+    draw(Movie.of_text(words), run, numbers, lambda name: os.path.join(folder, name), tell)

@@ -215,6 +215,7 @@ class Scene(Strict):
         return ReferenceFrames(self)
 
     simulate_image = delegate(SceneImages, "simulate_image")
+    save_image = delegate(SceneImages, "save_image")
     project_points = delegate(SceneImages, "project_points")
     pixel_rays = delegate(SceneImages, "pixel_rays")
 

@@ -1,8 +1,9 @@
-"""Draws the pictures of a movie on the workers of a Dask scheduler (Debian: python3-distributed)."""
+"""Makes the pieces of a batch on the workers of a Dask scheduler (Debian: python3-distributed)."""
 import contextlib
 import functools
 import hashlib
 import os
+import re
 import socket
 import subprocess
 import tempfile
@@ -10,19 +11,30 @@ import time as clock
 
 from dspace import __version__
 from dspace._core.files import atomic_write
-from dspace._core.png import is_whole
+from dspace._core.fields import reject, text
+from dspace.batches.kinds import Batch, kind_of
+from dspace.batches.folder import Folder
+from dspace.batches.processes import finish, worker
+from dspace.batches.runs import files_of, states_of
 from dspace.errors import Error, Internal, InvalidArgument, Io, NotFound
-from dspace.movies.folder import FRAME, SCRIPT, files_of, states_of
-from dspace.movies.make import finish, worker
 
-_AT_ONCE = 24  # largest number of pictures in one request to a worker
+_AT_ONCE = 24  # largest number of pieces in one request to a worker
 _TO_CONNECT = 30.0  # seconds
 _PATIENCE = 30.0  # seconds without a scheduler or a worker
 
 
-def share(scheduler, words, run, missing, folder, tell):
-    """Lets the workers of the scheduler at that address draw the pictures `missing`. Raises dspace.Io if no scheduler
-    answers, or if it has no worker, for 30 s."""
+def require_address(scheduler, about):
+    """Raises dspace.InvalidArgument for a malformed address; Dask would wait for such a scheduler until its timeout."""
+    address = re.fullmatch(r"(tcp|tls)://(\[[0-9A-Fa-f:.]+\]|[^\s:/\[\]]+):([0-9]{1,5})",
+                           text(scheduler, "the scheduler", about))
+    if not address or not 1 <= int(address[3]) <= 65535:
+        reject(about, "the scheduler", scheduler, "tcp://HOST:PORT or tls://HOST:PORT, of a Dask scheduler")
+
+
+def share(scheduler, run, missing, folder, tell):
+    """Lets the workers of the scheduler at that address make the pieces `missing` of a Folder's batch. Raises dspace.Io if no
+    scheduler answers, or if it has no worker, for 30 s."""
+    words, module = folder.batch.text, folder.kind.module
     try:
         from distributed import Client
     except ImportError:
@@ -43,14 +55,14 @@ def share(scheduler, words, run, missing, folder, tell):
         size = max(1, min(_AT_ONCE, -(-len(missing) // max(1, _workers(client)))))
         parts = [missing[k:k + size] for k in range(0, len(missing), size)]
         expected = fingerprint(run)
-        waiting = [client.submit(pictures, words, run, part, expected, pure=False) for part in parts]
+        waiting = [client.submit(pictures, words, run, part, expected, module, pure=False) for part in parts]
         try:
             left = len(missing)
             for drawn in _finished(client, scheduler, waiting):
-                for number, data in drawn:
-                    path = folder.path(FRAME % number)
-                    atomic_write(path, data)
-                    if not is_whole(path):
+                for number, files in drawn:
+                    for name, data in files:
+                        atomic_write(folder.path(name), data)
+                    if not folder.kind.whole(folder.folder, number):
                         raise Internal(f"picture {number} from the scheduler {scheduler!r} is damaged")
                 left -= len(drawn)
                 tell(left)
@@ -135,24 +147,27 @@ def _content(states):
     return hashed.hexdigest()
 
 
-def pictures(words, run, numbers, expected):
-    """Runs on a worker. Returns [(number, the bytes of its PNG)]. A separate process draws, because a graphics
-    context can be used from one thread only."""
+def pictures(words, run, numbers, expected, module):
+    """Runs on a worker. Returns [(number, [(name, the file's bytes)])] of pieces of the kind of a module. A separate process
+    draws, because a graphics context can be used from one thread only."""
     if fingerprint(run) != expected:
         raise InvalidArgument(f"run {run!r}: the worker {socket.gethostname()!r} has another file at this path, or "
                               f"another version of Dspace than {expected[0]}; accepted: the same on each machine, "
                               "and no recording that is still written", run)
-    with tempfile.TemporaryDirectory(prefix="dspace-movie-") as folder:
-        script = os.path.join(folder, SCRIPT)
+    kind = kind_of(module)
+    with tempfile.TemporaryDirectory(prefix="dspace-batch-") as folder:
+        made = Folder(folder, Batch(kind, words), run)
+        script = made.path(kind.script)
         atomic_write(script, words.encode())
-        process = worker(script, run, folder, numbers)
+        process = worker(kind, script, run, folder, numbers)
         try:
             finish(process)
         except subprocess.SubprocessError:
             process.kill()
             raise
-        out = []
-        for number in numbers:
-            with open(os.path.join(folder, FRAME % number), "rb") as file:
-                out.append((number, file.read()))
-        return out
+        return [(number, [(name, _bytes(made.path(name))) for name in made.files(number)]) for number in numbers]
+
+
+def _bytes(path):
+    with open(path, "rb") as file:
+        return file.read()

@@ -1,0 +1,1 @@
+"""Pictures in numbers: drawn by several processes, continued after an interruption."""

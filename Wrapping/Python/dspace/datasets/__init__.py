@@ -1,0 +1,1 @@
+"""Data sets: many images of a run, with their calibration and labels."""
