@@ -5,6 +5,7 @@ import math
 import sys
 
 from dspace.command_line import Failed
+from dspace.command_line.recorded import add_recording, recorded_scene
 
 PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase")
 
@@ -56,9 +57,7 @@ def add_arguments(parser):
         description="Draws the image that a camera with a lens takes of a recorded scene. --out: .png (color), or .npz "
         "(numpy; every plane of --plane).")
     add_model(render)
-    render.add_argument("--recording", required=True, metavar="FILE", help="a recording (.dspace)")
-    render.add_argument("--at", type=float, metavar="T", help="simulation time [s] (default: the end)")
-    render.add_argument("--scene", metavar="NAME", help="the scene (default: the recording's only one)")
+    add_recording(render)
     pose = render.add_mutually_exclusive_group(required=True)
     pose.add_argument("--frame", metavar="PATH", help="the scene's frame in which the model's own pose is")
     pose.add_argument("--through", metavar="CAMERA", help="the scene's camera whose pose the lens takes")
@@ -194,19 +193,12 @@ def run_render(options):
 
     from dspace._core.files import atomic_write
     from dspace._core.png import png
-    from dspace.playback.playback import Playback
     planes = options.plane or ["color"]
     ending = pathlib.Path(options.out).suffix.lower()
     if ending not in (".png", ".npz") or ending == ".png" and planes != ["color"]:
         raise Failed(f"--out '{options.out}': accepted: .png for color, .npz for any planes")
     model = model_of(options)
-    with Playback(options.recording) as playback:
-        playback.seek(playback.times[-1] if options.at is None else options.at)
-        scenes = playback.session.scenes
-        if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:
-            raise Failed(f"{options.recording}: the scene is {options.scene!r}; accepted: --scene with one of "
-                         f"{', '.join(map(repr, scenes)) or 'none'}")
-        scene = next(iter(scenes.values())) if options.scene is None else scenes[options.scene]
+    with recorded_scene(options) as scene:
         picture = scene.simulate_image(
             model, camera=options.through, frame=options.frame, size=options.scaled, scale=options.scaled is not None,
             samples=options.samples, exposure=options.exposure, **{"color": False, **{plane: True for plane in planes}})
