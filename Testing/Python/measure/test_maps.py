@@ -89,6 +89,30 @@ def test_viewsheds_and_lines(scene, ground, tmp_path):
     assert layer.name
 
 
+def test_a_painted_viewshed_shows_what_is_seen(scene, tmp_path):
+    """Two sites west and east of a wall: what neither, one or both see by the closed form of its shadow, in a picture from above."""
+    z = np.zeros((60, 90), np.float32)
+    z[:, 45] = 10.0
+    ground = scene.add_terrain(write_raster(tmp_path / "wall.tif", z), name="wall", mode="clipmap", origin=(0.0, 0.0))
+    sites = ground.site([10.5, 69.5], [30.5, 30.5], [2.0, 18.0])
+    seen = scene.viewshed(sites, tmp_path / "seen.tif", quantities=("count", "least_height"))
+    ground.add_false_color(seen.path, colors=[(1, 0, 0), (0, 1, 0), (0, 0, 1)], low=0.0, high=2.0)
+    camera = scene.add_camera(eye=(45.0, 30.0, 200.0), target=(45.0, 30.0, 0.0), up=(0, 1, 0), height=60.0)
+    picture = scene.add_viewport(size=(900, 600), camera=camera).image()
+    # The eastern site is 24 m from the crest and 8 m above it: beyond, 10 m below it, the ground is hidden for 30 m.
+    count = np.zeros(90)
+    count[:45] += 1  # the western site sees up to the wall
+    count[46:] += 1
+    count[:15] += 1  # 45 - 30
+    for column in (5, 12, 18, 30, 40, 52, 80):
+        assert (seen.read("count")[20:40, column] == count[column]).all()
+        shown = picture[300, 10 * column + 5].astype(int)
+        assert shown.argmax() == count[column] and shown.max() > 200 and np.sort(shown)[1] < 60, (column, shown)
+    # A target 25 m west of the crest would be seen over it at 10 - 8 / 24 * 25 m; the western site sees all of it.
+    alone = scene.viewshed(ground.site(69.5, 30.5, 18.0), tmp_path / "alone.tif", quantities="least_height").read()
+    assert alone[29, 20] == pytest.approx(10.0 - 8.0 / 24.0 * 25.0, abs=0.01)
+
+
 def seen_part(above, radius):
     x = np.clip(above / radius, -1.0, 1.0)
     return 1.0 - (np.arccos(x) - x * np.sqrt(1.0 - x * x)) / np.pi
