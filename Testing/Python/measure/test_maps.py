@@ -192,6 +192,40 @@ def test_illumination_on_a_polar_map(scene, tmp_path):
     assert abs(wrong - mean) > 0.008  # the direction of the wall matters
 
 
+def test_a_polar_raster_as_degrees_on_its_body(scene, tmp_path):
+    """A plateau around the pole that begins 20 km from it, resampled from a polar projection: seen from 2 km beside the pole its edge
+    stands at the elevation of its geometry on the sphere. On a plane it does not."""
+    x = (np.arange(800) - 399.5) * 100.0
+    away = 2.0 * np.degrees(np.arctan(np.hypot(x[None, :], x[:, None]) / (2.0 * R)))  # from the pole
+    edge = np.degrees(20_000.0 / R)
+    z = np.where(away < edge, 0.0, 1500.0).astype(np.float32)
+    polar = (f'PROJCS["p",GEOGCS["Moon",DATUM["Moon",SPHEROID["Moon",{R},0]],PRIMEM["Reference",0],UNIT["degree",'
+             '0.0174532925199433]],PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],'
+             'PARAMETER["central_meridian",0],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]]')
+    path = write_georeferenced(tmp_path / "polar.tif", z, (-40000, 100, 0, 40000, 0, -100), polar)
+    with pytest.raises(dspace.Unsupported, match="accepted"):
+        scene.add_terrain(path, on_body=True)
+    step = 0.0025
+    gdal.Warp(str(tmp_path / "degrees.tif"), str(path), dstSRS=f"+proj=longlat +R={R} +no_defs", outputBounds=(-180, -90, 180, -89),
+              xRes=0.5, yRes=step, resampleAlg="bilinear")
+    body = scene.add_terrain(tmp_path / "degrees.tif", name="body", on_body=True, vertical_datum="sphere")
+    site = np.degrees(2_000.0 / R)
+    made = scene.horizon_map(body, tmp_path / "body.tif", azimuths=4, height=0.0,
+                             extent=(0.0, -90.0 + site + step, 0.6, -90.0 + site - step))
+    # South leads over the pole, north away from it.
+    stated = []
+    for azimuth, arc in ((180.0, edge + site), (0.0, edge - site)):
+        t = np.radians(arc)
+        stated.append((azimuth, np.degrees(np.arctan2((R + 1500.0) * np.cos(t) - R, (R + 1500.0) * np.sin(t)))))
+    found = made.horizon(0, made.rows // 2)
+    x0, dx, _, y0, _, dy = made.geotransform
+    assert y0 + dy * (made.rows // 2 + 0.5) == pytest.approx(-90.0 + site, abs=step)
+    for azimuth, elevation in stated:
+        assert found[round(azimuth / 90.0)] == pytest.approx(elevation, abs=0.06)  # resampling slopes the edge over two cells, 150 m
+    flat = scene.horizon(scene.add_terrain(path, name="plane", mode="clipmap").site(50.0, 2000.0), 4)
+    assert abs(flat.elevation_deg[2] - stated[0][1]) > 0.2
+
+
 @pytest.mark.parametrize("change, kind, text", [
     ({"height": -1.0}, dspace.InvalidArgument, "height is -1"),
     ({"azimuths": 0}, dspace.InvalidArgument, "azimuths is 0; accepted: 1 to 3600"),
