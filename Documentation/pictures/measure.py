@@ -1,6 +1,8 @@
 """Pictures of measurements: real data."""
+import contextlib
 import io
 import pathlib
+import sys
 import tempfile
 
 import numpy as np
@@ -12,6 +14,9 @@ import dspace
 from dspace._core.files import atomic_write
 from dspace.command_line import main
 from pictures.paths import DATA, IMAGES
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "Examples" / "polar_site"))
+import polar_ground  # noqa: E402
 
 
 def measure_horizon():
@@ -46,3 +51,39 @@ def measure_viewshed():
     data = io.BytesIO()
     figure.savefig(data, format="png", metadata={"Software": None})
     atomic_write(IMAGES / "measure_viewshed.png", data.getvalue())
+
+
+@contextlib.contextmanager
+def polar_terrain():
+    """The generated ground at the Moon's south pole, 40 km wide, 50 m a post."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "ground.tif"
+        polar_ground.write(path, 800, 50.0)
+        yield path
+
+
+def measure_sites():
+    """The best-lit sites within 4 km of the ridge's middle, for two masts, over three lunations."""
+    with polar_terrain() as ground:
+        code = main(["sites", "--terrain", str(ground), "--site", "0,-90", "--radius", "4000", "--mast", "2", "--mast", "20", "--from",
+                     "2026-09-01", "--to", "2026-11-28", "--step", "7200", "--azimuths", "180", "--count", "6", "--apart", "800",
+                     "--most-slope", "15", "--quiet", "--out", str(IMAGES / "measure_sites.png")])
+    assert code == 0
+
+
+def measure_ensemble():
+    """How much the light depends on errors of the heights of 5 m that are correlated over 500 m."""
+    with polar_terrain() as ground, dspace.Session() as session:
+        made = session.scene().illumination_ensemble(
+            ground, ground.parent / "lit.tif", dspace.Variogram(5.0, 500.0), members=20, seed=1, height=2.0, azimuths=120,
+            extent=(-4000.0, 4000.0, 4000.0, -4000.0), cell_size=100.0, start="2026-09-01", end="2026-11-28", step=14400.0)
+        low, middle, high = (100.0 * made.read(f"lit_fraction percentile {share}") for share in (5, 50, 95))
+    figure = Figure(figsize=(9.4, 3.7), dpi=100, layout="constrained")
+    for axes, values, title, colors in zip(figure.subplots(1, 2), (middle, high - low), ("median of 20 terrains", "95th less 5th percentile"),
+                                           ("inferno", "viridis")):
+        shown = axes.imshow(values, extent=(-4, 4, -4, 4), cmap=colors)
+        axes.set(xlabel="map x [km]", ylabel="map y [km]", title=title)
+        figure.colorbar(shown, ax=axes, label="lit [% of the time]")
+    data = io.BytesIO()
+    figure.savefig(data, format="png", metadata={"Software": None})
+    atomic_write(IMAGES / "measure_ensemble.png", data.getvalue())

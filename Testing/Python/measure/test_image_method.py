@@ -51,8 +51,8 @@ def test_horizons_over_gale(scene, gale):
         around = np.stack([np.roll(horizon.elevation_deg, i) for i in (-1, 0, 1)])
         pixel = horizon.image_pixel_deg
         low, high = around.min(axis=0) - horizon.image_elevation_deg, horizon.image_elevation_deg - around.max(axis=0)
-        near = np.stack([np.roll(horizon.distance, i) for i in (-1, 0, 1)]).max(axis=0) < 50_000.0  # at the finest level
-        assert near.mean() > 0.5
+        near = np.stack([np.roll(horizon.distance, i) for i in (-1, 0, 1)]).max(axis=0) < 48_000.0  # little of a coarser level shows
+        assert near.mean() > 0.3
         assert low[near].max() < 0.75 * pixel and high[near].max() < 0.75 * pixel
         assert low.max() < 0.3 and high.max() < 0.3  # coarser levels
         alone = scene.horizon(gale.site(*site), 2880, method="image", resolution=1024)

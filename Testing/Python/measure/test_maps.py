@@ -89,6 +89,30 @@ def test_viewsheds_and_lines(scene, ground, tmp_path):
     assert layer.name
 
 
+def test_a_painted_viewshed_shows_what_is_seen(scene, tmp_path):
+    """Two sites west and east of a wall: what neither, one or both see by the closed form of its shadow, in a picture from above."""
+    z = np.zeros((60, 90), np.float32)
+    z[:, 45] = 10.0
+    ground = scene.add_terrain(write_raster(tmp_path / "wall.tif", z), name="wall", mode="clipmap", origin=(0.0, 0.0))
+    sites = ground.site([10.5, 69.5], [30.5, 30.5], [2.0, 18.0])
+    seen = scene.viewshed(sites, tmp_path / "seen.tif", quantities=("count", "least_height"))
+    ground.add_false_color(seen.path, colors=[(1, 0, 0), (0, 1, 0), (0, 0, 1)], low=0.0, high=2.0)
+    camera = scene.add_camera(eye=(45.0, 30.0, 200.0), target=(45.0, 30.0, 0.0), up=(0, 1, 0), height=60.0)
+    picture = scene.add_viewport(size=(900, 600), camera=camera).image()
+    # The eastern site is 24 m from the crest and 8 m above it: beyond, 10 m below it, the ground is hidden for 30 m.
+    count = np.zeros(90)
+    count[:45] += 1  # the western site sees up to the wall
+    count[46:] += 1
+    count[:15] += 1  # 45 - 30
+    for column in (5, 12, 18, 30, 40, 52, 80):
+        assert (seen.read("count")[20:40, column] == count[column]).all()
+        shown = picture[300, 10 * column + 5].astype(int)
+        assert shown.argmax() == count[column] and shown.max() > 200 and np.sort(shown)[1] < 60, (column, shown)
+    # A target 25 m west of the crest would be seen over it at 10 - 8 / 24 * 25 m; the western site sees all of it.
+    alone = scene.viewshed(ground.site(69.5, 30.5, 18.0), tmp_path / "alone.tif", quantities="least_height").read()
+    assert alone[29, 20] == pytest.approx(10.0 - 8.0 / 24.0 * 25.0, abs=0.01)
+
+
 def seen_part(above, radius):
     x = np.clip(above / radius, -1.0, 1.0)
     return 1.0 - (np.arccos(x) - x * np.sqrt(1.0 - x * x)) / np.pi
@@ -166,6 +190,40 @@ def test_illumination_on_a_polar_map(scene, tmp_path):
     assert made.read(1)[30, 30] == pytest.approx(seen, abs=0.01)
     wrong, _, _ = lit_by_hand(terrain, x, y, horizon, start, steps, step, turn + 60.0)
     assert abs(wrong - mean) > 0.008  # the direction of the wall matters
+
+
+def test_a_polar_raster_as_degrees_on_its_body(scene, tmp_path):
+    """A plateau around the pole that begins 20 km from it, resampled from a polar projection: seen from 2 km beside the pole its edge
+    stands at the elevation of its geometry on the sphere. On a plane it does not."""
+    x = (np.arange(800) - 399.5) * 100.0
+    away = 2.0 * np.degrees(np.arctan(np.hypot(x[None, :], x[:, None]) / (2.0 * R)))  # from the pole
+    edge = np.degrees(20_000.0 / R)
+    z = np.where(away < edge, 0.0, 1500.0).astype(np.float32)
+    polar = (f'PROJCS["p",GEOGCS["Moon",DATUM["Moon",SPHEROID["Moon",{R},0]],PRIMEM["Reference",0],UNIT["degree",'
+             '0.0174532925199433]],PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],'
+             'PARAMETER["central_meridian",0],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]]')
+    path = write_georeferenced(tmp_path / "polar.tif", z, (-40000, 100, 0, 40000, 0, -100), polar)
+    with pytest.raises(dspace.Unsupported, match="accepted"):
+        scene.add_terrain(path, on_body=True)
+    step = 0.0025
+    gdal.Warp(str(tmp_path / "degrees.tif"), str(path), dstSRS=f"+proj=longlat +R={R} +no_defs", outputBounds=(-180, -90, 180, -89),
+              xRes=0.5, yRes=step, resampleAlg="bilinear")
+    body = scene.add_terrain(tmp_path / "degrees.tif", name="body", on_body=True, vertical_datum="sphere")
+    site = np.degrees(2_000.0 / R)
+    made = scene.horizon_map(body, tmp_path / "body.tif", azimuths=4, height=0.0,
+                             extent=(0.0, -90.0 + site + step, 0.6, -90.0 + site - step))
+    # South leads over the pole, north away from it.
+    stated = []
+    for azimuth, arc in ((180.0, edge + site), (0.0, edge - site)):
+        t = np.radians(arc)
+        stated.append((azimuth, np.degrees(np.arctan2((R + 1500.0) * np.cos(t) - R, (R + 1500.0) * np.sin(t)))))
+    found = made.horizon(0, made.rows // 2)
+    x0, dx, _, y0, _, dy = made.geotransform
+    assert y0 + dy * (made.rows // 2 + 0.5) == pytest.approx(-90.0 + site, abs=step)
+    for azimuth, elevation in stated:
+        assert found[round(azimuth / 90.0)] == pytest.approx(elevation, abs=0.06)  # resampling slopes the edge over two cells, 150 m
+    flat = scene.horizon(scene.add_terrain(path, name="plane", mode="clipmap").site(50.0, 2000.0), 4)
+    assert abs(flat.elevation_deg[2] - stated[0][1]) > 0.2
 
 
 @pytest.mark.parametrize("change, kind, text", [

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import dspace
+from dspace._core import dask_client
 from dspace.batches import dask_workers
 from dspace._core.png import png
 from dspace.movies.folder import FRAME
@@ -53,14 +54,14 @@ def failing(words, run, numbers, expected, module):
 
 
 def test_without_a_worker_it_ends(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(dask_workers, "_PATIENCE", 1.0)
+    monkeypatch.setattr(dask_client, "PATIENCE", 1.0)
     with cluster_of(0, tmp_path) as cluster:
         with pytest.raises(dspace.Io, match="it has had no worker for 1 s.*accepted: one with a worker"):
             flight().make(run, tmp_path / "pictures", scheduler=cluster.scheduler_address)
 
 
 def test_when_the_last_worker_goes_it_ends(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(dask_workers, "_PATIENCE", 1.0)
+    monkeypatch.setattr(dask_client, "PATIENCE", 1.0)
     monkeypatch.setattr(dask_workers, "pictures", waits)
     with cluster_of(1, tmp_path) as cluster:
         def leave():
@@ -80,7 +81,7 @@ def test_when_the_last_worker_goes_it_ends(run, tmp_path, monkeypatch):
 
 def test_when_the_scheduler_goes_it_ends(run, tmp_path, monkeypatch):
     """A process that is killed: nobody says that it is gone."""
-    monkeypatch.setattr(dask_workers, "_PATIENCE", 2.0)
+    monkeypatch.setattr(dask_client, "PATIENCE", 2.0)
     monkeypatch.setattr(dask_workers, "pictures", waits)
     script = ("import asyncio, distributed\n"
               "async def main():\n"
@@ -95,13 +96,13 @@ def test_when_the_scheduler_goes_it_ends(run, tmp_path, monkeypatch):
                                stderr=subprocess.DEVNULL, text=True, cwd=tmp_path, env=environment)
     try:
         address = process.stdout.readline().strip()
-        finished = dask_workers._finished
+        finished = dask_client.finished
 
         def killed(*arguments):
             process.kill()
             yield from finished(*arguments)
 
-        monkeypatch.setattr(dask_workers, "_finished", killed)
+        monkeypatch.setattr(dask_client, "finished", killed)
         with pytest.raises(dspace.Io, match="it has had no worker for 2 s, or has stopped"):
             flight().make(run, tmp_path / "pictures", scheduler=address)
     finally:

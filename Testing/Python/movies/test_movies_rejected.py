@@ -183,8 +183,8 @@ def test_schedulers_addresses(run, script, tmp_path, monkeypatch, capsys):  # no
     assert not out.exists()
     needs_module("distributed", "python3-distributed")
     # Nobody listens: one line, from a process that ends.
-    done = subprocess.run([sys.executable, "-W", "ignore", "-c", "import sys\nfrom dspace.batches import dask_workers\n"
-                           "dask_workers._TO_CONNECT = 0.3\nfrom dspace.command_line import main\n"
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", "import sys\nfrom dspace._core import dask_client\n"
+                           "dask_client.TO_CONNECT = 0.3\nfrom dspace.command_line import main\n"
                            "sys.exit(main(sys.argv[1:]))", "movie", path, "--run", run, "--out", str(out),
                            "--scheduler", "tcp://127.0.0.1:1"], capture_output=True, text=True, timeout=120)
     lines = [line for line in done.stderr.splitlines() if "time left" not in line]

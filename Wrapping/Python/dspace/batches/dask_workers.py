@@ -7,20 +7,18 @@ import re
 import socket
 import subprocess
 import tempfile
-import time as clock
 
 from dspace import __version__
+from dspace._core import dask_client
 from dspace._core.files import atomic_write
 from dspace._core.fields import reject, text
 from dspace.batches.kinds import Batch, kind_of
 from dspace.batches.folder import Folder
 from dspace.batches.processes import finish, worker
 from dspace.batches.runs import files_of, states_of
-from dspace.errors import Error, Internal, InvalidArgument, Io, NotFound
+from dspace.errors import Internal, InvalidArgument
 
 _AT_ONCE = 24  # largest number of pieces in one request to a worker
-_TO_CONNECT = 30.0  # seconds
-_PATIENCE = 30.0  # seconds without a scheduler or a worker
 
 
 def require_address(scheduler, about):
@@ -35,30 +33,14 @@ def share(scheduler, run, missing, folder, tell):
     """Lets the workers of the scheduler at that address make the pieces `missing` of a Folder's batch. Raises dspace.Io if no
     scheduler answers, or if it has no worker, for 30 s."""
     words, module = folder.batch.text, folder.kind.module
-    try:
-        from distributed import Client
-    except ImportError:
-        raise NotFound("Dask is not installed; accepted: Debian's package python3-distributed",
-                       "python3-distributed") from None
-    _require_listener(scheduler)
-    try:
-        client = Client(scheduler, timeout=_TO_CONNECT, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise Io(f"scheduler {scheduler!r}: {error}; accepted: the address of a Dask scheduler, tcp://HOST:PORT",
-                 scheduler) from None
-    with client:
-        end = clock.monotonic() + _PATIENCE
-        while not _workers(client):
-            if clock.monotonic() > end:
-                raise _without_workers(scheduler)
-            clock.sleep(0.1)
-        size = max(1, min(_AT_ONCE, -(-len(missing) // max(1, _workers(client)))))
+    with dask_client.connected(scheduler) as client:
+        size = max(1, min(_AT_ONCE, -(-len(missing) // max(1, dask_client.workers(client)))))
         parts = [missing[k:k + size] for k in range(0, len(missing), size)]
         expected = fingerprint(run)
-        waiting = [client.submit(pictures, words, run, part, expected, module, pure=False) for part in parts]
-        try:
-            left = len(missing)
-            for drawn in _finished(client, scheduler, waiting):
+        left = len(missing)
+        calls = [(words, run, part, expected, module) for part in parts]
+        with contextlib.closing(dask_client.results(client, scheduler, pictures, calls)) as drawings:
+            for drawn in drawings:
                 for number, files in drawn:
                     for name, data in files:
                         atomic_write(folder.path(name), data)
@@ -66,67 +48,7 @@ def share(scheduler, run, missing, folder, tell):
                         raise Internal(f"picture {number} from the scheduler {scheduler!r} is damaged")
                 left -= len(drawn)
                 tell(left)
-        finally:
-            with contextlib.suppress(OSError, RuntimeError):  # the scheduler has stopped
-                client.cancel(waiting)
-
-
-def _require_listener(scheduler):
-    """Waits until the address accepts a connection, for up to 30 s. A Dask client that never connected prints several
-    lines when it ends; this check avoids them."""
-    host, _, port = scheduler.partition("://")[2].rpartition(":")
-    end = clock.monotonic() + _TO_CONNECT
-    while True:
-        try:
-            socket.create_connection((host.strip("[]"), int(port)), timeout=_TO_CONNECT).close()
-            return
-        except OSError as error:
-            if clock.monotonic() > end or isinstance(error, socket.gaierror):
-                raise Io(f"scheduler {scheduler!r}: {error}; accepted: the address of a Dask scheduler, "
-                         "tcp://HOST:PORT", scheduler) from None
-            clock.sleep(0.1)
-
-
-def _workers(client):
-    try:
-        return len(client.scheduler_info()["workers"]) if client.status == "running" else 0
-    except (OSError, RuntimeError):  # the scheduler has stopped
-        return 0
-
-
-def _without_workers(scheduler):
-    return Io(f"scheduler {scheduler!r}: it has had no worker for {_PATIENCE:g} s, or has stopped; accepted: one with "
-              "a worker (dask worker ADDRESS)", scheduler)
-
-
-def _finished(client, scheduler, waiting):
-    """Yields the results in the order of completion. Each is removed from `waiting`, so that no worker keeps it."""
-    from distributed import CancelledError
-    seen = clock.monotonic()  # the last time at which there was a worker
-    while waiting:
-        done = [future for future in waiting if future.done()]
-        for future in done:
-            try:
-                drawn = future.result(timeout=4 * _PATIENCE)
-            except TimeoutError:  # its worker died before it sent the result; another worker draws it again
-                continue
-            except Error:
-                raise
-            except CancelledError:  # the scheduler has stopped
-                raise _without_workers(scheduler) from None
-            except Exception as error:  # an error inside Dask
-                raise Io(f"scheduler {scheduler!r}: {type(error).__name__}: {error}", scheduler) from None
-            waiting.remove(future)
-            future.release()
-            del future
-            yield drawn
-            del drawn
-        if not done:
-            clock.sleep(0.1)
-        if _workers(client):
-            seen = clock.monotonic()
-        elif clock.monotonic() - seen > _PATIENCE:
-            raise _without_workers(scheduler)
+                del drawn
 
 
 def fingerprint(run):

@@ -26,6 +26,7 @@ WORDS = {"camera": "project, check and convert camera models, and draw through t
          "play": "draw pictures of a recording, without a simulation",
          "power": "profile the power of solar panels at a site over a span of time",
          "serve": "serve a session to simulations and viewers in other processes",
+         "sites": "rank the best-lit sites around a point, for masts of given heights",
          "sky": "draw the sky over a site, and print the direction of a body",
          "terrain": "describe and draw rasters of heights",
          "viewshed": "map the ground that is seen from sites on terrain",
@@ -78,6 +79,7 @@ def main(arguments=None):
             importlib.import_module(f"{__name__}.{word}").add_arguments(command)
     options = parser.parse_args(arguments)
     options.is_process = is_process
+    options.words = arguments
     warnings.showwarning = lambda message, *_: print(f"dspace: note: {message}", file=sys.stderr)
     try:
         done = options.run(options) or 0

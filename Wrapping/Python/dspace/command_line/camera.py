@@ -5,6 +5,7 @@ import math
 import sys
 
 from dspace.command_line import Failed
+from dspace.command_line.recorded import add_recording, recorded_scene
 
 PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase")
 
@@ -59,9 +60,7 @@ def add_arguments(parser):
         "place of MODEL: draws the images of a data set into the folder --out, with a manifest and labels; the same command "
         "continues one that was interrupted.")
     add_model(render)
-    render.add_argument("--recording", metavar="FILE", help="a recording (.dspace)")
-    render.add_argument("--at", type=float, metavar="T", help="simulation time [s] (default: the end)")
-    render.add_argument("--scene", metavar="NAME", help="the scene (default: the recording's only one)")
+    add_recording(render, render)
     pose = render.add_mutually_exclusive_group()
     pose.add_argument("--frame", metavar="PATH", help="the scene's frame in which the model's own pose is")
     pose.add_argument("--through", metavar="CAMERA", help="the scene's camera whose pose the lens takes")
@@ -272,7 +271,6 @@ def render_one(options):
     import numpy as np
 
     from dspace._core.files import atomic_write
-    from dspace.playback.playback import Playback
     planes = options.plane or ["color"]
     ending = pathlib.Path(options.out).suffix.lower()
     if ending not in (".png", ".npz", ".tif", ".tiff", ".exr") or ending == ".png" and planes != ["color"] \
@@ -282,13 +280,7 @@ def render_one(options):
     model = model_of(options)
     settings = {"samples": 2 if options.samples is None else options.samples,
                 "exposure": 1.0 if options.exposure is None else options.exposure}
-    with Playback(options.recording) as playback:
-        playback.seek(playback.times[-1] if options.at is None else options.at)
-        scenes = playback.session.scenes
-        if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:
-            raise Failed(f"{options.recording}: the scene is {options.scene!r}; accepted: --scene with one of "
-                         f"{', '.join(map(repr, scenes)) or 'none'}")
-        scene = next(iter(scenes.values())) if options.scene is None else scenes[options.scene]
+    with recorded_scene(options) as scene:
         settings.update(camera=options.through, frame=options.frame, size=options.scaled, scale=options.scaled is not None)
         if ending != ".npz":
             lens = scene.save_image(options.out, model, plane=planes[0], **settings)

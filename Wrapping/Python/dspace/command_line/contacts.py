@@ -2,7 +2,7 @@
 import sys
 
 from dspace.command_line import Failed
-from dspace.command_line.measure_ground import out_of, place_of, text_of, write
+from dspace.command_line.measure_ground import opened, out_of, place_of, text_of, write
 from dspace.command_line.spans import Span, add_span
 
 STEP = 60.0  # [s]
@@ -34,8 +34,7 @@ def run(options):
     targets = [target_of(text) for text in options.target]
     if not -90.0 <= options.station_mask <= 90.0:
         raise Failed(f"--station-mask {options.station_mask:g}: accepted: -90 to 90")
-    with dspace.Session() as session:
-        scene = session.scene()
+    with opened(options) as scene:
         span = Span(scene, options, STEP)
         contacts = scene.contacts(span.place, targets, span.start, span.end, step=span.step, mask=span.mask,
                                   station_mask=options.station_mask, upper=options.upper, body=span.body)

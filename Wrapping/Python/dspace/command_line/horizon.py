@@ -1,8 +1,10 @@
 """`dspace horizon`: the horizon around a site on terrain, or of every cell of a map."""
+import shutil
 import sys
 
 from dspace.command_line import Failed, lazy
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, unit_of, write
+from dspace.command_line.measure_ground import (MeasuredGround, add_ground, opened, out_of, place_of, source_of, text_of, unit_of,
+                                                 write)
 from dspace.command_line.measure_map import add_map, common, extent_of, map_out, told
 
 np = lazy("numpy")
@@ -13,38 +15,48 @@ def add_arguments(parser):
     place = parser.add_mutually_exclusive_group(required=True)
     place.add_argument("--site", metavar="LON,LAT",
                         help="longitude (east) and latitude [deg]; map x and y without a CRS")
+    place.add_argument("--frame", metavar="PATH", help="of --recording, in place of --site: the frame whose origin is the place")
     place.add_argument("--map", action="store_true",
                         help="in place of --site: of every cell of the terrain, to a GeoTIFF with a band per azimuth. The same "
                         "command continues a map that was interrupted")
     parser.add_argument("--height", type=float, default=2.0, metavar="H", help="above the ground [m], 0 or more (default: 2)")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N",
                         help="evenly spaced, clockwise from north, 1 to 1000000 (default: 360)")
+    parser.add_argument("--scheduler", metavar="ADDRESS",
+                        help="of --map: the workers of this Dask scheduler (tcp://HOST:PORT) compute the map; they find the terrain at the "
+                        "same path. The same command continues, and the file is that of one process (Debian: python3-distributed)")
     add_map(parser)
     parser.set_defaults(run=run)
 
 
 def run(options):
-    import dspace
     if options.map:
         run_map(options)
         return
+    if options.scheduler:
+        raise Failed("--scheduler: accepted: with --map")
     out = out_of(options)
-    site = place_of(options.site, "LON,LAT", (2,), "--site")
+    if options.frame is not None and options.recording is None:
+        raise Failed("--frame: accepted: with --recording")
+    site = place_of(options.site, "LON,LAT", (2,), "--site") if options.frame is None else None
     if not 1 <= options.azimuths <= 1_000_000:
         raise Failed(f"--azimuths {options.azimuths}: accepted: 1 to 1000000")
-    with dspace.Session() as session:
-        ground = MeasuredGround(session.scene(), options)
-        horizon = ground.scene.horizon(ground.site((*site, options.height)), options.azimuths)
+    with opened(options) as scene:
+        ground = MeasuredGround(scene, options)
+        horizon = scene.horizon(options.frame if site is None else ground.site((*site, options.height)), options.azimuths)
         where = ground.degrees_of(horizon.point)
+        found = source_of(options, ground)
     turn = np.nan if horizon.first_deg is None else horizon.first_deg
     rows = [{"azimuth_deg": azimuth, "true_azimuth_deg": (azimuth + turn) % 360.0, "elevation_deg": elevation,
              "distance_m": distance, "lon_deg": point[0], "lat_deg": point[1], "height_m": point[2]}
             for azimuth, elevation, distance, point in zip(horizon.azimuth_deg, horizon.elevation_deg, horizon.distance, where)]
-    found = {"terrain": str(options.terrain), "on_body": ground.on_body, "lon_deg": site[0], "lat_deg": site[1],
-             "height_m": options.height, "horizon": rows}
+    if site is None:
+        found.update(frame=options.frame, horizon=rows)
+    else:
+        found.update(lon_deg=site[0], lat_deg=site[1], height_m=options.height, horizon=rows)
     if out is not None:
-        write(out, found, rows, lambda figure: draw(figure, horizon, f"{site[0]:g}, {site[1]:g}, {options.height:g} m above "
-                                                    "the ground"))
+        write(out, found, rows, lambda figure: draw(figure, horizon, options.frame or f"{site[0]:g}, {site[1]:g}, {options.height:g} "
+                                                    "m above the ground"))
     if options.json:
         sys.stdout.write(text_of(found))
         return
@@ -58,15 +70,24 @@ def run(options):
 def run_map(options):
     import dspace
     out = map_out(options, (".tif",))
-    with dspace.Session() as session:
-        ground = MeasuredGround(session.scene(), options)
-        made = ground.scene.horizon_map(ground.terrain, out, height=options.height, azimuths=options.azimuths,
-                                        extent=extent_of(options), cell_size=options.cell_size, replace=options.replace,
-                                        **common(options))
+    with opened(options) as scene:
+        ground = MeasuredGround(scene, options)
+        parts = None
+        if options.scheduler:
+            from dspace.command_line.map_workers import share
+            parts = share(options, ground, out)
+        if options.scheduler and parts is None:
+            made = dspace.MapFile.open(out)
+        else:
+            made = ground.scene.horizon_map(ground.terrain, out, height=options.height, azimuths=options.azimuths,
+                                            extent=extent_of(options), cell_size=options.cell_size, replace=options.replace,
+                                            **common(options))
+        if parts is not None:
+            shutil.rmtree(parts)
+        found = source_of(options, ground)
     if options.json:
-        sys.stdout.write(text_of({"terrain": str(options.terrain), "on_body": ground.on_body, "height_m": options.height,
-                                  "path": made.path, "columns": made.columns, "rows": made.rows, "azimuths": len(made.bands),
-                                  "cell_size": made.cell_size}))
+        sys.stdout.write(text_of({**found, "height_m": options.height, "path": made.path, "columns": made.columns,
+                                  "rows": made.rows, "azimuths": len(made.bands), "cell_size": made.cell_size}))
         return
     print(told(out, made))
 

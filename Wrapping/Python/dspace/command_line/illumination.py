@@ -5,7 +5,7 @@ import sys
 import tempfile
 
 from dspace.command_line import Failed
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, text_of
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, opened, place_of, source_of, text_of
 from dspace.command_line.measure_map import (add_map, common, extent_of, map_out, require_gdal, told, write_map,
                                              written_to)
 
@@ -30,12 +30,20 @@ def add_arguments(parser):
     parser.add_argument("--body", metavar="BODY", help="that the terrain lies on (default: the one that its CRS names)")
     parser.add_argument("--quantity", action="append", choices=tuple(LOOKS),
                         help="may be given several times (default: lit_fraction). longest_night is in seconds")
+    parser.add_argument("--ensemble", type=int, metavar="N",
+                        help="map the mean and percentiles over N terrains, 2 to 10000, whose heights differ by random errors. Finished "
+                        "members are kept in OUT.members until all are done, and the same command continues")
+    parser.add_argument("--variogram", metavar="MODEL:SIGMA,LENGTH[,NUGGET]",
+                        help="of --ensemble: exponential or gaussian; standard deviation and length of the correlated errors, and the standard "
+                        "deviation of independent ones [m]")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of --ensemble, 0 or more (default: 0)")
+    parser.add_argument("--percentile", type=float, action="append", metavar="P",
+                        help="of --ensemble, 0 to 100; may be given several times (default: 5, 50 and 95)")
     add_map(parser)
     parser.set_defaults(run=run)
 
 
 def run(options):
-    import dspace
     out = map_out(options)
     if not options.step > 0.0:
         raise Failed(f"--step {options.step}: accepted: more than 0 s")
@@ -44,8 +52,13 @@ def run(options):
     if out.suffix.lower() != ".tif":
         require_gdal()
     quantities = tuple(options.quantity or ("lit_fraction",))
+    if options.ensemble is not None:
+        run_ensemble(options, out, quantities)
+        return
+    if options.variogram is not None or options.percentile:
+        raise Failed("--variogram, --percentile: accepted: with --ensemble")
     with contextlib.ExitStack() as stack:
-        ground = MeasuredGround(stack.enter_context(dspace.Session()).scene(), options)
+        ground = MeasuredGround(stack.enter_context(opened(options)), options)
         horizons = options.horizons
         if horizons is None:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="dspace-horizons-"))
@@ -56,7 +69,7 @@ def run(options):
         made = ground.scene.illumination_map(horizons, path, start=options.start, end=options.end, step=options.step,
                                              quantities=quantities, terrain=ground.terrain, body=options.body,
                                              replace=options.replace, **common(options))
-        found = {"terrain": str(options.terrain), "on_body": ground.on_body, "from": options.start, "to": options.end,
+        found = {**source_of(options, ground), "from": options.start, "to": options.end,
                  "step_s": options.step, "columns": made.columns, "rows": made.rows}
         write_map(out, made, found, f"{options.start} to {options.end}, every {options.step:g} s",
                   LOOKS[quantities[0]])
@@ -64,3 +77,41 @@ def run(options):
         sys.stdout.write(text_of(found))
         return
     print(told(out, made))
+
+
+def run_ensemble(options, out, quantities):
+    variogram = variogram_of(options.variogram)
+    if options.recording is not None:
+        raise Failed("--recording: accepted: without --ensemble, which perturbs a raster")
+    if options.horizons is not None:
+        raise Failed("--horizons: accepted: without --ensemble, whose members have horizons of their own")
+    # The members of an interrupted ensemble are beside the output.
+    whole = out if out.suffix.lower() == ".tif" else out.with_name(out.name + ".tif")
+    with contextlib.ExitStack() as stack:
+        ground = MeasuredGround(stack.enter_context(opened(options)), options)
+        ground.terrain.remove()
+        made = ground.scene.illumination_ensemble(
+            options.terrain, whole, variogram, members=options.ensemble, seed=options.seed,
+            percentiles=tuple(options.percentile or (5.0, 50.0, 95.0)), quantities=quantities, height=options.height,
+            azimuths=options.azimuths, extent=extent_of(options), cell_size=options.cell_size, start=options.start, end=options.end,
+            step=options.step, body=options.body, terrain=ground.arguments, replace=options.replace, **common(options))
+        found = {**source_of(options, ground), "from": options.start, "to": options.end,
+                 "step_s": options.step, "members": options.ensemble, "seed": options.seed, "variogram": repr(variogram),
+                 "columns": made.columns, "rows": made.rows}
+        label, *look = LOOKS[quantities[0]]
+        write_map(out, made, found, f"{options.start} to {options.end}, {options.ensemble} terrains", (f"mean {label}", *look))
+        if whole != out:
+            whole.unlink()
+    if options.json:
+        sys.stdout.write(text_of(found))
+        return
+    print(told(out, made))
+
+
+def variogram_of(words):
+    import dspace
+    if words is None:
+        raise Failed("--variogram: accepted: MODEL:SIGMA,LENGTH[,NUGGET], with --ensemble")
+    model, _, numbers = words.partition(":")
+    sigma, length, *nugget = place_of(numbers, "MODEL:SIGMA,LENGTH[,NUGGET]", (2, 3), "--variogram")
+    return dspace.Variogram(sigma, length, model, *nugget)

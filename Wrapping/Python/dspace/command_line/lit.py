@@ -3,7 +3,7 @@ import pathlib
 import sys
 
 from dspace.command_line import Failed, lazy
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, write
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, opened, out_of, place_of, source_of, text_of, write
 from dspace.command_line.sky import check
 
 np = lazy("numpy")
@@ -16,8 +16,11 @@ ENDINGS = (".json", ".csv", ".html")
 
 def add_arguments(parser):
     add_ground(parser, "a file of the result: .json, .csv or .html")
-    parser.add_argument("--site", required=True, metavar="LON,LAT",
-                        help="longitude (east) and latitude [deg]; map x and y without a CRS")
+    place = parser.add_mutually_exclusive_group(required=True)
+    place.add_argument("--site", metavar="LON,LAT", help="longitude (east) and latitude [deg]; map x and y without a CRS")
+    place.add_argument("--object", action="append", metavar="NAME",
+                       help="of --recording, in place of a panel at --site: an object of the scene, by the recorded Sun; may be given "
+                       "several times")
     parser.add_argument("--height", type=float, default=1.0, metavar="H",
                         help="of the panel's centre above the ground [m], 0 or more (default: 1)")
     parser.add_argument("--panel", default="1,1", metavar="W,H",
@@ -43,10 +46,12 @@ def add_arguments(parser):
 
 
 def run(options):
-    import dspace
     if options.out is not None and pathlib.Path(options.out).suffix.lower() not in ENDINGS:
         raise Failed(f"--out '{options.out}': accepted: a name with {', '.join(ENDINGS)}")
     out = out_of(options)
+    if options.object:
+        run_objects(options, out)
+        return
     place = place_of(options.site, "LON,LAT", (2,), "--site")
     size = place_of(options.panel, "W,H", (2,), "--panel")
     if not all(0.0 < side <= 1e6 for side in size):
@@ -56,8 +61,8 @@ def run(options):
     check("--efficiency", options.efficiency, 0.0, 1.0)
     if not 1 <= options.samples <= MOST_SAMPLES:
         raise Failed(f"--samples {options.samples}: accepted: 1 to {MOST_SAMPLES}")
-    with dspace.Session() as session:
-        ground = MeasuredGround(session.scene(), options)
+    with opened(options) as scene:
+        ground = MeasuredGround(scene, options)
         site = ground.site((*place, options.height))
         panel = add_panel(ground.scene, site, size, facing)
         sun = sun_of(ground, site, options)
@@ -65,12 +70,13 @@ def run(options):
         lit = ground.scene.lit_area(panel, efficiency=options.efficiency, samples=options.samples)
         azimuth, elevation = ground.scene.sun.angles(site.terrain, (float(site.x), float(site.y)))
         radius = ground.scene.sun.radius_deg
+        source = source_of(options, ground)
     row = {"lon_deg": place[0], "lat_deg": place[1], "height_m": options.height, "width_m": size[0], "panel_height_m": size[1],
            "facing_azimuth_deg": facing[0], "facing_elevation_deg": facing[1], "sun_azimuth_deg": azimuth,
            "sun_elevation_deg": elevation, "sun_radius_deg": radius, "irradiance_w_m2": lit.irradiance,
            "efficiency": options.efficiency, "area_m2": lit.area, "lit_area_m2": lit.lit_area,
            "lit_percent": 100.0 * lit.fraction, "projected_area_m2": lit.projected_area, "power_w": lit.power}
-    found = {"terrain": str(options.terrain), "on_body": ground.on_body, **row}
+    found = {**source, **row}
     if options.time is not None:
         found["time"] = options.time
     if out is not None:
@@ -81,6 +87,34 @@ def run(options):
     print(told(row))
     if out is not None:
         print(f"{out}: 1 panel")
+
+
+def run_objects(options, out):
+    """The objects of a recorded scene."""
+    if options.recording is None:
+        raise Failed("--object: accepted: with --recording")
+    for name in ("sun", "time", "radius_deg", "irradiance", "distance_au"):
+        if getattr(options, name) is not None:
+            raise Failed(f"--{name.replace('_', '-')}: accepted: without --object, which the recorded Sun lights")
+    check("--efficiency", options.efficiency, 0.0, 1.0)
+    with opened(options) as scene:
+        lit = scene.lit_area(options.object, efficiency=options.efficiency, samples=options.samples)
+        source = {"recording": str(options.recording), "at_s": options.at}
+    rows = [{"object": name, "irradiance_w_m2": float(lit.irradiance), "efficiency": options.efficiency, "area_m2": float(lit.area[k]),
+             "lit_area_m2": float(lit.lit_area[k]), "lit_percent": 100.0 * float(lit.fraction[k]),
+             "projected_area_m2": float(lit.projected_area[k]), "power_w": float(lit.power[k])}
+            for k, name in enumerate(options.object)]
+    found = {**source, "objects": rows}
+    if out is not None:
+        write(out, found, rows, None)
+    if options.json:
+        sys.stdout.write(text_of(found))
+        return
+    for row in rows:
+        print(f"{row['object']}: {row['lit_area_m2']:.6g} of {row['area_m2']:.6g} m^2 lit ({row['lit_percent']:.2f} %), projected area "
+              f"{row['projected_area_m2']:.6g} m^2, power {row['power_w']:.6g} W; {row['irradiance_w_m2']:.6g} W/m^2")
+    if out is not None:
+        print(f"{out}: {len(rows)} objects")
 
 
 def angles_of(text, option):

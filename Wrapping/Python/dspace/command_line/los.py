@@ -2,7 +2,8 @@
 import sys
 
 from dspace.command_line import Failed, lazy
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, out_of, place_of, text_of, unit_of, write
+from dspace.command_line.measure_ground import (MeasuredGround, add_ground, opened, out_of, place_of, source_of, text_of, unit_of,
+                                                 write)
 
 np = lazy("numpy")
 
@@ -14,37 +15,39 @@ def add_arguments(parser):
     add_ground(parser, "a file of the lines: .json, .csv, .html (a report), or .png (profiles; at most the first six lines)")
     parser.add_argument("--from", dest="starts", action="append", required=True, metavar="LON,LAT,H",
                         help="longitude (east), latitude [deg], height above the ground [m]; map x, y in place of degrees "
-                        "without a CRS; may be given several times")
+                        "without a CRS; with --recording also the path of a frame, whose origin counts; may be given several times")
     parser.add_argument("--to", dest="ends", action="append", required=True, metavar="LON,LAT,H",
                         help="where the line ends; as many as --from, or one of either for all of the other")
     parser.add_argument("--wavelength", type=float, metavar="M",
                         help="of radio waves [m]: tells the free part of the first Fresnel zone")
+    parser.add_argument("--without", action="append", default=[], metavar="NAME",
+                        help="of --recording: an object that is no obstacle, such as an antenna; may be given several times")
     parser.set_defaults(run=run)
 
 
 def run(options):
-    import dspace
     out = out_of(options)
-    starts = [place_of(text, "LON,LAT,H", (3,), "--from") for text in options.starts]
-    ends = [place_of(text, "LON,LAT,H", (3,), "--to") for text in options.ends]
+    starts = [end_of(text, "--from", options) for text in options.starts]
+    ends = [end_of(text, "--to", options) for text in options.ends]
+    if options.without and options.recording is None:
+        raise Failed("--without: accepted: with --recording")
     if len(starts) != len(ends) and 1 not in (len(starts), len(ends)):
         raise Failed(f"--from is given {len(starts)} times and --to {len(ends)} times; accepted: equal numbers, or one of "
                      "either")
     count = max(len(starts), len(ends))
     starts, ends = (places * count if len(places) == 1 else places for places in (starts, ends))
-    with dspace.Session() as session:
-        ground = MeasuredGround(session.scene(), options)
-        sites = [tuple(map(ground.site, pair)) for pair in zip(starts, ends)]
-        x0, y0, h0, x1, y1, h1 = (np.array([float(getattr(pair[k], name)) for pair in sites])
-                                  for k in (0, 1) for name in ("x", "y", "height"))
-        lines = ground.scene.line_of_sight(ground.terrain.site(x0, y0, h0), ground.terrain.site(x1, y1, h1),
-                                           wavelength=options.wavelength)
-        rows = rows_of(ground, starts, ends, lines)
+    with opened(options) as scene:
+        ground = MeasuredGround(scene, options)
+        if out is not None and out.suffix.lower() in (".png", ".html") and ground.terrain is None:
+            raise Failed(f"--out '{out}': the scene has no terrain for profiles; accepted: .json, .csv")
+        lines = measure(ground, starts, ends, options)
+        rows = rows_of(ground, starts, ends, lines, options.recording is not None)
+        found = {**source_of(options, ground), "lines": rows}
         if out is not None:
-            write(out, {"terrain": str(options.terrain), "on_body": ground.on_body, "lines": rows}, rows,
-                  lambda figure: draw(figure, ground, sites, lines, rows, options.wavelength))
+            points = [[point_of(ground, place) for place in pair] for pair in list(zip(starts, ends))[:MOST_PROFILES]]
+            write(out, found, rows, lambda figure: draw(figure, ground, points, lines, rows, options.wavelength))
     if options.json:
-        sys.stdout.write(text_of({"terrain": str(options.terrain), "on_body": ground.on_body, "lines": rows}))
+        sys.stdout.write(text_of(found))
         return
     for row in rows:
         print(told(row))
@@ -52,53 +55,100 @@ def run(options):
         print(f"{out}: {count} line{'s' if count != 1 else ''}")
 
 
-def rows_of(ground, starts, ends, lines):
+def end_of(text, option, options):
+    """An end of a line: longitude, latitude and height, or the path of a frame of a recording."""
+    if options.recording is not None and not all(part.strip().lstrip("+-")[:1].isdigit() for part in text.split(",")):
+        return text
+    return place_of(text, "LON,LAT,H", (3,), option)
+
+
+def point_of(ground, place):
+    """An end of a line in the terrain's frame [m]; without terrain in the root."""
+    if isinstance(place, str):
+        return ground.in_terrain(ground.placed(ground.scene.frame(place))[:3, 3])
+    site = ground.site(place)
+    x, y = float(site.x), float(site.y)
+    return ground.terrain.from_map([x, y, ground.terrain.height(x, y, map=True) + float(site.height)])
+
+
+def measure(ground, starts, ends, options):
+    """The lines, in one request where all ends are of one kind."""
+    more = {"wavelength": options.wavelength, "without": options.without}
+    if options.recording is None:
+        sites = [tuple(map(ground.site, pair)) for pair in zip(starts, ends)]
+        x0, y0, h0, x1, y1, h1 = (np.array([float(getattr(pair[k], name)) for pair in sites])
+                                  for k in (0, 1) for name in ("x", "y", "height"))
+        return ground.scene.line_of_sight(ground.terrain.site(x0, y0, h0), ground.terrain.site(x1, y1, h1), **more)
+    # A line each: a Site holds the checks of its terrain, and a frame none.
+    ends_of = [[place if isinstance(place, str) else ground.site(place) for place in places] for places in (starts, ends)]
+    return joined([ground.scene.line_of_sight(start, end, **more) for start, end in zip(*ends_of)])
+
+
+def joined(lines):
+    """Lines that were measured one by one, as arrays."""
+    from dspace.measure.results import LinesOfSight
+
+    def array(name):
+        values = [getattr(line, name) for line in lines]
+        if name in ("terrain", "object"):
+            return np.array([*values, None], dtype=object)[:-1]  # of things that numpy does not look into
+        return None if values[0] is None else np.array(values)
+    return LinesOfSight(**{name: array(name) for name in LinesOfSight.__dataclass_fields__})
+
+
+def rows_of(ground, starts, ends, lines, recorded):
     where = ground.degrees_of(lines.point)
     rows = []
     for i, (start, end) in enumerate(zip(starts, ends)):
-        row = {"from_lon_deg": start[0], "from_lat_deg": start[1], "from_height_m": start[2], "to_lon_deg": end[0],
-               "to_lat_deg": end[1], "to_height_m": end[2], "clear": bool(lines.clear[i]), "range_m": lines.range[i],
+        row = {**end_row("from", start, recorded), **end_row("to", end, recorded), "clear": bool(lines.clear[i]),
+               "range_m": lines.range[i],
                "clearance_m": lines.clearance[i], "clearance_deg": lines.clearance_deg[i],
                "obstacle_distance_m": lines.distance[i], "obstacle_lon_deg": where[i, 0], "obstacle_lat_deg": where[i, 1],
                "obstacle_height_m": where[i, 2]}
+        if recorded:
+            row["obstacle"] = lines.object[i].name if lines.object[i] is not None else lines.terrain[i] or None
         if lines.fresnel_free is not None:
             row["fresnel_free"] = lines.fresnel_free[i]
         rows.append(row)
     return rows
 
 
+def end_row(end, place, recorded):
+    """An end as values of a row; every row of a recording has the same ones."""
+    frame, place = (place, (None,) * 3) if isinstance(place, str) else (None, place)
+    row = {f"{end}_lon_deg": place[0], f"{end}_lat_deg": place[1], f"{end}_height_m": place[2]}
+    return {f"{end}_frame": frame, **row} if recorded else row
+
+
 def place_text(row, end):
-    return ",".join(f"{row[f'{end}_{name}']:.9g}" for name in ("lon_deg", "lat_deg", "height_m"))
+    return row.get(f"{end}_frame") or ",".join(f"{row[f'{end}_{name}']:.9g}" for name in ("lon_deg", "lat_deg", "height_m"))
 
 
 def told(row):
     text = f"{place_text(row, 'from')} to {place_text(row, 'to')}: " + ("clear" if row["clear"] else (
-        f"blocked after {row['obstacle_distance_m']:.3f} m at {row['obstacle_lon_deg']:.7g}, "
-        f"{row['obstacle_lat_deg']:.7g}, height {row['obstacle_height_m']:.3f} m"))
+        f"blocked{' by ' + row['obstacle'] if row.get('obstacle') else ''} after {row['obstacle_distance_m']:.3f} m at "
+        f"{row['obstacle_lon_deg']:.7g}, {row['obstacle_lat_deg']:.7g}, height {row['obstacle_height_m']:.3f} m"))
     text += f"; range {row['range_m']:.3f} m, clearance {row['clearance_m']:.3f} m, {row['clearance_deg']:.5f} deg"
     if "fresnel_free" in row:
         text += f", {row['fresnel_free']:.3f} of the first Fresnel zone"
     return text
 
 
-def profile(ground, start, end):
+def profile(ground, ends):
     """Distances along a line [m], and heights of the line over the ground [m] along the local vertical."""
-    places = np.stack([ground.terrain.height(float(site.x), float(site.y), map=True) + float(site.height)
-                       for site in (start, end)])
-    ends = ground.terrain.from_map([[float(site.x), float(site.y), place] for site, place in zip((start, end), places)])
     share = np.linspace(0.0, 1.0, SAMPLES)
     points = ground.terrain.to_map(ends[0] + share[:, None] * (ends[1] - ends[0]))
     return (share * np.linalg.norm(ends[1] - ends[0]),
             points[:, 2] - ground.terrain.height(points[:, 0], points[:, 1], map=True))
 
 
-def draw(figure, ground, sites, lines, rows, wavelength):
-    count = min(len(sites), MOST_PROFILES)
+def draw(figure, ground, points, lines, rows, wavelength):
+    count = len(points)
     down = -(-count // 2)
     figure.set_size_inches(9.0, 4.5 if down == 1 else 2.8 * down)
     for i in range(count):
         axes = figure.add_subplot(down, 1 if count == 1 else 2, i + 1)
-        distance, height = profile(ground, *sites[i])
+        distance, height = profile(ground, np.asarray(points[i]))
         unit, name = unit_of(distance)
         shown = [-height]
         clear = bool(lines.clear[i])

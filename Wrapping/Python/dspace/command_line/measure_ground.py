@@ -1,4 +1,5 @@
 """What the commands that measure on terrain share: the terrain, places on it, and the files that they write."""
+import contextlib
 import io
 import json
 import math
@@ -8,8 +9,9 @@ import sys
 
 from dspace._core.files import atomic_write
 from dspace.command_line import Failed, lazy
+from dspace.command_line.recorded import add_recording, recorded_scene
 from dspace.command_line.terrain import add_raster_options
-from dspace.command_line.terrain_rasters import add, degrees, gdal_modules
+from dspace.command_line.terrain_rasters import add, degrees, gdal_modules, given
 
 np = lazy("numpy")
 
@@ -17,14 +19,31 @@ ENDINGS = (".json", ".csv", ".png", ".html")
 
 
 def add_ground(parser, file_help, required=True):
-    """Adds the options of the terrain, and those of the output."""
-    parser.add_argument("--terrain", required=required, metavar="FILE", help="any raster of heights that GDAL opens")
+    """Adds the options of the terrain or of a recording, and those of the output."""
+    source = parser.add_mutually_exclusive_group(required=required)
+    source.add_argument("--terrain", metavar="FILE", help="any raster of heights that GDAL opens")
+    add_recording(parser, source)
+    parser.add_argument("--on", metavar="NAME", help="of --recording: the terrain of places and maps (default: the scene's only one)")
     parser.add_argument("--plane", action="store_true",
                         help="place the terrain on a plane, without the body's curvature (default: a degree grid is placed "
                         "on its body, any other raster on a plane)")
     add_raster_options(parser)
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--out", metavar="FILE", help=file_help)
+
+
+@contextlib.contextmanager
+def opened(options):
+    """The scene in which the command measures: an empty one, or that of its recording."""
+    if options.recording is not None:
+        with recorded_scene(options) as scene:
+            yield scene
+        return
+    if options.on is not None or options.at is not None or options.scene is not None:
+        raise Failed("--on, --at, --scene: accepted: with --recording")
+    import dspace
+    with dspace.Session() as session:
+        yield session.scene()
 
 
 def out_of(options):
@@ -51,22 +70,52 @@ def figures():
 
 
 class MeasuredGround:
-    """The terrain of the command in a scene, and its places."""
+    """The terrain of the command in a scene, and its places: a raster that is opened, or a terrain of a recorded scene. The
+    latter may have none: `terrain` is None then."""
 
     def __init__(self, scene, options):
         _, osr = gdal_modules()
         self.scene = scene
+        self._recording = options.recording
+        self._to_terrain = np.eye(4)
+        if options.recording is None:
+            self._open(options, osr)
+        else:
+            self._find(options)
+        self.crs = degrees(osr, self.terrain.crs) if self.terrain is not None else None
+
+    def _open(self, options, osr):
         self.on_body = not options.plane and _is_degree_grid(options, osr)
-        self.terrain, warned = add(scene, options.terrain, options, name="terrain", on_body=self.on_body)
+        self.arguments = {**given(options), "on_body": self.on_body}  # of add_terrain
+        self.terrain, warned = add(self.scene, options.terrain, options, name="terrain", on_body=self.on_body)
         for warning in warned:
             print(f"dspace: note: {options.terrain}: {warning}", file=sys.stderr)
         if not self.on_body:
             print(f"dspace: note: {options.terrain}: the terrain is on a plane: the body's curvature is left out",
                   file=sys.stderr)
-        self.crs = degrees(osr, self.terrain.crs)
+
+    def _find(self, options):
+        if given(options) or options.plane:
+            raise Failed("--recording: accepted: without options of rasters, whose values it has")
+        terrains = self.scene.terrains
+        if options.on is None and len(terrains) > 1 or options.on is not None and options.on not in terrains:
+            raise Failed(f"{options.recording}: the terrain is {options.on!r}; accepted: --on with one of "
+                         f"{', '.join(map(repr, terrains)) or 'none'}")
+        self.terrain = terrains[options.on] if options.on is not None else next(iter(terrains.values()), None)
+        self.on_body = self.terrain is not None and self.terrain.on_body
+        if self.terrain is not None:
+            self._to_terrain = np.linalg.inv(self.placed(self.terrain.frame))
+
+    @property
+    def source(self):
+        """What a result says about its ground."""
+        name = self.terrain.name if self.terrain is not None else None
+        return {"terrain": name, "on_body": self.on_body, "recording": str(self._recording)}
 
     def site(self, place):
         """The Site of longitude, latitude and height above the ground; of map x and y without a CRS."""
+        if self.terrain is None:
+            raise Failed(f"{self._recording}: the scene has no terrain; accepted: frames as places")
         x, y, height = place
         if self.crs and not self.crs[0].IsGeographic():
             _, osr = gdal_modules()
@@ -77,19 +126,35 @@ class MeasuredGround:
             x = middle + (x - middle + 180.0) % 360.0 - 180.0
         return self.terrain.site(x, y, height)
 
+    def placed(self, frame):
+        """The pose of a frame in the root, as a matrix (4, 4)."""
+        from dspace.frames.poses import Pose
+        return Pose.from_row(self.scene.poses([frame], relative_to=self.scene.root)[0]).matrix
+
+    def in_terrain(self, points):
+        """Points (..., 3) in the root, in the terrain's frame."""
+        return np.asarray(points, float) @ self._to_terrain[:3, :3].T + self._to_terrain[:3, 3]
+
     def degrees_of(self, points):
         """Longitude, latitude [deg] and height above the datum [m] of points (n, 3) in the root; map x, y without a
-        CRS."""
-        points = np.asarray(points, float).reshape(-1, 3)
+        CRS; NaN without terrain."""
+        points = self.in_terrain(points).reshape(-1, 3)
         found = np.full(points.shape, np.nan)
         known = np.isfinite(points).all(axis=1)
-        if known.any():
+        if known.any() and self.terrain is not None:
             map_points = self.terrain.to_map(points[known])
             if self.crs:
                 where = self.terrain.locate(points[known])
                 map_points = np.column_stack((where.longitude, where.latitude, map_points[:, 2]))
             found[known] = map_points
         return found
+
+
+def source_of(options, ground):
+    """What a result says about its ground."""
+    if options.recording is not None:
+        return {**ground.source, "at_s": options.at}
+    return {"terrain": str(options.terrain), "on_body": ground.on_body}
 
 
 def _is_degree_grid(options, osr):

@@ -2,7 +2,7 @@
 import sys
 
 from dspace.command_line import Failed, lazy
-from dspace.command_line.measure_ground import out_of, place_of, text_of, write
+from dspace.command_line.measure_ground import opened, out_of, place_of, text_of, write
 from dspace.command_line.spans import Span, add_span
 
 np = lazy("numpy")
@@ -36,8 +36,7 @@ def run(options):
         area, azimuth, elevation = (*place_of(text, "AREA[,AZ,EL]", (1, 3), "--panel"), 0.0, 90.0)[:3]
         panels.append(dspace.Panel(area, options.efficiency, azimuth, elevation, options.tracking))
     battery = options.battery and dspace.Battery(options.battery, options.load, options.charge, options.charging)
-    with dspace.Session() as session:
-        scene = session.scene()
+    with opened(options) as scene:
         span = Span(scene, options, STEP)
         profile = scene.power_profile(span.place, panels, span.start, span.end, step=span.step, mask=span.mask, battery=battery,
                                       body=span.body)

@@ -4,7 +4,7 @@ import json
 import pathlib
 
 from dspace.command_line import Failed, lazy
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, place_of
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, place_of, source_of
 
 np = lazy("numpy")
 
@@ -45,7 +45,8 @@ class Span:
             raise Failed(f"--time {options.time!r}: the step is {parts[2]!r}; accepted: seconds") from None
         longitude, latitude = place_of(options.site, "LON,LAT", (2,), "--site")
         self.body = options.body
-        if options.terrain is not None:
+        has_ground = options.terrain is not None or options.recording is not None
+        if has_ground:
             ground = MeasuredGround(scene, options)
             self.place = ground.site((longitude, latitude, options.height))
         elif options.body is None:
@@ -54,13 +55,13 @@ class Span:
             self.place, self.body = dspace.BodySite(options.body, longitude, latitude, options.height), None
         if options.mask is not None:
             self.mask = mask_of(options.mask)
-        elif options.terrain is not None:
+        elif has_ground:
             self.mask = scene.horizon(self.place, AZIMUTHS)
         else:
             self.mask = 0.0
-        self.found = {"terrain": options.terrain and str(options.terrain), "body": options.body, "lon_deg": longitude,
+        self.found = {**(source_of(options, ground) if has_ground else {"terrain": None}), "body": options.body, "lon_deg": longitude,
                       "lat_deg": latitude, "height_m": options.height,
-                      "horizon": "measured" if options.mask is None and options.terrain is not None else options.mask or "0",
+                      "horizon": "measured" if options.mask is None and has_ground else options.mask or "0",
                       "start": scene.utc(self.start), "end": scene.utc(self.end), "step_s": self.step}
 
 

@@ -42,12 +42,16 @@ def check(options):
         raise Failed(f"--field is given with {len(options.files)} files; accepted: fields on one")
 
 
+def given(options):
+    """Arguments of add_terrain."""
+    return {name: getattr(options, name) for name in RASTER if getattr(options, name) is not None}
+
+
 def add(scene, path, options, **more):
     """Adds the terrain of a file as a clipmap. Returns it and the texts of its warnings."""
-    given = {name: getattr(options, name) for name in RASTER if getattr(options, name) is not None}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        terrain = scene.add_terrain(path, mode="clipmap", build_overviews=False, **{**given, **more})
+        terrain = scene.add_terrain(path, mode="clipmap", build_overviews=False, **{**given(options), **more})
     return terrain, [str(warning.message) for warning in caught]
 
 

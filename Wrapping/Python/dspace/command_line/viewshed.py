@@ -2,7 +2,7 @@
 import sys
 
 from dspace.command_line import Failed
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, place_of, text_of
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, opened, place_of, source_of, text_of
 from dspace.command_line.measure_map import (add_map, common, extent_of, map_out, require_gdal, told, write_map,
                                              written_to)
 
@@ -27,7 +27,6 @@ def add_arguments(parser):
 
 
 def run(options):
-    import dspace
     out = map_out(options)
     places = [place_of(site, "LON,LAT", (2,), "--site") for site in options.site]
     if options.radius is not None and not options.radius > 0.0:
@@ -35,16 +34,15 @@ def run(options):
     if out.suffix.lower() != ".tif":
         require_gdal()
     quantities = tuple(options.quantity or ("visible",))
-    with dspace.Session() as session:
-        ground = MeasuredGround(session.scene(), options)
+    with opened(options) as scene:
+        ground = MeasuredGround(scene, options)
         sites = [ground.site((*place, options.height)) for place in places]
         sites = ground.terrain.site([float(site.x) for site in sites], [float(site.y) for site in sites], options.height)
         with written_to(out) as path:
             made = ground.scene.viewshed(sites, path, target_height=options.target_height, radius=options.radius,
                                          quantities=quantities, extent=extent_of(options), cell_size=options.cell_size,
                                          replace=options.replace, **common(options))
-            found = {"terrain": str(options.terrain), "on_body": ground.on_body,
-                     "sites": [{"lon_deg": place[0], "lat_deg": place[1]} for place in places], "height_m": options.height,
+            found = {**source_of(options, ground), "sites": [{"lon_deg": place[0], "lat_deg": place[1]} for place in places], "height_m": options.height,
                      "target_height_m": options.target_height, "radius_m": options.radius, "columns": made.columns,
                      "rows": made.rows, "cell_size": made.cell_size}
             where = ", ".join(f"{place[0]:g}, {place[1]:g}" for place in places[:3])

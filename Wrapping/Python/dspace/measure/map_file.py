@@ -1,9 +1,16 @@
 """The GeoTIFF file of a map."""
+import os
 from dataclasses import dataclass
 
 import numpy as np
 
-from dspace.errors import InvalidArgument, NotFound, Unsupported
+from dspace._core.fields import file_path
+from dspace.errors import Corrupt, InvalidArgument, NotFound, Unsupported
+
+# Names of quantities by the descriptions of bands in files.
+BANDS = {"lit fraction of the time": "lit_fraction", "longest night [s]": "longest_night",
+         "fraction of the time with the Earth in sight": "earth_fraction", "permanent shadow": "permanent_shadow", "least height [m]": "least_height",
+         "observers": "count"}
 
 
 @dataclass(frozen=True)
@@ -18,9 +25,25 @@ class MapFile:
     bands: tuple
     cell_size: float
 
-    def read(self, band=0):
-        """Returns a band as an array (rows, columns) of float32, NaN without data. band: its name, or its place from 0 on.
-        Reads the file with GDAL's Python package (Debian: python3-gdal)."""
+    @classmethod
+    def open(cls, path):
+        """Returns the MapFile of a file that a map was written to. Raises dspace.NotFound and dspace.Corrupt."""
+        path = file_path(path, "the path", "map")
+        if not os.path.isfile(path):
+            raise NotFound(f"map {path!r}: there is no such file; accepted: a file that a map was written to", path)
+        try:
+            data = cls(path, 0, 0, (), 0.0)._dataset()
+        except RuntimeError as error:
+            raise Corrupt(f"map {path!r}: {error}; accepted: a file that a map was written to", path) from None
+        if "DSPACE_KIND" not in data.GetMetadata():
+            raise Corrupt(f"map {path!r}: it is no map of Dspace; accepted: a file that a map was written to", path)
+        described = [data.GetRasterBand(k + 1).GetDescription() for k in range(data.RasterCount)]
+        bands = tuple(BANDS.get(name, name) for name in described)
+        return cls(path, data.RasterXSize, data.RasterYSize, bands, abs(data.GetGeoTransform()[1]))
+
+    def read(self, band=0, rows=None):
+        """Returns a band as an array (rows, columns) of float32, NaN without data. band: its name, or its place from 0 on. rows: (the
+        first, how many) to read; default: all. Reads the file with GDAL's Python package (Debian: python3-gdal)."""
         if isinstance(band, str):
             if band not in self.bands:
                 raise NotFound(f"map {self.path!r}: the band is {band!r}; accepted: {', '.join(self.bands)}", self.path)
@@ -28,7 +51,8 @@ class MapFile:
         if not -len(self.bands) <= band < len(self.bands):
             raise InvalidArgument(f"map {self.path!r}: the band is {band}; accepted: 0 to {len(self.bands) - 1}", self.path)
         data = self._dataset()  # a band does not keep it alive
-        return data.GetRasterBand(band % len(self.bands) + 1).ReadAsArray()
+        first, count = (0, self.rows) if rows is None else rows
+        return data.GetRasterBand(band % len(self.bands) + 1).ReadAsArray(0, int(first), self.columns, int(count))
 
     def horizon(self, column, row):
         """Returns the values of all bands at a cell, an array (bands,): of a horizon map the horizon of the cell [deg]."""

@@ -12,6 +12,8 @@ from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
+from dspace.measure.best_sites import BestSites
+from dspace.measure.ensembles import Ensembles
 from dspace.measure.lines import Lines
 from dspace.measure.lit import Lit
 from dspace.measure.maps import Maps
@@ -301,6 +303,8 @@ class Scene(Strict):
     horizon_map = delegate(Maps, "horizon_map")
     viewshed = delegate(Maps, "viewshed")
     illumination_map = delegate(Maps, "illumination_map")
+    illumination_ensemble = delegate(Ensembles, "illumination_ensemble")
+    best_sites = delegate(BestSites, "best_sites")
 
     # --- Fragments and lights ------------------------------------------------------------------
 

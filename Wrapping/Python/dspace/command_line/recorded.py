@@ -1,0 +1,24 @@
+"""The scene of a recording at a time, in which commands measure and draw."""
+import contextlib
+
+from dspace.command_line import Failed
+
+
+def add_recording(parser, source=None):
+    """Adds the options of a recording. source: what --recording is added to; None: it is required."""
+    (source or parser).add_argument("--recording", required=source is None, metavar="FILE", help="a recording (.dspace)")
+    parser.add_argument("--at", type=float, metavar="T", help="simulation time of the recording [s] (default: the end)")
+    parser.add_argument("--scene", metavar="NAME", help="the scene (default: the recording's only one)")
+
+
+@contextlib.contextmanager
+def recorded_scene(options):
+    """The Scene of the command's recording, at its time."""
+    from dspace.playback.playback import Playback
+    with Playback(options.recording) as playback:
+        playback.seek(playback.times[-1] if options.at is None else options.at)
+        scenes = playback.session.scenes
+        if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:
+            raise Failed(f"{options.recording}: the scene is {options.scene!r}; accepted: --scene with one of "
+                         f"{', '.join(map(repr, scenes)) or 'none'}")
+        yield next(iter(scenes.values())) if options.scene is None else scenes[options.scene]
