@@ -3,6 +3,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .rotations import packed
+
 
 @dataclass
 class PathPose:
@@ -95,7 +97,7 @@ class Path:
         u = self._parameter(s)
         p, d, dd = (self._derivative(u, k) for k in range(3))
         rate = np.linalg.norm(d, axis=1)
-        return p[:, 0], p[:, 1], np.arctan2(d[:, 1], d[:, 0]), (d[:, 0] * dd[:, 1] - d[:, 1] * dd[:, 0]) / rate ** 3
+        return p[:, 0], p[:, 1], np.arctan2(packed(d[:, 1]), packed(d[:, 0])), (d[:, 0] * dd[:, 1] - d[:, 1] * dd[:, 0]) / rate ** 3
 
     def distance(self, t):
         """Arc length [m] at time t [s]; the ends are kept before and after the motion."""

@@ -9,7 +9,7 @@ from .contact import forward, rest_on
 from .description import read_frames, read_urdf
 from .mast import find_mast
 from .path import as_pose
-from .rotations import about_axis, to_quaternion
+from .rotations import about_axis, packed, to_quaternion
 from .suspension import find
 from .terrain import as_terrain
 
@@ -182,7 +182,7 @@ class WheeledVehicle:
         if in_space and first.path is not None:
             run = run[0] + np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(centres, axis=0), axis=1))])
         ahead = np.einsum("nij,nj->ni", rest.rotation, rest.frames[wheel.carrier][0][:, :, 0])
-        pitch = -np.arcsin(np.clip(ahead[:, 2], -1, 1))
+        pitch = -np.arcsin(np.clip(packed(ahead[:, 2]), -1, 1))
         return np.sign(self.suspension.nodes[wheel.spin].axis[1]) * (run / wheel.radius - pitch)
 
     def _state(self, i, pose, rest, angles, frames):
