@@ -13,6 +13,7 @@ from needs import needs_module
 ROOT = File(__file__).resolve().parents[3]
 sys.path.append(str(ROOT / "Wrapping" / "Python"))
 
+from dspace.errors import InvalidArgument, NotFound, WrongType  # noqa: E402
 from dspace.kinematics.rotations import packed  # noqa: E402
 from dspace.rover import (CarriedModel, GridTerrain, IndependentSuspension, Path,  # noqa: E402
                           RockerBogie, load_vehicle)
@@ -311,7 +312,7 @@ def test_mast_looks_where_told(rover):
 
 
 def test_bad_input_is_named(rover, tmp_path):
-    with pytest.raises(FileNotFoundError, match="no_such"):
+    with pytest.raises(NotFound, match="no_such"):
         load_vehicle(tmp_path / "no_such.urdf")
     (tmp_path / "bad.urdf").write_text("<robot><link")
     with pytest.raises(ValueError, match="bad.urdf"):
@@ -323,9 +324,12 @@ def test_bad_input_is_named(rover, tmp_path):
         Path([(0, 0), (0, 0)])
     with pytest.raises(ValueError, match="ascend"):
         rover.drive(Path([(0, 0), (1, 0)]), [1.0, 0.5], level)
+    for pose in ((0, 0), "here", 3, (0, 0, np.nan), (0, 0, "east")):
+        with pytest.raises(WrongType, match="the pose is .*accepted: a PathPose, or 3 to 5 finite numbers"):
+            rover.solve(pose, level)
     with pytest.raises(TypeError, match="terrain"):
         rover.solve((0, 0, 0), 3)
-    with pytest.raises(ValueError, match="no height at"):
+    with pytest.raises(InvalidArgument, match="no height at .*accepted: places where it has data"):
         rover.solve((0, 0, 0), lambda xy: np.where(xy[:, 0] > 0.5, np.nan, 0.0))
 
 

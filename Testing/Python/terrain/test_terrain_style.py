@@ -130,7 +130,7 @@ def test_noise_is_drawn_and_not_measured(scene, tmp_path):
     (dict(color_by="height", range=(3, 3)), "differ"),
     (dict(color_by="height", colors=["nocolour"]), "CSS"),
     (dict(color_by="height", opacity=2), "0 to 1"),
-    (dict(color_by="height", colors=3), "the colours is 3"),
+    (dict(color_by="height", colors=3), "colors is 3; accepted: a list"),
     (dict(levels=-0.1), "0 to 1"),
     (dict(contours=0), "more than 0"),
     (dict(contours=dict(width=1)), "interval"),
