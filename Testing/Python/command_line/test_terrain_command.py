@@ -255,6 +255,19 @@ def test_a_picture_of_another_shape_has_background_beside(tmp_path):
     assert "x -200 to 200, y -100 to 100" in told
 
 
+def test_a_turned_raster_has_its_own_pixels(tmp_path):
+    """Turned by 30 degrees: posts stay 2 m apart, though the raster's box on the map is wider than its rows are long."""
+    z = np.tile(np.arange(128) * 3, (128, 1)).astype(np.int16)
+    path = write_raster(tmp_path / "turned.tif", z)
+    c, s = 2 * np.cos(np.pi / 6), 2 * np.sin(np.pi / 6)
+    data = gdal.Open(str(path), gdal.GA_Update)
+    data.SetGeoTransform((100, c, s, 500, s, -c))
+    del data
+    picture, told = render(tmp_path / "turned.png", path, "--size", "300x300")
+    assert "posts of level 0 every 2 m" in told
+    assert (picture[:20, :20] == 255).all() and (picture[150, 150] < 250).any()  # the box's corners have no ground
+
+
 def test_perspective_and_image(tmp_path):
     picture, told = render(tmp_path / "p.jpg", FIELD, "--view", "perspective", "--size", "240x160", "--image",
                            ROOT / "Data/field/field_color.tif")
