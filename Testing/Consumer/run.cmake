@@ -13,6 +13,12 @@ function(step)
 endfunction()
 
 step("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${PREFIX}")
+file(GLOB_RECURSE compiled "${PREFIX}/lib*/dspace/scene/__pycache__/scene.*.pyc"
+  "${PREFIX}/lib*/dspace/proto/__pycache__/commands_pb2.*.pyc")
+list(LENGTH compiled count)
+if(NOT count EQUAL 2)
+  message(FATAL_ERROR "the installed Python files are not compiled: ${compiled}")
+endif()
 step("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}" -B "${consumer}" "-DDspace_ROOT=${PREFIX}"
   -DCMAKE_BUILD_TYPE=Debug)
 step("${CMAKE_COMMAND}" --build "${consumer}")

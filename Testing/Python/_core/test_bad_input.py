@@ -234,6 +234,33 @@ def test_only_bools_are_true_or_false(scene, view, refused):
 # --- Names that there are not ------------------------------------------------------------------
 
 
+def test_of_many_names_those_like_the_one_given_are_named(scene, refused):
+    for name in ("mast", "mast/pan", "mast/tilt", *(f"wheel_{k}" for k in range(20))):
+        scene.add_frame(name.split("/")[-1], parent=scene.frames[name.split("/")[0]] if "/" in name else None)
+    with refused(dspace.NotFound, "near matches: 'mast'; there are 23"):
+        scene.frames["mst"]
+    with refused(dspace.NotFound, "near matches: 'mast/pan'; there are 23"):
+        scene.frames["head/pan"]
+    with refused(dspace.NotFound, "there are: 'mast'"):
+        scene.frames["zzzzzz"]
+    with refused(dspace.NotFound, "there are: 'mast'"):
+        scene.frames[7]
+
+
+def test_messages_say_what_to_do_instead(scene, refused):
+    """What a new user tried first."""
+    with refused(dspace.WrongType, "the size is 640; accepted: (width, height)"):
+        scene.add_viewport(640, 480)
+    box = scene.add_box((1, 1, 1))
+    for name in ("position", "pose", "quaternion"):
+        with pytest.raises(AttributeError, match="objects move with their frame.*add_frame"):
+            setattr(box, name, (1, 2, 3))
+    with refused(dspace.InvalidArgument, "dspace.CameraModel.read(path) reads files"):
+        dspace.CameraModel("navcam.json")
+    with refused(dspace.WrongType, "colors is 'viridis'; accepted: a list of colours"):
+        scene.add_viewport().set_color_bar("bar", "viridis", 0, 1)
+
+
 def test_what_there_is_is_named(session, scene, view, arm, refused):
     scene.add_vantage("side")
     for things, text in ((scene.robots, "robot 'zzz': there is no such robot; there are: 'arm'"),

@@ -196,6 +196,48 @@ def test_relief_that_true_light_does_not_show_is_exaggerated(tmp_path):
     assert "exaggerated" not in told
 
 
+def test_the_factor_of_relief_has_bounds():
+    """Slopes in closed form: ramps of 0.01, ramps with steps, levels with the rounding of depths, a tilted surface."""
+    from dspace.command_line import terrain_relief
+    up = np.broadcast_to((0.0, 0.0, 1.0), (100, 100, 3))
+    ramp = np.tile(0.02 * np.arange(100.0), (100, 1))  # pixels of 2 m
+    shown = np.tan(np.radians(20))
+    assert terrain_relief.automatic(ramp, up, 2.0) == pytest.approx(shown / 0.01, rel=0.02)
+    hole = np.where(np.arange(100) < 30, np.nan, ramp)
+    assert terrain_relief.automatic(hole, up, 2.0) == pytest.approx(shown / 0.01, rel=0.02)
+    steps = ramp + 4.0 * (np.arange(100) >= 50)  # 2 of 98 columns rise by 1 in 1
+    assert terrain_relief.automatic(steps, up, 2.0) == pytest.approx(np.tan(np.radians(60)) / 1.01, rel=0.03)
+    assert terrain_relief.automatic(10 * steps, up, 2.0) == 1.0  # light shows such walls
+    assert terrain_relief.automatic(10 * ramp, up, 2.0) == 1.0  # and a slope of 0.1
+    assert terrain_relief.automatic(1e-4 * ramp, up, 2.0) == 1.0
+    assert terrain_relief.automatic(np.full((100, 100), np.nan), up, 2.0) == 1.0
+    assert terrain_relief.automatic(ramp[:1], up[:1], 2.0) == pytest.approx(shown / 0.01, rel=0.02)
+    # A surface seen at 60 degrees: its rise of 0.01 along itself is one of 0.02 across the picture.
+    tilted = np.broadcast_to((np.sin(np.pi / 3), 0.0, 0.5), up.shape)
+    assert terrain_relief.automatic(2 * ramp, tilted, 2.0) == pytest.approx(shown / 0.01, rel=0.02)
+
+
+def test_a_map_reads_no_posts_much_finer_than_its_pixels(tmp_path, monkeypatch):
+    """A raster of 6000 x 6000 pixels, its overviews in the file, on 150 x 150 pixels: the finest level alone has 529
+    tiles."""
+    from dspace.command_line import main, terrain_render
+    east, north = np.meshgrid(np.linspace(0, 20, 6000), np.linspace(0, 30, 6000))
+    path = write_raster(tmp_path / "large.tif", np.round(900 * np.sin(east) * np.cos(north)).astype(np.int16),
+                        overviews=(2, 4, 8, 16, 32))
+    loads = []
+
+    class Counted(terrain_render.Ground):
+        def __init__(self, *arguments):
+            super().__init__(*arguments)
+            save = terrain_render.save
+            monkeypatch.setattr(terrain_render, "save", lambda *done: (
+                loads.extend(terrain._info().tile_loads for terrain in self.terrains), save(*done)))
+
+    monkeypatch.setattr(terrain_render, "Ground", Counted)
+    assert main(["terrain", "render", str(path), "--size", "150x150", "--out", str(tmp_path / "map.png")]) == 0
+    assert len(loads) == 1 and 0 < loads[0] < 60
+
+
 def test_a_whole_body_shows_its_relief(tmp_path):
     path = real("mars_mola_megt90n000cb_4ppd_m.tif")
     plain = ("--size", "400x200", "--no-color-by-height")
@@ -211,6 +253,19 @@ def test_a_picture_of_another_shape_has_background_beside(tmp_path):
     assert (picture[:, :70] == 255).all() and (picture[:, -70:] == 255).all()
     assert (picture[:, 80:220] < 250).any(axis=2).all()
     assert "x -200 to 200, y -100 to 100" in told
+
+
+def test_a_turned_raster_has_its_own_pixels(tmp_path):
+    """Turned by 30 degrees: posts stay 2 m apart, though the raster's box on the map is wider than its rows are long."""
+    z = np.tile(np.arange(128) * 3, (128, 1)).astype(np.int16)
+    path = write_raster(tmp_path / "turned.tif", z)
+    c, s = 2 * np.cos(np.pi / 6), 2 * np.sin(np.pi / 6)
+    data = gdal.Open(str(path), gdal.GA_Update)
+    data.SetGeoTransform((100, c, s, 500, s, -c))
+    del data
+    picture, told = render(tmp_path / "turned.png", path, "--size", "300x300")
+    assert "posts of level 0 every 2 m" in told
+    assert (picture[:20, :20] == 255).all() and (picture[150, 150] < 250).any()  # the box's corners have no ground
 
 
 def test_perspective_and_image(tmp_path):

@@ -278,18 +278,18 @@ def test_values_that_mark_no_data_are_reported_and_can_be_stated(scene, tmp_path
     z = rng.uniform(0, 50, (80, 80)).astype(np.float32)
     z[30:40, 30:40] = -32768
     path = write_raster(tmp_path / "island.tif", z)
-    with pytest.warns(dspace.DspaceWarning, match=r"100 of the 6400 values looked at are -32768, .*state nodata=-32768"):
+    with pytest.warns(dspace.DspaceWarning, match=r"100 of the 6400 values looked at are -32768, .*state no_data=-32768"):
         pits = scene.add_terrain(path, mode=mode)
     assert pits.height(-5, 5) < -1000
     with warnings.catch_warnings():
         warnings.filterwarnings("error", message=".*values looked at")
-        ground = scene.add_terrain(path, mode=mode, nodata=-32768)
+        ground = scene.add_terrain(path, mode=mode, no_data=-32768)
     assert np.isnan(ground.height(-5, 5)) and 0 <= ground.height(20, 20) <= 50
     assert ground.height_range[0] >= 0
     with pytest.raises(dspace.WrongType, match="no_data"):
-        scene.add_terrain(path, nodata="none")
+        scene.add_terrain(path, no_data="none")
     with pytest.raises(dspace.InvalidArgument, match="finite"):
-        scene.add_terrain(path, nodata=float("inf"))
+        scene.add_terrain(path, no_data=float("inf"))
     z[0, 0] = -3e38
-    with pytest.raises(dspace.InvalidArgument, match=r"state it \(nodata\)"):
+    with pytest.raises(dspace.InvalidArgument, match=r"state it \(no_data\)"):
         scene.add_terrain(write_raster(tmp_path / "huge.tif", z), mode=mode)

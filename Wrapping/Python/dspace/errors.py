@@ -3,7 +3,7 @@
 `except dspace.Error` catches all of them. It does not catch errors that Python itself raises: for an argument that a
 function does not have (TypeError), or an attribute that cannot be set (AttributeError). Each error is also the built-in
 exception for its case: an invalid value is a ValueError, a wrong type also a TypeError, an unknown name a KeyError, and
-a failure of the operating system an OSError. dspace.rover works without the compiled part and raises the built-in ones.
+a failure of the operating system an OSError.
 """
 
 

@@ -208,7 +208,7 @@ TEST_F(Raster, ValuesThatLookLikeNoDataAreReported) {
     options.elevation.verticalScale = scale;
     const auto terrain = GridTerrain::Load(file.Write(this->Folder / "a.tif"), options);
     for (const std::string& warning : terrain->GetWarnings()) {
-      const std::size_t at = warning.find("state nodata=");
+      const std::size_t at = warning.find("state no_data=");
       if (at != std::string::npos)
         return warning.substr(at + 13);
     }

@@ -48,7 +48,7 @@ HeightGrid::HeightGrid(const std::string& name, int columns, int rows, std::vect
           "the post of column " + std::to_string(i % columns) + ", row " +
               std::to_string(i / columns) + " has the height " + Number(h) +
               " m; accepted are -1e9 to 1e9 m; if the value marks posts without data, state "
-              "it (nodata)");
+              "it (no_data)");
     if (std::isnan(h)) {
       ++this->Holes_;
     } else {

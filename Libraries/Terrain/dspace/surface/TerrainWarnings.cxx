@@ -159,7 +159,7 @@ std::vector<std::string> WarningsOfFill(const std::vector<double>& heights,
     out.precision(9);
     out << end.count << " of the " << count << " values looked at are " << value << ", ";
     out.precision(4);
-    out << gap << " m from all others: if this value marks pixels without data, state nodata=";
+    out << gap << " m from all others: if this value marks pixels without data, state no_data=";
     out.precision(9);
     out << value;
     warnings.push_back(out.str());

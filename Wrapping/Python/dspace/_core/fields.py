@@ -233,6 +233,22 @@ class Named(dict):
         self._kind = kind
 
     def __missing__(self, name):
-        raise NotFound(f"{self._kind} {shown(name)}: there is no such {self._kind}; there are: "
-                       + (", ".join(map(repr, list(self)[:50])) or "none")
-                       + (", ..." if len(self) > 50 else ""), f"{self._kind} {shown(name)}")
+        others = list(self)
+        near = self._near(name) if len(others) > self._FEW else []
+        what = "near matches" if near else "there are"
+        raise NotFound(f"{self._kind} {shown(name)}: there is no such {self._kind}; {what}: "
+                       + (", ".join(map(repr, (near or others)[:50])) or "none")
+                       + (f"; there are {len(others)}" if near else ", ..." if len(others) > 50 else ""),
+                       f"{self._kind} {shown(name)}")
+
+    _FEW = 12  # are all listed
+
+    def _near(self, name):
+        # Names that hold it, then those that differ little; of paths, their last parts.
+        from difflib import get_close_matches
+        if not isinstance(name, str) or not name:
+            return []
+        last = {other: str(other).split("/")[-1].lower() for other in self}
+        wanted = name.split("/")[-1].lower()
+        close = get_close_matches(wanted, set(last.values()), 5, 0.6)
+        return [other for other in self if wanted in last[other] or last[other] in close][:8]

@@ -7,6 +7,7 @@ class Strict:
     Properties, names that begin with an underscore, and names in `_own` can be set.
     """
     _own = ()
+    _instead = {}  # what to do instead of setting an attribute of that name
 
     def __setattr__(self, name, value):
         kind = type(self)
@@ -17,5 +18,6 @@ class Strict:
                 and getattr(getattr(kind, other), "fset", None) is not None)
             what = "is no property" if hasattr(kind, name) else "does not exist"
             raise AttributeError(f"{self!r}: attribute {name!r} {what}; accepted: "
-                                 + (", ".join(settable) or "none can be set"))
+                                 + (", ".join(settable) or "none can be set")
+                                 + (f"; {kind._instead[name]}" if name in kind._instead else ""))
         object.__setattr__(self, name, value)

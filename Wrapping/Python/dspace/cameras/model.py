@@ -94,6 +94,8 @@ class CameraModel(Strict):
     def __init__(self, type, size=None, name="", frame="", position=None, quaternion=None, **values):
         label = "camera model"
         lens = {"type": text(type, "the type", label)}
+        if "." in type:
+            reject(label, "the type", type, "the name of a lens; dspace.CameraModel.read(path) reads files")
         if size is not None:
             lens["width"], lens["height"] = _size(size, label)
         for key, value in values.items():

@@ -71,7 +71,7 @@ def add_raster_options(parser):
     parser.add_argument("--vertical-offset", type=float, metavar="M", help="metres added to the heights")
     parser.add_argument("--pixel-size", type=float, metavar="P",
                         help="size of a pixel in map units, if the raster has no georeference")
-    parser.add_argument("--nodata", type=float, metavar="VALUE", help="pixels of this value, as the file stores it, have "
+    parser.add_argument("--no-data", type=float, metavar="VALUE", help="pixels of this value, as the file stores it, have "
                         "no data (-32768, -9999, ...)")
     parser.add_argument("--patch", type=patch, action="append", dest="patches", metavar="PATH[,KEY=VALUE...]",
                         help="a raster of higher resolution, in its own CRS, blended into FILE over a "

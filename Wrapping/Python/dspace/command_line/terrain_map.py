@@ -18,6 +18,7 @@ LIGHT = (FILL * BRIGHTNESS, BRIGHTNESS)  # of a surface that faces the sun: fill
 # finer level is drawn as well.
 REACH = 80
 ABOVE = 75
+FINE = 100.0  # [m]: true light shows the relief of most ground at closer pixels, so that these maps are shaded at first
 
 
 def fitted_size(width, height, longer):
@@ -43,19 +44,35 @@ def light_view(view, options):
     view.set(fill=FILL, shadows=options.shadows)
 
 
-def factor_of(ground, options, pixel):
-    """Returns the factor on the heights by which the picture is shaded; 1: the renderer shades it."""
-    if options.exaggeration is not None:
-        return options.exaggeration
-    return 1.0 if options.shadows else terrain_relief.automatic(ground, pixel)
+def draw_with_relief(options, size, pixel, draw, surface, sun):
+    """Draws a map, which the renderer shades or, where true light does not show its relief, terrain_relief. Returns the
+    picture and what was done, as a text.
+
+    draw(lit, away): a function that draws it as draw_tiles does. surface(away): a function that returns the heights and
+    the normals that terrain_relief takes. sun: the direction towards it in the axes of the normals."""
+    factor = 1.0 if options.shadows else options.exaggeration
+    if factor == 1:
+        return draw(True, None)
+    away = np.empty(size[::-1])
+    lit = factor is None and pixel < FINE
+    picture, told = draw(lit, away)
+    heights, normals = surface(away)
+    if factor is None:
+        factor = terrain_relief.automatic(heights, normals, pixel)
+    if lit != (factor == 1):
+        picture, told = draw(not lit, None)
+    if factor != 1:
+        picture = terrain_relief.shade(picture, heights, normals, pixel, factor, sun, LIGHT)
+    return picture, told + terrain_relief.told(factor)
 
 
-def draw_tiles(session, scene, ground, options, size, pixel, background, camera_at, away=None):
+def draw_tiles(session, scene, ground, options, size, pixel, background, camera_at, lit=True, away=None):
     """Draws a picture tile by tile. camera_at(x, y, width, height, above) returns the eye, the direction of the
-    picture's top, and the viewing direction of a tile's camera. away: an array of the picture's size, which gets how far
-    the ground is from the frame's origin towards the camera [m], NaN beside it; the ground is then not shaded."""
+    picture's top, and the viewing direction of a tile's camera. lit: whether the ground is shaded. away: None, or an
+    array of the picture's size, which gets how far the ground is from the frame's origin towards the camera [m], NaN
+    beside it."""
     for terrain in ground.terrains:
-        terrain.object.lit = away is None
+        terrain.object.lit = lit
     level = level_of(ground, pixel)
     reach, above = (posts * ground.post * 2**level for posts in (REACH, ABOVE))
     side = max(16, min(1024, math.floor(2 * reach / pixel)))
@@ -87,6 +104,27 @@ def far_of(ground, above):
     return 2 * above + 2 * relief + (2 * ground.radius if ground.on_body else 0.0)
 
 
+class HeightsSeen:
+    """Heights of the ground of a plane, from small depth pictures from above all of it. They show posts that are farther
+    apart the higher they are seen from, so that a raster elsewhere is not read in full resolution."""
+
+    SIDE = 33  # pixels
+
+    def __init__(self, scene, ground):
+        self._scene, self._ground, self._view = scene, ground, None
+
+    def __call__(self, middle, width, height, above):
+        """Returns the known heights in a box of width x height metres about a point."""
+        low, high = self._ground.heights
+        eye = np.array([*middle, high + 0.1 * (high - low) + above])
+        self._scene.add_camera("survey", eye=tuple(eye), target=tuple(eye - (0, 0, above)), up=(0, 1, 0),
+                               height=max(width, height), near=1e-3 * above, far=far_of(self._ground, above))
+        if self._view is None:
+            self._view = self._scene.add_viewport((self.SIDE, self.SIDE), "survey", samples=1, visible=False)
+        heights = eye[2] - self._view.depth().astype(float)
+        return heights[np.isfinite(heights)]
+
+
 def draw_map(session, scene, ground, options, longer):
     west, east, south, north = ground.extent
     size = options.size or fitted_size(east - west, north - south, longer)
@@ -95,27 +133,28 @@ def draw_map(session, scene, ground, options, longer):
     left = 0.5 * (west + east) - 0.5 * size[0] * pixel
     top = 0.5 * (south + north) + 0.5 * size[1] * pixel
 
+    heights_seen = HeightsSeen(scene, ground)
+
     def camera_at(x, y, width, height, above):
         middle = np.array([left + (x + 0.5 * width) * pixel, top - (y + 0.5 * height) * pixel])
-        u, v = (middle[i] + np.linspace(-0.5, 0.5, 33) * n * pixel for i, n in ((0, width), (1, height)))
-        heights = np.stack([t.height(u[:, None], v[None, :]) for t in ground.terrains])
-        known = heights[np.isfinite(heights)]
-        # Just above the highest ground of the tile, estimated from 33 x 33 samples.
+        known = heights_seen(middle, width * pixel, height * pixel, above)
+        # Just above the highest ground of the tile, estimated from what is seen from above all ground.
         highest = min(known.max() + 0.3 * np.ptp(known), ground.heights[1]) if len(known) else ground.heights[1]
         lowest = known.min() if len(known) else ground.heights[0]
         z = max(highest + 0.01 * above, lowest + above)
         return np.array([*middle, z]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, -1.0])
 
-    factor = factor_of(ground, options, pixel)
-    away = np.empty(size[::-1]) if factor != 1 else None
-    picture, told = draw_tiles(session, scene, ground, options, size, pixel, BESIDE, camera_at, away)
-    if away is not None:
-        up = np.broadcast_to((0.0, 0.0, 1.0), picture.shape)
-        picture = terrain_relief.shade(picture, away, up, pixel, factor, ground.sun, LIGHT)
+    def draw(lit, away):
+        return draw_tiles(session, scene, ground, options, size, pixel, BESIDE, camera_at, lit, away)
+
+    def surface(away):
+        return away, np.broadcast_to((0.0, 0.0, 1.0), (*away.shape, 3))
+
+    picture, told = draw_with_relief(options, size, pixel, draw, surface, ground.sun)
     edges = ground.terrains[0].to_map(np.array([[left, top, 0.0], [left + size[0] * pixel,
                                                                     top - size[1] * pixel, 0.0]]))
     return picture, (f"map x {edges[0, 0]:.9g} to {edges[1, 0]:.9g}, y {edges[1, 1]:.9g} to {edges[0, 1]:.9g}; "
-                     f"a pixel is {pixel:.6g} m; {told}{terrain_relief.told(factor)}")
+                     f"a pixel is {pixel:.6g} m; {told}")
 
 
 def draw_disc(session, scene, ground, options, longer):
@@ -141,14 +180,15 @@ def draw_disc(session, scene, ground, options, longer):
         here = math.sqrt(max(ground.radius**2 - u**2 - v**2, 0.0)) + above
         return np.array([u, v, max(up, here)]) @ axes, axes[1], -axes[2]
 
-    factor = factor_of(ground, options, pixel)
-    away = np.empty(size[::-1]) if factor != 1 else None
-    picture, told = draw_tiles(session, scene, ground, options, size, pixel, SKY, camera_at, away)
-    if away is not None:
+    def draw(lit, away):
+        return draw_tiles(session, scene, ground, options, size, pixel, SKY, camera_at, lit, away)
+
+    def surface(away):
         u = left + (np.arange(size[0]) + 0.5) * pixel
         v = top - (np.arange(size[1]) + 0.5) * pixel
         points = np.stack([*np.broadcast_arrays(u[None, :], v[:, None]), away], axis=-1)
         heights, normals = ground.above_body(points @ axes)
-        picture = terrain_relief.shade(picture, heights, normals @ axes.T, pixel, factor, axes @ ground.sun, LIGHT)
-    return picture, (f"the body from above its middle; a pixel is {pixel:.6g} m; {told}"
-                     f"{terrain_relief.told(factor)}")
+        return heights, normals @ axes.T
+
+    picture, told = draw_with_relief(options, size, pixel, draw, surface, axes @ ground.sun)
+    return picture, f"the body from above its middle; a pixel is {pixel:.6g} m; {told}"

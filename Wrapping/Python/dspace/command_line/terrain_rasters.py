@@ -4,7 +4,7 @@ import warnings
 from dspace.command_line import Failed
 
 RASTER = ("band", "crs", "vertical_datum", "vertical_scale", "vertical_offset", "pixel_size", "level_size",
-          "byte_budget", "deadline", "patches", "nodata")
+          "byte_budget", "deadline", "patches", "no_data")
 
 
 def gdal_modules():

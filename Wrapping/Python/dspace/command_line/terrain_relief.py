@@ -8,39 +8,41 @@ import numpy as np
 
 STEEP_ENOUGH = math.tan(math.radians(3.0))  # slope of a pixel that true light shows
 SHOWN = math.tan(math.radians(20.0))  # slope that exaggerated ground has
-SHARE = 90  # percentile of the slopes that counts
-SIDE = 48  # places along each side of a raster that are looked at
+STEEPEST = math.tan(math.radians(60.0))  # of the steepest slopes, exaggerated
+SHARES = (90, 99)  # percentiles of the slopes: the one that is to be shown, and the steepest that count
+LEVEL = SHOWN / 1e4  # slopes below it are those of rounding: depths are floats
+FACING = 0.3  # least cosine between the ground's normal and the view: nearer to the limb heights are inexact
 
 
-def automatic(ground, pixel):
-    """Returns the factor for a map whose pixels have `pixel` metres: 1 where true light shows the relief, else one that
-    makes the 90th percentile of the slopes, from pixel to pixel, 20 degrees, to two digits."""
-    slopes = []
-    for terrain, (x0, x1, y0, y1) in zip(ground.terrains, ground.maps):
-        step = pixel / ground.metres_per_unit
-        if not 0 < step < min(x1 - x0, y1 - y0):
-            continue
-        x, y = (a.ravel() for a in np.meshgrid(np.linspace(x0, x1 - step, SIDE), np.linspace(y0, y1 - step, SIDE)))
-        here, east, north = (terrain.height(x + u, y + v, map=True) for u, v in ((0, 0), (step, 0), (0, step)))
-        rise = np.hypot(east - here, north - here)
-        slopes.append(rise[np.isfinite(rise)] / pixel)
-    slopes = np.concatenate(slopes) if slopes else np.zeros(0)
-    steep = float(np.percentile(slopes, SHARE)) if len(slopes) else 0.0
-    if not 0 < steep < STEEP_ENOUGH:
+def tangential(heights, normals, pixel):
+    """Returns the change of the heights along the surface, (h, w, 3) in metres a metre, NaN where it is not known.
+
+    heights: (h, w) metres above the surface without relief, NaN beside it. normals: (h, w, 3) of that surface, in axes
+    X right, Y up, Z to the camera; pixel: metres."""
+    down, right = (np.gradient(heights, pixel, axis=i) if heights.shape[i] > 1 else np.zeros_like(heights) for i in (0, 1))
+    slope = np.stack([right, -down, np.zeros_like(right)], axis=-1)
+    # Of a surface that is seen at an angle: what lies in it of the change across the picture.
+    return slope - normals * np.sum(slope * normals, axis=-1, keepdims=True)
+
+
+def automatic(heights, normals, pixel):
+    """Returns the factor for a map with these heights, as `tangential` takes them: 1 where true light shows the relief,
+    else one that makes the 90th percentile of the slopes, from pixel to pixel, 20 degrees, but the 99th no more than 60
+    degrees, to two digits."""
+    slopes = np.linalg.norm(tangential(heights, normals, pixel), axis=-1)[normals[..., 2] > FACING]
+    slopes = slopes[np.isfinite(slopes)]
+    steep, steepest = np.percentile(slopes, SHARES) if len(slopes) else (0.0, 0.0)
+    if not LEVEL < steep < STEEP_ENOUGH:
         return 1.0
-    return float(f"{SHOWN / steep:.2g}")
+    return max(1.0, float(f"{min(SHOWN / steep, STEEPEST / steepest):.2g}"))
 
 
 def shade(picture, heights, normals, pixel, factor, sun, light):
     """Returns a picture of colors, (h, w, 3) sRGB, shaded by Lambert's law.
 
-    heights: (h, w) metres above the surface without relief, NaN beside it. normals: (h, w, 3) of that surface, in axes
-    X right, Y up, Z to the camera; pixel: metres. factor: multiplies the heights. sun: the direction towards it, unit,
-    in these axes. light: (fill, sun), of a surface that faces it."""
-    down, right = np.gradient(heights, pixel)
-    slope = np.nan_to_num(np.stack([right, -down, np.zeros_like(right)], axis=-1))
-    # Of a surface that is seen at an angle: what lies in it of the change across the picture.
-    slope -= normals * np.sum(slope * normals, axis=-1, keepdims=True)
+    heights, normals, pixel: as `tangential` takes them. factor: multiplies the heights. sun: the direction towards it,
+    unit, in the axes of the normals. light: (fill, sun), of a surface that faces it."""
+    slope = np.nan_to_num(tangential(heights, normals, pixel))
     facing = normals - factor * slope
     facing /= np.linalg.norm(facing, axis=-1, keepdims=True)
     lit = light[0] + light[1] * np.clip(facing @ sun, 0.0, None)

@@ -100,13 +100,11 @@ class Ground:
         x0, x1, _, _ = self.maps[0]
         if self.on_body:
             self.radius = float(np.linalg.norm(self.place((*self.middle, 0.0))))
-            self.metres_per_unit = math.radians(self.radius) if self.crs[0].IsGeographic() else 1.0
-            pixel = info.pixel_width * self.metres_per_unit
+            metres_per_unit = math.radians(self.radius) if self.crs[0].IsGeographic() else 1.0
         else:
             west, east, _, _ = self.terrains[0].extent
-            self.metres_per_unit = (east - west) / (x1 - x0) if x1 > x0 else 1.0
-            pixel = (east - west) / max(info.columns - 1, 1)
-        self.post = pixel / 2 ** info.subdivisions  # [m]
+            metres_per_unit = (east - west) / (x1 - x0) if x1 > x0 else 1.0
+        self.post = info.pixel_width * metres_per_unit / 2 ** info.subdivisions  # [m]
 
     @property
     def extent(self):

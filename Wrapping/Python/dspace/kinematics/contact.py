@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .rotations import about_axis
+from .rotations import about_axis, packed
 
 
 @dataclass
@@ -216,4 +216,4 @@ def _plane_fit(suspension, heights, xy, heading):
     z = heights(at.reshape(-1, 2)).reshape(at.shape[:2])
     a = np.column_stack([np.ones(len(centre)), centre[:, 0], centre[:, 1]])
     fit = z @ np.linalg.pinv(a).T
-    return np.column_stack([fit[:, 0], np.arctan(fit[:, 2]), -np.arctan(fit[:, 1])])
+    return np.column_stack([fit[:, 0], np.arctan(packed(fit[:, 2])), -np.arctan(packed(fit[:, 1]))])

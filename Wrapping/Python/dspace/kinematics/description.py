@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dspace.errors import InvalidArgument
 from . import meshes
 from .frames_file import read_frames_file
 from .rotations import from_rpy
@@ -56,7 +57,7 @@ class Description:
         while j is not None:
             out.append(j)
             if len(out) > len(self.joints):
-                raise ValueError(f"{self.path}: link '{link}' is in a loop of joints")
+                raise InvalidArgument(f"{self.path}: link '{link}' is in a loop of joints")
             j = self.joint_of(j.parent)
         return out[::-1]
 
@@ -75,7 +76,7 @@ class Description:
 def _floats(text, count, what):
     values = np.array([float(x) for x in text.split()])
     if len(values) != count or not np.isfinite(values).all():
-        raise ValueError(f"{what}: expected {count} finite numbers, got '{text}'")
+        raise InvalidArgument(f"{what}: expected {count} finite numbers, got '{text}'")
     return values
 
 
@@ -93,21 +94,21 @@ def read_urdf(path):
     try:
         robot = ElementTree.parse(path).getroot()
     except ElementTree.ParseError as e:
-        raise ValueError(f"{path}: not well-formed XML ({e})") from e
+        raise InvalidArgument(f"{path}: not well-formed XML ({e})") from e
     if robot.tag != "robot":
-        raise ValueError(f"{path}: the root element is <{robot.tag}>, expected <robot>")
+        raise InvalidArgument(f"{path}: the root element is <{robot.tag}>, expected <robot>")
     joints = []
     for e in robot.findall("joint"):
         name = e.get("name", "")
         what = f"{path}: joint '{name}'"
         if e.find("parent") is None or e.find("child") is None:
-            raise ValueError(f"{what}: needs a parent and a child")
+            raise InvalidArgument(f"{what}: needs a parent and a child")
         translation, rotation = _origin(e.find("origin"), what)
         axis = np.array([1.0, 0, 0])
         if e.find("axis") is not None:
             axis = _floats(e.find("axis").get("xyz", "1 0 0"), 3, what)
         if np.linalg.norm(axis) < 1e-9:
-            raise ValueError(f"{what}: the axis is zero")
+            raise InvalidArgument(f"{what}: the axis is zero")
         j = Joint(name, e.get("type", "fixed"), e.find("parent").get("link"), e.find("child").get("link"),
                   translation, rotation, axis / np.linalg.norm(axis))
         unit = 1.0 if j.kind == "prismatic" else 180.0 / np.pi
@@ -124,7 +125,7 @@ def read_urdf(path):
     children = {j.child for j in joints}
     roots = [n for n in links if n not in children]
     if len(roots) != 1:
-        raise ValueError(f"{path}: expected one root link, found {roots or 'none (a loop)'}")
+        raise InvalidArgument(f"{path}: expected one root link, found {roots or 'none (a loop)'}")
     d = Description(path, robot.get("name", path.stem), roots[0], joints)
     for e in robot.findall("link"):
         name = e.get("name")

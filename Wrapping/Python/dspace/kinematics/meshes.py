@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from dspace.errors import InvalidArgument
+
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 
 
@@ -25,8 +27,8 @@ def vertices(path):
                     if line.startswith("v ")]
             return np.array(rows, float).reshape(-1, 3)
     except (KeyError, IndexError, TypeError, struct.error, UnicodeDecodeError) as e:
-        raise ValueError(f"{path}: damaged mesh file ({e!r})") from e
-    raise ValueError(f"{path}: positions are read from .gltf, .glb and .obj only; pass the bounds")
+        raise InvalidArgument(f"{path}: damaged mesh file ({e!r})") from e
+    raise InvalidArgument(f"{path}: positions are read from .gltf, .glb and .obj only; pass the bounds")
 
 
 def _gltf(path):
@@ -59,7 +61,7 @@ def _gltf(path):
 
     def visit(index, above, depth):
         if depth > 100:
-            raise ValueError(f"{path}: nodes are nested more than 100 deep")
+            raise InvalidArgument(f"{path}: nodes are nested more than 100 deep")
         node = document["nodes"][index]
         m = above @ _node_matrix(node)
         if "mesh" in node:

@@ -3,6 +3,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dspace.errors import InvalidArgument, WrongType
+from .rotations import packed
+
 
 @dataclass
 class PathPose:
@@ -19,7 +22,16 @@ class PathPose:
 
 def as_pose(pose):
     """A PathPose from itself or from (x, y, heading_deg[, curvature[, distance]])."""
-    return pose if isinstance(pose, PathPose) else PathPose(*pose)
+    if isinstance(pose, PathPose):
+        return pose
+    try:
+        numbers = [float(value) for value in pose]
+    except (TypeError, ValueError):
+        numbers = []
+    if not 3 <= len(numbers) <= 5 or not np.isfinite(numbers).all():
+        raise WrongType(f"vehicle: the pose is {pose!r}; accepted: a PathPose, or 3 to 5 finite numbers: x, y, heading_deg, "
+                        "curvature, distance")
+    return PathPose(*numbers)
 
 
 class Path:
@@ -33,12 +45,12 @@ class Path:
     def __init__(self, way_points, speed=0.5, ramp=0.0):
         p = np.asarray(way_points, float)
         if p.ndim != 2 or p.shape[1] != 2 or len(p) < 2 or not np.isfinite(p).all():
-            raise ValueError(f"path: way points of shape {p.shape}; expected finite (n >= 2, 2)")
+            raise InvalidArgument(f"path: way points of shape {p.shape}; expected finite (n >= 2, 2)")
         step = np.linalg.norm(np.diff(p, axis=0), axis=1)
         if not (step > 0).all():
-            raise ValueError("path: two successive way points coincide")
+            raise InvalidArgument("path: two successive way points coincide")
         if not speed > 0 or ramp < 0:
-            raise ValueError(f"path: speed {speed}, ramp {ramp}; expected speed > 0 and ramp >= 0")
+            raise InvalidArgument(f"path: speed {speed}, ramp {ramp}; expected speed > 0 and ramp >= 0")
         self.way_points, self.speed = p, float(speed)
         self._u = np.concatenate([[0], np.cumsum(step)])
         self._c = self._coefficients(p, step)
@@ -95,7 +107,7 @@ class Path:
         u = self._parameter(s)
         p, d, dd = (self._derivative(u, k) for k in range(3))
         rate = np.linalg.norm(d, axis=1)
-        return p[:, 0], p[:, 1], np.arctan2(d[:, 1], d[:, 0]), (d[:, 0] * dd[:, 1] - d[:, 1] * dd[:, 0]) / rate ** 3
+        return p[:, 0], p[:, 1], np.arctan2(packed(d[:, 1]), packed(d[:, 0])), (d[:, 0] * dd[:, 1] - d[:, 1] * dd[:, 0]) / rate ** 3
 
     def distance(self, t):
         """Arc length [m] at time t [s]; the ends are kept before and after the motion."""

@@ -2,10 +2,19 @@
 import numpy as np
 
 
+def packed(values):
+    """A copy (n,) of numbers, without gaps between them. Columns of tables become it before sin, cos, arctan, ...
+
+    numpy 1.24 takes another way through these, which differs in the last bit, where the gaps behind a column's last
+    number touch the memory of the result: the same script would give other numbers with other addresses."""
+    return np.array(values, float, order="C")
+
+
 def about_axis(axis, angle):
     """Rotation matrices (n, 3, 3) about one unit axis by angles (n,) [rad]."""
     x, y, z = axis
     k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    angle = packed(angle)
     s, c = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
     return np.eye(3) + s * k + (1 - c) * (k @ k)
 

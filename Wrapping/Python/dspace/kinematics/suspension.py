@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dspace.errors import InvalidArgument
+
 
 @dataclass
 class Node:
@@ -58,7 +60,7 @@ def _placed(description):
     while waiting:
         rest = [j for j in waiting if j.parent not in poses]
         if len(rest) == len(waiting):
-            raise ValueError(f"{description.path}: joint '{rest[0].name}' hangs on link "
+            raise InvalidArgument(f"{description.path}: joint '{rest[0].name}' hangs on link "
                              f"'{rest[0].parent}', which is not connected to '{description.root}'")
         for j in waiting:
             if j.parent in poses:
@@ -116,7 +118,7 @@ def _wheel_size(description, joint):
         return description.cylinders[joint.child]
     v = description.link_vertices(joint.child)
     if not len(v):
-        raise ValueError(f"{description.path}: wheel '{joint.child}' has neither a collision cylinder nor "
+        raise InvalidArgument(f"{description.path}: wheel '{joint.child}' has neither a collision cylinder nor "
                          "a mesh that can be measured; one of them gives its radius")
     along = v @ joint.axis
     return (float(np.linalg.norm(v - along[:, None] * joint.axis, axis=1).max()), float(np.ptp(along)))

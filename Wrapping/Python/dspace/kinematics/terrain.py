@@ -1,23 +1,25 @@
 """What wheels stand on: any callable heights(xy) -> z, and a triangulated grid of our own."""
 import numpy as np
 
+from dspace.errors import InvalidArgument, WrongType
+
 
 def as_terrain(terrain):
     """(heights, gradients): two functions of xy (n, 2) in metres, giving z (n,) and dz/dx, dz/dy
     (n, 2). `terrain` is a callable, or an object with heights(xy) and, if it can, gradients(xy) or
     normals(xy). Without either, central differences over 2 mm. A height that is not finite (a hole,
-    or beyond the data) is a ValueError that names the place."""
+    or beyond the data) is a dspace.InvalidArgument that names the place."""
     source = getattr(terrain, "heights", None) or terrain
     if not callable(source):
-        raise TypeError(f"terrain: expected a callable or an object with heights(xy), got {terrain!r}")
+        raise WrongType(f"terrain: expected a callable or an object with heights(xy), got {terrain!r}")
 
     def heights(xy):
         z = np.asarray(source(xy), float)
         if z.shape != (len(xy),):
-            raise ValueError(f"terrain: heights of shape {z.shape} for {len(xy)} points; expected ({len(xy)},)")
+            raise InvalidArgument(f"terrain: heights of shape {z.shape} for {len(xy)} points; expected ({len(xy)},)")
         if not np.isfinite(z).all():
             x, y = xy[np.argmin(np.isfinite(z))]
-            raise ValueError(f"terrain: no height at ({x:.3f}, {y:.3f})")
+            raise InvalidArgument(f"terrain: no height at ({x:.3f}, {y:.3f}); accepted: places where it has data")
         return z
 
     if hasattr(terrain, "gradients"):
@@ -47,11 +49,11 @@ class GridTerrain:
     def __init__(self, z, west, north, spacing, diagonal="nw-se"):
         self.z = np.ascontiguousarray(z, float)
         if self.z.ndim != 2 or min(self.z.shape) < 2 or not np.isfinite(self.z).all():
-            raise ValueError(f"GridTerrain: heights of shape {self.z.shape}; expected finite, at least 2 x 2")
+            raise InvalidArgument(f"GridTerrain: heights of shape {self.z.shape}; expected finite, at least 2 x 2")
         if not spacing > 0:
-            raise ValueError(f"GridTerrain: spacing {spacing}; expected > 0")
+            raise InvalidArgument(f"GridTerrain: spacing {spacing}; expected > 0")
         if diagonal not in ("nw-se", "sw-ne"):
-            raise ValueError(f"GridTerrain: diagonal '{diagonal}'; expected 'nw-se' or 'sw-ne'")
+            raise InvalidArgument(f"GridTerrain: diagonal '{diagonal}'; expected 'nw-se' or 'sw-ne'")
         self.west, self.north, self.spacing, self.diagonal = float(west), float(north), float(spacing), diagonal
 
     @classmethod
@@ -60,10 +62,10 @@ class GridTerrain:
         from osgeo import gdal
         data = gdal.Open(str(path))
         if data is None:
-            raise ValueError(f"{path}: not a raster that GDAL opens")
+            raise InvalidArgument(f"{path}: not a raster that GDAL opens")
         g = data.GetGeoTransform()
         if g[2] or g[4] or abs(g[1] + g[5]) > 1e-9 * abs(g[1]):
-            raise ValueError(f"{path}: geotransform {g}; expected north-up with square pixels")
+            raise InvalidArgument(f"{path}: geotransform {g}; expected north-up with square pixels")
         return cls(data.GetRasterBand(1).ReadAsArray(), g[0] + g[1] / 2, g[3] + g[5] / 2, g[1], diagonal)
 
     def _cell(self, xy):

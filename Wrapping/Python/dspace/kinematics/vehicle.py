@@ -4,12 +4,13 @@ from pathlib import Path as FilePath
 
 import numpy as np
 
+from dspace.errors import InvalidArgument, NotFound
 from . import meshes
 from .contact import forward, rest_on
 from .description import read_frames, read_urdf
 from .mast import find_mast
 from .path import as_pose
-from .rotations import about_axis, to_quaternion
+from .rotations import about_axis, packed, to_quaternion
 from .suspension import find
 from .terrain import as_terrain
 
@@ -49,9 +50,9 @@ class CarriedModel:
     def __init__(self, bounds, scale=1.0, up="z", name="model"):
         low, high = (np.asarray(b, float).reshape(3) for b in bounds)
         if not (np.isfinite(low).all() and np.isfinite(high).all() and (low <= high).all()):
-            raise ValueError(f"{name}: bounds {bounds}; expected finite (minimum, maximum)")
+            raise InvalidArgument(f"{name}: bounds {bounds}; expected finite (minimum, maximum)")
         if not scale > 0 or up not in ("y", "z"):
-            raise ValueError(f"{name}: scale {scale}, up '{up}'; expected scale > 0, up 'y' or 'z'")
+            raise InvalidArgument(f"{name}: scale {scale}, up '{up}'; expected scale > 0, up 'y' or 'z'")
         self.name, self.scale, self.up, self.parts = name, float(scale), up, []
         # Columns: the rover's forward, left and up axes in the file's.
         self.X_MR = np.eye(3) if up == "z" else np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]], float)
@@ -154,7 +155,7 @@ class WheeledVehicle:
         that its center has moved in space since the first time, which is rolling without slip."""
         times = np.atleast_1d(np.asarray(times, float))
         if (np.diff(times) < 0).any():
-            raise ValueError(f"{self.name}: times must ascend")
+            raise InvalidArgument(f"{self.name}: times must ascend")
         return self._states(path.poses(times), terrain, True)
 
     def _states(self, poses, terrain, in_space):
@@ -182,7 +183,7 @@ class WheeledVehicle:
         if in_space and first.path is not None:
             run = run[0] + np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(centres, axis=0), axis=1))])
         ahead = np.einsum("nij,nj->ni", rest.rotation, rest.frames[wheel.carrier][0][:, :, 0])
-        pitch = -np.arcsin(np.clip(ahead[:, 2], -1, 1))
+        pitch = -np.arcsin(np.clip(packed(ahead[:, 2]), -1, 1))
         return np.sign(self.suspension.nodes[wheel.spin].axis[1]) * (run / wheel.radius - pitch)
 
     def _state(self, i, pose, rest, angles, frames):
@@ -249,12 +250,12 @@ def load_vehicle(path, bounds=None, scale=1.0, up=None):
     RockerBogie or IndependentSuspension; everything else a CarriedModel, whose bounds are `bounds`
     (minimum, maximum) in the file's coordinates, or are read from .gltf, .glb and .obj. `scale` and
     `up` apply to carried models; `up` is by default "y" for glTF and VRML, as those formats define,
-    else "z". Raises FileNotFoundError, or ValueError naming the file and what is wrong."""
+    else "z". Raises dspace.NotFound, or dspace.InvalidArgument naming the file and what is wrong."""
     path = FilePath(path)
     if path.is_dir():
         path = path / "frames.json"
     if not path.exists():
-        raise FileNotFoundError(f"{path}: no such model file")
+        raise NotFound(f"{path}: no such model file")
     suffix = path.suffix.lower()
     if suffix in (".urdf", ".json", ".xml"):
         description = read_frames(path) if suffix == ".json" else read_urdf(path)
@@ -263,12 +264,12 @@ def load_vehicle(path, bounds=None, scale=1.0, up=None):
             kind = RockerBogie if suspension.kind == "rocker-bogie" else IndependentSuspension
             return kind(description, suspension)
         if bounds is None:
-            raise ValueError(f"{path}: no suspension is recognised; pass bounds to carry the model")
+            raise InvalidArgument(f"{path}: no suspension is recognised; pass bounds to carry the model")
         return CarriedModel(bounds, scale, up or "z", description.name)
     if bounds is None:
         v = meshes.vertices(path)
         if not len(v):
-            raise ValueError(f"{path}: no vertices; pass bounds to carry the model")
+            raise InvalidArgument(f"{path}: no vertices; pass bounds to carry the model")
         bounds = (v.min(axis=0), v.max(axis=0))
     up = up or ("y" if suffix in (".gltf", ".glb", ".wrl", ".wrz") else "z")
     return CarriedModel(bounds, scale, up, path.stem)

@@ -91,6 +91,8 @@ def _material_property(key, text):
 
 class GraphicsObject(Strict):
     """Geometry on a frame. Physical objects are those that a real camera would see; the others are ornamental."""
+    _instead = dict.fromkeys(("pose", "position", "quaternion"), "objects move with their frame: make it on one of its own, "
+                             "frame=scene.add_frame(name), and move that")
 
     def __init__(self, scene, id):
         self._scene = scene

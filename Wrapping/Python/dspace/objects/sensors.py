@@ -3,6 +3,7 @@ import numpy as np
 
 from dspace._core.fields import array_of, color as color_of, flag, number, numbers, reject
 from dspace.errors import InvalidArgument, WrongType
+from dspace.kinematics.rotations import packed
 from dspace.objects.factory import ObjectFactory
 from dspace.trajectories.states import States
 
@@ -316,5 +317,5 @@ def sub_points(points, radii, geodetic=False):
     for _ in range(12):
         latitude = np.arctan2(points[:, 2] + (a * a - b * b) / b * np.sin(beta)**3, across - (a * a - b * b) / a * np.cos(beta)**3)
         beta = np.arctan2(b * np.sin(latitude), a * np.cos(latitude))
-    longitude = np.arctan2(points[:, 1], points[:, 0])
+    longitude = np.arctan2(packed(points[:, 1]), packed(points[:, 0]))
     return np.stack((a * np.cos(beta) * np.cos(longitude), a * np.cos(beta) * np.sin(longitude), b * np.sin(beta)), axis=1)

@@ -45,7 +45,7 @@ class ViewportLegends:
         put(message, label, viewport=self._viewport.name, name=name, title=title, unit=unit, low=low, high=high,
             horizontal=flag(horizontal, "horizontal", label))
         message.anchor = word(anchor, ANCHORS, "anchor", label)
-        for each in items(colors, "the colours", label, "colours"):
+        for each in items(colors, "colors", label, "a list of colours, such as ['black', 'white']"):
             put_color(message.color.add(), each, "a colour", label)
         message.value.extend(number(value, "a tick", label)
                              for value in items(values, "the values", label, "numbers"))

@@ -436,6 +436,7 @@ class Scene(Strict):
         label = "new viewport" if name is None else f"viewport {shown(name)}"
         command = self._command()
         message = command.create_viewport
+        width, height = integers(size, 2, "the size", label, SIZE)  # before the camera: add_viewport(640, 480) is told so
         put(message, label, name="" if name is None else name,
             camera=self._name_of(camera, Camera, "camera", label),
             vantage=self._vantage_name(vantage, label))
@@ -444,7 +445,6 @@ class Scene(Strict):
                 raise InvalidArgument(f"{label}: camera {camera.name!r} is of vantage "
                                       f"{camera.vantage!r}; accepted: one of {message.vantage!r}", label)
             message.vantage = camera.vantage
-        width, height = integers(size, 2, "the size", label, SIZE)
         put(message, label, width=width, height=height)
         put_given(message, label, samples=samples)
         message.hidden = not flag(visible, "visible", label)

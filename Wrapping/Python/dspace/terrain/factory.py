@@ -40,7 +40,7 @@ class TerrainFactory:
                     vertical_scale=None, vertical_offset=None, pixel_size=None, mode="auto",
                     on_body=False, level_size=None, byte_budget=None, deadline=None, patches=(),
                     subdivisions=None, track_budget=None, cache=None, build_overviews=True, fill_holes=False,
-                    window=None, reflectance=None, nodata=None):
+                    window=None, reflectance=None, no_data=None):
         """Opens a raster of heights (any format that GDAL reads) as a physical object. Returns the Terrain.
 
         Appearance: give at most one of image, color and relief. image: a file to drape over the terrain (on a clipmap
@@ -74,7 +74,7 @@ class TerrainFactory:
         fills only within that many pixels of data. Pictures and queries include the filled ground, Terrain.filled
         reports it, and the layer "filled" marks it in pictures. band, crs, vertical_datum ("ellipsoid", "sphere:R",
         "areoid", ...), vertical_scale, vertical_offset [m] and pixel_size (map units) replace properties that the file
-        lacks or states wrongly. nodata: pixels of this value, as the file stores it (-32768, -9999, ...), have no data,
+        lacks or states wrongly. no_data: pixels of this value, as the file stores it (-32768, -9999, ...), have no data,
         besides those that the file states; overviews in the file are then not used, since they may be means of such
         pixels and others. A warning names a value that looks like one.
 
@@ -117,7 +117,7 @@ class TerrainFactory:
         message.mode = word(mode, {known: i for i, known in enumerate(MODES)}, "the mode", label)
         message.on_body = flag(on_body, "on_body", label)
         put_given(message, label, triangle_budget=triangles, band=band, crs=crs,
-                  vertical_datum=vertical_datum, no_data=nodata, vertical_scale=vertical_scale,
+                  vertical_datum=vertical_datum, no_data=no_data, vertical_scale=vertical_scale,
                   vertical_offset=vertical_offset, pixel_size=pixel_size,
                   level_size=level_size, byte_budget=byte_budget, deadline=deadline,
                   subdivisions=subdivisions, track_byte_budget=track_budget)

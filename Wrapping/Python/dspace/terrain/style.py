@@ -186,7 +186,7 @@ def _put_ramp(style, scene, common, label, color_by, range, colors, opacity, sha
         if range is not None:
             low, high = numbers(range, 2, "the range", label, "low, high")
             put(style.ramp, label, low=low, high=high)
-        for value in items(() if colors is None else colors, "the colours", label, "colours"):
+        for value in items(() if colors is None else colors, "colors", label, "a list of colours, such as ['black', 'white']"):
             put_color(style.ramp.color.add(), value, "a colour of the ramp", label)
     elif range is not None or colors is not None:
         raise InvalidArgument(f"{label}: a range and colours need color_by, which is not given; "
