@@ -4,7 +4,7 @@ import json
 import math
 import sys
 
-from dspace.command_line import Failed
+from dspace.command_line import Failed, tidy_end
 
 PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase")
 
@@ -200,7 +200,7 @@ def run_render(options):
     if ending not in (".png", ".npz") or ending == ".png" and planes != ["color"]:
         raise Failed(f"--out '{options.out}': accepted: .png for color, .npz for any planes")
     model = model_of(options)
-    with Playback(options.recording) as playback:
+    with tidy_end(), Playback(options.recording) as playback:
         playback.seek(playback.times[-1] if options.at is None else options.at)
         scenes = playback.session.scenes
         if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:

@@ -4,7 +4,8 @@ import os
 import re
 import sys
 
-from dspace.command_line import Failed
+from dspace.command_line import Failed, tidy_end
+from dspace.command_line.log import add_unpack_limit
 
 PICTURE = re.compile(r"\d{6,}\.png")
 ABOUT = (
@@ -23,6 +24,7 @@ def add_arguments(parser):
     parser.add_argument("--every", type=float, metavar="DT", help="seconds of simulation time between pictures; not "
                                                                     "with --at")
     parser.add_argument("--reverse", action="store_true", help="draw from the last step to the first; not with --at")
+    add_unpack_limit(parser)
     parser.set_defaults(run=run)
 
 
@@ -45,7 +47,7 @@ def run(options):
 
     check(options)
     vtk.vtkDspaceSession().ConfineProcess()  # it may open only the recording's files
-    with Playback(options.file) as playback:
+    with tidy_end(), Playback(options.file, unpack_limit=options.unpack_limit) as playback:
         if options.at is not None:
             playback.seek(options.at)
         if options.out is None:
