@@ -31,6 +31,15 @@ struct vtkDspacePlayer::Internals {
     return *this->playback;
   }
 
+  // A reply whose warnings are what the playback has to say.
+  dspace::v1::Reply WithNotes() {
+    dspace::v1::Reply reply;
+    for (std::string& note : this->Open().TakeNotes()) {
+      reply.add_warning(std::move(note));
+    }
+    return reply;
+  }
+
   dspace::session::PlaybackGuests Guests() {
     dspace::session::PlaybackGuests guests;
     guests.beforeSnapshot = [this] { this->views.BeforeSnapshot(this->Interpreter()); };
@@ -65,7 +74,7 @@ std::string vtkDspacePlayer::Open(const std::string& path, bool check) {
     this->Impl->reader.emplace(path);
     this->Impl->playback.emplace(*this->Impl->reader, this->Impl->Interpreter(), check);
     this->Impl->playback->SetGuests(this->Impl->Guests());
-    return dspace::v1::Reply();
+    return this->Impl->WithNotes();
   });
   if (reply.has_error()) {
     this->Close();
@@ -118,7 +127,7 @@ std::string vtkDspacePlayer::Go(long long index) {
                                      std::to_string(playback.Steps().size() - 1));
            }
            playback.Step(index - from);
-           return dspace::v1::Reply();
+           return this->Impl->WithNotes();
          })
       .SerializeAsString();
 }

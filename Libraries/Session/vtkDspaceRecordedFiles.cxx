@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <dspace/messages/ErrorReply.h>
+#include "RecordingThread.h"
 #include <dspace/recording/RecordedFiles.h>
 
 #include "vtkObjectFactory.h"
@@ -12,33 +12,43 @@ vtkStandardNewMacro(vtkDspaceRecordedFiles);
 struct vtkDspaceRecordedFiles::Internals {
   std::optional<dspace::session::RecordingReader> reader;
   std::optional<dspace::session::RecordedFiles> files; // goes before the reader
+  dspace::session::RecordingThread thread;             // goes first
 };
 
 vtkDspaceRecordedFiles::vtkDspaceRecordedFiles() : Impl(std::make_unique<Internals>()) {}
 
 vtkDspaceRecordedFiles::~vtkDspaceRecordedFiles() = default;
 
-std::string vtkDspaceRecordedFiles::Open(const std::string& recording, bool check) {
+void vtkDspaceRecordedFiles::BeginOpen(const std::string& recording, bool check,
+                                       unsigned long long unpackLimit) {
   this->Close();
-  const dspace::v1::Reply reply = dspace::session::Catch([&] {
-    this->Impl->reader.emplace(recording);
-    this->Impl->files.emplace(*this->Impl->reader, check);
-    return dspace::v1::Reply();
-  });
-  if (reply.has_error()) {
-    this->Close();
-  }
-  return reply.SerializeAsString();
+  this->Impl->thread.Begin(
+      [=](dspace::v1::RecordingReply&, const dspace::session::CancelCheck& checkCancel) {
+        this->Impl->reader.emplace(recording);
+        this->Impl->reader->SetUnpackLimit(unpackLimit);
+        this->Impl->files.emplace(*this->Impl->reader, check, checkCancel);
+      });
 }
 
-std::string vtkDspaceRecordedFiles::Update() {
-  return dspace::session::Catch([&] {
-           if (this->Impl->files) {
-             this->Impl->files->Update();
-           }
-           return dspace::v1::Reply();
-         })
-      .SerializeAsString();
+void vtkDspaceRecordedFiles::BeginUpdate() {
+  this->Impl->thread.Begin(
+      [this](dspace::v1::RecordingReply&, const dspace::session::CancelCheck&) {
+        if (this->Impl->files) {
+          this->Impl->files->Update();
+        }
+      });
+}
+
+bool vtkDspaceRecordedFiles::Wait(double seconds) {
+  return this->Impl->thread.Wait(seconds);
+}
+
+std::string vtkDspaceRecordedFiles::TakeReply() {
+  return this->Impl->thread.TakeReply();
+}
+
+void vtkDspaceRecordedFiles::Cancel() {
+  this->Impl->thread.End();
 }
 
 std::string vtkDspaceRecordedFiles::GetFolder() {
@@ -70,6 +80,7 @@ void vtkDspaceRecordedFiles::FillIn(dspace::v1::Command& command) {
 }
 
 void vtkDspaceRecordedFiles::Close() {
+  this->Impl->thread.End();
   this->Impl->files.reset();
   this->Impl->reader.reset();
 }

@@ -2,8 +2,10 @@
  * @class vtkDspaceRecordedFiles
  * @brief The files that a recording's commands need, checked or unpacked for playback.
  *
- * Wraps <dspace/recording/RecordedFiles.h> for Python. Methods that can fail return a serialized
- * Reply with the error. No method throws a C++ exception. Paths are bytes in the system's encoding.
+ * Wraps <dspace/recording/RecordedFiles.h> for Python. No method that Python calls throws a C++
+ * exception. Paths are bytes in the system's encoding. The Begin methods work in a thread: Wait
+ * until it returns true, then TakeReply, and call nothing else between. Cancel and Close end the
+ * work.
  */
 #ifndef vtkDspaceRecordedFiles_h
 #define vtkDspaceRecordedFiles_h
@@ -26,10 +28,15 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// Unpacks or checks the files of a recording. `check` false: does not check files that are not
-  /// packed.
-  std::string Open(const std::string& recording, bool check);
+  /// packed. `unpackLimit`: <dspace/recording/RecordingReader.h>, SetUnpackLimit.
+  void BeginOpen(const std::string& recording, bool check, unsigned long long unpackLimit);
   /// Does the same for files that were recorded since.
-  std::string Update();
+  void BeginUpdate();
+  /// Waits up to this time [s]. Returns whether the work has ended.
+  bool Wait(double seconds);
+  /// A serialized RecordingReply (recordings.proto), with the error if the work failed.
+  std::string TakeReply();
+  void Cancel();
   /// The folder of unpacked files; empty: nothing was packed.
   std::string GetFolder();
   /// The present path of a recorded path.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "RecordingReplies.h"
+#include <dspace/messages/WireText.h>
 #include <dspace/recording/PlaybackSteps.h>
 #include <dspace/recording/RecordingFile.h>
 #include <dspace/recording/RecordingReader.h>
@@ -42,7 +43,12 @@ void Put(RecordingRow&& from, dspace::v1::RecordedRow* to) {
   to->set_time_s(from.time_s);
   to->set_wall_s(from.wall_s);
   to->set_kind(from.kind);
-  to->set_payload(std::move(from.payload));
+  const auto& type = *dspace::v1::Command::descriptor();
+  std::optional<std::string> readable = from.snapshot
+                                            ? dspace::session::WithTextUtf8OfAll(from.payload, type)
+                                            : dspace::session::WithTextUtf8(from.payload, type);
+  to->set_foreign_text(readable.has_value());
+  to->set_payload(readable ? std::move(*readable) : std::move(from.payload));
 }
 
 void PutSteps(RecordingReply& reply, const std::vector<std::pair<std::uint64_t, double>>& steps) {
@@ -189,6 +195,11 @@ std::string vtkDspaceRecordingReader::PlaybackSteps(bool oneScene, const std::st
       to->set_before(gap.before);
     }
   });
+}
+
+std::string vtkDspaceRecordingReader::NoSteps() {
+  return this->Impl->Ask(
+      [](auto& reader, RecordingReply&) { dspace::session::RejectNoSteps(reader); });
 }
 
 std::string vtkDspaceRecordingReader::Blocks() {

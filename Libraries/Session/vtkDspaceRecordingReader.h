@@ -50,6 +50,8 @@ public:
   std::string StepBegins();
   /// `seq`, `time_s`: the last command and the time of each complete step, and `gap`.
   std::string PlaybackSteps(bool oneScene, const std::string& scene);
+  /// The error of a recording whose steps are none.
+  std::string NoSteps();
   /// `range`: ranges of commands without gaps.
   std::string Blocks();
   /// `range`: ranges of lost commands.

@@ -22,8 +22,9 @@ public:
   vtkTypeMacro(vtkDspaceRecordingTask, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Reads all of a recording: <dspace/recording/RecordingCheck.h>.
-  void BeginCheck(const std::string& path);
+  /// Reads all of a recording: `foreign`. <dspace/recording/RecordingCheck.h>
+  /// `unpackLimit`: <dspace/recording/RecordingReader.h>, SetUnpackLimit.
+  void BeginCheck(const std::string& path, unsigned long long unpackLimit);
   /// Copies the commands first..last to a new recording, which starts after the snapshot `number`:
   /// <dspace/recording/RecordingCut.h>.
   void BeginCut(const std::string& path, const std::string& out, unsigned long long first,
@@ -33,7 +34,8 @@ public:
   void BeginPack(const std::string& path, const std::string& out);
   /// Recovers the intact rows of a damaged recording into a new one: `salvage`.
   /// <dspace/recording/RecordingSalvage.h>
-  void BeginSalvage(const std::string& path, const std::string& out);
+  void BeginSalvage(const std::string& path, const std::string& out,
+                    unsigned long long unpackLimit);
 
   /// Waits up to this time. Returns whether the work has ended.
   bool Wait(double seconds);

@@ -100,6 +100,48 @@ def test_read(scene, tmp_path, make):
         scene.load(str(tmp_path / "absent.obj"))
 
 
+@KINDS
+def test_a_warning_names_the_file(scene, tmp_path, make):
+    """But for the URDF, which declares its encoding."""
+    said = sorted(text for text in load(scene, make(tmp_path)) if "Windows-1252" in text)
+    names = {obj: ["a.mtl", "a.obj"], vrml: ["a.wrl"], gltf: ["a.gltf"], urdf: [], tiff: [NAME]}[make]
+    assert len(said) == len(names) and all(name in text for name, text in zip(names, said)), said
+
+
+def test_an_encoding_that_a_urdf_declares(scene, tmp_path):
+    path = tmp_path / "a.urdf"
+    path.write_bytes('<?xml version="1.0" encoding="windows-1251"?><robot name="a"><link name="Марс"/></robot>'
+                     .encode("windows-1251"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert list(scene.load(str(path)).links) == ["Марс"]
+
+
+def test_texts_of_kernels_and_shapes(scene, tmp_path):
+    kernel = tmp_path / "a.tf"
+    kernel.write_bytes(b"KPL/FK\n\\begindata\nFRAME_M" + LATIN[1:] + b" = 1400000\nFRAME_1400000_NAME = '" + LATIN +
+                       b"'\nFRAME_1400000_CLASS = 4\nFRAME_1400000_CLASS_ID = 1400000\nFRAME_1400000_CENTER = 399\n"
+                       b"TKFRAME_1400000_RELATIVE = 'J2000'\nTKFRAME_1400000_SPEC = 'MATRIX'\n"
+                       b"TKFRAME_1400000_MATRIX = ( 1 0 0 0 1 0 0 0 1 )\n")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        scene.kernels.load(str(kernel))
+    assert any("a.tf" in str(each.message) and "Windows-1252" in str(each.message) for each in caught)
+    assert NAME.upper() in str(scene.kernels.frames).upper()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        terrain = scene.add_terrain(str(tiff(tmp_path)), vertical_datum="relative")
+    shapes = tmp_path / "a.geojson"
+    shapes.write_bytes(b'{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"stroke": "' + LATIN +
+                       b'"}, "geometry": {"type": "LineString", "coordinates": [[1, 1], [9, 9]]}}]}')
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        terrain.add_shapes(str(shapes), crs=terrain.crs)
+    said = [str(each.message) for each in caught]
+    assert any("'stroke' is 'Mäst'" in text for text in said), said
+    assert scene.objects
+
+
 DRIVE = """
 import pathlib, sys
 import dspace, test_text_encoding as t

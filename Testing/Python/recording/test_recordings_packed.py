@@ -251,7 +251,7 @@ def test_nothing_is_written_outside_of_its_folder(tmp_path, monkeypatch):
     (tmp_path / "link").symlink_to(victim)
     monkeypatch.setenv("TMPDIR", str(scratch))
     names = [f"{victim}/file", f"/../../../..{victim}/file2", f"{tmp_path}/link/file3", "/a/./b/../../../../../x",
-             f"/x/{'../' * 30}{str(victim)[1:]}/file4", "//etc/passwd", f"{scratch}/dspace-play-x/../../victim/file5"]
+             f"/x/{'../' * 30}{str(victim)[1:]}/file4", "//etc/passwd", f"{scratch}/dspace-unpacked-x/../../victim/file5"]
     forged(tmp_path / "a.dspace", [(name, b"harm") for name in names])
     before = everything(victim)
     with RecordingFile(tmp_path / "a.dspace") as file:
@@ -312,7 +312,7 @@ def test_no_command_of_a_recording_writes_files(tmp_path):
     with RecordingFile(tmp_path / "c.dspace") as file:
         commands = [pb.Command.FromString(row.payload) for row in file.rows()]
     forged(tmp_path / "b.dspace", [("/some/file", b"x")], commands)
-    with pytest.raises(dspace.Corrupt, match="dspace-play-"):
+    with pytest.raises(dspace.Corrupt, match="dspace-unpacked-"):
         dspace.Playback(tmp_path / "b.dspace").step(1)
 
 

@@ -5,8 +5,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 
 namespace dspace {
 namespace {
@@ -402,7 +404,7 @@ TextKernel TextKernel::Read(const std::string& path) {
   if (!file.read(text.data(), size)) {
     throw Error(Error::Kind::Io, "text kernel '" + path + "'", "the file cannot be read");
   }
-  return Parse(text, path);
+  return Parse(ToFileText(std::move(text), "text kernel '" + path + "'"), path);
 }
 
 bool TextKernel::Recognizes(const std::string& path) {

@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 #include <dspace/FilesRead.h>
-#include <dspace/Utf8.h>
 
 namespace dspace {
 namespace {
@@ -44,6 +44,7 @@ TextLines::TextLines(const std::string& path) : Label_("file '" + path + "'") {
   if (this->Text_.find('\0') != std::string::npos) {
     throw Error(Error::Kind::Corrupt, this->Label_, "it has bytes of value 0, which no text has; accepted: text");
   }
+  this->Text_ = ToFileText(std::move(this->Text_), this->Label_);
   if (this->Text_.compare(0, 3, "\xEF\xBB\xBF") == 0) { // the mark of UTF-8
     this->Position_ = 3;
   }

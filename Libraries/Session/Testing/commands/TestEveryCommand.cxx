@@ -16,6 +16,7 @@
 #include <dspace/messages/CommandTraits.h>
 
 #include "EveryCommand.h"
+#include "EveryFile.h"
 #include "TemporaryFolder.h"
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceSession.h"
@@ -28,35 +29,6 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using session::CommandTraits;
 using session::Effect;
-
-const char* const Arm = R"(<robot name="arm">
-  <link name="lower"><visual><geometry><box size="0.3 0.3 1"/></geometry></visual></link>
-  <link name="upper"><visual><geometry><sphere radius="0.3"/></geometry></visual></link>
-  <joint name="shoulder" type="revolute"><parent link="lower"/><child link="upper"/>
-    <origin xyz="0 0 1"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/>
-  </joint>
-</robot>)";
-const char* const Ground =
-    "ncols 5\nnrows 5\nxllcorner 100\nyllcorner 200\ncellsize 2\nnodata_value -9\n"
-    "0 1 2 1 0\n0 1 2 1 0\n0 1 3 1 0\n0 1 2 -9 0\n0 1 2 1 0\n";
-const char* const Box = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n";
-
-// A triangle that its animation "turn" turns a quarter about Z in a second, and a lamp.
-const char* const Array = R"({"asset": {"version": "2.0"},
-  "extensions": {"KHR_lights_punctual": {"lights": [{"name": "lamp", "type": "point"}]}},
-  "buffers": [{"byteLength": 76, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAADzBDU/8wQ1Pw=="}],
-  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
-                  {"buffer": 0, "byteOffset": 44, "byteLength": 32}],
-  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
-                {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"},
-                {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC4"}],
-  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-  "nodes": [{"name": "bus", "children": [1, 2]},
-            {"name": "wing", "translation": [1, 0, 0], "mesh": 0},
-            {"name": "wing", "extensions": {"KHR_lights_punctual": {"light": 0}}}],
-  "animations": [{"name": "turn", "channels": [{"sampler": 0, "target": {"node": 1, "path": "rotation"}}],
-                  "samplers": [{"input": 1, "output": 2}]}],
-  "scenes": [{"nodes": [0]}]})";
 
 // A command in two sessions of which one was made from the other's snapshot. All sessions draw in
 // one context.
@@ -84,14 +56,7 @@ protected:
     }
   };
 
-  void SetUp() override {
-    std::ofstream(this->Folder_ / "arm.urdf") << Arm;
-    std::ofstream(this->Folder_ / "ground.asc") << Ground;
-    std::ofstream(this->Folder_ / "box.obj") << Box;
-    std::ofstream(this->Folder_ / "array.gltf") << Array;
-    std::ofstream(this->Folder_ / "moon.tpc")
-        << "KPL/PCK\n\\begindata\nBODY301_RADII = ( 1737 1737 1737 )\n";
-  }
+  void SetUp() override { WriteEveryFile(this->Folder_.Path()); }
 
   v1::Command Parse(std::string text) const {
     for (std::size_t at; (at = text.find("FOLDER")) != std::string::npos;) {

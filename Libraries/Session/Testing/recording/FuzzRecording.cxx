@@ -5,8 +5,8 @@
 // accepted whose checksum, worked out here from Documentation/Recording.md, does not hold.
 //
 // With clang and -DDSPACE_LIBFUZZER=ON it is libFuzzer's program; else it has a driver of its own
-// (FuzzDriver.h). That changes bytes of a recording, and values of its rows, to which it gives the
-// right checksum in half of the runs, as somebody might who means harm.
+// (FuzzDriver.h). That changes bytes of a recording, values of its rows, to which it gives the
+// right checksum in half of the runs, and its tables, as somebody might who means harm.
 #include <algorithm>
 #include <limits>
 #include <set>
@@ -286,6 +286,34 @@ void Sign(const Database& file) {
   });
 }
 
+// What may stand in the place of a recording's tables, or beside them.
+void ChangeSchema(const Database& file, Mutator& mutator) {
+  const char* const tables[] = {"meta", "command", "snapshot", "asset", "content"};
+  const std::string table = tables[mutator.Below(5)];
+  const std::string endless =
+      " AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i AS id, i AS "
+      "seq, "
+      "1 AS asset, i AS place, 1 AS size, 0.0 AS time, 0.0 AS wall, 13 AS kind, x'' AS payload, "
+      "x'' "
+      "AS data, x'' AS checksum, '/a' AS path, 'read' AS state, x'' AS sha256, 1 AS packed, "
+      "'format' AS key, 1 AS value FROM n";
+  const std::string changes[] = {
+      "DROP TABLE " + table + "; CREATE VIEW " + table + endless,
+      "ALTER TABLE " + table + " RENAME TO kept; CREATE VIEW " + table + " AS SELECT * FROM kept",
+      "DROP TABLE " + table + "; CREATE VIRTUAL TABLE " + table + " USING dbstat",
+      "ALTER TABLE " + table + " ADD COLUMN more AS (hex(zeroblob(1000000)))",
+      "CREATE TRIGGER t AFTER INSERT ON " + table + " BEGIN DELETE FROM command; END",
+      "CREATE INDEX more ON " + table + "(1)",
+      "DROP TABLE " + table,
+      "DROP INDEX step",
+      "PRAGMA writable_schema=1; UPDATE sqlite_master SET rootpage = " +
+          std::to_string(1 + mutator.Below(9)) + " WHERE name = '" + table + "'",
+      "PRAGMA writable_schema=1; UPDATE sqlite_master SET sql = replace(sql, 'NOT NULL', '') "
+      "WHERE name = '" +
+          table + "'"};
+  sqlite3_exec(file.Handle, changes[mutator.Below(10)].c_str(), nullptr, nullptr, nullptr);
+}
+
 // Values of some rows become others.
 std::string ChangeRows(const std::string& recording, Mutator& mutator) {
   Put(recording);
@@ -321,6 +349,9 @@ std::string ChangeRows(const std::string& recording, Mutator& mutator) {
     }
     if (mutator.Below(2) == 0) {
       Sign(file);
+    }
+    if (mutator.Below(10) == 0) {
+      ChangeSchema(file, mutator);
     }
   }
   std::ifstream in(PathOfInput(), std::ios::binary);

@@ -220,6 +220,7 @@ TEST_F(PlaybackOf, AnIndexOfTimesThatIsDamagedShowsNoWrongInstant) {
                "PRAGMA writable_schema = 1; DELETE FROM sqlite_master WHERE name = 'step'");
   this->Change("UPDATE command SET time = time - 100 WHERE seq = 8");
   this->Change("PRAGMA writable_schema = 1; INSERT INTO sqlite_master SELECT * FROM kept");
+  this->Change("DROP TABLE kept");
   RecordingReader reader(this->Path_);
   Interpreter shown;
   session::Playback playback(reader, shown);

@@ -1,12 +1,20 @@
 // Packed recordings as somebody might make them who means harm.
 #include <algorithm>
+#include <chrono>
+#include <limits>
 #include <set>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <openssl/sha.h>
 #include <zlib.h>
 
 #include <dspace/recording/RecordedNames.h>
+#include <dspace/recording/RecordingCheck.h>
 #include <dspace/recording/RecordingFile.h>
+#include <dspace/recording/RecordingSalvage.h>
 
 #include "PackedTestSupport.h"
 
@@ -131,6 +139,103 @@ TEST_F(ForgedPacked, APartGrowsToNoMoreThanItSays) {
   small.resize(size);
   this->Forge({{"/bomb", small, 100}});
   this->Rejects(Error::Kind::Corrupt, {"/bomb", "is damaged at byte 0"});
+}
+
+// A hundred million zeros, of a file of a hundred kilobytes.
+TEST_F(ForgedPacked, UnpacksNoMoreThanTheLimit) {
+  std::vector<File> files;
+  std::string zeros(std::size_t(session::RecordingPartBytes), '\0');
+  std::string part(100000, '\0');
+  uLongf size = part.size();
+  ASSERT_EQ(compress(reinterpret_cast<Bytef*>(part.data()), &size,
+                     reinterpret_cast<const Bytef*>(zeros.data()), zeros.size()),
+            Z_OK);
+  part.resize(size);
+  const auto rejected = [this](std::uint64_t limit, Error::Kind kind, const std::string& words) {
+    try {
+      RecordingReader reader(this->Path_);
+      reader.SetUnpackLimit(limit);
+      Interpreter shown;
+      const session::Playback playback(reader, shown);
+      ADD_FAILURE() << words;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.GetKind(), kind) << error.what();
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+    EXPECT_TRUE(fs::is_empty(this->Root_ / "scratch"));
+  };
+  this->Forge({{"/a", part, session::RecordingPartBytes}, {"/b", "content"}});
+  const std::string total = std::to_string(session::RecordingPartBytes + 7);
+  rejected(session::RecordingPartBytes + 6, Error::Kind::Resource,
+           "has " + total + " bytes unpacked; accepted: up to " +
+               std::to_string(session::RecordingPartBytes + 6) + ", the unpack limit");
+  rejected(session::RecordingPartBytes + 7, Error::Kind::Corrupt, "'/a' has changed"); // its sum
+  const std::int64_t large = std::int64_t(4) << 30;
+  this->Forge({{"/bomb", part, large}});
+  rejected(0, Error::Kind::Resource, "4294967296 bytes unpacked; accepted: up to 1");
+  rejected(0, Error::Kind::Resource, "1 GiB and 20 times the recording's size");
+  RecordingReader reader(this->Path_);
+  for (int way = 0; way < 2; ++way) {
+    try {
+      way == 0 ? (void)session::CheckRecording(reader, [] {})
+               : (void)session::SalvageRecording(this->Path_, this->Root_ / "out.dspace", [] {});
+      ADD_FAILURE() << way;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.GetKind(), Error::Kind::Resource) << error.what();
+    }
+  }
+  reader.SetUnpackLimit(std::uint64_t(8) << 30);
+  try {
+    session::CheckRecording(reader, [] {});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("'/bomb' is damaged"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_FALSE(fs::exists(this->Root_ / "out.dspace"));
+  std::vector<File> most(3, {"/", "x", std::numeric_limits<std::int64_t>::max()});
+  for (std::size_t i = 0; i < most.size(); ++i) {
+    most[i].path += std::to_string(i);
+  }
+  this->Forge(most); // their sum is beyond any number
+  rejected(std::uint64_t(1) << 62, Error::Kind::Resource, "18446744073709551615 bytes unpacked");
+}
+
+TEST_F(ForgedPacked, UnpackingIsCancelled) {
+  this->Forge({{"/a", "content"}});
+  RecordingReader reader(this->Path_);
+  EXPECT_THROW(RecordedFiles(reader, true, [] { throw Error(Error::Kind::Io, "a", "cancelled"); }),
+               Error);
+  EXPECT_TRUE(fs::is_empty(this->Root_ / "scratch"));
+}
+
+TEST_F(ForgedPacked, FoldersOfProcessesThatWereKilledAreRemoved) {
+  this->Forge({{"/a", "content"}});
+  const fs::path scratch = this->Root_ / "scratch";
+  const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  for (const char* name : {"dspace-unpacked-old", "dspace-unpacked-used", "other"}) {
+    Write(scratch / name / "file", "content");
+    fs::last_write_time(scratch / name, old);
+  }
+  Write(scratch / "dspace-unpacked-new" / "file", "content");
+  Write(this->Root_ / "away" / "file", "content");
+  fs::create_directory_symlink(this->Root_ / "away", scratch / "dspace-unpacked-link");
+  const int used = ::open((scratch / "dspace-unpacked-used").c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(used, LOCK_SH), 0);
+  {
+    RecordingReader reader(this->Path_);
+    const RecordedFiles files(reader);
+    EXPECT_FALSE(fs::exists(scratch / "dspace-unpacked-old"));
+    for (const char* name : {"dspace-unpacked-used", "dspace-unpacked-new", "other"}) {
+      EXPECT_TRUE(fs::exists(scratch / name / "file")) << name;
+    }
+    EXPECT_TRUE(fs::exists(this->Root_ / "away" / "file"));
+    RecordingReader second(this->Path_); // which leaves the first one's alone
+    fs::last_write_time(files.Folder(), old);
+    const RecordedFiles others(second);
+    EXPECT_TRUE(fs::exists(files.Folder()));
+  }
+  ::close(used);
 }
 
 // Every part of SQLite's that is no table could run without end.

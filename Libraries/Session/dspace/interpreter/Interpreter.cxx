@@ -4,6 +4,7 @@
 
 #include <google/protobuf/unknown_field_set.h>
 
+#include <dspace/FileText.h>
 #include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/messages/CommandLimits.h>
 #include <dspace/messages/Convert.h>
@@ -112,8 +113,12 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
       scene ? scene->sky.kernels : SkyMotions::Standard(); // the command may remove the scene
   const FilesReadScope read;
   const FallbackScope fallbacks;
+  const ForeignTextScope foreign;
   entry->run(Context{this->State_, scene, name, reply}, command);
   this->State_.files.Note(command, read.Files());
+  for (std::string& warning : foreign.Warnings()) {
+    reply.add_warning(std::move(warning));
+  }
   for (std::string& warning : fallbacks.Warnings(kernels->Scales())) {
     reply.add_warning(std::move(warning));
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/recording/RecordingDatabase.h>
@@ -23,7 +24,7 @@ Playback::Playback(RecordingReader& reader, Interpreter& interpreter, bool check
     : Reader_(reader), Interpreter_(interpreter), Steps_(StepsOf(reader)),
       Files_(reader, checkFiles) {
   if (this->Steps_.steps.empty()) {
-    throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()), "it has no complete step");
+    RejectNoSteps(reader);
   }
   this->SetSteps();
   this->MoveTo(0);
@@ -146,6 +147,7 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
   }
   if (this->Base_) {
     const std::vector<v1::Command>& commands = this->Base_->commands;
+    this->NoteForeign(this->Base_->foreignText, "snapshot ", this->Base_->seq);
     while (this->BaseDone_ < commands.size()) {
       this->Execute(commands[this->BaseDone_], "snapshot ", this->Base_->seq);
       ++this->BaseDone_;
@@ -164,6 +166,7 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
   if (target > at) {
     this->At_.reset(); // unknown, if one of these fails
     this->Reader_.Read(at + 1, target, [&](RecordedCommand&& row) {
+      this->NoteForeign(row.foreignText, "command ", row.seq);
       this->Execute(std::move(row.command), "command ", row.seq);
       at = row.seq;
       this->Reached_s_ = row.time_s;
@@ -248,6 +251,20 @@ void Playback::Execute(v1::Command command, const char* table, std::uint64_t seq
   if (command.has_open_terrain() && !this->Files_.Folder().empty()) {
     this->WaitForOverviews(command);
   }
+}
+
+// Each row once, however often it is executed.
+void Playback::NoteForeign(bool foreign, const char* table, std::uint64_t seq) {
+  constexpr std::size_t Most = 1000;
+  if (foreign && this->Foreign_.size() < Most &&
+      this->Foreign_.insert(table + std::to_string(seq)).second) {
+    this->Notes_.push_back(RecordingName(this->Reader_.Path()) + ": " + table +
+                           std::to_string(seq) + ForeignTextNote);
+  }
+}
+
+std::vector<std::string> Playback::TakeNotes() {
+  return std::exchange(this->Notes_, {});
 }
 
 // Large rasters were drawn from their overviews, which are rebuilt beside the unpacked file.

@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <dspace/interpreter/Interpreter.h>
@@ -64,6 +66,9 @@ public:
   void SetGuests(PlaybackGuests guests) { this->Guests_ = std::move(guests); }
   // The packed files and their present paths.
   const RecordedFiles& Files() const { return this->Files_; }
+  // What the caller should hear since the last call: commands whose text was not UTF-8
+  // (ForeignRows), which were executed with their text as UTF-8.
+  std::vector<std::string> TakeNotes();
   // Reads what has been recorded since; returns the number of new steps. The last step may have
   // grown.
   std::size_t Update();
@@ -77,6 +82,7 @@ private:
   bool Proceed(std::uint64_t target, double seconds);
   void CheckStep(std::size_t index, std::optional<double> reached_s);
   void Execute(v1::Command command, const char* table, std::uint64_t seq);
+  void NoteForeign(bool foreign, const char* table, std::uint64_t seq);
   void WaitForOverviews(const v1::Command& opened);
 
   RecordingReader& Reader_;
@@ -91,6 +97,8 @@ private:
   std::optional<double> Reached_s_;      // the time of the last command since Aim()
   std::optional<RecordedSnapshot> Base_; // that is being executed
   std::size_t BaseDone_ = 0;             // commands of it
+  std::set<std::string> Foreign_;        // rows that were noted
+  std::vector<std::string> Notes_;
 };
 
 } // namespace dspace::session

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <dspace/Error.h>
 #include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingFile.h>
 
@@ -57,6 +58,17 @@ std::vector<std::pair<std::uint64_t, double>> StepBegins(RecordingReader& reader
   return begins;
 }
 
+void RejectNoSteps(RecordingReader& reader) {
+  if (reader.Last() != 0 || !reader.Snapshots().empty()) {
+    throw Error(Error::Kind::Corrupt, RecordingName(reader.Path()), "it has no complete step");
+  }
+  throw Error(Error::Kind::NotFound, RecordingName(reader.Path()),
+              "it holds no steps yet: no command and no state, and " +
+                  std::to_string(reader.Assets().size()) +
+                  " notes of files; its recording was just begun, or its process ended then; "
+                  "accepted: a recording with a first state");
+}
+
 PlaybackSteps StepsOf(RecordingReader& reader, const std::optional<std::string>& scene) {
   const RecordingDatabase::View view(reader.Database());
   PlaybackSteps result;
@@ -73,12 +85,11 @@ PlaybackSteps StepsOf(RecordingReader& reader, const std::optional<std::string>&
     }
     const RecordingRow base = reader.SnapshotRow(*block.snapshot);
     open = open || base.seq > block.first - 1;
-    std::vector<std::pair<std::uint64_t, double>> inside; // first command of a step, and its time
-    for (const auto& step : times) {
-      if (step.first > base.seq && step.first <= block.last) {
-        inside.push_back(step);
-      }
-    }
+    // The first command of a step, and its time.
+    const auto after = [](std::uint64_t seq, const auto& step) { return seq < step.first; };
+    const auto begin = std::upper_bound(times.begin(), times.end(), base.seq, after);
+    const auto end = std::upper_bound(begin, times.end(), std::max(block.last, base.seq), after);
+    std::vector<std::pair<std::uint64_t, double>> inside(begin, end);
     // After lost commands it is unknown whether the step is complete.
     PutFirstStep(inside, base, open || number > 0 || !base.payload.empty());
     std::vector<PlaybackStep> found;

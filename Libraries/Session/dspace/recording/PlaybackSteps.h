@@ -50,6 +50,10 @@ std::vector<PlaybackBlock> BlocksOf(RecordingReader& reader);
 PlaybackSteps StepsOf(RecordingReader& reader,
                       const std::optional<std::string>& scene = std::nullopt);
 
+// Throws Error for a recording whose steps are none: NotFound if it has no command and no state,
+// because its process ended, or is, in its first moments, else Corrupt.
+[[noreturn]] void RejectNoSteps(RecordingReader& reader);
+
 // The number of the first command and the time [s] of every step of any scene after the first
 // snapshot. The first entry is for the state before time was first set.
 std::vector<std::pair<std::uint64_t, double>> StepBegins(RecordingReader& reader);

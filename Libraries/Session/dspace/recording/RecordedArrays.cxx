@@ -43,6 +43,7 @@ const std::string& RecordedArrays::Get(const std::string& digest) {
   if (found == this->Assets_.end()) {
     database.Damaged(named + " are missing");
   }
+  this->Reader_.RequireUnpackable(std::uint64_t(std::max<std::int64_t>(found->second.size, 0)));
   std::string bytes;
   this->Reader_.ReadContent(found->second, this->Parts_[found->second.id],
                             [&bytes](const std::string& part) { bytes += part; });

@@ -4,12 +4,16 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <dspace/Error.h>
@@ -101,13 +105,14 @@ std::string Below(const std::string& text) {
 
 } // namespace
 
-// Goes with its content.
+// Goes with its content. The process holds a lock on it, so that others know whether it is in use.
 class RecordedFiles::OwnFolder {
 public:
   explicit OwnFolder(const std::string& object) {
     std::error_code error;
     const fs::path above = fs::canonical(fs::temp_directory_path(error), error);
-    std::string name = (above / "dspace-play-XXXXXX").string();
+    RemoveAbandoned(above);
+    std::string name = (above / (std::string(Name) + "XXXXXX")).string();
     if (error || !::mkdtemp(name.data())) {
       throw Error(Error::Kind::Io, object,
                   "its files cannot be unpacked below '" + above.string() +
@@ -115,11 +120,18 @@ public:
                       "; accepted: TMPDIR, a folder to write into");
     }
     this->Path = name;
+    this->Lock_ = ::open(name.c_str(), Opened);
+    if (this->Lock_ >= 0) {
+      ::flock(this->Lock_, LOCK_SH | LOCK_NB);
+    }
   }
   ~OwnFolder() {
     if (getpid() == this->Process_) { // else it is the parent's, which reads it
       std::error_code ignored;
       fs::remove_all(this->Path, ignored);
+    }
+    if (this->Lock_ >= 0) {
+      ::close(this->Lock_);
     }
   }
   OwnFolder(const OwnFolder&) = delete;
@@ -127,11 +139,38 @@ public:
   std::string Path;
 
 private:
+  static constexpr const char* Name = "dspace-unpacked-";
+  static constexpr int Opened = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+  static constexpr std::time_t YoungSeconds = 60; // another process may be about to lock it
+
+  // Folders of this user whose process ended without removing them.
+  static void RemoveAbandoned(const fs::path& above) {
+    std::error_code error;
+    for (fs::directory_iterator each(above, error), end; !error && each != end;
+         each.increment(error)) {
+      if (each->path().filename().string().rfind(Name, 0) != 0) {
+        continue;
+      }
+      const int folder = ::open(each->path().c_str(), Opened);
+      struct stat state = {};
+      if (folder >= 0 && ::fstat(folder, &state) == 0 && state.st_uid == ::geteuid() &&
+          state.st_mtime + YoungSeconds < std::time(nullptr) &&
+          ::flock(folder, LOCK_EX | LOCK_NB) == 0) {
+        std::error_code ignored;
+        fs::remove_all(each->path(), ignored);
+      }
+      if (folder >= 0) {
+        ::close(folder);
+      }
+    }
+  }
+
   const pid_t Process_ = getpid();
+  int Lock_ = -1;
 };
 
-RecordedFiles::RecordedFiles(RecordingReader& reader, bool check)
-    : Reader_(reader), Arrays_(reader), Check_(check) {
+RecordedFiles::RecordedFiles(RecordingReader& reader, bool check, CancelCheck checkCancel)
+    : Reader_(reader), Arrays_(reader), Check_(check), CheckCancel_(std::move(checkCancel)) {
   this->Update();
 }
 
@@ -186,7 +225,9 @@ void RecordedFiles::Check(const std::vector<RecordingAsset>& assets) const {
 }
 
 void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
-  std::uintmax_t needed = 0;
+  const std::uint64_t needed = UnpackedBytes(assets);
+  this->Reader_.RequireUnpackable(
+      needed + std::min(this->Unpacked_, std::numeric_limits<std::uint64_t>::max() - needed));
   std::vector<const RecordingAsset*> packed;
   for (const RecordingAsset& asset : assets) {
     if (asset.state == "changed") {
@@ -197,8 +238,6 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
     }
     if (asset.packed) {
       packed.push_back(&asset);
-      const auto size = std::uintmax_t(std::max<std::int64_t>(asset.size, 0));
-      needed += std::min(size, std::numeric_limits<std::uintmax_t>::max() - needed);
     }
   }
   std::error_code error;
@@ -222,6 +261,7 @@ void RecordedFiles::Unpack(const std::vector<RecordingAsset>& assets) {
     const auto parts = numbers.find(asset->id);
     this->UnpackOne(*asset, parts == numbers.end() ? std::vector<std::int64_t>() : parts->second);
   }
+  this->Unpacked_ += needed;
   std::set<std::string> folders;
   for (const auto& entry : this->Places_) {
     if (IsProjGrid(entry.first)) {
@@ -276,6 +316,9 @@ void RecordedFiles::UnpackOne(const RecordingAsset& asset, const std::vector<std
       &file, [](const int* each) { ::close(*each); });
   Sha256 sum;
   this->Reader_.ReadContent(asset, parts, [&](const std::string& part) {
+    if (this->CheckCancel_) {
+      this->CheckCancel_();
+    }
     sum.Add(part.data(), part.size());
     for (std::size_t done = 0; done < part.size();) {
       const ssize_t n = ::write(file, part.data() + done, part.size() - done);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
+#include <dspace/recording/CancelCheck.h>
 #include <dspace/recording/RecordedArrays.h>
 #include <dspace/recording/RecordingReader.h>
 
@@ -23,17 +24,20 @@ class Confinement;
 // Packed files are unpacked into a folder below TMPDIR that only this user can read. They keep
 // their paths below this folder, so that they still refer to each other, and PROJ of the whole
 // process finds its grids there first. Nothing is written elsewhere, and the destructor removes the
-// folder. Without packed files, the files on this machine must be unchanged. Use it from one thread
-// at a time.
+// folder. The folders of processes that were killed are removed when the next one is made. Without
+// packed files, the files on this machine must be unchanged. Use it from one thread at a time.
 //
 // Throws Error, which names the file: Corrupt (it has changed since; it changed before it was
 // recorded; it exists now and did not; its packed content is damaged), NotFound (it is missing), Io
-// (it cannot be read or unpacked), Resource (no space to unpack); and those of RecordingReader.
+// (it cannot be read or unpacked), Resource (no space to unpack, or more than the limit); and those
+// of RecordingReader.
 class RecordedFiles {
 public:
-  // Unpacks or checks all recorded files. `reader` must outlive it. check: false does not check
-  // files that are not packed.
-  explicit RecordedFiles(RecordingReader& reader, bool check = true);
+  // Unpacks or checks all recorded files. `reader` must outlive it, and limits how many bytes are
+  // unpacked (SetUnpackLimit). check: false does not check files that are not packed. checkCancel:
+  // called between parts of a few MiB, also by Update(); what it throws ends the work, and the
+  // folder goes.
+  explicit RecordedFiles(RecordingReader& reader, bool check = true, CancelCheck checkCancel = {});
   ~RecordedFiles();
   RecordedFiles(const RecordedFiles&) = delete;
   RecordedFiles& operator=(const RecordedFiles&) = delete;
@@ -72,7 +76,9 @@ private:
   RecordingReader& Reader_;
   RecordedArrays Arrays_;
   const bool Check_;
-  std::int64_t Seen_ = 0; // the last processed row
+  const CancelCheck CheckCancel_;
+  std::int64_t Seen_ = 0;      // the last processed row
+  std::uint64_t Unpacked_ = 0; // bytes
   std::unique_ptr<OwnFolder> Owned_;
   std::string Folder_;
   std::shared_ptr<const Confinement> Confinement_; // to the folder

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace dspace::session {
 
@@ -27,6 +28,10 @@ inline bool IsArrays(const RecordingAsset& asset) {
 
 // Maximum number of bytes of a packed file per row.
 constexpr std::int64_t RecordingPartBytes = 4 << 20;
+
+// The bytes that the packed ones have unpacked, as they say; the largest number where these are
+// more.
+std::uint64_t UnpackedBytes(const std::vector<RecordingAsset>& assets);
 
 // A hash as text, for messages.
 std::string Hexadecimal(const std::string& bytes);

@@ -7,10 +7,12 @@
 
 namespace dspace::session {
 
-void CheckRecording(RecordingReader& reader, const CancelCheck& checkCancel) {
+ForeignRows CheckRecording(RecordingReader& reader, const CancelCheck& checkCancel) {
   const RecordingDatabase::View view(reader.Database());
-  const auto seen = [&](const RecordingRow&) {
+  ForeignRows foreign;
+  const auto seen = [&](const RecordingRow& row) {
     checkCancel();
+    foreign.Look(row);
     return true;
   };
   std::uint64_t first = reader.First();
@@ -21,7 +23,9 @@ void CheckRecording(RecordingReader& reader, const CancelCheck& checkCancel) {
   reader.ReadRows(first, reader.Last(), seen);
   reader.ReadSnapshots(0, std::numeric_limits<std::uint64_t>::max(), seen);
   const RecordingReader::PartNumbers numbers = reader.Parts();
-  for (const RecordingAsset& asset : reader.Assets()) {
+  const std::vector<RecordingAsset> assets = reader.Assets();
+  reader.RequireUnpackable(UnpackedBytes(assets));
+  for (const RecordingAsset& asset : assets) {
     if (asset.packed) {
       const auto parts = numbers.find(asset.id);
       reader.ReadContent(asset,
@@ -33,6 +37,7 @@ void CheckRecording(RecordingReader& reader, const CancelCheck& checkCancel) {
   if (!sound.Step() || sound.Bytes(0) != "ok") {
     reader.Database().Damaged(sound.Bytes(0));
   }
+  return foreign;
 }
 
 } // namespace dspace::session

@@ -3,17 +3,25 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <utility>
 
 #include <fcntl.h>
 #include <sqlite3.h>
 #include <unistd.h>
 
 #include <dspace/Error.h>
+#include <dspace/recording/RecordingSchema.h>
 
 namespace dspace::session {
 namespace {
 
 constexpr double BusySeconds = 10.0; // for a writer that moves its log into the file
+
+// Operations of SQLite's machine that one statement may take: a row of a few bytes takes about
+// twenty, a sorted one more. A damaged tree may lead to the same pages again and again, for ever.
+constexpr int OperationsACheck = 100000;
+constexpr std::uint64_t OperationsOfAny = 2000000;
+constexpr std::uint64_t OperationsAByte = 16;
 
 // Result codes (sqlite.org/rescode.html) that say nothing about the file's content: locks, rights,
 // memory and disks.
@@ -80,8 +88,11 @@ RecordingDatabase::RecordingDatabase(const std::string& path)
     throw Error(Error::Kind::Io, RecordingName(this->Path_), why);
   }
   this->SetTimeout(BusySeconds);
-  // Tables only: a view could run without end.
-  sqlite3_db_config(this->Handle_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  DefendDatabase(this->Handle_);
+  sqlite3_progress_handler(
+      this->Handle_, OperationsACheck,
+      [](void* self) { return static_cast<const RecordingDatabase*>(self)->IsEndless() ? 1 : 0; },
+      this);
 }
 
 RecordingDatabase::~RecordingDatabase() {
@@ -97,7 +108,26 @@ void RecordingDatabase::Damaged(const std::string& what) const {
               what + "; `dspace log salvage` recovers what survives");
 }
 
+// The file's size is that of now, because another process may be writing it.
+bool RecordingDatabase::IsEndless() const {
+  this->Operations_ += OperationsACheck;
+  if (this->Operations_ <= OperationsOfAny) {
+    return false;
+  }
+  std::uint64_t bytes = 0;
+  for (const char* end : {"", "-wal"}) {
+    std::error_code none;
+    const auto size = std::filesystem::file_size(this->Path_ + end, none);
+    bytes += none ? 0 : size;
+  }
+  this->Endless_ = this->Operations_ > OperationsOfAny + OperationsAByte * bytes;
+  return this->Endless_;
+}
+
 void RecordingDatabase::Fail(int result) const {
+  if (std::exchange(this->Endless_, false)) {
+    this->Damaged("reading it takes more steps than a file of its size can hold");
+  }
   const std::string said = sqlite3_errmsg(this->Handle_);
   if (IsOfTheSystem(result)) {
     throw Error(Error::Kind::Io, RecordingName(this->Path_),
@@ -123,6 +153,7 @@ RecordingDatabase::Statement::Statement(const RecordingDatabase& database, const
   if (result != SQLITE_OK) {
     database.Fail(result);
   }
+  database.Operations_ = 0;
   this->Statement_.reset(statement);
 }
 

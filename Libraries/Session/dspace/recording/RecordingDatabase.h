@@ -14,8 +14,10 @@ namespace dspace::session {
 // The name of a recording in messages, of an absolute path.
 std::string RecordingName(const std::string& path);
 
-// A recording's tables, open for reading. Throws Error: Io for errors of the operating system and
-// locks of other processes, Corrupt for all other errors of SQLite.
+// A recording's tables, open for reading, with SQLite's defences against files from anywhere
+// (RecordingSchema.h). Throws Error: Io for errors of the operating system and locks of other
+// processes, Corrupt for all other errors of SQLite, and for a statement that takes more steps than
+// the size of the file explains.
 class RecordingDatabase {
 public:
   // A statement that the destructor resets. Columns are numbered from 0, parameters from 1.
@@ -74,9 +76,12 @@ public:
 
 private:
   [[noreturn]] void Fail(int result) const;
+  bool IsEndless() const;
 
   const std::string Path_; // absolute
   sqlite3* Handle_ = nullptr;
+  mutable std::uint64_t Operations_ = 0; // of the present statement, about
+  mutable bool Endless_ = false;         // it was broken off for their number
 };
 
 } // namespace dspace::session

@@ -1,14 +1,18 @@
 #include <dspace/recording/RecordingFile.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include <sqlite3.h>
 
 #include <dspace/Error.h>
 #include <dspace/recording/NewRecording.h>
 #include <dspace/recording/RecordingDatabase.h>
+#include <dspace/recording/RecordingSchema.h>
 #include <dspace/recording/RecordingWriter.h>
 
 namespace dspace::session {
@@ -19,19 +23,6 @@ constexpr int CheckpointPages = 2048; // of the log, of a recording that is made
 constexpr std::size_t CommitBytes = 64u << 20;
 constexpr const char* Accepted =
     "; accepted: a file in a folder that may be written and has room, that no process has locked";
-constexpr const char* Schema = R"(
-CREATE TABLE meta(key TEXT PRIMARY KEY, value) WITHOUT ROWID;
-CREATE TABLE command(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT NULL,
-  kind INTEGER NOT NULL, payload BLOB NOT NULL, checksum BLOB NOT NULL);
-CREATE TABLE snapshot(seq INTEGER PRIMARY KEY, time REAL NOT NULL, wall REAL NOT NULL,
-  kind INTEGER NOT NULL, payload BLOB NOT NULL, checksum BLOB NOT NULL);
--- The steps of the simulation: SetTime is command 13.
-CREATE INDEX step ON command(time) WHERE kind = 13;
-CREATE TABLE asset(id INTEGER PRIMARY KEY, path TEXT NOT NULL, state TEXT NOT NULL,
-  size INTEGER NOT NULL, sha256 BLOB NOT NULL, packed INTEGER NOT NULL, checksum BLOB NOT NULL);
-CREATE TABLE content(id INTEGER PRIMARY KEY, asset INTEGER NOT NULL, place INTEGER NOT NULL,
-  size INTEGER NOT NULL, data BLOB NOT NULL, checksum BLOB NOT NULL);
-)";
 
 template<class Number> void Add(Sha256& sum, Number value) {
   sum.Add(&value, sizeof value); // little-endian, as are the machines that Dspace runs on
@@ -81,6 +72,17 @@ std::string RecordingChecksum(const RecordingContent& content) {
   return sum.Finish().substr(0, ChecksumBytes);
 }
 
+std::uint64_t UnpackedBytes(const std::vector<RecordingAsset>& assets) {
+  std::uint64_t bytes = 0;
+  for (const RecordingAsset& asset : assets) {
+    if (asset.packed) {
+      const auto size = std::uint64_t(std::max<std::int64_t>(asset.size, 0));
+      bytes += std::min(size, std::numeric_limits<std::uint64_t>::max() - bytes);
+    }
+  }
+  return bytes;
+}
+
 std::string Hexadecimal(const std::string& bytes) {
   std::string text;
   for (const char c : bytes) {
@@ -101,8 +103,12 @@ RecordingFile::RecordingFile(const std::string& path, std::int64_t maximumPages,
   this->Open(SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   try {
     this->Make(maximumPages, checkpointPages, false);
-  } catch (...) {
+  } catch (...) { // on a full disk, say: nothing of it is left
     this->Close();
+    for (const char* end : {"", "-wal", "-shm", "-journal"}) {
+      std::error_code ignored;
+      std::filesystem::remove(path + end, ignored);
+    }
     throw;
   }
 }
@@ -121,6 +127,7 @@ RecordingFile::RecordingFile(const std::string& path, const std::string& name, E
     : Path_(path), Name_(name) {
   this->Open(SQLITE_OPEN_READWRITE);
   try {
+    DefendDatabase(this->Database_);
     sqlite3_busy_timeout(this->Database_, 1000);
     this->Run("PRAGMA locking_mode=EXCLUSIVE"); // a writer would number its own rows alike
     if (sqlite3_exec(this->Database_, "BEGIN IMMEDIATE; COMMIT", nullptr, nullptr, nullptr) !=
@@ -156,7 +163,7 @@ void RecordingFile::Make(std::int64_t maximumPages, int checkpointPages, bool re
     this->Run(("PRAGMA max_page_count=" + std::to_string(maximumPages)).c_str());
   }
   this->Begin();
-  this->Run(Schema);
+  this->Run(RecordingSchema);
   this->Run(("INSERT INTO meta VALUES('format', " + std::to_string(RecordingFormat) + ")").c_str());
   this->Commit();
   this->PrepareAll(repeated);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
@@ -14,8 +14,10 @@
 
 #include <dspace/Error.h>
 #include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/WireText.h>
 #include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingFile.h>
+#include <dspace/recording/RecordingSchema.h>
 #include <dspace/recording/RecordingWriter.h>
 
 namespace dspace::session {
@@ -25,6 +27,8 @@ using Statement = RecordingDatabase::Statement;
 
 constexpr char Magic[] = "SQLite format 3"; // with its zero byte what SQLite's files begin with
 constexpr int SetTime = v1::Command::kSetTime;
+constexpr const char* Begun =
+    ", as a process leaves it that is killed in the first moments of its recording";
 
 // A part as it was, of `size` bytes; of other size where it is not that.
 std::string Decompress(const std::string& data, std::int64_t size) {
@@ -65,6 +69,13 @@ RecordingContent PartOf(const Statement& row) {
   part.size = row.Integer(3);
   part.data = row.Bytes(4);
   return part;
+}
+
+// protobuf parses no text of another encoding, and writes to the error stream where it finds some.
+bool ParseCommand(const std::string& payload, v1::Command& command, bool& foreign) {
+  const std::optional<std::string> readable = WithTextUtf8(payload, *v1::Command::descriptor());
+  foreign = readable.has_value();
+  return command.ParseFromString(readable ? *readable : payload);
 }
 
 [[noreturn]] void Missing(const RecordingDatabase& database, std::uint64_t first,
@@ -111,6 +122,24 @@ std::string Printable(const std::string& bytes) {
 
 } // namespace
 
+void ForeignRows::Look(const RecordingRow& row) {
+  const auto& type = *v1::Command::descriptor();
+  if (row.snapshot ? WithTextUtf8OfAll(row.payload, type) : WithTextUtf8(row.payload, type)) {
+    this->rows.emplace(row.seq, row.snapshot);
+  }
+}
+
+std::vector<std::string> ForeignRows::Names() const {
+  constexpr std::size_t Most = 10;
+  std::vector<std::string> names;
+  for (const auto& [seq, snapshot] : this->rows) {
+    if (names.size() < Most) {
+      names.push_back((snapshot ? "snapshot " : "command ") + std::to_string(seq));
+    }
+  }
+  return names;
+}
+
 RecordingReader::RecordingReader(const std::string& path) {
   const std::string whole = std::filesystem::absolute(path).string();
   std::error_code error;
@@ -119,7 +148,7 @@ RecordingReader::RecordingReader(const std::string& path) {
                 "there is no such file; accepted: a recording, a .dspace file");
   }
   if (std::filesystem::file_size(whole, error) == 0) {
-    NotARecording(whole, "it is empty");
+    NotARecording(whole, std::string("it is empty") + Begun);
   }
   this->Database_ = std::make_unique<RecordingDatabase>(whole);
   this->RequireFormat();
@@ -144,8 +173,10 @@ void RecordingReader::RequireFormat() {
     throw;
   }
   if (!ours) {
-    NotARecording(database.Path(), "it is an SQLite file without a recording's tables");
+    NotARecording(database.Path(),
+                  std::string("it is an SQLite file without a recording's tables") + Begun);
   }
+  RequireSchema(database, "meta");
   Statement found(database, "SELECT value FROM meta WHERE key = 'format'");
   const bool any = found.Step();
   const bool number = any && found.IsInteger(0);
@@ -159,6 +190,7 @@ void RecordingReader::RequireFormat() {
             (number && found.Integer(0) > RecordingFormat ? ", a newer Dspace wrote it" : "") +
             "; accepted: " + std::to_string(RecordingFormat));
   }
+  RequireSchema(database);
 }
 
 bool RecordingReader::IsNewer(const std::string& path) {
@@ -177,6 +209,25 @@ const std::string& RecordingReader::Path() const {
 
 void RecordingReader::SetTimeout(double seconds) {
   this->Database_->SetTimeout(seconds);
+}
+
+void RecordingReader::RequireUnpackable(std::uint64_t bytes) const {
+  constexpr std::uint64_t Any = std::uint64_t(1) << 30;
+  constexpr std::uint64_t AByte = 20; // zlib's makes of blank rasters up to a thousand
+  std::uint64_t most = this->UnpackLimit_;
+  if (most == 0) {
+    std::error_code none;
+    const auto size = std::filesystem::file_size(this->Path(), none);
+    most = Any + (none ? 0 : AByte * size);
+  }
+  if (bytes > most) {
+    throw Error(Error::Kind::Resource, RecordingName(this->Path()),
+                "its packed content has " + std::to_string(bytes) +
+                    " bytes unpacked; accepted: up to " + std::to_string(most) +
+                    ", the unpack limit" +
+                    (this->UnpackLimit_ == 0 ? " (1 GiB and 20 times the recording's size)" : "") +
+                    ", which unpack_limit in Python and --unpack-limit of the commands set");
+  }
 }
 
 std::uint64_t RecordingReader::First() {
@@ -223,8 +274,8 @@ void RecordingReader::ReadRows(std::uint64_t first, std::uint64_t last,
 void RecordingReader::Read(std::uint64_t first, std::uint64_t last,
                            const std::function<bool(RecordedCommand&&)>& take) {
   this->ReadRows(first, last, [&](RecordingRow&& row) {
-    RecordedCommand command{row.seq, row.time_s, row.wall_s, {}};
-    if (!command.command.ParseFromString(row.payload)) {
+    RecordedCommand command{row.seq, row.time_s, row.wall_s, {}, false};
+    if (!ParseCommand(row.payload, command.command, command.foreignText)) {
       this->Database_->Damaged("command " + std::to_string(row.seq) + " is not a Command message");
     }
     return take(std::move(command));
@@ -260,8 +311,12 @@ RecordingRow RecordingReader::SnapshotRow(std::uint64_t seq) {
 }
 
 RecordedSnapshot RecordingReader::SnapshotAt(std::uint64_t seq) {
-  const RecordingRow row = this->SnapshotRow(seq);
-  RecordedSnapshot snapshot{row.seq, row.time_s, row.wall_s, {}};
+  RecordingRow row = this->SnapshotRow(seq);
+  RecordedSnapshot snapshot{row.seq, row.time_s, row.wall_s, {}, false};
+  if (auto readable = WithTextUtf8OfAll(row.payload, *v1::Command::descriptor())) {
+    row.payload = std::move(*readable);
+    snapshot.foreignText = true;
+  }
   google::protobuf::io::ArrayInputStream bytes(row.payload.data(), int(row.payload.size()));
   google::protobuf::io::CodedInputStream in(&bytes);
   bool end = false;
@@ -308,7 +363,8 @@ RecordingReader::Steps(const std::optional<std::string>& scene) {
   while (found.Step()) {
     const auto seq = std::uint64_t(found.Integer(0));
     if (scene) {
-      if (!command.ParseFromString(found.Bytes(2))) {
+      bool foreign = false;
+      if (!ParseCommand(found.Bytes(2), command, foreign)) {
         this->Database_->Damaged("command " + std::to_string(seq) + " is not a Command message");
       }
       if (SceneName(command) != *scene) {
@@ -324,22 +380,49 @@ RecordingReader::Steps(const std::optional<std::string>& scene) {
 std::vector<std::pair<std::uint64_t, std::uint64_t>> RecordingReader::Lost() {
   Statement found(*this->Database_, "SELECT value FROM meta WHERE key = 'lost'");
   std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
-  std::istringstream words(found.Step() ? found.Bytes(0) : std::string());
-  for (std::string word; words >> word;) {
+  if (!found.Step()) {
+    return ranges;
+  }
+  const auto damaged = [this](const std::string& why) {
+    this->Database_->Damaged("the list of its lost commands is damaged: " + why);
+  };
+  constexpr std::size_t Many = 1000; // counted only then, since it takes time
+  std::uint64_t most = Many;
+  const std::string text = found.Bytes(0);
+  const char* at = text.c_str();
+  for (;;) {
+    at += std::strspn(at, " ");
+    if (*at == '\0') {
+      break;
+    }
     char* end = nullptr;
-    const std::uint64_t first = std::strtoull(word.c_str(), &end, 10);
-    const std::uint64_t last = *end == '-' ? std::strtoull(end + 1, &end, 10) : 0;
-    if (first == 0 || last < first || *end != '\0') {
-      this->Database_->Damaged("the list of its lost commands is damaged");
+    const std::uint64_t first = std::strtoull(at, &end, 10);
+    const bool two = *end == '-' && end != at;
+    const std::uint64_t last = two ? std::strtoull(end + 1, &end, 10) : 0;
+    if (first == 0 || last < first || (*end != ' ' && *end != '\0')) {
+      damaged("'" + Printable(std::string(at, std::strcspn(at, " ")).substr(0, 40)) +
+              "' is no range of commands");
+    }
+    if (!ranges.empty() && first <= ranges.back().second) {
+      damaged("its ranges do not ascend");
+    }
+    if (ranges.size() == Many) { // between two of them is a command, or a snapshot after the first
+      most = 1 +
+             std::uint64_t(this->Database_->Number(
+                 "SELECT (SELECT count(seq) FROM command) + (SELECT count(seq) FROM snapshot)", 0));
+    }
+    if (ranges.size() >= Many && ranges.size() >= most) {
+      damaged("it has more ranges than there are commands and snapshots");
     }
     ranges.emplace_back(first, last);
+    at = end;
   }
   return ranges;
 }
 
 RecordingReader::Counts RecordingReader::Count() {
   Counts counts;
-  counts.snapshots = std::uint64_t(this->Database_->Number("SELECT count(*) FROM snapshot", 0));
+  counts.snapshots = std::uint64_t(this->Database_->Number("SELECT count(seq) FROM snapshot", 0));
   Statement ends(*this->Database_,
                  "SELECT min(time), max(time), min(wall), max(wall) FROM command");
   if (ends.Step()) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,7 @@ struct RecordedCommand {
   double time_s = 0.0;   // of the simulation
   double wall_s = 0.0;   // seconds past 1970 UTC
   v1::Command command;
+  bool foreignText = false; // it had text of another encoding, which is UTF-8 here (ForeignRows)
 };
 
 // The commands that create the state after command `seq`.
@@ -35,6 +37,21 @@ struct RecordedSnapshot {
   double time_s = 0.0;
   double wall_s = 0.0;
   std::vector<v1::Command> commands;
+  bool foreignText = false;
+};
+
+// The rows whose text is not UTF-8: earlier versions recorded names from files as the files had
+// them. Such text is read as ToUtf8 (Utf8.h) takes it, which gives the names that a file is read
+// with now.
+inline constexpr const char* ForeignTextNote =
+    " holds text that is not UTF-8; it is read as Windows-1252 (Latin-1)";
+struct ForeignRows {
+  std::set<std::pair<std::uint64_t, bool>> rows; // seq, and whether it is a snapshot
+
+  // Adds the row if it is one.
+  void Look(const RecordingRow& row);
+  // "command 17", "snapshot 0": of the first ten.
+  std::vector<std::string> Names() const;
 };
 
 // Reads a recording, also while it is being written. Use it from one thread at a time. Every read
@@ -63,7 +80,7 @@ public:
   static bool IsNewer(const std::string& path);
 
   // Reads the commands first..last in order, without gaps, until `take` returns false. An empty
-  // range is no error. The payloads are not parsed.
+  // range is no error. The payloads are not parsed, and their text may not be UTF-8.
   void ReadRows(std::uint64_t first, std::uint64_t last,
                 const std::function<bool(RecordingRow&&)>& take);
   // Reads the commands as ReadRows does, and parses them.
@@ -121,6 +138,12 @@ public:
   void ReadContent(const RecordingAsset& asset, const std::vector<std::int64_t>& parts,
                    const std::function<void(const std::string&)>& take);
 
+  // How many bytes the packed content may have unpacked, all together; 0: 1 GiB and 20 times the
+  // size of the recording, which is also the default. A small file may be zlib's of a large one.
+  void SetUnpackLimit(std::uint64_t bytes) { this->UnpackLimit_ = bytes; }
+  // Throws Error(Resource), naming the limit, if `bytes` are more.
+  void RequireUnpackable(std::uint64_t bytes) const;
+
   // Inside the library only.
   const RecordingDatabase& Database() const { return *this->Database_; }
 
@@ -128,6 +151,7 @@ private:
   void RequireFormat();
 
   std::unique_ptr<RecordingDatabase> Database_;
+  std::uint64_t UnpackLimit_ = 0;
 };
 
 } // namespace dspace::session

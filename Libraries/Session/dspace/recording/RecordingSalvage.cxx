@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include <dspace/Error.h>
 #include <dspace/recording/NewRecording.h>
@@ -34,7 +35,8 @@ void Put(RecordingFile& file, RecordingRow& row, Sha256& sum) {
   file.CommitEach(row.payload.size());
 }
 
-void PutAll(const std::string& path, RecordingFile& file, const CancelCheck& checkCancel) {
+void PutAll(const std::string& path, RecordingFile& file, ForeignRows& foreign,
+            const CancelCheck& checkCancel) {
   Sha256 sum;
   file.Begin();
   FindRows(
@@ -42,6 +44,7 @@ void PutAll(const std::string& path, RecordingFile& file, const CancelCheck& che
       [&](FoundRow&& found) {
         if (auto* row = std::get_if<RecordingRow>(&found)) {
           if (row->snapshot || row->seq > 0) {
+            foreign.Look(*row);
             Put(file, *row, sum);
           }
         } else if (const auto* asset = std::get_if<RecordingAsset>(&found)) {
@@ -79,10 +82,14 @@ LostIn(const RecordingDatabase& found, std::uint64_t begin, std::uint64_t last) 
 std::vector<RecordingAsset> BrokenIn(RecordingReader& found, const CancelCheck& checkCancel) {
   const RecordingReader::PartNumbers numbers = found.Parts();
   std::vector<RecordingAsset> broken;
+  std::uint64_t unpacked = 0;
   found.ReadAssets(0, [&](RecordingAsset&& asset) {
     if (!asset.packed) {
       return;
     }
+    const std::uint64_t bytes = UnpackedBytes({asset});
+    unpacked += std::min(bytes, std::numeric_limits<std::uint64_t>::max() - unpacked);
+    found.RequireUnpackable(unpacked);
     const auto parts = numbers.find(asset.id);
     try {
       found.ReadContent(asset, parts == numbers.end() ? std::vector<std::int64_t>() : parts->second,
@@ -135,7 +142,7 @@ bool SalvageReport::IsComplete() const {
 }
 
 SalvageReport SalvageRecording(const std::string& path, const std::string& out,
-                               const CancelCheck& checkCancel) {
+                               const CancelCheck& checkCancel, std::uint64_t unpackLimit) {
   const std::string whole = std::filesystem::absolute(path).string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(whole, error)) {
@@ -147,11 +154,14 @@ SalvageReport SalvageRecording(const std::string& path, const std::string& out,
   SalvageReport report;
   {
     RecordingFile file(made);
-    PutAll(whole, file, checkCancel);
+    PutAll(whole, file, report.foreign, checkCancel);
     std::vector<RecordingAsset> broken;
     {
       RecordingReader found(made.Path());
+      found.SetUnpackLimit(unpackLimit);
+      ForeignRows foreign = std::move(report.foreign);
       report = ReportOf(found.Database(), begin);
+      report.foreign = std::move(foreign);
       broken = BrokenIn(found, checkCancel);
     }
     if (report.commands + report.snapshots + report.assets == 0) {

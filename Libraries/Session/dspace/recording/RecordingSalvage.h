@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <dspace/recording/CancelCheck.h>
+#include <dspace/recording/RecordingReader.h>
 
 namespace dspace::session {
 
@@ -24,6 +25,7 @@ struct SalvageReport {
   std::vector<std::string> broken; // paths of packed files whose content is not whole: they are no
                                    // longer packed
   std::uint64_t unknownAssets = 0; // files of which nothing is known, by the gaps in their numbers
+  ForeignRows foreign;             // rows whose text is not UTF-8; they are kept as they are
 
   bool IsComplete() const;
 };
@@ -31,9 +33,9 @@ struct SalvageReport {
 // Copies every command, snapshot and file with a valid checksum from a damaged recording and its
 // log into a new recording. Throws Error: NotFound (no such file), Unsupported (a newer Dspace
 // wrote it), Corrupt (nothing can be recovered), AlreadyExists and NotFound for the new file, Io.
-// There is no new file then.
+// There is no new file then. unpackLimit: RecordingReader::SetUnpackLimit.
 SalvageReport SalvageRecording(const std::string& path, const std::string& out,
-                               const CancelCheck& checkCancel);
+                               const CancelCheck& checkCancel, std::uint64_t unpackLimit = 0);
 
 } // namespace dspace::session
 

@@ -7,6 +7,7 @@
 #include <proj.h>
 
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 #include <dspace/Utf8.h>
 
 #include <dspace/gdal/GdalErrors.h>
@@ -69,7 +70,9 @@ Crs Crs::FromOgr(const OGRSpatialReference& source) {
     // GeoTIFF says nothing of its texts' encoding, and old writers use Latin-1. Nothing of it
     // remains: the CRS is created again from UTF-8 text.
     OGRSpatialReference readable;
-    if (readable.importFromWkt(ToUtf8(crs.Wkt_).c_str()) != OGRERR_NONE)
+    const std::string wkt =
+        ToFileText(crs.Wkt_, "CRS '" + ToUtf8(source.GetName() ? source.GetName() : "") + "'");
+    if (readable.importFromWkt(wkt.c_str()) != OGRERR_NONE)
       throw Error(Error::Kind::Unsupported, "CRS '" + crs.Wkt_ + "'",
                   "its text is not UTF-8; " + errors.Message("accepted: WKT of UTF-8"));
     return FromOgr(readable);

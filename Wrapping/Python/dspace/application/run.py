@@ -3,7 +3,7 @@ import os
 
 from dspace import vtk as _vtk
 from dspace._core.fields import flag, real, reject
-from dspace._core.replies import make_error, to_reply
+from dspace._core.replies import make_error, to_reply, warn
 from dspace._core.wire import encode
 from dspace.clients.local import LocalClient
 from dspace.clients.session import Session
@@ -13,10 +13,12 @@ from dspace.playback.playback import Playback
 
 
 def require(reply):
-    """Raises the error of a serialized reply."""
+    """Raises the error of a serialized reply, and gives its warnings."""
     reply = to_reply(reply)
     if reply.HasField("error"):
         raise make_error(reply.error)
+    for each in reply.warning:
+        warn(each)
     return reply
 
 

@@ -4,11 +4,14 @@ Exit code: 0 on success; 1 when something failed, with one line on the error str
 line itself is wrong.
 """
 import argparse
+import contextlib
 import importlib
 import importlib.util
 import os
 import re
+import signal
 import sys
+import threading
 import warnings
 
 from dspace.errors import Error
@@ -90,6 +93,21 @@ def main(arguments=None):
         return 1
     except (Failed, Error, OSError, RuntimeError) as error:  # RuntimeError: GDAL's
         return tell(error)
+
+
+@contextlib.contextmanager
+def tidy_end():
+    """In a `with` statement: SIGTERM ends the command as an error does, so that temporary files go. Exit code 143."""
+    def end(*_):
+        raise SystemExit(128 + signal.SIGTERM)
+    if threading.current_thread() is not threading.main_thread():  # Python sets handlers there only
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def tell(error):

@@ -6,6 +6,7 @@ def add_arguments(parser):
     what = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
     info = what.add_parser("info", help="its duration and contents; reads and checks the complete file")
     info.add_argument("file", metavar="FILE")
+    add_unpack_limit(info)
     info.set_defaults(run=later("log_show", "show"))
     cat = what.add_parser("cat", help="print its commands as text")
     cat.add_argument("file", metavar="FILE")
@@ -36,8 +37,15 @@ def add_arguments(parser):
                                              "exit code 1 if some are lost")
     rescue.add_argument("file", metavar="FILE")
     rescue.add_argument("--out", required=True, metavar="FILE", help="the new recording")
+    add_unpack_limit(rescue)
     rescue.set_defaults(run=later("log_salvage", "salvage"))
     add_telemetry(what)
+
+
+def add_unpack_limit(parser):
+    parser.add_argument("--unpack-limit", type=int, default=None, metavar="BYTES",
+                        help="the most bytes that packed files may have unpacked; absent: 1 GiB and 20 times the "
+                             "recording's size")
 
 
 def add_telemetry(what):

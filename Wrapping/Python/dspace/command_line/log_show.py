@@ -12,7 +12,7 @@ from dspace.recording.file import RecordingFile, carry_out, path_of
 
 def show(options):
     with RecordingFile(options.file) as file:
-        file.check()
+        foreign = file.check(options.unpack_limit)
         last, first = file.last, file.first
         summary = file.summary
         print(f"{options.file}: format 1, commands {first} to {last}, {summary.snapshots} snapshots; "
@@ -31,7 +31,18 @@ def show(options):
             print(f"arrays of {len(arrays)} meshes: {sum(each.size for each in arrays)} bytes")
         for first, last in file.lost:
             print(f"lost: commands {first} to {last}")
+        if foreign.count:
+            print(foreign_text(foreign))
+        if not last and not summary.snapshots:
+            print("it holds no steps yet: its recording was just begun, or its process ended in its first moments")
     return 0
+
+
+def foreign_text(foreign):
+    """Returns the rows of a ForeignText (recordings.proto) as a line."""
+    more = foreign.count - len(foreign.row)
+    return (f"text that is not UTF-8: in {', '.join(foreign.row)}{f' and {more} others' if more else ''}; playback reads "
+            "it as Windows-1252 (Latin-1)")
 
 
 def write_out(options):

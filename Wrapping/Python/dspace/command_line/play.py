@@ -4,7 +4,8 @@ import os
 import re
 import sys
 
-from dspace.command_line import Failed, confinement
+from dspace.command_line import Failed, confinement, tidy_end
+from dspace.command_line.log import add_unpack_limit
 
 PICTURE = re.compile(r"\d{6,}\.png")
 ABOUT = (
@@ -26,6 +27,7 @@ def add_arguments(parser):
     parser.add_argument("--allow-network", action="store_true",
                         help="allow connections, for a recording whose rasters are on servers")
     confinement.add_argument(parser, "the recording")
+    add_unpack_limit(parser)
     parser.set_defaults(run=run)
 
 
@@ -61,7 +63,8 @@ def run(options):
 
     confine = vtk.vtkDspaceSession().ConfineProcess  # it may open only the recording's files
     confine() if files_are_restricted else confine(True)
-    with confinement.explaining(options), Playback(options.file) as playback:
+    with tidy_end(), confinement.explaining(options), \
+            Playback(options.file, unpack_limit=options.unpack_limit) as playback:
         if options.at is not None:
             playback.seek(options.at)
         if options.out is None:

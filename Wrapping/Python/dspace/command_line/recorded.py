@@ -1,7 +1,7 @@
 """The scene of a recording at a time, in which commands measure and draw."""
 import contextlib
 
-from dspace.command_line import Failed
+from dspace.command_line import Failed, tidy_end
 
 
 def add_recording(parser, source=None):
@@ -15,7 +15,7 @@ def add_recording(parser, source=None):
 def recorded_scene(options):
     """The Scene of the command's recording, at its time."""
     from dspace.playback.playback import Playback
-    with Playback(options.recording) as playback:
+    with tidy_end(), Playback(options.recording) as playback:
         playback.seek(playback.times[-1] if options.at is None else options.at)
         scenes = playback.session.scenes
         if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:

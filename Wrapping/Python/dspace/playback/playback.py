@@ -38,17 +38,22 @@ class Playback:
     pictures as the recorded one, byte for byte. Additions to the session are lost at the next seek back.
 
     Packed files are unpacked into a temporary folder, which close() removes. check_assets: the other files must be
-    unchanged, else dspace.Corrupt or dspace.NotFound names the one that differs or is absent.
+    unchanged, else dspace.Corrupt or dspace.NotFound names the one that differs or is absent. unpack_limit: the most
+    bytes that packed files may have unpacked (default: 1 GiB and 20 times the recording's size), else dspace.Resource.
+
+    A command with text that is not UTF-8, as earlier versions recorded it, is played with this text as UTF-8; a
+    dspace.DspaceWarning names the command. A recording that was just begun raises dspace.NotFound.
 
     A salvaged recording lacks commands. `gaps` lists the spans that cannot be shown, each up to the next snapshot,
     including steps that may lack a command. A dspace.DspaceWarning lists them.
     """
 
-    def __init__(self, path, check_assets=True, scene=None):
+    def __init__(self, path, check_assets=True, scene=None, unpack_limit=None):
         self.file = RecordingFile(path)
         self.session = self._files = None
         try:
             self._checks = flag(check_assets, "check_assets", self.file.label)
+            self._unpack_limit = unpack_limit
             self._scene = None if scene is None else text(scene, "the scene", self.file.label)
             self._telemetry = RecordedTelemetry(self.file, self._scene)
             self._read_steps()
@@ -58,6 +63,7 @@ class Playback:
                      + ", nor from ".join(str(gap) for gap in self.gaps))
             self.session = self._make_session()
             self._left_out = set()  # warnings that were given
+            self._told = set()  # rows of foreign text that were told
             self._at = None  # the last command that the session has executed
             self.index = 0
             self._go(0)
@@ -71,7 +77,7 @@ class Playback:
     def _read_steps(self):
         steps, gaps = steps_of(self.file, self._scene)
         if not steps:
-            raise self.file.corrupt("it has no complete step")
+            self.file.reject_no_steps()
         self._take_files()  # after the steps: a recording notes the files of a command before the command
         self.gaps = gaps
         self._ends = [step.end for step in steps]
@@ -89,7 +95,7 @@ class Playback:
     def _take_files(self):
         """Unpacks or checks the files that were recorded since the last call."""
         if self._files is None:
-            self._files = RecordedFiles(self.file, self._checks)
+            self._files = RecordedFiles(self.file, self._checks, self._unpack_limit)
         else:
             self._files.update()
 
@@ -295,6 +301,9 @@ class Playback:
             self.session.execute(command)
 
     def _carry_out(self, payload, what):
+        if what in self.file.foreign and what not in self._told:
+            self._told.add(what)
+            warn(f"{self.file.label}: {what} holds text that is not UTF-8; it is read as Windows-1252 (Latin-1)")
         payload = self._files.map(payload)
         reply = to_reply(self.session.vtk.Replay(payload, self._files.vtk))
         if reply.HasField("error"):

@@ -5,7 +5,7 @@ import threading
 from typing import NamedTuple
 
 from dspace import vtk as _vtk
-from dspace._core.fields import reject, text
+from dspace._core.fields import integer, reject, text
 from dspace._core.replies import make_error, to_bytes
 from dspace._core.signals import SLICE, check_signals
 from dspace.errors import Closed, Corrupt, WrongThread
@@ -74,7 +74,12 @@ def reply_of(answer):
 def carry_out(name, *arguments):
     """Runs a long task on recordings, such as "Salvage" (vtkDspaceRecordingTask), and returns its RecordingReply.
     Ctrl-C cancels it without leaving a new file."""
-    task = _vtk.vtkDspaceRecordingTask()
+    return carry_out_in(_vtk.vtkDspaceRecordingTask(), name, *arguments)
+
+
+def carry_out_in(task, name, *arguments):
+    """Runs the long work `name` of a wrapped object that works in a thread, and returns its RecordingReply. An exception
+    meanwhile, such as that of Ctrl-C, cancels it."""
     getattr(task, "Begin" + name)(*arguments)
     try:
         while not task.Wait(SLICE):
@@ -85,8 +90,14 @@ def carry_out(name, *arguments):
     return reply_of(task.TakeReply())
 
 
-def _row(row):
-    return Row(row.seq, row.time_s, row.wall_s, row.kind, row.payload)
+def unpack_limit_of(limit):
+    """Returns the number that the wrapped classes take for a limit of unpacked bytes: 0 for None, the default."""
+    if limit is None:
+        return 0
+    accepted = "a number of bytes, 1 to 2^62"
+    if not 1 <= integer(limit, "unpack_limit", "recording", accepted) <= 2 ** 62:
+        reject("recording", "unpack_limit", limit, accepted)
+    return int(limit)
 
 
 def _number(seq):
@@ -105,6 +116,7 @@ class RecordingFile:
         self.label = f"recording {self.path!r}"
         self._vtk = _vtk.vtkDspaceRecordingReader()
         self._thread = threading.get_ident()
+        self.foreign = set()  # of the rows that were read, "command 17": their text was not UTF-8, but is in the Row
         reply_of(self._vtk.Open(os.fsencode(self.path)))
 
     def close(self):
@@ -135,10 +147,15 @@ class RecordingFile:
         following, last = _number(first), _number(last)
         while following <= last:
             reply = self._ask(method, following, last, kinds)
-            yield from map(_row, reply.row)
+            yield from (self._row(row, "command") for row in reply.row)
             if not reply.next:
                 return
             following = reply.next
+
+    def _row(self, row, table):
+        if row.foreign_text:
+            self.foreign.add(f"{table} {row.seq}")
+        return Row(row.seq, row.time_s, row.wall_s, row.kind, row.payload)
 
     def rows(self, first=1, last=None):
         """Yields the commands first..last in order, with none missing between. last: default: the present last one."""
@@ -191,7 +208,7 @@ class RecordingFile:
 
     def snapshot(self, seq):
         """Returns the last snapshot at or before a command."""
-        return _row(self._ask("ReadSnapshot", _number(seq)).row[0])
+        return self._row(self._ask("ReadSnapshot", _number(seq)).row[0], "snapshot")
 
     @property
     def snapshots(self):
@@ -222,7 +239,13 @@ class RecordingFile:
         """A RecordingSummary (recordings.proto): its size, its times, its commands by kind."""
         return self._ask("Summary").summary
 
-    def check(self):
-        """Reads the complete file. Raises dspace.Corrupt at the first damage."""
+    def reject_no_steps(self):
+        """Raises the error of a recording that has no steps."""
+        self._ask("NoSteps")
+
+    def check(self, unpack_limit=None):
+        """Reads the complete file. Raises dspace.Corrupt at the first damage. Returns a ForeignText
+        (recordings.proto): the commands and snapshots whose text is not UTF-8. unpack_limit: the most bytes that packed
+        content may have unpacked (default: 1 GiB and 20 times the recording's size; dspace.Resource beyond)."""
         self._ask("First")  # checks that the file is open and the thread is the right one
-        carry_out("Check", os.fsencode(self.path))
+        return carry_out("Check", os.fsencode(self.path), unpack_limit_of(unpack_limit)).foreign

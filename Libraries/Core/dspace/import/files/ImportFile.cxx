@@ -1,8 +1,8 @@
 #include <dspace/import/files/ImportFile.h>
 
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 #include <dspace/FilesRead.h>
-#include <dspace/Utf8.h>
 
 #include <filesystem>
 #include <fstream>
@@ -46,7 +46,7 @@ std::string ReadFileBytes(const std::string& path, std::size_t maximum) {
 }
 
 std::string ReadFileText(const std::string& path, std::size_t maximum) {
-  return ToUtf8(ReadFileBytes(path, maximum));
+  return ToFileText(ReadFileBytes(path, maximum), FileObject(path));
 }
 
 } // namespace dspace

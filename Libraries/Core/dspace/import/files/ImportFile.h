@@ -14,7 +14,7 @@ std::string FileObject(const std::string& path);
 // (empty), Resource (more than `maximum` bytes). Notes the file (FilesRead.h).
 std::string ReadFileBytes(const std::string& path, std::size_t maximum = std::size_t(1) << 32);
 
-// The same as text: bytes of another encoding become UTF-8 (Utf8.h).
+// The same as text: bytes of another encoding become UTF-8 (FileText.h).
 std::string ReadFileText(const std::string& path, std::size_t maximum = std::size_t(1) << 32);
 
 } // namespace dspace

@@ -6,6 +6,7 @@
 #include <new>
 
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 #include <dspace/Utf8.h>
 #include <dspace/import/model/SolidMesh.h>
 
@@ -101,20 +102,23 @@ Reader ReaderFor(const std::string& path) {
 // The boundary for text: whatever a reader or its library made of a file's names, a Model holds
 // UTF-8.
 void MakeTextUtf8(Model& model) {
+  const auto convert = [object = FileObject(model.path)](std::string& name) {
+    name = ToFileText(std::move(name), object);
+  };
   for (Mesh& mesh : model.meshes) {
-    mesh.name = ToUtf8(std::move(mesh.name));
+    convert(mesh.name);
   }
   for (Material& material : model.materials) {
-    material.name = ToUtf8(std::move(material.name));
+    convert(material.name);
   }
   for (ModelNode& node : model.nodes) {
-    node.name = ToUtf8(std::move(node.name));
+    convert(node.name);
   }
   for (ModelLight& light : model.lights) {
-    light.name = ToUtf8(std::move(light.name));
+    convert(light.name);
   }
   for (ModelAnimation& animation : model.animations) {
-    animation.name = ToUtf8(std::move(animation.name));
+    convert(animation.name);
   }
   for (std::vector<std::string>* texts : {&model.warnings, &model.leftOut}) {
     for (std::string& text : *texts) {

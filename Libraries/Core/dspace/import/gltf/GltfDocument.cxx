@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include <dspace/FileText.h>
 #include <dspace/Utf8.h>
 #include <dspace/import/files/FileNames.h>
 #include <dspace/import/files/ImportFile.h>
@@ -61,7 +62,7 @@ GltfDocument::GltfDocument(const std::string& path, Contents contents) : Path_(p
   if (json.compare(0, 4, "glTF") == 0) {
     json = this->SplitContainer(json);
   }
-  json = ToUtf8(std::move(json));
+  json = ToFileText(std::move(json), FileObject(path));
   const std::size_t mark = json.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
   this->ParseJson(json.data() + mark, json.data() + json.size());
   this->CheckVersion();

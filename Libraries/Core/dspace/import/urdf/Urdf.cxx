@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 #include <dspace/FrameRules.h>
 #include <dspace/Utf8.h>
 #include <dspace/import/files/ImageReader.h>
@@ -32,7 +33,9 @@ public:
 
   Urdf Read() {
     this->Out_.path = this->Path_;
-    const std::string text = ReadFileText(this->Path_, std::size_t(1) << 28);
+    std::string text = ReadFileBytes(this->Path_, std::size_t(1) << 28);
+    const std::string declared = DeclaredEncoding(text);
+    text = ToFileText(std::move(text), FileObject(this->Path_), declared);
     const urdf::ModelInterfaceSharedPtr model = ParseUrdfText(
         this->Path_, text, this->Out_.warnings, this->Options_.strict ? nullptr : &this->Repairs_);
     try {

@@ -7,6 +7,7 @@
 #include <ogrsf_frmts.h>
 
 #include <dspace/Checks.h>
+#include <dspace/FileText.h>
 #include <dspace/Utf8.h>
 #include <dspace/crs/MapTurn.h>
 #include <dspace/gdal/OfflineScope.h>
@@ -53,12 +54,12 @@ public:
   }
 
 private:
-  static std::optional<std::string> Text(const OGRFeature& feature, const char* name) {
+  std::optional<std::string> Text(const OGRFeature& feature, const char* name) const {
     const int index = feature.GetFieldIndex(name);
     if (index < 0 || !feature.IsFieldSetAndNotNull(index)) {
       return std::nullopt;
     }
-    return ToUtf8(const_cast<OGRFeature&>(feature).GetFieldAsString(index));
+    return ToFileText(const_cast<OGRFeature&>(feature).GetFieldAsString(index), this->Object_);
   }
   void Ignore(const char* name, const std::string& value, const char* accepted) {
     if (!this->Ignored_) {

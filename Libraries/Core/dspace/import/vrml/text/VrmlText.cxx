@@ -3,6 +3,7 @@
 #include <dspace/import/files/ImportFile.h>
 
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 #include <dspace/Utf8.h>
 
 #include <zlib.h>
@@ -60,7 +61,7 @@ VrmlText ReadVrmlText(const std::string& path) {
   if (StartsWith(text, "\x1f\x8b")) {
     text = Gunzip(text, path);
   }
-  text = ToUtf8(std::move(text));
+  text = ToFileText(std::move(text), FileObject(path));
   if (StartsWith(text, "\xef\xbb\xbf")) {
     text.erase(0, 3); // byte order mark
   }

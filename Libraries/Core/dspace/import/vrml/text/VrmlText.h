@@ -19,7 +19,7 @@ struct VrmlText {
 
 // Reads `path`, unpacking gzip. Throws Error: NotFound, Io, Unsupported (binary Inventor, another
 // VRML version), Corrupt (no VRML header, damaged gzip, NUL bytes), Resource (over 512 MiB
-// unpacked). Text of another encoding becomes UTF-8 (Utf8.h).
+// unpacked). Text of another encoding becomes UTF-8 (FileText.h).
 VrmlText ReadVrmlText(const std::string& path);
 
 } // namespace dspace
