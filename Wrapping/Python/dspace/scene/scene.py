@@ -14,6 +14,7 @@ from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
 from dspace.measure.best_sites import BestSites
 from dspace.measure.ensembles import Ensembles
+from dspace.measure.lens_ornaments import LensOrnaments
 from dspace.measure.lines import Lines
 from dspace.measure.lit import Lit
 from dspace.measure.maps import Maps
@@ -218,6 +219,7 @@ class Scene(Strict):
 
     simulate_image = delegate(SceneImages, "simulate_image")
     save_image = delegate(SceneImages, "save_image")
+    image_state = delegate(SceneImages, "image_state")
     project_points = delegate(SceneImages, "project_points")
     pixel_rays = delegate(SceneImages, "pixel_rays")
 
@@ -297,6 +299,7 @@ class Scene(Strict):
     measure_area = delegate(Lines, "measure_area")
     measure_angle = delegate(Lines, "measure_angle")
     lit_area = delegate(Lit, "lit_area")
+    add_lens_frustum = delegate(LensOrnaments, "add_lens_frustum")
     sky_track = delegate(Visibility, "sky_track")
     contacts = delegate(Visibility, "contacts")
     power_profile = delegate(Visibility, "power_profile")
